@@ -1,0 +1,1 @@
+"""Camera frames in; where the cube is, and what the hand does with it, out."""

@@ -1,0 +1,206 @@
+"""The cube as a TOML file describes it, and its markers in space."""
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.errors import TrackingError
+
+FACE_AXES: dict[str, tuple[tuple[int, int, int], tuple[int, int, int]]] = {
+    "front": ((1, 0, 0), (0, 1, 0)),
+    "right": ((0, 0, -1), (0, 1, 0)),
+    "back": ((-1, 0, 0), (0, 1, 0)),
+    "left": ((0, 0, 1), (0, 1, 0)),
+    "top": ((1, 0, 0), (0, 0, -1)),
+    "bottom": ((1, 0, 0), (0, 0, 1)),
+}
+"""For each face, seen from outside: the directions (right, up) in the cube frame.
+
+The faces unfold to a cross around `front`, so `top` and `bottom` continue its edges.
+"""
+
+
+@dataclass(frozen=True)
+class Face:
+    """One face of the cube and the marker printed on it."""
+
+    name: str
+    """One of `FACE_AXES`."""
+
+    marker_id: int
+    """Number of the marker in the cube's dictionary."""
+
+    corners: NDArray[np.float64]
+    """Corners of the black square in the cube frame, (4, 3) in metres.
+
+    Top-left, top-right, bottom-right, bottom-left of the marker, seen from outside.
+    """
+
+    role: str = ""
+    """What the face means to a scenario: "idle", "walk", "kiss" … or ""."""
+
+    icon: str = ""
+    """Name of the icon printed beside the marker, or ""."""
+
+    roll_deg: int = 0
+    """How the marker is turned on its face: 0, 90, 180 or 270, clockwise from outside."""
+
+    @property
+    def normal(self) -> NDArray[np.float64]:
+        """Outward unit normal in the cube frame, (3,)."""
+        right, up = FACE_AXES[self.name]
+        return np.cross(right, up).astype(np.float64)
+
+
+@dataclass(frozen=True)
+class CubeModel:
+    """A cube with a marker on each of its faces.
+
+    The cube frame has its origin in the centre, +y through `top`, +z through `front`, +x through `right`.
+    """
+
+    name: str
+    """Name of the cube, as printed on its sheet."""
+
+    dictionary: str
+    """Name of the OpenCV dictionary, "DICT_4X4_50" …"""
+
+    edge: float
+    """Edge of the cube in metres."""
+
+    marker_size: float
+    """Side of the black square in metres."""
+
+    faces: tuple[Face, ...]
+    """The faces that carry a marker."""
+
+    @classmethod
+    def load(cls, name_or_path: str | Path) -> Self:
+        """Read a cube from a bundled name or a TOML file.
+
+        Parameters
+        ----------
+        name_or_path
+            "locomotion", "companion", or the path of a TOML file.
+
+        Raises
+        ------
+        TrackingError
+            The file is absent, is not TOML, or describes no printable cube.
+        """
+        path = Path(name_or_path)
+        if path.suffix != ".toml":
+            path = CUBES / f"{name_or_path}.toml"
+            if not path.is_file():
+                known = ", ".join(bundled())
+                raise TrackingError(
+                    f"no cube is called '{name_or_path}': choose one of {known}, or give a .toml file"
+                )
+        try:
+            document = tomllib.loads(path.read_text(encoding="utf-8"))
+        except OSError as error:
+            raise TrackingError(f"cannot read the cube '{path}': {error.strerror}") from error
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise TrackingError(f"the cube '{path}' is not TOML: {error}") from error
+        return cls.from_document(document, str(path), path.stem)
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any], where: str, name: str) -> Self:
+        """Make a cube from the tables of its TOML file, (`where` names it in errors)."""
+        edge_mm, marker_mm = (_length(document, key, where) for key in ("edge_mm", "marker_mm"))
+        if marker_mm >= edge_mm:
+            raise TrackingError(
+                f"{where}: the marker ({marker_mm:g} mm) does not fit its face ({edge_mm:g} mm); "
+                "leave a white border of at least one marker cell"
+            )
+        dictionary = document.get("dictionary")
+        capacity = _capacity(dictionary, where)
+        tables = document.get("face")
+        if not isinstance(tables, list) or not tables:
+            raise TrackingError(f"{where}: a cube needs at least one [[face]] table")
+        faces = tuple(_face(table, marker_mm / 1000, edge_mm / 1000, where) for table in tables)
+        for what, values in (
+            ("name", [face.name for face in faces]),
+            ("marker_id", [face.marker_id for face in faces]),
+        ):
+            twice = {value for value in values if values.count(value) > 1}
+            if twice:
+                raise TrackingError(f"{where}: two faces have the {what} {twice.pop()!r}; each must differ")
+        for face in faces:
+            if not 0 <= face.marker_id < capacity:
+                raise TrackingError(
+                    f"{where}: face '{face.name}' has marker_id {face.marker_id}, "
+                    f"but {dictionary} holds 0 to {capacity - 1}"
+                )
+        label = document.get("name", name)
+        return cls(str(label), str(dictionary), edge_mm / 1000, marker_mm / 1000, faces)
+
+    def face(self, name: str) -> Face:
+        """Return the face called `name`; a `KeyError` where the cube has none."""
+        for face in self.faces:
+            if face.name == name:
+                return face
+        raise KeyError(name)
+
+
+CUBES = Path(__file__).parent / "cubes"
+
+
+def bundled() -> tuple[str, ...]:
+    """Names of the cubes that come with Cubeling."""
+    return tuple(sorted(path.stem for path in CUBES.glob("*.toml")))
+
+
+def aruco_dictionary(name: str) -> cv2.aruco.Dictionary:
+    """Return OpenCV's dictionary of that name, ("DICT_4X4_50" …)."""
+    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, name))
+
+
+def face_corners(name: str, roll_deg: int, marker: float, edge: float) -> NDArray[np.float64]:
+    """Corners of a marker in the cube frame, (4, 3), in the order of `Face.corners`.
+
+    >>> face_corners("front", 0, 0.04, 0.06)[0].tolist()
+    [-0.02, 0.02, 0.03]
+    >>> face_corners("front", 90, 0.04, 0.06)[0].tolist()
+    [0.02, 0.02, 0.03]
+    """
+    right, up = (np.array(axis, float) for axis in FACE_AXES[name])
+    square = np.array([(-1, 1), (1, 1), (1, -1), (-1, -1)]) * (marker / 2)
+    square = np.roll(square, -(roll_deg // 90), axis=0)
+    return square[:, :1] * right + square[:, 1:] * up + np.cross(right, up) * (edge / 2)
+
+
+def _length(document: dict[str, Any], key: str, where: str) -> float:
+    value = document.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 1 <= value <= 1000:
+        raise TrackingError(f"{where}: '{key}' must be a length from 1 to 1000 mm, not {value!r}")
+    return float(value)
+
+
+def _capacity(dictionary: object, where: str) -> int:
+    if not isinstance(dictionary, str) or not dictionary.startswith("DICT_"):
+        raise TrackingError(f"{where}: 'dictionary' must be a name such as DICT_4X4_50, not {dictionary!r}")
+    if not isinstance(getattr(cv2.aruco, dictionary, None), int):
+        raise TrackingError(f"{where}: OpenCV has no dictionary {dictionary}; try DICT_4X4_50")
+    return len(aruco_dictionary(dictionary).bytesList)
+
+
+def _face(table: object, marker: float, edge: float, where: str) -> Face:
+    if not isinstance(table, dict):
+        raise TrackingError(f"{where}: [[face]] must be a table")
+    name, marker_id, roll = table.get("name"), table.get("marker_id"), table.get("roll_deg", 0)
+    if name not in FACE_AXES:
+        raise TrackingError(f"{where}: a face is called {name!r}; use one of {', '.join(FACE_AXES)}")
+    if not isinstance(marker_id, int) or isinstance(marker_id, bool):
+        raise TrackingError(f"{where}: face '{name}' needs a whole number as marker_id, not {marker_id!r}")
+    if roll not in (0, 90, 180, 270):
+        raise TrackingError(f"{where}: face '{name}' has roll_deg {roll!r}; use 0, 90, 180 or 270")
+    corners = face_corners(str(name), int(roll), marker, edge)
+    return Face(
+        str(name), marker_id, corners, str(table.get("role", "")), str(table.get("icon", "")), int(roll)
+    )
