@@ -1,1 +1,20 @@
 """Camera frames in; where the cube is, and what the hand does with it, out."""
+
+from tracking.cube import CubeModel, Face
+from tracking.errors import TrackingError
+from tracking.frame import Frame
+from tracking.intrinsics import Intrinsics
+from tracking.sources import FrameSource, open_source
+from tracking.state import CubeControls, CubeState
+
+__all__ = [
+    "CubeControls",
+    "CubeModel",
+    "CubeState",
+    "Face",
+    "Frame",
+    "FrameSource",
+    "Intrinsics",
+    "TrackingError",
+    "open_source",
+]

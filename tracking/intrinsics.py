@@ -1,0 +1,186 @@
+"""How a camera maps the world to pixels, and the file that remembers it."""
+
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+import cv2
+import numpy as np
+import yaml
+from numpy.typing import ArrayLike, NDArray
+
+from tracking.errors import TrackingError
+
+Array = NDArray[np.float64]
+
+GUESSED_FIELD_OF_VIEW = math.radians(60)
+"""Horizontal; that of a common webcam."""
+
+DISTORTION_MODELS = {4: "plumb_bob", 5: "plumb_bob", 8: "rational_polynomial"}
+"""ROS's name of the model for each number of OpenCV's coefficients, k1 k2 p1 p2 [k3 [k4 k5 k6]]."""
+
+
+@dataclass(frozen=True)
+class Intrinsics:
+    """Pinhole and lens of a camera, in OpenCV's model."""
+
+    matrix: Array
+    """Focal lengths and principal point, (3, 3) [px]; pixel centres at whole numbers."""
+
+    distortion: Array
+    """Coefficients of the lens, (4,), (5,) or (8,): k1 k2 p1 p2 [k3 [k4 k5 k6]]."""
+
+    size: tuple[int, int]
+    """Width and height of the pictures it holds for [px]."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "matrix", np.array(self.matrix, np.float64))
+        object.__setattr__(self, "distortion", np.array(self.distortion, np.float64).ravel())
+        object.__setattr__(self, "size", (int(self.size[0]), int(self.size[1])))
+        problem = self._problem()
+        if problem:
+            raise TrackingError(f"these camera intrinsics cannot be: {problem}")
+
+    def _problem(self) -> str:
+        if self.matrix.shape != (3, 3) or not np.isfinite(self.matrix).all():
+            return "the camera matrix must be 3 by 3 finite numbers"
+        if self.matrix[0, 0] <= 0 or self.matrix[1, 1] <= 0:
+            return "both focal lengths must be positive"
+        if not np.array_equal(self.matrix[2], (0, 0, 1)) or self.matrix[1, 0] != 0:
+            return "the camera matrix must be upper triangular with last row 0 0 1"
+        if len(self.distortion) not in DISTORTION_MODELS or not np.isfinite(self.distortion).all():
+            return f"the distortion must be 4, 5 or 8 finite numbers, not {len(self.distortion)}"
+        if min(self.size) < 1:
+            return "width and height must be at least one pixel"
+        return ""
+
+    @classmethod
+    def guess(cls, size: tuple[int, int]) -> Self:
+        """Assume a lens without distortion that sees 60° from left to right.
+
+        >>> Intrinsics.guess((1280, 720)).matrix.round(1).tolist()
+        [[1108.5, 0.0, 639.5], [0.0, 1108.5, 359.5], [0.0, 0.0, 1.0]]
+        """
+        width, height = size
+        focal = width / 2 / math.tan(GUESSED_FIELD_OF_VIEW / 2)
+        matrix = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
+        return cls(matrix, np.zeros(5), size)
+
+    def undistorted(self, points: ArrayLike) -> Array:
+        """Move pixels to where the same camera with a perfect lens would see them.
+
+        Parameters
+        ----------
+        points
+            Pixels of the distorted picture, (…, 2).
+
+        Returns
+        -------
+        Pixels of the pinhole with the same matrix, (…, 2).
+        """
+        pixels = np.asarray(points, np.float64)
+        flat = pixels.reshape(-1, 1, 2)
+        if not len(flat):
+            return pixels.copy()
+        precise = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-12)
+        moved = cv2.undistortImagePoints(flat, self.matrix, self.distortion, None, precise)
+        return moved.reshape(pixels.shape).astype(np.float64)
+
+    def scaled(self, size: tuple[int, int]) -> Self:
+        """Describe the same camera giving pictures of another size, still of its whole sensor."""
+        horizontal, vertical = size[0] / self.size[0], size[1] / self.size[1]
+        shrink = np.array([[horizontal, 0, 0], [0, vertical, 0], [0, 0, 1]])
+        matrix = shrink @ self.matrix
+        matrix[0, 2] += (horizontal - 1) / 2  # pixel centres are at whole numbers, edges at halves
+        matrix[1, 2] += (vertical - 1) / 2
+        return type(self)(matrix, self.distortion, size)
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read a `camera_info` YAML file as ROS writes it.
+
+        Raises
+        ------
+        TrackingError
+            The file is absent, is not YAML, or describes no camera that this room can use.
+        """
+        try:
+            document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+        except OSError as error:
+            raise TrackingError(
+                f"cannot read the camera file '{path}': {error.strerror}"
+            ) from error
+        except (yaml.YAMLError, UnicodeDecodeError, ValueError, RecursionError) as error:
+            reason = " ".join(str(error).split())
+            raise TrackingError(f"the camera file '{path}' is not YAML: {reason}") from error
+        try:
+            return cls._from_document(document)
+        except TrackingError as error:
+            raise TrackingError(f"the camera file '{path}' cannot be used: {error}") from error
+
+    @classmethod
+    def _from_document(cls, document: object) -> Self:
+        if not isinstance(document, dict):
+            raise TrackingError("it holds no 'camera_matrix'; write a ROS camera_info file")
+        model = document.get("distortion_model", "plumb_bob")
+        if model not in DISTORTION_MODELS.values():
+            known = " and ".join(sorted(set(DISTORTION_MODELS.values())))
+            raise TrackingError(f"its distortion_model is {model!r}; only {known} can be used")
+        width, height = (_whole(document, key) for key in ("image_width", "image_height"))
+        matrix = _numbers(document, "camera_matrix")
+        if len(matrix) != 9:
+            raise TrackingError(f"'camera_matrix' must hold 9 numbers, not {len(matrix)}")
+        distortion = _numbers(document, "distortion_coefficients")
+        return cls(matrix.reshape(3, 3), distortion, (width, height))
+
+    def save(self, path: str | Path, name: str = "camera") -> None:
+        """Write a ROS `camera_info` YAML file that `load` reads back exactly.
+
+        The file appears whole or not at all.
+        """
+        document = {
+            "image_width": self.size[0],
+            "image_height": self.size[1],
+            "camera_name": name,
+            "camera_matrix": _table(self.matrix),
+            "distortion_model": DISTORTION_MODELS[len(self.distortion)],
+            "distortion_coefficients": _table(self.distortion[None]),
+            "rectification_matrix": _table(np.eye(3)),
+            "projection_matrix": _table(np.hstack([self.matrix, np.zeros((3, 1))])),
+        }
+        target = Path(path)
+        partial = target.with_name(target.name + ".partial")
+        try:
+            partial.write_text(
+                yaml.safe_dump(document, sort_keys=False, default_flow_style=None), encoding="utf-8"
+            )
+            os.replace(partial, target)
+        except OSError as error:
+            partial.unlink(missing_ok=True)
+            raise TrackingError(
+                f"cannot write the camera file '{path}': {error.strerror}"
+            ) from error
+
+
+def _whole(document: dict[Any, Any], key: str) -> int:
+    value = document.get(key)
+    if not isinstance(value, int) or isinstance(value, bool):
+        raise TrackingError(f"'{key}' must be a whole number, not {value!r}")
+    return value
+
+
+def _numbers(document: dict[Any, Any], key: str) -> Array:
+    table = document.get(key)
+    data = table.get("data") if isinstance(table, dict) else None
+    try:
+        # YAML 1.1 reads 1e-05, which C++ writes, as a string: `float` takes both.
+        return np.array([float(value) for value in data or ()], np.float64)
+    except (TypeError, ValueError) as error:
+        raise TrackingError(f"'{key}' needs a list of numbers called 'data'") from error
+
+
+def _table(values: Array) -> dict[str, Any]:
+    rows, columns = values.shape
+    return {"rows": rows, "cols": columns, "data": [float(value) for value in values.ravel()]}

@@ -1,0 +1,76 @@
+"""What every source of frames offers, and the rule for its timestamps."""
+
+from collections.abc import Iterator
+from types import TracebackType
+from typing import Protocol, Self, runtime_checkable
+
+from tracking.frame import Frame
+from tracking.intrinsics import Intrinsics
+
+
+@runtime_checkable
+class FrameSource(Protocol):
+    """Something that frames come out of: a camera, a file, a recording, a phone, a drawing.
+
+    Lifecycle: whoever opens a source closes it, best with `with`. `close` may be called twice, and
+    from another thread than the one that iterates; the iteration then ends.
+    A source is iterated once.
+
+    Raises
+    ------
+    TrackingError
+        While opening: there is nothing to read. While iterating: the source fell silent or broke.
+        Every frame that could be read has been given out before.
+    """
+
+    intrinsics: Intrinsics | None
+    """Of the camera that took the frames; None where the source does not know them."""
+
+    size: tuple[int, int]
+    """Width and height of every frame [px]."""
+
+    rate: float
+    """Nominal rate [frames/s]; the timestamps say what really came."""
+
+    live: bool
+    """Whether frames arrive by themselves and late ones are dropped (True), or each waits until
+    it is asked for (False)."""
+
+    duration: float | None
+    """Length [s]; None where it has no end or none is known."""
+
+    def __iter__(self) -> Iterator[Frame]:
+        """Give out the frames in order."""
+        ...
+
+    def close(self) -> None:
+        """Let go of the device, file or connection. Safe to call again."""
+        ...
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+class Timeline:
+    """Turns a source's raw times into timestamps that a session file keeps exactly.
+
+    >>> line = Timeline()
+    >>> [line.stamp(t) for t in (0.1234567891234, 0.5, 0.4)]
+    [0.123456789, 0.5, 0.5]
+    """
+
+    def __init__(self) -> None:
+        self._last = -float("inf")
+
+    def stamp(self, seconds: float) -> float:
+        """Round to whole nanoseconds, and never go back."""
+        self._last = max(self._last, round(seconds, 9))
+        return self._last
