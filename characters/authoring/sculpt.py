@@ -1,0 +1,237 @@
+"""From coloured volumes on a skeleton to skinned, painted meshes."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.authoring.shapes import Array, Shape, Solid, Vector
+from characters.authoring.surface import neighbour_mean, normals_of, polygonise
+from characters.mesh import Material, Mesh
+from characters.pose import Skeleton
+
+
+@dataclass(frozen=True)
+class Paint:
+    """A coat of colour on everything inside a volume: a belly, a cheek, a stripe."""
+
+    shape: Shape
+    """Where."""
+
+    color: Vector
+    """Linear RGB."""
+
+    soft: float = 0.0
+    """Width of the border [m]; 0 for a crisp one."""
+
+    strength: float = 1.0
+    """Opacity, 0…1."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One piece with one skin: a jacket, a head, a body."""
+
+    shape: Shape
+    """Its volume; its solids carry the bones and colours."""
+
+    cell: float
+    """Edge of a triangle, about [m]."""
+
+    paints: tuple[Paint, ...] = ()
+    """Coats over the colours of the solids, in order."""
+
+    soft_skin: float = 0.03
+    """Distance over which one bone hands over to the next along the surface [m]; 0 for rigid."""
+
+    soft_color: float = 0.0
+    """Width of the border between the colours of two solids [m]."""
+
+
+def sculpt(
+    name: str, parts: Sequence[Part], skeleton: Skeleton, material: Material | None = None
+) -> Mesh:
+    """Return one mesh of all parts, bound to the rest pose of the skeleton.
+
+    Each part is a closed surface of its own, so where two parts meet the border is as crisp as
+    the picture, whatever the size of the triangles.
+    """
+    inverse_bind = np.linalg.inv(skeleton.rest.globals(skeleton))
+    return join(name, [_sculpt_part(part, skeleton, inverse_bind) for part in parts], material)
+
+
+def join(name: str, meshes: Sequence[Mesh], material: Material | None = None) -> Mesh:
+    """Return one mesh of several that are bound to the same skeleton."""
+    starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
+    colors = [np.ones((len(m.positions), 4)) if m.colors is None else m.colors for m in meshes]
+    return Mesh(
+        name=name,
+        positions=np.concatenate([mesh.positions for mesh in meshes]),
+        normals=np.concatenate([mesh.normals for mesh in meshes]),
+        triangles=np.concatenate(
+            [mesh.triangles + np.uint32(s) for mesh, s in zip(meshes, starts, strict=False)]
+        ),
+        joints=np.concatenate([mesh.joints for mesh in meshes]),
+        weights=np.concatenate([mesh.weights for mesh in meshes]),
+        inverse_bind=meshes[0].inverse_bind,
+        colors=np.concatenate(colors).astype(np.float32),
+        material=material or meshes[0].material,
+    )
+
+
+def lathe(
+    rings: Array,
+    colors: Sequence[Vector],
+    place: Array,
+    joint: str,
+    skeleton: Skeleton,
+    segments: int = 24,
+) -> Mesh:
+    """Return a rigid solid of revolution with crisp rings of colour: an eye, a button, a tooth.
+
+    Parameters
+    ----------
+    rings : (n, 2), radius and height from the first pole to the last [m]; both radii are zero
+    colors : n − 1 linear RGB, one a band between two rings
+    place : (3, 4) or (4, 4), character frame from the lathe's, whose axis is +z; the last ring
+        is at the top
+    joint : the joint that moves it
+    """
+    angle = np.linspace(0, 2 * np.pi, segments, endpoint=False)
+    circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(segments)], axis=-1)
+    lines = np.repeat(np.asarray(rings, float), 2, axis=0)[1:-1]  # each band has both its rims
+    local = lines[:, :1, None] * circle + lines[:, 1:, None] * np.array([0.0, 0.0, 1.0])
+    across = np.diff(rings, axis=0)
+    slope = np.stack([across[:, 1], -across[:, 0]], axis=1)
+    slope /= np.linalg.norm(slope, axis=1, keepdims=True)
+    smooth = _ring_normals(slope)
+    normal = smooth[:, :1, None] * circle + smooth[:, 1:, None] * np.array([0.0, 0.0, 1.0])
+    linear = np.linalg.inv(np.asarray(place)[:3, :3]).T
+    normal = normal.reshape(-1, 3) @ linear.T
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    points = local.reshape(-1, 3) @ np.asarray(place)[:3, :3].T + np.asarray(place)[:3, 3]
+    paint = np.repeat(np.repeat(np.array(colors), 2, axis=0), segments, axis=0)
+    bones = np.zeros((len(points), len(skeleton.names)))
+    bones[:, skeleton.names.index(joint)] = 1.0
+    inverse_bind = np.linalg.inv(skeleton.rest.globals(skeleton))
+    return _mesh(points, normal, _bands(len(rings), segments), bones, paint, inverse_bind)
+
+
+def _ring_normals(slope: Array) -> Array:
+    """Return the normals of both rims of each band, averaged across neighbouring bands."""
+    ahead = np.vstack([slope[1:], [0.0, 1.0]])
+    behind = np.vstack([[0.0, -1.0], slope[:-1]])
+    both = np.stack([slope + behind, slope + ahead], axis=1).reshape(-1, 2)
+    return both / np.linalg.norm(both, axis=1, keepdims=True)
+
+
+def _bands(rings: int, segments: int) -> NDArray[np.int64]:
+    i = np.arange(segments)
+    j = (i + 1) % segments
+    lower = np.stack([i, j, j + segments], axis=1)  # empty in the first band: a pole
+    upper = np.stack([i, j + segments, i + segments], axis=1)  # empty in the last
+    first = [2 * segments * band for band in range(rings - 1)]
+    return np.concatenate([lower + s for s in first[1:]] + [upper + s for s in first[:-1]])
+
+
+def _sculpt_part(part: Part, skeleton: Skeleton, inverse_bind: Array) -> Mesh:
+    field = part.shape.distance
+    low, high = _bounds(part.shape, skeleton, part.cell)
+    points, triangles = polygonise(field, low, high, part.cell)
+    solids = list(part.shape.solids())
+    distances = np.stack([solid.distance(points) for solid in solids], axis=1)
+    weights = skin_weights(points, triangles, solids, distances, skeleton, part.soft_skin)
+    colors = _painted(points, solids, distances, part)
+    normals = normals_of(field, points, part.cell)
+    return _mesh(points, normals, triangles, weights, colors, inverse_bind)
+
+
+def _bounds(shape: Shape, skeleton: Skeleton, cell: float) -> tuple[Array, Array]:
+    """Return a tight box: the coarse grid's inside points, one coarse cell wider."""
+    joints = skeleton.rest.globals(skeleton)[:, :3, 3]
+    low, high = joints.min(axis=0) - 0.6, joints.max(axis=0) + 0.6
+    coarse = max(2.5 * cell, 0.02)
+    axes = [np.arange(low[i], high[i], coarse) for i in range(3)]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    near = grid[shape.distance(grid) < coarse]
+    return near.min(axis=0) - coarse, near.max(axis=0) + coarse
+
+
+def skin_weights(
+    points: Array,
+    triangles: NDArray[np.int64],
+    solids: Sequence[Solid],
+    distances: Array,
+    skeleton: Skeleton,
+    soft: float,
+) -> Array:
+    """Return the weight of every joint on every vertex, (n, joints); rows sum to one.
+
+    Every vertex starts with the bone of its nearest solid; the borders are then softened by
+    diffusion along the edges of the mesh. So weights travel over the skin only: never from one
+    leg to the other through the air, nor from an arm to the flank.
+    """
+    joints = skeleton.rest.globals(skeleton)[:, :3, 3]
+    owner = np.argmin(distances, axis=1)
+    weights = np.zeros((len(points), len(skeleton.names)))
+    for number, solid in enumerate(solids):
+        mine = np.flatnonzero(owner == number)
+        bones = np.array([skeleton.names.index(bone) for bone in solid.bones])
+        reach = np.stack([_bone_distance(points[mine], b, joints, skeleton) for b in bones])
+        weights[mine, bones[np.argmin(reach, axis=0)]] = 1.0
+    edges = points[triangles] - points[np.roll(triangles, 1, axis=1)]
+    edge = float(np.mean(np.linalg.norm(edges, axis=-1)))
+    for _ in range(round(4 * (soft / edge) ** 2)):  # each round adds edge² / 4 of variance
+        weights = 0.5 * (weights + neighbour_mean(weights, triangles))
+    return weights
+
+
+def _bone_distance(points: Array, bone: int, joints: Array, skeleton: Skeleton) -> Array:
+    """Return the distance to the nearest of a joint's segments to its children, (n,) [m]."""
+    ends = [joints[c] for c, parent in enumerate(skeleton.parents) if parent == bone]
+    start, best = joints[bone], np.linalg.norm(points - joints[bone], axis=1)
+    for end in ends:
+        along = end - start
+        t = np.clip((points - start) @ along / max(float(along @ along), 1e-12), 0.0, 1.0)
+        best = np.minimum(best, np.linalg.norm(points - start - t[:, None] * along, axis=1))
+    return np.asarray(best)
+
+
+def _painted(points: Array, solids: Sequence[Solid], distances: Array, part: Part) -> Array:
+    """Return the linear RGB of every vertex, (n, 3)."""
+    far = distances - distances.min(axis=1, keepdims=True)
+    share = np.exp(-far / max(part.soft_color, 1e-6))
+    share /= share.sum(axis=1, keepdims=True)
+    colors = share @ np.array([solid.color for solid in solids])
+    for paint in part.paints:
+        depth = 0.5 - paint.shape.distance(points) / max(paint.soft, 1e-6)
+        t = np.clip(depth, 0.0, 1.0)
+        cover = paint.strength * (t * t * (3 - 2 * t))[:, None]
+        colors = colors * (1 - cover) + cover * np.array(paint.color)
+    return np.asarray(colors)
+
+
+def _mesh(
+    points: Array,
+    normals: Array,
+    triangles: NDArray[np.int64],
+    weights: Array,
+    colors: Array,
+    inverse_bind: Array,
+) -> Mesh:
+    """Return the arrays as the graphics card wants them, with the four largest weights."""
+    joints = np.argsort(-weights, axis=1, kind="stable")[:, :4]
+    four = np.take_along_axis(weights, joints, axis=1)
+    four[four < 0.01] = 0.0
+    four /= four.sum(axis=1, keepdims=True)
+    return Mesh(
+        name="",
+        positions=points.astype(np.float32),
+        normals=normals.astype(np.float32),
+        triangles=triangles.astype(np.uint32),
+        joints=np.where(four > 0, joints, 0).astype(np.uint16),
+        weights=four.astype(np.float32),
+        inverse_bind=inverse_bind,
+        colors=np.column_stack([colors, np.ones(len(points))]).astype(np.float32),
+    )
