@@ -1,0 +1,174 @@
+"""The whole line for one frame: from a picture of the cube to a picture of the character."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from app.scenarios import EmotionTarget, Inputs, Outcome, Scenario, make_scenario
+from characters import Animator, Character, CharacterCommand, PosedCharacter
+from characters.rendering import Actor, Box, Stage, View
+from tracking import (
+    CubeControls,
+    CubeGestures,
+    CubeModel,
+    CubeState,
+    CubeTracker,
+    Frame,
+    Intrinsics,
+)
+
+
+@dataclass(frozen=True)
+class Step:
+    """All that one frame led to: every arrow of the line."""
+
+    frame: Frame
+    """The camera's picture."""
+
+    state: CubeState
+    """Where the cube is."""
+
+    controls: CubeControls
+    """What the hand does with it."""
+
+    outcome: Outcome
+    """What the scenario wants: command, emotion, hint, marks on the table."""
+
+    posed: PosedCharacter
+    """The character as it is to be drawn."""
+
+    picture: NDArray[np.uint8] | None
+    """The camera's picture with the character on the table, (height, width, 3) BGR;
+    None where nothing draws."""
+
+    @property
+    def command(self) -> CharacterCommand:
+        """What the character is asked to do."""
+        return self.outcome.command
+
+    @property
+    def emotion(self) -> EmotionTarget:
+        """What the robot is asked to feel."""
+        return self.outcome.emotion
+
+
+class Playground:
+    """The line of the design from the camera to the picture, without clock, window or threads.
+
+    The same frames and inputs give the same steps, bit for bit but for the picture, which is
+    equal on one graphics driver.
+
+    Parameters
+    ----------
+    scenario
+        A scenario, or the name of one.
+    intrinsics
+        The camera.
+    cube
+        The cube in the player's hand; the scenario's own where it is None.
+    character
+        Who plays; the scenario's own where it is None.
+    context
+        Where to draw; None to leave the pictures out.
+    """
+
+    def __init__(
+        self,
+        scenario: Scenario | str,
+        intrinsics: Intrinsics,
+        *,
+        cube: CubeModel | None = None,
+        character: Character | None = None,
+        context: moderngl.Context | None = None,
+    ) -> None:
+        if isinstance(scenario, str):
+            scenario = named(scenario, cube)
+        self.scenario = scenario
+        self.intrinsics = intrinsics
+        self.cube = cube or CubeModel.load(scenario.cube)
+        self.character = character or Character.load(scenario.character)
+        self._tracker = CubeTracker(self.cube, intrinsics)
+        self._gestures = CubeGestures(self.cube)
+        self._animator = Animator(self.character)
+        self._stage = None if context is None else Stage(context, intrinsics.size)
+        self._posed: PosedCharacter | None = None
+
+    def step(self, frame: Frame, inputs: Inputs | None = None) -> Step:
+        """Walk one frame down the line."""
+        state = self.track(frame)
+        controls = self.gesture(state)
+        outcome = self.decide(controls, inputs or Inputs())
+        posed = self.animate(outcome.command)
+        picture = self.draw(frame, state, controls, outcome, posed)
+        return Step(frame, state, controls, outcome, posed, picture)
+
+    def track(self, frame: Frame) -> CubeState:
+        """First arrow: find the cube."""
+        return self._tracker.update(frame)
+
+    def gesture(self, state: CubeState) -> CubeControls:
+        """Second arrow: read the hand."""
+        return self._gestures.update(state)
+
+    def decide(self, controls: CubeControls, inputs: Inputs) -> Outcome:
+        """Third arrow: ask the scenario."""
+        return self.scenario.update(controls, self._posed, inputs)
+
+    def animate(self, command: CharacterCommand) -> PosedCharacter:
+        """Fourth arrow: move the character."""
+        self._posed = self._animator.update(command)
+        return self._posed
+
+    def draw(
+        self,
+        frame: Frame,
+        state: CubeState,
+        controls: CubeControls,
+        outcome: Outcome,
+        posed: PosedCharacter,
+    ) -> NDArray[np.uint8] | None:
+        """Fifth arrow: draw the picture, or None without a stage."""
+        if self._stage is None:
+            return None
+        return self._stage.draw(*self.shot(frame, state, controls, outcome, posed))
+
+    def shot(
+        self,
+        frame: Frame,
+        state: CubeState,
+        controls: CubeControls,
+        outcome: Outcome,
+        posed: PosedCharacter,
+    ) -> tuple[View, tuple[Actor, ...], tuple[object, ...]]:
+        """What a stage needs to draw the frame: the view, who is in it, and what is on the floor."""
+        boxes = ()
+        if state.camera_from_cube is not None:
+            boxes = (Box(state.camera_from_cube, self.cube.edge),)
+        view = View(
+            frame.image,
+            self.intrinsics.matrix,
+            self.intrinsics.distortion,
+            controls.camera_from_table,
+            boxes,
+        )
+        seen = posed.visible and controls.camera_from_table is not None
+        actors = (Actor(self.character, posed),) if seen else ()
+        return view, actors, outcome.floor if seen else ()
+
+    def close(self) -> None:
+        """Release what the stage holds; a second call does nothing."""
+        if self._stage is not None:
+            self._stage.release()
+            self._stage = None
+
+
+def named(name: str, cube: CubeModel | None, **options: object) -> Scenario:
+    """Make the scenario called `name` for a cube, its own bundled one where `cube` is None."""
+    from app.scenarios import CUBES
+
+    model = cube or CubeModel.load(CUBES.get(name, "locomotion"))
+    maker: Callable[..., Scenario] = make_scenario
+    return maker(name, model, **options)

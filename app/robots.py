@@ -1,0 +1,89 @@
+"""The robot at the end of the line: a real one, a simulated one on a real port, or none."""
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from typing import Self
+
+from app.scenarios import EmotionTarget
+from app.show.overlay import RobotView
+from robot import Robot, SimulatedPort, connect
+
+OnBytes = Callable[[str, bytes, float], None]
+Clock = Callable[[], float]
+
+
+class RobotLine:
+    """Hands the emotions of a session to a robot and tells how it is.
+
+    `open` it before the session, `close` it after; a second `close` does nothing. Nothing here waits
+    for the robot once it is connected.
+    """
+
+    def __init__(self) -> None:
+        self._closing = ExitStack()
+        self._robot: Robot | None = None
+        self._target: EmotionTarget | None = None
+
+    @classmethod
+    def open(cls, url: str, clock: Clock, on_bytes: OnBytes | None = None) -> Self:
+        """Connect.
+
+        Parameters
+        ----------
+        url
+            "none"; "sim" for a simulated robot behind a pseudo-terminal of this computer; or any
+            URL that `robot.connect` takes.
+        clock
+            The session's time [s].
+        on_bytes
+            Called with ("tx" | "rx", bytes, time) for everything on the wire.
+
+        Raises
+        ------
+        RobotError
+            The port does not open or nobody answers.
+        """
+        line = cls()
+        if url == "none":
+            return line
+        try:
+            if url == "sim":
+                url = line._closing.enter_context(SimulatedPort(clock=clock)).url
+            robot = connect(url, "cubeling", clock=clock, on_bytes=on_bytes)
+            line._robot = line._closing.enter_context(robot)
+        except BaseException:
+            line.close()
+            raise
+        return line
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def feel(self, target: EmotionTarget) -> None:
+        """Ask the robot to feel; returns at once."""
+        self._target = target
+        if self._robot is not None:
+            self._robot.express(target.emotion)
+
+    def view(self) -> RobotView:
+        """Return what the robot says of itself, or what it was asked where there is none."""
+        if self._robot is None:
+            mood = 0.0 if self._target is None else self._target.emotion.valence
+            return RobotView("none", mood, "neutral" if self._target is None else self._target.label)
+        telemetry = self._robot.telemetry
+        observed = telemetry.observed
+        mood = 0.0 if observed is None else observed.valence
+        return RobotView(str(telemetry.link), mood, telemetry.label or "neutral")
+
+    def check(self) -> None:
+        """Raise `RobotError` if the robot fell silent."""
+        if self._robot is not None:
+            self._robot.check()
+
+    def close(self) -> None:
+        """Let the robot go."""
+        self._closing.close()
+        self._robot = None

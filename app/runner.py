@@ -1,0 +1,117 @@
+"""One session: frames in, pictures and emotions out, everything recorded that is asked for."""
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+from app.clock import SessionClock
+from app.errors import AppError
+from app.playground import Playground, Step
+from app.robots import RobotLine
+from app.scenarios import Inputs
+from app.session import Recorder, preparation
+from app.show.screen import Screen
+from app.summary import Summary
+from tracking import Frame, FrameSource, Intrinsics
+
+Progress = Callable[[Step], None]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a session is made of."""
+
+    source: FrameSource
+    """Where the frames come from; the caller closes it."""
+
+    playground: Playground
+    """The line that they walk; the caller closes it."""
+
+    screen: Screen
+    """Where the pictures go; the caller closes it."""
+
+    robot: str = "none"
+    """Who feels: see `RobotLine.open`."""
+
+    record: Path | None = None
+    """Where to record the session, or None."""
+
+    codec: str = "jpeg"
+    """How a recording keeps the pictures: "jpeg" or "h264"."""
+
+    about: dict[str, str] | None = None
+    """What the recording says of itself."""
+
+    paced: bool = False
+    """Whether a recording is played at the speed at which it was taken."""
+
+
+def run(plan: Plan, progress: Progress | None = None) -> Summary:
+    """Play a session to its end, until the player closes it, or until Ctrl-C.
+
+    Raises
+    ------
+    TrackingError, RobotError, AppError
+        The source, the robot or the disk failed; what was recorded until then is whole.
+    """
+    summary = Summary(plan.playground.scenario.name)
+    clock = SessionClock()
+    prepare = None
+    with ExitStack() as closing:
+        recorder: Recorder | None = None
+        if plan.record is not None:
+            prepare = preparation(plan.codec, plan.source.size, plan.source.rate)
+            recorder = closing.enter_context(Recorder(plan.record, plan.about or {}))
+        robot = closing.enter_context(
+            RobotLine.open(plan.robot, clock, recorder.wire if recorder else None)
+        )
+        inputs = Inputs()
+        for frame in _frames(plan, clock):
+            began = time.perf_counter()
+            step = plan.playground.step(prepare(frame) if prepare else frame, inputs)
+            robot.feel(step.emotion)
+            seconds = time.perf_counter() - began
+            view = robot.view()
+            if recorder is not None:
+                _record(recorder, plan.playground.intrinsics, step, first=summary.frames == 0)
+            inputs = plan.screen.show(step, view)
+            summary.add(step, view, seconds)
+            if progress is not None:
+                progress(step)
+            robot.check()
+            if plan.screen.closed:
+                break
+    return summary
+
+
+def _frames(plan: Plan, clock: SessionClock) -> Iterator[Frame]:
+    """Give out the frames: live ones as they come, recorded ones at their pace or at once."""
+    start: float | None = None
+    began = time.monotonic()
+    try:
+        for frame in plan.source:
+            if start is None:
+                start, began = frame.timestamp, time.monotonic()
+            since = frame.timestamp - start
+            if plan.paced and not plan.source.live:
+                time.sleep(max(0.0, began + since - time.monotonic()))
+            elif not plan.source.live:
+                clock.drive(since)
+            yield frame
+    except KeyboardInterrupt:
+        if start is None:
+            raise
+
+
+def _record(recorder: Recorder, intrinsics: Intrinsics, step: Step, *, first: bool) -> None:
+    if first:
+        recorder.camera(intrinsics, step.frame.timestamp)
+    recorder.write(step)
+    if step.controls.placed:
+        recorder.event(f"placed {step.controls.top_face}", step.frame.timestamp)
+    if step.controls.shaken:
+        recorder.event("shaken", step.frame.timestamp)
+    if recorder.problem is not None:
+        raise AppError(recorder.problem)

@@ -1,0 +1,65 @@
+"""The ways to play, by name."""
+
+from collections.abc import Callable
+
+from app.errors import AppError
+from app.scenarios.base import EmotionTarget, Inputs, Outcome, Scenario
+from app.scenarios.companion import Companion
+from app.scenarios.follow import Follow
+from app.scenarios.sketch import Sketch
+from app.scenarios.speed import MAPS
+from tracking import CubeModel
+
+__all__ = [
+    "CUBES",
+    "Companion",
+    "EmotionTarget",
+    "Follow",
+    "Inputs",
+    "Outcome",
+    "Scenario",
+    "Sketch",
+    "make_scenario",
+]
+
+CUBES: dict[str, str] = {
+    "follow": Follow.cube,
+    "sketch": Sketch.cube,
+    "companion": Companion.cube,
+}
+"""Every scenario with the bundled cube that it is made for."""
+
+
+def make_scenario(
+    name: str, cube: CubeModel, *, speed_map: str = "corrected", turns: float = 2.0
+) -> Scenario:
+    """Make a scenario by name.
+
+    Parameters
+    ----------
+    name
+        "follow", "sketch" or "companion".
+    cube
+        The cube in the player's hand.
+    speed_map
+        "corrected", or "legacy" for the map as printed in the thesis.
+    turns
+        Full turns from the least to the greatest intensity.
+
+    Raises
+    ------
+    AppError
+        There is no scenario, or no speed map, of that name; or `turns` is not positive.
+    """
+    if speed_map not in MAPS:
+        raise AppError(f"no speed map is called '{speed_map}': choose one of {', '.join(MAPS)}")
+    if not 0.1 <= turns <= 20:
+        raise AppError(f"the turns from end to end must be from 0.1 to 20, not {turns:g}")
+    makers: dict[str, Callable[[], Scenario]] = {
+        "follow": lambda: Follow(speed_map),
+        "sketch": lambda: Sketch(speed_map),
+        "companion": lambda: Companion(cube, turns),
+    }
+    if name not in makers:
+        raise AppError(f"no scenario is called '{name}': choose one of {', '.join(makers)}")
+    return makers[name]()

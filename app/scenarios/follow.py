@@ -1,0 +1,69 @@
+"""AvatAR's interactive control: the character goes where the cube is."""
+
+import numpy as np
+
+from app.scenarios.base import EmotionTarget, Inputs, Outcome
+from app.scenarios.presence import Presence
+from app.scenarios.speed import SpeedDial
+from characters import CharacterCommand, PosedCharacter
+from robot import Emotion
+from tracking import CubeControls
+
+IDLE_BELOW = 0.5
+"""Speed below which the character stands (AvatAR)."""
+
+RUN_ABOVE = 3.0
+"""Speed above which it runs (AvatAR)."""
+
+CAMERA = np.array([0.0, 2.0])
+"""A point on the table far towards the camera, (x, z) [m]: where the player sits."""
+
+
+class Follow:
+    """The character chases the cube; the turn of the cube sets how fast (M10)."""
+
+    name = "follow"
+    cube = "locomotion"
+    character = "human"
+
+    def __init__(self, speed_map: str = "corrected") -> None:
+        self._dial = SpeedDial(speed_map)
+        self._presence = Presence()
+
+    def update(
+        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
+    ) -> Outcome:
+        """Decide on one frame; see `Scenario.update`."""
+        speed = self._dial.update(controls.camera_angle, controls.timestamp)
+        command = CharacterCommand(
+            timestamp=controls.timestamp,
+            action="move" if speed > IDLE_BELOW else "idle",
+            speed=speed,
+            target=controls.position,
+            look_at=CAMERA,
+            visible=self._presence.update(controls),
+        )
+        return Outcome(command, excitement(speed, controls.timestamp), _hint(controls, speed), gait(speed))
+
+
+def gait(speed: float) -> str:
+    """Name of the icon for a Speed: "stand", "walk" or "run"."""
+    if speed <= IDLE_BELOW:
+        return "stand"
+    return "walk" if speed <= RUN_ABOVE else "run"
+
+
+def excitement(speed: float, timestamp: float) -> EmotionTarget:
+    """How a walk moves the robot: neither pleased nor cross, but the more awake the faster."""
+    arousal = float(np.clip(speed / 5.0, 0.0, 1.0))
+    return EmotionTarget(Emotion(0.0, arousal), "neutral", timestamp)
+
+
+def _hint(controls: CubeControls, speed: float) -> str:
+    if not controls.visible:
+        return "Show me the cube"
+    if controls.position is None:
+        return "Put the cube on the table"
+    if speed <= IDLE_BELOW:
+        return "Turn the cube to walk"
+    return "Move the cube: I follow you" if speed <= RUN_ABOVE else "I run after you!"

@@ -1,0 +1,107 @@
+"""AvatAR's sketched path: the cube draws points on the table, the character walks them in a loop."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.scenarios.base import Inputs, Outcome
+from app.scenarios.follow import CAMERA, IDLE_BELOW, excitement, gait
+from app.scenarios.presence import Presence
+from app.scenarios.speed import SpeedDial
+from characters import CharacterCommand, ClosedPath, PosedCharacter
+from characters.rendering import FloorPath
+from tracking import CubeControls
+
+MOST_POINTS = 8
+"""Points that a path may have (AvatAR)."""
+
+FEWEST_POINTS = 3
+"""Points that make a loop: lifting the cube closes the path from here on."""
+
+APART = 0.05
+"""How far the cube must move before it leaves another point [m]."""
+
+AHEAD = 0.07
+"""How far along the path the character looks ahead [m]."""
+
+PEN_COLOR = (0.10, 0.45, 0.95)
+"""The path on the table, linear RGB."""
+
+
+class Sketch:
+    """Move the cube to draw, lift it (or reach eight points), then turn it to walk the loop (M10).
+
+    A point is left wherever the cube rests at least 5 cm from the one before. Shaking the cube
+    starts a new path.
+    """
+
+    name = "sketch"
+    cube = "locomotion"
+    character = "human"
+
+    def __init__(self, speed_map: str = "corrected") -> None:
+        self._dial = SpeedDial(speed_map)
+        self._presence = Presence()
+        self._points: list[NDArray[np.float64]] = []
+        self._path: ClosedPath | None = None
+
+    @property
+    def points(self) -> NDArray[np.float64]:
+        """The points drawn so far, (n, 2) on the table [m]."""
+        return np.array(self._points).reshape(-1, 2)
+
+    def update(
+        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
+    ) -> Outcome:
+        """Decide on one frame; see `Scenario.update`."""
+        if inputs.clear or controls.shaken:
+            self._points, self._path = [], None
+        if self._path is None:
+            self._draw(controls)
+        speed = self._dial.update(controls.camera_angle, controls.timestamp)
+        if self._path is None:
+            speed = 0.0
+        command = CharacterCommand(
+            timestamp=controls.timestamp,
+            action="move" if speed > IDLE_BELOW else "idle",
+            speed=speed,
+            target=self._target(character),
+            look_at=CAMERA,
+            visible=self._presence.update(controls),
+        )
+        emotion = excitement(speed, controls.timestamp)
+        return Outcome(command, emotion, self._hint(controls, speed), gait(speed), self._floor())
+
+    def _draw(self, controls: CubeControls) -> None:
+        here = controls.position
+        if controls.visible and controls.resting and here is not None and self.may_add(here):
+            self._points.append(here)
+        done = len(self._points) == MOST_POINTS
+        if done or (controls.lifted and len(self._points) >= FEWEST_POINTS):
+            self._path = ClosedPath(self.points)
+
+    def may_add(self, point: NDArray[np.float64]) -> bool:
+        """Whether a point (x, z) [m] would be taken: not the ninth, and away from the last."""
+        if len(self._points) >= MOST_POINTS:
+            return False
+        return not self._points or float(np.linalg.norm(point - self._points[-1])) >= APART
+
+    def _target(self, character: PosedCharacter | None) -> NDArray[np.float64] | None:
+        if self._path is None or character is None:
+            return None
+        return self._path.ahead(character.table_from_character[[0, 2], 3], AHEAD)
+
+    def _floor(self) -> tuple[FloorPath, ...]:
+        if not self._points:
+            return ()
+        return (FloorPath(self.points, closed=self._path is not None, color=PEN_COLOR),)
+
+    def _hint(self, controls: CubeControls, speed: float) -> str:
+        if not controls.visible:
+            return "Show me the cube"
+        if controls.position is None:
+            return "Put the cube on the table"
+        if self._path is None:
+            left = MOST_POINTS - len(self._points)
+            again = "another point" if self._points else "a point"
+            return f"Slide the cube and pause to leave {again} ({left} to go)"
+        return "Turn the cube to walk" if speed <= IDLE_BELOW else "Shake the cube for a new path"

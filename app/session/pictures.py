@@ -1,0 +1,92 @@
+"""Camera frames as a session stores them: the bytes, and the very picture that they give back."""
+
+import dataclasses
+from collections.abc import Callable
+from fractions import Fraction
+
+import av
+import cv2
+import numpy as np
+
+from app.errors import AppError
+from tracking import Frame
+
+Preparation = Callable[[Frame], Frame]
+"""Gives a frame its stored bytes, and the picture that a replay will decode from them."""
+
+
+def preparation(codec: str, size: tuple[int, int], rate: float) -> Preparation:
+    """Return how frames are made ready to be recorded.
+
+    A replay sees the decoded picture, so the tracker must see that too: every step after it
+    is then the same, live and replayed.
+
+    Parameters
+    ----------
+    codec
+        "jpeg" keeps the camera's own bytes where it gives them; "h264" is ten times smaller.
+    size
+        Width and height of the frames.
+    rate
+        Frames a second, roughly.
+    """
+    if codec == "jpeg":
+        return as_jpeg
+    if codec == "h264":
+        return Video(size, rate)
+    raise AppError(f"a session cannot hold '{codec}' pictures: use jpeg or h264")
+
+
+def as_jpeg(frame: Frame) -> Frame:
+    """Return the frame with JPEG bytes and the picture in them; the camera's own where it has any."""
+    if frame.encoding == "jpeg" and frame.encoded is not None:
+        return frame
+    done, data = cv2.imencode(".jpg", frame.image, (cv2.IMWRITE_JPEG_QUALITY, 92))
+    if not done:
+        raise AppError("OpenCV could not write a JPEG of the camera's picture")
+    image = cv2.imdecode(data, cv2.IMREAD_COLOR)
+    assert image is not None, "OpenCV reads what it wrote"
+    return dataclasses.replace(
+        frame, image=np.asarray(image, np.uint8), encoded=data.tobytes(), encoding="jpeg"
+    )
+
+
+class Video:
+    """H.264 without frames of delay: one packet a frame, decoded again at once."""
+
+    def __init__(self, size: tuple[int, int], rate: float, quality: int = 25) -> None:
+        encoder = av.CodecContext.create("libx264", "w")
+        assert isinstance(encoder, av.VideoCodecContext)
+        encoder.width, encoder.height = size
+        encoder.pix_fmt = "yuv420p"
+        encoder.framerate = Fraction(max(1, round(rate)))
+        encoder.time_base = 1 / encoder.framerate
+        # One slice thread: the same bytes on every machine, however many cores it has.
+        encoder.thread_count = 1
+        encoder.options = {
+            "preset": "slow",
+            "crf": str(quality),
+            "x264-params": "bframes=0:rc-lookahead=0:sync-lookahead=0:repeat-headers=1"
+            f":keyint={5 * round(rate)}:force-cfr=1:colorprim=bt470bg:transfer=bt470bg:colormatrix=bt470bg",
+        }
+        self._encoder = encoder
+        decoder = av.CodecContext.create("h264", "r")
+        assert isinstance(decoder, av.VideoCodecContext)
+        decoder.thread_count = 1
+        self._decoder = decoder
+        self._count = 0
+
+    def __call__(self, frame: Frame) -> Frame:
+        """Return the frame with its packet and the picture in it."""
+        planes = cv2.cvtColor(frame.image, cv2.COLOR_BGR2YUV_I420)
+        picture = av.VideoFrame.from_ndarray(np.asarray(planes, np.uint8), format="yuv420p")
+        picture.pts = self._count
+        self._count += 1
+        data = b"".join(bytes(packet) for packet in self._encoder.encode(picture))
+        decoded = self._decoder.decode(av.Packet(data))
+        if len(decoded) != 1:
+            raise AppError("the H.264 coder held a frame back; record with --codec jpeg")
+        image = cv2.cvtColor(decoded[0].to_ndarray(), cv2.COLOR_YUV2BGR_I420)
+        return dataclasses.replace(
+            frame, image=np.asarray(image, np.uint8), encoded=data, encoding="h264"
+        )

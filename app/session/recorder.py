@@ -1,0 +1,173 @@
+"""Writing a session: append-only, on its own thread, so that nobody waits for the disk."""
+
+import json
+import queue
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Self
+
+from foxglove_schemas_protobuf.CameraCalibration_pb2 import CameraCalibration
+from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
+from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
+from mcap.writer import Writer
+from mcap_protobuf.schema import register_schema
+
+from app.errors import AppError
+from app.playground import Step
+from app.session.arrows import ARROWS, encode, schema
+from tracking import Frame, Intrinsics
+
+CHUNK = 128 * 1024
+"""Bytes that are gathered before they are written [B]: well under a second of any session."""
+
+BACKLOG = 256
+"""Writes that may wait for a slow disk; then recording gives up rather than hold the picture up."""
+
+EVENT_SCHEMA = b'{"type":"object","properties":{"event":{"type":"string"}}}'
+WIRE_SCHEMA = (
+    b'{"type":"object","properties":{"direction":{"enum":["tx","rx"]},"hex":{"type":"string"}}}'
+)
+
+
+class Recorder:
+    """Records one session to one .mcap file.
+
+    `open` it before the first frame, `write` every step, `close` it at the end; a second `close` does nothing.
+    The file can be read up to the last half second whenever the program dies.
+
+    Parameters
+    ----------
+    path
+        Where to write.
+    about
+        What a replay must know: the scenario, its options, the cube …
+    """
+
+    def __init__(self, path: Path, about: dict[str, str]) -> None:
+        self.path = path
+        self.problem: str | None = None
+        """Why recording stopped early, or None."""
+        self._about = about
+        self._steps = 0
+        self._queue: queue.Queue[Callable[[], None] | None] = queue.Queue(BACKLOG)
+        self._channels: dict[str, int] = {}
+        try:
+            self._file = path.open("wb", buffering=0)
+        except OSError as error:
+            raise AppError(f"cannot record to '{path}': {error.strerror}") from error
+        self._writer = Writer(self._file, chunk_size=CHUNK)
+        self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
+        self._submit(self._start)
+        self._thread.start()
+        self._closed = False
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def camera(self, intrinsics: Intrinsics, timestamp: float) -> None:
+        """Record the camera's calibration."""
+        message = CameraCalibration(
+            frame_id="camera",
+            width=intrinsics.size[0],
+            height=intrinsics.size[1],
+            distortion_model="plumb_bob",
+            D=intrinsics.distortion.ravel().tolist(),
+            K=intrinsics.matrix.ravel().tolist(),
+            R=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+            P=[float(v) for row in intrinsics.matrix for v in (*row, 0.0)],
+        )
+        self._protobuf("/camera/calibration", message, timestamp)
+
+    def write(self, step: Step) -> None:
+        """Record the camera's frame and every arrow after it."""
+        self._steps += 1
+        self._picture(step.frame)
+        arrows = (step.state, step.controls, step.command, step.posed, step.emotion)
+        for topic, arrow in zip(ARROWS, arrows, strict=True):
+            self._json(topic, lambda arrow=arrow: encode(arrow), step.frame.timestamp)
+
+    def wire(self, direction: str, data: bytes, timestamp: float) -> None:
+        """Record bytes that went to the robot ("tx") or came from it ("rx")."""
+        line = json.dumps({"direction": direction, "hex": data.hex()}).encode()
+        self._json("/robot/wire", lambda: line, timestamp)
+
+    def event(self, what: str, timestamp: float) -> None:
+        """Record that something happened."""
+        line = json.dumps({"event": what}).encode()
+        self._json("/events", lambda: line, timestamp)
+
+    def close(self) -> None:
+        """Write what waits and the index; remove the file where nothing was recorded."""
+        if self._closed:
+            return
+        self._closed = True
+        self._submit(None)
+        self._thread.join(timeout=10.0)
+        self._file.close()
+        if self._steps == 0:
+            self.path.unlink(missing_ok=True)
+
+    def _run(self) -> None:
+        try:
+            while (write := self._queue.get()) is not None:
+                write()
+            self._writer.finish()
+        except (OSError, ValueError) as error:
+            self.problem = f"recording to '{self.path}' stopped: {error}"
+
+    def _submit(self, write: Callable[[], None] | None) -> None:
+        if self.problem is not None:
+            return
+        try:
+            self._queue.put(write, timeout=5.0 if write is None else 0.0)
+        except queue.Full:
+            self.problem = f"recording to '{self.path}' stopped: the disk is too slow"
+
+    def _start(self) -> None:
+        self._writer.start(profile="", library="cubeling")
+        self._writer.add_metadata("cubeling", self._about)
+
+    def _picture(self, frame: Frame) -> None:
+        if frame.encoded is None:
+            raise AppError("a frame must be prepared before it is recorded")
+        kind = CompressedVideo if frame.encoding == "h264" else CompressedImage
+        message = kind(frame_id="camera", data=frame.encoded, format=frame.encoding)
+        message.timestamp.FromNanoseconds(nanoseconds(frame.timestamp))
+        self._protobuf("/camera/image", message, frame.timestamp)
+
+    def _protobuf(self, topic: str, message: Any, timestamp: float) -> None:
+        def write() -> None:
+            if topic not in self._channels:
+                number = register_schema(self._writer, type(message))
+                self._channels[topic] = self._writer.register_channel(topic, "protobuf", number)
+            self._add(topic, message.SerializeToString(), timestamp)
+
+        self._submit(write)
+
+    def _json(self, topic: str, document: Callable[[], bytes], timestamp: float) -> None:
+        def write() -> None:
+            if topic not in self._channels:
+                name, text = self._schema(topic)
+                number = self._writer.register_schema(name, "jsonschema", text)
+                self._channels[topic] = self._writer.register_channel(topic, "json", number)
+            self._add(topic, document(), timestamp)
+
+        self._submit(write)
+
+    def _schema(self, topic: str) -> tuple[str, bytes]:
+        if topic in ARROWS:
+            return f"cubeling.{ARROWS[topic].__name__}", schema(ARROWS[topic])
+        return ("cubeling.Wire", WIRE_SCHEMA) if topic == "/robot/wire" else ("cubeling.Event", EVENT_SCHEMA)
+
+    def _add(self, topic: str, data: bytes, timestamp: float) -> None:
+        time = nanoseconds(timestamp)
+        self._writer.add_message(self._channels[topic], time, data, time)
+
+
+def nanoseconds(timestamp: float) -> int:
+    """Return seconds as the whole nanoseconds of a session."""
+    return round(timestamp * 1e9)

@@ -1,0 +1,1 @@
+"""What a person sees: the cards over the picture, the window, the video."""

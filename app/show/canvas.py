@@ -1,0 +1,134 @@
+"""Cards that lie over the picture, drawn at the size they are shown."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from app.show.palette import PAPER, Color
+from tracking import icon_paths
+
+SUBPIXEL = 4
+"""Fractional bits of the coordinates that OpenCV draws at."""
+
+
+@dataclass(frozen=True)
+class Card:
+    """A small picture with rounded corners that lies over the big one."""
+
+    x: int
+    """Left edge in the big picture [px]."""
+
+    y: int
+    """Top edge [px]."""
+
+    color: NDArray[np.uint8]
+    """(height, width, 3) BGR."""
+
+    alpha: NDArray[np.uint8]
+    """(height, width): 0 lets the picture through, 255 hides it."""
+
+    def over(self, picture: NDArray[np.uint8]) -> None:
+        """Lay the card over a picture (H, W, 3), in place; what sticks out is cut off."""
+        height, width = self.alpha.shape
+        top, left = max(0, self.y), max(0, self.x)
+        part = picture[top : self.y + height, left : self.x + width]
+        if part.size == 0:
+            return
+        rows, columns = part.shape[:2]
+        inside = np.s_[top - self.y : top - self.y + rows, left - self.x : left - self.x + columns]
+        weights = self.alpha[inside].astype(np.float32)[..., None] / 255.0
+        part[:] = cv2.blendLinear(
+            self.color[inside], np.ascontiguousarray(part), weights[..., 0], 1.0 - weights[..., 0]
+        )
+
+
+class Canvas:
+    """A card while it is drawn. Lengths are in design units: a picture is 720 of them high."""
+
+    def __init__(self, width: float, height: float, scale: float) -> None:
+        self.scale = scale
+        shape = (round(height * scale), round(width * scale))
+        self.color = np.empty((*shape, 3), np.uint8)
+        self.color[:] = PAPER
+
+    def card(self, x: float, y: float, opacity: float = 0.93) -> Card:
+        """Finish: a card with its corner at (x, y)."""
+        height, width = self.color.shape[:2]
+        mask = rounded(width, height, round(min(18 * self.scale, height / 2)), round(255 * opacity))
+        return Card(round(x * self.scale), round(y * self.scale), self.color, mask)
+
+    def text(self, x: float, y: float, words: str, size: float, color: Color, align: str = "left") -> None:
+        """Write a line; (x, y) is on its baseline, at its left end, middle or right end."""
+        mask, rise = lettering(words, round(size * self.scale))
+        shift = {"left": 0.0, "middle": 0.5, "right": 1.0}[align] * mask.shape[1]
+        left, top = round(x * self.scale - shift), round(y * self.scale) - rise
+        self._stamp(mask, left, top, color)
+
+    def icon(self, x: float, y: float, size: float, name: str, color: Color) -> None:
+        """Draw an icon in a square of `size` whose corner is (x, y)."""
+        paths = [np.array([x, y]) + np.asarray(path) * size for path in icon_paths(name)]
+        cv2.fillPoly(self.color, [self._fixed(path) for path in paths], color, cv2.LINE_AA, SUBPIXEL)
+
+    def disc(self, x: float, y: float, radius: float, color: Color, line: float | None = None) -> None:
+        """Fill a circle, or draw its outline `line` wide."""
+        thickness = -1 if line is None else max(1, round(line * self.scale))
+        center = self._fixed(np.array([x, y]))
+        reach = round(radius * self.scale * 2**SUBPIXEL)
+        cv2.circle(self.color, center.tolist(), reach, color, thickness, cv2.LINE_AA, SUBPIXEL)
+
+    def line(self, points: object, color: Color, width: float, closed: bool = False) -> None:
+        """Draw a line with round ends through points (n, 2)."""
+        path = self._fixed(np.asarray(points, float))
+        thickness = max(1, round(width * self.scale))
+        cv2.polylines(self.color, [path], closed, color, thickness, cv2.LINE_AA, SUBPIXEL)
+
+    def fill(self, points: object, color: Color) -> None:
+        """Fill a polygon (n, 2)."""
+        cv2.fillPoly(self.color, [self._fixed(np.asarray(points, float))], color, cv2.LINE_AA, SUBPIXEL)
+
+    def bar(self, x: float, y: float, width: float, height: float, color: Color) -> None:
+        """Fill a bar with round ends; (x, y) is the middle of its left end."""
+        ends = np.array([[x + height / 2, y], [x + width - height / 2, y]])
+        self.line(ends, color, height)
+
+    def _fixed(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
+        return np.round((points * self.scale - 0.5) * 2**SUBPIXEL).astype(np.int32)
+
+    def _stamp(self, mask: NDArray[np.uint8], left: int, top: int, color: Color) -> None:
+        height, width = self.color.shape[:2]
+        first_x, first_y = max(0, left), max(0, top)
+        part = self.color[first_y : top + mask.shape[0], first_x : left + mask.shape[1]]
+        if part.size == 0 or first_x >= width or first_y >= height:
+            return
+        seen = mask[first_y - top :, first_x - left :][: part.shape[0], : part.shape[1]]
+        share = seen.astype(np.float32)[..., None] / 255.0
+        part[:] = np.round(part + (np.array(color, np.float32) - part) * share).astype(np.uint8)
+
+
+@lru_cache(maxsize=256)
+def lettering(words: str, size: int) -> tuple[NDArray[np.uint8], int]:
+    """Return a line of text as coverage (height, width), and how far its baseline is below the top [px]."""
+    font = ImageFont.load_default(max(6, size))
+    left, top, right, bottom = (round(side) for side in font.getbbox(words, anchor="ls"))
+    image = Image.new("L", (max(1, right - left + 2), max(1, bottom - top + 2)))
+    ImageDraw.Draw(image).text((1 - left, 1 - top), words, 255, font, anchor="ls")
+    return np.asarray(image, np.uint8), 1 - top
+
+
+def text_width(words: str, size: float) -> float:
+    """Return how wide a line of text is, in the units of `size`."""
+    return lettering(words, 100)[0].shape[1] * size / 100
+
+
+@lru_cache(maxsize=32)
+def rounded(width: int, height: int, radius: int, value: int) -> NDArray[np.uint8]:
+    """Return a mask (height, width) of a rectangle with round corners."""
+    y, x = np.mgrid[:height, :width] + 0.5
+    dx = np.maximum(np.abs(x - width / 2) - (width / 2 - radius), 0.0)
+    dy = np.maximum(np.abs(y - height / 2) - (height / 2 - radius), 0.0)
+    inside = np.clip(radius - np.hypot(dx, dy) + 0.5, 0.0, 1.0)
+    return np.round(inside * value).astype(np.uint8)

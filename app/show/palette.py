@@ -1,0 +1,44 @@
+"""The colours of the screen, BGR as OpenCV draws."""
+
+Color = tuple[int, int, int]
+
+
+def bgr(code: str) -> Color:
+    """Return "#rrggbb" as (blue, green, red).
+
+    >>> bgr("#ff8000")
+    (0, 128, 255)
+    """
+    red, green, blue = (int(code[place : place + 2], 16) for place in (1, 3, 5))
+    return blue, green, red
+
+
+def between(one: Color, other: Color, share: float) -> Color:
+    """Mix two colours; `share` 0 gives the first, 1 the second."""
+    mixed = [round(a + (b - a) * share) for a, b in zip(one, other, strict=True)]
+    return mixed[0], mixed[1], mixed[2]
+
+
+PAPER = bgr("#fffaf0")
+INK = bgr("#2b3345")
+QUIET = bgr("#8a8fa0")
+RULE = bgr("#e6dece")
+
+ANGRY = bgr("#e5533d")
+NEUTRAL = bgr("#f2b63c")
+HAPPY = bgr("#43b36b")
+
+ACTION: dict[str, Color] = {
+    "idle": bgr("#4aa3a2"),
+    "stand": bgr("#4aa3a2"),
+    "walk": bgr("#3a7bd5"),
+    "run": bgr("#8b5bd6"),
+    "kiss": bgr("#e8557f"),
+    "shout": bgr("#f0742b"),
+}
+"""A colour for everything that the character can be about."""
+
+
+def mood_color(mood: float) -> Color:
+    """Return the colour of a mood from angry, −1, over neutral to happy, 1."""
+    return between(NEUTRAL, HAPPY if mood > 0 else ANGRY, min(1.0, abs(mood)))

@@ -1,0 +1,118 @@
+"""What happened: one screen for a person, the same numbers as JSON."""
+
+import statistics
+from dataclasses import dataclass, field
+
+from rich.console import Group, RenderableType
+from rich.panel import Panel
+from rich.table import Table
+from rich.text import Text
+
+from app.playground import Step
+from app.show.overlay import RobotView
+
+BLOCKS = "▁▂▃▄▅▆▇█"
+
+
+@dataclass
+class Summary:
+    """Gathers what a session was like, a frame at a time."""
+
+    scenario: str
+    """Which scenario was played."""
+
+    frames: int = 0
+    """Frames so far."""
+
+    seen: int = 0
+    """Frames in which the cube was found."""
+
+    spans: list[tuple[float, str]] = field(default_factory=list)
+    """When the character began something else [s], and what."""
+
+    moods: list[tuple[float, float, str]] = field(default_factory=list)
+    """Time [s], valence that the robot reports, and its word for it."""
+
+    times: list[float] = field(default_factory=list)
+    """How long each frame took, from the camera's picture to the finished one [s]."""
+
+    first: float = 0.0
+    """Time of the first frame [s]."""
+
+    last: float = 0.0
+    """Time of the last frame [s]."""
+
+    def add(self, step: Step, robot: RobotView, seconds: float) -> None:
+        """Take in one frame and how long it took."""
+        now = step.frame.timestamp
+        if self.frames == 0:
+            self.first = now
+        self.last = now
+        self.frames += 1
+        self.seen += step.state.visible
+        if not self.spans or self.spans[-1][1] != step.posed.state:
+            self.spans.append((now - self.first, step.posed.state))
+        self.moods.append((now - self.first, robot.mood, robot.label))
+        self.times.append(seconds)
+
+    @property
+    def tracking_rate(self) -> float:
+        """Share of the frames in which the cube was found, 0…1."""
+        return self.seen / self.frames if self.frames else 0.0
+
+    def labels(self) -> list[tuple[float, str]]:
+        """When the robot's mood got another name [s], and which."""
+        changes: list[tuple[float, str]] = []
+        for time, _, label in self.moods:
+            if not changes or changes[-1][1] != label:
+                changes.append((time, label))
+        return changes
+
+    def frame_ms(self) -> tuple[float, float]:
+        """Median and 95th percentile of the time a frame took [ms]."""
+        if len(self.times) < 2:
+            return (1000 * sum(self.times),) * 2
+        cuts = statistics.quantiles(self.times, n=20)
+        return 1000 * statistics.median(self.times), 1000 * cuts[18]
+
+    def document(self) -> dict[str, object]:
+        """Return the same as plain numbers for JSON."""
+        median, slow = self.frame_ms()
+        return {
+            "scenario": self.scenario,
+            "frames": self.frames,
+            "duration_s": round(self.last - self.first, 3),
+            "tracking_rate": round(self.tracking_rate, 4),
+            "actions": [{"t_s": round(t, 3), "state": state} for t, state in self.spans],
+            "robot": [{"t_s": round(t, 3), "label": label} for t, label in self.labels()],
+            "frame_ms": {"median": round(median, 2), "p95": round(slow, 2)},
+        }
+
+    def __rich__(self) -> RenderableType:
+        table = Table.grid(padding=(0, 2))
+        table.add_column(style="bold", no_wrap=True)
+        table.add_column()
+        duration = self.last - self.first
+        median, slow = self.frame_ms()
+        table.add_row("played", f"{self.frames} frames, {duration:.1f} s")
+        table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")
+        table.add_row("character", _story(self.spans, duration))
+        table.add_row("robot felt", _story(self.labels(), duration))
+        table.add_row("", Text(self._curve(56), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim"))
+        table.add_row("a frame took", f"{median:.1f} ms in the median, {slow:.1f} ms at the 95th percentile")
+        return Panel(Group(table), title=f"[bold]{self.scenario}", title_align="left", expand=False)
+
+    def _curve(self, width: int) -> str:
+        if not self.moods:
+            return ""
+        picks = [self.moods[round(i * (len(self.moods) - 1) / (width - 1))][1] for i in range(width)]
+        return "".join(BLOCKS[min(7, int((min(1.0, max(-1.0, mood)) + 1) * 3.999))] for mood in picks)
+
+
+def _story(changes: list[tuple[float, str]], duration: float) -> str:
+    """Return "idle 3 s → kiss 9 s → …", at most a dozen entries."""
+    ends = [time for time, _ in changes[1:]] + [duration]
+    told = [f"{what} {end - time:.1f} s" for (time, what), end in zip(changes, ends, strict=True)]
+    if len(told) > 12:
+        told = [*told[:11], f"… and {len(told) - 11} more"]
+    return " → ".join(told)
