@@ -1,0 +1,95 @@
+"""The black and white edges of a cube's markers, as points in space."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.cube import CubeModel, Face, aruco_dictionary
+
+Array = NDArray[np.float64]
+
+POINTS_PER_CELL = 3
+"""Points on each cell's length of an edge: 2 to 5 px apart at arm's length, so their noise is independent."""
+
+
+@dataclass(frozen=True)
+class EdgeModel:
+    """Points on every border between black and white of every marker, the outer border and the inner ones.
+
+    All arrays have the same length N.
+    """
+
+    points: Array
+    """Points in the cube frame, (N, 3) [m]."""
+
+    along: Array
+    """Vector of one cell's length along the edge, (N, 3) [m]."""
+
+    across: Array
+    """Vector of one cell's length across the edge in the face, from black to white, (N, 3) [m]."""
+
+    to_end: Array
+    """Distance along the edge to its nearer end, (N,) [cells]."""
+
+    face: NDArray[np.intp]
+    """Number of the face in `CubeModel.faces`, (N,)."""
+
+    normals: Array
+    """Outward normals of the cube's faces, (faces, 3)."""
+
+    centres: Array
+    """Centres of the cube's faces, (faces, 3) [m]."""
+
+    @classmethod
+    def of(cls, cube: CubeModel) -> Self:
+        """Lay out the edges of a cube."""
+        parts = [_face_edges(cube, face) for face in cube.faces]
+        points, along, across, to_end = (
+            np.concatenate(columns) for columns in zip(*parts, strict=True)
+        )
+        numbers = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
+        normals = np.stack([face.normal for face in cube.faces])
+        centres = np.stack([face.corners.mean(axis=0) for face in cube.faces])
+        return cls(points, along, across, to_end, numbers, normals, centres)
+
+
+def marker_cells(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
+    """Cells of a marker with its black border, (n + 2, n + 2), True where white."""
+    markers = aruco_dictionary(dictionary)
+    cells = markers.markerSize + 2
+    return np.asarray(cv2.aruco.generateImageMarker(markers, marker_id, cells, borderBits=1)) > 127
+
+
+def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, Array, Array, Array]:
+    cells = np.pad(marker_cells(cube.dictionary, face.marker_id), 1, constant_values=True)
+    count = len(cells) - 2
+    # Upright edges (between columns), then level ones (between rows), in units of cells from the top-left.
+    upright = _runs(cells)
+    level = _runs(cells.T)
+    flat = np.concatenate([upright, level[:, [1, 0, 3, 2, 5, 4, 6]]])
+    top_left, top_right, _, bottom_left = face.corners
+    axes = np.stack([top_right - top_left, bottom_left - top_left]) / count
+    points = top_left + flat[:, 0:2] @ axes
+    return points, flat[:, 2:4] @ axes, flat[:, 4:6] @ axes, flat[:, 6]
+
+
+def _runs(cells: NDArray[np.bool_]) -> Array:
+    """Points on the upright edges of a padded pattern, (N, 7): x, y, along (2), across (2), to_end [cells]."""
+    rows = []
+    for column in range(1, cells.shape[1]):
+        # +1 where white is on the right, −1 where on the left, 0 where there is no edge.
+        polarity = cells[:, column].astype(int) - cells[:, column - 1]
+        breaks = np.flatnonzero(np.diff(polarity)) + 1
+        for run in np.split(np.arange(len(cells)), breaks):
+            white = polarity[run[0]]
+            if white == 0:
+                continue
+            places = (np.arange(len(run) * POINTS_PER_CELL) + 0.5) / POINTS_PER_CELL
+            for place in places:
+                rows.append(
+                    (column - 1, run[0] - 1 + place, 0, 1, white, 0, min(place, len(run) - place))
+                )
+    return np.array(rows, np.float64).reshape(-1, 7)

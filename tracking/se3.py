@@ -1,0 +1,112 @@
+"""Rigid motions: rotations as vectors, and the small motions that solvers and covariances speak of.
+
+A *shift-turn* is the six numbers of `CubeState.covariance`: a shift [m] and a turn [rad] along the axes
+of the outer frame, the turn about the moving frame's own origin. It keeps place and attitude apart, so
+that a metre of distance never mixes with a radian of tilt.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+SMALL = 1e-6
+"""Angles below this take the series, whose first dropped term is then below 1e-24."""
+
+
+def hat(vectors: Array) -> Array:
+    """Cross-product matrices of vectors, (…, 3) → (…, 3, 3).
+
+    >>> (hat(np.array([0.0, 0.0, 1.0])) @ [1.0, 0.0, 0.0]).tolist()
+    [0.0, 1.0, 0.0]
+    """
+    x, y, z = np.moveaxis(np.asarray(vectors, np.float64), -1, 0)
+    zero = np.zeros_like(x)
+    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def rotation(vector: Array) -> Array:
+    """Rotation by |vector| radians about `vector`, (3,) → (3, 3) (Rodrigues' formula).
+
+    >>> rotation(np.array([0.0, np.pi / 2, 0.0])).round(12)[0].tolist()
+    [0.0, 0.0, 1.0]
+    """
+    angle = float(np.linalg.norm(vector))
+    k = hat(vector)
+    if angle < SMALL:
+        return np.eye(3) + k + k @ k / 2
+    return np.eye(3) + k * (np.sin(angle) / angle) + k @ k * ((1 - np.cos(angle)) / angle**2)
+
+
+def rotation_vector(matrix: Array) -> Array:
+    """Inverse of `rotation`, (3, 3) → (3,), at most π long.
+
+    >>> rotation_vector(rotation(np.array([0.1, -0.2, 0.3]))).round(12).tolist()
+    [0.1, -0.2, 0.3]
+    """
+    x, y, z, w = quaternion(matrix)
+    sine = float(np.sqrt(x * x + y * y + z * z))
+    axis = np.array([x, y, z])
+    if sine < SMALL:
+        return axis * 2
+    return axis * (2 * np.arctan2(sine, w) / sine)
+
+
+def quaternion(matrix: Array) -> Array:
+    """Unit quaternion xyzw with w ≥ 0 of a rotation matrix, (3, 3) → (4,).
+
+    Takes the best conditioned of the four formulas of Shepperd (1978).
+    """
+    trace = float(np.trace(matrix))
+    sizes = np.append(np.diag(matrix), trace)
+    best = int(np.argmax(sizes))
+    skew = np.array(
+        [matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1]]
+    )
+    if best == 3:
+        q = np.append(skew, 1 + trace)
+    else:
+        q = np.append(matrix[best] + matrix[:, best], skew[best])
+        q[best] = 1 + 2 * matrix[best, best] - trace
+    q = q / np.linalg.norm(q)
+    return -q if q[3] < 0 else q
+
+
+def pose(turn: Array, origin: Array) -> Array:
+    """Transform, (4, 4), of a rotation matrix (3, 3) and an origin (3,)."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = turn
+    matrix[:3, 3] = origin
+    return matrix
+
+
+def inverse(transform: Array) -> Array:
+    """Inverse of a rigid transform, (4, 4) → (4, 4).
+
+    >>> a = pose(rotation(np.array([0.3, 0.1, 0.2])), np.array([1.0, 2.0, 3.0]))
+    >>> bool(np.allclose(inverse(a) @ a, np.eye(4)))
+    True
+    """
+    turn = transform[:3, :3].T
+    return pose(turn, -turn @ transform[:3, 3])
+
+
+def moved(transform: Array, shift_turn: Array) -> Array:
+    """Apply a shift-turn, (6,), to a pose, (4, 4).
+
+    >>> moved(np.eye(4), np.array([1.0, 2.0, 3.0, 0.0, 0.0, 0.0]))[:3, 3].tolist()
+    [1.0, 2.0, 3.0]
+    """
+    return pose(rotation(shift_turn[3:]) @ transform[:3, :3], transform[:3, 3] + shift_turn[:3])
+
+
+def motion(start: Array, end: Array) -> Array:
+    """Shift-turn, (6,), that takes one pose to another: `moved(start, motion(start, end))` is `end`."""
+    turn = rotation_vector(end[:3, :3] @ start[:3, :3].T)
+    return np.concatenate([end[:3, 3] - start[:3, 3], turn])
+
+
+def angle_between(a: Array, b: Array) -> float:
+    """Angle between the attitudes of two poses [rad], 0…π."""
+    return float(np.linalg.norm(motion(a, b)[3:]))
