@@ -1,4 +1,7 @@
-"""Where frames come from: `open_source` turns a URI into a `FrameSource`."""
+"""Where frames come from: `open_source` turns a URI into a `FrameSource`.
+
+Each kind is imported when it is asked for, so that a camera starts without a video library.
+"""
 
 import time
 from collections.abc import Callable

@@ -1,5 +1,6 @@
 """What every source of frames offers, and the rule for its timestamps."""
 
+import math
 from collections.abc import Iterator
 from types import TracebackType
 from typing import Protocol, Self, runtime_checkable
@@ -13,7 +14,7 @@ class FrameSource(Protocol):
     """Something that frames come out of: a camera, a file, a recording, a phone, a drawing.
 
     Lifecycle: whoever opens a source closes it, best with `with`. `close` may be called twice, and
-    from another thread than the one that iterates; the iteration then ends.
+    of a live source from another thread than the one that iterates; the iteration then ends.
     A source is iterated once.
 
     Raises
@@ -72,5 +73,22 @@ class Timeline:
 
     def stamp(self, seconds: float) -> float:
         """Round to whole nanoseconds, and never go back."""
-        self._last = max(self._last, round(seconds, 9))
+        self._last = max(self._last, seconds_of(nanoseconds_of(seconds)))
         return self._last
+
+
+def nanoseconds_of(seconds: float) -> int:
+    """Return the whole nanoseconds nearest to a time.
+
+    `seconds * 1e9` alone would be off after 26 days, the age at which some computers are rebooted.
+
+    >>> nanoseconds_of(9_000_000.123456789)
+    9000000123456789
+    """
+    whole = math.floor(seconds)
+    return whole * 1_000_000_000 + round((seconds - whole) * 1e9)
+
+
+def seconds_of(nanoseconds: int) -> float:
+    """Return a whole number of nanoseconds in seconds, the inverse of `nanoseconds_of`."""
+    return nanoseconds / 1_000_000_000
