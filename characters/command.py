@@ -54,7 +54,10 @@ class PosedCharacter:
     """The Speed that was used, 0…5."""
 
     angular: float
-    """The change of its direction of movement that steers the turn clips [rad], −π/2…π/2; positive to its right."""
+    """The change of its direction of movement that steers the turn clips [rad], −π/2…π/2.
+
+    Positive to its right.
+    """
 
     weight: float
     """The intensity in use, −1…1."""

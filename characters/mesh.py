@@ -49,7 +49,7 @@ class Mesh:
     """Skin weights, (vertices, 4); each row sums to one."""
 
     inverse_bind: NDArray[np.float64]
-    """Inverse bind matrices, (joints of the skeleton, 4, 4); identity for joints that move no vertex."""
+    """Inverse bind matrices, (joints of the skeleton, 4, 4); identity for unused joints."""
 
     colors: NDArray[np.float32] | None = None
     """Linear RGBA a vertex, (vertices, 4), or None."""

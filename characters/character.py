@@ -1,0 +1,106 @@
+"""A body, its skeleton and what it knows how to do."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+
+from characters.clip import Clip
+from characters.errors import CharacterError
+from characters.mesh import Mesh
+from characters.pose import Array, Skeleton
+
+_SUFFIXES = (".glb", ".gltf")
+
+
+@dataclass(frozen=True)
+class Character:
+    """A skinned character with its clips."""
+
+    name: str
+    """Its name; that of the file without the suffix."""
+
+    skeleton: Skeleton
+    """Joints and rest pose."""
+
+    clips: dict[str, Clip]
+    """What it knows, by name."""
+
+    meshes: tuple[Mesh, ...]
+    """What is drawn."""
+
+    @staticmethod
+    def load(name_or_path: "str | Path") -> "Character":
+        """Load a bundled character by its name, or a .glb or .gltf file.
+
+        Raises
+        ------
+        CharacterError
+            If there is no such character or file, or it is not a skinned glTF.
+        """
+        from characters.formats import gltf  # the formats build characters
+
+        path = Path(name_or_path)
+        if path.suffix.lower() in _SUFFIXES:
+            return gltf.load(path)
+        if path.suffix or len(path.parts) > 1:
+            raise CharacterError(
+                f"{name_or_path}: not a .glb or .gltf file; convert it, or name a bundled "
+                f"character: {', '.join(Character.bundled())}"
+            )
+        if str(name_or_path) not in Character.bundled():
+            raise CharacterError(
+                f"no bundled character {str(name_or_path)!r}; there are "
+                f"{', '.join(Character.bundled())}, or give a .glb or .gltf file"
+            )
+        asset = resources.files("characters") / "assets" / f"{name_or_path}.glb"
+        with resources.as_file(asset) as bundled:
+            return gltf.load(bundled)
+
+    @staticmethod
+    def bundled() -> tuple[str, ...]:
+        """Return the names of the characters that come with the package."""
+        assets = resources.files("characters") / "assets"
+        if not assets.is_dir():
+            return ()
+        return tuple(sorted(a.name[:-4] for a in assets.iterdir() if a.name.endswith(".glb")))
+
+    def save(self, path: "str | Path") -> None:
+        """Write a .glb; the same character gives the same bytes.
+
+        Raises
+        ------
+        CharacterError
+            If its arrays do not fit together or the file cannot be written.
+        """
+        from characters.formats import gltf  # the formats know characters
+
+        gltf.save(self, path)
+
+    @cached_property
+    def bounds(self) -> Array:
+        """Lowest and highest corner of the rest pose, (2, 3) [m]."""
+        placed = [skin(mesh, self.skeleton.rest.globals(self.skeleton)) for mesh in self.meshes]
+        points = np.concatenate([p for p in placed if len(p)] or [np.zeros((1, 3))])
+        return np.stack([points.min(0), points.max(0)])
+
+    @property
+    def height(self) -> float:
+        """Height of the rest pose above the ground [m]."""
+        return float(self.bounds[1, 1] - min(self.bounds[0, 1], 0.0))
+
+
+def skin(mesh: Mesh, globals_: Array) -> Array:
+    """Return the vertices of a mesh, (vertices, 3), under `character_from_joint` (joints, 4, 4).
+
+    Linear blend skinning on the processor, for measuring; the renderer does it on the card.
+    """
+    matrices = globals_ @ mesh.inverse_bind
+    points = np.concatenate([mesh.positions, np.ones((len(mesh.positions), 1))], axis=1)
+    moved = np.zeros((len(points), 3))
+    for corner in range(mesh.joints.shape[1]):
+        each = matrices[mesh.joints[:, corner], :3]
+        moved += mesh.weights[:, corner, None] * (each @ points[:, :, None])[..., 0]
+    return moved

@@ -1,0 +1,137 @@
+"""Recorded motion at a uniform rate."""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from characters import rotations
+from characters.errors import CharacterError
+from characters.motion import STANDING, Step
+from characters.pose import Array, Pose
+
+
+@dataclass(frozen=True)
+class Clip:
+    """Poses at a uniform rate; a `Motion`."""
+
+    name: str
+    """Name in the file."""
+
+    rate: float
+    """Frames a second [Hz]."""
+
+    poses: Pose
+    """(frames, joints, …); of a loop, the last frame is the first one, a cycle later."""
+
+    loop: bool = True
+    """Whether it repeats."""
+
+    root_motion: bool = False
+    """Whether joint 0 is a root on the ground that carries the planar motion: see `travel`."""
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be played."""
+        if self.poses.rotations.ndim != 3 or len(self) < 1 or not self.rate > 0:
+            raise CharacterError(
+                f"clip {self.name!r}: poses of shape {self.poses.rotations.shape} at {self.rate} "
+                "Hz; give (frames, joints, 4) and a positive rate"
+            )
+
+    def __len__(self) -> int:
+        """Return the number of frames."""
+        return len(self.poses.rotations)
+
+    @property
+    def duration(self) -> float:
+        """Time from the first frame to the last [s]."""
+        return (len(self) - 1) / self.rate
+
+    def position(self, time: float) -> tuple[int, float]:
+        """Return the frame at or before a time [s] and the part of the way to the next, 0…1.
+
+        >>> clip = Clip("c", 10.0, Pose(np.zeros((5, 1, 3)), np.zeros((5, 1, 4))))
+        >>> clip.position(0.65)[0], round(clip.position(0.65)[1], 6)
+        (2, 0.5)
+        """
+        last = len(self) - 1
+        if last == 0:
+            return 0, 0.0
+        at = time * self.rate
+        at = at % last if self.loop else min(max(at, 0.0), float(last))
+        frame = min(int(at), last - 1)
+        return frame, at - frame
+
+    def sample(self, time: float) -> Pose:
+        """Return the pose at a time [s]; the root stands at the origin if it has root motion."""
+        frame, u = self.position(time)
+        after = min(frame + 1, len(self) - 1)
+        poses = self.in_place
+        t, r, s = poses.translations, poses.rotations, poses.scales
+        # The signs were made continuous, so a straight mix goes the shorter way.
+        return Pose(
+            t[frame] + (t[after] - t[frame]) * u,
+            rotations.normalize(r[frame] + (r[after] - r[frame]) * u),
+            None if s is None else s[frame] + (s[after] - s[frame]) * u,
+        )
+
+    def travel(self, start: float, end: float) -> Step:
+        """Return how the root moves over the ground between two times [s], over any loops."""
+        if not self.root_motion:
+            return STANDING
+        return self._placed(start).inverse().then(self._placed(end))
+
+    @cached_property
+    def in_place(self) -> Pose:
+        """The poses with the root's planar motion taken out and continuous quaternion signs."""
+        translations = self.poses.translations.copy()
+        turns = rotations.continuous(self.poses.rotations)
+        if self.root_motion:
+            x, z, yaw = self.track[:, 0], self.track[:, 1], self.track[:, 2]
+            ground = np.stack([x, np.zeros_like(x), z], axis=-1)
+            back = rotations.about("y", -yaw)
+            translations[:, 0] = rotations.rotate(back, translations[:, 0] - ground)
+            turns[:, 0] = rotations.multiply(back, turns[:, 0])
+            turns = rotations.continuous(turns)
+        return Pose(translations, turns, self.poses.scales)
+
+    @cached_property
+    def track(self) -> Array:
+        """Where the root stands on the ground, (frames, 3): x, z [m] and unwrapped yaw [rad]."""
+        root = self.poses.translations[:, 0]
+        yaw = np.unwrap(rotations.heading(self.poses.rotations[:, 0]))
+        return np.stack([root[:, 0], root[:, 2], yaw], axis=-1)
+
+    @cached_property
+    def cycle(self) -> Step:
+        """How the root moves over the ground from the first frame to the last."""
+        return self._steps[0].inverse().then(self._steps[-1])
+
+    @cached_property
+    def _steps(self) -> list[Step]:
+        """The track as plain numbers, which beat arrays of three."""
+        return [Step(*row) for row in self.track.tolist()]
+
+    def _placed(self, time: float) -> Step:
+        """Return where the root is at a time, cumulative over loops."""
+        frame, u = self.position(time)
+        a, b = self._steps[frame], self._steps[min(frame + 1, len(self) - 1)]
+        within = Step(a.x + (b.x - a.x) * u, a.z + (b.z - a.z) * u, a.yaw + (b.yaw - a.yaw) * u)
+        if not self.loop or self.duration == 0:
+            return within
+        within = self._steps[0].inverse().then(within)
+        return _repeated(self.cycle, math.floor(time / self.duration)).then(within)
+
+
+def _repeated(step: Step, times: int) -> Step:
+    """Return a step taken a whole number of times, in closed form."""
+    if times == 0:
+        return STANDING
+    half = step.yaw / 2
+    # A chord of a polygon: the ratio of sines, by l'Hôpital where it is straight.
+    ratio = times * math.cos(times * half) / math.cos(half)
+    if abs(math.sin(half)) > 1e-9:
+        ratio = math.sin(times * half) / math.sin(half)
+    turned = Step(yaw=(times - 1) * half).then(Step(step.x * ratio, step.z * ratio))
+    return Step(turned.x, turned.z, times * step.yaw)

@@ -1,0 +1,1 @@
+"""Files that characters and motions are read from and written to."""
