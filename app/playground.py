@@ -1,6 +1,5 @@
 """The whole line for one frame: from a picture of the cube to a picture of the character."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import moderngl
@@ -54,6 +53,16 @@ class Step:
         """What the robot is asked to feel."""
         return self.outcome.emotion
 
+    def arrows(self) -> dict[str, object]:
+        """Every arrow between the camera and the picture, by its channel in a recording."""
+        return {
+            "/cube/state": self.state,
+            "/cube/controls": self.controls,
+            "/character/command": self.command,
+            "/character/pose": self.posed,
+            "/robot/emotion": self.emotion,
+        }
+
 
 class Playground:
     """The line of the design from the camera to the picture, without clock, window or threads.
@@ -85,7 +94,7 @@ class Playground:
         context: moderngl.Context | None = None,
     ) -> None:
         if isinstance(scenario, str):
-            scenario = named(scenario, cube)
+            scenario = make_scenario(scenario, cube)
         self.scenario = scenario
         self.intrinsics = intrinsics
         self.cube = cube or CubeModel.load(scenario.cube)
@@ -163,12 +172,3 @@ class Playground:
         if self._stage is not None:
             self._stage.release()
             self._stage = None
-
-
-def named(name: str, cube: CubeModel | None, **options: object) -> Scenario:
-    """Make the scenario called `name` for a cube, its own bundled one where `cube` is None."""
-    from app.scenarios import CUBES
-
-    model = cube or CubeModel.load(CUBES.get(name, "locomotion"))
-    maker: Callable[..., Scenario] = make_scenario
-    return maker(name, model, **options)

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -67,6 +67,8 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
         robot = closing.enter_context(
             RobotLine.open(plan.robot, clock, recorder.wire if recorder else None)
         )
+        closing.callback(clock.release)  # a robot says goodbye in real time
+        closing.enter_context(_interruptible(summary))
         inputs = Inputs()
         for frame in _frames(plan, clock):
             began = time.perf_counter()
@@ -90,19 +92,24 @@ def _frames(plan: Plan, clock: SessionClock) -> Iterator[Frame]:
     """Give out the frames: live ones as they come, recorded ones at their pace or at once."""
     start: float | None = None
     began = time.monotonic()
-    try:
-        for frame in plan.source:
-            if start is None:
-                start, began = frame.timestamp, time.monotonic()
-            since = frame.timestamp - start
-            if plan.paced and not plan.source.live:
-                time.sleep(max(0.0, began + since - time.monotonic()))
-            elif not plan.source.live:
-                clock.drive(since)
-            yield frame
-    except KeyboardInterrupt:
+    for frame in plan.source:
         if start is None:
-            raise
+            start, began = frame.timestamp, time.monotonic()
+        since = frame.timestamp - start
+        if plan.paced and not plan.source.live:
+            time.sleep(max(0.0, began + since - time.monotonic()))
+        elif not plan.source.live:
+            clock.drive(since)
+        yield frame
+
+
+@contextmanager
+def _interruptible(summary: Summary) -> Iterator[None]:
+    """Make Ctrl-C the end of the session rather than an error."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        summary.interrupted = True
 
 
 def _record(recorder: Recorder, intrinsics: Intrinsics, step: Step, *, first: bool) -> None:

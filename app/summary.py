@@ -36,6 +36,9 @@ class Summary:
     times: list[float] = field(default_factory=list)
     """How long each frame took, from the camera's picture to the finished one [s]."""
 
+    interrupted: bool = False
+    """Whether the player ended it with Ctrl-C."""
+
     first: float = 0.0
     """Time of the first frame [s]."""
 

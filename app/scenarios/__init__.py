@@ -20,6 +20,7 @@ __all__ = [
     "Scenario",
     "Sketch",
     "make_scenario",
+    "scenario_cube",
 ]
 
 CUBES: dict[str, str] = {
@@ -30,8 +31,15 @@ CUBES: dict[str, str] = {
 """Every scenario with the bundled cube that it is made for."""
 
 
+def scenario_cube(name: str) -> str:
+    """Return the name of the bundled cube that a scenario is made for."""
+    if name not in CUBES:
+        raise AppError(f"no scenario is called '{name}': choose one of {', '.join(CUBES)}")
+    return CUBES[name]
+
+
 def make_scenario(
-    name: str, cube: CubeModel, *, speed_map: str = "corrected", turns: float = 2.0
+    name: str, cube: CubeModel | None = None, *, speed_map: str = "corrected", turns: float = 2.0
 ) -> Scenario:
     """Make a scenario by name.
 
@@ -40,7 +48,7 @@ def make_scenario(
     name
         "follow", "sketch" or "companion".
     cube
-        The cube in the player's hand.
+        The cube in the player's hand; the scenario's own bundled one where it is None.
     speed_map
         "corrected", or "legacy" for the map as printed in the thesis.
     turns
@@ -55,11 +63,10 @@ def make_scenario(
         raise AppError(f"no speed map is called '{speed_map}': choose one of {', '.join(MAPS)}")
     if not 0.1 <= turns <= 20:
         raise AppError(f"the turns from end to end must be from 0.1 to 20, not {turns:g}")
+    model = cube or CubeModel.load(scenario_cube(name))
     makers: dict[str, Callable[[], Scenario]] = {
         "follow": lambda: Follow(speed_map),
         "sketch": lambda: Sketch(speed_map),
-        "companion": lambda: Companion(cube, turns),
+        "companion": lambda: Companion(model, turns),
     }
-    if name not in makers:
-        raise AppError(f"no scenario is called '{name}': choose one of {', '.join(makers)}")
     return makers[name]()

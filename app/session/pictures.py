@@ -38,8 +38,8 @@ def preparation(codec: str, size: tuple[int, int], rate: float) -> Preparation:
 
 
 def as_jpeg(frame: Frame) -> Frame:
-    """Return the frame with JPEG bytes and the picture in them; the camera's own where it has any."""
-    if frame.encoding == "jpeg" and frame.encoded is not None:
+    """Return the frame with JPEG bytes and the picture in them; bytes that it came with are kept."""
+    if frame.encoded is not None:
         return frame
     done, data = cv2.imencode(".jpg", frame.image, (cv2.IMWRITE_JPEG_QUALITY, 92))
     if not done:
@@ -77,7 +77,9 @@ class Video:
         self._count = 0
 
     def __call__(self, frame: Frame) -> Frame:
-        """Return the frame with its packet and the picture in it."""
+        """Return the frame with its packet and the picture in it; H.264 that it came with is kept."""
+        if frame.encoding == "h264" and frame.encoded is not None:
+            return frame
         planes = cv2.cvtColor(frame.image, cv2.COLOR_BGR2YUV_I420)
         picture = av.VideoFrame.from_ndarray(np.asarray(planes, np.uint8), format="yuv420p")
         picture.pts = self._count

@@ -1,12 +1,15 @@
 """Reading what a session recorded beside the camera's frames."""
 
 import json
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from mcap.exceptions import McapError
 from mcap.reader import NonSeekingReader, SeekingReader
+from mcap.records import Chunk, DataEnd, Metadata
+from mcap.stream_reader import StreamReader
 
 from app.errors import AppError
 
@@ -47,19 +50,29 @@ def about(path: Path) -> About:
     whole(path)
     try:
         with path.open("rb") as file:
-            reader = SeekingReader(file)
-            summary = reader.get_summary()
-            notes = next((m.metadata for m in reader.iter_metadata() if m.name == "cubeling"), None)
+            summary = SeekingReader(file).get_summary()
     except (McapError, OSError, ValueError) as error:
         raise AppError(f"cannot read the session '{path}': {error}") from error
-    if notes is None or summary is None or summary.statistics is None:
-        raise AppError(f"'{path}' was not recorded by Cubeling: it does not say which scenario it holds")
+    if summary is None or summary.statistics is None:
+        raise AppError(f"cannot read the session '{path}': it has no index")
     numbers = {channel.topic: number for number, channel in summary.channels.items()}
     statistics = summary.statistics
     frames = statistics.channel_message_counts.get(numbers.get("/camera/image", -1), 0)
     seconds = (statistics.message_end_time - statistics.message_start_time) / 1e9
+    return _about(path, frames, seconds)
+
+
+def salvaged(path: Path) -> About:
+    """Read what a session that may have been cut off says of itself, and what of it is whole."""
+    _begins_well(path)
+    times = [time for _, time, _ in messages(path, "/camera/image")]
+    return _about(path, len(times), times[-1] - times[0] if times else 0.0)
+
+
+def _about(path: Path, frames: int, seconds: float) -> About:
+    notes = _notes(path)
     return About(
-        notes.get("scenario", ""),
+        notes["scenario"],
         notes.get("cube", ""),
         notes.get("speed_map", "corrected"),
         float(notes.get("turns", "2")),
@@ -68,25 +81,46 @@ def about(path: Path) -> About:
     )
 
 
+def _notes(path: Path) -> dict[str, str]:
+    """Return the metadata that the recorder wrote first of all."""
+    with path.open("rb") as file:
+        try:
+            for record in StreamReader(file).records:
+                if isinstance(record, Metadata) and record.name == "cubeling":
+                    if "scenario" in record.metadata:
+                        return dict(record.metadata)
+                elif isinstance(record, Chunk | DataEnd):
+                    break
+        except (McapError, EOFError, ValueError):
+            pass
+    raise AppError(f"'{path}' does not say which scenario it holds: it was not recorded by Cubeling")
+
+
 def whole(path: Path) -> None:
     """Refuse a file that is no session or was cut off, in one line."""
+    _begins_well(path)
+    with path.open("rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(-len(MAGIC), os.SEEK_END)
+        end = file.read()
+    if end == MAGIC and size > len(MAGIC):
+        return
+    times = [time for _, time, _ in messages(path, "/camera/image")]
+    seconds = times[-1] - times[0] if times else 0.0
+    raise AppError(
+        f"the session '{path}' was cut off: {len(times)} frames ({seconds:.1f} s) are whole; "
+        "add --salvage to play those"
+    )
+
+
+def _begins_well(path: Path) -> None:
     try:
         with path.open("rb") as file:
             start = file.read(len(MAGIC))
-            file.seek(0, 2)
-            size = file.tell()
-            file.seek(max(0, size - len(MAGIC)))
-            end = file.read()
     except OSError as error:
         raise AppError(f"cannot read the session '{path}': {error.strerror}") from error
     if start != MAGIC:
         raise AppError(f"'{path}' is not a session: it does not begin as an .mcap file does")
-    if end != MAGIC or size == len(MAGIC):
-        readable, last = _readable(path)
-        raise AppError(
-            f"the session '{path}' was cut off: {readable} frames up to {last:.1f} s are whole; "
-            "add --salvage to play those"
-        )
 
 
 def messages(path: Path, *topics: str) -> Iterator[tuple[str, float, bytes]]:
@@ -108,8 +142,3 @@ def messages(path: Path, *topics: str) -> Iterator[tuple[str, float, bytes]]:
 def events(path: Path) -> list[tuple[float, str]]:
     """Return the events of a session with their times [s]."""
     return [(time, json.loads(data)["event"]) for _, time, data in messages(path, "/events")]
-
-
-def _readable(path: Path) -> tuple[int, float]:
-    times = [time for _, time, _ in messages(path, "/camera/image")]
-    return len(times), times[-1] - times[0] if times else 0.0

@@ -86,8 +86,7 @@ class Recorder:
         """Record the camera's frame and every arrow after it."""
         self._steps += 1
         self._picture(step.frame)
-        arrows = (step.state, step.controls, step.command, step.posed, step.emotion)
-        for topic, arrow in zip(ARROWS, arrows, strict=True):
+        for topic, arrow in step.arrows().items():
             self._json(topic, lambda arrow=arrow: encode(arrow), step.frame.timestamp)
 
     def wire(self, direction: str, data: bytes, timestamp: float) -> None:

@@ -1,0 +1,52 @@
+# The two commands of a newcomer: `make demo` and `make test`.
+PYTHON ?= python3
+ifeq ($(OS),Windows_NT)
+BIN := .venv/Scripts
+else
+BIN := .venv/bin
+endif
+INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
+
+.DEFAULT_GOAL := demo
+.PHONY: demo test check bench recordings assets pictures clean
+
+demo: .venv/ready  ## set everything up and play
+	$(BIN)/cubeling demo
+
+test: .venv/ready-dev  ## the whole test suite
+	$(BIN)/python -m pytest
+
+check: .venv/ready-dev  ## formatting, lint and types
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+bench: .venv/ready-dev  ## every figure that the documents name
+	$(BIN)/python -m tests.bench.line
+	$(BIN)/python -m tests.bench.accuracy
+	$(BIN)/python -m tests.bench.animation
+	$(BIN)/python -m tests.bench.picture
+	$(BIN)/python -m tests.bench.wire
+
+recordings: .venv/ready-dev  ## draw the bundled recordings anew
+	$(BIN)/python -m app.recordings
+
+assets: .venv/ready-dev  ## author the bundled characters anew
+	$(BIN)/python -m characters.authoring all
+
+pictures: .venv/ready-dev  ## draw the pictures of the documents anew
+	$(BIN)/python -m app.pictures
+
+.venv/ready: pyproject.toml constraints.txt
+	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Cubeling needs Python 3.11 or newer; choose one with: make PYTHON=python3.12')"
+	$(PYTHON) -m venv .venv
+	@echo "Installing what Cubeling needs into .venv (once, about a minute) …"
+	$(INSTALL) --editable .
+	@touch $@
+
+.venv/ready-dev: .venv/ready
+	$(INSTALL) --editable ".[dev]"
+	@touch $@
+
+clean:
+	rm -rf .venv build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

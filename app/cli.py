@@ -1,0 +1,71 @@
+"""`cubeling`: the command line."""
+
+import signal
+import sys
+from typing import Annotated
+
+import click
+import typer
+from rich.console import Console
+
+from app.commands import cube, demo, doctor, play, replay, robot
+from app.errors import AppError
+from characters import CharacterError
+from robot import RobotError
+from tracking import TrackingError
+
+BAD_INPUT = 2
+"""Exit code for anything a person can put right."""
+
+app = typer.Typer(
+    name="cubeling",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="First time here? Try [bold]cubeling demo[/], then print a cube: [bold]cubeling cube companion[/]",
+)
+app.command()(demo.demo)
+app.command()(play.play)
+app.command()(replay.replay)
+app.command()(cube.cube)
+app.add_typer(robot.app, name="robot")
+app.command()(doctor.doctor)
+
+
+@app.callback()
+def common(
+    debug: Annotated[
+        bool, typer.Option("--debug", help="Show where in the program an error came from.")
+    ] = False,
+) -> None:
+    """A paper cube in your hand, a character on your screen, a robot on your desk."""
+
+
+def main() -> None:
+    """Run a command; bad input ends in one line and exit code 2."""
+    if hasattr(signal, "SIGPIPE"):
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `cubeling … | head` ends quietly
+    debug = "--debug" in sys.argv
+    try:
+        code = app(standalone_mode=False)
+    except click.UsageError as error:
+        where = error.ctx.command_path if error.ctx else "cubeling"
+        complain(f"{error.format_message().rstrip('.')} (see {where} --help)")
+        code = BAD_INPUT
+    except (AppError, TrackingError, CharacterError, RobotError) as error:
+        if debug:
+            raise
+        complain(str(error))
+        code = BAD_INPUT
+    except (KeyboardInterrupt, click.Abort):
+        code = 130
+    sys.exit(code if isinstance(code, int) else 0)
+
+
+def complain(line: str) -> None:
+    """Print one line on standard error."""
+    Console(stderr=True, soft_wrap=True, highlight=False, markup=False).print(
+        "cubeling: " + " ".join(line.split())
+    )

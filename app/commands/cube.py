@@ -1,0 +1,27 @@
+"""`cubeling cube`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from tracking import CubeModel, write_sheet
+
+
+def cube(
+    name: Annotated[str, typer.Argument(help="locomotion, companion, or the .toml file of your own cube.")],
+    edge_mm: Annotated[float | None, typer.Option(help="Edge of the cube; the markers grow with it.")] = None,
+    paper: Annotated[str, typer.Option(help="a4, letter or a3.")] = "a4",
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="The PDF to write; NAME.pdf without.")] = None,
+) -> None:
+    """Write a cube as a sheet to print, cut, fold and glue.
+
+    Print it at 100 % ("actual size"), and check the ruler on the sheet. Strong paper (160 g/m²) lasts longest.
+
+    Example: [cyan]cubeling cube companion --paper letter -o cube.pdf[/]
+    """
+    model = CubeModel.load(name)
+    path = output or Path(f"{Path(name).stem}.pdf")
+    write_sheet(model, path, edge_mm=edge_mm, paper=paper)
+    Console().print(f"[bold]{path}[/] is ready. Print it at 100 %, cut along the solid line, fold the dashed ones.")

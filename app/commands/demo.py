@@ -1,0 +1,91 @@
+"""`cubeling demo`."""
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from app.commands.progress import finished_video, play_to_end
+from app.commands.replay import bundled
+from app.opening import Wish, open_session
+from app.session import about
+from app.show.display import has_display
+from tracking import FrameSource, TrackingError, open_source
+
+CAMERA = "camera:0"
+VIDEO = Path("demo.mp4")
+
+
+def demo(
+    scenario: Annotated[str, typer.Argument(help="follow, sketch or companion.")] = "companion",
+    recording: Annotated[
+        bool, typer.Option("--recording", help="Play the bundled recording even if there is a camera.")
+    ] = False,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Write this video even if there is a display.")
+    ] = None,
+) -> None:
+    """See it work: with your camera, or with the bundled recording, or as a video.
+
+    With a camera and a display the live window opens. With a display alone the bundled recording
+    plays in it as if it were live. With neither, the recording is rendered to demo.mp4.
+    A simulated robot on a real serial port feels what the character does.
+
+    Example: [cyan]cubeling demo follow --recording[/]
+    """
+    console = Console()
+    if output is not None or not has_display():
+        render(scenario, output or VIDEO, console)
+        return
+    with ExitStack() as closing:
+        camera = None if recording else _camera(closing, console)
+        if camera is None:
+            console.print(f"Playing the bundled recording of [bold]{scenario}[/]; Esc ends it.")
+            wish = _recorded(scenario)
+        else:
+            console.print(
+                f"Playing [bold]{scenario}[/] with your camera; Esc ends it. No cube yet? "
+                f"[cyan]cubeling cube {scenario_cube_name(scenario)}[/], or [cyan]cubeling demo --recording[/]"
+            )
+            wish = Wish(scenario, CAMERA)
+        plan = open_session(wish, closing, camera)
+        summary = play_to_end(plan, console, scenario)
+    console.print(summary)
+
+
+def render(scenario: str, output: Path, console: Console) -> None:
+    """Render the bundled recording of a scenario to a video and say what happened."""
+    wish = _recorded(scenario, output)
+    seconds = about(Path(wish.source)).duration
+    console.print(
+        f"No window here, so the bundled recording of [bold]{scenario}[/] ({seconds:.0f} s) "
+        f"is rendered to [bold]{output}[/]."
+    )
+    with ExitStack() as closing:
+        plan = open_session(wish, closing)
+        summary = play_to_end(plan, console, f"rendering {output.name}")
+    console.print(summary)
+    console.print(finished_video(output.resolve()))
+
+
+def _recorded(scenario: str, output: Path | None = None) -> Wish:
+    scenario_cube_name(scenario)
+    return Wish(scenario, str(bundled(scenario)), output=output)
+
+
+def scenario_cube_name(scenario: str) -> str:
+    """Return the cube of a scenario; refuses a name that is none."""
+    from app.scenarios import scenario_cube
+
+    return scenario_cube(scenario)
+
+
+def _camera(closing: ExitStack, console: Console) -> FrameSource | None:
+    """Open the first camera, or say in one line why the recording plays instead."""
+    try:
+        return closing.enter_context(open_source(CAMERA))
+    except TrackingError as error:
+        console.print(f"[dim]No live picture: {error}[/]", soft_wrap=True)
+        return None

@@ -1,0 +1,70 @@
+"""`cubeling play`."""
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from app.commands.progress import play_to_end
+from app.opening import Wish, open_session
+from app.show.display import require_display
+
+CAMERA = "camera:0"
+
+Source = Annotated[
+    str,
+    typer.Option(
+        "--source",
+        "-s",
+        help="camera:0, a video file, a session (.mcap), http://PHONE:8080/video, or synthetic:NAME.",
+    ),
+]
+Cube = Annotated[str | None, typer.Option(help="A bundled cube, or the .toml file of your own.")]
+Actor = Annotated[str | None, typer.Option(help="A bundled character, or a .glb file.")]
+Intrinsics = Annotated[
+    Path | None, typer.Option(help="The camera's calibration (ROS camera_info YAML); guessed without.")
+]
+RobotUrl = Annotated[
+    str, typer.Option("--robot", "-r", help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT.")
+]
+Record = Annotated[Path | None, typer.Option(help="Record the session to this .mcap file.")]
+Codec = Annotated[str, typer.Option(help="How a recording keeps the pictures: jpeg or h264 (smaller).")]
+Output = Annotated[
+    Path | None, typer.Option("--output", "-o", help="Write an .mp4 video instead of opening a window.")
+]
+Pictures = Annotated[bool, typer.Option("--pictures/--no-pictures", help="Draw nothing: only track.")]
+
+
+def play(
+    scenario: Annotated[str, typer.Argument(help="follow, sketch or companion.")],
+    source: Source = CAMERA,
+    cube: Cube = None,
+    character: Actor = None,
+    intrinsics: Intrinsics = None,
+    robot: RobotUrl = "sim",
+    record: Record = None,
+    codec: Codec = "jpeg",
+    output: Output = None,
+    speed_map: Annotated[str, typer.Option(help="corrected, or legacy as printed in the thesis.")] = "corrected",
+    turns: Annotated[float, typer.Option(help="Full turns from the least to the greatest intensity.")] = 2.0,
+    pictures: Pictures = True,
+) -> None:
+    """Play with the cube in front of a camera.
+
+    [bold]follow[/]     the character chases the cube; turn the cube to make it walk or run
+    [bold]sketch[/]     the cube draws a path of up to eight points, the character walks it
+    [bold]companion[/]  Vleo kisses or shouts, and the robot feels it
+
+    Example: [cyan]cubeling play companion --source camera:0 --robot /dev/ttyACM0[/]
+    """
+    wish = Wish(
+        scenario, source, cube, character, intrinsics, speed_map, turns, robot, record, codec, output, pictures
+    )
+    if pictures and output is None:
+        require_display()
+    with ExitStack() as closing:
+        plan = open_session(wish, closing)
+        summary = play_to_end(plan, Console(), f"playing {scenario}")
+    Console().print(summary)

@@ -1,0 +1,73 @@
+"""`cubeling replay`."""
+
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from app.commands.play import Codec, Output, Pictures, Record, RobotUrl
+from app.commands.progress import finished_video, play_to_end
+from app.errors import AppError
+from app.opening import Wish, open_session
+from app.checking import check_session
+from app.session import about, salvaged
+from app.show.display import has_display
+
+
+def replay(
+    session: Annotated[Path, typer.Argument(help="A session recorded with --record, or a bundled one.")],
+    scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
+    robot: RobotUrl = "sim",
+    record: Record = None,
+    codec: Codec = "jpeg",
+    output: Output = None,
+    pictures: Pictures = True,
+    salvage: Annotated[bool, typer.Option(help="Play what is whole of a session that was cut off.")] = False,
+    check: Annotated[
+        bool, typer.Option(help="Compare every recorded channel with what the frames lead to now.")
+    ] = False,
+) -> None:
+    """Play a recorded session: in a window, to a video, or only to its summary.
+
+    Without a display and without --output nothing is drawn, and the summary is printed.
+
+    Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
+    """
+    console = Console()
+    told = salvaged(session) if salvage else about(session)
+    drawing = pictures and not check and (output is not None or has_display())
+    wish = Wish(
+        scenario or told.scenario,
+        str(session),
+        cube=told.cube or None,
+        speed_map=told.speed_map,
+        turns=told.turns,
+        robot=robot,
+        record=record,
+        codec=codec,
+        output=output,
+        pictures=drawing,
+    )
+    if check:
+        verdict = check_session(session, wish)
+        console.print(verdict)
+        raise typer.Exit(0 if verdict.identical else 1)
+    with ExitStack() as closing:
+        plan = open_session(wish, closing)
+        summary = play_to_end(plan, console, f"replaying {session.name}")
+    console.print(summary)
+    if output is not None:
+        console.print(finished_video(output))
+
+
+def bundled(name: str) -> Path:
+    """Return the session in `recordings/` that belongs to a scenario."""
+    import recordings
+
+    for folder in recordings.__path__:
+        path = Path(folder) / f"{name}.mcap"
+        if path.is_file():
+            return path
+    raise AppError(f"the bundled recording '{name}.mcap' is missing: clone the repository again")

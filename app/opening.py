@@ -1,0 +1,152 @@
+"""From what a person asks for to the parts of a session."""
+
+import dataclasses
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+
+import moderngl
+
+from app.errors import AppError
+from app.playground import Playground
+from app.runner import Plan
+from app.scenarios import make_scenario, scenario_cube
+from app.show.screen import Nowhere, Screen, VideoFile
+from characters import Character
+from characters.rendering import create_context
+from tracking import CubeModel, FrameSource, Intrinsics, open_source
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What a person asks for."""
+
+    scenario: str
+    """Name of the scenario."""
+
+    source: str
+    """Where the frames come from, as `tracking.open_source` takes it."""
+
+    cube: str | None = None
+    """A bundled cube or a .toml file; None for the scenario's own."""
+
+    character: str | None = None
+    """A bundled character or a .glb file; None for the scenario's own."""
+
+    intrinsics: Path | None = None
+    """The camera's calibration, or None to take the source's own or guess."""
+
+    speed_map: str = "corrected"
+    """Which Speed map `follow` and `sketch` use."""
+
+    turns: float = 2.0
+    """Full turns from the least to the greatest intensity in `companion`."""
+
+    robot: str = "sim"
+    """Who feels: see `RobotLine.open`."""
+
+    record: Path | None = None
+    """Where to record the session."""
+
+    codec: str = "jpeg"
+    """How a recording keeps the pictures."""
+
+    output: Path | None = None
+    """A video to write; None to open a window."""
+
+    pictures: bool = True
+    """Whether to draw at all."""
+
+
+def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = None) -> Plan:
+    """Open all that a session needs; `closing` closes it.
+
+    The cheap and certain things are checked first, so that a wrong name costs no camera.
+
+    Raises
+    ------
+    TrackingError, CharacterError, AppError
+        Something that was asked for is not there or not usable.
+    """
+    cube = CubeModel.load(wish.cube or scenario_cube(wish.scenario))
+    scenario = make_scenario(wish.scenario, cube, speed_map=wish.speed_map, turns=wish.turns)
+    character = Character.load(wish.character or scenario.character)
+    calibration = None if wish.intrinsics is None else Intrinsics.load(wish.intrinsics)
+    refuse_overwriting(wish)
+    if source is None:
+        source = closing.enter_context(open_source(wish.source))
+    intrinsics = fitting(calibration or source.intrinsics, source.size)
+    screen, context = open_screen(wish, source, closing)
+    playground = Playground(
+        scenario, intrinsics, cube=cube, character=character, context=context
+    )
+    closing.callback(playground.close)
+    return Plan(
+        source,
+        playground,
+        screen,
+        robot=wish.robot,
+        record=wish.record,
+        codec=wish.codec,
+        about=describe(wish, cube, source),
+        paced=wish.output is None and wish.pictures,
+    )
+
+
+def open_screen(
+    wish: Wish, source: FrameSource, closing: ExitStack
+) -> tuple[Screen, moderngl.Context | None]:
+    """Open the window or the video file, and the context to draw in."""
+    if not wish.pictures:
+        return Nowhere(), None
+    if wish.output is not None:
+        context = create_context()
+        closing.callback(context.release)
+        return closing.enter_context(VideoFile(wish.output, source.size, source.rate)), context
+    from app.show.window import Window  # needs a display's libraries, which a server lacks
+
+    window = closing.enter_context(Window(source.size, f"Cubeling: {wish.scenario}"))
+    return window, window.context
+
+
+def fitting(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:
+    """Return intrinsics for pictures of `size`, guessed where none are known."""
+    if intrinsics is None:
+        return Intrinsics.guess(size)
+    if intrinsics.size == size:
+        return intrinsics
+    scale = size[0] / intrinsics.size[0]
+    if abs(intrinsics.size[1] * scale - size[1]) > 1.0:
+        raise AppError(
+            f"the calibration is for {intrinsics.size[0]}x{intrinsics.size[1]} pictures, "
+            f"the camera gives {size[0]}x{size[1]}: calibrate it at this size"
+        )
+    matrix = intrinsics.matrix.copy()
+    # Pixel centres lie at whole numbers, so the picture's corner is at −0.5.
+    matrix[:2, 2] = (matrix[:2, 2] + 0.5) * scale - 0.5
+    matrix[0, :2] *= scale
+    matrix[1, 1] *= scale
+    return dataclasses.replace(intrinsics, matrix=matrix, size=size)
+
+
+def describe(wish: Wish, cube: CubeModel, source: FrameSource) -> dict[str, str]:
+    """What a recording says of itself."""
+    return {
+        "scenario": wish.scenario,
+        "cube": wish.cube or cube.name,
+        "speed_map": wish.speed_map,
+        "turns": f"{wish.turns:g}",
+        "source": wish.source.split("://")[0] if "://" in wish.source else Path(wish.source).name,
+        "rate": f"{source.rate:g}",
+    }
+
+
+def refuse_overwriting(wish: Wish) -> None:
+    """Refuse to record over a file that exists, or to where nothing can be written."""
+    for path, what in ((wish.record, "recording"), (wish.output, "video")):
+        if path is None:
+            continue
+        if not path.parent.is_dir():
+            raise AppError(f"there is no folder '{path.parent}' for the {what} '{path.name}'")
+        if what == "recording" and path.exists():
+            raise AppError(f"the {what} '{path}' exists already: choose another name or remove it")
