@@ -40,7 +40,7 @@ def open_source(
     if scheme == "camera":
         from tracking.sources.camera import CameraSource
 
-        return CameraSource.open(rest, size or CAMERA_SIZE, clock=clock)
+        return CameraSource.from_uri(rest, size or CAMERA_SIZE, clock)
     if scheme in ("http", "https"):
         from tracking.sources.http import HttpSource
 

@@ -1,0 +1,118 @@
+"""The parts of a multipart stream, cut at any byte by the network."""
+
+LARGEST_PART = 32 * 2**20
+"""A picture larger than this is no picture."""
+
+
+class MultipartError(Exception):
+    """The stream is not multipart; says why."""
+
+
+class MultipartParser:
+    r"""Cuts a `multipart/x-mixed-replace` stream into its parts (RFC 2046, section 5.1).
+
+    Cameras bend the standard, so this takes what they send: boundaries with their dashes in the
+    header already, parts with and without Content-Length, lines ended by LF alone.
+
+    >>> parser = MultipartParser("frame")
+    >>> parser.feed(b"--frame\r\nContent-Length: 2\r\n\r\nab\r\n--fra")
+    [b'ab']
+    >>> parser.feed(b"me\r\n\r\ncde\r\n--frame--")
+    [b'cde']
+    >>> parser.ended
+    True
+    """
+
+    def __init__(self, boundary: str) -> None:
+        core = boundary.lstrip("-") or boundary
+        self._delimiter = b"--" + core.encode("latin-1")
+        self._buffer = bytearray()
+        self._searched = 0
+        self._in_part = False
+        self.ended = False
+        """Whether the closing boundary came."""
+
+    def feed(self, data: bytes) -> list[bytes]:
+        """Take the next bytes; give out the bodies of the parts that they complete.
+
+        Raises
+        ------
+        MultipartError
+            No boundary came for more bytes than a picture can have.
+        """
+        self._buffer += data
+        bodies = []
+        while not self.ended:
+            if not self._in_part and not self._enter_part():
+                break
+            body = self._take_body()
+            if body is None:
+                break
+            bodies.append(body)
+            self._in_part = False
+        if len(self._buffer) > LARGEST_PART:
+            raise MultipartError("sends parts of more than 32 MB")
+        return bodies
+
+    def _enter_part(self) -> bool:
+        """Drop everything up to the next delimiter; True once its line and what ends it are in."""
+        start = self._find_delimiter()
+        if start < 0:
+            return False
+        after = start + len(self._delimiter)
+        if len(self._buffer) < after + 2:
+            return False
+        if self._buffer[after : after + 2] == b"--":
+            self.ended = True
+            return False
+        del self._buffer[:after]
+        self._searched = 0
+        self._in_part = True
+        return True
+
+    def _take_body(self) -> bytes | None:
+        head_end, body_start = _blank_line(self._buffer)
+        if body_start < 0:
+            return None
+        length = _content_length(bytes(self._buffer[:head_end]))
+        if length is not None:
+            end = body_start + length
+            if len(self._buffer) < end:
+                return None
+            body = bytes(self._buffer[body_start:end])
+        else:
+            self._searched = max(self._searched, body_start)
+            end = self._find_delimiter()
+            if end < 0:
+                return None
+            body = _without_line_end(bytes(self._buffer[body_start:end]))
+        del self._buffer[:end]
+        self._searched = 0
+        return body
+
+    def _find_delimiter(self) -> int:
+        found = self._buffer.find(self._delimiter, self._searched)
+        if found < 0:
+            self._searched = max(self._searched, len(self._buffer) - len(self._delimiter) + 1)
+        return found
+
+
+def _blank_line(buffer: bytearray) -> tuple[int, int]:
+    """Where the head of a part ends, and where its body starts; −1 where neither is in yet."""
+    ends = [(buffer.find(mark), len(mark)) for mark in (b"\r\n\r\n", b"\n\n")]
+    found = [(at, at + size) for at, size in ends if at >= 0]
+    return min(found, default=(-1, -1))
+
+
+def _content_length(head: bytes) -> int | None:
+    for line in head.splitlines():
+        name, _, value = line.partition(b":")
+        if name.strip().lower() == b"content-length" and value.strip().isdigit():
+            return int(value)
+    return None
+
+
+def _without_line_end(body: bytes) -> bytes:
+    """Drop the line end that belongs to the delimiter, and dashes that came before its own two."""
+    body = body.rstrip(b"-")
+    return body[:-2] if body.endswith(b"\r\n") else body.removesuffix(b"\n")
