@@ -36,7 +36,8 @@ class Emotion:
 
 
 HAPPY_ABOVE = 0.33
-"""Valence above which the mood is called happy (Fernández-Baena 2015, section 5.3; value by the specification)."""
+"""Valence above which the mood is called happy (Fernández-Baena 2015, section 5.3, names the moods;
+the value is the specification's)."""
 
 ANGRY_BELOW = -0.33
 """Valence below which the mood is called angry."""

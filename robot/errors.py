@@ -2,4 +2,7 @@
 
 
 class RobotError(Exception):
-    """Bad input to `robot`, or a robot that does not answer: the message is one line for a person."""
+    """Bad input to `robot`, or a robot that does not answer.
+
+    The message is one line for a person: what was wrong, where, and what to do.
+    """

@@ -1,0 +1,36 @@
+"""From an emotion to bytes on a wire, and telemetry back.
+
+>>> import robot
+>>> with robot.connect("sim:cubeling") as dino:
+...     dino.express(robot.Emotion(valence=0.8, arousal=0.5))
+...     dino.telemetry.commanded.label
+'happy'
+"""
+
+from robot.catalogue import Catalogue, JointLimits
+from robot.connection import Robot, connect
+from robot.emotion import Emotion
+from robot.errors import RobotError
+from robot.mood import Mood, MoodLine
+from robot.ports import SerialPort, serial_ports
+from robot.pty import SimulatedPort
+from robot.simulator import Simulator
+from robot.telemetry import LinkCounts, LinkState, Telemetry
+
+__all__ = [
+    "Catalogue",
+    "Emotion",
+    "JointLimits",
+    "LinkCounts",
+    "LinkState",
+    "Mood",
+    "MoodLine",
+    "Robot",
+    "RobotError",
+    "SerialPort",
+    "SimulatedPort",
+    "Simulator",
+    "Telemetry",
+    "connect",
+    "serial_ports",
+]

@@ -1,0 +1,229 @@
+"""The robot's end of the protocol: bytes in, bytes out, and a body that is told what to do.
+
+No clock, no thread, no port: whoever owns those calls `receive` and `tick` with the time.
+"""
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from robot import messages as m
+from robot import timing
+from robot.catalogue import Catalogue
+from robot.emotion import Emotion
+from robot.schema import MessageError, pack, unpack
+from robot.wire import FrameReader, crc16, encode_frame
+
+
+@dataclass(frozen=True)
+class BodyState:
+    """What a body says of itself; the fields mean what they mean in STATE."""
+
+    emotion: Emotion
+    """What it shows now."""
+
+    mood: int
+    """Index of its word for it."""
+
+    battery: float
+    """From empty, 0, to full, 1."""
+
+    joints: tuple[float, ...]
+    """Measured angles [rad]."""
+
+    motion: int = m.NOTHING
+    """Index of the motion played now."""
+
+    sound: int = m.NOTHING
+    """Index of the sound played now."""
+
+    charging: bool = False
+    """Whether the battery is being charged."""
+
+    still: bool = False
+    """Whether it holds its neutral pose after STOP."""
+
+
+class Body(Protocol):
+    """What the protocol moves."""
+
+    catalogue: Catalogue
+    """What it has."""
+
+    def express(self, emotion: Emotion) -> None:
+        """Feel this from now on."""
+
+    def play(self, item: int, index: int) -> None:
+        """Play a motion or a sound that the catalogue has."""
+
+    def stop(self) -> None:
+        """End everything and hold the neutral pose."""
+
+    def neutral(self) -> None:
+        """End motion and sound, feel neutral, and live on: the host is gone."""
+
+    def state(self) -> BodyState:
+        """Say how it is now."""
+
+
+class DeviceLink:
+    """One robot's end of the protocol.
+
+    Parameters
+    ----------
+    body
+        What the commands move. Its memory is this link's memory: a reboot is a new link.
+    """
+
+    def __init__(self, body: Body) -> None:
+        self.body = body
+        self.session = 0
+        """The open session; 0 when none is."""
+        self._host = 0
+        self._taken = 0  # number of the last command, kept over sessions of the same host
+        self._result = m.TAKEN
+        self._in_force = False
+        self._beat = 0
+        self._heard = 0.0
+        self._stated = 0.0
+        self._last_gone = float("-inf")
+        self._reader = FrameReader()
+        self._out = bytearray()
+
+    def receive(self, data: bytes, now: float) -> None:
+        """Take bytes from the line at time `now` [s]."""
+        # First the clock: bytes that waited while this robot hung belong to a session that is over.
+        self.tick(now)
+        for body in self._reader.feed(data):
+            try:
+                session, message = unpack(body, "host")
+            except MessageError:
+                continue
+            if message is not None:
+                self._take(session, message, now)
+
+    def tick(self, now: float) -> None:
+        """Do what is due at time `now` [s]: the failsafe, and STATE in time."""
+        if self.session and now - self._heard >= timing.FAILSAFE_AFTER:
+            self._end_session()
+        if self.session and now - self._stated >= timing.STATE_EVERY:
+            self._send_state(now)
+
+    def bytes_to_send(self) -> bytes:
+        """Return what is to be written to the line, once."""
+        data = bytes(self._out)
+        self._out.clear()
+        return data
+
+    def _take(self, session: int, message: Any, now: float) -> None:
+        if isinstance(message, m.Hello):
+            if session:
+                self._greet(session, message, now)
+            return
+        if not self.session or session != self.session:
+            self._refuse(session, now)
+            return
+        self._heard = now
+        match message:
+            case m.Beat():
+                self._beat = message.count
+                self._send_state(now)
+            case m.Ask():
+                self._describe(message)
+            case m.Bye():
+                self._end_session()
+            case m.Express() | m.Play() | m.Stop():
+                self._obey(message)
+
+    def _greet(self, session: int, hello: m.Hello, now: float) -> None:
+        if hello.host != self._host:
+            if self._in_force:
+                self.body.neutral()
+            self._host, self._taken, self._in_force = hello.host, 0, False
+        if session != self.session:
+            self.session, self._beat, self._stated = session, 0, now
+        self._heard = now
+        catalogue = self.body.catalogue
+        welcome = m.Welcome(
+            version=min(hello.version, timing.VERSION),
+            taken=self._taken if self._in_force else 0,
+            catalogue=crc16(repr(catalogue).encode()),
+            joints=len(catalogue.joints),
+            motions=len(catalogue.motions),
+            sounds=len(catalogue.sounds),
+            moods=len(catalogue.moods),
+            name=catalogue.name,
+            firmware=catalogue.firmware,
+        )
+        self._send(welcome)
+
+    def _describe(self, ask: m.Ask) -> None:
+        catalogue = self.body.catalogue
+        if ask.item == m.ITEM_JOINT:
+            if ask.index < len(catalogue.joints):
+                joint = catalogue.joints[ask.index]
+                self._send(m.Joint(ask.index, joint.low, joint.high, joint.speed, joint.name))
+            return
+        names = _names(catalogue, ask.item)
+        if ask.index < len(names):
+            self._send(m.Name(ask.item, ask.index, names[ask.index]))
+
+    def _obey(self, command: m.Express | m.Play | m.Stop) -> None:
+        """Take a command once, and acknowledge it as often as it comes."""
+        if command.number > self._taken:
+            self._taken, self._in_force = command.number, True
+            self._result = self._carry_out(command)
+        self._send(m.Ack(command.number, self._result))
+
+    def _carry_out(self, command: m.Express | m.Play | m.Stop) -> int:
+        match command:
+            case m.Express():
+                self.body.express(Emotion(command.valence, command.arousal))
+            case m.Play():
+                if command.index >= len(_names(self.body.catalogue, command.item)):
+                    return m.UNKNOWN
+                self.body.play(command.item, command.index)
+            case m.Stop():
+                self.body.stop()
+        return m.TAKEN
+
+    def _send_state(self, now: float) -> None:
+        self._stated = now
+        state = self.body.state()
+        joints = state.joints + (0.0,) * (m.JOINTS_MAX - len(state.joints))
+        flags = m.CHARGING * state.charging | m.STILL * state.still
+        self._send(
+            m.State(
+                beat=self._beat,
+                taken=self._taken,
+                flags=flags,
+                valence=state.emotion.valence,
+                arousal=state.emotion.arousal,
+                battery=state.battery,
+                mood=state.mood,
+                motion=state.motion,
+                sound=state.sound,
+                joints=joints,
+            )
+        )
+
+    def _refuse(self, session: int, now: float) -> None:
+        if now - self._last_gone >= timing.GONE_EVERY:
+            self._last_gone = now
+            self._out += encode_frame(pack(m.Gone(), session))
+
+    def _end_session(self) -> None:
+        self.session = 0
+        self._in_force = False
+        self.body.neutral()
+
+    def _send(self, message: Any) -> None:
+        self._out += encode_frame(pack(message, self.session))
+
+
+def _names(catalogue: Catalogue, item: int) -> tuple[str, ...]:
+    lists = {
+        m.ITEM_MOTION: catalogue.motions,
+        m.ITEM_SOUND: catalogue.sounds,
+        m.ITEM_MOOD: catalogue.moods,
+    }
+    return lists.get(item, ())

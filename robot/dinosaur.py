@@ -1,0 +1,173 @@
+"""What the simulated robot is made of: the joints of a Pleo, and what they do in each mood.
+
+Joints, limits and speeds are those of the Pleo Monitor (OliverHoffmann/PleoCommand, 2010). Where no
+top speed was published, 50°/s is assumed. The motions are our own.
+"""
+
+from dataclasses import dataclass
+from math import radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from robot.catalogue import Catalogue, JointLimits
+
+Array = NDArray[np.float64]
+
+_JOINTS_DEG = (
+    ("right shoulder", -30, 55, 30),
+    ("right elbow", 0, 90, 70),
+    ("left shoulder", -30, 55, 30),
+    ("left elbow", 0, 90, 70),
+    ("left hip", -45, 40, 50),
+    ("left knee", -70, 0, 50),
+    ("right hip", -45, 40, 50),
+    ("right knee", -70, 0, 50),
+    ("torso", -15, 15, 20),
+    ("tail sideways", -90, 90, 200),
+    ("tail up", -90, 90, 200),
+    ("neck sideways", -65, 55, 50),
+    ("neck up", -75, 75, 40),
+    ("eyes and mouth", -80, 85, 220),
+)
+
+
+@dataclass(frozen=True)
+class Sway:
+    """One joint of a motion: a sine about an offset."""
+
+    offset: float = 0.0
+    """Middle of the sway [°]."""
+
+    amplitude: float = 0.0
+    """Half its width [°]."""
+
+    times: int = 1
+    """Whole cycles in one period of the motion, so that a loop closes."""
+
+    phase: float = 0.0
+    """Where in its cycle it starts [cycles]."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What the body does, and the sound that it starts with."""
+
+    name: str
+    """What it is called."""
+
+    period: float
+    """Length of one round [s]."""
+
+    sways: dict[str, Sway]
+    """What each joint does; those not named stay neutral."""
+
+    sound: str | None = None
+    """Name of the sound of a mood's loop."""
+
+    def angles(self, t: float) -> Array:
+        """Return the angles asked for, `t` seconds into it, (joints,) [rad]."""
+        angles = np.zeros(len(_JOINTS_DEG))
+        for joint, sway in self.sways.items():
+            turn = sway.times * t / self.period + sway.phase
+            degrees = sway.offset + sway.amplitude * np.sin(2 * np.pi * turn)
+            angles[JOINT_INDEX[joint]] = np.radians(degrees)
+        return angles
+
+
+JOINT_INDEX = {name: index for index, (name, *_) in enumerate(_JOINTS_DEG)}
+"""Index of each joint by name."""
+
+MOOD_LOOPS = (
+    Motion(
+        "neutral",
+        4.0,
+        {
+            "torso": Sway(0, 2),
+            "neck up": Sway(5, 4, 1, 0.25),
+            "neck sideways": Sway(0, 10),
+            "tail sideways": Sway(0, 12, 1, 0.5),
+            "eyes and mouth": Sway(50, 8, 2),
+        },
+        "breath",
+    ),
+    Motion(
+        "happy",
+        3.2,
+        {
+            "right shoulder": Sway(8, 6, 1),
+            "left shoulder": Sway(8, 6, 1, 0.5),
+            "torso": Sway(0, 6, 1),
+            "neck up": Sway(25, 8, 2),
+            "neck sideways": Sway(0, 20, 1, 0.25),
+            "tail up": Sway(30, 8, 2),
+            "tail sideways": Sway(0, 45, 2),
+            "eyes and mouth": Sway(65, 15, 2),
+        },
+        "purr",
+    ),
+    Motion(
+        "angry",
+        2.4,
+        {
+            "right shoulder": Sway(-15),
+            "left shoulder": Sway(-15),
+            "right elbow": Sway(35, 8, 2),
+            "left elbow": Sway(35, 8, 2, 0.5),
+            "torso": Sway(-6, 4, 2),
+            "neck up": Sway(-30, 5, 2),
+            "neck sideways": Sway(0, 15, 1),
+            "tail up": Sway(45, 10, 3),
+            "tail sideways": Sway(0, 25, 3),
+            "eyes and mouth": Sway(-55, 20, 2),
+        },
+        "growl",
+    ),
+)
+"""One endless motion with one sound for each mood, in the order of `mood.LABELS`."""
+
+ACTIONS = (
+    Motion("nod", 2.0, {"neck up": Sway(0, 6, 2), "eyes and mouth": Sway(50)}),
+    Motion("shake head", 2.0, {"neck sideways": Sway(0, 7, 2), "eyes and mouth": Sway(50)}),
+    Motion("wag tail", 2.0, {"tail sideways": Sway(0, 45, 2), "tail up": Sway(20)}),
+    Motion(
+        "bow",
+        4.0,
+        {
+            "right shoulder": Sway(20, 20, 1, -0.25),
+            "left shoulder": Sway(20, 20, 1, -0.25),
+            "right elbow": Sway(30, 30, 1, -0.25),
+            "left elbow": Sway(30, 30, 1, -0.25),
+            "neck up": Sway(-20, 20, 1, 0.25),
+        },
+    ),
+    Motion(
+        "kiss",
+        2.4,
+        {"neck up": Sway(12, 8, 1, -0.25), "eyes and mouth": Sway(-50, 30, 2, -0.25)},
+    ),
+)
+"""Motions that are played once and then give way to the mood again."""
+
+SOUNDS = {"breath": 2.0, "purr": 3.0, "growl": 1.5, "chirp": 0.5, "kiss": 0.6, "roar": 1.8}
+"""Length of every sound [s]."""
+
+MOTIONS = MOOD_LOOPS + ACTIONS
+"""Every motion, in the order of the catalogue."""
+
+LOW = np.radians([joint[1] for joint in _JOINTS_DEG])
+HIGH = np.radians([joint[2] for joint in _JOINTS_DEG])
+SPEED = np.radians([joint[3] for joint in _JOINTS_DEG])
+
+CATALOGUE = Catalogue(
+    name="Dino",
+    firmware="simulator 1",
+    joints=tuple(
+        JointLimits(name, radians(low), radians(high), radians(speed))
+        for name, low, high, speed in _JOINTS_DEG
+    ),
+    motions=tuple(motion.name for motion in MOTIONS),
+    sounds=tuple(SOUNDS),
+    moods=tuple(loop.name for loop in MOOD_LOOPS),
+)
+"""What the simulated robot says that it has."""

@@ -1,0 +1,234 @@
+"""How a message is written down once and becomes a codec, a table in the document and its vectors.
+
+A message is a frozen dataclass whose fields carry their form on the wire::
+
+    @message(0x11, "host", "...")
+    @dataclass(frozen=True)
+    class Express:
+        valence: float = wire("i16", scale=1e-4, low=-1, high=1, unit="1", meaning="...")
+"""
+
+import dataclasses
+import struct
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal, TypeVar, get_args
+
+Sender = Literal["host", "robot"]
+Form = Literal["u8", "u16", "u32", "i16", "i16x16", "text16"]
+
+HEADER = struct.Struct("<BH")
+"""Every body begins with the message's number (u8) and the session (u16), little endian."""
+
+_FORMATS: dict[str, str] = {
+    "u8": "B",
+    "u16": "H",
+    "u32": "I",
+    "i16": "h",
+    "i16x16": "16h",
+    "text16": "16s",
+}
+_LIMITS = {"u8": (0, 255), "u16": (0, 65535), "u32": (0, 2**32 - 1), "i16": (-32768, 32767)}
+assert set(_FORMATS) == set(get_args(Form))
+
+
+class MessageError(ValueError):
+    """A body that was received whole but does not say anything valid."""
+
+
+@dataclass(frozen=True)
+class FieldForm:
+    """How one field stands on the wire."""
+
+    name: str
+    """Its name, in code and document."""
+
+    form: str
+    """Its type there: "u8" … "text16"."""
+
+    scale: float
+    """Value of one count, in `unit`; 1 for whole numbers."""
+
+    unit: str
+    """Unit of the value; empty for counts and indices."""
+
+    low: float | None
+    """Smallest value allowed, in `unit`; None for all that the form can hold."""
+
+    high: float | None
+    """Largest value allowed, in `unit`."""
+
+    meaning: str
+    """What it says."""
+
+    @property
+    def size(self) -> int:
+        """Bytes on the wire."""
+        return struct.calcsize("<" + _FORMATS[self.form])
+
+    @property
+    def count(self) -> int:
+        """Values that it takes from a struct of the whole message."""
+        return 16 if self.form == "i16x16" else 1
+
+    def to_wire(self, value: Any) -> list[Any]:
+        """Turn a value into what `struct` packs; raises ValueError where it does not fit."""
+        if self.form == "text16":
+            text = str(value).encode()
+            if len(text) > 16 or b"\0" in text:
+                raise ValueError(f"{self.name} must be at most 16 bytes of UTF-8, not {value!r}")
+            return [text]
+        values = list(value) if self.form == "i16x16" else [value]
+        if len(values) != self.count:
+            raise ValueError(f"{self.name} must have {self.count} values, not {len(values)}")
+        counts = [round(one / self.scale) for one in values]
+        for one in counts:
+            self._check(one, ValueError)
+        return counts
+
+    def from_wire(self, values: tuple[Any, ...]) -> Any:
+        """Turn what `struct` unpacked into a value; raises MessageError where it is not allowed."""
+        if self.form == "text16":
+            try:
+                return values[0].rstrip(b"\0").decode()
+            except UnicodeDecodeError:
+                raise MessageError(f"{self.name} is not UTF-8") from None
+        for one in values:
+            self._check(one, MessageError)
+        if self.form == "i16x16":
+            return tuple(one / round(1 / self.scale) for one in values)
+        return values[0] if self.scale == 1 else values[0] / round(1 / self.scale)
+
+    def _check(self, count: int, error: type[ValueError]) -> None:
+        smallest, largest = _LIMITS[self.form.removesuffix("x16")]
+        low = smallest if self.low is None else round(self.low / self.scale)
+        high = largest if self.high is None else round(self.high / self.scale)
+        if not low <= count <= high:
+            raise error(f"{self.name} must be from {low} to {high} counts, not {count}")
+
+
+@dataclass(frozen=True)
+class MessageForm:
+    """How one message stands on the wire."""
+
+    number: int
+    """The first byte of its body."""
+
+    name: str
+    """Its name in the document, in capitals."""
+
+    sender: Sender
+    """Who may send it."""
+
+    meaning: str
+    """What it is for."""
+
+    fields: tuple[FieldForm, ...]
+    """In the order in which they are sent."""
+
+    layout: struct.Struct
+    """All of them, packed without gaps, little endian."""
+
+    kind: type[Any]
+    """The dataclass."""
+
+    @property
+    def size(self) -> int:
+        """Bytes of the body, header included."""
+        return HEADER.size + self.layout.size
+
+
+FORMS: dict[int, MessageForm] = {}
+"""Every message by its number: the one table."""
+
+_BY_KIND: dict[type[Any], MessageForm] = {}
+
+Kind = TypeVar("Kind")
+
+
+def wire(
+    form: Form,
+    meaning: str,
+    *,
+    scale: float = 1,
+    unit: str = "",
+    low: float | None = None,
+    high: float | None = None,
+) -> Any:
+    """Return a dataclass field that knows its form on the wire."""
+    return dataclasses.field(metadata={"wire": (form, scale, unit, low, high, meaning)})
+
+
+def message(number: int, sender: Sender, meaning: str) -> Callable[[type[Kind]], type[Kind]]:
+    """Enter a dataclass into the table of messages."""
+
+    def enter(kind: type[Kind]) -> type[Kind]:
+        fields = tuple(
+            FieldForm(field.name, *field.metadata["wire"])
+            for field in dataclasses.fields(kind)  # type: ignore[arg-type] # it is a dataclass
+        )
+        layout = struct.Struct("<" + "".join(_FORMATS[field.form] for field in fields))
+        form = MessageForm(number, kind.__name__.upper(), sender, meaning, fields, layout, kind)
+        assert number not in FORMS, f"message number {number:#x} is used twice"
+        FORMS[number] = _BY_KIND[kind] = form
+        return kind
+
+    return enter
+
+
+def form_of(kind: type[Any]) -> MessageForm:
+    """Return the form of a message class."""
+    return _BY_KIND[kind]
+
+
+def pack(content: Any, session: int) -> bytes:
+    """Return the body for one message.
+
+    Raises
+    ------
+    ValueError
+        If a field is out of its range.
+    """
+    form = _BY_KIND[type(content)]
+    values: list[Any] = []
+    for field in form.fields:
+        values += field.to_wire(getattr(content, field.name))
+    return HEADER.pack(form.number, session) + form.layout.pack(*values)
+
+
+def unpack(body: bytes, sender: Sender) -> tuple[int, Any]:
+    """Return the session and the message of a body.
+
+    Bytes after the last field that this version knows are skipped: a later version put them there.
+
+    Parameters
+    ----------
+    body
+        What a frame held.
+    sender
+        Who is at the other end. What only the own side may say is an echo, and no message.
+
+    Returns
+    -------
+    tuple
+        The session, and the message or None if this version does not know it.
+
+    Raises
+    ------
+    MessageError
+        If the body is shorter than its message, or a field is out of its range.
+    """
+    if len(body) < HEADER.size:
+        raise MessageError("shorter than a header")
+    number, session = HEADER.unpack_from(body)
+    form = FORMS.get(number)
+    if form is None or form.sender != sender:
+        return session, None
+    if len(body) < form.size:
+        raise MessageError(f"{form.name} has {form.size} bytes, not {len(body)}")
+    values = form.layout.unpack_from(body, HEADER.size)
+    content = {}
+    for field in form.fields:
+        content[field.name] = field.from_wire(values[: field.count])
+        values = values[field.count :]
+    return session, form.kind(**content)

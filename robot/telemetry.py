@@ -1,0 +1,89 @@
+"""What is known of a robot now: what was asked, what it confirmed, and what it does."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Literal
+
+from robot.emotion import Emotion
+
+LinkState = Literal["connecting", "ready", "degraded", "lost", "closed"]
+"""connecting: the port is open, and the robot has not answered yet. ready: it answers.
+degraded: it has been silent for 150 ms, or a command needed three sends. lost: it has been silent
+for 500 ms, or the port is gone; the link keeps trying. closed: `close()` was called."""
+
+
+@dataclass(frozen=True)
+class LinkCounts:
+    """What went over the wire since the link was made."""
+
+    frames_sent: int = 0
+    """Frames sent, repeats included."""
+
+    frames_received: int = 0
+    """Frames received whole."""
+
+    retries: int = 0
+    """Commands sent again because no acknowledgement came in time."""
+
+    crc_errors: int = 0
+    """Stretches of bytes that were no frame: noise, or a frame with wrong bits."""
+
+    skipped: int = 0
+    """Whole frames not understood or not of this session: unknown, malformed, echoed or late."""
+
+    refused: int = 0
+    """Commands that the robot acknowledged but refused."""
+
+    dropped: int = 0
+    """Motions, sounds and stops whose session ended before they were acknowledged."""
+
+    sessions: int = 0
+    """Sessions opened; every one after the first is a reconnection."""
+
+
+@dataclass(frozen=True)
+class Telemetry:
+    """What is known of the robot now."""
+
+    state: LinkState
+    """State of the link."""
+
+    commanded: Emotion | None = None
+    """What `express` last asked for; None before."""
+
+    acknowledged: Emotion | None = None
+    """What the robot last confirmed to have taken; None before, and after it was lost."""
+
+    observed: Emotion | None = None
+    """What the robot last said that it shows; None before it said anything."""
+
+    label: str | None = None
+    """The robot's own word for what it shows, "neutral", "happy", "angry" …"""
+
+    battery: float | None = None
+    """From empty, 0, to full, 1."""
+
+    charging: bool = False
+    """Whether the battery is being charged."""
+
+    stopped: bool = False
+    """Whether the robot holds its neutral pose after `stop()`."""
+
+    joints: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
+    """Measured angles by name [rad]."""
+
+    motion: str | None = None
+    """The motion being played; None when it stands still."""
+
+    sound: str | None = None
+    """The sound being played; None when it is quiet."""
+
+    round_trip: float | None = None
+    """Time from BEAT to STATE, smoothed [s]."""
+
+    silence: float | None = None
+    """Time since the robot was last heard [s]; None before it was. Everything above is so old."""
+
+    counts: LinkCounts = field(default_factory=LinkCounts)
+    """What went over the wire."""

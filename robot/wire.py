@@ -1,0 +1,131 @@
+"""Frames on a serial line: where one begins and ends, and whether it arrived whole.
+
+On the wire a frame is::
+
+    00 | COBS(body) | three check bytes | 00
+
+COBS (Cheshire & Baker 1999) removes the zero bytes from the body, so a zero on the line is always an
+edge. The edge in front costs one byte and buys this: whatever garbage came before, the next frame is
+received. The check is CRC-16/CCITT-FALSE over the *encoded* bytes, so its guarantee holds for the
+bits on the line and not only for what the decoder made of them; it is spread over three bytes,
+``1110hhhh 10mmmmmm 10llllll``, so that none of them is zero.
+"""
+
+from binascii import crc_hqx
+
+MAX_BODY = 120
+"""Longest body of a frame [bytes]; one run of COBS, so that encoding adds exactly one byte."""
+
+MAX_FRAME = MAX_BODY + 1 + 3
+"""Longest frame between its edges [bytes]."""
+
+
+class FrameError(ValueError):
+    """Bytes between two edges that are no frame."""
+
+
+def crc16(data: bytes) -> int:
+    """CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xFFFF, not reflected.
+
+    Any one, two or three wrong bits are noticed in up to 32751 bits (Koopman & Chakravarty 2004);
+    our longest frame has 984.
+
+    >>> hex(crc16(b"123456789"))
+    '0x29b1'
+    """
+    return crc_hqx(data, 0xFFFF)
+
+
+def cobs_encode(body: bytes) -> bytes:
+    """Encode at most `MAX_BODY` bytes without a zero byte.
+
+    >>> cobs_encode(bytes([7, 0, 8, 9])).hex(" ")
+    '02 07 03 08 09'
+    """
+    return b"".join(bytes([len(run) + 1]) + run for run in body.split(b"\0"))
+
+
+def cobs_decode(encoded: bytes) -> bytes:
+    """Undo `cobs_encode`; raises FrameError where the runs do not fill the bytes exactly."""
+    runs = []
+    start = 0
+    while start < len(encoded):
+        end = start + encoded[start]
+        if end == start or end > len(encoded):
+            raise FrameError("a run of COBS passes the end of the frame")
+        runs.append(encoded[start + 1 : end])
+        start = end
+    if not runs:
+        raise FrameError("empty frame")
+    return b"\0".join(runs)
+
+
+def encode_frame(body: bytes) -> bytes:
+    """Return the bytes on the wire for one body, both edges included.
+
+    Raises
+    ------
+    ValueError
+        If the body is empty or longer than `MAX_BODY`.
+    """
+    if not 1 <= len(body) <= MAX_BODY:
+        raise ValueError(f"a frame holds 1 to {MAX_BODY} bytes, not {len(body)}")
+    encoded = cobs_encode(body)
+    return b"\0" + encoded + _check_bytes(encoded) + b"\0"
+
+
+def decode_frame(frame: bytes) -> bytes:
+    """Return the body of what stood between two edges; raises FrameError if it is no frame."""
+    if not 5 <= len(frame) <= MAX_FRAME:
+        raise FrameError("too short or too long for a frame")
+    encoded = frame[:-3]
+    if frame[-3:] != _check_bytes(encoded):
+        raise FrameError("the check does not match")
+    return cobs_decode(encoded)
+
+
+def _check_bytes(encoded: bytes) -> bytes:
+    crc = crc16(encoded)
+    return bytes([0xE0 | crc >> 12, 0x80 | crc >> 6 & 0x3F, 0x80 | crc & 0x3F])
+
+
+class FrameReader:
+    """Finds the frames in a stream that may be cut anywhere and hold anything between them.
+
+    It keeps at most `MAX_FRAME` + 1 bytes, whatever it is fed.
+    """
+
+    def __init__(self) -> None:
+        self.frames = 0
+        """Frames received whole."""
+        self.errors = 0
+        """Stretches between two edges that were no frame: noise, or a frame with wrong bits."""
+        self._pending = bytearray()
+
+    def feed(self, data: bytes) -> list[bytes]:
+        """Take the next bytes of the stream; return the bodies of the frames they complete."""
+        bodies = []
+        *ended, rest = data.split(b"\0")
+        for piece in ended:
+            self._keep(piece)
+            if self._pending:
+                body = self._finish()
+                if body is not None:
+                    bodies.append(body)
+        self._keep(rest)
+        return bodies
+
+    def _keep(self, piece: bytes) -> None:
+        # One byte more than a frame can have is enough to know that it is none.
+        self._pending += piece[: MAX_FRAME + 1 - len(self._pending)]
+
+    def _finish(self) -> bytes | None:
+        frame = bytes(self._pending)
+        self._pending.clear()
+        try:
+            body = decode_frame(frame)
+        except FrameError:
+            self.errors += 1
+            return None
+        self.frames += 1
+        return body
