@@ -3,14 +3,18 @@
 from tracking.cube import CubeModel, Face
 from tracking.errors import TrackingError
 from tracking.frame import Frame
+from tracking.gestures import CubeGestures
 from tracking.intrinsics import Intrinsics
 from tracking.sources import FrameSource, open_source
 from tracking.state import CubeControls, CubeState
+from tracking.tracker import CubeTracker
 
 __all__ = [
     "CubeControls",
+    "CubeGestures",
     "CubeModel",
     "CubeState",
+    "CubeTracker",
     "Face",
     "Frame",
     "FrameSource",
