@@ -1,0 +1,57 @@
+"""Where a picture can be drawn: an OpenGL context, with or without a window."""
+
+import sys
+from ctypes.util import find_library
+
+import moderngl
+
+from characters.errors import CharacterError
+
+REQUIRED = 330
+"""OpenGL 3.3 core: the newest that every driver of the last ten years has, Mesa's software one included."""
+
+
+def create_context(window: bool = False) -> moderngl.Context:
+    """Return an OpenGL context to draw with.
+
+    Parameters
+    ----------
+    window
+        Whether to take over the context of a window that the caller has made current. Otherwise a
+        context of its own is made that needs no display.
+
+    Raises
+    ------
+    CharacterError
+        There is none; the message names the missing library and how to get it.
+    """
+    try:
+        if window:
+            return moderngl.create_context(require=REQUIRED)
+        if sys.platform.startswith("linux"):
+            return moderngl.create_standalone_context(require=REQUIRED, backend="egl")
+        return moderngl.create_standalone_context(require=REQUIRED)
+    except Exception as error:
+        # glcontext raises bare exceptions of many types, all with one terse line.
+        raise CharacterError(_diagnosis(window, str(error))) from error
+
+
+def _diagnosis(window: bool, reason: str) -> str:
+    """Say what is missing, and the command that installs it."""
+    if window:
+        return (
+            f"the window has no OpenGL 3.3 ({reason}): update the graphics driver, or play without "
+            "a window"
+        )
+    if sys.platform.startswith("linux"):
+        for name, package in (("EGL", "libegl1"), ("GL", "libgl1")):
+            if find_library(name) is None:
+                return (
+                    f"cannot draw: the library lib{name} is missing; install it with "
+                    f"'sudo apt install {package} libgl1-mesa-dri'"
+                )
+        return (
+            f"cannot draw: no driver gives OpenGL 3.3 off screen ({reason}); install Mesa's with "
+            "'sudo apt install libgl1-mesa-dri'"
+        )
+    return f"cannot draw: no OpenGL 3.3 ({reason}); update the graphics driver"

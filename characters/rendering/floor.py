@@ -1,0 +1,117 @@
+"""Paths painted on the table: discs, a ring, and dashes between them."""
+
+from collections.abc import Sequence
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.rendering.programs import Programs
+from characters.rendering.view import FloorPath
+
+Array = NDArray[np.float64]
+
+DISC, LARGE_DISC = 0.005, 0.0075
+"""Radii of a point, and of the highlighted one [m]."""
+
+RING = (0.0105, 0.0125)
+"""Inner and outer radius of the ring around the highlighted point [m]."""
+
+DASH, GAP, WIDTH = 0.011, 0.008, 0.0028
+"""Length of a dash, of the gap after it, and its width [m]."""
+
+CLEAR = 0.006
+"""Between a disc and the first dash [m]."""
+
+
+class FloorMarks:
+    """Draws floor paths.
+
+    Parameters
+    ----------
+    context, programs
+        Where to draw.
+    """
+
+    def __init__(self, context: moderngl.Context, programs: Programs) -> None:
+        self._program = programs.marks
+        self._buffer = context.buffer(reserve=1 << 14, dynamic=True)
+        self._array = context.vertex_array(
+            programs.marks, [(self._buffer, "2f 2f 3f 3f", "position", "local", "shape", "color")]
+        )
+        self._count = 0
+
+    def lay(self, paths: Sequence[FloorPath]) -> Array:
+        """Take the paths of this picture, and return points around them in the table frame, (n, 3)."""
+        marks = [mark for path in paths for mark in (_marks(path),) if len(mark)]
+        vertices = np.concatenate(marks) if marks else np.zeros((0, 10), np.float32)
+        self._count = len(vertices)
+        if self._count == 0:
+            return np.zeros((0, 3))
+        if vertices.nbytes > self._buffer.size:
+            self._buffer.orphan(2 * vertices.nbytes)
+        self._buffer.write(np.ascontiguousarray(vertices, "f4"))
+        place = vertices[:, :2].astype(float)
+        return np.stack([place[:, 0], np.zeros(self._count), place[:, 1]], axis=1)
+
+    def draw(self, clip_from_table: bytes, white: Array) -> None:
+        """Paint the marks into the framebuffer in use."""
+        if self._count:
+            self._program["clip_from_table"].write(clip_from_table)
+            self._program["light"].value = tuple(white)
+            self._array.render(moderngl.TRIANGLES, vertices=self._count)
+
+    def release(self) -> None:
+        """Give the card's memory back; a second call does nothing."""
+        self._array.release()
+        self._buffer.release()
+
+
+def _marks(path: FloorPath) -> NDArray[np.float32]:
+    """Return the vertices of a path, (n, 10): position, local place, shape, linear colour."""
+    points = np.asarray(path.points, float).reshape(-1, 2)
+    points = points[np.isfinite(points).all(axis=1)]
+    chosen = np.arange(len(points)) == (-1 if path.highlight is None else path.highlight)
+    discs = np.zeros((len(points), 7))
+    discs[:, 0:2], discs[:, 2], discs[:, 5] = points, 1.0, np.where(chosen, LARGE_DISC, DISC)
+    rings = discs[chosen].copy()
+    rings[:, 6], rings[:, 5] = RING
+    capsules = np.concatenate([discs, rings, *_dashes(points, path.closed, chosen)])
+    color = np.asarray(path.color, float) ** 2.2
+    return _quads(capsules, color)
+
+
+def _dashes(points: Array, closed: bool, chosen: NDArray[np.bool_]) -> list[Array]:
+    """Return the dashes of each leg as capsules, (n, 7): centre, direction, half length, radius, hole."""
+    count = len(points)
+    legs = [(i, (i + 1) % count) for i in range(count if closed and count > 2 else count - 1)]
+    clear = np.where(chosen, RING[1], DISC) + CLEAR
+    dashes = []
+    for start, end in legs:
+        step = points[end] - points[start]
+        length = float(np.linalg.norm(step))
+        room = length - clear[start] - clear[end]
+        number = int((room + GAP) // (DASH + GAP))
+        if number < 1:
+            continue
+        along = step / length
+        # What is left over stands half before the first dash and half after the last.
+        first = clear[start] + 0.5 * (room - number * DASH - (number - 1) * GAP) + 0.5 * DASH
+        middles = points[start] + along * (first + (DASH + GAP) * np.arange(number))[:, None]
+        shape = np.tile([*along, 0.5 * (DASH - WIDTH), 0.5 * WIDTH, 0.0], (number, 1))
+        dashes.append(np.hstack([middles, shape]))
+    return dashes
+
+
+def _quads(capsules: Array, color: Array) -> NDArray[np.float32]:
+    """Return two triangles around each capsule, with a rim for its soft edge."""
+    corner = np.array([(-1, -1), (1, -1), (1, 1), (-1, -1), (1, 1), (-1, 1)], float)
+    reach = 1.3 * capsules[:, None, 5:6] * corner
+    reach[..., 0] += capsules[:, None, 4] * corner[:, 0]
+    along = capsules[:, None, 2:4]
+    across = np.stack([-along[..., 1], along[..., 0]], axis=-1)
+    position = capsules[:, None, :2] + reach[..., :1] * along + reach[..., 1:] * across
+    shape = np.broadcast_to(capsules[:, None, 4:7], (*position.shape[:2], 3))
+    paint = np.broadcast_to(color, (*position.shape[:2], 3))
+    vertices = np.concatenate([position, reach, shape, paint], axis=-1)
+    return vertices.reshape(-1, 10).astype(np.float32)

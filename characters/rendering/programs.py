@@ -1,0 +1,51 @@
+"""The shaders, read from the package and built once a context."""
+
+from importlib.resources import files
+
+import moderngl
+
+SHADERS = files("characters.rendering") / "shaders"
+
+
+class Programs:
+    """Every program of the picture.
+
+    Parameters
+    ----------
+    context
+        Where they are built.
+    """
+
+    def __init__(self, context: moderngl.Context) -> None:
+        def build(vertex: str, fragment: str) -> moderngl.Program:
+            return context.program(vertex_shader=_source(vertex), fragment_shader=_source(fragment))
+
+        self.skin = context.program(
+            vertex_shader=_source("skin.vert"), varyings=["skinned_position", "skinned_normal"]
+        )
+        """Joint matrices and bind pose to vertices in the table frame."""
+        self.caster = build("caster.vert", "caster.frag")
+        """Vertices to what they keep from the table, sorted by height."""
+        self.blur = build("screen.vert", "blur.frag")
+        """Softens each height as far as a lamp of some width would."""
+        self.backdrop = build("screen.vert", "backdrop.frag")
+        """The camera's picture."""
+        self.box = build("box.vert", "nothing.frag")
+        """Depth of a real cube."""
+        self.marks = build("marks.vert", "marks.frag")
+        """Discs and dashes on the table."""
+        self.shadow = build("shadow.vert", "shadow.frag")
+        """The softened shadow onto the table."""
+        self.character = build("character.vert", "character.frag")
+        """Vertices to colour."""
+        self.copy = build("copy.vert", "copy.frag")
+        """A finished part of the picture into a window."""
+
+    def release(self) -> None:
+        """Give the programs back; a second call does nothing."""
+        for program in vars(self).values():
+            program.release()
+
+
+def _source(name: str) -> str:
+    return (SHADERS / f"{name}.glsl").read_text(encoding="utf-8")

@@ -1,0 +1,11 @@
+#version 330 core
+
+// Pixel for pixel; blue stands in the first channel, as it does in the camera's frame.
+
+uniform sampler2D picture;
+
+out vec4 color;
+
+void main() {
+    color = vec4(texelFetch(picture, ivec2(gl_FragCoord.xy), 0).rgb, 1.0);
+}

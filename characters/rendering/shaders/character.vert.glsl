@@ -1,0 +1,21 @@
+#version 330 core
+
+uniform mat4 clip_from_table;
+
+in vec3 position;
+in vec3 normal;
+in vec4 color;
+in vec2 uv;
+
+out vec3 place;
+out vec3 facing;
+out vec4 tint;
+out vec2 where;
+
+void main() {
+    place = position;
+    facing = normal;
+    tint = color;
+    where = uv;
+    gl_Position = clip_from_table * vec4(position, 1.0);
+}

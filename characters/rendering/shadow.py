@@ -1,0 +1,146 @@
+"""The shadow of one character on the table: sharp under its feet, softer with height."""
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.rendering.light import TO_LIGHT
+from characters.rendering.programs import Programs
+from characters.rendering.skinning import SkinnedCharacter
+
+Array = NDArray[np.float64]
+
+SIDE = 128
+"""Texels along the map; a character covers about half of them."""
+
+TAPS = 16
+"""Of the blur on each side; `TAPS` in `blur.frag` too."""
+
+SLOPE = TO_LIGHT[[0, 2]] / TO_LIGHT[1]
+"""How far a point's shadow lies from the point below it for each metre of height, (x, z), negated."""
+
+LEVELS = (0.0, 0.1, 0.4, 1.0)
+"""Heights at which the shadow is blurred apart, as shares of the character's."""
+
+KEY_BLUR = (0.010, 0.022, 0.05, 0.10)
+"""Standard deviation of the key light's blur at each height, as shares of the character's height:
+a lamp of about 25° across, as a window or a ceiling light is from a desk."""
+
+SKY_BLUR = (0.022, 0.05, 0.11, 0.13)
+"""The same for light from all sides."""
+
+SKY_KEEPS = (0.62, 0.55, 0.42, 0.18)
+"""How much of the sky a surface at each height keeps from the table below it."""
+
+MARGIN = 0.27
+"""Room for the blur around the character, as a share of its height."""
+
+
+class Shadow:
+    """The map of one character's shadow, and its drawing onto the table.
+
+    Parameters
+    ----------
+    context, programs
+        Where to draw.
+    """
+
+    def __init__(self, context: moderngl.Context, programs: Programs) -> None:
+        self._context = context
+        self._programs = programs
+        self._maps = [context.texture((2 * SIDE, SIDE), 4) for _ in range(2)]
+        for texture in self._maps:
+            texture.repeat_x = texture.repeat_y = False
+        self._targets = [context.framebuffer([texture]) for texture in self._maps]
+        self._screen = context.vertex_array(programs.blur, [])
+        self._table = context.vertex_array(programs.shadow, [])
+        self._area = np.zeros(4)
+
+    def cast(self, character: SkinnedCharacter, enclosing: Array, height: float) -> Array:
+        """Make the map of a character that was just posed.
+
+        Parameters
+        ----------
+        character
+            Its skinned vertices are read.
+        enclosing
+            Points of the table frame around it, (n, 3).
+        height
+            Of the character on the table [m].
+
+        Returns
+        -------
+        NDArray
+            Corners of the square on the table that the shadow may reach, (4, 3).
+        """
+        self._area = area = _area(enclosing, height)
+        caster, blur, context = self._programs.caster, self._programs.blur, self._context
+        caster["area"].value = tuple(area)
+        caster["slope"].value = tuple(SLOPE)
+        caster["levels"].value = LEVELS
+        self._targets[0].use()
+        self._targets[0].clear()
+        # What faces away from the light is kept: it is nearest to the table, and soles touch it.
+        context.enable_only(moderngl.BLEND | moderngl.CULL_FACE)
+        context.front_face = "ccw"
+        context.blend_equation = moderngl.MAX
+        context.blend_func = moderngl.ONE, moderngl.ONE
+        for part in character.parts:
+            if part.double_sided:
+                context.disable(moderngl.CULL_FACE)
+            else:
+                context.enable(moderngl.CULL_FACE)
+            character.caster.render(vertices=part.count, first=part.first, instances=2)
+        context.blend_equation = moderngl.FUNC_ADD
+        context.enable_only(moderngl.NOTHING)
+        texels = SIDE / area[2] * height
+        blur["key_weights"].write(_gaussians(np.array(KEY_BLUR) * texels))
+        blur["sky_weights"].write(_gaussians(np.array(SKY_BLUR) * texels))
+        blur["side"].value = SIDE
+        for source, target, direction in ((0, 1, (1, 0)), (1, 0, (0, 1))):
+            self._targets[target].use()
+            self._maps[source].use(0)
+            blur["direction"].value = direction
+            self._screen.render(moderngl.TRIANGLES, vertices=3)
+        across = area[0] + area[2] * np.array([0.0, 1.0, 1.0, 0.0])
+        along = area[1] + area[2] * np.array([0.0, 0.0, 1.0, 1.0])
+        return np.stack([across, np.zeros(4), along], axis=1)
+
+    def draw(self, clip_from_table: bytes, key_share: Array) -> None:
+        """Darken the table of the framebuffer in use, behind what is nearer there."""
+        program = self._programs.shadow
+        program["clip_from_table"].write(clip_from_table)
+        program["area"].value = tuple(self._area)
+        program["key"].value = tuple(key_share)
+        program["sky_keeps"].value = SKY_KEEPS
+        self._maps[0].use(0)
+        self._table.render(moderngl.TRIANGLE_STRIP, vertices=4)
+
+    def release(self) -> None:
+        """Give the card's memory back; a second call does nothing."""
+        for owned in (self._screen, self._table, *self._targets, *self._maps):
+            owned.release()
+
+
+def _area(enclosing: Array, height: float) -> Array:
+    """Return origin x, z and side of a square that holds a character's shadows, and its height.
+
+    The side grows in steps and the origin moves by whole texels, so that the shadow's edge does not crawl.
+    """
+    feet = enclosing[:, [0, 2]]
+    fallen = feet - SLOPE * np.maximum(enclosing[:, 1:2], 0.0)
+    low = np.minimum(feet.min(axis=0), fallen.min(axis=0)) - MARGIN * height
+    high = np.maximum(feet.max(axis=0), fallen.max(axis=0)) + MARGIN * height
+    step = height / 4
+    side = (np.ceil((high - low).max() / step) + 1) * step
+    texel = side / SIDE
+    origin = np.floor((low + high - side) / 2 / texel) * texel
+    return np.array([*origin, side, height])
+
+
+def _gaussians(deviations: Array) -> bytes:
+    """Return one half of four normalised kernels, a vec4 a tap."""
+    taps = np.arange(TAPS)[:, None]
+    kernels = np.exp(-0.5 * (taps / np.maximum(deviations, 0.3)) ** 2)
+    kernels /= kernels[0] + 2.0 * kernels[1:].sum(axis=0)
+    return kernels.astype("f4").tobytes()

@@ -1,0 +1,107 @@
+"""What a picture is made of: the camera's view and what stands in it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.command import PosedCharacter
+from characters.mesh import Mesh
+from characters.pose import Skeleton
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Box:
+    """A real cube in the camera's picture, which hides what is behind it."""
+
+    camera_from_box: Array
+    """Its pose, (4, 4) [m]; the origin is its centre."""
+
+    edge: float
+    """Length of its edges [m]."""
+
+
+@dataclass(frozen=True)
+class View:
+    """The camera's picture and what is known about the room in it."""
+
+    image: NDArray[np.uint8] | None
+    """The camera's frame as it came, (height, width, 3) BGR; None for a plain backdrop."""
+
+    matrix: Array
+    """Pinhole matrix of the frame, (3, 3) [px], centres of pixels at whole numbers as in OpenCV."""
+
+    distortion: Array
+    """Distortion of the lens as OpenCV takes it, (n,); n = 0, 4, 5, 8, 12 or 14."""
+
+    camera_from_table: Array | None
+    """The table's frame, (4, 4) [m], +y up; None where it is not known: then only the frame is drawn."""
+
+    occluders: tuple[Box, ...] = ()
+    """Real cubes that hide what is behind them."""
+
+
+class Drawable(Protocol):
+    """What is asked of a character in order to draw it."""
+
+    @property
+    def meshes(self) -> Sequence[Mesh]:
+        """Its skinned surfaces."""
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The joints that move them."""
+
+
+@dataclass(frozen=True)
+class Actor:
+    """A character in a pose, on the table."""
+
+    character: Drawable
+    """Its meshes and skeleton; sent to the graphics card when first drawn."""
+
+    posed: PosedCharacter
+    """Its pose and place."""
+
+
+@dataclass(frozen=True)
+class FloorPath:
+    """A line of points painted on the table: a disc for each, dashes between them."""
+
+    points: Array
+    """(n, 2): x and z in the table frame [m]."""
+
+    closed: bool = False
+    """Whether a dashed line leads from the last point back to the first."""
+
+    color: tuple[float, float, float] = (1.0, 0.93, 0.72)
+    """sRGB, each 0…1."""
+
+    highlight: int | None = None
+    """Number of the point that is larger and has a ring around it, or None."""
+
+
+@dataclass(frozen=True)
+class Rectangle:
+    """A part of the picture in whole pixels."""
+
+    x: int
+    """Left column."""
+
+    y: int
+    """Top row."""
+
+    width: int
+    """Columns."""
+
+    height: int
+    """Rows."""
+
+    @property
+    def rows_and_columns(self) -> tuple[slice, slice]:
+        """Index of the part in an image array."""
+        return slice(self.y, self.y + self.height), slice(self.x, self.x + self.width)
