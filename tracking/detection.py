@@ -35,11 +35,12 @@ class MarkerDetector:
     def __init__(self, cube: CubeModel) -> None:
         self._faces = {face.marker_id: face for face in cube.faces}
         parameters = cv2.aruco.DetectorParameters()
-        # Not one wrong bit: with 6 of 50 ids wanted, OpenCV's default of 0.6 finds markers in clutter
-        # (opencv#28953).
+        # Not one wrong bit: with 6 of 50 ids wanted, OpenCV's default of 0.6 finds markers in
+        # clutter (opencv#28953).
         parameters.errorCorrectionRate = 0.0
         parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
-        # The search window must not reach the next edge of a small marker: 0.3 of a cell, at most 5 px.
+        # The search window must not reach the next edge of a small marker: 0.3 of a cell, at most 5
+        # px.
         parameters.cornerRefinementWinSize = 5
         parameters.relativeCornerRefinmentWinSize = 0.3
         # Enough for light from one side: local thresholds over 3, 13 and 23 px.
@@ -54,15 +55,12 @@ class MarkerDetector:
         A marker can be seen twice: which of the two is the cube's is for `solver` to say.
         """
         left, top, right, bottom = region or (0, 0, grey.shape[1], grey.shape[0])
-        corners, ids = self._detector.detectMarkers(grey[top:bottom, left:right])[:2]
-        if ids is None:
-            return []
-        # The ids are (N,) in OpenCV 5 and (N, 1) in OpenCV 4.
-        numbers = np.asarray(ids).ravel()
+        squares, ids = self._detector.detectMarkers(grey[top:bottom, left:right])[:2]
+        # None where there is no marker; (N,) in OpenCV 5, (N, 1) in OpenCV 4.
+        numbers = [] if ids is None else [int(number) for number in np.ravel(ids)]
+        corner = np.array([left, top], np.float64)
         return [
-            Observation(
-                self._faces[number], np.asarray(square, np.float64).reshape(4, 2) + (left, top)
-            )
-            for number, square in zip(numbers.tolist(), corners, strict=True)
+            Observation(self._faces[number], np.reshape(square, (4, 2)) + corner)
+            for number, square in zip(numbers, squares, strict=True)
             if number in self._faces
         ]

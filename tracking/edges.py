@@ -12,12 +12,13 @@ from tracking.cube import CubeModel, Face, aruco_dictionary
 Array = NDArray[np.float64]
 
 POINTS_PER_CELL = 3
-"""Points on each cell's length of an edge: 2 to 5 px apart at arm's length, so their noise is independent."""
+"""Points on each cell's length of an edge: 2 to 5 px apart at arm's length, so that their noise is
+independent."""
 
 
 @dataclass(frozen=True)
 class EdgeModel:
-    """Points on every border between black and white of every marker, the outer border and the inner ones.
+    """Points on every border between black and white of every marker, the outer and the inner ones.
 
     All arrays have the same length N.
     """
@@ -66,7 +67,8 @@ def marker_cells(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
 def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, Array, Array, Array]:
     cells = np.pad(marker_cells(cube.dictionary, face.marker_id), 1, constant_values=True)
     count = len(cells) - 2
-    # Upright edges (between columns), then level ones (between rows), in units of cells from the top-left.
+    # Upright edges (between columns), then level ones (between rows), in units of cells from the
+    # top-left.
     upright = _runs(cells)
     level = _runs(cells.T)
     flat = np.concatenate([upright, level[:, [1, 0, 3, 2, 5, 4, 6]]])
@@ -77,7 +79,12 @@ def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, Array, Array, Array
 
 
 def _runs(cells: NDArray[np.bool_]) -> Array:
-    """Points on the upright edges of a padded pattern, (N, 7): x, y, along (2), across (2), to_end [cells]."""
+    """Lay points on the upright edges of a padded pattern.
+
+    Returns
+    -------
+    Place x y, one cell along the edge (2), one across it (2), and to its end, (N, 7) [cells].
+    """
     rows = []
     for column in range(1, cells.shape[1]):
         # +1 where white is on the right, −1 where on the left, 0 where there is no edge.

@@ -29,7 +29,7 @@ NOISE = 0.1
 """What looks lifted or tipped for less than this is taken for an error of the tracker [s]."""
 
 TRAVEL = (0.02, 0.04)
-"""A cube that travels slower than the first comes to rest, faster than the second leaves it [m/s]."""
+"""Slower than the first the cube comes to rest, faster than the second it no longer rests [m/s]."""
 
 TRAVEL_TIME = 0.2
 """Time over which travel is measured [s] (M11)."""
@@ -126,7 +126,7 @@ class CubeGestures:
         now = before.timestamp
         off = self._off(now, place)
         steady = self._steady(now, before.resting)
-        resting = place.flat and steady or (before.resting and not off and steady)
+        resting = steady and (place.flat or (before.resting and not off))
         self._handled |= off
         placed = resting and (self._handled or place.top != self._placed_top)
         if placed:

@@ -32,7 +32,8 @@ class Projection:
         projected, jacobian = cv2.projectPoints(
             points, self._zero, self._zero, self.matrix, self.distortion
         )[:2]
-        # Columns 3 to 5 are the slopes by translation, which without rotation are those by the point.
+        # Columns 3 to 5 are the slopes by translation, which without rotation are those by the
+        # point.
         slopes = np.asarray(jacobian, np.float64)[:, 3:6].reshape(-1, 2, 3)
         return np.asarray(projected, np.float64).reshape(-1, 2), slopes
 

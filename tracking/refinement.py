@@ -1,9 +1,9 @@
 """Gauss-Newton on the edges of all visible markers: from a good pose to the best one.
 
-Where the model says that an edge runs, the picture is sampled across it. A blurred step is fitted to each such
-profile, which tells how far the edge lies from its place to a few hundredths of a pixel; a shift-turn that
-takes all edges home together is the correction. The idea is RAPiD's (Harris and Stennett, 1990); the
-profile fit, the bloom and the covariance are ours.
+Where the model says that an edge runs, the picture is sampled across it. A blurred step is fitted
+to each such profile, which tells how far the edge lies from its place to a few hundredths of a
+pixel; a shift-turn that takes all edges home together is the correction. The idea is RAPiD's
+(Harris and Stennett, 1990); the profile fit, the bloom and the covariance are ours.
 """
 
 from dataclasses import dataclass
@@ -204,13 +204,11 @@ def edge_offsets(
 ) -> tuple[Array, Array, Array]:
     """Fit a blurred step to the picture across each edge point.
 
-    The model a + b·S(u/σ) − b·δ·s(u/σ)/σ, (S a smooth step, s its slope), is linear in a, b and b·δ, and its
-    parts are orthogonal after centring: no iteration, no matrix.
+    The model a + b·S(u/σ) − b·δ·s(u/σ)/σ, (S a smooth step, s its slope), is linear in a, b and
+    b·δ, and its parts are orthogonal after centring: no iteration, no matrix.
 
-    Returns
-    -------
-    Offset of the edge along the normal [px], contrast b [grey levels], and the information about the
-    offset [1/px²], each (N,).
+    Returns ------- Offset of the edge along the normal [px], contrast b [grey levels], and the
+    information about the offset [1/px²], each (N,).
     """
     taps = np.linspace(-1, 1, TAPS)[None] * profiles.reach[:, None]
     places = profiles.pixels[:, None] + taps[..., None] * profiles.normals[:, None]
@@ -254,4 +252,4 @@ def _weighted(rows: Array, offset: Array, weights: Array) -> tuple[Array, Array]
     weighted = rows * weights[:, None]
     normal = weighted.T @ rows
     normal[6, 6] += 1 / BLOOM**2
-    return np.linalg.solve(normal, weighted.T @ offset), normal
+    return np.asarray(np.linalg.solve(normal, weighted.T @ offset), np.float64), normal

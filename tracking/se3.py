@@ -1,8 +1,8 @@
 """Rigid motions: rotations as vectors, and the small motions that solvers and covariances speak of.
 
-A *shift-turn* is the six numbers of `CubeState.covariance`: a shift [m] and a turn [rad] along the axes
-of the outer frame, the turn about the moving frame's own origin. It keeps place and attitude apart, so
-that a metre of distance never mixes with a radian of tilt.
+A *shift-turn* is the six numbers of `CubeState.covariance`: a shift [m] and a turn [rad] along the
+axes of the outer frame, the turn about the moving frame's own origin. It keeps place and attitude
+apart, so that a metre of distance never mixes with a radian of tilt.
 """
 
 import numpy as np
@@ -35,8 +35,10 @@ def rotation(vector: Array) -> Array:
     angle = float(np.linalg.norm(vector))
     k = hat(vector)
     if angle < SMALL:
-        return np.eye(3) + k + k @ k / 2
-    return np.eye(3) + k * (np.sin(angle) / angle) + k @ k * ((1 - np.cos(angle)) / angle**2)
+        turn = np.eye(3) + k + k @ k / 2
+    else:
+        turn = np.eye(3) + k * (np.sin(angle) / angle) + k @ k * ((1 - np.cos(angle)) / angle**2)
+    return np.asarray(turn, np.float64)
 
 
 def rotation_vector(matrix: Array) -> Array:
@@ -47,30 +49,26 @@ def rotation_vector(matrix: Array) -> Array:
     """
     x, y, z, w = quaternion(matrix)
     sine = float(np.sqrt(x * x + y * y + z * z))
-    axis = np.array([x, y, z])
-    if sine < SMALL:
-        return axis * 2
-    return axis * (2 * np.arctan2(sine, w) / sine)
+    axis: Array = np.array([x, y, z])
+    scale = 2.0 if sine < SMALL else float(2 * np.arctan2(sine, w) / sine)
+    return axis * scale
 
 
 def quaternion(matrix: Array) -> Array:
-    """Unit quaternion xyzw with w ≥ 0 of a rotation matrix, (3, 3) → (4,).
+    """Return the unit quaternion xyzw with w ≥ 0 of a rotation matrix, (3, 3) → (4,).
 
     Takes the best conditioned of the four formulas of Shepperd (1978).
     """
     trace = float(np.trace(matrix))
-    sizes = np.append(np.diag(matrix), trace)
-    best = int(np.argmax(sizes))
+    best = int(np.argmax(np.append(np.diag(matrix), trace)))
     skew = np.array(
         [matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1]]
     )
-    if best == 3:
-        q = np.append(skew, 1 + trace)
-    else:
+    q: Array = np.append(skew, 1 + trace)
+    if best < 3:
         q = np.append(matrix[best] + matrix[:, best], skew[best])
         q[best] = 1 + 2 * matrix[best, best] - trace
-    q = q / np.linalg.norm(q)
-    return -q if q[3] < 0 else q
+    return np.asarray(q / np.copysign(np.linalg.norm(q), q[3]), np.float64)
 
 
 def pose(turn: Array, origin: Array) -> Array:
@@ -102,7 +100,7 @@ def moved(transform: Array, shift_turn: Array) -> Array:
 
 
 def motion(start: Array, end: Array) -> Array:
-    """Shift-turn, (6,), that takes one pose to another: `moved(start, motion(start, end))` is `end`."""
+    """Shift-turn, (6,), from one pose to another: `moved(start, motion(start, end))` is `end`."""
     turn = rotation_vector(end[:3, :3] @ start[:3, :3].T)
     return np.concatenate([end[:3, 3] - start[:3, 3], turn])
 

@@ -17,7 +17,7 @@ DEAD_TIME = 1.0
 """After a shake there is no other for this long [s]."""
 
 FAST = (0.25, 5.0)
-"""Only movement faster than this counts [m/s, rad/s]; 5 rad/s moves the cube's corners by 0.26 m/s."""
+"""Only faster movement counts [m/s, rad/s]; 5 rad/s moves the corners of a cube by 0.26 m/s."""
 
 
 class ShakeDetector:

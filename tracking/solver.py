@@ -43,9 +43,9 @@ def solve(
 ) -> list[CornerSolution]:
     """Find the poses of one rigid cube that explain the seen markers, the best first.
 
-    Every marker alone proposes its two poses; the proposal that most other markers agree with is refined on
-    all of them together. Markers that disagree with it are left out: a second cube, a picture of a marker,
-    a misread id.
+    Every marker alone proposes its two poses; the proposal that most other markers agree with is
+    refined on all of them together. Markers that disagree with it are left out: a second cube, a
+    picture of a marker, a misread id.
 
     Parameters
     ----------
@@ -56,10 +56,9 @@ def solve(
     expected
         Where the cube should be by its past, (4, 4): breaks ties between two cubes, no more.
 
-    Returns
-    -------
-    The best pose and, where another with the same support exists, (the second pose of a single face seen
-    from afar, a second cube), that one too. Empty where no pose with its faces towards the camera exists.
+    Returns ------- The best pose and, where another with the same support exists, (the second pose
+    of a single face seen from afar, a second cube), that one too. Empty where no pose with its
+    faces towards the camera exists.
     """
     solutions: list[CornerSolution] = []
     for start in _proposals(observations, projection):
@@ -82,7 +81,7 @@ def solve(
 
 
 def looks_at_camera(face: Face, camera_from_cube: Array, cosine: float = GRAZING) -> bool:
-    """Whether the outside of a face is seen from the camera, and not from beyond a grazing angle."""
+    """Whether the outside of a face is seen, and not at a grazing angle."""
     centre = camera_from_cube[:3, :3] @ face.corners.mean(axis=0) + camera_from_cube[:3, 3]
     normal = camera_from_cube[:3, :3] @ face.normal
     return bool(centre[2] > NEAREST and -normal @ centre > cosine * np.linalg.norm(centre))
@@ -110,13 +109,14 @@ def refine_on_corners(
     residuals, jacobian = _linearised(current, points, corners, projection)
     error = float(np.sqrt((residuals**2).sum(axis=1).mean()))
     normal = np.einsum("nik,nil->kl", jacobian, jacobian)
-    # One face of four corners leaves two degrees of freedom, too few to judge by: assume 0.3 px at least.
+    # One face of four corners leaves two degrees of freedom, too few to judge by: assume 0.3 px at
+    # least.
     spread = max(0.3**2, float((residuals**2).sum()) / max(1, residuals.size - 6))
     return CornerSolution(current, tuple(observations), error, np.linalg.pinv(normal) * spread)
 
 
 def _proposals(observations: Sequence[Observation], projection: Projection) -> Iterator[Array]:
-    """Poses of the cube from each marker alone: both solutions of Collins and Bartoli (IPPE, 2014)."""
+    """Poses of the cube from each marker alone: both of IPPE (Collins and Bartoli, 2014)."""
     for seen in observations:
         cube_from_marker, side = _marker_frame(seen.face)
         square = np.array([(-1, 1, 0), (1, 1, 0), (1, -1, 0), (-1, -1, 0)]) * (side / 2)
@@ -128,7 +128,8 @@ def _proposals(observations: Sequence[Observation], projection: Projection) -> I
             flags=cv2.SOLVEPNP_IPPE_SQUARE,
         )[:3]
         for turn, origin in zip(turns, origins, strict=True) if found else ():
-            marker = se3.pose(se3.rotation(turn.ravel()), origin.ravel())
+            vectors = np.array([turn, origin], np.float64).reshape(2, 3)
+            marker = se3.pose(se3.rotation(vectors[0]), vectors[1])
             if np.isfinite(marker).all():
                 yield marker @ se3.inverse(cube_from_marker)
 

@@ -17,7 +17,7 @@ STILL = (0.02, 0.2)
 """Slower than this is still [m/s, rad/s]."""
 
 TREMOR = (2.5e-4, 3.5e-3)
-"""Scatter of a cube that a table holds stays below this [m, rad], beyond what its covariance explains.
+"""A cube that a table holds scatters by less than this [m, rad], covariance aside.
 
 A hand in the air trembles by 0.3 to 1 mm at 8 to 12 Hz (physiological tremor) and drifts by more.
 """

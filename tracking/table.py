@@ -2,15 +2,19 @@
 
 The rule, in full:
 
-1. The cube teaches when it keeps still for 0.3 s (`Stillness`). A *firm* rest, without tremor, counts at once; a
+1. The cube teaches when it keeps still for 0.3 s (`Stillness`). A *firm* rest, without tremor,
+counts at once; a
    trembling one only after a second, and what it teaches is provisional.
 2. Up is first the normal of that seen face that comes closest to `PRIOR_UP`, later the table's own.
-3. Rests that agree with the table improve it. Each place counts once, however long the cube stays there: its
-   errors (a badly folded face, the lens) are the same in every frame. So the table settles within a second and
-   then does not move at all.
-4. Rests that agree with each other but not with the table gather evidence for another one, and replace
-   it: after 0.3 s if it was provisional and they are firm, after 1.5 s of firm rest, after 4 s of trembling rest. A
-   hand that held the cube still in the air is so forgotten, and a camera that was moved is noticed.
+3. Rests that agree with the table improve it. Each place counts once, however long the cube stays
+there: its
+   errors (a badly folded face, the lens) are the same in every frame. So the table settles within a
+   second and then does not move at all.
+4. Rests that agree with each other but not with the table gather evidence for another one, and
+replace
+   it: after 0.3 s if it was provisional and they are firm, after 1.5 s of firm rest, after 4 s of
+   trembling rest. A hand that held the cube still in the air is so forgotten, and a camera that was
+   moved is noticed.
 """
 
 from dataclasses import dataclass
@@ -64,7 +68,8 @@ DIRECTIONS = face_directions()
 def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Rest | None:
     """Where a resting cube stands, if `up` (or the prior, where it is None) says which side is up.
 
-    Without a table only sides that look at the camera can be up, and none that is 60° off the prior.
+    Without a table only sides that look at the camera can be up, and none that is 60° off the
+    prior.
     """
     turn, centre = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
     normals = np.stack(list(DIRECTIONS.values())) @ turn.T
@@ -82,8 +87,8 @@ def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Re
 class Table:
     """A plane that improves with every place the cube rests on, by recursive least squares.
 
-    Heights above its first estimate, (x, z) ↦ d + a·x + b·z: a rest measures the height at its foot and, less
-    precisely, both slopes.
+    Heights above its first estimate, (x, z) ↦ d + a·x + b·z: a rest measures the height at its foot
+    and, less precisely, both slopes.
     """
 
     def __init__(self, rest: Rest) -> None:
@@ -147,7 +152,7 @@ class Table:
 
 
 class TableLearner:
-    """Finds the table and notices when it is another; the rule stands at the head of this module."""
+    """Finds the table and notices when it is another, by the rule at the head of this module."""
 
     def __init__(self, edge: float) -> None:
         self._edge = edge

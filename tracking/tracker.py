@@ -22,7 +22,7 @@ from tracking.state import CubeState
 Array = NDArray[np.float64]
 
 FLOOR = (2e-5, 2e-5, 4e-5, 1e-4, 1e-4, 1e-4)
-"""Smallest standard deviations of a shift-turn that are claimed [m, rad]: no model is better than this."""
+"""Smallest standard deviations of a shift-turn that are claimed [m, rad]: no model is better."""
 
 STRAY = 1.0
 """Edges and corners must agree to this share of a cell, or the edges found something else."""
@@ -51,10 +51,9 @@ class CubeTracker:
     intrinsics
         The camera; every frame must have its size.
 
-    Notes
-    -----
-    There is no smoothing filter: a pose rests on its own frame alone, so it has no lag. The past is used to look
-    in the right place, to choose between the two poses of a single face, and to distrust jumps.
+    Notes ----- There is no smoothing filter: a pose rests on its own frame alone, so it has no lag.
+    The past is used to look in the right place, to choose between the two poses of a single face,
+    and to distrust jumps.
     """
 
     def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
@@ -91,7 +90,7 @@ class CubeTracker:
         if (width, height) != tuple(self.intrinsics.size):
             wanted = "×".join(str(n) for n in self.intrinsics.size)
             raise TrackingError(
-                f"frame {frame.index} is {width}×{height} but the camera's intrinsics hold for {wanted}; "
+                f"frame {frame.index} is {width}×{height} but the intrinsics hold for {wanted}; "
                 "scale them or calibrate at this size"
             )
         return np.asarray(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY))
@@ -148,7 +147,7 @@ class CubeTracker:
         return float(np.sqrt(((pixels - corners) ** 2).sum(axis=1).mean()))
 
     def _region(self, expected: Array) -> Region | None:
-        """The part of the picture in which the predicted cube is, with room for a hand's acceleration."""
+        """Surround the predicted cube, with room for a hand's acceleration."""
         half = self.cube.edge / 2
         signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
         points = signs * half @ expected[:3, :3].T + expected[:3, 3]

@@ -40,8 +40,8 @@ def clockwise_angle_of(direction: Array) -> float:
 class TurnCounter:
     """Adds up the way from angle to angle, always the shorter one.
 
-    A cube that is hidden for a while is thought to have taken the shorter way too: what was not seen beyond half
-    a turn is not counted.
+    A cube that is hidden for a while is thought to have taken the shorter way too: what was not
+    seen beyond half a turn is not counted.
     """
 
     def __init__(self) -> None:
