@@ -57,7 +57,7 @@ def sculpt(
     Each part is a closed surface of its own, so where two parts meet the border is as crisp as
     the picture, whatever the size of the triangles.
     """
-    inverse_bind = np.linalg.inv(skeleton.rest.globals(skeleton))
+    inverse_bind = np.asarray(np.linalg.inv(skeleton.rest.globals(skeleton)), np.float64)
     return join(name, [_sculpt_part(part, skeleton, inverse_bind) for part in parts], material)
 
 
@@ -114,7 +114,7 @@ def lathe(
     paint = np.repeat(np.repeat(np.array(colors), 2, axis=0), segments, axis=0)
     bones = np.zeros((len(points), len(skeleton.names)))
     bones[:, skeleton.names.index(joint)] = 1.0
-    inverse_bind = np.linalg.inv(skeleton.rest.globals(skeleton))
+    inverse_bind = np.asarray(np.linalg.inv(skeleton.rest.globals(skeleton)), np.float64)
     return _mesh(points, normal, _bands(len(rings), segments), bones, paint, inverse_bind)
 
 
@@ -123,7 +123,7 @@ def _ring_normals(slope: Array) -> Array:
     ahead = np.vstack([slope[1:], [0.0, 1.0]])
     behind = np.vstack([[0.0, -1.0], slope[:-1]])
     both = np.stack([slope + behind, slope + ahead], axis=1).reshape(-1, 2)
-    return both / np.linalg.norm(both, axis=1, keepdims=True)
+    return np.asarray(both / np.linalg.norm(both, axis=1, keepdims=True))
 
 
 def _bands(rings: int, segments: int) -> NDArray[np.int64]:
@@ -179,6 +179,7 @@ def skin_weights(
         mine = np.flatnonzero(owner == number)
         bones = np.array([skeleton.names.index(bone) for bone in solid.bones])
         reach = np.stack([_bone_distance(points[mine], b, joints, skeleton) for b in bones])
+        reach += 1e-6 * np.arange(len(bones))[:, None]  # where two end in one joint: the first
         weights[mine, bones[np.argmin(reach, axis=0)]] = 1.0
     edges = points[triangles] - points[np.roll(triangles, 1, axis=1)]
     edge = float(np.mean(np.linalg.norm(edges, axis=-1)))

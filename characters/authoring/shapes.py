@@ -172,7 +172,7 @@ class HalfSpace(Solid):
     def distance(self, points: Array) -> Array:
         """Return the signed distance, (n,) [m]."""
         normal = np.array(self.normal) / np.linalg.norm(self.normal)
-        return (points - self.point) @ normal
+        return np.asarray((points - self.point) @ normal)
 
     def mirrored(self) -> "HalfSpace":
         """Return its image in the plane x = 0."""

@@ -61,7 +61,7 @@ def project(field: Field, points: Array, cell: float, rounds: int = 3) -> Array:
 def normals_of(field: Field, points: Array, cell: float) -> Array:
     """Return unit normals from the gradient, (n, 3)."""
     slope = gradient(field, points, 0.2 * cell)
-    return slope / np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-12)
+    return np.asarray(slope / np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-12))
 
 
 def neighbour_mean(values: Array, faces: NDArray[np.int64]) -> Array:
@@ -73,7 +73,7 @@ def neighbour_mean(values: Array, faces: NDArray[np.int64]) -> Array:
     total = np.stack(
         [np.bincount(target, column[source], minlength=len(values)) for column in flat.T], -1
     )
-    return (total / np.maximum(count, 1)).reshape(values.shape)
+    return np.asarray((total / np.maximum(count, 1)).reshape(values.shape))
 
 
 def _surface_nets(values: Array) -> tuple[Array, NDArray[np.int64]]:
@@ -102,7 +102,7 @@ def _surface_nets(values: Array) -> tuple[Array, NDArray[np.int64]]:
 
 def _tangential(field: Field, points: Array, move: Array, cell: float) -> Array:
     normal = normals_of(field, points, cell)
-    return move - normal * np.sum(move * normal, axis=1, keepdims=True)
+    return np.asarray(move - normal * np.sum(move * normal, axis=1, keepdims=True))
 
 
 def _split(points: Array, quads: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -1,0 +1,210 @@
+"""How the bundled explorer walks, runs and waits.
+
+Amplitudes and phases after the descriptions in Perry & Burnfield, "Gait Analysis" (2010), and
+Williams, "The Animator's Survival Kit" (2001), freely exaggerated. Phase 0 is the left heel strike.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters import rotations
+from characters.authoring.gait import Foot, FootMotion, Path, Steps, foot_motion
+from characters.authoring.rig import Puppet, mirrored
+from characters.authoring.shapes import Array
+from characters.clip import Clip
+from characters.pose import Pose, Skeleton
+
+RATE = 60.0
+FOOT = Foot(ankle=0.095, heel=-0.07, ball=(0.03, 0.115), toes=0.09)
+SIDES = (("Left", 1.0), ("Right", -1.0))
+
+
+@dataclass(frozen=True)
+class Style:
+    """How the body goes along with the feet; amplitudes in degrees where not said otherwise."""
+
+    bob: float
+    """Rise and fall of the pelvis, half of it [m]."""
+
+    lowest: float
+    """Phase at which it is lowest, of a step from 0 to 0.5."""
+
+    sway: float
+    """Sideways to the standing leg [m]."""
+
+    pelvis_yaw: float
+    """The hip of the forward leg goes forward."""
+
+    pelvis_list: float
+    """The hip of the swinging leg drops."""
+
+    lean: float
+    """Of the trunk, forward."""
+
+    chest_yaw: float
+    """Of the shoulders against the pelvis."""
+
+    arm_swing: float
+    """Of the upper arms, to either side."""
+
+    arm_back: float
+    """Middle of that swing, backward."""
+
+    elbow: float
+    """Bend of the elbows in the middle of the swing."""
+
+    elbow_swing: float
+    """How much more they bend in front, and less behind."""
+
+    reach: float
+    """Greatest length of a leg, as a part of a straight one."""
+
+
+WALK = Style(0.028, 0.06, 0.024, 9, 5, 4, 15, 30, 4, 24, 16, 0.985)
+RUN = Style(0.038, 0.15, 0.012, 12, 5, 13, 26, 44, 12, 86, 18, 0.975)
+
+
+def stride(skeleton: Skeleton, name: str, path: Path, steps: Steps, style: Style) -> Clip:
+    """Return one cycle of a gait along an arc, as a loop with root motion."""
+    frames = round(steps.cycle * RATE)
+    phase = np.arange(frames + 1) / frames
+    feet = {s: foot_motion(path, steps, FOOT, sign, phase) for s, sign in SIDES}
+    puppet = Puppet(skeleton, frames + 1)
+    bank = np.arctan(path.speed * path.yaw_rate / 9.81)
+    _carry_pelvis(puppet, style, phase, bank)
+    _fit_height(puppet, feet, style.reach)
+    _carry_trunk(puppet, style, phase, path.yaw_rate)
+    _swing_arms(puppet, style, phase)
+    for side, foot in feet.items():
+        puppet.place_foot(side, foot.ankle, foot.facing, foot.toe)
+    where, yaw = path.at(phase * steps.cycle)
+    puppet.shift("root", np.stack([where[:, 0], 0 * yaw, where[:, 1]], axis=-1))
+    puppet.turn("root", rotations.about("y", yaw))
+    return Clip(name, RATE, puppet.pose, loop=True, root_motion=True)
+
+
+def _wave(phase: Array, peak: float, times: int = 1) -> Array:
+    """Return a cosine that is 1 at phase `peak`, `times` times a cycle."""
+    return np.asarray(np.cos(2 * np.pi * times * (phase - peak)))
+
+
+def turned(x: Array | float = 0, y: Array | float = 0, z: Array | float = 0) -> Array:
+    """Return the rotation about y, then x, then z of the body, in degrees."""
+    x, y, z = np.broadcast_arrays(x, y, z)
+    return rotations.from_euler("yxz", np.radians(np.stack([y, x, z], axis=-1)))
+
+
+def _carry_pelvis(puppet: Puppet, style: Style, phase: Array, bank: float) -> None:
+    height = float(puppet.rest("hips")[1])
+    sway = style.sway * _wave(phase, 0.28) + 0.55 * height * np.tan(0.5 * bank)
+    bob = -style.bob * _wave(phase, style.lowest, 2)
+    surge = 0.3 * style.bob * _wave(phase, style.lowest + 0.3, 2)
+    puppet.shift("hips", np.stack([sway, bob, surge], axis=-1))
+    pitch = 0.45 * style.lean + 1.2 * _wave(phase, 0.1, 2)
+    roll = style.pelvis_list * _wave(phase, 0.2) - np.degrees(0.3 * bank)
+    puppet.turn("hips", turned(pitch, -style.pelvis_yaw * _wave(phase, 0.02), roll))
+
+
+def _fit_height(puppet: Puppet, feet: dict[str, FootMotion], reach: float) -> None:
+    """Carry the pelvis as high as the legs allow without straightening a knee."""
+    low, high = -0.3, 0.1
+    for _ in range(30):
+        middle = (low + high) / 2
+        puppet.shift("hips", [0.0, middle, 0.0])
+        longest = max(puppet.leg_extension(s, foot.ankle).max() for s, foot in feet.items())
+        puppet.shift("hips", [0.0, -middle, 0.0])
+        low, high = (middle, high) if longest < reach else (low, middle)
+    puppet.shift("hips", [0.0, low, 0.0])
+
+
+def _carry_trunk(puppet: Puppet, style: Style, phase: Array, yaw_rate: float) -> None:
+    """Turn the shoulders against the pelvis and keep the head level, looking where it goes."""
+    into = np.degrees(yaw_rate)
+    for number, name in enumerate(("spine1", "spine2", "chest")):
+        lag = 0.02 * (number + 1)  # each joint follows the one below a little later
+        yaw = (style.pelvis_yaw + style.chest_yaw) / 3 * _wave(phase, 0.02 + lag) + 0.03 * into
+        roll = -style.pelvis_list * 0.55 * _wave(phase, 0.2 + lag)
+        pitch = 0.22 * style.lean + 0.8 * _wave(phase, 0.12 + lag, 2)
+        puppet.turn(name, turned(pitch, yaw, roll))
+    gaze = turned(
+        2 + 1.2 * _wave(phase, 0.16, 2), 0.12 * into + 2 * _wave(phase, 0.1), -0.04 * into
+    )
+    above = rotations.multiply(rotations.conjugate(puppet.facing("chest")), gaze)
+    puppet.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.45))
+    puppet.face("head", gaze)
+
+
+def _swing_arms(puppet: Puppet, style: Style, phase: Array) -> None:
+    """Swing the arms against the legs; elbows and hands drag behind the shoulders."""
+    for side, sign in SIDES:
+        front = 0.52 if sign > 0 else 0.02  # phase at which this arm is in front
+        swing = style.arm_swing * _wave(phase, front) - style.arm_back
+        puppet.turn(
+            f"{side}Shoulder",
+            turned(0, -sign * 5 * _wave(phase, front - 0.03), sign * 1.5 * _wave(phase, 0.2, 2)),
+        )
+        hang_arm(puppet, side, sign, swing, 27 - 3 * _wave(phase, front))
+        bend = style.elbow + style.elbow_swing * _wave(phase, front + 0.07)
+        inward = 0.16 * bend + 6 * _wave(phase, front)
+        puppet.turn(f"{side}ForeArm", bent_elbow(puppet, side, sign, bend, inward))
+        puppet.turn(f"{side}Hand", turned(9 * _wave(phase, front + 0.17) - 6, 0, sign * -4))
+
+
+def hang_arm(puppet: Puppet, side: str, sign: float, swing: Array, lower: Array | float) -> None:
+    """Lower an arm from the A-pose towards the body and swing it forward [degrees]."""
+    lowered = turned(z=-sign * np.asarray(lower) + 0 * swing)
+    puppet.turn(f"{side}Arm", rotations.multiply(turned(x=-swing), lowered))
+
+
+def bent_elbow(puppet: Puppet, side: str, sign: float, bend: Array, inward: Array) -> Array:
+    """Return the bend of an elbow about the axis across the upper arm [degrees]."""
+    upper = puppet.rest(f"{side}ForeArm") - puppet.rest(f"{side}Arm")
+    hinge = np.cross(upper, [0.0, 0.0, 1.0])  # bends the forearm forward
+    hinge /= np.linalg.norm(hinge)
+    flex = rotations.about(hinge, np.radians(bend))
+    twist = rotations.about(upper / np.linalg.norm(upper), -sign * np.radians(inward) * 1.0)
+    return rotations.multiply(twist, flex)
+
+
+def mirrored_half_cycle(clip: Clip, skeleton: Skeleton, name: str) -> Clip:
+    """Return the mirror image of a gait, started half a cycle later: with the left foot again."""
+    image = mirrored(clip.in_place, skeleton)
+    half = (len(clip) - 1) // 2
+    order = (np.arange(len(clip)) + half) % (len(clip) - 1)
+    pose = Pose(image.translations[order], image.rotations[order])
+    x, z, yaw = (clip.track * [-1.0, 1.0, -1.0]).T  # an even arc looks the same from any frame
+    translations, turns = pose.translations.copy(), pose.rotations.copy()
+    translations[:, 0] += np.stack([x, 0 * x, z], axis=-1)
+    turns[:, 0] = rotations.multiply(rotations.about("y", yaw), turns[:, 0])
+    return Clip(name, clip.rate, Pose(translations, turns), clip.loop, clip.root_motion)
+
+
+def locomotion(skeleton: Skeleton) -> dict[str, Clip]:
+    """Return the twelve gaits by name."""
+    walk = {
+        "": (1.35, 0, 62),
+        "Wide": (1.3, 45, 62),
+        "Medium": (1.12, 90, 60),
+        "Short": (0.9, 135, 56),
+    }
+    run = {"": (3.4, 0, 42), "Wide": (3.2, 67.5, 42), "Medium": (2.8, 135, 40)}
+    clips = {}
+    for gait, turns in (("Walk", walk), ("Run", run)):
+        for size, (speed, rate, frames) in turns.items():
+            cycle = frames / RATE
+            path = Path(speed, float(np.radians(rate)))
+            if gait == "Walk":
+                steps = Steps(cycle, 0.61, 0.082, -0.07, 0.36, 0.8, 0.035)
+                style = WALK
+            else:
+                steps = Steps(cycle, 0.32, 0.06, -0.06, 0.10, 0.85, 0.17, 0.06, 0.35, 0.55)
+                style = RUN
+            if size:
+                left = stride(skeleton, f"{gait}Left{size}", path, steps, style)
+                clips[left.name] = left
+                right = mirrored_half_cycle(left, skeleton, f"{gait}Right{size}")
+                clips[right.name] = right
+            else:
+                clips[gait] = stride(skeleton, gait, path, steps, style)
+    return clips
