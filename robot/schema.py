@@ -104,7 +104,10 @@ class FieldForm:
         low = smallest if self.low is None else round(self.low / self.scale)
         high = largest if self.high is None else round(self.high / self.scale)
         if not low <= count <= high:
-            raise error(f"{self.name} must be from {low} to {high} counts, not {count}")
+            low, high = low * self.scale, high * self.scale
+            raise error(
+                f"{self.name} must be from {low:g} to {high:g}, not {count * self.scale:g}"
+            )
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,11 @@ On the wire a frame is::
 
     00 | COBS(body) | three check bytes | 00
 
-COBS (Cheshire & Baker 1999) removes the zero bytes from the body, so a zero on the line is always an
-edge. The edge in front costs one byte and buys this: whatever garbage came before, the next frame is
-received. The check is CRC-16/CCITT-FALSE over the *encoded* bytes, so its guarantee holds for the
-bits on the line and not only for what the decoder made of them; it is spread over three bytes,
-``1110hhhh 10mmmmmm 10llllll``, so that none of them is zero.
+COBS (Cheshire & Baker 1999) removes the zero bytes from the body, so a zero on the line is always
+an edge. The edge in front costs one byte and buys this: whatever garbage came before, the next
+frame is received. The check is CRC-16/CCITT-FALSE over the *encoded* bytes, so its guarantee holds
+for the bits on the line and not only for what the decoder made of them; it is spread over three
+bytes, ``1110hhhh 10mmmmmm 10llllll``, so that none of them is zero.
 """
 
 from binascii import crc_hqx

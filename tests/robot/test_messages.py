@@ -1,0 +1,91 @@
+"""Every message keeps its meaning over the wire, and nonsense has none."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot import messages as m
+from robot import wire
+from robot.schema import FORMS, HEADER, FieldForm, MessageError, MessageForm, pack, unpack
+
+forms = st.sampled_from(sorted(FORMS.values(), key=lambda form: form.number))
+
+
+def values_of(field: FieldForm) -> st.SearchStrategy:
+    if field.form == "text16":
+        return st.text(
+            st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=4
+        )
+    low, high = {"u8": (0, 255), "u16": (0, 65535), "u32": (0, 2**32 - 1)}.get(
+        field.form, (-32768, 32767)
+    )
+    low = low if field.low is None else round(field.low / field.scale)
+    high = high if field.high is None else round(field.high / field.scale)
+    per_unit = round(1 / field.scale)
+    one = st.integers(low, high).map(lambda n: n if per_unit == 1 else n / per_unit)
+    return st.tuples(*[one] * 16) if field.form == "i16x16" else one
+
+
+@st.composite
+def contents(draw):
+    form: MessageForm = draw(forms)
+    return form, form.kind(**{f.name: draw(values_of(f)) for f in form.fields})
+
+
+@given(contents(), st.integers(0, 65535), st.binary(max_size=20))
+def test_a_message_survives_the_wire_exactly_even_with_fields_of_a_later_version(sent, session, new):
+    form, content = sent
+    body = pack(content, session)
+    assert len(body) == form.size <= wire.MAX_BODY
+    assert unpack(body + new, form.sender) == (session, content)
+
+
+@given(contents(), st.data())
+def test_a_message_cut_short_is_refused(sent, data):
+    form, content = sent
+    body = pack(content, 1)
+    shorter = data.draw(st.integers(0, len(body) - 1))
+    with pytest.raises(MessageError):
+        unpack(body[:shorter], form.sender)
+
+
+@given(contents())
+def test_an_echo_of_the_own_side_is_no_message(sent):
+    form, content = sent
+    other = "robot" if form.sender == "host" else "host"
+    assert unpack(pack(content, 3), other) == (3, None)
+
+
+@given(st.integers(0, 255).filter(lambda number: number not in FORMS), st.binary(max_size=60))
+def test_an_unknown_message_is_skipped(number, rest):
+    assert unpack(HEADER.pack(number, 9) + rest, "host") == (9, None)
+
+
+@given(st.binary(max_size=wire.MAX_BODY))
+def test_any_body_gives_a_message_or_a_message_error(body):
+    for sender in ("host", "robot"):
+        try:
+            unpack(body, sender)
+        except MessageError:
+            pass
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (m.Express(1, 1.5, 0), "valence must be from -1 to 1"),
+        (m.Express(0, 0.5, 0), "number must be from 1"),
+        (m.Name(1, 0, "a name that is too long"), "at most 16 bytes"),
+        (m.Hello(0, 5), "version must be from 1"),
+    ],
+)
+def test_a_field_out_of_its_range_is_not_sent(content, says):
+    with pytest.raises(ValueError, match=says):
+        pack(content, 1)
+
+
+def test_a_field_out_of_its_range_is_not_believed():
+    body = bytearray(pack(m.Express(1, 0.5, 0), 1))
+    body[7:9] = (32767).to_bytes(2, "little")
+    with pytest.raises(MessageError, match="valence"):
+        unpack(bytes(body), "host")
