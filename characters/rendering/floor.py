@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.programs import Programs
+from characters.rendering.programs import Programs, assign
 from characters.rendering.view import FloorPath
 
 Array = NDArray[np.float64]
@@ -54,11 +54,10 @@ class FloorMarks:
         place = vertices[:, :2].astype(float)
         return np.stack([place[:, 0], np.zeros(self._count), place[:, 1]], axis=1)
 
-    def draw(self, clip_from_table: bytes, white: Array) -> None:
+    def draw(self, clip_from_table: Array, white: Array) -> None:
         """Paint the marks into the framebuffer in use."""
         if self._count:
-            self._program["clip_from_table"].write(clip_from_table)
-            self._program["light"].value = tuple(white)
+            assign(self._program, clip_from_table=clip_from_table, light=white)
             self._array.render(moderngl.TRIANGLES, vertices=self._count)
 
     def release(self) -> None:

@@ -1,8 +1,13 @@
 """The shaders, read from the package and built once a context."""
 
+from collections.abc import Sequence
 from importlib.resources import files
 
 import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 
 SHADERS = files("characters.rendering") / "shaders"
 
@@ -49,3 +54,20 @@ class Programs:
 
 def _source(name: str) -> str:
     return (SHADERS / f"{name}.glsl").read_text(encoding="utf-8")
+
+
+def assign(program: moderngl.Program, **values: "bool | float | Sequence[float] | Array") -> None:
+    """Set uniforms of a program by name.
+
+    Arrays are written as float32 as they lie in memory, but for 4×4 matrices, which GLSL takes column by
+    column. A uniform that the driver removed because no result depends on it is passed over.
+    """
+    for name, value in values.items():
+        uniform = program.get(name, None)
+        if not isinstance(uniform, moderngl.Uniform):
+            continue
+        if isinstance(value, np.ndarray):
+            lying = value.T if value.shape == (4, 4) else value
+            uniform.write(np.ascontiguousarray(lying, np.float32))
+        else:
+            uniform.value = value

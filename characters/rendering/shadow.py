@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.light import TO_LIGHT
-from characters.rendering.programs import Programs
+from characters.rendering.programs import Programs, assign
 from characters.rendering.skinning import SkinnedCharacter
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ SKY_BLUR = (0.022, 0.05, 0.11, 0.13)
 SKY_KEEPS = (0.62, 0.55, 0.42, 0.18)
 """How much of the sky a surface at each height keeps from the table below it."""
 
-MARGIN = 0.27
+MARGIN = 0.22
 """Room for the blur around the character, as a share of its height."""
 
 
@@ -54,7 +54,7 @@ class Shadow:
         self._targets = [context.framebuffer([texture]) for texture in self._maps]
         self._screen = context.vertex_array(programs.blur, [])
         self._table = context.vertex_array(programs.shadow, [])
-        self._area = np.zeros(4)
+        self._area, self._reach = np.zeros(4), np.zeros(4)
 
     def cast(self, character: SkinnedCharacter, enclosing: Array, height: float) -> Array:
         """Make the map of a character that was just posed.
@@ -71,13 +71,12 @@ class Shadow:
         Returns
         -------
         NDArray
-            Corners of the square on the table that the shadow may reach, (4, 3).
+            Corners of the rectangle on the table that the shadow may reach, (4, 3).
         """
-        self._area = area = _area(enclosing, height)
+        self._reach = _reach(enclosing, height)
+        self._area = area = _area(self._reach, height)
         caster, blur, context = self._programs.caster, self._programs.blur, self._context
-        caster["area"].value = tuple(area)
-        caster["slope"].value = tuple(SLOPE)
-        caster["levels"].value = LEVELS
+        assign(caster, area=area, slope=SLOPE, levels=LEVELS)
         self._targets[0].use()
         self._targets[0].clear()
         # What faces away from the light is kept: it is nearest to the table, and soles touch it.
@@ -86,7 +85,7 @@ class Shadow:
         context.blend_equation = moderngl.MAX
         context.blend_func = moderngl.ONE, moderngl.ONE
         for part in character.parts:
-            if part.double_sided:
+            if part.material.double_sided:
                 context.disable(moderngl.CULL_FACE)
             else:
                 context.enable(moderngl.CULL_FACE)
@@ -94,25 +93,21 @@ class Shadow:
         context.blend_equation = moderngl.FUNC_ADD
         context.enable_only(moderngl.NOTHING)
         texels = SIDE / area[2] * height
-        blur["key_weights"].write(_gaussians(np.array(KEY_BLUR) * texels))
-        blur["sky_weights"].write(_gaussians(np.array(SKY_BLUR) * texels))
-        blur["side"].value = SIDE
+        key, sky = _gaussians(texels * np.array(KEY_BLUR)), _gaussians(texels * np.array(SKY_BLUR))
+        assign(blur, key_weights=key, sky_weights=sky, side=SIDE)
         for source, target, direction in ((0, 1, (1, 0)), (1, 0, (0, 1))):
             self._targets[target].use()
             self._maps[source].use(0)
-            blur["direction"].value = direction
+            assign(blur, direction=direction)
             self._screen.render(moderngl.TRIANGLES, vertices=3)
-        across = area[0] + area[2] * np.array([0.0, 1.0, 1.0, 0.0])
-        along = area[1] + area[2] * np.array([0.0, 0.0, 1.0, 1.0])
-        return np.stack([across, np.zeros(4), along], axis=1)
+        x, z = self._reach[[0, 2, 2, 0]], self._reach[[1, 1, 3, 3]]
+        return np.stack([x, np.zeros(4), z], axis=1)
 
-    def draw(self, clip_from_table: bytes, key_share: Array) -> None:
+    def draw(self, clip_from_table: Array, key_share: Array) -> None:
         """Darken the table of the framebuffer in use, behind what is nearer there."""
         program = self._programs.shadow
-        program["clip_from_table"].write(clip_from_table)
-        program["area"].value = tuple(self._area)
-        program["key"].value = tuple(key_share)
-        program["sky_keeps"].value = SKY_KEEPS
+        assign(program, clip_from_table=clip_from_table, area=self._area, reach=self._reach)
+        assign(program, key=key_share, sky_keeps=SKY_KEEPS)
         self._maps[0].use(0)
         self._table.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
@@ -122,15 +117,21 @@ class Shadow:
             owned.release()
 
 
-def _area(enclosing: Array, height: float) -> Array:
-    """Return origin x, z and side of a square that holds a character's shadows, and its height.
-
-    The side grows in steps and the origin moves by whole texels, so that the shadow's edge does not crawl.
-    """
+def _reach(enclosing: Array, height: float) -> Array:
+    """Return lowest x and z, highest x and z that a character's shadows may reach [m]."""
     feet = enclosing[:, [0, 2]]
     fallen = feet - SLOPE * np.maximum(enclosing[:, 1:2], 0.0)
     low = np.minimum(feet.min(axis=0), fallen.min(axis=0)) - MARGIN * height
     high = np.maximum(feet.max(axis=0), fallen.max(axis=0)) + MARGIN * height
+    return np.concatenate([low, high])
+
+
+def _area(reach: Array, height: float) -> Array:
+    """Return origin x, z and side of the square that the map covers, and the character's height.
+
+    The side grows in steps and the origin moves by whole texels, so that edges do not crawl.
+    """
+    low, high = reach[:2], reach[2:]
     step = height / 4
     side = (np.ceil((high - low).max() / step) + 1) * step
     texel = side / SIDE
@@ -138,9 +139,9 @@ def _area(enclosing: Array, height: float) -> Array:
     return np.array([*origin, side, height])
 
 
-def _gaussians(deviations: Array) -> bytes:
-    """Return one half of four normalised kernels, a vec4 a tap."""
+def _gaussians(deviations: Array) -> Array:
+    """Return one half of four normalised kernels, (taps, 4)."""
     taps = np.arange(TAPS)[:, None]
     kernels = np.exp(-0.5 * (taps / np.maximum(deviations, 0.3)) ** 2)
     kernels /= kernels[0] + 2.0 * kernels[1:].sum(axis=0)
-    return kernels.astype("f4").tobytes()
+    return np.asarray(kernels)

@@ -11,7 +11,7 @@ from characters.errors import CharacterError
 from characters.rendering.background import Background
 from characters.rendering.floor import FloorMarks
 from characters.rendering.light import TO_LIGHT, Light, LightEstimate
-from characters.rendering.programs import Programs
+from characters.rendering.programs import Programs, assign
 from characters.rendering.projection import clip_from_camera, is_pinhole, is_rigid, part_that_shows
 from characters.rendering.shadow import Shadow
 from characters.rendering.skinning import SkinnedCharacter
@@ -152,7 +152,7 @@ class Stage:
         self._screen.render(moderngl.TRIANGLES, vertices=3)
         clip = clip_from_camera(matrix, part)
         self._hide(view.occluders, clip)
-        self._paint(casts, _columns(clip @ table), np.linalg.inv(table)[:3, 3], light)
+        self._paint(casts, clip @ table, np.linalg.inv(table)[:3, 3], light)
         target.resolve()
         return picture, part, target
 
@@ -201,14 +201,14 @@ class Stage:
             if is_rigid(box.camera_from_box) and np.isfinite(box.edge):
                 scale = np.diag([box.edge, box.edge, box.edge, 1.0])
                 clip = clip_from_camera @ box.camera_from_box @ scale
-                self._programs.box["clip_from_box"].write(_columns(clip))
+                assign(self._programs.box, clip_from_box=clip)
                 self._box.render(moderngl.TRIANGLES)
         framebuffer.color_mask = True, True, True, True
 
     def _paint(
         self,
         casts: Sequence[tuple[SkinnedCharacter, Shadow, float]],
-        clip_from_table: bytes,
+        clip_from_table: Array,
         eye: Array,
         light: Light,
     ) -> None:
@@ -224,23 +224,19 @@ class Stage:
         context.fbo.depth_mask = True
         context.enable_only(moderngl.DEPTH_TEST)
         program = self._programs.character
-        program["clip_from_table"].write(clip_from_table)
-        program["eye"].value = tuple(eye)
-        program["to_light"].value = tuple(TO_LIGHT)
-        for name, color in (("key", light.key), ("sky", light.sky), ("ground", light.ground)):
-            program[name].value = tuple(color)
+        assign(program, clip_from_table=clip_from_table, eye=eye, to_light=TO_LIGHT)
+        assign(program, key=light.key, sky=light.sky, ground=light.ground)
         for character, _, height in casts:
-            program["height"].value = height
+            assign(program, height=height)
             self._surface(character)
 
     def _surface(self, character: SkinnedCharacter) -> None:
         program, context = self._programs.character, self._context
         for part in character.parts:
-            (context.disable if part.double_sided else context.enable)(moderngl.CULL_FACE)
-            program["base_color"].value = part.base_color
-            program["metallic"].value = part.metallic
-            program["roughness"].value = part.roughness
-            program["textured"].value = part.texture is not None
+            material = part.material
+            (context.disable if material.double_sided else context.enable)(moderngl.CULL_FACE)
+            assign(program, base_color=material.base_color[:3], metallic=material.metallic)
+            assign(program, roughness=material.roughness, textured=part.texture is not None)
             if part.texture is not None:
                 part.texture.use(0)
             character.surface.render(vertices=part.count, first=part.first)
@@ -249,11 +245,8 @@ class Stage:
         """Copy a part of the picture into the framebuffer in use."""
         width, height = self.size
         shares = (place.x / width, place.y / height, place.width / width, place.height / height)
-        self._programs.copy["place"].value = shares
-        self._programs.copy["filled"].value = (
-            place.width / texture.width,
-            place.height / texture.height,
-        )
+        filled = (place.width / texture.width, place.height / texture.height)
+        assign(self._programs.copy, place=shares, filled=filled)
         texture.use(0)
         self._copy.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
@@ -284,11 +277,6 @@ class _Patches:
         if self._texture is not None:
             self._texture.release()
             self._texture = None
-
-
-def _columns(matrix: Array) -> bytes:
-    """Return a matrix as GLSL takes it, column by column."""
-    return matrix.T.astype("f4").tobytes()
 
 
 _FACE = np.array([(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, -1, 1), (1, 1, 1), (-1, 1, 1)]) / 2

@@ -1,0 +1,153 @@
+"""The meshes of a character, laid out one after the other for the graphics card."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.errors import CharacterError
+from characters.mesh import Material, Mesh
+
+Array = NDArray[np.float64]
+
+WAYS = np.array([way for way in np.ndindex(3, 3, 3) if sum(abs(i - 1) for i in way) in (1, 3)]) - 1
+"""The six faces and eight corners of a cube, as directions (14, 3)."""
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """All vertices of a character, and which triangles share a material."""
+
+    positions: NDArray[np.float32]
+    """(vertices, 3), in the bind pose [m]."""
+
+    normals: NDArray[np.float32]
+    """(vertices, 3)."""
+
+    joints: NDArray[np.uint32]
+    """Rows of the palette that move each vertex, (vertices, 4)."""
+
+    weights: NDArray[np.float32]
+    """(vertices, 4)."""
+
+    colors: NDArray[np.float32]
+    """Linear RGBA, white where the mesh has none, (vertices, 4)."""
+
+    uvs: NDArray[np.float32]
+    """(vertices, 2), zero where the mesh has none."""
+
+    indices: NDArray[np.uint32]
+    """Three a triangle, (3 × triangles,), sorted by material."""
+
+    materials: tuple[tuple[Material, int], ...]
+    """Each material with the number of its indices, in their order."""
+
+    binds: tuple[Array, ...]
+    """The different sets of inverse bind matrices, each (joints, 4, 4); the palette is one after the other."""
+
+    @classmethod
+    def of(cls, meshes: Sequence[Mesh]) -> Self:
+        """Gather some meshes; a `CharacterError` where there is nothing to draw."""
+        meshes = [mesh for mesh in meshes if mesh.triangles.size]
+        if not meshes:
+            raise CharacterError(
+                "the character has no mesh to draw: load a file with a skinned mesh"
+            )
+        # Meshes of one material in a row: each change of it costs a call of the driver.
+        keys = [_key(mesh.material) for mesh in meshes]
+        meshes = sorted(meshes, key=lambda mesh: keys.index(_key(mesh.material)))
+        starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)]).astype(np.uint32)
+        binds, rows = _distinct_binds(meshes)
+        return cls(
+            positions=np.concatenate([mesh.positions for mesh in meshes]).astype(np.float32),
+            normals=np.concatenate([mesh.normals for mesh in meshes]).astype(np.float32),
+            joints=np.concatenate(
+                [
+                    mesh.joints.astype(np.uint32) + row
+                    for mesh, row in zip(meshes, rows, strict=True)
+                ]
+            ),
+            weights=np.concatenate([mesh.weights for mesh in meshes]).astype(np.float32),
+            colors=np.concatenate([_filled(mesh.colors, mesh, 4, 1.0) for mesh in meshes]),
+            uvs=np.concatenate([_filled(mesh.uvs, mesh, 2, 0.0) for mesh in meshes]),
+            indices=np.concatenate(
+                [
+                    mesh.triangles.ravel().astype(np.uint32) + start
+                    for mesh, start in zip(meshes, starts[:-1], strict=True)
+                ]
+            ),
+            materials=_runs(meshes),
+            binds=binds,
+        )
+
+    def palette(self, world_from_joint: Array) -> Array:
+        """Return `world_from_bind` (rows, 4, 4) for joints (joints, 4, 4) of the skeleton."""
+        return np.concatenate([world_from_joint @ bind for bind in self.binds])
+
+    def skinned(self, palette: Array, chosen: NDArray[np.intp] | slice) -> Array:
+        """Return some vertices under a palette, (n, 3), on the processor; `skin.vert` does the same."""
+        positions = self.positions[chosen]
+        points = np.concatenate([positions, np.ones((len(positions), 1))], axis=1)
+        placed = np.zeros((len(points), 3))
+        for joint, weight in zip(self.joints[chosen].T, self.weights[chosen].T, strict=True):
+            placed += weight[:, None] * (palette[joint, :3] @ points[:, :, None])[..., 0]
+        return placed
+
+    def outline(self) -> NDArray[np.intp]:
+        """Return the numbers of vertices that stand out: of each joint's own, the furthest in 14 directions.
+
+        The box around them is that around all vertices in any pose, to within a pixel or two.
+        """
+        along = self.positions @ WAYS.T
+        owner = self.joints[np.arange(len(along)), self.weights.argmax(axis=1)]
+        order = np.argsort(owner, kind="stable")
+        borders = np.flatnonzero(np.diff(owner[order])) + 1
+        return np.unique([run[along[run].argmax(axis=0)] for run in np.split(order, borders)])
+
+    @property
+    def bind_records(self) -> bytes:
+        """Position, normal, joints and weights of each vertex, 56 bytes."""
+        record = np.empty((len(self.positions), 14), np.float32)
+        record[:, :3], record[:, 3:6], record[:, 10:] = self.positions, self.normals, self.weights
+        record[:, 6:10] = self.joints.view(np.float32)
+        return record.tobytes()
+
+
+def _filled(
+    values: NDArray[np.float32] | None, mesh: Mesh, width: int, default: float
+) -> NDArray[np.float32]:
+    if values is None:
+        return np.full((len(mesh.positions), width), default, np.float32)
+    return values.astype(np.float32)
+
+
+def _key(material: Material) -> tuple[object, ...]:
+    """Return what makes two materials look the same; textures are the same only if they are one."""
+    surface = (material.base_color, material.metallic, material.roughness, material.double_sided)
+    return (*surface, id(material.texture))
+
+
+def _runs(meshes: Sequence[Mesh]) -> tuple[tuple[Material, int], ...]:
+    runs: list[tuple[Material, int]] = []
+    for mesh in meshes:
+        count = mesh.triangles.size
+        if runs and _key(runs[-1][0]) == _key(mesh.material):
+            count += runs.pop()[1]
+        runs.append((mesh.material, count))
+    return tuple(runs)
+
+
+def _distinct_binds(meshes: Sequence[Mesh]) -> tuple[tuple[Array, ...], list[np.uint32]]:
+    """Return the different sets of inverse bind matrices, and the first palette row of each mesh."""
+    binds: list[Array] = []
+    rows: list[np.uint32] = []
+    for mesh in meshes:
+        bind = np.asarray(mesh.inverse_bind, float)
+        same = [number for number, known in enumerate(binds) if np.array_equal(known, bind)]
+        if not same:
+            binds.append(bind)
+        before = binds[: same[0]] if same else binds[:-1]
+        rows.append(np.uint32(sum(len(known) for known in before)))
+    return tuple(binds), rows
