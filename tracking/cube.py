@@ -1,7 +1,8 @@
 """The cube as a TOML file describes it, and its markers in space."""
 
 import tomllib
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.errors import TrackingError
+from tracking.icons import INK
 
 FACE_AXES: dict[str, tuple[tuple[int, int, int], tuple[int, int, int]]] = {
     "front": ((1, 0, 0), (0, 1, 0)),
@@ -61,7 +63,8 @@ class Face:
 class CubeModel:
     """A cube with a marker on each of its faces.
 
-    The cube frame has its origin in the centre, +y through `top`, +z through `front`, +x through `right`.
+    The cube frame has its origin in the centre, +y through `top`, +z through `front`, +x through
+    `right`.
     """
 
     name: str
@@ -78,6 +81,9 @@ class CubeModel:
 
     faces: tuple[Face, ...]
     """The faces that carry a marker."""
+
+    hint: str = ""
+    """One sentence for the person who holds the cube, or ""."""
 
     @classmethod
     def load(cls, name_or_path: str | Path) -> Self:
@@ -99,7 +105,7 @@ class CubeModel:
             if not path.is_file():
                 known = ", ".join(bundled())
                 raise TrackingError(
-                    f"no cube is called '{name_or_path}': choose one of {known}, or give a .toml file"
+                    f"no cube is called '{name_or_path}': choose {known}, or give a .toml file"
                 )
         try:
             document = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -124,21 +130,41 @@ class CubeModel:
         if not isinstance(tables, list) or not tables:
             raise TrackingError(f"{where}: a cube needs at least one [[face]] table")
         faces = tuple(_face(table, marker_mm / 1000, edge_mm / 1000, where) for table in tables)
-        for what, values in (
-            ("name", [face.name for face in faces]),
-            ("marker_id", [face.marker_id for face in faces]),
-        ):
-            twice = {value for value in values if values.count(value) > 1}
-            if twice:
-                raise TrackingError(f"{where}: two faces have the {what} {twice.pop()!r}; each must differ")
+        _check_each_once([face.name for face in faces], "name", where)
+        _check_each_once([face.marker_id for face in faces], "marker_id", where)
         for face in faces:
             if not 0 <= face.marker_id < capacity:
                 raise TrackingError(
                     f"{where}: face '{face.name}' has marker_id {face.marker_id}, "
                     f"but {dictionary} holds 0 to {capacity - 1}"
                 )
-        label = document.get("name", name)
-        return cls(str(label), str(dictionary), edge_mm / 1000, marker_mm / 1000, faces)
+        return cls(
+            _text(document, "name", where) or name,
+            str(dictionary),
+            edge_mm / 1000,
+            marker_mm / 1000,
+            faces,
+            _text(document, "hint", where),
+        )
+
+    def scaled(self, edge: float) -> Self:
+        """Return the same cube in another size, its markers grown or shrunk with it.
+
+        Parameters
+        ----------
+        edge
+            Edge of the new cube [m].
+
+        Raises
+        ------
+        TrackingError
+            Nobody can hold a cube of that size: 10 to 1000 mm can be.
+        """
+        if not 0.01 <= edge <= 1:
+            raise TrackingError(f"the edge must be 10 to 1000 mm, not {edge * 1000:g} mm")
+        factor = edge / self.edge
+        faces = tuple(replace(face, corners=face.corners * factor) for face in self.faces)
+        return replace(self, edge=edge, marker_size=self.marker_size * factor, faces=faces)
 
     def face(self, name: str) -> Face:
         """Return the face called `name`; a `KeyError` where the cube has none."""
@@ -158,7 +184,8 @@ def bundled() -> tuple[str, ...]:
 
 def aruco_dictionary(name: str) -> cv2.aruco.Dictionary:
     """Return OpenCV's dictionary of that name, ("DICT_4X4_50" …)."""
-    return cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, name))
+    number: int = getattr(cv2.aruco, name)
+    return cv2.aruco.getPredefinedDictionary(number)
 
 
 def face_corners(name: str, roll_deg: int, marker: float, edge: float) -> NDArray[np.float64]:
@@ -172,7 +199,8 @@ def face_corners(name: str, roll_deg: int, marker: float, edge: float) -> NDArra
     right, up = (np.array(axis, float) for axis in FACE_AXES[name])
     square = np.array([(-1, 1), (1, 1), (1, -1), (-1, -1)]) * (marker / 2)
     square = np.roll(square, -(roll_deg // 90), axis=0)
-    return square[:, :1] * right + square[:, 1:] * up + np.cross(right, up) * (edge / 2)
+    corners = square[:, :1] * right + square[:, 1:] * up + np.cross(right, up) * (edge / 2)
+    return np.asarray(corners, np.float64)
 
 
 def _length(document: dict[str, Any], key: str, where: str) -> float:
@@ -182,9 +210,24 @@ def _length(document: dict[str, Any], key: str, where: str) -> float:
     return float(value)
 
 
+def _text(document: dict[str, Any], key: str, where: str, owner: str = "") -> str:
+    value = document.get(key, "")
+    if not isinstance(value, str) or not value.isprintable():
+        raise TrackingError(f"{where}: {owner}'{key}' must be one line of text, not {value!r}")
+    return value
+
+
+def _check_each_once(values: Sequence[object], what: str, where: str) -> None:
+    twice = [value for value in values if values.count(value) > 1]
+    if twice:
+        raise TrackingError(f"{where}: two faces have the {what} {twice[0]!r}; each must differ")
+
+
 def _capacity(dictionary: object, where: str) -> int:
     if not isinstance(dictionary, str) or not dictionary.startswith("DICT_"):
-        raise TrackingError(f"{where}: 'dictionary' must be a name such as DICT_4X4_50, not {dictionary!r}")
+        raise TrackingError(
+            f"{where}: 'dictionary' must be a name such as DICT_4X4_50, not {dictionary!r}"
+        )
     if not isinstance(getattr(cv2.aruco, dictionary, None), int):
         raise TrackingError(f"{where}: OpenCV has no dictionary {dictionary}; try DICT_4X4_50")
     return len(aruco_dictionary(dictionary).bytesList)
@@ -194,13 +237,16 @@ def _face(table: object, marker: float, edge: float, where: str) -> Face:
     if not isinstance(table, dict):
         raise TrackingError(f"{where}: [[face]] must be a table")
     name, marker_id, roll = table.get("name"), table.get("marker_id"), table.get("roll_deg", 0)
-    if name not in FACE_AXES:
-        raise TrackingError(f"{where}: a face is called {name!r}; use one of {', '.join(FACE_AXES)}")
+    if not isinstance(name, str) or name not in FACE_AXES:
+        known = ", ".join(FACE_AXES)
+        raise TrackingError(f"{where}: a face is called {name!r}; use one of {known}")
+    of_face = f"{where}: face '{name}'"
     if not isinstance(marker_id, int) or isinstance(marker_id, bool):
-        raise TrackingError(f"{where}: face '{name}' needs a whole number as marker_id, not {marker_id!r}")
-    if roll not in (0, 90, 180, 270):
-        raise TrackingError(f"{where}: face '{name}' has roll_deg {roll!r}; use 0, 90, 180 or 270")
-    corners = face_corners(str(name), int(roll), marker, edge)
-    return Face(
-        str(name), marker_id, corners, str(table.get("role", "")), str(table.get("icon", "")), int(roll)
-    )
+        raise TrackingError(f"{of_face} needs a whole number as marker_id, not {marker_id!r}")
+    if isinstance(roll, bool) or roll not in (0, 90, 180, 270):
+        raise TrackingError(f"{of_face} has roll_deg {roll!r}; use 0, 90, 180 or 270")
+    role, icon = (_text(table, key, where, f"face '{name}': ") for key in ("role", "icon"))
+    if icon and icon not in INK:
+        raise TrackingError(f"{of_face} has the icon '{icon}'; use one of {', '.join(INK)}")
+    corners = face_corners(name, int(roll), marker, edge)
+    return Face(name, marker_id, corners, role, icon, int(roll))

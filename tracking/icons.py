@@ -1,0 +1,224 @@
+"""The little pictures beside the markers, as outlines that paper and screen can fill.
+
+An icon is a list of loops in the unit square, x right and y down. They are filled by the
+**nonzero** rule: loops that run clockwise as seen are ink and may overlap, loops that run the other
+way are holes. Painting them one after the other, ink or paper, gives the same picture.
+"""
+
+import itertools
+import math
+from collections.abc import Callable
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Loop = NDArray[np.float64]
+Point = tuple[float, float]
+
+ROUND = 40
+"""Corners of a circle: at 6 mm its sides are half a millimetre, and look round."""
+
+INK: dict[str, tuple[int, int, int]] = {
+    "stand": (42, 157, 143),
+    "walk": (238, 148, 46),
+    "run": (231, 96, 70),
+    "turn": (142, 118, 200),
+    "idle": (84, 168, 104),
+    "kiss": (236, 92, 140),
+    "shout": (240, 160, 30),
+}
+"""Colour of each icon that a face can carry (red, green, blue).
+
+None is dark: a marker's white border must stay brighter than its black for a camera out of focus.
+"""
+
+
+def icon_paths(name: str) -> list[Loop]:
+    """Return the loops of an icon, (N, 2) each, in the unit square.
+
+    Parameters
+    ----------
+    name
+        One of `ICONS`.
+
+    Raises
+    ------
+    KeyError
+        There is no such icon.
+    """
+    return ICONS[name]()
+
+
+def icon_mask(name: str, pixels: int) -> NDArray[np.uint8]:
+    """Draw an icon: how much of each pixel is ink, 0 to 255, (pixels, pixels)."""
+    finer = 8
+    mask = np.zeros((pixels * finer, pixels * finer), np.uint8)
+    for loop in icon_paths(name):
+        corners = np.rint(loop * (pixels * finer * 16) - 8).astype(np.int32)
+        cv2.fillPoly(mask, [corners], 255 if signed_area(loop) > 0 else 0, shift=4)
+    small = cv2.resize(mask, (pixels, pixels), interpolation=cv2.INTER_AREA)
+    return np.asarray(small, np.uint8)
+
+
+def signed_area(loop: Loop) -> float:
+    """Area of a loop, positive where it runs clockwise with y down."""
+    x, y = loop.T
+    return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2
+
+
+def _disc(x: float, y: float, radius: float) -> Loop:
+    turn = np.linspace(0, 2 * math.pi, ROUND, endpoint=False)
+    return np.column_stack([x + radius * np.cos(turn), y + radius * np.sin(turn)])
+
+
+def _hole(loop: Loop) -> Loop:
+    return loop[::-1]
+
+
+def _limb(*joints: tuple[float, float, float]) -> list[Loop]:
+    """Round-ended strokes from joint to joint, each joint (x, y, radius)."""
+    loops = []
+    for one, other in itertools.pairwise(joints):
+        circles = np.concatenate([_disc(*one), _disc(*other)]).astype(np.float32)
+        hull = cv2.convexHull(circles, clockwise=False)[:, 0].astype(np.float64)
+        loops.append(hull if signed_area(hull) > 0 else hull[::-1])
+    return loops
+
+
+def _stroke(width: float, *points: Point) -> list[Loop]:
+    return _limb(*((x, y, width / 2) for x, y in points))
+
+
+def _arc(x: float, y: float, radius: float, width: float, start: float, end: float) -> Loop:
+    """Return part of a ring; angles in degrees, clockwise from the right."""
+    turn = np.radians(np.linspace(start, end, ROUND))
+    way = np.column_stack([np.cos(turn), np.sin(turn)])
+    ring = np.concatenate([way * (radius + width / 2), way[::-1] * (radius - width / 2)])
+    return np.asarray(ring + np.array([x, y]))
+
+
+def _heart(x: float, y: float, size: float) -> Loop:
+    turn = np.linspace(0, 2 * math.pi, 2 * ROUND, endpoint=False)
+    across = 16 * np.sin(turn) ** 3
+    upwards = 13 * np.cos(turn) - 5 * np.cos(2 * turn) - 2 * np.cos(3 * turn) - np.cos(4 * turn)
+    return np.column_stack([across, -upwards - 2.5]) * (size / 32) + (x, y)
+
+
+def _stand() -> list[Loop]:
+    return [
+        _disc(0.5, 0.155, 0.125),
+        *_stroke(0.24, (0.5, 0.42), (0.5, 0.56)),
+        *_stroke(0.1, (0.41, 0.36), (0.31, 0.5), (0.3, 0.64)),
+        *_stroke(0.1, (0.59, 0.36), (0.69, 0.5), (0.7, 0.64)),
+        *_stroke(0.115, (0.44, 0.6), (0.42, 0.92)),
+        *_stroke(0.115, (0.56, 0.6), (0.58, 0.92)),
+    ]
+
+
+def _walk() -> list[Loop]:
+    return [
+        _disc(0.55, 0.145, 0.12),
+        *_stroke(0.19, (0.53, 0.4), (0.5, 0.55)),
+        *_stroke(0.095, (0.56, 0.36), (0.68, 0.5), (0.8, 0.53)),
+        *_stroke(0.095, (0.5, 0.36), (0.36, 0.46), (0.31, 0.6)),
+        *_stroke(0.115, (0.53, 0.58), (0.66, 0.73), (0.71, 0.93), (0.78, 0.93)),
+        *_stroke(0.115, (0.48, 0.58), (0.42, 0.77), (0.25, 0.91)),
+    ]
+
+
+def _run() -> list[Loop]:
+    return [
+        _disc(0.68, 0.135, 0.115),
+        *_stroke(0.185, (0.59, 0.37), (0.51, 0.52)),
+        *_stroke(0.095, (0.63, 0.33), (0.75, 0.47), (0.89, 0.42)),
+        *_stroke(0.095, (0.55, 0.32), (0.39, 0.34), (0.33, 0.48)),
+        *_stroke(0.115, (0.53, 0.55), (0.7, 0.64), (0.66, 0.85), (0.73, 0.87)),
+        *_stroke(0.115, (0.48, 0.55), (0.38, 0.74), (0.17, 0.76)),
+        *_stroke(0.05, (0.07, 0.3), (0.24, 0.3)),
+        *_stroke(0.05, (0.04, 0.45), (0.17, 0.45)),
+        *_stroke(0.05, (0.04, 0.6), (0.24, 0.6)),
+    ]
+
+
+def _turn() -> list[Loop]:
+    loops: list[Loop] = [_disc(0.5, 0.5, 0.09)]
+    for start in (-70, 110):
+        loops.append(_arc(0.5, 0.5, 0.35, 0.12, start, start + 118))
+        end = math.radians(start + 112)
+        way, ahead = (
+            np.array([math.cos(end), math.sin(end)]),
+            np.array([-math.sin(end), math.cos(end)]),
+        )
+        head = [way * 0.18, way * 0.35 + ahead * 0.21, way * 0.5]
+        loops.append(np.array(head)[::-1] + 0.5)
+    return loops
+
+
+def _dinosaur() -> list[Loop]:
+    return [
+        *_limb((0.36, 0.6, 0.14), (0.47, 0.57, 0.165), (0.58, 0.57, 0.145)),
+        *_limb((0.61, 0.54, 0.12), (0.72, 0.36, 0.078), (0.79, 0.2, 0.07)),
+        *_limb((0.8, 0.175, 0.085), (0.91, 0.2, 0.062)),
+        *_limb((0.34, 0.61, 0.12), (0.2, 0.7, 0.075), (0.09, 0.68, 0.04), (0.04, 0.58, 0.018)),
+        *_stroke(0.14, (0.35, 0.68), (0.34, 0.87)),
+        *_stroke(0.14, (0.6, 0.66), (0.61, 0.87)),
+        _hole(_disc(0.82, 0.165, 0.024)),
+    ]
+
+
+def _kiss() -> list[Loop]:
+    return [_heart(0.42, 0.57, 0.78), _heart(0.85, 0.17, 0.27)]
+
+
+def _shout() -> list[Loop]:
+    spikes = 11
+    turn = np.radians(np.arange(2 * spikes) * 180 / spikes - 90)
+    reach = np.where(np.arange(2 * spikes) % 2, 0.34, 0.49)
+    burst = np.column_stack([np.cos(turn), np.sin(turn)]) * reach[:, None] + 0.5
+    stroke = _limb((0.5, 0.27, 0.062), (0.5, 0.52, 0.036))[0]
+    return [burst, _hole(stroke), _hole(_disc(0.5, 0.69, 0.055))]
+
+
+def _cut() -> list[Loop]:
+    return [
+        *_limb((0.3, 0.68, 0.05), (0.74, 0.08, 0.03)),
+        *_limb((0.7, 0.68, 0.05), (0.26, 0.08, 0.03)),
+        _disc(0.25, 0.78, 0.17),
+        _hole(_disc(0.25, 0.78, 0.09)),
+        _disc(0.75, 0.78, 0.17),
+        _hole(_disc(0.75, 0.78, 0.09)),
+    ]
+
+
+def _fold() -> list[Loop]:
+    return [
+        np.array([(0.04, 0.62), (0.46, 0.62), (0.46, 0.96), (0.04, 0.96)]),
+        *_stroke(0.06, (0.57, 0.65), (0.57, 0.93)),
+        np.array([(0.66, 0.6), (0.96, 0.42), (0.96, 0.76), (0.66, 0.94)]),
+        _arc(0.5, 0.52, 0.34, 0.09, 200, 300),
+        np.array([(0.62, 0.08), (0.84, 0.3), (0.55, 0.38)]),
+    ]
+
+
+def _glue() -> list[Loop]:
+    return [
+        np.array([(0.43, 0.04), (0.57, 0.04), (0.64, 0.26), (0.36, 0.26)]),
+        np.array([(0.3, 0.3), (0.7, 0.3), (0.74, 0.4), (0.74, 0.96), (0.26, 0.96), (0.26, 0.4)]),
+        _hole(_heart(0.5, 0.66, 0.3)),
+    ]
+
+
+ICONS: dict[str, Callable[[], list[Loop]]] = {
+    "stand": _stand,
+    "walk": _walk,
+    "run": _run,
+    "turn": _turn,
+    "idle": _dinosaur,
+    "kiss": _kiss,
+    "shout": _shout,
+    "cut": _cut,
+    "fold": _fold,
+    "glue": _glue,
+}
+"""Every icon. Those with a colour in `INK` stand on faces, the others in instructions."""

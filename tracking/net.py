@@ -1,0 +1,190 @@
+"""The cube unfolded on paper: its squares, its glue tabs, and how they fold.
+
+The printed side of the paper becomes the outside of the cube. All lengths are metres.
+
+Frames: **paper**, x right, y up, z towards the reader, origin in the middle of `front`; **face**,
+the same axes with the origin in the middle of that face; **cube** as everywhere. A face's frame
+stays on its face while that folds, so what is printed on a face keeps its coordinates.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+SIDES: dict[str, tuple[int, int]] = {
+    "right": (1, 0),
+    "up": (0, 1),
+    "left": (-1, 0),
+    "down": (0, -1),
+}
+"""The sides of a square on paper, counter-clockwise, and the way out over each."""
+
+HINGES: dict[str, tuple[str, str]] = {
+    "top": ("front", "up"),
+    "bottom": ("front", "down"),
+    "left": ("front", "left"),
+    "right": ("front", "right"),
+    "back": ("right", "right"),
+}
+"""For each face but `front`: the face it hangs on, and the side of that face."""
+
+TABS: dict[tuple[str, str], str] = {
+    ("left", "up"): "top",
+    ("right", "up"): "top",
+    ("back", "up"): "top",
+    ("left", "down"): "bottom",
+    ("right", "down"): "bottom",
+    ("back", "down"): "bottom",
+    ("back", "right"): "left",
+}
+"""Where the glue tabs are, (face, side), and the face that each is glued under.
+
+All but one stand beside the cross's arms, in space that the cross leaves free; so a net of edge e
+takes 4 e plus one tab by 3 e of paper.
+"""
+
+TAB_DEPTH = 0.18
+"""Depth of a tab as a share of the edge."""
+
+
+@dataclass(frozen=True)
+class Tab:
+    """A glue tab: a trapezoid that folds under another face.
+
+    Its slanted sides run at 45°: tabs that meet under one face then touch and never overlap.
+    """
+
+    face: str
+    """The face it hangs on."""
+
+    side: str
+    """The side of that face, one of `SIDES`."""
+
+    under: str
+    """The face it is glued under."""
+
+    corners: Array
+    """On paper, counter-clockwise, the first and the last on the fold, (4, 2) [m]."""
+
+
+@dataclass(frozen=True)
+class Net:
+    """The six squares of a cube laid out as a cross around `front`."""
+
+    edge: float
+    """Edge of the cube [m]."""
+
+    def centre(self, face: str) -> Array:
+        """Middle of a face on paper, (2,) [m]."""
+        if face == "front":
+            return np.zeros(2)
+        parent, side = HINGES[face]
+        return self.centre(parent) + self.edge * np.array(SIDES[side])
+
+    def square(self, face: str) -> Array:
+        """Corners of a face on paper, counter-clockwise from the bottom right, (4, 2) [m]."""
+        half = self.edge / 2
+        return self.centre(face) + half * np.array([(1, -1), (1, 1), (-1, 1), (-1, -1)])
+
+    def cube_from_face(self, face: str, angle: float = math.pi / 2) -> Array:
+        """Where a face comes to lie when every fold is bent by `angle`, (4, 4).
+
+        Right angles make the cube; 0 leaves the paper flat in the plane of `front`.
+
+        >>> Net(2.0).cube_from_face("right").round().astype(int).tolist()
+        [[0, 0, 1, 1], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]]
+        """
+        if face == "front":
+            return _shift(0, 0, self.edge / 2)
+        parent, side = HINGES[face]
+        return self.cube_from_face(parent, angle) @ self._over(side, angle, self.edge / 2)
+
+    def tabs(self) -> tuple[Tab, ...]:
+        """All glue tabs."""
+        return tuple(
+            Tab(face, side, under, self._tab(face, side)) for (face, side), under in TABS.items()
+        )
+
+    def cube_from_tab(self, tab: Tab, angle: float = math.pi / 2) -> Array:
+        """Where a tab comes to lie, (4, 4), from paper axes with the origin amid its fold."""
+        return self.cube_from_face(tab.face, angle) @ self._over(tab.side, angle, 0.0)
+
+    def folds(self) -> tuple[tuple[Array, Array], ...]:
+        """Return the ends of every line to fold, on paper, two (2,) [m] each."""
+        hinged = [(parent, side) for parent, side in HINGES.values()]
+        return tuple(self._side(face, side) for face, side in (*hinged, *TABS))
+
+    def outline(self) -> Array:
+        """Return the line to cut along, closed and counter-clockwise, (N, 2) [m]."""
+        tabs = {(tab.face, tab.side): tab for tab in self.tabs()}
+        hinged = set(HINGES.values()) | {
+            (face, _OPPOSITE[side]) for face, (_, side) in HINGES.items()
+        }
+        following: dict[tuple[int, int], Array] = {}
+        for face in ("front", *HINGES):
+            for side in SIDES:
+                if (face, side) in hinged:
+                    continue
+                tab = tabs.get((face, side))
+                line = tab.corners if tab else np.array(self._side(face, side))
+                following[_micrometres(line[0])] = line
+        start = line = next(iter(following.values()))
+        points = [line[:-1]]
+        while _micrometres(line[-1]) != _micrometres(start[0]):
+            line = following[_micrometres(line[-1])]
+            points.append(line[:-1])
+        return np.concatenate(points)
+
+    def size(self) -> tuple[float, float]:
+        """Width and height that the net takes on paper [m]."""
+        width, height = np.ptp(self.outline(), axis=0)
+        return float(width), float(height)
+
+    def _side(self, face: str, side: str) -> tuple[Array, Array]:
+        """Return the ends of a face's side in counter-clockwise order."""
+        square, number = self.square(face), list(SIDES).index(side)
+        return square[number], square[(number + 1) % 4]
+
+    def _tab(self, face: str, side: str) -> Array:
+        first, last = self._side(face, side)
+        depth = TAB_DEPTH * self.edge
+        outwards = depth * np.array(SIDES[side])
+        along = depth * (last - first) / self.edge
+        return np.array([first, first + outwards + along, last + outwards - along, last])
+
+    def _over(self, side: str, angle: float, beyond: float) -> Array:
+        """From what hangs over a side, `beyond` past the fold, to the face: the fold itself."""
+        x, y = SIDES[side]
+        half = self.edge / 2
+        bend = _turn(x, y, angle)
+        return _shift(x * half, y * half, 0) @ bend @ _shift(x * beyond, y * beyond, 0)
+
+
+_OPPOSITE = {"right": "left", "left": "right", "up": "down", "down": "up"}
+
+
+def _shift(x: float, y: float, z: float) -> Array:
+    matrix = np.eye(4)
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
+def _turn(x: int, y: int, angle: float) -> Array:
+    """Turn the paper's direction (x, y) away from the reader."""
+    cosine, sine = math.cos(angle), math.sin(angle)
+    matrix = np.eye(4)
+    if x:
+        matrix[0, 0], matrix[0, 2], matrix[2, 0], matrix[2, 2] = cosine, x * sine, -x * sine, cosine
+    else:
+        matrix[1, 1], matrix[1, 2], matrix[2, 1], matrix[2, 2] = cosine, y * sine, -y * sine, cosine
+    return matrix
+
+
+def _micrometres(point: Array) -> tuple[int, int]:
+    """Name a corner, so that the two faces that meet there find each other."""
+    x, y = np.rint(point * 1e6).astype(int)
+    return int(x), int(y)
