@@ -4,8 +4,8 @@ import signal
 import sys
 from typing import Annotated
 
-import click
 import typer
+import typer.exceptions
 from rich.console import Console
 
 from app.commands import cube, demo, doctor, play, replay, robot
@@ -24,7 +24,7 @@ app = typer.Typer(
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="First time here? Try [bold]cubeling demo[/], then print a cube: [bold]cubeling cube companion[/]",
+    epilog="First time here? [bold]cubeling demo[/], then [bold]cubeling cube companion[/]",
 )
 app.command()(demo.demo)
 app.command()(play.play)
@@ -40,7 +40,7 @@ def common(
         bool, typer.Option("--debug", help="Show where in the program an error came from.")
     ] = False,
 ) -> None:
-    """A paper cube in your hand, a character on your screen, a robot on your desk."""
+    """Play with a paper cube, a character on your screen and a robot on your desk."""
 
 
 def main() -> None:
@@ -50,18 +50,25 @@ def main() -> None:
     debug = "--debug" in sys.argv
     try:
         code = app(standalone_mode=False)
-    except click.UsageError as error:
-        where = error.ctx.command_path if error.ctx else "cubeling"
-        complain(f"{error.format_message().rstrip('.')} (see {where} --help)")
+    except typer.exceptions.TyperException as error:
+        complain(usage(error))
         code = BAD_INPUT
     except (AppError, TrackingError, CharacterError, RobotError) as error:
         if debug:
             raise
         complain(str(error))
         code = BAD_INPUT
-    except (KeyboardInterrupt, click.Abort):
+    except (KeyboardInterrupt, typer.Abort):
         code = 130
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def usage(error: typer.exceptions.TyperException) -> str:
+    """Return what is wrong with a command line, and where to read how it should be."""
+    context = getattr(error, "ctx", None)
+    where = context.command_path if context else "cubeling"
+    message = error.format_message() if hasattr(error, "format_message") else str(error)
+    return f"{message.rstrip('.')} (see {where} --help)"
 
 
 def complain(line: str) -> None:

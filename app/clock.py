@@ -6,8 +6,8 @@ import time
 class SessionClock:
     """Follows the wall until it is driven; then it shows the time of the session.
 
-    A recording that is drawn faster or slower than it was taken drives the clock by its frames, so the
-    robot lives through the same seconds as the character.
+    A recording that is drawn faster or slower than it was taken drives the clock by its frames, so
+    the robot lives through the same seconds as the character.
     """
 
     def __init__(self) -> None:

@@ -16,7 +16,7 @@ from app.scenarios import CUBES
 from app.show.display import has_display
 from characters import Character, CharacterError
 from characters.rendering import create_context
-from robot import list_ports
+from robot import serial_ports
 from tracking import TrackingError, open_source
 
 
@@ -39,7 +39,16 @@ class Finding:
 
 def examine(*, cameras: bool = True) -> list[Finding]:
     """Look at everything; never raises for what it finds."""
-    findings = [_python(), _opencv(), _drawing(), _video(), _cast(), _recordings(), _display(), _ports()]
+    findings = [
+        _python(),
+        _opencv(),
+        _drawing(),
+        _video(),
+        _cast(),
+        _recordings(),
+        _display(),
+        _ports(),
+    ]
     return [*findings, _camera()] if cameras else findings
 
 
@@ -61,7 +70,8 @@ def _opencv() -> Finding:
             "OpenCV",
             "bad",
             f"{cv2.__version__}, but {names[0]} lies over the same files",
-            f"pip uninstall -y {names[0]} && pip install --force-reinstall opencv-contrib-python-headless",
+            f"pip uninstall -y {names[0]} && "
+            "pip install --force-reinstall opencv-contrib-python-headless",
         )
     if int(cv2.__version__.split(".")[0]) < 5:
         remedy = "pip install --upgrade -c constraints.txt opencv-contrib-python-headless"
@@ -81,7 +91,7 @@ def _drawing() -> Finding:
 
 
 def _mesa() -> str:
-    """The command that installs EGL and Mesa's drivers here."""
+    """Return the command that installs EGL and Mesa's drivers here."""
     for tool, command in (
         ("apt-get", "sudo apt-get install -y libegl1 libgl1 libegl-mesa0 libgl1-mesa-dri"),
         ("dnf", "sudo dnf install -y mesa-libEGL mesa-libGL mesa-dri-drivers"),
@@ -103,7 +113,9 @@ def _cast() -> Finding:
         cast = [Character.load(name) for name in ("human", "vleo")]
     except CharacterError as error:
         return Finding("characters", "bad", str(error))
-    return Finding("characters", "good", ", ".join(f"{c.name} ({len(c.clips)} clips)" for c in cast))
+    return Finding(
+        "characters", "good", ", ".join(f"{c.name} ({len(c.clips)} clips)" for c in cast)
+    )
 
 
 def _recordings() -> Finding:
@@ -121,10 +133,10 @@ def _display() -> Finding:
 
 
 def _ports() -> Finding:
-    ports = list_ports()
+    ports = serial_ports()
     if not ports:
         return Finding("robot", "missing", "no serial port", "cubeling robot simulate")
-    return Finding("robot", "good", ", ".join(port.device for port in ports))
+    return Finding("robot", "good", ", ".join(port.url for port in ports))
 
 
 def _camera() -> Finding:

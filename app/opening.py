@@ -77,9 +77,7 @@ def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = No
         source = closing.enter_context(open_source(wish.source))
     intrinsics = fitting(calibration or source.intrinsics, source.size)
     screen, context = open_screen(wish, source, closing)
-    playground = Playground(
-        scenario, intrinsics, cube=cube, character=character, context=context
-    )
+    playground = Playground(scenario, intrinsics, cube=cube, character=character, context=context)
     closing.callback(playground.close)
     return Plan(
         source,
@@ -130,7 +128,7 @@ def fitting(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:
 
 
 def describe(wish: Wish, cube: CubeModel, source: FrameSource) -> dict[str, str]:
-    """What a recording says of itself."""
+    """Return what a recording says of itself."""
     return {
         "scenario": wish.scenario,
         "cube": wish.cube or cube.name,

@@ -152,7 +152,7 @@ class Playground:
         outcome: Outcome,
         posed: PosedCharacter,
     ) -> tuple[View, tuple[Actor, ...], tuple[object, ...]]:
-        """What a stage needs to draw the frame: the view, who is in it, and what is on the floor."""
+        """Return what a stage needs: the view, who is in it, and what is on the floor."""
         boxes = ()
         if state.camera_from_cube is not None:
             boxes = (Box(state.camera_from_cube, self.cube.edge),)

@@ -15,8 +15,8 @@ Clock = Callable[[], float]
 class RobotLine:
     """Hands the emotions of a session to a robot and tells how it is.
 
-    `open` it before the session, `close` it after; a second `close` does nothing. Nothing here waits
-    for the robot once it is connected.
+    `open` it before the session, `close` it after; a second `close` does nothing. Nothing here
+    waits for the robot once it is connected.
     """
 
     def __init__(self) -> None:
@@ -72,14 +72,16 @@ class RobotLine:
         """Return what the robot says of itself, or what it was asked where there is none."""
         if self._robot is None:
             mood = 0.0 if self._target is None else self._target.emotion.valence
-            return RobotView("none", mood, "neutral" if self._target is None else self._target.label)
+            return RobotView(
+                "none", mood, "neutral" if self._target is None else self._target.label
+            )
         telemetry = self._robot.telemetry
         observed = telemetry.observed
         mood = 0.0 if observed is None else observed.valence
-        return RobotView(str(telemetry.link), mood, telemetry.label or "neutral")
+        return RobotView(telemetry.state, mood, telemetry.label or "neutral")
 
     def check(self) -> None:
-        """Raise `RobotError` if the robot fell silent."""
+        """Raise `RobotError` if the robot cannot be reached now."""
         if self._robot is not None:
             self._robot.check()
 

@@ -82,9 +82,11 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
             summary.add(step, view, seconds)
             if progress is not None:
                 progress(step)
-            robot.check()
             if plan.screen.closed:
                 break
+        # A robot that falls silent stops nobody's play, and the link keeps trying;
+        # whether it came back is told at the end.
+        robot.check()
     return summary
 
 

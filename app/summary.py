@@ -101,15 +101,23 @@ class Summary:
         table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")
         table.add_row("character", _story(self.spans, duration))
         table.add_row("robot felt", _story(self.labels(), duration))
-        table.add_row("", Text(self._curve(56), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim"))
-        table.add_row("a frame took", f"{median:.1f} ms in the median, {slow:.1f} ms at the 95th percentile")
+        table.add_row(
+            "", Text(self._curve(56), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim")
+        )
+        table.add_row(
+            "a frame took", f"{median:.1f} ms in the median, {slow:.1f} ms at the 95th percentile"
+        )
         return Panel(Group(table), title=f"[bold]{self.scenario}", title_align="left", expand=False)
 
     def _curve(self, width: int) -> str:
         if not self.moods:
             return ""
-        picks = [self.moods[round(i * (len(self.moods) - 1) / (width - 1))][1] for i in range(width)]
-        return "".join(BLOCKS[min(7, int((min(1.0, max(-1.0, mood)) + 1) * 3.999))] for mood in picks)
+        picks = [
+            self.moods[round(i * (len(self.moods) - 1) / (width - 1))][1] for i in range(width)
+        ]
+        return "".join(
+            BLOCKS[min(7, int((min(1.0, max(-1.0, mood)) + 1) * 3.999))] for mood in picks
+        )
 
 
 def _story(changes: list[tuple[float, str]], duration: float) -> str:

@@ -10,18 +10,27 @@ from tracking import CubeModel, write_sheet
 
 
 def cube(
-    name: Annotated[str, typer.Argument(help="locomotion, companion, or the .toml file of your own cube.")],
-    edge_mm: Annotated[float | None, typer.Option(help="Edge of the cube; the markers grow with it.")] = None,
+    name: Annotated[
+        str, typer.Argument(help="locomotion, companion, or the .toml file of your own cube.")
+    ],
+    edge_mm: Annotated[
+        float | None, typer.Option(help="Edge of the cube; the markers grow with it.")
+    ] = None,
     paper: Annotated[str, typer.Option(help="a4, letter or a3.")] = "a4",
-    output: Annotated[Path | None, typer.Option("--output", "-o", help="The PDF to write; NAME.pdf without.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="The PDF to write; NAME.pdf without.")
+    ] = None,
 ) -> None:
     """Write a cube as a sheet to print, cut, fold and glue.
 
-    Print it at 100 % ("actual size"), and check the ruler on the sheet. Strong paper (160 g/m²) lasts longest.
+    Print it at 100 % ("actual size"), and check the ruler on the sheet.
+    Strong paper (160 g/m²) lasts longest.
 
     Example: [cyan]cubeling cube companion --paper letter -o cube.pdf[/]
     """
     model = CubeModel.load(name)
     path = output or Path(f"{Path(name).stem}.pdf")
     write_sheet(model, path, edge_mm=edge_mm, paper=paper)
-    Console().print(f"[bold]{path}[/] is ready. Print it at 100 %, cut along the solid line, fold the dashed ones.")
+    Console().print(
+        f"[bold]{path}[/] is ready. Print it at 100 %, cut the solid line, fold the dashed ones."
+    )

@@ -10,6 +10,7 @@ from rich.console import Console
 from app.commands.progress import finished_video, play_to_end
 from app.commands.replay import bundled
 from app.opening import Wish, open_session
+from app.scenarios import scenario_cube
 from app.session import about
 from app.show.display import has_display
 from tracking import FrameSource, TrackingError, open_source
@@ -21,10 +22,12 @@ VIDEO = Path("demo.mp4")
 def demo(
     scenario: Annotated[str, typer.Argument(help="follow, sketch or companion.")] = "companion",
     recording: Annotated[
-        bool, typer.Option("--recording", help="Play the bundled recording even if there is a camera.")
+        bool,
+        typer.Option("--recording", help="Play the bundled recording even if there is a camera."),
     ] = False,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Write this video even if there is a display.")
+        Path | None,
+        typer.Option("--output", "-o", help="Write this video even if there is a display."),
     ] = None,
 ) -> None:
     """See it work: with your camera, or with the bundled recording, or as a video.
@@ -47,7 +50,8 @@ def demo(
         else:
             console.print(
                 f"Playing [bold]{scenario}[/] with your camera; Esc ends it. No cube yet? "
-                f"[cyan]cubeling cube {scenario_cube_name(scenario)}[/], or [cyan]cubeling demo --recording[/]"
+                f"[cyan]cubeling cube {scenario_cube(scenario)}[/], "
+                "or [cyan]cubeling demo --recording[/]"
             )
             wish = Wish(scenario, CAMERA)
         plan = open_session(wish, closing, camera)
@@ -71,15 +75,8 @@ def render(scenario: str, output: Path, console: Console) -> None:
 
 
 def _recorded(scenario: str, output: Path | None = None) -> Wish:
-    scenario_cube_name(scenario)
+    scenario_cube(scenario)  # refuses a name that is none
     return Wish(scenario, str(bundled(scenario)), output=output)
-
-
-def scenario_cube_name(scenario: str) -> str:
-    """Return the cube of a scenario; refuses a name that is none."""
-    from app.scenarios import scenario_cube
-
-    return scenario_cube(scenario)
 
 
 def _camera(closing: ExitStack, console: Console) -> FrameSource | None:

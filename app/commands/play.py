@@ -18,23 +18,32 @@ Source = Annotated[
     typer.Option(
         "--source",
         "-s",
-        help="camera:0, a video file, a session (.mcap), http://PHONE:8080/video, or synthetic:NAME.",
+        help="camera:0, a video, a session (.mcap), http://PHONE:8080/video, synthetic:NAME.",
     ),
 ]
 Cube = Annotated[str | None, typer.Option(help="A bundled cube, or the .toml file of your own.")]
 Actor = Annotated[str | None, typer.Option(help="A bundled character, or a .glb file.")]
 Intrinsics = Annotated[
-    Path | None, typer.Option(help="The camera's calibration (ROS camera_info YAML); guessed without.")
+    Path | None,
+    typer.Option(help="The camera's calibration (ROS camera_info YAML); guessed without."),
 ]
 RobotUrl = Annotated[
-    str, typer.Option("--robot", "-r", help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT.")
+    str,
+    typer.Option(
+        "--robot", "-r", help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT."
+    ),
 ]
 Record = Annotated[Path | None, typer.Option(help="Record the session to this .mcap file.")]
-Codec = Annotated[str, typer.Option(help="How a recording keeps the pictures: jpeg or h264 (smaller).")]
-Output = Annotated[
-    Path | None, typer.Option("--output", "-o", help="Write an .mp4 video instead of opening a window.")
+Codec = Annotated[
+    str, typer.Option(help="How a recording keeps the pictures: jpeg or h264 (smaller).")
 ]
-Pictures = Annotated[bool, typer.Option("--pictures/--no-pictures", help="Draw nothing: only track.")]
+Output = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", help="Write an .mp4 video instead of opening a window."),
+]
+Pictures = Annotated[
+    bool, typer.Option("--pictures/--no-pictures", help="Draw nothing: only track.")
+]
 
 
 def play(
@@ -47,8 +56,12 @@ def play(
     record: Record = None,
     codec: Codec = "jpeg",
     output: Output = None,
-    speed_map: Annotated[str, typer.Option(help="corrected, or legacy as printed in the thesis.")] = "corrected",
-    turns: Annotated[float, typer.Option(help="Full turns from the least to the greatest intensity.")] = 2.0,
+    speed_map: Annotated[
+        str, typer.Option(help="corrected, or legacy as printed in the thesis.")
+    ] = "corrected",
+    turns: Annotated[
+        float, typer.Option(help="Full turns from the least to the greatest intensity.")
+    ] = 2.0,
     pictures: Pictures = True,
 ) -> None:
     """Play with the cube in front of a camera.
@@ -60,7 +73,18 @@ def play(
     Example: [cyan]cubeling play companion --source camera:0 --robot /dev/ttyACM0[/]
     """
     wish = Wish(
-        scenario, source, cube, character, intrinsics, speed_map, turns, robot, record, codec, output, pictures
+        scenario,
+        source,
+        cube,
+        character,
+        intrinsics,
+        speed_map,
+        turns,
+        robot,
+        record,
+        codec,
+        output,
+        pictures,
     )
     if pictures and output is None:
         require_display()

@@ -22,7 +22,11 @@ def play_to_end(plan: Plan, console: Console, title: str) -> Summary:
     if duration is None or plan.paced or not console.is_terminal:
         summary = run(plan)
     else:
-        columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"))
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(),
+            TextColumn("{task.percentage:3.0f} %"),
+        )
         with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as bar:
             task = bar.add_task(title, total=duration)
             first: list[float] = []

@@ -7,24 +7,28 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from app.checking import check_session
 from app.commands.play import Codec, Output, Pictures, Record, RobotUrl
 from app.commands.progress import finished_video, play_to_end
 from app.errors import AppError
 from app.opening import Wish, open_session
-from app.checking import check_session
 from app.session import about, salvaged
 from app.show.display import has_display
 
 
 def replay(
-    session: Annotated[Path, typer.Argument(help="A session recorded with --record, or a bundled one.")],
+    session: Annotated[
+        Path, typer.Argument(help="A session recorded with --record, or a bundled one.")
+    ],
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
     robot: RobotUrl = "sim",
     record: Record = None,
     codec: Codec = "jpeg",
     output: Output = None,
     pictures: Pictures = True,
-    salvage: Annotated[bool, typer.Option(help="Play what is whole of a session that was cut off.")] = False,
+    salvage: Annotated[
+        bool, typer.Option(help="Play what is whole of a session that was cut off.")
+    ] = False,
     check: Annotated[
         bool, typer.Option(help="Compare every recorded channel with what the frames lead to now.")
     ] = False,

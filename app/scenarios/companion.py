@@ -1,4 +1,4 @@
-"""Vleo and Pleo: the cube makes the dinosaur on the screen kiss or shout, and the robot feels it."""
+"""Vleo and Pleo: the cube makes the dinosaur kiss or shout, and the robot feels it."""
 
 import math
 from typing import Literal, cast

@@ -43,7 +43,9 @@ class Follow:
             look_at=CAMERA,
             visible=self._presence.update(controls),
         )
-        return Outcome(command, excitement(speed, controls.timestamp), _hint(controls, speed), gait(speed))
+        return Outcome(
+            command, excitement(speed, controls.timestamp), _hint(controls, speed), gait(speed)
+        )
 
 
 def gait(speed: float) -> str:

@@ -1,4 +1,4 @@
-"""AvatAR's sketched path: the cube draws points on the table, the character walks them in a loop."""
+"""AvatAR's sketched path: the cube draws points, the character walks them in a loop."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -4,4 +4,13 @@ from app.session.pictures import Preparation, preparation
 from app.session.reading import About, about, events, messages, salvaged
 from app.session.recorder import Recorder
 
-__all__ = ["About", "Preparation", "Recorder", "about", "events", "messages", "preparation", "salvaged"]
+__all__ = [
+    "About",
+    "Preparation",
+    "Recorder",
+    "about",
+    "events",
+    "messages",
+    "preparation",
+    "salvaged",
+]

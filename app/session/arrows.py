@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.scenarios import EmotionTarget
-from characters import CharacterCommand, PosedCharacter
+from characters import CharacterCommand, Pose, PosedCharacter
 from tracking import CubeControls, CubeState
 
 T = TypeVar("T")
@@ -54,11 +54,14 @@ def schema(kind: type[Any]) -> bytes:
 
 
 def _plain(value: object) -> object:
+    if isinstance(value, Pose):
+        fields = dataclasses.fields(value)
+        return {field.name: _single(getattr(value, field.name)) for field in fields}
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         fields = dataclasses.fields(value)
         return {field.name: _plain(getattr(value, field.name)) for field in fields}
     if isinstance(value, np.ndarray):
-        return _numbers(value)
+        return value.tolist()
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
     if isinstance(value, float | np.floating):
@@ -68,13 +71,13 @@ def _plain(value: object) -> object:
     return value
 
 
-def _numbers(array: NDArray[Any]) -> object:
-    if array.ndim >= 2 and array.shape[-1] in (3, 4) and array.shape != (4, 4):
-        # The shortest decimals that give the same float32, and no "-0.0".
-        lines = array.reshape(-1, array.shape[-1]).astype(np.float32) + np.float32(0)
-        short = [[float(f"{number:.8g}") for number in line] for line in lines.tolist()]
-        return short if array.ndim == 2 else np.array(short).reshape(array.shape).tolist()
-    return array.tolist()
+def _single(array: NDArray[Any] | None) -> object:
+    """Return the shortest decimals that give the same single-precision numbers."""
+    if array is None:
+        return None
+    # Adding zero turns −0 into 0, which is the same joint and one character less.
+    flat = [float(f"{number!s}") for number in (array.astype(np.float32) + np.float32(0)).ravel()]
+    return np.array(flat).reshape(array.shape).tolist()
 
 
 def _typed(kind: Any, value: Any) -> Any:

@@ -38,7 +38,7 @@ def preparation(codec: str, size: tuple[int, int], rate: float) -> Preparation:
 
 
 def as_jpeg(frame: Frame) -> Frame:
-    """Return the frame with JPEG bytes and the picture in them; bytes that it came with are kept."""
+    """Return the frame with JPEG bytes and the picture in them; its own bytes where it has any."""
     if frame.encoded is not None:
         return frame
     done, data = cv2.imencode(".jpg", frame.image, (cv2.IMWRITE_JPEG_QUALITY, 92))
@@ -67,7 +67,8 @@ class Video:
             "preset": "slow",
             "crf": str(quality),
             "x264-params": "bframes=0:rc-lookahead=0:sync-lookahead=0:repeat-headers=1"
-            f":keyint={5 * round(rate)}:force-cfr=1:colorprim=bt470bg:transfer=bt470bg:colormatrix=bt470bg",
+            f":keyint={5 * round(rate)}:force-cfr=1"
+            ":colorprim=bt470bg:transfer=bt470bg:colormatrix=bt470bg",
         }
         self._encoder = encoder
         decoder = av.CodecContext.create("h264", "r")
@@ -77,7 +78,7 @@ class Video:
         self._count = 0
 
     def __call__(self, frame: Frame) -> Frame:
-        """Return the frame with its packet and the picture in it; H.264 that it came with is kept."""
+        """Return the frame with its packet and the picture in it; its own where it has one."""
         if frame.encoding == "h264" and frame.encoded is not None:
             return frame
         planes = cv2.cvtColor(frame.image, cv2.COLOR_BGR2YUV_I420)

@@ -93,7 +93,9 @@ def _notes(path: Path) -> dict[str, str]:
                     break
         except (McapError, EOFError, ValueError):
             pass
-    raise AppError(f"'{path}' does not say which scenario it holds: it was not recorded by Cubeling")
+    raise AppError(
+        f"'{path}' does not say which scenario it holds: it was not recorded by Cubeling"
+    )
 
 
 def whole(path: Path) -> None:

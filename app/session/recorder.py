@@ -33,7 +33,8 @@ WIRE_SCHEMA = (
 class Recorder:
     """Records one session to one .mcap file.
 
-    `open` it before the first frame, `write` every step, `close` it at the end; a second `close` does nothing.
+    Open it before the first frame, `write` every step, `close` it at the end; a second `close` does
+    nothing.
     The file can be read up to the last half second whenever the program dies.
 
     Parameters
@@ -99,6 +100,13 @@ class Recorder:
         line = json.dumps({"event": what}).encode()
         self._json("/events", lambda: line, timestamp)
 
+    def flush(self) -> None:
+        """Wait until all that was handed over is written, but for the chunk being gathered."""
+        done = threading.Event()
+        self._submit(done.set)
+        while self.problem is None and not done.wait(0.1):
+            pass
+
     def close(self) -> None:
         """Write what waits and the index; remove the file where nothing was recorded."""
         if self._closed:
@@ -160,7 +168,11 @@ class Recorder:
     def _schema(self, topic: str) -> tuple[str, bytes]:
         if topic in ARROWS:
             return f"cubeling.{ARROWS[topic].__name__}", schema(ARROWS[topic])
-        return ("cubeling.Wire", WIRE_SCHEMA) if topic == "/robot/wire" else ("cubeling.Event", EVENT_SCHEMA)
+        return (
+            ("cubeling.Wire", WIRE_SCHEMA)
+            if topic == "/robot/wire"
+            else ("cubeling.Event", EVENT_SCHEMA)
+        )
 
     def _add(self, topic: str, data: bytes, timestamp: float) -> None:
         time = nanoseconds(timestamp)

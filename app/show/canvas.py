@@ -9,10 +9,16 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 from app.show.palette import PAPER, Color
-from tracking import icon_paths
+from tracking.icons import icon_mask
 
 SUBPIXEL = 4
 """Fractional bits of the coordinates that OpenCV draws at."""
+
+_ANGLES = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
+cached_icon = lru_cache(maxsize=32)(icon_mask)
+
+ROUND = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
+"""Points round a circle of radius one, (48, 2)."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +67,9 @@ class Canvas:
         mask = rounded(width, height, round(min(18 * self.scale, height / 2)), round(255 * opacity))
         return Card(round(x * self.scale), round(y * self.scale), self.color, mask)
 
-    def text(self, x: float, y: float, words: str, size: float, color: Color, align: str = "left") -> None:
+    def text(
+        self, x: float, y: float, words: str, size: float, color: Color, align: str = "left"
+    ) -> None:
         """Write a line; (x, y) is on its baseline, at its left end, middle or right end."""
         mask, rise = lettering(words, round(size * self.scale))
         shift = {"left": 0.0, "middle": 0.5, "right": 1.0}[align] * mask.shape[1]
@@ -70,25 +78,20 @@ class Canvas:
 
     def icon(self, x: float, y: float, size: float, name: str, color: Color) -> None:
         """Draw an icon in a square of `size` whose corner is (x, y)."""
-        paths = [np.array([x, y]) + np.asarray(path) * size for path in icon_paths(name)]
-        cv2.fillPoly(self.color, [self._fixed(path) for path in paths], color, cv2.LINE_AA, SUBPIXEL)
+        mask = cached_icon(name, round(size * self.scale))
+        self._stamp(mask, round(x * self.scale), round(y * self.scale), color)
 
-    def disc(self, x: float, y: float, radius: float, color: Color, line: float | None = None) -> None:
-        """Fill a circle, or draw its outline `line` wide."""
-        thickness = -1 if line is None else max(1, round(line * self.scale))
-        center = self._fixed(np.array([x, y]))
-        reach = round(radius * self.scale * 2**SUBPIXEL)
-        cv2.circle(self.color, center.tolist(), reach, color, thickness, cv2.LINE_AA, SUBPIXEL)
+    def disc(self, x: float, y: float, radius: float, color: Color) -> None:
+        """Fill a circle."""
+        # OpenCV's own small circles have corners.
+        circle = self._fixed(np.array([x, y]) + radius * ROUND)
+        cv2.fillConvexPoly(self.color, circle, color, cv2.LINE_AA, SUBPIXEL)
 
     def line(self, points: object, color: Color, width: float, closed: bool = False) -> None:
         """Draw a line with round ends through points (n, 2)."""
         path = self._fixed(np.asarray(points, float))
         thickness = max(1, round(width * self.scale))
         cv2.polylines(self.color, [path], closed, color, thickness, cv2.LINE_AA, SUBPIXEL)
-
-    def fill(self, points: object, color: Color) -> None:
-        """Fill a polygon (n, 2)."""
-        cv2.fillPoly(self.color, [self._fixed(np.asarray(points, float))], color, cv2.LINE_AA, SUBPIXEL)
 
     def bar(self, x: float, y: float, width: float, height: float, color: Color) -> None:
         """Fill a bar with round ends; (x, y) is the middle of its left end."""
@@ -111,7 +114,7 @@ class Canvas:
 
 @lru_cache(maxsize=256)
 def lettering(words: str, size: int) -> tuple[NDArray[np.uint8], int]:
-    """Return a line of text as coverage (height, width), and how far its baseline is below the top [px]."""
+    """Return a line of text as coverage (height, width), and its baseline below the top [px]."""
     font = ImageFont.load_default(max(6, size))
     left, top, right, bottom = (round(side) for side in font.getbbox(words, anchor="ls"))
     image = Image.new("L", (max(1, right - left + 2), max(1, bottom - top + 2)))

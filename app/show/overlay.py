@@ -14,7 +14,14 @@ from app.show.robot_face import draw_face
 HEIGHT = 720.0
 """Height of a picture in design units."""
 
-WORDS = {"stand": "Stand", "idle": "Idle", "walk": "Walk", "run": "Run", "kiss": "Kiss", "shout": "Shout"}
+WORDS = {
+    "stand": "Stand",
+    "idle": "Idle",
+    "walk": "Walk",
+    "run": "Run",
+    "kiss": "Kiss",
+    "shout": "Shout",
+}
 
 
 @dataclass(frozen=True)
@@ -99,11 +106,12 @@ def _robot(robot: RobotView, width: float, scale: float) -> Card:
     canvas = Canvas(316, 108, scale)
     mood = robot.mood if math.isfinite(robot.mood) else 0.0
     draw_face(canvas, 56, 54, 38, mood)
-    words = {"none": "no robot", "ready": f"robot is {robot.label}"}.get(robot.link, f"robot {robot.link}")
+    words = {"none": "no robot", "ready": f"robot is {robot.label}"}.get(
+        robot.link, f"robot {robot.link}"
+    )
     canvas.text(112, 42, words, 25, INK)
     left, wide, y = 116.0, 176.0, 70.0
-    for place in range(24):
-        share = place / 23
+    for share in np.linspace(0.0, 1.0, 64):
         canvas.disc(left + wide * share, y, 5.0, mood_color(2 * share - 1))
     knob = left + wide * (mood + 1) / 2
     canvas.disc(knob, y, 12, PAPER)

@@ -33,12 +33,13 @@ def _eye(canvas: Canvas, x: float, y: float, radius: float, side: int, mood: flo
     canvas.disc(x, y, radius * 0.24, PAPER)
     canvas.disc(x - side * radius * 0.03, y + radius * 0.03, radius * 0.15, INK)
     canvas.disc(x + radius * 0.03, y - radius * 0.05, radius * 0.055, PAPER)
-    # Brows fall towards the nose when angry and are raised when happy.
-    tilt = 0.22 * max(0.0, -mood)
-    lift = 0.36 + 0.1 * max(0.0, mood) - 0.1 * max(0.0, -mood)
-    inner, outer = (x - side * 0.24 * radius), (x + side * 0.24 * radius)
-    brow = [[inner, y - (lift - tilt) * radius], [outer, y - (lift + tilt * 0.6) * radius]]
-    canvas.line(brow, INK, radius * 0.1)
+    # Brows fall towards the nose when angry; they arch when happy.
+    across = np.linspace(-1.0, 1.0, 9)
+    anger, joy = max(0.0, -mood), max(0.0, mood)
+    rise = 0.34 + 0.08 * joy - 0.08 * anger + joy * 0.07 * (1 - across**2)
+    slope = 0.2 * anger * across * side
+    brow = np.stack([x + 0.22 * radius * across, y - (rise + slope) * radius], axis=1)
+    canvas.line(brow, INK, radius * (0.06 + 0.04 * anger))
 
 
 def _mouth(canvas: Canvas, x: float, y: float, radius: float, mood: float) -> None:

@@ -48,7 +48,7 @@ class Nowhere:
 class VideoFile:
     """Writes the pictures to an MP4 file that every player opens (H.264).
 
-    The file appears when it is whole: until `close` it is `PATH.partial`, and `discard` removes that.
+    The file appears when it is whole: until `close` it is `PATH.partial`; `discard` removes that.
 
     Parameters
     ----------
@@ -70,7 +70,9 @@ class VideoFile:
         self._last = -1
         try:
             self._partial.touch()
-            self._file = av.open(str(self._partial), "w", format="mp4", options={"movflags": "faststart"})
+            self._file = av.open(
+                str(self._partial), "w", format="mp4", options={"movflags": "faststart"}
+            )
         except OSError as error:
             raise AppError(f"cannot write the video '{path}': {error.strerror}") from error
         stream = self._file.add_stream("libx264", rate=Fraction(round(rate)), options=QUALITY)

@@ -59,7 +59,9 @@ class Window:
         self._problem = ""
         glfw.set_error_callback(self._complain)
         if not glfw.init():
-            raise AppError(f"no window can be opened here: {self._problem or 'there is no display'}")
+            raise AppError(
+                f"no window can be opened here: {self._problem or 'there is no display'}"
+            )
         for hint, value in (
             (glfw.CONTEXT_VERSION_MAJOR, 3),
             (glfw.CONTEXT_VERSION_MINOR, 3),
@@ -161,7 +163,9 @@ class Window:
         pace = self._shown[-1] - self._shown[0]
         rate = (len(self._shown) - 1) / pace if pace > 0 else 0.0
         state, controls = step.state, step.controls
-        imgui.text(f"{rate:5.1f} pictures/s   {step.frame.image.shape[1]} x {step.frame.image.shape[0]}")
+        imgui.text(
+            f"{rate:5.1f} pictures/s   {step.frame.image.shape[1]} x {step.frame.image.shape[0]}"
+        )
         seen = ", ".join(state.faces) if state.visible else state.refused or "not seen"
         imgui.text(f"cube      {seen}   {state.reprojection_error:.2f} px")
         imgui.text(f"top       {controls.top_face}   turns {controls.turns:+.2f}")

@@ -1,0 +1,76 @@
+"""A hand that plays by numbers: controls as the gestures would give them."""
+
+import dataclasses
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from tracking import CubeControls
+
+FRAME = 1 / 30
+
+
+class Hand:
+    """Makes `CubeControls` frame after frame, as a real hand would change them."""
+
+    def __init__(self) -> None:
+        self.controls = CubeControls(
+            visible=True,
+            top_face="top",
+            heading=0.0,
+            camera_angle=0.0,
+            turns=0.0,
+            resting=True,
+            placed=True,
+            lifted=False,
+            shaken=False,
+            position=np.zeros(2),
+            timestamp=0.0,
+            camera_from_table=np.eye(4),
+            placements=1,
+        )
+        self.frames = 0
+
+    def frame(self, **changes: object) -> CubeControls:
+        """The next frame: time goes on, events are over, and the rest stays unless given."""
+        now = round(self.frames * FRAME, 9)
+        events = {"placed": False, "shaken": False} if self.frames else {}
+        fields = {**events, **changes, "timestamp": now}
+        self.controls = dataclasses.replace(self.controls, **fields)
+        self.frames += 1
+        return self.controls
+
+    def heading(self, degrees: float) -> CubeControls:
+        """The next frame with the cube turned to an angle from the camera."""
+        turned = math.radians((degrees + 180) % 360 - 180)
+        return self.frame(heading=turned, camera_angle=abs(turned))
+
+    def turn(self, turns: float, seconds: float) -> list[CubeControls]:
+        """Turn by so many turns, evenly."""
+        count = round(seconds / FRAME)
+        start = self.controls.turns
+        return [self.frame(turns=start + turns * (i + 1) / count) for i in range(count)]
+
+    def tip(self, face: str) -> list[CubeControls]:
+        """Lift, and put down on another face."""
+        lifted = [self.frame(resting=False, lifted=True) for _ in range(10)]
+        placements = self.controls.placements + 1
+        down = self.frame(
+            resting=True, lifted=False, placed=True, top_face=face, turns=0.0, placements=placements
+        )
+        return [*lifted, down]
+
+    def wait(self, seconds: float) -> list[CubeControls]:
+        """Leave the cube alone."""
+        return [self.frame() for _ in range(round(seconds / FRAME))]
+
+
+@pytest.fixture
+def hand() -> Hand:
+    """A hand with the cube on the table, the top face up, the front to the camera."""
+    return Hand()
+
+
+Play = Callable[..., list[object]]

@@ -1,0 +1,89 @@
+"""The whole line, and the share of each part: `python -m tests.bench.line [--frames N]`.
+
+Track, gesture, decide, animate, draw and read back, on the frames of the bundled recordings at
+1280×720.
+Decoding the recording and laying the cards over the picture are told beside it.
+"""
+
+import argparse
+import time
+from collections import defaultdict
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from app.commands.replay import bundled
+from app.opening import fitting
+from app.playground import Playground, Step
+from app.scenarios import CUBES, Inputs
+from app.show.overlay import RobotView, overlay
+from characters.rendering import create_context
+from tracking import open_source
+
+TARGET_MS = 25.0
+
+
+def measure(name: str, frames: int) -> dict[str, list[float]]:
+    """Return the milliseconds of each part, a list of frames long."""
+    parts: dict[str, list[float]] = defaultdict(list)
+    context = create_context()
+    with open_source(str(bundled(name))) as source:
+        playground = Playground(name, fitting(source.intrinsics, source.size), context=context)
+        robot = RobotView("ready", 0.0, "neutral")
+        stream = iter(source)
+        for _ in range(frames):
+            marks = [time.perf_counter()]
+            frame = next(stream, None)
+            if frame is None:
+                break
+            marks.append(time.perf_counter())
+            state = playground.track(frame)
+            marks.append(time.perf_counter())
+            controls = playground.gesture(state)
+            outcome = playground.decide(controls, Inputs())
+            marks.append(time.perf_counter())
+            posed = playground.animate(outcome.command)
+            marks.append(time.perf_counter())
+            picture = playground.draw(frame, state, controls, outcome, posed)
+            assert picture is not None
+            marks.append(time.perf_counter())
+            overlay(picture, Step(frame, state, controls, outcome, posed, picture), robot)
+            marks.append(time.perf_counter())
+            names = (
+                "(decode)",
+                "track",
+                "gesture, decide",
+                "animate",
+                "draw, read back",
+                "(cards)",
+            )
+            for part, span in zip(names, np.diff(marks), strict=True):
+                parts[part].append(1000 * span)
+        playground.close()
+    context.release()
+    counted = [part for part in parts if not part.startswith("(")]
+    parts["the line"] = np.sum([parts[part] for part in counted], axis=0).tolist()
+    return parts
+
+
+def main() -> None:
+    """Print a table for every scenario."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--frames", type=int, default=600, help="frames of each recording")
+    frames = parser.parse_args().frames
+    table = Table("scenario", "part", "median ms", "p95 ms", "share")
+    for name in CUBES:
+        parts = measure(name, frames)
+        whole = float(np.median(parts["the line"]))
+        for part, times in parts.items():
+            median, slow = np.median(times), np.percentile(times, 95)
+            share = "" if part.startswith("(") else f"{100 * median / whole:.0f} %"
+            table.add_row(name, part, f"{median:.2f}", f"{slow:.2f}", share)
+        verdict = "reached" if whole <= TARGET_MS else "MISSED"
+        table.add_row(name, f"target {TARGET_MS:.0f} ms: {verdict}", "", "", "", end_section=True)
+    Console().print(table)
+
+
+if __name__ == "__main__":
+    main()
