@@ -33,6 +33,9 @@ class CharacterCommand:
     visible: bool = True
     """Whether the character is to be seen."""
 
+    stop: bool = True
+    """Whether to stop at the target; False for a point that runs ahead along a path."""
+
 
 @dataclass(frozen=True)
 class PosedCharacter:

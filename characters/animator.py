@@ -1,0 +1,111 @@
+"""From commands to a posed character on the table, frame by frame."""
+
+import math
+from typing import Protocol
+
+import numpy as np
+
+from characters.actor import Actor
+from characters.character import Character
+from characters.command import CharacterCommand, PosedCharacter
+from characters.motion import Step
+from characters.pose import Array, Pose
+from characters.walker import Walker
+
+LONGEST_STEP = 0.25
+"""Time that one update may advance at most [s]: after a gap the character does not leap."""
+
+WALKER_HEIGHT = 0.17
+"""Height on the table of a character that walks [m]."""
+
+ACTOR_HEIGHT = 0.15
+"""Height on the table of a character that acts on the spot [m]."""
+
+
+class Performer(Protocol):
+    """A way to play a character: walking about, or acting on the spot."""
+
+    state: str
+    """What it is doing."""
+
+    speed: float
+    """AvatAR's Speed in use."""
+
+    angular: float
+    """How sharply it turns [rad], positive to its right."""
+
+    weight: float
+    """The intensity in use, −1…1."""
+
+    place: Step
+    """Where it stands on the table [m] and where it looks [rad]."""
+
+    height: float
+    """How high it is over the table [m]."""
+
+    def update(self, command: CharacterCommand, elapsed: float) -> Pose:
+        """Advance by a time [s] under a command and return the pose, with the root in place."""
+        ...
+
+
+class Animator:
+    """Plays a character under commands.
+
+    A character with a clip "Walk" that moves its root walks and runs (`Walker`); any other acts
+    on the spot and hops (`Actor`).
+
+    Parameters
+    ----------
+    character
+        Who plays.
+    scale
+        Table metres for each metre of the character; by default a walker stands 0.17 m tall and
+        another character 0.15 m.
+    place
+        Where it first stands on the table [m] and looks [rad].
+    """
+
+    def __init__(
+        self, character: Character, scale: float | None = None, place: Step | None = None
+    ) -> None:
+        walks = Walker.suits(character)
+        if scale is None:
+            scale = (WALKER_HEIGHT if walks else ACTOR_HEIGHT) / max(character.height, 1e-9)
+        self.character = character
+        self.scale = scale
+        self._now: float | None = None
+        kind: type[Walker] | type[Actor] = Walker if walks else Actor
+        self._performer: Performer = kind(character, scale, place)
+
+    def update(self, command: CharacterCommand) -> PosedCharacter:
+        """Advance to the command's time and return the character as it is to be drawn.
+
+        The first call starts at rest. Time that runs backwards counts as none.
+        """
+        elapsed = 0.0 if self._now is None else command.timestamp - self._now
+        self._now = command.timestamp
+        performer = self._performer
+        pose = performer.update(command, min(max(elapsed, 0.0), LONGEST_STEP))
+        return PosedCharacter(
+            pose=pose,
+            table_from_character=_placed(performer.place, performer.height, self.scale),
+            visible=command.visible,
+            state=performer.state,
+            speed=performer.speed,
+            angular=performer.angular,
+            weight=performer.weight,
+            timestamp=command.timestamp,
+        )
+
+
+def _placed(place: Step, height: float, scale: float) -> Array:
+    """Return `table_from_character`: scaled, turned about +y, and put down."""
+    sine, cosine = math.sin(place.yaw) * scale, math.cos(place.yaw) * scale
+    return np.array(
+        [
+            [cosine, 0.0, sine, place.x],
+            [0.0, scale, 0.0, height],
+            [-sine, 0.0, cosine, place.z],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )

@@ -1,0 +1,206 @@
+"""Mixing motions that are in step: blends, and spaces of parameters to take them from."""
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from characters import rotations
+from characters.errors import CharacterError
+from characters.motion import STANDING, Step
+from characters.phase import Cyclic
+from characters.pose import Array, Pose
+
+
+def mix(poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
+    """Return the weighted mean of poses; the weights sum to one.
+
+    Quaternions are brought to the side of the heaviest pose, so that the order of the poses does
+    not matter, and their sum is normalised.
+    """
+    if len(poses) == 1:
+        return poses[0]
+    share = np.asarray(weights, float)
+    turns = np.stack([pose.rotations for pose in poses])
+    turns = rotations.align(turns, turns[int(share.argmax())])
+    scales = None
+    if any(pose.scales is not None for pose in poses):
+        ones = np.ones_like(poses[0].translations)
+        scales = _sum([ones if p.scales is None else p.scales for p in poses], share)
+    return Pose(
+        _sum([pose.translations for pose in poses], share),
+        rotations.normalize(np.tensordot(share, turns, 1)),
+        scales,
+    )
+
+
+def _sum(arrays: Sequence[Array], share: Array) -> Array:
+    total: Array = np.tensordot(share, np.stack(arrays), 1)
+    return total
+
+
+@dataclass(frozen=True)
+class Blend:
+    """Motions mixed in step; `Cyclic`, so blends can be blended.
+
+    All members go through their cycles together. The shared pace is the weighted mean of theirs.
+    """
+
+    members: tuple[Cyclic, ...]
+    """What is mixed."""
+
+    weights: tuple[float, ...]
+    """How much of each; none negative, sum one."""
+
+    @property
+    def duration(self) -> float:
+        """Length of one cycle [s]."""
+        paces = [w / m.duration for w, m in zip(self.weights, self.members, strict=True)]
+        return 1.0 / sum(paces)
+
+    def at(self, phase: float) -> Pose:
+        """Return the mixed pose at a phase."""
+        heard = self._heard()
+        return mix([member.at(phase) for member, _ in heard], [weight for _, weight in heard])
+
+    def between(self, start: float, end: float) -> Step:
+        """Return the mean of the members' ways over the ground between two phases."""
+        total = STANDING
+        for member, weight in self._heard():
+            step = member.between(start, end).scaled(weight)
+            total = Step(total.x + step.x, total.z + step.z, total.yaw + step.yaw)
+        return total
+
+    def sample(self, time: float) -> Pose:
+        """Return the mixed pose at a time [s] since phase 0."""
+        return self.at(time / self.duration)
+
+    def travel(self, start: float, end: float) -> Step:
+        """Return how the root moves over the ground between two times [s]."""
+        duration = self.duration
+        return self.between(start / duration, end / duration)
+
+    def _heard(self) -> list[tuple[Cyclic, float]]:
+        pairs = zip(self.members, self.weights, strict=True)
+        return [(member, weight) for member, weight in pairs if weight > 0]
+
+
+@dataclass(frozen=True)
+class Paced:
+    """A cyclic motion at another pace and with another length of step; `Cyclic`."""
+
+    motion: Cyclic
+    """What is played."""
+
+    rate: float = 1.0
+    """How much faster; positive."""
+
+    stride: float = 1.0
+    """What the way over the ground is multiplied with; its turning is not."""
+
+    @property
+    def duration(self) -> float:
+        """Length of one cycle [s]."""
+        return self.motion.duration / self.rate
+
+    def at(self, phase: float) -> Pose:
+        """Return the pose at a phase."""
+        return self.motion.at(phase)
+
+    def between(self, start: float, end: float) -> Step:
+        """Return how the root moves over the ground between two phases."""
+        step = self.motion.between(start, end)
+        return Step(step.x * self.stride, step.z * self.stride, step.yaw)
+
+    def sample(self, time: float) -> Pose:
+        """Return the pose at a time [s] since phase 0."""
+        return self.at(time / self.duration)
+
+    def travel(self, start: float, end: float) -> Step:
+        """Return how the root moves over the ground between two times [s]."""
+        return self.between(start / self.duration, end / self.duration)
+
+
+@dataclass(frozen=True)
+class BlendSpace1D:
+    """Motions at points of a line; between two points both are mixed, at most two sound."""
+
+    knots: tuple[float, ...]
+    """Where each motion stands, ascending."""
+
+    motions: tuple[Cyclic, ...]
+    """One for each knot."""
+
+    def __post_init__(self) -> None:
+        """Refuse knots that do not ascend."""
+        ascending = all(a < b for a, b in zip(self.knots, self.knots[1:], strict=False))
+        if not self.knots or len(self.knots) != len(self.motions) or not ascending:
+            raise CharacterError(
+                f"blend space: {len(self.motions)} motions at {self.knots}; "
+                "give one knot for each, in ascending order"
+            )
+
+    def weights(self, value: float) -> tuple[float, ...]:
+        """Return how much of each motion sounds at a value; beyond the ends, the end.
+
+        >>> BlendSpace1D((0.0, 1.0, 3.0), (None,) * 3).weights(2.5)
+        (0.0, 0.25, 0.75)
+        """
+        shares = [0.0] * len(self.knots)
+        after = bisect_right(self.knots, value)
+        if after == 0 or after == len(self.knots):
+            shares[min(after, len(self.knots) - 1)] = 1.0
+        else:
+            low, high = self.knots[after - 1], self.knots[after]
+            shares[after] = (value - low) / (high - low)
+            shares[after - 1] = 1.0 - shares[after]
+        return tuple(shares)
+
+    def at(self, value: float) -> Blend:
+        """Return the mix at a value."""
+        return Blend(self.motions, self.weights(value))
+
+
+@dataclass(frozen=True)
+class BlendSpace2D:
+    """Motions at points of a plane, mixed by gradient bands.
+
+    Source: Johansen, "Automated semi-procedural animation for character locomotion", 2009,
+    section 6.3. Each motion's influence falls along the line to each other motion; it keeps the
+    least of them. Weights are continuous everywhere and do not depend on the order.
+    """
+
+    points: Array
+    """Where each motion stands, (motions, 2); no two alike."""
+
+    motions: tuple[Cyclic, ...]
+    """One for each point."""
+
+    def __post_init__(self) -> None:
+        """Refuse points that cannot be told apart."""
+        count = len(self.motions)
+        if self.points.shape != (count, 2) or count != len(np.unique(self.points, axis=0)):
+            raise CharacterError(
+                f"blend space: {count} motions at points of shape {self.points.shape}; "
+                "give each a place of its own in the plane"
+            )
+
+    def weights(self, point: ArrayLike) -> tuple[float, ...]:
+        """Return how much of each motion sounds at a point (2,).
+
+        >>> corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+        >>> BlendSpace2D(corners, (None,) * 3).weights([0.5, 0.0])
+        (0.5, 0.5, 0.0)
+        """
+        towards = self.points[None] - self.points[:, None]  # from each to each other
+        squared = np.einsum("ijk,ijk->ij", towards, towards)
+        here = np.asarray(point, float) - self.points
+        along = np.einsum("ik,ijk->ij", here, towards) / np.where(squared > 0, squared, 1.0)
+        influence = np.clip(1.0 - along, 0.0, 1.0).min(axis=1)
+        return tuple((influence / influence.sum()).tolist())
+
+    def at(self, point: ArrayLike) -> Blend:
+        """Return the mix at a point (2,)."""
+        return Blend(self.motions, self.weights(point))

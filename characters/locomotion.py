@@ -1,0 +1,137 @@
+"""Walking and running, as fast and as tight as asked: AvatAR's movement tree.
+
+Source: Fernández-Baena's thesis, section 5.2: a walk tree of seven clips and a run tree of five,
+each over Angular, −90…90°, joined over Speed, where 3 is the border between walking and running.
+"""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from characters.blend import Blend, BlendSpace1D, Paced
+from characters.clip import Clip
+from characters.phase import Cyclic, Still, phased
+from characters.pose import Pose, Skeleton
+
+IDLE_SPEED = 0.5
+"""AvatAR's Speed up to which a character stands."""
+
+RUN_SPEED = 3.0
+"""AvatAR's Speed above which it runs."""
+
+TOP_SPEED = 5.0
+"""AvatAR's greatest Speed."""
+
+STEEPEST = math.pi / 2
+"""The greatest Angular [rad]."""
+
+WALK_CLIPS = {
+    -90.0: "WalkLeftShort",
+    -60.0: "WalkLeftMedium",
+    -30.0: "WalkLeftWide",
+    0.0: "Walk",
+    30.0: "WalkRightWide",
+    60.0: "WalkRightMedium",
+    90.0: "WalkRightShort",
+}
+"""The walk tree: clips by Angular [degrees]; the shortest curve is the tightest."""
+
+RUN_CLIPS = {
+    -90.0: "RunLeftMedium",
+    -45.0: "RunLeftWide",
+    0.0: "Run",
+    45.0: "RunRightWide",
+    90.0: "RunRightMedium",
+}
+"""The run tree."""
+
+_BAND = (2.75, 3.25)  # Speeds between which walking is mixed into running
+# Speeds, and how fast the ground goes by there as a multiple of the walk or the run as recorded.
+_STROLL, _BRISK, _JOG, _SPRINT = 0.5, 1.3, 0.8, 1.25
+# Of the slowdown to a stroll, this power goes into shorter steps and the rest into slower ones:
+# people do both (Grieve and Gear, "The relationships between length of stride …", 1966).
+_SHORTENING = 0.5
+
+
+class Gaits:
+    """The movement tree of a character: a motion for every Speed and Angular.
+
+    Parameters
+    ----------
+    clips
+        "Walk" and, as far as there are any, the others of `WALK_CLIPS` and `RUN_CLIPS`.
+    skeleton
+        Whose feet mark the phases.
+    standing
+        The pose that slow walking leans to, so that its steps become shorter.
+    """
+
+    def __init__(self, clips: Mapping[str, Clip], skeleton: Skeleton, standing: Pose) -> None:
+        self._walk = _tree(clips, WALK_CLIPS, skeleton)
+        self._run = _tree(clips, RUN_CLIPS, skeleton) if "Run" in clips else self._walk
+        self._still = Still(standing, self._walk.at(0.0).duration)
+        walk, run = (_pace(tree.at(0.0)) for tree in (self._walk, self._run))
+        self._speeds = [IDLE_SPEED, *_BAND, TOP_SPEED]
+        self._paces = [_STROLL * walk, _BRISK * walk, max(_JOG * run, _BRISK * walk), _SPRINT * run]
+
+    def pace(self, speed: float) -> float:
+        """Return how fast the ground goes by at a Speed, going straight [m/s]; rises with it."""
+        return float(np.interp(speed, self._speeds, self._paces))
+
+    def speed(self, pace: float) -> float:
+        """Return the Speed at which the ground goes by so fast [m/s]: the inverse of `pace`."""
+        return float(np.interp(pace, self._paces, self._speeds))
+
+    def radius(self, speed: float) -> float:
+        """Return the radius of the tightest curve at a Speed [m]."""
+        cycle = self.at(speed, STEEPEST).between(0.0, 1.0)
+        return math.hypot(cycle.x, cycle.z) / max(2 * math.sin(abs(cycle.yaw) / 2), 1e-6)
+
+    def at(self, speed: float, angular: float, stride: float = 1.0) -> Paced:
+        """Return the motion at a Speed and an Angular.
+
+        Parameters
+        ----------
+        speed
+            AvatAR's Speed; below 0.5 it is taken as 0.5.
+        angular
+            How sharply to turn [rad], −π/2…π/2; positive to the right.
+        stride
+            What the way over the ground is multiplied with, to turn tighter than any clip.
+        """
+        straight, rate = self._mixed(speed, 0.0)
+        curved, _ = self._mixed(speed, math.degrees(angular)) if angular else (straight, rate)
+        return Paced(curved, rate, stride)
+
+    def _mixed(self, speed: float, degrees: float) -> tuple[Cyclic, float]:
+        """Return the clips' mix and the rate at which going straight it has the right pace."""
+        running = float(np.interp(speed, _BAND, (0.0, 1.0)))
+        mixed: Cyclic
+        if running == 0.0:
+            mixed = self._walk.at(degrees)
+        elif running == 1.0:
+            mixed = self._run.at(degrees)
+        else:
+            trees = (self._walk.at(degrees), self._run.at(degrees))
+            mixed = Blend(trees, (1.0 - running, running))
+        rate = self.pace(speed) / _pace(mixed)
+        if rate < 1.0 and running == 0.0:
+            shorter = rate**_SHORTENING
+            return Blend((mixed, self._still), (shorter, 1.0 - shorter)), rate / shorter
+        return mixed, rate
+
+
+def _tree(
+    clips: Mapping[str, Clip], names: Mapping[float, str], skeleton: Skeleton
+) -> BlendSpace1D:
+    """Return the tree of the clips that there are."""
+    there = {knot: name for knot, name in names.items() if name in clips}
+    return BlendSpace1D(
+        tuple(there), tuple(phased(clips[name], skeleton) for name in there.values())
+    )
+
+
+def _pace(motion: Cyclic) -> float:
+    """Return the mean speed over the ground [m/s]."""
+    return motion.between(0.0, 1.0).length / motion.duration

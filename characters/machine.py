@@ -1,0 +1,130 @@
+"""A few motions with names, one of which plays, and smooth transitions between them."""
+
+import math
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.motion import STANDING, Motion, Step
+from characters.pose import Array, Pose
+from characters.transition import Fade, Transition
+
+_PROBE = 1 / 120  # [s]: velocities at a switch are differences over this time
+
+
+@dataclass(frozen=True)
+class _Switch:
+    """The moment at which a state was entered."""
+
+    time: float
+    state: str
+    transition: Transition | None
+    drift: Fade | None
+    """What the velocity over the ground (x, z, yaw) differed by."""
+
+
+class StateMachine:
+    """Named motions and the record of when each was entered; a `Motion`.
+
+    A state plays from its own time 0 when it is entered. All that a request changes is written
+    down as a fading offset, so any later pose follows from the time alone.
+    """
+
+    def __init__(self, states: Mapping[str, Motion], initial: str, length: float = 0.25) -> None:
+        self.states = dict(states)
+        self.length = length
+        """How long a transition takes [s]."""
+        self._check(initial)
+        self._switches = [_Switch(0.0, initial, None, None)]
+
+    @property
+    def state(self) -> str:
+        """Name of the state that was entered last."""
+        return self._switches[-1].state
+
+    @property
+    def entered(self) -> float:
+        """When it was entered [s]."""
+        return self._switches[-1].time
+
+    @property
+    def duration(self) -> float:
+        """It plays for ever."""
+        return math.inf
+
+    def request(self, state: str, time: float) -> None:
+        """Enter a state at a time [s], not before the last request; nothing if it is the state.
+
+        Raises
+        ------
+        CharacterError
+            If there is no such state.
+        """
+        self._check(state)
+        if state == self.state:
+            return
+        if time < self.entered:
+            raise CharacterError(
+                f"state {state!r} was requested for {time:.3f} s, before the last request at "
+                f"{self.entered:.3f} s; requests come in order"
+            )
+        motion, last = self.states[state], self._switches[-1]
+        old = (self._shown(last, time - _PROBE), self._shown(last, time))
+        new = (motion.sample(-_PROBE), motion.sample(0.0))
+        drift = _velocity(self._moved(last, time - _PROBE, time)) - _velocity(
+            motion.travel(-_PROBE, 0.0)
+        )
+        switch = _Switch(
+            time,
+            state,
+            Transition.begin(old, new, _PROBE, self.length),
+            Fade(drift, np.zeros(3), self.length),
+        )
+        # The last two states are enough to look back over one frame.
+        self._switches = [last, switch]
+
+    def sample(self, time: float) -> Pose:
+        """Return the pose at a time [s]."""
+        return self._shown(self._switches[self._playing(time)], time)
+
+    def travel(self, start: float, end: float) -> Step:
+        """Return how the root moves over the ground between two times [s]."""
+        total = STANDING
+        first, last = self._playing(start), self._playing(end)
+        for number in range(first, last + 1):
+            stop = end if number == last else self._switches[number + 1].time
+            total = total.then(self._moved(self._switches[number], start, stop))
+            start = stop
+        return total
+
+    def _shown(self, switch: _Switch, time: float) -> Pose:
+        """Return the pose at a time [s] as if no later state had been entered."""
+        pose = self.states[switch.state].sample(time - switch.time)
+        if switch.transition is None:
+            return pose
+        return switch.transition.apply(pose, time - switch.time)
+
+    def _moved(self, switch: _Switch, start: float, end: float) -> Step:
+        """Return the way over the ground as if no later state had been entered."""
+        start, end = start - switch.time, end - switch.time
+        step = self.states[switch.state].travel(start, end)
+        if switch.drift is None:
+            return step
+        x, z, yaw = switch.drift.integral(start, end).tolist()
+        return Step(step.x + x, step.z + z, step.yaw + yaw)
+
+    def _playing(self, time: float) -> int:
+        """Return the number of the switch that is in force at a time."""
+        return max(bisect_right(self._switches, time, key=lambda switch: switch.time) - 1, 0)
+
+    def _check(self, state: str) -> None:
+        if state not in self.states:
+            raise CharacterError(f"no state {state!r}; there are {', '.join(self.states)}")
+
+
+def _velocity(step: Step) -> Array:
+    """Return the velocity (3,) of a step over the probe: x, z [m/s] and yaw [rad/s]."""
+    return np.array([step.x, step.z, step.yaw]) / _PROBE

@@ -1,0 +1,32 @@
+"""Numbers that follow a wish without jumping, at any frame rate."""
+
+import math
+
+
+def eased(value: float, wish: float, elapsed: float, lag: float) -> float:
+    """Return a value after a time under a wish that it follows with a first-order lag.
+
+    Two half steps end where one whole step does.
+
+    >>> half = eased(0.0, 1.0, 0.05, 0.15)
+    >>> math.isclose(eased(half, 1.0, 0.05, 0.15), eased(0.0, 1.0, 0.1, 0.15))
+    True
+    """
+    return wish + (value - wish) * math.exp(-elapsed / lag)
+
+
+def sprung(
+    value: float, speed: float, wish: float, elapsed: float, lag: float
+) -> tuple[float, float]:
+    """Return value and speed of a critically damped spring with its rest at `wish`.
+
+    Exact for a constant wish, so it is stable for any time step.
+
+    >>> sprung(1.0, 0.0, 1.0, 0.1, 0.2)
+    (1.0, 0.0)
+    """
+    rate = 2.0 / lag
+    away = value - wish
+    push = speed + rate * away
+    decay = math.exp(-rate * elapsed)
+    return wish + (away + push * elapsed) * decay, (speed - rate * push * elapsed) * decay

@@ -1,0 +1,129 @@
+"""From one motion to another without a pop, by letting their difference die away.
+
+Source: Bollo, "Inertialization: high-performance animation transitions in Gears of War", GDC 2018.
+At the switch the new motion takes over at once; what it differs by from the old one, in position
+and in velocity, is added to it and fades along a quintic. Bollo fades the length of each offset
+along a fixed axis; here the whole vector fades, so its velocity is kept in every direction.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters import rotations
+from characters.pose import Array, Pose
+
+
+@dataclass(frozen=True)
+class Fade:
+    """An offset that dies away: a vector of any shape with its first velocity."""
+
+    offset: Array
+    """At the start."""
+
+    velocity: Array
+    """Its change at the start [1/s]."""
+
+    length: float
+    """When it is gone [s]."""
+
+    def at(self, time: float) -> Array:
+        """Return the offset at a time [s], before 0 in a straight line.
+
+        Position, velocity and acceleration end at zero.
+
+        >>> fade = Fade(np.array([2.0]), np.array([0.0]), 0.5)
+        >>> fade.at(0.0).tolist(), fade.at(0.25).tolist(), fade.at(0.5).tolist()
+        ([2.0], [1.0], [0.0])
+        """
+        if time < 0.0:
+            return self.offset + self.velocity * time
+        u = min(time / self.length, 1.0)
+        # The quintics with value and slope (1, 0) and (0, 1) at 0 and all else zero at both ends.
+        position = 1 - u**3 * (10 - 15 * u + 6 * u * u)
+        velocity = u - u**3 * (6 - 8 * u + 3 * u * u)
+        faded: Array = self.offset * position + self.velocity * (velocity * self.length)
+        return faded
+
+    def integral(self, start: float, end: float) -> Array:
+        """Return the offset summed over time from `start` to `end` [s].
+
+        >>> Fade(np.array([2.0]), np.array([0.0]), 0.5).integral(0.0, 9.0).tolist()
+        [0.5]
+        """
+        return self._antiderivative(end) - self._antiderivative(start)
+
+    def _antiderivative(self, time: float) -> Array:
+        if time < 0.0:
+            return (self.offset + self.velocity * (time / 2)) * time
+        u = min(time / self.length, 1.0)
+        position = u - u**4 * (2.5 - 3 * u + u * u)
+        velocity = u * u / 2 - u**4 * (1.5 - 1.6 * u + 0.5 * u * u)
+        total: Array = self.length * (
+            self.offset * position + self.velocity * (velocity * self.length)
+        )
+        return total
+
+
+@dataclass(frozen=True)
+class Transition:
+    """What a new motion's poses differ by from the old one's, dying away."""
+
+    turns: Fade
+    """Rotation vectors in the parent's frame, (joints, 3) [rad]."""
+
+    shifts: Fade
+    """Translations, (joints, 3) [m]."""
+
+    @staticmethod
+    def begin(
+        old: tuple[Pose, Pose], new: tuple[Pose, Pose], step: float, length: float
+    ) -> "Transition":
+        """Return the transition between two motions.
+
+        Parameters
+        ----------
+        old, new
+            Two poses of each: `step` seconds before the switch, and at the switch.
+        step
+            Time between the two [s].
+        length
+            How long the transition takes [s].
+        """
+        before, at = (_turns(a, b) for a, b in zip(old, new, strict=True))
+        before = _nearer(before, at)
+        was, shifts = (a.translations - b.translations for a, b in zip(old, new, strict=True))
+        return Transition(
+            Fade(at, (at - before) / step, length), Fade(shifts, (shifts - was) / step, length)
+        )
+
+    def apply(self, pose: Pose, time: float) -> Pose:
+        """Return a pose of the new motion, `time` seconds after the switch, as it is shown."""
+        if time >= self.turns.length:
+            return pose
+        turned = rotations.from_rotation_vector(self.turns.at(time))
+        return Pose(
+            pose.translations + self.shifts.at(time),
+            rotations.multiply(turned, pose.rotations),
+            pose.scales,
+        )
+
+
+def _turns(old: Pose, new: Pose) -> Array:
+    """Return what turns each joint from the new pose to the old one, as rotation vectors."""
+    return rotations.to_rotation_vector(
+        rotations.multiply(old.rotations, rotations.conjugate(new.rotations))
+    )
+
+
+def _nearer(vectors: Array, reference: Array) -> Array:
+    """Return the rotation vectors taken the other way round where that is nearer to `reference`.
+
+    Next to half a turn the shorter way may change from one frame to the next; the motion does not.
+    """
+    angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    other = vectors * (1 - 2 * np.pi / np.maximum(angle, 1e-9))
+    near = np.linalg.norm(vectors - reference, axis=-1) <= np.linalg.norm(
+        other - reference, axis=-1
+    )
+    return np.where(near[..., None], vectors, other)

@@ -1,0 +1,117 @@
+"""A character that walks and runs to where it is sent."""
+
+import math
+
+import numpy as np
+
+from characters.character import Character
+from characters.command import CharacterCommand
+from characters.live import Live
+from characters.locomotion import IDLE_SPEED, RUN_SPEED, STEEPEST, TOP_SPEED, Gaits
+from characters.machine import StateMachine
+from characters.motion import STANDING, Motion, Step
+from characters.phase import Cyclic
+from characters.pose import Pose, Skeleton
+from characters.smoothing import eased
+from characters.steering import STAY, Course, Pilot
+
+_SPEED_LAG = 0.15  # [s]
+_ANGULAR_LAG = 0.15  # [s]
+_STRIDE_LAG = 0.08  # [s]
+_TURN_FROM, _TURN_UNTIL = math.radians(25), math.radians(4)  # turning on the spot, with steps
+_TURN_SPEED = 1.2  # Speed of those steps
+
+
+class Walker:
+    """Plays a character with the movement tree of AvatAR; a `Performer`.
+
+    Two states, as there: it stands, or it walks and runs. Standing, it turns to what it is to
+    look at in small steps on the spot.
+    """
+
+    def __init__(self, character: Character, scale: float, place: Step | None) -> None:
+        clips, skeleton = character.clips, character.skeleton
+        idle: Motion = clips.get("idle", clips["Walk"])
+        self.gaits = Gaits(clips, skeleton, idle.sample(0.0))
+        self.place = place or STANDING
+        self.state, self.speed, self.angular = "idle", 0.0, 0.0
+        self.weight, self.height = 0.0, 0.0
+        self._scale = scale
+        self._stride = 1.0
+        self._turning = False
+        self._pilot = Pilot(self.gaits, scale)
+        self._steps = Live(self.gaits.at(IDLE_SPEED, 0.0))
+        self._first = _likest(idle.sample(0.0), self.gaits.at(IDLE_SPEED, 0.0), skeleton)
+        self._machine = StateMachine({"idle": idle, "move": self._steps}, "idle")
+        self._time = 0.0
+
+    @staticmethod
+    def suits(character: Character) -> bool:
+        """Whether a character has a walk that gets it anywhere."""
+        walk = character.clips.get("Walk")
+        return walk is not None and walk.loop and walk.cycle.length > 0.1 * character.height
+
+    def update(self, command: CharacterCommand, elapsed: float) -> Pose:
+        """Advance by a time [s] under a command and return the pose, with the root in place."""
+        course = self._course(command)
+        self._follow(course, elapsed)
+        now, self._time = self._time, self._time + elapsed
+        self._play(course, now)
+        step = self._machine.travel(now, self._time)
+        self.place = self.place.then(Step(step.x * self._scale, step.z * self._scale, step.yaw))
+        return self._machine.sample(self._time)
+
+    def _course(self, command: CharacterCommand) -> Course:
+        """Return where to go, or how to turn on the spot."""
+        course = STAY
+        if command.action == "move" and command.target is not None and command.speed > IDLE_SPEED:
+            x, z = (float(value) for value in command.target)
+            speed = min(command.speed, TOP_SPEED)
+            course = self._pilot.course(self.place, (x, z), speed, command.stop)
+        if course.speed > 0.0:
+            self._turning = False
+            return course
+        return self._look(command)
+
+    def _look(self, command: CharacterCommand) -> Course:
+        """Return the course of turning on the spot to what it is to look at."""
+        if command.look_at is None:
+            self._turning = False
+            return STAY
+        error = -self.place.bearing(*(float(value) for value in command.look_at))
+        self._turning = abs(error) > (_TURN_UNTIL if self._turning else _TURN_FROM)
+        if not self._turning:
+            return STAY
+        return Course(_TURN_SPEED, min(max(2 * error, -STEEPEST), STEEPEST), 0.0)
+
+    def _follow(self, course: Course, elapsed: float) -> None:
+        """Let Speed, Angular and stride go after the course."""
+        if self._machine.state == "idle":
+            # From standing it sets off in the right way at once; the transition is the easing.
+            self.speed, self.angular, self._stride = 0.0, course.angular, course.stride
+        self.speed = eased(self.speed, course.speed, elapsed, _SPEED_LAG)
+        self.angular = eased(self.angular, course.angular, elapsed, _ANGULAR_LAG)
+        self._stride = eased(self._stride, course.stride, elapsed, _STRIDE_LAG)
+
+    def _play(self, course: Course, now: float) -> None:
+        """Keep the right state going with the parameters in use."""
+        moving = course.speed > 0.0
+        motion = self.gaits.at(self.speed, self.angular, self._stride)
+        if self._machine.state == "move":
+            self._steps.change(motion, now - self._machine.entered)
+        elif moving:
+            self._steps.restart(motion, self._first)
+        self._machine.request("move" if moving else "idle", now)
+        if not moving:
+            self.speed, self.angular = 0.0, 0.0
+        self.state = "idle"
+        if moving and not self._turning:
+            self.state = "run" if self.speed > RUN_SPEED else "walk"
+
+
+def _likest(pose: Pose, motion: Cyclic, skeleton: Skeleton) -> float:
+    """Return the phase at which a cyclic motion is most like a pose: where to set off."""
+    still = pose.globals(skeleton)[:, :3, 3]
+    phases = np.arange(32) / 32
+    apart = [np.square(motion.at(p).globals(skeleton)[:, :3, 3] - still).sum() for p in phases]
+    return float(phases[int(np.argmin(apart))])
