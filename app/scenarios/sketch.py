@@ -65,6 +65,7 @@ class Sketch:
             action="move" if speed > IDLE_BELOW else "idle",
             speed=speed,
             target=self._target(character),
+            stop=False,
             look_at=CAMERA,
             visible=self._presence.update(controls),
         )

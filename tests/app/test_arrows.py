@@ -60,5 +60,5 @@ def test_every_arrow_has_a_json_schema(topic):
 
 @pytest.mark.parametrize("document", [b"", b"{", b"[]", b"3", b"{}"])
 def test_anything_else_is_refused(document):
-    with pytest.raises(ValueError, match="EmotionTarget|Expecting"):
+    with pytest.raises(ValueError, match=r"EmotionTarget|Expecting"):
         decode(EmotionTarget, document)

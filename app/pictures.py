@@ -1,0 +1,57 @@
+"""Draws the pictures of the documents: `python -m app.pictures`.
+
+Every picture is a moment of a bundled recording, as the program shows it.
+"""
+
+from contextlib import ExitStack
+from pathlib import Path
+
+import cv2
+from rich.console import Console
+
+from app.commands.replay import bundled
+from app.opening import fitting
+from app.playground import Playground
+from app.show.overlay import RobotView, overlay
+from characters.rendering import create_context
+from tracking import open_source
+
+FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
+
+MOMENTS: dict[str, dict[str, float]] = {
+    "companion": {"kiss": 14.0, "shout": 26.0},
+    "follow": {"walk": 9.0, "run": 16.0},
+    "sketch": {"path": 24.0},
+}
+"""For every recording, the pictures taken from it and when [s]."""
+
+
+def draw(scenario: str, moments: dict[str, float]) -> None:
+    """Play one recording and keep some of its pictures."""
+    waiting = sorted((time, name) for name, time in moments.items())
+    with ExitStack() as closing:
+        source = closing.enter_context(open_source(str(bundled(scenario))))
+        context = create_context()
+        closing.callback(context.release)
+        intrinsics = fitting(source.intrinsics, source.size)
+        playground = Playground(scenario, intrinsics, context=context)
+        closing.callback(playground.close)
+        for frame in source:
+            step = playground.step(frame)
+            if not waiting or step.picture is None:
+                break
+            if frame.timestamp < waiting[0][0]:
+                continue
+            _, name = waiting.pop(0)
+            emotion = step.emotion
+            view = RobotView("ready", emotion.emotion.valence, emotion.label)
+            path = FOLDER / f"{scenario}-{name}.jpg"
+            picture = overlay(step.picture, step, view)
+            cv2.imwrite(str(path), picture, (cv2.IMWRITE_JPEG_QUALITY, 88))
+            Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for recording, pictures in MOMENTS.items():
+        draw(recording, pictures)
