@@ -156,9 +156,10 @@ def find_feet(skeleton: Skeleton) -> tuple[list[int], list[int]]:
 def footfalls(clip: Clip, feet: list[int], skeleton: Skeleton) -> list[float]:
     """Return the times [s] in a looped clip at which a foot lands.
 
-    A foot lands about when it is farthest forward of the body (Zeni, Richards and Higginson, "Two
+    A foot lands just after it was farthest forward of the body (Zeni, Richards and Higginson, "Two
     simple methods for determining gait events", Gait & Posture 2008); that needs no floor, and
-    works as well for clips that walk in place.
+    works for clips that walk in place. Where the root moves, it lands when its speed over the
+    ground has fallen well below the body's.
     """
     if not feet or not clip.loop or len(clip) < 5:
         return []
@@ -168,7 +169,24 @@ def footfalls(clip: Clip, feet: list[int], skeleton: Skeleton) -> list[float]:
     middle, swing = (forward.max() + forward.min()) / 2, np.ptp(forward)
     if swing < _SHUFFLE * tall:
         return []
-    return [_peak(forward, frame) / clip.rate for frame in _crests(forward - middle, swing / 4)]
+    crests = _crests(forward - middle, swing / 4)
+    if clip.cycle.length < swing:
+        return [_peak(forward, frame) / clip.rate for frame in crests]
+    world = clip.poses.globals(skeleton)[..., :3, 3][:, feet].mean(1)
+    speed = np.linalg.norm(np.diff(world[:, [0, 2]], axis=0), axis=1) * clip.rate
+    slow = 0.3 * clip.cycle.length / clip.duration
+    return [_falls_below(speed, slow, frame) / clip.rate for frame in crests]
+
+
+def _falls_below(speed: Array, threshold: float, frame: int) -> float:
+    """Return when the speeds of the intervals after a frame fall below a threshold [frames]."""
+    count = len(speed)
+    for later in range(frame, frame + count):
+        fast, slow = speed[later % count], speed[(later + 1) % count]
+        if fast >= threshold > slow:
+            # An interval's speed is that of its middle.
+            return float(later + 0.5 + (fast - threshold) / (fast - slow)) % count
+    return float(frame)
 
 
 def _crests(wave: Array, margin: float) -> list[int]:
