@@ -4,7 +4,9 @@ from tracking.cube import CubeModel, Face
 from tracking.errors import TrackingError
 from tracking.frame import Frame
 from tracking.gestures import CubeGestures
+from tracking.icons import icon_mask, icon_paths
 from tracking.intrinsics import Intrinsics
+from tracking.sheet import write_sheet
 from tracking.sources import FrameSource, open_source
 from tracking.state import CubeControls, CubeState
 from tracking.tracker import CubeTracker
@@ -20,5 +22,8 @@ __all__ = [
     "FrameSource",
     "Intrinsics",
     "TrackingError",
+    "icon_mask",
+    "icon_paths",
     "open_source",
+    "write_sheet",
 ]

@@ -52,7 +52,7 @@ def marker_loops(dictionary: str, marker_id: int) -> list[Loop]:
 
 
 def _borders(cells: NDArray[np.bool_]) -> dict[tuple[int, int], list[tuple[int, int]]]:
-    """List the steps from each grid point along the borders of black cells, black on the right hand."""
+    """List the steps along black cells from each grid point, black on the right hand."""
     around = np.pad(cells, 1)
     steps: dict[tuple[int, int], list[tuple[int, int]]] = {}
     for row, column in np.argwhere(cells):
