@@ -138,7 +138,7 @@ def foot_motion(path: Path, steps: Steps, foot: Foot, side: float, phase: Array)
     )
     ease = u * u * (3 - 2 * u)
     swing_yaw = ends[0][1] + (ends[1][1] - ends[0][1]) * ease
-    room = foot.ball_height(swing[:, 1], swing_pitch) - 0.85 * foot.ball[0]
+    room = foot.ball_height(swing[:, 1], swing_pitch) - foot.ball[0]
     peel = swing_pitch - np.arcsin(np.clip(room / foot.toes, -1.0, 1.0))  # the tip stays above 0
     swing_toe = np.maximum(ends[0][3] * np.clip(1 - 3 * u, 0, 1) ** 2, peel)
     up = u > 0

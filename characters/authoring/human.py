@@ -1,8 +1,9 @@
 """The bundled human: an explorer with a backpack, and all that it knows how to do."""
 
-from characters.authoring.human_body import build_human_meshes, build_human_skeleton
+from characters.authoring.human_body import build_human_meshes
 from characters.authoring.human_idle import idle
 from characters.authoring.human_motion import locomotion
+from characters.authoring.human_rig import build_human_skeleton
 from characters.character import Character
 
 

@@ -3,15 +3,23 @@
 import numpy as np
 
 from characters import rotations
-from characters.authoring.human_motion import FOOT, RATE, SIDES, bent_elbow, hang_arm, turned
+from characters.authoring.human_motion import FOOT, SIDES, bent_elbow, hang_arm, turned
+from characters.authoring.ik import aim
 from characters.authoring.rig import Puppet
 from characters.authoring.shapes import Array
 from characters.clip import Clip
 from characters.pose import Skeleton
 
+RATE = 30.0
 DURATION = 9.0
 BREATHS = 3
 TOE_OUT = 0.14
+STRAP = np.array([0.165, 1.03, 0.145])
+"""Where the left wrist is when the hand holds its strap, in the rest pose [m]."""
+
+GRIP = ((-0.85, 0.5, -0.2), (0.4, 0.85, 0.0))
+"""Where the fingers and the thumb of that hand point."""
+
 BLINKS = (1.25, 4.3, 4.62, 7.5)
 """When the eyes are closed, the third a moment after the second [s]."""
 
@@ -27,6 +35,7 @@ def idle(skeleton: Skeleton) -> Clip:
     _stand(puppet, weight, breath)
     _hold_trunk(puppet, weight, breath, look, nod)
     _hold_arms(puppet, weight, breath, time)
+    _take_straps(puppet, _glance(time, 4.6, 7.3, 0.75))
     for side, _ in SIDES:
         puppet.turn(f"{side}Eyelid", turned(x=78 * _blinks(time)))
     return Clip("idle", RATE, puppet.pose, loop=True, root_motion=True)
@@ -81,7 +90,7 @@ def _stand(puppet: Puppet, weight: Array, breath: Array) -> None:
 
 def _hold_trunk(puppet: Puppet, weight: Array, breath: Array, look: Array, nod: Array) -> None:
     """Breathe, balance over the pelvis, and let the shoulders follow the head a little."""
-    behind = np.roll(look[:-1], 9)  # the chest turns after the head
+    behind = np.roll(look[:-1], 5)  # the chest turns after the head
     follow = np.append(behind, behind[0])
     puppet.turn("spine1", turned(-0.6 * breath, 1.5 * weight + 0.05 * follow, -2.4 * weight))
     puppet.turn("spine2", turned(1.0 - 0.9 * breath, 1.5 * weight + 0.07 * follow, -2.4 * weight))
@@ -94,14 +103,34 @@ def _hold_trunk(puppet: Puppet, weight: Array, breath: Array, look: Array, nod: 
 
 def _hold_arms(puppet: Puppet, weight: Array, breath: Array, time: Array) -> None:
     """Let the arms hang, lifted by each breath and swaying after the shift of weight."""
-    behind = np.roll(weight[:-1], 14)
+    behind = np.roll(weight[:-1], 7)
     late = np.append(behind, behind[0])
     for side, sign in SIDES:
         slow = np.sin(2 * np.pi * 2 * time / DURATION + 1.3 * sign)
-        lifted = np.roll(breath[:-1], 6)
+        lifted = np.roll(breath[:-1], 3)
         lift = np.append(lifted, lifted[0])
         puppet.turn(f"{side}Shoulder", turned(0, 0, sign * (1.6 * breath + 1.0)))
         hang_arm(puppet, side, sign, 3 + 2 * slow - 2 * lift, 24 + 2.2 * sign * late - 1.2 * lift)
         bend = 19 + 4 * slow + 2.5 * lift
         puppet.turn(f"{side}ForeArm", bent_elbow(puppet, side, sign, bend, 12 + 3 * slow))
         puppet.turn(f"{side}Hand", turned(-4 + 3 * slow, 0, -sign * (3 + 1.5 * lift)))
+
+
+def _take_straps(puppet: Puppet, taken: Array) -> None:
+    """Raise both hands to the straps of the backpack as far as `taken` says, 0…1."""
+    for side, sign in SIDES:
+        flip = np.array([sign, 1.0, 1.0])
+        hand, elbow = puppet.places(f"{side}Hand"), puppet.places(f"{side}ForeArm")
+        chest, turned_chest = puppet.places("chest"), puppet.facing("chest")
+        strap = chest + rotations.rotate(turned_chest, STRAP * flip - puppet.rest("chest"))
+        arc = 4 * taken * (1 - taken)
+        t = taken[:, None]
+        wrist = hand + (strap - hand) * t + arc[:, None] * flip * [0.06, 0.0, 0.05]
+        out = rotations.rotate(turned_chest, flip * [0.9, -0.6, -0.25])
+        hanging = elbow - 0.5 * (puppet.places(f"{side}Arm") + hand)
+        hanging /= np.linalg.norm(hanging, axis=1, keepdims=True)
+        grasp = rotations.rotate(turned_chest[:, None], np.array(GRIP) * flip)
+        rest = puppet.rest(f"{side}Hand") - puppet.rest(f"{side}ForeArm")
+        grip = aim(rest, [0.0, 0.0, 1.0], grasp[:, 0], grasp[:, 1])
+        facing = rotations.slerp(puppet.facing(f"{side}Hand"), grip, taken)
+        puppet.place_hand(side, wrist, facing, hanging + (out - hanging) * t)

@@ -35,13 +35,19 @@ def build_skeleton(joints: Mapping[str, tuple[str, Vector]]) -> Skeleton:
     return Skeleton(names, parents, Pose(local, np.tile(rotations.IDENTITY, (len(names), 1))))
 
 
+def joint_places(skeleton: Skeleton) -> dict[str, Array]:
+    """Return where each joint rests in the character frame, (3,) each [m]."""
+    places = skeleton.rest.globals(skeleton)[:, :3, 3]
+    return dict(zip(skeleton.names, places, strict=True))
+
+
 class Puppet:
     """A skeleton in `frames` poses at once, moved joint by joint in the frame of its root."""
 
     def __init__(self, skeleton: Skeleton, frames: int) -> None:
         """Start in the rest pose."""
         self.skeleton = skeleton
-        self._rest = skeleton.rest.globals(skeleton)[:, :3, 3]
+        self._rest = joint_places(skeleton)
         self._translations = np.tile(skeleton.rest.translations, (frames, 1, 1))
         self._rotations = np.tile(skeleton.rest.rotations, (frames, 1, 1))
 
@@ -52,7 +58,7 @@ class Puppet:
 
     def rest(self, name: str) -> Array:
         """Return where a joint rests, (3,) [m]."""
-        return np.asarray(self._rest[self.skeleton.names.index(name)])
+        return self._rest[name]
 
     def shift(self, name: str, offset: ArrayLike) -> None:
         """Move a joint in its parent's axes by (frames, 3) or (3,) [m]."""
@@ -94,17 +100,38 @@ class Puppet:
         facing : of the foot in the character frame, (frames, 4)
         toe : bend of the toes, (frames,), positive upwards [rad]
         """
-        names = [f"{side}{part}" for part in ("UpLeg", "Leg", "Foot")]
-        hip, knee, foot = (self.rest(name) for name in names)
-        forward = _flat(0.5 * _ahead(facing) + 0.5 * _ahead(self.facing("hips")))
-        start = self.places(names[0])
-        middle = bend(start, ankle, forward, *np.linalg.norm([knee - hip, foot - knee], axis=1))
-        hinge = np.cross(forward, middle - start)  # to the left, as +x is at rest
-        rest_hinge = np.cross([0.0, 0.0, 1.0], knee - hip)
-        self.face(names[0], aim(knee - hip, rest_hinge, middle - start, hinge))
-        self.face(names[1], aim(foot - knee, rest_hinge, ankle - middle, hinge))
-        self.face(names[2], facing)
+        forward = _flat(_ahead(facing) + _ahead(self.facing("hips")))
+        legs = (f"{side}UpLeg", f"{side}Leg", f"{side}Foot")
+        self._bend_limb(legs, ankle, forward, np.array([0.0, 0.0, 1.0]))
+        self.face(legs[2], facing)
         self.turn(f"{side}Toe", rotations.about("x", -toe))
+
+    def place_hand(self, side: str, wrist: Array, facing: Array, elbow: Array) -> None:
+        """Bend an arm so that its wrist is here and its hand faces so.
+
+        Parameters
+        ----------
+        side : "Left" or "Right"
+        wrist : (frames, 3) [m]
+        facing : of the hand in the character frame, (frames, 4)
+        elbow : direction to which the elbow points, (frames, 3)
+        """
+        arm = (f"{side}Arm", f"{side}ForeArm", f"{side}Hand")
+        self._bend_limb(arm, wrist, elbow, np.array([0.0, 0.0, -1.0]))
+        self.face(arm[2], facing)
+
+    def _bend_limb(
+        self, names: tuple[str, str, str], end: Array, pole: Array, rest_pole: Array
+    ) -> None:
+        """Turn two bones so that the third joint is at `end` and the second one towards `pole`."""
+        first, second, third = (self.rest(name) for name in names)
+        upper, lower = second - first, third - second
+        start = self.places(names[0])
+        lengths = float(np.linalg.norm(upper)), float(np.linalg.norm(lower))
+        middle = bend(start, end, pole, *lengths)
+        rest_hinge, hinge = np.cross(rest_pole, third - first), np.cross(pole, end - start)
+        self.face(names[0], aim(upper, rest_hinge, middle - start, hinge))
+        self.face(names[1], aim(lower, rest_hinge, end - middle, hinge))
 
     def leg_extension(self, side: str, ankle: Array) -> Array:
         """Return the distance from hip to ankle over the length of the leg, (frames,)."""

@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from characters.authoring.shapes import Array, Shape, Solid, Vector
 from characters.authoring.surface import neighbour_mean, normals_of, polygonise
@@ -57,8 +58,7 @@ def sculpt(
     Each part is a closed surface of its own, so where two parts meet the border is as crisp as
     the picture, whatever the size of the triangles.
     """
-    inverse_bind = np.asarray(np.linalg.inv(skeleton.rest.globals(skeleton)), np.float64)
-    return join(name, [_sculpt_part(part, skeleton, inverse_bind) for part in parts], material)
+    return join(name, [_sculpt_part(part, skeleton) for part in parts], material)
 
 
 def join(name: str, meshes: Sequence[Mesh], material: Material | None = None) -> Mesh:
@@ -99,43 +99,57 @@ def lathe(
     joint : the joint that moves it
     """
     angle = np.linspace(0, 2 * np.pi, segments, endpoint=False)
-    circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(segments)], axis=-1)
-    lines = np.repeat(np.asarray(rings, float), 2, axis=0)[1:-1]  # each band has both its rims
-    local = lines[:, :1, None] * circle + lines[:, 1:, None] * np.array([0.0, 0.0, 1.0])
+    circle = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)
+    axis = np.array([0.0, 0.0, 1.0])
+    border = [below != above for below, above in pairwise(colors)]
+    copies = np.array([1, *(1 + np.array(border, dtype=int)), 1])  # two rims where colours meet
+    profile = np.repeat(np.column_stack([rings, _ring_normals(np.asarray(rings))]), copies, axis=0)
+    points = profile[:, :1, None] * circle + profile[:, 1:2, None] * axis
+    normals = profile[:, 2:3, None] * circle + profile[:, 3:, None] * axis
+    turn, shift = np.asarray(place)[:3, :3], np.asarray(place)[:3, 3]
+    normals = normals.reshape(-1, 3) @ np.linalg.inv(turn)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    starts = np.cumsum(copies)[:-1] - 1
+    band = np.searchsorted(starts, np.arange(len(profile)), side="right") - 1
+    paint = np.array(colors)[np.minimum(band, len(colors) - 1)]
+    bones = np.zeros((len(points) * segments, len(skeleton.names)))
+    bones[:, skeleton.names.index(joint)] = 1.0
+    return bound_mesh(
+        points.reshape(-1, 3) @ turn.T + shift,
+        normals,
+        bands(starts, segments),
+        bones,
+        np.repeat(paint, segments, axis=0),
+        skeleton,
+    )
+
+
+def _ring_normals(rings: Array) -> Array:
+    """Return the normals of a profile at its rings, averaged over the bands beside them."""
     across = np.diff(rings, axis=0)
     slope = np.stack([across[:, 1], -across[:, 0]], axis=1)
     slope /= np.linalg.norm(slope, axis=1, keepdims=True)
-    smooth = _ring_normals(slope)
-    normal = smooth[:, :1, None] * circle + smooth[:, 1:, None] * np.array([0.0, 0.0, 1.0])
-    linear = np.linalg.inv(np.asarray(place)[:3, :3]).T
-    normal = normal.reshape(-1, 3) @ linear.T
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    points = local.reshape(-1, 3) @ np.asarray(place)[:3, :3].T + np.asarray(place)[:3, 3]
-    paint = np.repeat(np.repeat(np.array(colors), 2, axis=0), segments, axis=0)
-    bones = np.zeros((len(points), len(skeleton.names)))
-    bones[:, skeleton.names.index(joint)] = 1.0
-    inverse_bind = np.asarray(np.linalg.inv(skeleton.rest.globals(skeleton)), np.float64)
-    return _mesh(points, normal, _bands(len(rings), segments), bones, paint, inverse_bind)
-
-
-def _ring_normals(slope: Array) -> Array:
-    """Return the normals of both rims of each band, averaged across neighbouring bands."""
-    ahead = np.vstack([slope[1:], [0.0, 1.0]])
-    behind = np.vstack([[0.0, -1.0], slope[:-1]])
-    both = np.stack([slope + behind, slope + ahead], axis=1).reshape(-1, 2)
+    both = np.vstack([[0.0, -2.0], slope[:-1] + slope[1:], [0.0, 2.0]])
     return np.asarray(both / np.linalg.norm(both, axis=1, keepdims=True))
 
 
-def _bands(rings: int, segments: int) -> NDArray[np.int64]:
+def bands(starts: ArrayLike, segments: int) -> NDArray[np.int64]:
+    """Return the triangles between rings of vertices, the first and last of which are poles.
+
+    Parameters
+    ----------
+    starts : number of the ring at which each band begins; it ends at the next ring
+    segments : vertices a ring
+    """
     i = np.arange(segments)
     j = (i + 1) % segments
-    lower = np.stack([i, j, j + segments], axis=1)  # empty in the first band: a pole
+    lower = np.stack([i, j, j + segments], axis=1)  # empty in the first band
     upper = np.stack([i, j + segments, i + segments], axis=1)  # empty in the last
-    first = [2 * segments * band for band in range(rings - 1)]
+    first = segments * np.asarray(starts)
     return np.concatenate([lower + s for s in first[1:]] + [upper + s for s in first[:-1]])
 
 
-def _sculpt_part(part: Part, skeleton: Skeleton, inverse_bind: Array) -> Mesh:
+def _sculpt_part(part: Part, skeleton: Skeleton) -> Mesh:
     field = part.shape.distance
     low, high = _bounds(part.shape, skeleton, part.cell)
     points, triangles = polygonise(field, low, high, part.cell)
@@ -144,7 +158,7 @@ def _sculpt_part(part: Part, skeleton: Skeleton, inverse_bind: Array) -> Mesh:
     weights = skin_weights(points, triangles, solids, distances, skeleton, part.soft_skin)
     colors = _painted(points, solids, distances, part)
     normals = normals_of(field, points, part.cell)
-    return _mesh(points, normals, triangles, weights, colors, inverse_bind)
+    return bound_mesh(points, normals, triangles, weights, colors, skeleton)
 
 
 def _bounds(shape: Shape, skeleton: Skeleton, cell: float) -> tuple[Array, Array]:
@@ -213,15 +227,24 @@ def _painted(points: Array, solids: Sequence[Solid], distances: Array, part: Par
     return np.asarray(colors)
 
 
-def _mesh(
+def bound_mesh(
     points: Array,
     normals: Array,
     triangles: NDArray[np.int64],
     weights: Array,
     colors: Array,
-    inverse_bind: Array,
+    skeleton: Skeleton,
 ) -> Mesh:
-    """Return the arrays as the graphics card wants them, with the four largest weights."""
+    """Return the arrays as the graphics card wants them, with the four largest weights.
+
+    Parameters
+    ----------
+    points, normals : (n, 3)
+    triangles : (m, 3)
+    weights : of every joint on every vertex, (n, joints)
+    colors : linear RGB, (n, 3)
+    skeleton : the vertices are bound to its rest pose
+    """
     joints = np.argsort(-weights, axis=1, kind="stable")[:, :4]
     four = np.take_along_axis(weights, joints, axis=1)
     four[four < 0.01] = 0.0
@@ -233,6 +256,6 @@ def _mesh(
         triangles=triangles.astype(np.uint32),
         joints=np.where(four > 0, joints, 0).astype(np.uint16),
         weights=four.astype(np.float32),
-        inverse_bind=inverse_bind,
+        inverse_bind=np.asarray(np.linalg.inv(skeleton.rest.globals(skeleton)), np.float64),
         colors=np.column_stack([colors, np.ones(len(points))]).astype(np.float32),
     )

@@ -1,0 +1,252 @@
+"""The bundled explorer's outfit: hoodie, trousers, shoes, a backpack, and the hands.
+
+Colours that stand out from wood and paper alike, the brightest at the hands' and feet's ends.
+"""
+
+import numpy as np
+
+from characters.authoring.cord import cord
+from characters.authoring.human_head import SKIN
+from characters.authoring.human_rig import JOINTS
+from characters.authoring.sculpt import Part, lathe
+from characters.authoring.shapes import (
+    Array,
+    Cone,
+    Cut,
+    Ellipsoid,
+    HalfSpace,
+    Shape,
+    Union,
+    Vector,
+    chain,
+    rgb,
+)
+from characters.mesh import Mesh
+from characters.pose import Skeleton
+
+TEAL = rgb("#0fa3a6")
+DEEP_TEAL = rgb("#0a7c86")
+CREAM = rgb("#fff3dc")
+MUSTARD = rgb("#f5b02e")
+LEATHER = rgb("#a8611f")
+INDIGO = rgb("#323a6e")
+PALE_INDIGO = rgb("#6d78b8")
+CORAL = rgb("#f0563f")
+
+
+def outfit_parts() -> list[Part]:
+    """Return what is carved, of both sides."""
+    parts = _torso_parts()
+    for side in (_arm_parts(), _leg_parts()):
+        for part in side:
+            parts += [part, Part(part.shape.mirrored(), part.cell, (), part.soft_skin)]
+    return parts
+
+
+def cords(skeleton: Skeleton) -> list[Mesh]:
+    """Return laces, the strings of the hood and the straps of the backpack."""
+    meshes = []
+    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+        flip = [sign, 1.0, 1.0]
+        string = np.array(STRING) * flip
+        meshes.append(cord(string, STRING_RADII, CREAM, "chest", skeleton))
+        strap = np.array(STRAP) * flip
+        over = ["chest", f"{side}Shoulder", "chest", "chest", "spine2", "spine2", "spine2"]
+        meshes.append(cord(strap, 0.02, LEATHER, over, skeleton, 6, 15))
+        for i in range(2):
+            y, z = 0.1 + 0.022 * i, 0.085 - 0.028 * i
+            lace = np.array([(0.087, y, z), (0.114, y + 0.008, z + 0.004), (0.141, y, z)])
+            meshes.append(cord(lace * flip, 0.0095, CREAM, f"{side}Foot", skeleton))
+    return meshes
+
+
+def ribbing(skeleton: Skeleton) -> list[Mesh]:
+    """Return what is turned on the lathe: the hem, the cuffs and the turned-up trousers."""
+    hem = np.array([[0.178, 0, 0, 0], [0, 0, 0.036, 0.835], [0, -0.138, 0, 0]])
+    meshes = [_ring(hem, DEEP_TEAL, "hips", skeleton, 28)]
+    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+        elbow, wrist, knee, ankle = (
+            np.array(JOINTS[f"Left{name}"][1]) * [sign, 1.0, 1.0]
+            for name in ("ForeArm", "Hand", "Leg", "Foot")
+        )
+        cuff = _across(elbow, wrist, -0.018, 0.066, 0.032)
+        meshes.append(_ring(cuff, DEEP_TEAL, f"{side}ForeArm", skeleton, 16))
+        turn_up = _across(knee, ankle, -0.073, 0.081, 0.034)
+        meshes.append(_ring(turn_up, PALE_INDIGO, f"{side}Leg", skeleton, 16))
+    return meshes
+
+
+def _ring(place: Array, color: Vector, joint: str, skeleton: Skeleton, segments: int) -> Mesh:
+    """Return a band with a round rim, of radius and half height 1 before it is placed."""
+    tilt = np.linspace(-np.pi / 2, np.pi / 2, 7)
+    rim = np.stack([0.82 + 0.18 * np.cos(tilt), np.sin(tilt)], axis=-1)
+    rings = np.vstack([[0.0, -1.0], rim, [0.0, 1.0]])
+    return lathe(rings, [color] * (len(rings) - 1), place, joint, skeleton, segments)
+
+
+def _across(start: Array, end: Array, beyond: float, radius: float, half: float) -> Array:
+    """Return the place of a ring about a limb, so far beyond its end, (3, 4)."""
+    axis = (end - start) / np.linalg.norm(end - start)
+    side = np.cross(axis, [0.0, 0.0, 1.0])
+    side /= np.linalg.norm(side)
+    turn = np.column_stack([side, np.cross(axis, side), axis]) * [radius, radius, half]
+    return np.column_stack([turn, end + beyond * axis])
+
+
+STRING: list[Vector] = [
+    (0.034, 1.185, 0.112),
+    (0.038, 1.13, 0.126),
+    (0.04, 1.085, 0.128),
+    (0.041, 1.07, 0.128),
+]
+STRING_RADII = [0.0075, 0.0075, 0.0075, 0.0125]
+
+STRAP: list[Vector] = [
+    (0.08, 1.19, -0.12),
+    (0.098, 1.245, -0.04),
+    (0.1, 1.215, 0.05),
+    (0.1, 1.12, 0.098),
+    (0.11, 1.02, 0.085),
+    (0.145, 0.965, 0.0),
+    (0.1, 0.965, -0.12),
+]
+
+
+def _both(shape: Shape) -> Union:
+    return Union((shape, shape.mirrored()))
+
+
+def _torso_parts() -> list[Part]:
+    spine = ("hips", "spine1", "spine2", "chest")
+    trunk = Cone(
+        (0, 0.9, 0), (0, 1.105, -0.005), 0.165, 0.148, (1, 1, 0.78), bones=spine, color=TEAL
+    )
+    hem_line = HalfSpace((0, 0.825, 0), (0, 1, 0))
+    yoke = Cone(
+        (0.06, 1.165, -0.01), (0.15, 1.17, -0.012), 0.075, 0.07, bones=("LeftShoulder",), color=TEAL
+    )
+    sleeve = chain(
+        [JOINTS[f"Left{n}"][1] for n in ("Arm", "ForeArm", "Hand")],
+        (0.072, 0.063, 0.057),
+        ("LeftArm", "LeftForeArm"),
+        TEAL,
+        0.02,
+    )
+    hoodie = Union((Cut(trunk, hem_line, 0.02), _both(yoke), _both(sleeve)), 0.05)
+    pocket = Ellipsoid(
+        (0, 0.93, 0.1), (0.085, 0.05, 0.04), power=3.5, bones=("spine1", "hips"), color=DEEP_TEAL
+    )
+    return [
+        Part(hoodie, 0.034, soft_skin=0.045),
+        Part(pocket, 0.027, soft_skin=0.03),
+        Part(_hood(), 0.028, soft_skin=0.02),
+        *_backpack(),
+    ]
+
+
+def _hood() -> Shape:
+    bones, color = ("chest",), TEAL
+    back = Ellipsoid(
+        (0, 1.235, -0.085), (0.12, 0.07, 0.062), (0.35, 0, 0), bones=bones, color=color
+    )
+    collar = chain(
+        [(0.0, 1.25, -0.1), (0.085, 1.25, -0.055), (0.092, 1.235, 0.015), (0.03, 1.185, 0.1)],
+        (0.045, 0.04, 0.034, 0.026),
+        ("chest",) * 3,
+        color,
+        0.02,
+    )
+    return Union((back, _both(collar)), 0.02)
+
+
+def _backpack() -> list[Part]:
+    bones = ("chest",)
+    bag = Ellipsoid((0, 1.045, -0.19), (0.118, 0.145, 0.075), power=3.2, bones=bones, color=MUSTARD)
+    flap = Ellipsoid(
+        (0, 1.125, -0.195), (0.124, 0.075, 0.083), (-0.1, 0, 0), 3.2, bones=bones, color=LEATHER
+    )
+    purse = Ellipsoid((0, 0.985, -0.262), (0.07, 0.05, 0.03), power=3.2, bones=bones, color=LEATHER)
+    buckle = Ellipsoid((0, 1.07, -0.275), (0.02, 0.026, 0.014), power=3.0, bones=bones, color=CREAM)
+    return [
+        Part(bag, 0.036, soft_skin=0.0),
+        Part(flap, 0.034, soft_skin=0.0),
+        Part(purse, 0.024, soft_skin=0.0),
+        Part(buckle, 0.012, soft_skin=0.0),
+    ]
+
+
+def _arm_parts() -> list[Part]:
+    elbow, wrist = (np.array(JOINTS[f"Left{n}"][1]) for n in ("ForeArm", "Hand"))
+    along = (wrist - elbow) / np.linalg.norm(wrist - elbow)
+    return [Part(_hand(wrist, along), 0.0172, soft_skin=0.0)]
+
+
+def _hand(wrist: Array, along: Array) -> Shape:
+    """Return a hand with three fingers and a thumb, a little curled, palm to the thigh."""
+    bones, color = ("LeftHand",), SKIN
+    front = np.array([0.0, 0.0, 1.0])
+    palm_normal = np.cross(along, front)  # towards the body
+
+    def at(reach: float, forward: float, inward: float = 0.0) -> Vector:
+        return _vector(wrist + reach * along + forward * front + inward * palm_normal)
+
+    palm = Cone(at(0.0, 0.0), at(0.06, 0.004), 0.036, 0.044, bones=bones, color=color)
+    fingers = [
+        chain(
+            [at(0.075, z), at(0.11, 1.15 * z, 0.008), at(0.138, 1.15 * z, 0.028)],
+            (0.019, 0.018, 0.016),
+            bones * 2,
+            color,
+        )
+        for z in (-0.028, 0.002, 0.032)
+    ]
+    thumb = chain(
+        [at(0.02, 0.03), at(0.055, 0.064, 0.012), at(0.082, 0.07, 0.018)],
+        (0.02, 0.018, 0.016),
+        bones * 2,
+        color,
+    )
+    return Union((palm, *fingers, thumb), 0.012)
+
+
+def _leg_parts() -> list[Part]:
+    bones = ("hips",)
+    seat = Ellipsoid((0.04, 0.81, -0.005), (0.1, 0.085, 0.108), bones=bones, color=INDIGO)
+    hip, knee, ankle = (np.array(JOINTS[f"Left{n}"][1]) for n in ("UpLeg", "Leg", "Foot"))
+    shin_end = ankle + 0.07 * (knee - ankle) / np.linalg.norm(knee - ankle)
+    leg = chain([hip, knee, shin_end], (0.086, 0.07, 0.07), ("LeftUpLeg", "LeftLeg"), INDIGO, 0.03)
+    return [
+        Part(Union((seat, leg), 0.03), 0.036, soft_skin=0.045),
+        *_shoe(),
+    ]
+
+
+def _shoe() -> list[Part]:
+    bones = ("LeftToe", "LeftFoot")  # in this order: what lies ahead of the ball is the toe's
+    ground = HalfSpace((0, 0.001, 0), (0, 1, 0))  # what the bend at the ball may sink
+    sole = Ellipsoid(
+        (0.117, 0.012, 0.052), (0.062, 0.036, 0.148), power=3.0, bones=bones, color=CREAM
+    )
+    toe = Ellipsoid(
+        (0.118, 0.058, 0.095), (0.056, 0.05, 0.095), power=2.4, bones=bones, color=CORAL
+    )
+    heel = Ellipsoid(
+        (0.113, 0.068, -0.02), (0.05, 0.062, 0.068), power=2.4, bones=bones, color=CORAL
+    )
+    ankle = Cone(
+        (0.111, 0.1, -0.018), (0.11, 0.145, -0.016), 0.052, 0.055, bones=("LeftFoot",), color=CORAL
+    )
+    upper = Cut(Union((toe, heel, ankle), 0.035), HalfSpace((0, 0.025, 0), (0, 1, 0)), 0.01)
+    cap = Ellipsoid(
+        (0.119, 0.042, 0.15), (0.054, 0.04, 0.048), power=2.4, bones=("LeftToe",), color=CREAM
+    )
+    return [
+        Part(Cut(sole, ground, 0.008), 0.018, soft_skin=0.025),
+        Part(upper, 0.026, soft_skin=0.025),
+        Part(Cut(cap, ground, 0.01), 0.024, soft_skin=0.0),
+    ]
+
+
+def _vector(point: Array) -> Vector:
+    x, y, z = np.asarray(point, float).tolist()
+    return x, y, z

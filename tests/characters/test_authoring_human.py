@@ -1,0 +1,173 @@
+"""The bundled explorer is what its code makes, and moves as a body on the ground must."""
+
+import numpy as np
+import pytest
+
+from characters import rotations
+from characters.authoring.human import build_human
+from characters.authoring.human_motion import FOOT
+from characters.character import Character, skin
+from characters.clip import Clip
+from characters.mesh import Mesh
+
+WALKS = [f"Walk{side}{size}" for side in ("Left", "Right") for size in ("Short", "Medium", "Wide")]
+RUNS = [f"Run{side}{size}" for side in ("Left", "Right") for size in ("Medium", "Wide")]
+GAITS = ["Walk", *WALKS, "Run", *RUNS]
+CLIPS = ["idle", *GAITS]
+SPEEDS = {"Walk": (1.35, 0.0), "Run": (3.4, 0.0)}
+YAW_RATES = {"Wide": 45.0, "Medium": 90.0, "Short": 135.0}
+
+
+@pytest.fixture(scope="module")
+def human() -> Character:
+    return Character.load("human")
+
+
+@pytest.fixture(scope="module")
+def made() -> Character:
+    return build_human()
+
+
+def world_points(human: Character, clip: Clip, joint: str, offset: tuple[float, float, float]):
+    """Where a point of a joint goes over the ground, (frames, 3)."""
+    number = human.skeleton.names.index(joint)
+    return clip.poses.globals(human.skeleton)[:, number] @ [*offset, 1.0]
+
+
+def test_the_asset_is_what_the_code_makes(human: Character, made: Character) -> None:
+    assert human.skeleton.names == made.skeleton.names
+    assert human.skeleton.parents == made.skeleton.parents
+    assert sorted(human.clips) == sorted(made.clips)
+    for name, clip in made.clips.items():
+        shipped = human.clips[name].poses
+        assert np.allclose(shipped.translations, clip.poses.translations, atol=1e-4), name
+        same = rotations.align(shipped.rotations, clip.poses.rotations)
+        assert np.allclose(same, clip.poses.rotations, atol=1e-4), name
+    for shipped_mesh, mesh in zip(human.meshes, made.meshes, strict=True):
+        assert np.array_equal(shipped_mesh.triangles, mesh.triangles)
+        assert np.allclose(shipped_mesh.positions, mesh.positions, atol=1e-5)
+        assert np.allclose(shipped_mesh.weights, mesh.weights, atol=2e-3)
+
+
+def test_knows_to_wait_and_the_twelve_gaits_and_more_turns(human: Character) -> None:
+    assert sorted(human.clips) == sorted(CLIPS)
+
+
+def test_stands_a_person_tall_on_the_ground(human: Character) -> None:
+    assert human.height == pytest.approx(1.75, abs=0.05)
+    assert human.bounds[0, 1] == pytest.approx(0.0, abs=0.002)
+
+
+@pytest.mark.parametrize("name", CLIPS)
+def test_a_loop_closes(human: Character, name: str) -> None:
+    poses = human.clips[name].in_place
+    assert np.allclose(poses.translations[0], poses.translations[-1], atol=1e-5)
+    first = rotations.align(poses.rotations[0], poses.rotations[-1])
+    assert np.allclose(first, poses.rotations[-1], atol=1e-5)
+
+
+@pytest.mark.parametrize("name", GAITS)
+def test_the_root_runs_evenly_along_its_arc(human: Character, name: str) -> None:
+    clip = human.clips[name]
+    steps = np.linalg.norm(np.diff(clip.track[:, :2], axis=0), axis=1) * clip.rate
+    rates = np.degrees(np.diff(clip.track[:, 2])) * clip.rate
+    assert np.allclose(steps, steps[0], atol=1e-3)
+    assert np.allclose(rates, rates[0], atol=0.1)
+    size = name.removeprefix("Walk").removeprefix("Run").removeprefix("Left").removeprefix("Right")
+    sign = 1 if "Left" in name else -1
+    expected = sign * YAW_RATES.get(size, 0.0) * (1.5 if name.startswith("Run") else 1.0)
+    assert rates[0] == pytest.approx(expected, abs=0.1)
+    if name in SPEEDS:
+        assert steps[0] == pytest.approx(SPEEDS[name][0], rel=0.01)
+
+
+@pytest.mark.parametrize("name", CLIPS)
+@pytest.mark.parametrize("side", ["Left", "Right"])
+def test_a_planted_foot_does_not_slide(human: Character, name: str, side: str) -> None:
+    clip = human.clips[name]
+    heel = world_points(human, clip, f"{side}Foot", (0.0, -FOOT.ankle, FOOT.heel))
+    ball = world_points(human, clip, f"{side}Toe", (0.0, -FOOT.ball[0], 0.0))
+    for point in (heel, ball):
+        down = point[:, 1] < 0.0005
+        assert down.any()
+        for stance in np.split(point, np.flatnonzero(np.diff(down)) + 1):
+            if stance[0, 1] < 0.0005:
+                assert np.ptp(stance[:, [0, 2]], axis=0).max() < 0.002
+
+
+@pytest.mark.parametrize("name", ["idle", "Walk", "WalkLeftShort", "Run", "RunRightMedium"])
+def test_no_foot_sinks_into_the_ground(human: Character, name: str) -> None:
+    shoes = _below_the_knee(human.meshes[0])
+    poses = human.clips[name].in_place.globals(human.skeleton)
+    assert min(skin(shoes, pose)[:, 1].min() for pose in poses[::3]) > -0.001
+
+
+@pytest.mark.parametrize("name", GAITS)
+def test_no_knee_straightens_or_pops(human: Character, name: str) -> None:
+    places = human.clips[name].in_place.globals(human.skeleton)[..., :3, 3]
+    for side in ("Left", "Right"):
+        hip, knee, ankle = (
+            places[:, human.skeleton.names.index(side + joint)]
+            for joint in ("UpLeg", "Leg", "Foot")
+        )
+        upper, lower = knee - hip, ankle - knee
+        cosine = (upper * lower).sum(-1) / np.linalg.norm(upper, axis=-1)
+        bend = np.degrees(np.arccos(cosine / np.linalg.norm(lower, axis=-1)))
+        assert bend.min() > 8.0
+        assert np.abs(np.diff(bend)).max() * human.clips[name].rate < 1100.0
+
+
+def test_running_has_a_flight_and_walking_has_none(human: Character) -> None:
+    lowest = {}
+    for name in ("Walk", "Run"):
+        clip = human.clips[name]
+        soles = [
+            world_points(human, clip, f"{side}{joint}", offset)[:, 1]
+            for side in ("Left", "Right")
+            for joint, offset in (
+                ("Foot", (0.0, -FOOT.ankle, FOOT.heel)),
+                ("Toe", (0.0, -FOOT.ball[0], 0.0)),
+            )
+        ]
+        lowest[name] = np.min(soles, axis=0)
+    assert lowest["Walk"].max() < 0.001
+    assert (lowest["Run"] > 0.005).sum() >= 8
+
+
+@pytest.mark.parametrize("name", [n for n in GAITS if "Left" in n])
+def test_a_right_turn_mirrors_the_left_one(human: Character, name: str) -> None:
+    left, right = (human.clips[n].in_place for n in (name, name.replace("Left", "Right")))
+    names = human.skeleton.names
+    hand, other = names.index("LeftHand"), names.index("RightHand")
+    half = (len(left.rotations) - 1) // 2
+    a = left.globals(human.skeleton)[:-1, hand, :3, 3] * [-1.0, 1.0, 1.0]
+    b = right.globals(human.skeleton)[:-1, other, :3, 3]
+    assert np.allclose(np.roll(a, -half, axis=0), b, atol=1e-4)
+
+
+def test_skin_is_closed_faces_outward_and_is_fully_held(human: Character) -> None:
+    for mesh in human.meshes:
+        assert np.allclose(mesh.weights.sum(axis=1), 1.0, atol=1e-5)
+        corners = mesh.positions[mesh.triangles].astype(float)
+        flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        along = (flat * mesh.normals[mesh.triangles].mean(axis=1)).sum(axis=1)
+        assert (along > 0).mean() > 0.995
+        _, welded = np.unique(mesh.positions.round(5), axis=0, return_inverse=True)
+        edges = welded[mesh.triangles[:, [0, 1, 1, 2, 2, 0]]].reshape(-1, 2)
+        edges = edges[edges[:, 0] != edges[:, 1]]
+        there, back = (set(map(tuple, e.tolist())) for e in (edges, edges[:, ::-1]))
+        assert there == back
+
+
+def test_is_light_enough_for_a_small_machine(human: Character) -> None:
+    assert 8_000 < sum(len(mesh.triangles) for mesh in human.meshes) < 20_000
+
+
+def _below_the_knee(mesh: Mesh) -> Mesh:
+    kept = mesh.positions[:, 1] < 0.2
+    fields = {
+        name: getattr(mesh, name)[kept] for name in ("positions", "normals", "joints", "weights")
+    }
+    return Mesh(
+        "shoes", triangles=np.zeros((0, 3), np.uint32), inverse_bind=mesh.inverse_bind, **fields
+    )
