@@ -26,7 +26,7 @@ ARROWS: dict[str, type[Any]] = {
 
 
 def encode(arrow: object) -> bytes:
-    """Return a dataclass as JSON; numbers keep every bit, NaN becomes null.
+    """Return a dataclass as JSON; numbers keep every bit, and null stands for NaN.
 
     Joints (`Pose`) are rounded to single precision, as the graphics card has them.
     """
@@ -61,7 +61,7 @@ def _plain(value: object) -> object:
         fields = dataclasses.fields(value)
         return {field.name: _plain(getattr(value, field.name)) for field in fields}
     if isinstance(value, np.ndarray):
-        return value.tolist()
+        return value.tolist() if np.isfinite(value).all() else _with_gaps(value)
     if isinstance(value, tuple | list):
         return [_plain(item) for item in value]
     if isinstance(value, float | np.floating):
@@ -69,6 +69,12 @@ def _plain(value: object) -> object:
     if isinstance(value, np.bool_ | np.integer):
         return value.item()
     return value
+
+
+def _with_gaps(array: NDArray[Any]) -> object:
+    """Return nested lists with None where a number is not finite."""
+    gaps = np.isfinite(array)
+    return np.where(gaps, array.astype(object), None).tolist()
 
 
 def _single(array: NDArray[Any] | None) -> object:

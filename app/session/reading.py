@@ -2,6 +2,7 @@
 
 import json
 import os
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,9 @@ from mcap.stream_reader import StreamReader
 from app.errors import AppError
 
 MAGIC = b"\x89MCAP0\r\n"
+
+BROKEN = (McapError, EOFError, ValueError, struct.error)
+"""What the reader raises where a file ends in the middle of something."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,7 @@ def about(path: Path) -> About:
     try:
         with path.open("rb") as file:
             summary = SeekingReader(file).get_summary()
-    except (McapError, OSError, ValueError) as error:
+    except (OSError, *BROKEN) as error:
         raise AppError(f"cannot read the session '{path}': {error}") from error
     if summary is None or summary.statistics is None:
         raise AppError(f"cannot read the session '{path}': it has no index")
@@ -91,7 +95,7 @@ def _notes(path: Path) -> dict[str, str]:
                         return dict(record.metadata)
                 elif isinstance(record, Chunk | DataEnd):
                     break
-        except (McapError, EOFError, ValueError):
+        except BROKEN:
             pass
     raise AppError(
         f"'{path}' does not say which scenario it holds: it was not recorded by Cubeling"
@@ -137,7 +141,7 @@ def messages(path: Path, *topics: str) -> Iterator[tuple[str, float, bytes]]:
                 topics=topics or None, log_time_order=False
             ):
                 yield channel.topic, message.log_time / 1e9, message.data
-        except (McapError, EOFError, ValueError):
+        except BROKEN:
             return
 
 

@@ -54,7 +54,7 @@ class Recorder:
         self._queue: queue.Queue[Callable[[], None] | None] = queue.Queue(BACKLOG)
         self._channels: dict[str, int] = {}
         try:
-            self._file = path.open("wb", buffering=0)
+            self._file = path.open("wb")
         except OSError as error:
             raise AppError(f"cannot record to '{path}': {error.strerror}") from error
         self._writer = Writer(self._file, chunk_size=CHUNK)
@@ -122,6 +122,7 @@ class Recorder:
         try:
             while (write := self._queue.get()) is not None:
                 write()
+                self._file.flush()  # a finished chunk must not wait for the next one
             self._writer.finish()
         except (OSError, ValueError) as error:
             self.problem = f"recording to '{self.path}' stopped: {error}"

@@ -34,7 +34,7 @@ def test_a_cube_state_keeps_every_bit(numbers, timestamp, seen):
         visible=seen,
         camera_from_cube=np.array(numbers).reshape(4, 4) if seen else None,
         velocity=np.array(numbers[:6]),
-        covariance=np.outer(numbers[:6], numbers[:6]),
+        covariance=np.outer(numbers[:6], numbers[:6]) if seen else np.full((6, 6), np.nan),
         source="markers",
         faces=("front", "top"),
         reprojection_error=float("nan"),

@@ -48,8 +48,8 @@ def test_the_span_of_turns_can_be_chosen(hand):
 
 
 def test_the_action_changes_only_when_the_cube_rests_again(companion, hand):
-    frames = hand.tip("front")
     play(companion, [hand.frame()])
+    frames = hand.tip("front")
     for controls in frames[:-1]:
         assert companion.update(controls, None, Inputs()).command.action == "idle"
     assert companion.update(frames[-1], None, Inputs()).command.action == "kiss"
