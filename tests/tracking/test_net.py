@@ -70,7 +70,7 @@ def test_every_tab_ends_under_the_face_it_is_glued_to():
 
 def test_tabs_under_one_face_do_not_overlap():
     net = Net(EDGE)
-    under = {}
+    under: dict[str, list[np.ndarray]] = {}
     for tab, corners in folded_tabs(net):
         inside = np.linalg.inv(net.cube_from_face(tab.under))
         local = (corners @ inside[:3, :3].T + inside[:3, 3])[:, :2]
@@ -84,7 +84,7 @@ def test_tabs_under_one_face_do_not_overlap():
 
 def test_every_edge_of_the_cube_is_either_folded_or_glued():
     net = Net(EDGE)
-    held = {}
+    held: dict[tuple[int, ...], list[str]] = {}
     for start, end in net.folds():
         middle = (start + end) / 2
         face = min(FACE_AXES, key=lambda name: np.abs(middle - net.centre(name)).max())
