@@ -12,7 +12,7 @@ from characters.motion import STANDING, Motion, Step
 from characters.pose import Array, Pose
 from characters.transition import Fade, Transition
 
-_PROBE = 1 / 120  # [s]: velocities at a switch are differences over this time
+_PROBE = 1e-3  # [s]: velocities at a switch are differences over this time
 
 
 @dataclass(frozen=True)
