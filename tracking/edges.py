@@ -35,6 +35,9 @@ class EdgeModel:
     to_end: Array
     """Distance along the edge to its nearer end, (N,) [cells]."""
 
+    outline: NDArray[np.bool_]
+    """Whether the edge is the outer border of its marker, with white paper on one side, (N,)."""
+
     face: NDArray[np.intp]
     """Number of the face in `CubeModel.faces`, (N,)."""
 
@@ -48,13 +51,13 @@ class EdgeModel:
     def of(cls, cube: CubeModel) -> Self:
         """Lay out the edges of a cube."""
         parts = [_face_edges(cube, face) for face in cube.faces]
-        points, along, across, to_end = (
+        points, along, across, to_end, outline = (
             np.concatenate(columns) for columns in zip(*parts, strict=True)
         )
         numbers = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
         normals = np.stack([face.normal for face in cube.faces])
         centres = np.stack([face.corners.mean(axis=0) for face in cube.faces])
-        return cls(points, along, across, to_end, numbers, normals, centres)
+        return cls(points, along, across, to_end, outline > 0, numbers, normals, centres)
 
 
 def marker_cells(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
@@ -64,7 +67,7 @@ def marker_cells(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
     return np.asarray(cv2.aruco.generateImageMarker(markers, marker_id, cells, borderBits=1)) > 127
 
 
-def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, Array, Array, Array]:
+def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, ...]:
     cells = np.pad(marker_cells(cube.dictionary, face.marker_id), 1, constant_values=True)
     count = len(cells) - 2
     # Upright edges (between columns), then level ones (between rows), in units of cells from the
@@ -75,7 +78,8 @@ def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, Array, Array, Array
     top_left, top_right, _, bottom_left = face.corners
     axes = np.stack([top_right - top_left, bottom_left - top_left]) / count
     points = top_left + flat[:, 0:2] @ axes
-    return points, flat[:, 2:4] @ axes, flat[:, 4:6] @ axes, flat[:, 6]
+    outline = np.isclose(flat[:, :2] % count, 0).any(axis=1)
+    return points, flat[:, 2:4] @ axes, flat[:, 4:6] @ axes, flat[:, 6], outline
 
 
 def _runs(cells: NDArray[np.bool_]) -> Array:

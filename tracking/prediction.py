@@ -61,6 +61,13 @@ def predicted_covariance(last: Sighting, timestamp: float) -> Array:
     return last.covariance * (1 + elapsed / MEMORY) ** 2 + np.diag(spread**2)
 
 
+def near(last: Sighting, camera_from_cube: Array, timestamp: float) -> bool:
+    """Whether a pose lies within three standard deviations of `predicted`, each way."""
+    step = se3.motion(predicted(last, timestamp), camera_from_cube)
+    spread = np.sqrt(np.diag(predicted_covariance(last, timestamp)))
+    return bool((np.abs(step) < 3 * spread + 0.002).all())
+
+
 def plausible(last: Sighting, camera_from_cube: Array, timestamp: float) -> bool:
     """Whether a hand can have brought the cube there since it was last seen."""
     elapsed = max(timestamp - last.timestamp, 0.0)

@@ -31,6 +31,10 @@ END_CLEARANCE = 1.5
 REACH = 3.5
 """Half the length of a profile [px], and never more than half a cell."""
 
+WIDE_REACH = (14.0, 0.9)
+"""Half the length of a profile of the wide search [px], and at most in cells: the outlines of the
+markers alone have nothing but paper for a whole cell beside them."""
+
 TAPS = 9
 """Samples in a profile."""
 
@@ -39,6 +43,9 @@ BLOOM = 0.3
 
 MODEL_ERROR = 0.04
 """Error of a single edge place that does not come from noise [px]: neighbouring cells, sampling."""
+
+WIDE, PRECISE = 5.0, (2.0, 1.0, 1.0)
+"""Widths of the step that is fitted [px] in the wide search, and in the steps of Gauss-Newton."""
 
 FEWEST = 40
 """Fewer edge points than this do not make a pose."""
@@ -67,8 +74,8 @@ class Refinement:
     points: int
     """Number of edge points found."""
 
-    faces: tuple[str, ...]
-    """Faces most of whose edge points were found."""
+    shares: dict[str, float]
+    """The same for each face in view."""
 
 
 @dataclass(frozen=True)
@@ -91,9 +98,9 @@ class EdgeRefiner:
         self._projection = projection
 
     def refine(
-        self, grey: NDArray[np.uint8], start: Array, iterations: int = 3
+        self, grey: NDArray[np.uint8], start: Array, wide: bool = False
     ) -> Refinement | None:
-        """Refine a pose that is right to about half a cell in the picture.
+        """Refine a pose that is right to about half a cell in the picture, or a whole one.
 
         Parameters
         ----------
@@ -101,8 +108,8 @@ class EdgeRefiner:
             The picture, (H, W).
         start
             Pose of the cube, (4, 4).
-        iterations
-            Gauss-Newton steps; the first searches widely, the others precisely.
+        wide
+            Whether to begin with the outlines alone, which can be found from a whole cell away.
 
         Returns
         -------
@@ -110,27 +117,26 @@ class EdgeRefiner:
         """
         current = start
         result = None
-        for number in range(iterations):
-            profiles = self._profiles(current, grey.shape)
+        for blur in (WIDE, WIDE, *PRECISE) if wide else PRECISE:
+            profiles = self._profiles(current, grey.shape, blur == WIDE)
             if len(profiles.numbers) < FEWEST:
                 return None
-            sharpness = 1.0 if number else 2.0
-            result = self._step(grey, current, profiles, sharpness)
+            result = self._step(grey, current, profiles, blur)
             if result is None:
                 return None
             moved = se3.motion(current, result.camera_from_cube)
             current = result.camera_from_cube
-            if number and np.abs(moved).max() < 1e-6:
+            if blur == PRECISE[-1] and (moved**2 < np.diag(result.covariance) / 25).all():
                 break
         return result
 
-    def _profiles(self, camera_from_cube: Array, shape: tuple[int, ...]) -> _Profiles:
+    def _profiles(self, camera_from_cube: Array, shape: tuple[int, ...], wide: bool) -> _Profiles:
         model = self._model
         turn, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
         sights = model.centres @ turn.T + origin
         cosines = -np.einsum("ij,ij->i", model.normals @ turn.T, sights)
         facing = cosines > GRAZING * np.linalg.norm(sights, axis=1)
-        numbers = np.flatnonzero(facing[model.face])
+        numbers = np.flatnonzero(facing[model.face] & (model.outline | (not wide)))
         turned = model.points[numbers] @ turn.T
         points = turned + origin
         if not len(points) or points[:, 2].min() < NEAREST:
@@ -145,28 +151,27 @@ class EdgeRefiner:
         cell = np.abs(cell)
         height, width = shape
         room = np.minimum(pixels, (width - 1, height - 1) - pixels).min(axis=1)
-        good = (
-            (cell > NARROWEST)
-            & (model.to_end[numbers] * length > END_CLEARANCE)
-            & (room > REACH + 1)
-        )
+        reach = np.minimum(REACH, cell / 2)
+        if wide:
+            reach = np.minimum(WIDE_REACH[0], cell * WIDE_REACH[1])
+        good = (cell > NARROWEST) & (room > reach + 1)
+        good &= model.to_end[numbers] * length > END_CLEARANCE
         by_point = np.einsum("ni,nij->nj", normals, slopes)
         rows = np.concatenate([by_point, np.cross(turned, by_point)], axis=1)
-        reach = np.minimum(REACH, cell / 2)
         return _Profiles(numbers[good], pixels[good], normals[good], rows[good], reach[good])
 
     def _step(
         self, grey: NDArray[np.uint8], current: Array, profiles: _Profiles, blur: float
     ) -> Refinement | None:
         offset, contrast, information = edge_offsets(grey, profiles, blur)
-        strong = contrast > max(8.0, 0.3 * float(np.median(contrast)))
+        strong = contrast > max(8.0, 0.3 * float(np.percentile(contrast, 70)))
         strong &= np.abs(offset) < profiles.reach
         if np.count_nonzero(strong) < FEWEST:
             return None
         rows = np.concatenate([profiles.slopes, np.ones((len(offset), 1))], axis=1)[strong]
         offset, information = offset[strong], information[strong]
-        weights = information * _tukey(offset - np.median(offset), 1.0)
-        for _ in range(3):
+        weights = information
+        for _ in range(4):
             solution, normal = _weighted(rows, offset, weights)
             residual = offset - rows @ solution
             scale = 1.4826 * float(np.median(np.abs(residual)))
@@ -186,17 +191,14 @@ class EdgeRefiner:
             spread,
             used / len(profiles.numbers),
             used,
-            self._mostly_found(profiles, found),
+            self._shares(profiles, found),
         )
 
-    def _mostly_found(self, profiles: _Profiles, found: NDArray[np.intp]) -> tuple[str, ...]:
+    def _shares(self, profiles: _Profiles, found: NDArray[np.intp]) -> dict[str, float]:
         counts = np.bincount(found, minlength=len(self._names))
         wanted = np.bincount(self._model.face[profiles.numbers], minlength=len(self._names))
-        return tuple(
-            name
-            for name, n, of in zip(self._names, counts, wanted, strict=True)
-            if n > max(10, of / 2)
-        )
+        rows = zip(self._names, counts.tolist(), wanted.tolist(), strict=True)
+        return {name: n / of for name, n, of in rows if of > 10}
 
 
 def edge_offsets(
@@ -251,5 +253,7 @@ def _weighted(rows: Array, offset: Array, weights: Array) -> tuple[Array, Array]
     """Solve for the shift-turn and the bloom, (7,), with the normal matrix, (7, 7)."""
     weighted = rows * weights[:, None]
     normal = weighted.T @ rows
-    normal[6, 6] += 1 / BLOOM**2
+    # The prior of the bloom, and a trace of one that keeps the shift-turn solvable when all is
+    # lost.
+    normal += np.diag([1e-3] * 6 + [1 / BLOOM**2])
     return np.asarray(np.linalg.solve(normal, weighted.T @ offset), np.float64), normal

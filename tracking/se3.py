@@ -20,10 +20,11 @@ def hat(vectors: Array) -> Array:
     >>> (hat(np.array([0.0, 0.0, 1.0])) @ [1.0, 0.0, 0.0]).tolist()
     [0.0, 1.0, 0.0]
     """
-    x, y, z = np.moveaxis(np.asarray(vectors, np.float64), -1, 0)
-    zero = np.zeros_like(x)
-    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    matrices = np.zeros((*np.shape(vectors), 3))
+    for row, column, axis in ((2, 1, 0), (0, 2, 1), (1, 0, 2)):
+        matrices[..., row, column] = vectors[..., axis]
+        matrices[..., column, row] = -vectors[..., axis]
+    return matrices
 
 
 def rotation(vector: Array) -> Array:
@@ -32,7 +33,7 @@ def rotation(vector: Array) -> Array:
     >>> rotation(np.array([0.0, np.pi / 2, 0.0])).round(12)[0].tolist()
     [0.0, 0.0, 1.0]
     """
-    angle = float(np.linalg.norm(vector))
+    angle = float(np.sqrt(vector @ vector))
     k = hat(vector)
     if angle < SMALL:
         turn = np.eye(3) + k + k @ k / 2

@@ -1,44 +1,26 @@
-"""From camera frames to where the cube is: detection, corner pose, edge refinement, and trust."""
-
-from dataclasses import dataclass
-from typing import Literal
+"""From camera frames to where the cube is: what one frame proposes, weighed against the past."""
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from tracking import prediction, se3
+from tracking.candidates import Candidate, CandidateFinder
 from tracking.cube import CubeModel
-from tracking.detection import MarkerDetector, Observation, Region
 from tracking.errors import TrackingError
 from tracking.frame import Frame
 from tracking.intrinsics import Intrinsics
 from tracking.prediction import MEMORY, Sighting
 from tracking.projection import Projection
-from tracking.refinement import EdgeRefiner, Refinement
-from tracking.solver import CornerSolution, looks_at_camera, solve
 from tracking.state import CubeState
 
 Array = NDArray[np.float64]
 
-FLOOR = (2e-5, 2e-5, 4e-5, 1e-4, 1e-4, 1e-4)
-"""Smallest standard deviations of a shift-turn that are claimed [m, rad]: no model is better."""
+CLEARLY_BETTER = 0.6
+"""Of two poses of one face, one with less than this share of the other's residual is the right one."""
 
-STRAY = 1.0
-"""Edges and corners must agree to this share of a cell, or the edges found something else."""
-
-
-@dataclass(frozen=True)
-class _Candidate:
-    """A pose found in one frame, before it is trusted."""
-
-    camera_from_cube: Array
-    covariance: Array
-    source: Literal["markers", "image"]
-    faces: tuple[str, ...]
-    error: float
-    quality: float
-    """Edge residual [px], or corner error where the edges did not help; smaller is better."""
+FORGOTTEN = 1.0
+"""After this time out of sight [s] the cube may appear anywhere without confirmation."""
 
 
 class CubeTracker:
@@ -51,7 +33,9 @@ class CubeTracker:
     intrinsics
         The camera; every frame must have its size.
 
-    Notes ----- There is no smoothing filter: a pose rests on its own frame alone, so it has no lag.
+    Notes
+    -----
+    There is no smoothing filter: a pose rests on its own frame alone, so it has no lag.
     The past is used to look in the right place, to choose between the two poses of a single face,
     and to distrust jumps.
     """
@@ -59,9 +43,7 @@ class CubeTracker:
     def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
         self.cube = cube
         self.intrinsics = intrinsics
-        self._projection = Projection(intrinsics)
-        self._detector = MarkerDetector(cube)
-        self._refiner = EdgeRefiner(cube, self._projection)
+        self._finder = CandidateFinder(cube, Projection(intrinsics))
         self._last: Sighting | None = None
         self._jump: Sighting | None = None
 
@@ -73,170 +55,101 @@ class CubeTracker:
         TrackingError
             The frame has not the size that the intrinsics hold for.
         """
-        grey = self._grey(frame)
-        expected = self._expected(frame.timestamp)
-        candidates = self._candidates(grey, expected)
+        now = frame.timestamp
+        recent = self._recent(now)
+        candidates = self._finder.find(self._grey(frame), recent, now)
         if not candidates:
-            return self._unseen(frame.timestamp, "")
-        candidate, refused = self._chosen(candidates, expected)
-        if not refused and not self._confirmed(candidate, frame.timestamp):
+            return self._unseen(now, "")
+        candidate, refused = self._chosen(candidates, recent, now)
+        if not refused and not self._confirmed(candidate, now):
             refused = "jump"
-        if refused:
-            return self._unseen(frame.timestamp, refused)
-        return self._seen(candidate, frame.timestamp)
+        return self._unseen(now, refused) if refused else self._seen(candidate, now)
+
+    def _recent(self, now: float) -> Sighting | None:
+        if self._last is None or not 0 <= now - self._last.timestamp <= MEMORY:
+            return None
+        return self._last
 
     def _grey(self, frame: Frame) -> NDArray[np.uint8]:
         height, width = frame.image.shape[:2]
-        if (width, height) != tuple(self.intrinsics.size):
+        if (width, height) != self.intrinsics.size:
             wanted = "×".join(str(n) for n in self.intrinsics.size)
             raise TrackingError(
                 f"frame {frame.index} is {width}×{height} but the intrinsics hold for {wanted}; "
                 "scale them or calibrate at this size"
             )
-        return np.asarray(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY))
-
-    def _expected(self, timestamp: float) -> Array | None:
-        if self._last is None or not 0 <= timestamp - self._last.timestamp <= MEMORY:
-            return None
-        return prediction.predicted(self._last, timestamp)
-
-    def _candidates(self, grey: NDArray[np.uint8], expected: Array | None) -> list[_Candidate]:
-        solutions: list[CornerSolution] = []
-        region = self._region(expected) if expected is not None else None
-        if region is not None:
-            solutions = solve(self._detector.detect(grey, region), self._projection, expected)
-        if not solutions:
-            solutions = solve(self._detector.detect(grey), self._projection, expected)
-        return [self._refined(grey, solution) for solution in solutions]
-
-    def _refined(self, grey: NDArray[np.uint8], solution: CornerSolution) -> _Candidate:
-        faces = tuple(seen.face.name for seen in solution.observations)
-        refinement = self._refiner.refine(grey, solution.camera_from_cube)
-        if refinement is None or not self._agree(solution, refinement):
-            return _Candidate(
-                solution.camera_from_cube,
-                solution.covariance + np.diag(np.square(FLOOR)) * 25,
-                "markers",
-                faces,
-                solution.error,
-                max(solution.error, 0.5),
-            )
-        error = self._corner_error(refinement.camera_from_cube, solution.observations)
-        return _Candidate(
-            refinement.camera_from_cube,
-            refinement.covariance + np.diag(np.square(FLOOR)),
-            "markers",
-            faces,
-            error,
-            refinement.residual / refinement.support,
-        )
-
-    def _agree(self, solution: CornerSolution, refinement: Refinement) -> bool:
-        """Whether the edges moved the pose by less than the corners allow."""
-        pose = refinement.camera_from_cube
-        if not all(looks_at_camera(seen.face, pose) for seen in solution.observations):
-            return False
-        cells = min(seen.size for seen in solution.observations) / 6
-        error = self._corner_error(pose, solution.observations)
-        return refinement.support > 0.3 and error < solution.error + STRAY * cells
-
-    def _corner_error(self, pose: Array, observations: tuple[Observation, ...]) -> float:
-        points = np.concatenate([seen.face.corners for seen in observations])
-        corners = np.concatenate([seen.corners for seen in observations])
-        pixels = self._projection.pixels(points @ pose[:3, :3].T + pose[:3, 3])
-        return float(np.sqrt(((pixels - corners) ** 2).sum(axis=1).mean()))
-
-    def _region(self, expected: Array) -> Region | None:
-        """Surround the predicted cube, with room for a hand's acceleration."""
-        half = self.cube.edge / 2
-        signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
-        points = signs * half @ expected[:3, :3].T + expected[:3, 3]
-        if points[:, 2].min() < 0.03:
-            return None
-        pixels = self._projection.pixels(points)
-        low, high = pixels.min(axis=0), pixels.max(axis=0)
-        margin = 0.35 * float((high - low).max()) + 16
-        width, height = self.intrinsics.size
-        left, top = (int(v) for v in np.clip(low - margin, 0, (width, height)))
-        right, bottom = (int(v) for v in np.clip(high + margin + 1, 0, (width, height)))
-        if right - left < 32 or bottom - top < 32:
-            return None
-        return left, top, right, bottom
+        return np.asarray(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY), np.uint8)
 
     def _chosen(
-        self, candidates: list[_Candidate], expected: Array | None
-    ) -> tuple[_Candidate, str]:
-        """Choose between the poses that explain the same markers, or refuse to."""
-        candidates = sorted(candidates, key=lambda candidate: candidate.quality)
-        best = candidates[0]
-        if len(candidates) == 1:
+        self, candidates: list[Candidate], recent: Sighting | None, now: float
+    ) -> tuple[Candidate, str]:
+        """Choose between the poses that explain the same markers, or say why none is trusted."""
+        best, *others = sorted(candidates, key=lambda candidate: candidate.residual)
+        if best.blurred:
+            return best, "blurred"
+        if not others or _close(best, others[0]):
             return best, ""
-        other = candidates[1]
-        if _close(best.camera_from_cube, other.camera_from_cube):
+        other = others[0]
+        if best.residual < CLEARLY_BETTER * other.residual:
             return best, ""
-        if best.quality < 0.6 * other.quality:
-            return best, ""
-        if expected is not None:
-            away = [se3.angle_between(expected, each.camera_from_cube) for each in (best, other)]
-            if min(away) < np.deg2rad(15) and max(away) > 2 * min(away):
-                return (best, other)[int(np.argmin(away))], ""
+        if recent is not None:
+            expected = prediction.predicted(recent, now)
+            near, far = sorted(
+                (se3.angle_between(expected, each.camera_from_cube), number)
+                for number, each in enumerate((best, other))
+            )
+            if near[0] < np.deg2rad(15) and far[0] > 2 * near[0]:
+                return (best, other)[near[1]], ""
         return best, "ambiguous"
 
-    def _confirmed(self, candidate: _Candidate, timestamp: float) -> bool:
+    def _confirmed(self, candidate: Candidate, now: float) -> bool:
         """Whether a hand can have brought the cube there, or a second frame says so too."""
-        pose = candidate.camera_from_cube
-        if self._last is None or timestamp - self._last.timestamp > 1.0:
+        pose, before = candidate.camera_from_cube, self._jump
+        if self._last is None or now - self._last.timestamp > FORGOTTEN:
             return True
-        if prediction.plausible(self._last, pose, timestamp):
+        if prediction.plausible(self._last, pose, now):
             return True
-        before = self._jump
-        self._jump = Sighting(pose, np.zeros(6), candidate.covariance, timestamp)
-        return (
-            before is not None
-            and timestamp - before.timestamp <= MEMORY
-            and prediction.plausible(before, pose, timestamp)
-        )
+        self._jump = Sighting(pose, np.zeros(6), candidate.covariance, now)
+        if before is None or not now - before.timestamp <= MEMORY:
+            return False
+        if not prediction.plausible(before, pose, now):
+            return False
+        self._last = before
+        return True
 
-    def _seen(self, candidate: _Candidate, timestamp: float) -> CubeState:
+    def _seen(self, candidate: Candidate, now: float) -> CubeState:
         pose = candidate.camera_from_cube
-        before = self._last
-        if before is not None and not prediction.plausible(before, pose, timestamp):
-            before = self._jump if self._jump and self._jump.timestamp < timestamp else None
-        velocity = prediction.velocity(before, pose, timestamp)
-        self._last = Sighting(pose, velocity, candidate.covariance, timestamp)
+        velocity = prediction.velocity(self._last, pose, now)
+        self._last = Sighting(pose, velocity, candidate.covariance, now)
         self._jump = None
         return CubeState(
-            True,
-            pose,
-            velocity,
-            candidate.covariance,
-            candidate.source,
-            candidate.faces,
-            candidate.error,
-            timestamp,
+            visible=True,
+            camera_from_cube=pose,
+            velocity=velocity,
+            covariance=candidate.covariance,
+            source=candidate.source,
+            faces=candidate.faces,
+            reprojection_error=candidate.error,
+            timestamp=now,
         )
 
-    def _unseen(self, timestamp: float, refused: str) -> CubeState:
-        last, expected = self._last, self._expected(timestamp)
-        if last is None or expected is None:
-            nowhere = np.full((6, 6), np.nan)
-            return CubeState(
-                False, None, np.zeros(6), nowhere, "predicted", (), np.nan, timestamp, refused
-            )
-        covariance = prediction.predicted_covariance(last, timestamp)
+    def _unseen(self, now: float, refused: str) -> CubeState:
+        """Carry the last pose on for a moment, ever less sure of it."""
+        recent = self._recent(now)
+        unknown = np.full((6, 6), np.nan)
         return CubeState(
-            False,
-            expected,
-            last.velocity,
-            covariance,
-            "predicted",
-            (),
-            np.nan,
-            timestamp,
-            refused,
+            visible=False,
+            camera_from_cube=prediction.predicted(recent, now) if recent else None,
+            velocity=recent.velocity if recent else np.zeros(6),
+            covariance=prediction.predicted_covariance(recent, now) if recent else unknown,
+            source="predicted",
+            faces=(),
+            reprojection_error=np.nan,
+            timestamp=now,
+            refused=refused,
         )
 
 
-def _close(a: Array, b: Array) -> bool:
-    step = se3.motion(a, b)
+def _close(a: Candidate, b: Candidate) -> bool:
+    step = se3.motion(a.camera_from_cube, b.camera_from_cube)
     return bool(np.linalg.norm(step[:3]) < 0.004 and np.linalg.norm(step[3:]) < np.deg2rad(4))
