@@ -130,7 +130,6 @@ class CommandLane:
             if not self._unsent:
                 self.acknowledged = self._order
         else:
-            self._order_number = 0  # passed over now: no later number may speak for it
             self._unsent = self._ordered
 
     def _set_order(self, order: Order) -> None:

@@ -60,7 +60,9 @@ def connect(
     try:
         if robot.wait_until_ready(answer_within):
             return robot
-    except BaseException:  # Ctrl-C while waiting: nothing is left open then either
+        if robot.failed:
+            robot.check()
+    except BaseException:  # also Ctrl-C while waiting: nothing is left open then either
         robot.close()
         raise
     robot.close()
@@ -160,6 +162,11 @@ class Robot:
         }.get(telemetry.state, "has fallen silent")
         silent = "" if telemetry.silence is None else f" (last heard {telemetry.silence:.1f} s ago)"
         raise RobotError(f"the robot on {self.url} {reason}{silent}")
+
+    @property
+    def failed(self) -> bool:
+        """Whether the link's thread has broken down; `check` says why."""
+        return self._pump.failure is not None
 
     def wait_until_ready(self, timeout: float) -> bool:
         """Wait until the link is ready, for at most `timeout` seconds; whether it is."""

@@ -114,7 +114,7 @@ MOOD_LOOPS = (
             "left shoulder": Sway(-15),
             "right elbow": Sway(35, 8, 2),
             "left elbow": Sway(35, 8, 2, 0.5),
-            "torso": Sway(-6, 4, 2),
+            "torso": Sway(-6, 3.5, 2),
             "neck up": Sway(-30, 5, 2),
             "neck sideways": Sway(0, 15, 1),
             "tail up": Sway(45, 10, 3),
@@ -129,13 +129,13 @@ MOOD_LOOPS = (
 ACTIONS = (
     Motion("nod", 2.0, {"neck up": Sway(0, 6, 2), "eyes and mouth": Sway(50)}),
     Motion("shake head", 2.0, {"neck sideways": Sway(0, 7, 2), "eyes and mouth": Sway(50)}),
-    Motion("wag tail", 2.0, {"tail sideways": Sway(0, 45, 2), "tail up": Sway(20)}),
+    Motion("wag tail", 2.0, {"tail sideways": Sway(0, 30, 2), "tail up": Sway(20)}),
     Motion(
         "bow",
         4.0,
         {
-            "right shoulder": Sway(20, 20, 1, -0.25),
-            "left shoulder": Sway(20, 20, 1, -0.25),
+            "right shoulder": Sway(18, 18, 1, -0.25),
+            "left shoulder": Sway(18, 18, 1, -0.25),
             "right elbow": Sway(30, 30, 1, -0.25),
             "left elbow": Sway(30, 30, 1, -0.25),
             "neck up": Sway(-20, 20, 1, 0.25),
@@ -149,7 +149,7 @@ ACTIONS = (
 )
 """Motions that are played once and then give way to the mood again."""
 
-SOUNDS = {"breath": 2.0, "purr": 3.0, "growl": 1.5, "chirp": 0.5, "kiss": 0.6, "roar": 1.8}
+SOUNDS = {"breath": 2.0, "purr": 3.0, "growl": 1.5, "chirp": 0.5, "smack": 0.6, "roar": 1.8}
 """Length of every sound [s]."""
 
 MOTIONS = MOOD_LOOPS + ACTIONS

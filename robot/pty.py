@@ -85,8 +85,8 @@ class _PtyLine:
 class _TcpLine:
     """A TCP port on this machine, for one client at a time; the latest one has it."""
 
-    def __init__(self) -> None:
-        self._server = socket.create_server(("127.0.0.1", 0))
+    def __init__(self, number: int) -> None:
+        self._server = socket.create_server(("127.0.0.1", number))
         self._client: socket.socket | None = None
         self._alarm, self._bell = socket.socketpair()
         self.url = f"socket://127.0.0.1:{self._server.getsockname()[1]}"
@@ -138,6 +138,8 @@ class SimulatedPort:
         The robot; a new one if None. It belongs to this port's thread until the end.
     kind
         "pty" for a pseudo-terminal, "tcp" for a port on 127.0.0.1; by default what the system has.
+    tcp_port
+        Number of the TCP port; 0 for any that is free.
     clock
         The time [s] by which the robot lives.
 
@@ -154,13 +156,14 @@ class SimulatedPort:
         simulator: Simulator | None = None,
         *,
         kind: Literal["pty", "tcp"] | None = None,
+        tcp_port: int = 0,
         clock: Clock = time.monotonic,
     ) -> None:
         kind = kind or ("tcp" if sys.platform == "win32" else "pty")
         self._simulator = simulator or Simulator()
         self._clock = clock
         try:
-            self._line: _Line = _PtyLine() if kind == "pty" else _TcpLine()
+            self._line: _Line = _PtyLine() if kind == "pty" else _TcpLine(tcp_port)
         except (OSError, ImportError) as error:
             raise RobotError(f"cannot make a port for the simulated robot: {error}") from error
         self.url = self._line.url

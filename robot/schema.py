@@ -105,9 +105,7 @@ class FieldForm:
         high = largest if self.high is None else round(self.high / self.scale)
         if not low <= count <= high:
             low, high = low * self.scale, high * self.scale
-            raise error(
-                f"{self.name} must be from {low:g} to {high:g}, not {count * self.scale:g}"
-            )
+            raise error(f"{self.name} must be from {low:g} to {high:g}, not {count * self.scale:g}")
 
 
 @dataclass(frozen=True)

@@ -59,6 +59,8 @@ def open_port(url: str, clock: Clock = time.monotonic) -> Port:
     RobotError
         If it does not open; the line says why.
     """
+    if not url:
+        raise RobotError("a port must be named; `cubeling robot list` shows those there are")
     if url.startswith("sim:"):
         return MemoryPort(_simulator_of(url), clock)
     try:

@@ -83,6 +83,7 @@ class World:
         self.back = Line(random, Harm(**harm))
         self.applied: list[tuple[float, Emotion]] = []
         self.neutral_at: list[float] = []
+        self.reboots: list[float] = []
         self.stalled_until = 0.0
         self._watch()
         self.host.port_opened(self.now)
@@ -103,6 +104,7 @@ class World:
 
     def reboot(self) -> None:
         self.robot.reboot()
+        self.reboots.append(self.now)
         self._watch()
 
     @property

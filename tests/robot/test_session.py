@@ -159,6 +159,60 @@ def test_the_link_says_how_it_is_and_comes_back_with_the_last_emotion(open_world
     assert [emotion for _, emotion in w.applied] == [HAPPY, ANGRY]
 
 
+def test_an_emotion_that_the_failsafe_ended_is_restated(open_world):
+    w = open_world
+    w.host.express(HAPPY)
+    w.run(1)
+    w.there.cut = True
+    w.run(1)
+    w.there.cut = False
+    w.run(0.5)
+    assert [emotion for _, emotion in w.applied] == [HAPPY, HAPPY]
+    assert w.robot.body.target == HAPPY
+
+
+def test_an_action_taken_meanwhile_does_not_speak_for_an_emotion_that_was_lost(open_world):
+    # EXPRESS 1 is lost with its session; PLAY 2 is taken first in the next one, which ends too.
+    w = open_world
+    w.there.cut = True
+    w.host.express(HAPPY)
+    w.run(0.1)
+    w.host.port_lost()
+    w.there.cut = False
+    w.host.port_opened(w.now)
+    w.run(w.step)
+    w.host.play(m.ITEM_MOTION, 3)
+    w.run_until(lambda: w.telemetry.motion == "nod" or w.robot.link._taken == 2, within=0.3)
+    w.host.port_lost()
+    w.host.port_opened(w.now)
+    w.run(0.5)
+    assert w.robot.body.target == HAPPY
+
+
+def test_a_state_that_names_a_command_stands_for_its_lost_acknowledgement(open_world):
+    w = open_world
+    w.run(0.03)
+    w.host.express(HAPPY)
+    w.host.tick(w.now)
+    w.robot.receive(w.host.bytes_to_send(), w.now)
+    w.robot.bytes_to_send()  # the ACK, lost
+    w.robot.receive(encode_frame(pack(m.Beat(1), w.robot.link.session)), w.now)
+    w.host.receive(w.robot.bytes_to_send(), w.now)
+    assert w.telemetry.acknowledged == HAPPY
+    assert w.telemetry.counts.retries == 0
+
+
+def test_a_repeat_carries_the_latest_emotion(open_world):
+    w = open_world
+    w.there.cut = True
+    w.host.express(HAPPY)
+    w.run(0.01)
+    w.host.express(ANGRY)
+    w.there.cut = False
+    w.run(0.3)
+    assert [emotion for _, emotion in w.applied] == [ANGRY]
+
+
 def test_a_reboot_is_noticed_at_once_and_the_emotion_restated(open_world):
     w = open_world
     w.host.express(HAPPY)
@@ -201,6 +255,14 @@ def test_only_the_robots_voice_lost_does_not_take_the_emotion_from_it(open_world
     w.run(0.5)
     assert w.telemetry.acknowledged == HAPPY
     assert (len(w.applied), w.neutral_at) == (1, [])
+
+
+def test_a_robot_that_was_not_ticked_looks_at_its_clock_before_its_mail():
+    link = Simulator().link
+    link.receive(encode_frame(pack(m.Hello(1, 5), 1)), 0.0)
+    link.receive(encode_frame(pack(m.Express(1, 0.5, 0), 1)), timing.FAILSAFE_PROMISE)
+    assert link.session == 0
+    assert link.body.target == Emotion(0, 0)
 
 
 def test_goodbye_makes_the_robot_neutral_at_once(open_world):
