@@ -41,18 +41,24 @@ class FloorMarks:
         )
         self._count = 0
 
-    def lay(self, paths: Sequence[FloorPath]) -> Array:
-        """Take the paths of this picture, and return points around them in the table frame, (n, 3)."""
-        marks = [mark for path in paths for mark in (_marks(path),) if len(mark)]
-        vertices = np.concatenate(marks) if marks else np.zeros((0, 10), np.float32)
-        self._count = len(vertices)
+    def lay(self, paths: Sequence[FloorPath]) -> list[Array]:
+        """Take the paths of this picture.
+
+        Returns
+        -------
+        list of NDArray
+            For each run of marks the points around it in the table frame, (n, 3): what lies between
+            runs need not be drawn.
+        """
+        runs = [run for path in paths for run in _runs(path)]
+        self._count = sum(len(run) for run in runs)
         if self._count == 0:
-            return np.zeros((0, 3))
+            return []
+        vertices = np.concatenate(runs)
         if vertices.nbytes > self._buffer.size:
             self._buffer.orphan(2 * vertices.nbytes)
-        self._buffer.write(np.ascontiguousarray(vertices, "f4"))
-        place = vertices[:, :2].astype(float)
-        return np.stack([place[:, 0], np.zeros(self._count), place[:, 1]], axis=1)
+        self._buffer.write(vertices)
+        return [np.insert(run[:, :2].astype(float), 1, 0.0, axis=1) for run in runs]
 
     def draw(self, clip_from_table: Array, white: Array) -> None:
         """Paint the marks into the framebuffer in use."""
@@ -66,18 +72,23 @@ class FloorMarks:
         self._buffer.release()
 
 
-def _marks(path: FloorPath) -> NDArray[np.float32]:
-    """Return the vertices of a path, (n, 10): position, local place, shape, linear colour."""
+def _runs(path: FloorPath) -> list[NDArray[np.float32]]:
+    """Return the vertices of each point and of each leg of a path.
+
+    Each is (n, 10): position, place in the mark, shape, linear colour.
+    """
     points = np.asarray(path.points, float).reshape(-1, 2)
     points = points[np.isfinite(points).all(axis=1)]
     chosen = np.arange(len(points)) == (-1 if path.highlight is None else path.highlight)
     discs = np.zeros((len(points), 7))
     discs[:, 0:2], discs[:, 2], discs[:, 5] = points, 1.0, np.where(chosen, LARGE_DISC, DISC)
-    rings = discs[chosen].copy()
+    rings = discs[chosen]
     rings[:, 6], rings[:, 5] = RING
-    capsules = np.concatenate([discs, rings, *_dashes(points, path.closed, chosen)])
+    legs = _dashes(points, path.closed, chosen)
     color = np.asarray(path.color, float) ** 2.2
-    return _quads(capsules, color)
+    return [
+        _quads(capsules, color) for capsules in (*discs[:, None], rings, *legs) if len(capsules)
+    ]
 
 
 def _dashes(points: Array, closed: bool, chosen: NDArray[np.bool_]) -> list[Array]:

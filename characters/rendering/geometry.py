@@ -106,6 +106,35 @@ class Geometry:
         borders = np.flatnonzero(np.diff(owner[order])) + 1
         return np.unique([run[along[run].argmax(axis=0)] for run in np.split(order, borders)])
 
+    def coarse(self, cells: int) -> tuple[NDArray[np.uint32], tuple[tuple[int, int, bool], ...]]:
+        """Return fewer triangles of the same vertices: those of one joint and one cell become one.
+
+        Rossignac and Borrel's vertex clustering (1993), with a vertex of each cluster as its
+        representative, so that the same skinned vertices serve.
+
+        Returns
+        -------
+        indices
+            Three a triangle.
+        runs
+            (first index, count, double-sided), one or two: closed surfaces, then double-sided ones.
+        """
+        low, high = self.positions.min(axis=0), self.positions.max(axis=0)
+        cell = max(float((high - low).max()) / cells, 1e-9)
+        owner = self.joints[np.arange(len(self.joints)), self.weights.argmax(axis=1)]
+        places = np.column_stack([np.floor((self.positions - low) / cell).astype(np.int64), owner])
+        _, first, cluster = np.unique(places, axis=0, return_index=True, return_inverse=True)
+        corners = first[cluster.ravel()].astype(np.uint32)[self.indices].reshape(-1, 3)
+        kept = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+        sides = np.repeat(
+            [material.double_sided for material, _ in self.materials],
+            [count // 3 for _, count in self.materials],
+        )
+        groups = [corners[kept & (sides == double)] for double in (False, True)]
+        closed, double = (group.size for group in groups)
+        runs = ((0, closed, False), (closed, double, True))
+        return np.concatenate(groups).ravel(), tuple(run for run in runs if run[1])
+
     @property
     def bind_records(self) -> bytes:
         """Position, normal, joints and weights of each vertex, 56 bytes."""

@@ -22,11 +22,13 @@ class Programs:
     """
 
     def __init__(self, context: moderngl.Context) -> None:
-        def build(vertex: str, fragment: str) -> moderngl.Program:
-            return context.program(vertex_shader=_source(vertex), fragment_shader=_source(fragment))
+        def build(vertex: str, fragment: str, *defines: str) -> moderngl.Program:
+            return context.program(
+                vertex_shader=_source(vertex, *defines), fragment_shader=_source(fragment, *defines)
+            )
 
         self.skin = context.program(
-            vertex_shader=_source("skin.vert"), varyings=["skinned_position", "skinned_normal"]
+            vertex_shader=_source("skin.vert"), varyings=("skinned_position", "skinned_normal")
         )
         """Joint matrices and bind pose to vertices in the table frame."""
         self.caster = build("caster.vert", "caster.frag")
@@ -41,8 +43,13 @@ class Programs:
         """Discs and dashes on the table."""
         self.shadow = build("shadow.vert", "shadow.frag")
         """The softened shadow onto the table."""
-        self.character = build("character.vert", "character.frag")
-        """Vertices to colour."""
+        self.plain = build("character.vert", "character.frag")
+        """Vertices to colour, without a texture."""
+        self.textured = build("character.vert", "character.frag", "TEXTURED")
+        """Vertices to colour, with one; a program of its own because drivers that run on the processor
+        would take the sample even where a condition says no."""
+        self.over = build("screen.vert", "over.frag")
+        """Figures onto the ground."""
         self.copy = build("copy.vert", "copy.frag")
         """A finished part of the picture into a window."""
 
@@ -52,8 +59,10 @@ class Programs:
             program.release()
 
 
-def _source(name: str) -> str:
-    return (SHADERS / f"{name}.glsl").read_text(encoding="utf-8")
+def _source(name: str, *defines: str) -> str:
+    """Return the text of a shader, with some names defined after its version line."""
+    version, text = (SHADERS / f"{name}.glsl").read_text(encoding="utf-8").split("\n", 1)
+    return "\n".join([version, *(f"#define {define}" for define in defines), text])
 
 
 def assign(program: moderngl.Program, **values: "bool | float | Sequence[float] | Array") -> None:

@@ -1,5 +1,7 @@
 """From the pinhole matrix of OpenCV to the clip space of OpenGL, exactly."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,6 +11,10 @@ Array = NDArray[np.float64]
 
 NEAR, FAR = 0.02, 20.0
 """Depths between which things are drawn [m]: from a hand before the lens to the end of a room."""
+
+
+FIXED = 12_000
+"""Pixels that software rendering draws in the time that one more part costs."""
 
 
 def clip_from_camera(matrix: Array, part: Rectangle) -> Array:
@@ -81,6 +87,22 @@ def part_that_shows(
     if (high <= low).any():
         return None
     return Rectangle(int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1]))
+
+
+def merged(parts: Sequence[Rectangle]) -> list[Rectangle]:
+    """Return fewer parts that hold the same: two become one where that costs less than it saves.
+
+    A part has a fixed cost, about that of `FIXED` pixels.
+    """
+    kept: list[Rectangle] = []
+    for part in parts:
+        while kept:
+            both = part.joined(kept[-1])
+            if both.area > part.area + kept[-1].area + FIXED:
+                break
+            part, _ = both, kept.pop()
+        kept.append(part)
+    return kept
 
 
 def is_rigid(transform: Array | None) -> bool:

@@ -10,10 +10,10 @@ from characters.rendering.skinning import SkinnedCharacter
 
 Array = NDArray[np.float64]
 
-SIDE = 128
+SIDE = 96
 """Texels along the map; a character covers about half of them."""
 
-TAPS = 16
+TAPS = 12
 """Of the blur on each side; `TAPS` in `blur.frag` too."""
 
 SLOPE = TO_LIGHT[[0, 2]] / TO_LIGHT[1]
@@ -75,33 +75,41 @@ class Shadow:
         """
         self._reach = _reach(enclosing, height)
         self._area = area = _area(self._reach, height)
-        caster, blur, context = self._programs.caster, self._programs.blur, self._context
+        caster, context = self._programs.caster, self._context
         assign(caster, area=area, slope=SLOPE, levels=LEVELS)
-        self._targets[0].use()
-        self._targets[0].clear()
+        for target in reversed(self._targets):
+            target.use()
+            target.viewport = (0, 0, 2 * SIDE, SIDE)
+            target.clear()
         # What faces away from the light is kept: it is nearest to the table, and soles touch it.
         context.enable_only(moderngl.BLEND | moderngl.CULL_FACE)
         context.front_face = "ccw"
         context.blend_equation = moderngl.MAX
         context.blend_func = moderngl.ONE, moderngl.ONE
-        for part in character.parts:
-            if part.material.double_sided:
-                context.disable(moderngl.CULL_FACE)
-            else:
-                context.enable(moderngl.CULL_FACE)
-            character.caster.render(vertices=part.count, first=part.first, instances=2)
+        for first, count, double_sided in character.coarse_runs:
+            (context.disable if double_sided else context.enable)(moderngl.CULL_FACE)
+            character.caster.render(vertices=count, first=first, instances=2)
         context.blend_equation = moderngl.FUNC_ADD
         context.enable_only(moderngl.NOTHING)
-        texels = SIDE / area[2] * height
-        key, sky = _gaussians(texels * np.array(KEY_BLUR)), _gaussians(texels * np.array(SKY_BLUR))
-        assign(blur, key_weights=key, sky_weights=sky, side=SIDE)
-        for source, target, direction in ((0, 1, (1, 0)), (1, 0, (0, 1))):
-            self._targets[target].use()
-            self._maps[source].use(0)
-            assign(blur, direction=direction)
-            self._screen.render(moderngl.TRIANGLES, vertices=3)
+        self._soften(height)
         x, z = self._reach[[0, 2, 2, 0]], self._reach[[1, 1, 3, 3]]
         return np.stack([x, np.zeros(4), z], axis=1)
+
+    def _soften(self, height: float) -> None:
+        """Blur the map where there may be a shadow: along x, then along z."""
+        blur, area = self._programs.blur, self._area
+        texels = SIDE / area[2] * height
+        assign(blur, side=SIDE)
+        low = np.floor((self._reach[:2] - area[:2]) / area[2] * SIDE).astype(int)
+        high = np.ceil((self._reach[2:] - area[:2]) / area[2] * SIDE).astype(int)
+        for half, deviations in ((0, KEY_BLUR), (SIDE, SKY_BLUR)):
+            assign(blur, weights=_gaussians(texels * np.array(deviations)), left=half)
+            for source, target, direction in ((0, 1, (1, 0)), (1, 0, (0, 1))):
+                self._targets[target].use()
+                self._targets[target].viewport = (low[0] + half, low[1], *(high - low))
+                self._maps[source].use(0)
+                assign(blur, direction=direction)
+                self._screen.render(moderngl.TRIANGLES, vertices=3)
 
     def draw(self, clip_from_table: Array, key_share: Array) -> None:
         """Darken the table of the framebuffer in use, behind what is nearer there."""
@@ -113,8 +121,11 @@ class Shadow:
 
     def release(self) -> None:
         """Give the card's memory back; a second call does nothing."""
-        for owned in (self._screen, self._table, *self._targets, *self._maps):
-            owned.release()
+        self._screen.release()
+        self._table.release()
+        for target, texture in zip(self._targets, self._maps, strict=True):
+            target.release()
+            texture.release()
 
 
 def _reach(enclosing: Array, height: float) -> Array:
@@ -132,7 +143,7 @@ def _area(reach: Array, height: float) -> Array:
     The side grows in steps and the origin moves by whole texels, so that edges do not crawl.
     """
     low, high = reach[:2], reach[2:]
-    step = height / 4
+    step = height / 8
     side = (np.ceil((high - low).max() / step) + 1) * step
     texel = side / SIDE
     origin = np.floor((low + high - side) / 2 / texel) * texel

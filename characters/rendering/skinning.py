@@ -13,6 +13,10 @@ from characters.rendering.view import Drawable
 
 Array = NDArray[np.float64]
 
+CASTER_CELLS = 56
+"""Cells along a character's height to which the caster of its shadow is simplified: the shadow's map
+is not much finer."""
+
 SRGB8_ALPHA8 = 0x8C43
 """OpenGL's name of the format that decodes sRGB when it is sampled."""
 
@@ -57,8 +61,10 @@ class SkinnedCharacter:
         self.height = float(max(heights.max() - min(heights.min(), 0.0), 1e-6))
         """Of the rest pose above the ground [m in the character frame]."""
         bind = context.buffer(geometry.bind_records)
-        looks = np.hstack([geometry.colors, geometry.uvs])
-        surface, indices = context.buffer(looks), context.buffer(geometry.indices)
+        looks = context.buffer(np.hstack([geometry.colors[:, :3], geometry.uvs]))
+        indices = context.buffer(geometry.indices)
+        coarse, self.coarse_runs = geometry.coarse(CASTER_CELLS)
+        coarse_indices = context.buffer(coarse)
         self.skinned = context.buffer(reserve=24 * len(geometry.positions))
         """Positions and normals in the table frame, 3 + 3 float32 a vertex."""
         self._palette = context.texture((3, len(rest)), 4, dtype="f4")
@@ -66,21 +72,25 @@ class SkinnedCharacter:
         self._skin = context.vertex_array(
             programs.skin, [(bind, "3f 3f 4u4 4f", "position", "normal", "joints", "weights")]
         )
-        self.surface = context.vertex_array(
-            programs.character,
-            [(self.skinned, "3f 3f", "position", "normal"), (surface, "4f 2f", "color", "uv")],
-            indices,
+        placed = (self.skinned, "3f 3f", "position", "normal")
+        self.plain = context.vertex_array(
+            programs.plain, [placed, (looks, "3f 8x", "color")], indices
         )
-        """Draws the character."""
+        """Draws the parts without a texture."""
+        self.textured = context.vertex_array(
+            programs.textured, [placed, (looks, "3f 2f", "color", "uv")], indices
+        )
+        """Draws the parts with a texture."""
         self.caster = context.vertex_array(
-            programs.caster, [(self.skinned, "3f 12x", "position")], indices
+            programs.caster, [(self.skinned, "3f 12x", "position")], coarse_indices
         )
-        """Draws its shadow."""
+        """Draws its shadow, in runs of indices `coarse_runs`: (first, count, double-sided)."""
         self.parts = _parts(context, geometry)
         """What to draw with which material."""
         textures = [part.texture for part in self.parts if part.texture is not None]
-        self._arrays = (self._skin, self.surface, self.caster)
-        self._stores = (self._palette, *textures, bind, surface, indices, self.skinned)
+        self._arrays = (self._skin, self.plain, self.textured, self.caster)
+        self._textures = (self._palette, *textures)
+        self._buffers = (bind, looks, indices, coarse_indices, self.skinned)
 
     def pose(self, character_from_joint: Array, table_from_character: Array) -> Array | None:
         """Skin the vertices, and return points in the table frame that enclose them, (n, 3).
@@ -107,8 +117,12 @@ class SkinnedCharacter:
 
     def release(self) -> None:
         """Give the card's memory back; a second call does nothing."""
-        for owned in (*self._arrays, *self._stores):
-            owned.release()
+        for array in self._arrays:
+            array.release()
+        for texture in self._textures:
+            texture.release()
+        for buffer in self._buffers:
+            buffer.release()
 
 
 def _parts(context: moderngl.Context, geometry: Geometry) -> tuple[Part, ...]:

@@ -4,48 +4,77 @@ from collections import OrderedDict
 
 import moderngl
 
+from characters.rendering.programs import Programs
+
 SAMPLES = 4
-"""Samples a pixel, where the driver has that many."""
+"""Samples a pixel of the ground, where the driver has that many."""
 
-STEP = 128
-"""Sizes are rounded up to it [px], so that a walking character does not ask for a new one each picture."""
+FINER = 2
+"""How much finer a figure is drawn than the picture, along each side. Its triangles are about as large
+as a pixel, for which many samples a pixel cost software rendering more than more pixels do."""
 
-KEPT = 6
+STEP = 64
+"""Sizes are rounded up to it [px], so that a walking character does not ask for a new one
+each picture."""
+
+KEPT = 8
 """How many sizes are kept."""
 
 
 class Target:
-    """A framebuffer with several samples a pixel, and one to read the result from.
+    """What a part of a picture is drawn in: the ground, and the figures above it.
 
     Parameters
     ----------
-    context
-        Where they live.
+    context, programs
+        Where to draw.
     size
         (width, height) [px].
     """
 
-    def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
+    def __init__(
+        self, context: moderngl.Context, programs: Programs, size: tuple[int, int]
+    ) -> None:
         samples = min(SAMPLES, context.max_samples)
+        fine = (FINER * size[0], FINER * size[1])
         self._context = context
         self._color = context.renderbuffer(size, 4, samples=samples)
         self._depth = context.depth_renderbuffer(size, samples=samples)
-        self.canvas = context.framebuffer([self._color], self._depth)
-        """To draw into."""
+        self.ground = context.framebuffer([self._color], self._depth)
+        """The camera's picture with marks and shadows, several samples a pixel."""
+        self._figures = context.texture(fine, 4)
+        self._figures.repeat_x = self._figures.repeat_y = False
+        self._fine_depth = context.depth_renderbuffer(fine)
+        self.figures = context.framebuffer([self._figures], self._fine_depth)
+        """The characters on nothing, premultiplied, `FINER` times as large."""
         self.picture = context.texture(size, 4)
-        """The result, after `resolve`."""
+        """The result."""
         self.picture.repeat_x = self.picture.repeat_y = False
         self.result = context.framebuffer([self.picture])
         """To read the result from."""
+        self._over = context.vertex_array(programs.over, [])
 
-    def resolve(self) -> None:
-        """Average the samples into the result."""
-        self._context.copy_framebuffer(self.result, self.canvas)
+    def resolve(self, with_figures: bool) -> None:
+        """Average the samples of the ground into the result, and lay the figures over it."""
+        self._context.copy_framebuffer(self.result, self.ground)
+        if not with_figures:
+            return
+        self.result.use()
+        self.result.viewport = self.ground.viewport
+        self._context.enable_only(moderngl.BLEND)
+        self._context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
+        self._figures.use(0)
+        self._over.render(moderngl.TRIANGLES, vertices=3)
 
     def release(self) -> None:
         """Give the card's memory back; a second call does nothing."""
-        for owned in (self.canvas, self.result, self._color, self._depth, self.picture):
-            owned.release()
+        for framebuffer in (self.ground, self.figures, self.result):
+            framebuffer.release()
+        for buffer in (self._color, self._depth, self._fine_depth):
+            buffer.release()
+        for texture in (self._figures, self.picture):
+            texture.release()
+        self._over.release()
 
 
 class Targets:
@@ -53,18 +82,19 @@ class Targets:
 
     Parameters
     ----------
-    context
-        Where they live.
+    context, programs
+        Where to draw.
     """
 
-    def __init__(self, context: moderngl.Context) -> None:
+    def __init__(self, context: moderngl.Context, programs: Programs) -> None:
         self._context = context
+        self._programs = programs
         self._kept: OrderedDict[tuple[int, int], Target] = OrderedDict()
 
     def at_least(self, width: int, height: int) -> Target:
         """Return a target that is large enough, and little larger."""
         size = (-(-width // STEP) * STEP, -(-height // STEP) * STEP)
-        target = self._kept.pop(size, None) or Target(self._context, size)
+        target = self._kept.pop(size, None) or Target(self._context, self._programs, size)
         self._kept[size] = target
         if len(self._kept) > KEPT:
             self._kept.popitem(last=False)[1].release()

@@ -105,3 +105,19 @@ class Rectangle:
     def rows_and_columns(self) -> tuple[slice, slice]:
         """Index of the part in an image array."""
         return slice(self.y, self.y + self.height), slice(self.x, self.x + self.width)
+
+    @property
+    def area(self) -> int:
+        """Number of pixels."""
+        return self.width * self.height
+
+    def joined(self, other: "Rectangle") -> "Rectangle":
+        """Return the smallest rectangle that holds both.
+
+        >>> Rectangle(0, 0, 2, 2).joined(Rectangle(3, 1, 1, 4))
+        Rectangle(x=0, y=0, width=4, height=5)
+        """
+        x, y = min(self.x, other.x), min(self.y, other.y)
+        right = max(self.x + self.width, other.x + other.width)
+        foot = max(self.y + self.height, other.y + other.height)
+        return Rectangle(x, y, right - x, foot - y)
