@@ -1,5 +1,6 @@
 """How a camera maps the world to pixels, and the file that remembers it."""
 
+import contextlib
 import math
 import os
 from dataclasses import dataclass
@@ -174,11 +175,11 @@ def _whole(document: dict[Any, Any], key: str) -> int:
 def _numbers(document: dict[Any, Any], key: str) -> Array:
     table = document.get(key)
     data = table.get("data") if isinstance(table, dict) else None
-    try:
+    if isinstance(data, list):
         # YAML 1.1 reads 1e-05, which C++ writes, as a string: `float` takes both.
-        return np.array([float(value) for value in data or ()], np.float64)
-    except (TypeError, ValueError) as error:
-        raise TrackingError(f"'{key}' needs a list of numbers called 'data'") from error
+        with contextlib.suppress(TypeError, ValueError):
+            return np.array([float(value) for value in data], np.float64)
+    raise TrackingError(f"'{key}' needs a list of numbers called 'data'")
 
 
 def _table(values: Array) -> dict[str, Any]:
