@@ -1,4 +1,4 @@
-"""Poses that one frame proposes: from markers, refined on edges, or from the past and edges alone."""
+"""Poses that one frame proposes: from markers refined on edges, or from edges alone."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -21,7 +21,7 @@ FLOOR = np.array([2e-5, 2e-5, 4e-5, 1e-4, 1e-4, 1e-4])
 """Smallest standard deviations of a shift-turn that are claimed [m, rad]: no model is better."""
 
 BLUR_FLOOR = np.array([2e-3, 2e-3, 3e-3, 0.02, 0.02, 0.02])
-"""The same for a pose from blurred edges: they lie where the cube was in mid-exposure, if at all."""
+"""The same for a pose from blurred edges: they lie where the cube was in mid-exposure, at best."""
 
 STRAY = 1.0
 """Edges and corners must agree to this share of a cell, or the edges found something else."""
@@ -166,7 +166,7 @@ class CandidateFinder:
         return best
 
     def _from_past(self, grey: Picture, last: Sighting, timestamp: float) -> Candidate | None:
-        """Look for the edges where the cube should be: blur and fingers hide markers, not all edges."""
+        """Look for edges where the cube should be: blur hides markers sooner than edges."""
         expected = prediction.predicted(last, timestamp)
         best = self._best_refinement(grey, expected)
         if best is None or best.support < SEEN_ALONE:

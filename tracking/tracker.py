@@ -17,7 +17,7 @@ from tracking.state import CubeState
 Array = NDArray[np.float64]
 
 CLEARLY_BETTER = 0.6
-"""Of two poses of one face, one with less than this share of the other's residual is the right one."""
+"""Of two poses of one face, one with less than this share of the other's residual is right."""
 
 FORGOTTEN = 1.0
 """After this time out of sight [s] the cube may appear anywhere without confirmation."""

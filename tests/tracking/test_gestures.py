@@ -1,6 +1,7 @@
 """Gestures from exact poses: what the hand does is known to the last digit."""
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -175,7 +176,7 @@ def test_tipping_goes_through_all_faces(hand: Hand) -> None:
         assert controls.resting
         before = top
     seen = [controls.top_face for controls in hand.all if controls.top_face]
-    assert sum(a != b for a, b in zip(seen, seen[1:], strict=False)) == 7
+    assert sum(a != b for a, b in pairwise(seen)) == 7
 
 
 def test_rocking_on_an_edge_does_not_flicker(hand: Hand) -> None:
@@ -252,7 +253,7 @@ def test_a_shake_is_recognised_once_a_second(hand: Hand, axis: int, amplitude: f
 
 def carrying() -> Iterator[Array]:
     places = [standing(), standing(x=0.2, z=-0.1), standing(x=-0.2), standing(turn_deg=90)]
-    for start, end in zip(places, places[1:], strict=False):
+    for start, end in pairwise(places):
         yield from between(start, end, 0.7, lift=0.1)
 
 
