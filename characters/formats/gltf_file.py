@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 
+_MOST = 10_000_000  # values out of nothing: more are a damaged count that would eat the memory
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 
 COMPONENTS: dict[int, type[np.generic]] = {
@@ -64,10 +65,13 @@ class GltfFile:
         accessor = self.document.accessors[index]
         dtype = np.dtype(COMPONENTS[accessor.componentType]).newbyteorder("<")
         width = WIDTHS[accessor.type]
-        values = np.zeros((accessor.count, width), dtype)
         if accessor.bufferView is not None:
             offset = accessor.byteOffset or 0
             values = self._strided(accessor.bufferView, offset, dtype, accessor.count, width)
+        elif accessor.count > _MOST:
+            raise DamagedFileError(f"accessor {index} claims {accessor.count} values")
+        else:
+            values = np.zeros((accessor.count, width), dtype)
         if accessor.sparse is not None:
             values = self._with_sparse(values, accessor.sparse, dtype)
         if scaled and accessor.normalized and dtype.kind in "iu":
