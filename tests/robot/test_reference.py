@@ -1,0 +1,53 @@
+"""The protocol's document says what the code does."""
+
+import re
+
+import pytest
+
+from robot import wire
+from robot.reference import DOCUMENT, VECTORS, renewed
+from robot.schema import FORMS, unpack
+from robot.wire import FrameReader
+
+TEXT = DOCUMENT.read_text("utf-8")
+HEX = re.compile(r"^ *(00(?: [0-9a-f]{2})+)(?:  +(.*))?$", re.MULTILINE)
+
+
+def test_tables_and_vectors_are_those_of_the_code():
+    assert renewed(TEXT) == TEXT, "run `python -m robot.reference`"
+
+
+def test_the_vectors_of_the_document_are_read_as_what_it_says():
+    part = TEXT[TEXT.index("<!-- vectors") : TEXT.index("<!-- end of vectors")]
+    lines = [line for line in part.splitlines() if " in session " in line]
+    frames = [bytes.fromhex(found[1]) for found in HEX.finditer(part)]
+    assert len(lines) == len(frames) == len(VECTORS)
+    for line, frame in zip(lines, frames, strict=True):
+        (body,) = FrameReader().feed(frame)
+        session, content = unpack(body, FORMS[body[0]].sender)
+        assert f"{content} in session {session}" == line
+
+
+def test_there_is_a_vector_for_every_message():
+    assert {type(content) for _, content in VECTORS} == {form.kind for form in FORMS.values()}
+
+
+def test_what_the_document_tells_to_refuse_is_refused():
+    part = TEXT[TEXT.index("And three things to refuse") :]
+    bad = [bytes.fromhex(found[1]) for found in HEX.finditer(part)]
+    assert len(bad) == 3
+    for frame in bad:
+        reader = FrameReader()
+        assert reader.feed(frame) == []
+        assert reader.errors == 1
+
+
+def test_numbers_quoted_in_the_prose_are_those_of_the_code():
+    assert f"2 … {wire.MAX_BODY + 1} bytes" in TEXT
+    assert f"After {wire.MAX_FRAME + 1} bytes without an edge" in TEXT
+    assert f"has {8 * (wire.MAX_BODY + 1)} bits and 16 of the check" in TEXT
+
+
+def test_a_document_without_its_marks_is_refused():
+    with pytest.raises(ValueError, match="one part marked 'messages'"):
+        renewed("")
