@@ -5,9 +5,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from characters.authoring.human import build_human
+from characters.authoring.vleo import build_vleo
 from characters.character import Character
 
-BUILDERS: dict[str, Callable[[], Character]] = {"human": build_human}
+BUILDERS: dict[str, Callable[[], Character]] = {"human": build_human, "vleo": build_vleo}
 ASSETS = Path(__file__).parent.parent / "assets"
 
 

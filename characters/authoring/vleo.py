@@ -1,5 +1,9 @@
 """Vleo, a baby sauropod that throws kisses and shouts: its mesh, skeleton and clips."""
 
+from dataclasses import replace
+
+import numpy as np
+
 from characters.authoring.sculpt import join
 from characters.authoring.vleo_actions import clips
 from characters.authoring.vleo_body import body
@@ -21,4 +25,25 @@ def mesh(bound: Skeleton) -> Mesh:
     """Return Vleo's one mesh, bound to the skeleton's pose."""
     skin = body(bound)
     pieces = [skin_mesh(skin, bound), *face(skin, bound), *effects(bound)]
-    return join("Vleo", pieces, Material(roughness=0.55))
+    return _welded(join("Vleo", pieces, Material(roughness=0.55)))
+
+
+def _welded(mesh: Mesh) -> Mesh:
+    """Return the mesh with equal vertices merged and triangles without area left out."""
+    colors = np.ones((len(mesh.positions), 4)) if mesh.colors is None else mesh.colors
+    columns = (mesh.positions, mesh.normals, mesh.joints, mesh.weights, colors)
+    rows = np.hstack([np.asarray(column, np.float64) for column in columns])
+    _, first, number = np.unique(rows.round(6), axis=0, return_index=True, return_inverse=True)
+    order = np.sort(first)  # as they came
+    rank = np.searchsorted(order, first)[number.reshape(-1)]
+    triangles = rank[mesh.triangles].astype(np.uint32)
+    a, b, c = triangles.T
+    return replace(
+        mesh,
+        positions=mesh.positions[order],
+        normals=mesh.normals[order],
+        triangles=triangles[(a != b) & (b != c) & (c != a)],
+        joints=mesh.joints[order],
+        weights=mesh.weights[order],
+        colors=colors[order].astype(np.float32),
+    )

@@ -22,7 +22,7 @@ from characters.authoring.vleo_rig import BURSTS, FEET, HEARTS, HIDDEN, Performa
 from characters.clip import Clip
 from characters.pose import Skeleton
 
-IDLE_SECONDS, KISS_SECONDS, SHOUT_SECONDS = 8.0, 2.4, 2.0
+IDLE_SECONDS, KISS_SECONDS, SHOUT_SECONDS = 7.0, 2.4, 2.0
 LEVELS = ("head", "legs", "tail")
 """Intensity −1, 0 and 1."""
 DEGREE = np.pi / 180
@@ -85,7 +85,7 @@ def kiss(level: int, bound: Skeleton) -> Performance:
     if level >= 1:
         _kiss_legs(act, level)
     if level == 2:
-        wag = 13 * DEGREE * wave(n, 5)
+        wag = 18 * DEGREE * wave(n, 5)
         tail(act, DEGREE * keys(n, (0.0, 13), (0.31, 3), (0.47, 20), (0.8, 14)), wag, 1.9, 0.8)
         act.turn("hips", left=4 * DEGREE * wave(n, 5, -0.02), tilt=3 * DEGREE * wave(n, 5, -0.05))
         act.turn(
@@ -111,7 +111,7 @@ def kiss(level: int, bound: Skeleton) -> Performance:
 def _pucker(act: Performance) -> None:
     """Shut the eyes and mouth, push the lips out, and open up into a smile."""
     n = act.frames
-    shut = keys(n, (0.22, 0), (0.38, 1), (0.60, 1), (0.70, 0))
+    shut = keys(n, (0.29, 0), (0.37, 1), (0.60, 1), (0.68, 0))
     glad = keys(n, (0.0, 0.5), (0.30, 0.5), (0.62, 1), (0.85, 0.6))
     lids(act, shut, glad, 0.0)
     jaw = keys(n, (0.08, 0.02), (0.22, 1), (0.49, 1), (0.56, -0.7), (0.70, -0.5), (0.90, 0.0))
@@ -142,7 +142,7 @@ def _kiss_legs(act: Performance, level: int) -> None:
     act.move("hips", y=keys(n, *jump, *again) / 1000)
     for foot in FEET:
         front = "Front" in foot
-        up = keys(n, (0.37, 0), (0.46, 0.046 if front else 0.026), (0.55, 0), (0.68, 0),
+        up = keys(n, (0.37, 0), (0.46, 0.058 if front else 0.026), (0.55, 0), (0.68, 0),
                   (0.745, 0.014), (0.81, 0), (0.99, 0))  # fmt: skip
         act.step(foot, y=up, z=(0.4 if front else -0.3) * up, toes=(-12 if front else -9) * up)
 
@@ -189,7 +189,8 @@ def _shout_legs(act: Performance, level: int) -> None:
     lunge = [(0.0, -5), (0.20, 2 + 4 * rear), (0.30, -13), (0.36, -7)]
     jolts = [(0.44, -4), (0.485, -12), (0.54, -5), (0.585, -4), (0.625, -11), (0.72, -6)]
     act.move("hips", y=keys(n, *lunge, *jolts) / 1000)
-    act.move("hips", z=keys(n, (0.0, 0), (0.20, -0.016), (0.31, 0.016), (0.60, 0.014), (0.80, 0)))
+    back = -0.016 - 0.006 * rear
+    act.move("hips", z=keys(n, (0.0, 0), (0.20, back), (0.31, 0.016), (0.60, 0.014), (0.80, 0)))
     pitch = keys(
         n, (0.0, -3), (0.20, 7 + 10 * rear), (0.30, -7), (0.40, -4), (0.62, -5), (0.80, -3)
     )

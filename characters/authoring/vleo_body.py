@@ -48,7 +48,7 @@ SPINE = np.array(  # height, forward and radius from the tip of the tail to the 
         [0.225, 0.092, 0.0268],
     ]
 )
-TRUNK_CELL, FACE_CELL = (0.0078, 0.0096, 0.0096), (0.0052, 0.0042, 0.0044)
+TRUNK_CELL, FACE_CELL = (0.0086, 0.0106, 0.0108), (0.0056, 0.0044, 0.0047)
 """Edges of a grid cell far from the mouth and about it, along x, y, z [m]."""
 MOUTH_BOX = ((-0.044, 0.044), (0.192, 0.246), (0.134, 0.300))
 """Where the cells are small, along x, y, z [m]."""
@@ -249,7 +249,7 @@ def _with_firm_feet(points: Array, weights: Array, bound: Skeleton) -> Array:
 def jaw_share(points: Array) -> Array:
     """Return how much of the head's hold on points (n, 3) is the jaw's, (n,), 0…1."""
     below = lip_line(points) - points[:, 1]
-    soft = 0.0012 + 0.7 * np.maximum(0.0, 0.1425 - points[:, 2])
+    soft = 0.0012 + 0.7 * np.maximum(0.0, 0.1535 - points[:, 2])
     ahead = (points[:, 2] - 0.100 + 0.35 * (points[:, 1] - 0.2235)) / 0.035
     return _ease(0.5 + 0.5 * below / soft) * _ease(ahead)
 

@@ -43,7 +43,8 @@ def lids(act: Performance, shut: Array | float, smile: Array | float, anger: Arr
     upper = np.minimum(1.0, shut + 0.40 * np.asarray(anger) * (1 - np.asarray(shut)))
     lower = np.maximum(shut, 0.62 * np.asarray(smile) + 0.25 * np.asarray(anger))
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
-        act.turn(f"{side}UpperLid", up=-SHUT * upper, tilt=0.42 * sign * np.asarray(anger))
+        slant = 0.42 * np.asarray(anger) - 0.28 * np.asarray(shut)  # inward is fierce, outward kind
+        act.turn(f"{side}UpperLid", up=-SHUT * upper, tilt=sign * slant)
         act.turn(f"{side}LowerLid", up=LOWER_SHUT * lower)
         deep = 0.014 * (1 - np.clip(anger, 0, 1))  # out of sight in the head unless angry
         act.move(f"{side}Brow", y=-0.4 * deep, z=-deep)

@@ -59,14 +59,14 @@ def _eye(side: float, bound: Skeleton) -> list[Mesh]:
     angle = np.radians([180, 120, 85, 57, 54, 35, 17, 0])
     rings = EYE_RADIUS * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     bands = [WHITE] * 3 + [LASH, IRIS, PUPIL, PUPIL]
-    ball = lathe(rings, bands, facing(gaze, center), f"{name}Eye", bound, 24)
+    ball = lathe(rings, bands, facing(gaze, center), f"{name}Eye", bound, 22)
     lights = []
-    for across, up, radius in ((-0.30, 0.40, 0.0056), (0.26, -0.28, 0.0027)):
+    for across, up, radius in ((-0.30, 0.40, 0.0058), (0.26, -0.28, 0.0027)):
         toward = gaze + np.array([across, up, 0.0])  # on the same side in both: one sun
-        toward /= np.linalg.norm(toward)
-        dome = radius * np.array([[0, -0.4], [1, -0.1], [0.6, 0.22], [0, 0.32]])
-        spot = facing(toward, center + toward * EYE_RADIUS)
-        lights.append(lathe(dome, [WHITE] * 3, spot, "head", bound, 10))
+        wide = radius / EYE_RADIUS * np.array([0.0, 1.0, 0.5, 0.0])
+        rings = EYE_RADIUS * 1.022 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
+        rings[0, 1] *= 0.95
+        lights.append(lathe(rings, [WHITE] * 3, facing(toward, center), "head", bound, 10))
     upper = _lid(LID_OPEN + np.pi / 2, 1.065, f"{name}UpperLid", center, bound)
     lower = _lid(-LOWER_LID_OPEN - np.pi / 2, 1.045, f"{name}LowerLid", center, bound)
     return [ball, *lights, upper, lower]
@@ -80,14 +80,14 @@ def _lid(elevation: float, size: float, joint: str, center: Array, bound: Skelet
     yaw = LID_YAW * (1 if joint.startswith("Left") else -1)
     ahead = np.cos(elevation)
     pole = np.array([ahead * np.sin(yaw), np.sin(elevation), ahead * np.cos(yaw)])
-    return lathe(rings, [LASH, LASH, *[LID] * 4], facing(pole, center), joint, bound, 20)
+    return lathe(rings, [LASH, LASH, *[LID] * 4], facing(pole, center), joint, bound, 18)
 
 
 def _brow(side: float, bound: Skeleton) -> Mesh:
     """Return an angry brow, hidden in the head but for shouts."""
     name = "Left" if side > 0 else "Right"
     bones = (f"{name}Brow",)
-    line = [[0.0130, 0.2700, 0.1680], [0.0290, 0.2790, 0.1650], [0.0440, 0.2840, 0.1560]]
+    line = [[0.0130, 0.2700, 0.1680], [0.0290, 0.2790, 0.1650], [0.0420, 0.2835, 0.1540]]
     ridge = chain(np.array(line) * [side, 1, 1], (0.0050, 0.0052, 0.0034), bones * 2, BROW)
     return sculpt("", [Part(ridge, 0.0045, soft_skin=0.0)], bound)
 
@@ -134,7 +134,7 @@ def _corner_side(corner: float) -> float:
 
 def _patches(body: Body) -> list[Mesh]:
     """Return the round patches of colour: cheeks, nostrils and the spots on the back."""
-    cheek = (54.0, 228.0, 163.0, 11.0)
+    cheek = (60.0, 236.5, 146.0, 10.0)
     nostril = (13.0, 247.0, 193.0, 3.4)
     rows = [(cheek, PINK), (nostril, LASH), *((spot, SPOT) for spot in SPOTS)]
     both = [
@@ -185,7 +185,7 @@ def _claws(side: float, bound: Skeleton) -> list[Mesh]:
 
 def _decals(near: Array, radii: Array, colors: list[Vector], body: Body) -> list[Mesh]:
     """Return round patches on the skin next to points (n, 3), half a millimetre proud of it."""
-    field, sides = whole().distance, 14
+    field, sides = whole().distance, 12
     centers = project(field, near, 0.05, 8)
     frames = np.stack(
         [facing(n, c) for n, c in zip(normals_of(field, centers, 0.006), centers, strict=True)]

@@ -53,6 +53,8 @@ _LEFT = {
     "LeftHindLowerLeg": ("LeftHindUpperLeg", (0.043, 0.058, -0.026)),
     "LeftHindFoot": ("LeftHindLowerLeg", (0.045, 0.020, -0.052)),
 }
+NEARLY_STRAIGHT = 0.97
+"""Reach of a leg over the length of its bones from which on it stretches instead."""
 MOUTH = (0.0, 0.222, 0.200)
 """Where kisses and shouts leave, character frame [m]."""
 
@@ -147,12 +149,19 @@ def poses(performance: Performance, bound: Skeleton) -> Pose:
     local = rotations.multiply(bound.rest.rotations, turned)
     body = Pose(translations, local).globals(bound)
     for foot in FEET:
-        _place_leg(foot, performance.feet.get(foot, np.zeros((frames, 4))), body, local, bound)
+        steps = performance.feet.get(foot, np.zeros((frames, 4)))
+        stretch = _place_leg(foot, steps, body, local, bound)
+        knee = bound.parents[bound.index(foot)]
+        translations[:, [knee, bound.index(foot)]] *= stretch[:, None]
     return Pose(translations, rotations.continuous(local), scales)
 
 
-def _place_leg(foot: str, offset: Array, body: Array, local: Array, bound: Skeleton) -> None:
-    """Turn the three joints of a leg so that its foot is where it should: two-bone IK."""
+def _place_leg(foot: str, offset: Array, body: Array, local: Array, bound: Skeleton) -> Array:
+    """Turn the three joints of a leg so that its foot is where it should: two-bone IK.
+
+    Returns how much longer than at rest its bones must be, (frames, 1): legs of rubber give a
+    little before a foot leaves its place.
+    """
     ankle = bound.index(foot)
     knee = bound.parents[ankle]
     hip = bound.parents[knee]
@@ -162,7 +171,8 @@ def _place_leg(foot: str, offset: Array, body: Array, local: Array, bound: Skele
     thigh, shin = rest[knee] - rest[hip], rest[ankle] - rest[knee]
     a, b = np.linalg.norm(thigh), np.linalg.norm(shin)
     reach = np.linalg.norm(target - start, axis=1, keepdims=True)
-    reach = np.clip(reach, abs(a - b) + 1e-4, a + b - 1e-4)
+    stretch = np.maximum(1.0, reach / (NEARLY_STRAIGHT * (a + b)))
+    a, b = a * stretch, b * stretch
     down = _unit(target - start)
     bend = _across(rotations.rotate(parent, _across(thigh, _unit(rest[ankle] - rest[hip]))), down)
     cosine = (a * a + reach * reach - b * b) / (2 * a * reach)
@@ -175,6 +185,7 @@ def _place_leg(foot: str, offset: Array, body: Array, local: Array, bound: Skele
     local[:, hip] = rotations.multiply(rotations.conjugate(parent), upper)
     local[:, knee] = rotations.multiply(rotations.conjugate(upper), lower)
     local[:, ankle] = rotations.multiply(rotations.conjugate(lower), sole)
+    return np.asarray(stretch)
 
 
 def _turned(bone: Array, normal: Array, new_bone: Array, new_normal: Array) -> Array:
