@@ -10,11 +10,11 @@ from characters.authoring.shapes import Array, Cone, Cut, Ellipsoid, Shape, Unio
 from characters.mesh import Mesh
 from characters.pose import Skeleton
 
-SKIN = rgb("#e8a878")
-BLUSH = rgb("#e0705a")
-HAIR = rgb("#6e3119")
+SKIN = rgb("#f4b98c")
+BLUSH = rgb("#ea7560")
+HAIR = rgb("#7c391d")
 INK = rgb("#1b1020")
-BROWN = rgb("#6a3a17")
+BROWN = rgb("#7d4519")
 LIP = rgb("#9c3b34")
 EYE_WHITE = (0.93, 0.93, 0.95)
 
@@ -47,7 +47,7 @@ def face_lines(skeleton: Skeleton) -> list[Mesh]:
     ]
     for sign in (1.0, -1.0):
         x = np.linspace(0.026, 0.11, 5)
-        brow = _laid_on(face, sign * x, 1.564 - 5.0 * (x - 0.062) ** 2 - 0.1 * (x - 0.062))
+        brow = _laid_on(face, sign * x, 1.571 - 5.0 * (x - 0.062) ** 2 - 0.1 * (x - 0.062))
         lines.append(cord(brow, [0.009, 0.012, 0.0115, 0.009, 0.005], HAIR, "head", skeleton, 7, 9))
     return lines
 
@@ -126,7 +126,7 @@ def eyelids(skeleton: Skeleton) -> list[Mesh]:
 
 def _highlight(center: Array, skeleton: Skeleton) -> Mesh:
     spot = center + np.array(EYE_RADII) * [0.2, 0.28, 0.93]
-    place = np.column_stack([np.diag([0.011, 0.013, 0.007]), spot])
+    place = np.column_stack([np.diag([0.0125, 0.015, 0.008]), spot])
     tilt = np.linspace(np.pi, 0, 6)
     rings = np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
     return lathe(rings, [(1.0, 1.0, 1.0)] * 5, place, "head", skeleton, 8)

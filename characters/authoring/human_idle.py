@@ -95,7 +95,7 @@ def _hold_trunk(puppet: Puppet, weight: Array, breath: Array, look: Array, nod: 
     puppet.turn("spine1", turned(-0.6 * breath, 1.5 * weight + 0.05 * follow, -2.4 * weight))
     puppet.turn("spine2", turned(1.0 - 0.9 * breath, 1.5 * weight + 0.07 * follow, -2.4 * weight))
     puppet.turn("chest", turned(1.5 - 1.3 * breath, 0.08 * follow, -0.8 * weight))
-    gaze = turned(1 + nod + 0.5 * breath, look, 2.2 * weight - 0.10 * look)
+    gaze = turned(-8 + nod + 0.5 * breath, look, 2.2 * weight - 0.10 * look)
     above = rotations.multiply(rotations.conjugate(puppet.facing("chest")), gaze)
     puppet.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.4))
     puppet.face("head", gaze)

@@ -4,7 +4,7 @@ Amplitudes and phases after the descriptions in Perry & Burnfield, "Gait Analysi
 Williams, "The Animator's Survival Kit" (2001), freely exaggerated. Phase 0 is the left heel strike.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -61,16 +61,65 @@ class Style:
     """Greatest length of a leg, as a part of a straight one."""
 
 
-WALK = Style(0.028, 0.06, 0.024, 9, 5, 4, 15, 30, 4, 24, 16, 0.985)
-RUN = Style(0.038, 0.15, 0.012, 12, 5, 13, 26, 44, 12, 86, 18, 0.975)
+WALK = Style(0.028, 0.06, 0.024, 9, 5, 4, 15, 30, 4, 24, 16, 0.994)
+RUN = Style(0.032, 0.15, 0.012, 12, 5, 13, 26, 44, 12, 86, 18, 0.985)
 
 
-def stride(skeleton: Skeleton, name: str, path: Path, steps: Steps, style: Style) -> Clip:
+@dataclass(frozen=True)
+class Gait:
+    """One way to go."""
+
+    speed: float
+    """[m/s]."""
+
+    yaw_rate: float
+    """To the left [degrees a second]."""
+
+    frames: int
+    """Of a cycle; even, so that half of it is a step."""
+
+    steps: Steps
+    """The feet."""
+
+    style: Style
+    """The rest of the body."""
+
+
+def _walk(speed: float, yaw_rate: float, frames: int, width: float, ahead: float) -> Gait:
+    cycle = frames / RATE
+    longest = 1.395  # the double step of a straight walk [m]
+    part = speed * cycle / longest
+    # Walking is an inverted pendulum: it rises with the square of the step (Alexander 1976).
+    style = replace(WALK, bob=WALK.bob * part**2, pelvis_yaw=WALK.pelvis_yaw * part)
+    strike, off = 0.36 * part, 0.35 + 0.7 * part
+    steps = Steps(cycle, 0.6, width, ahead, strike, off, 0.035, rise_from=0.45)
+    return Gait(speed, yaw_rate, frames, steps, style)
+
+
+def _run(speed: float, yaw_rate: float, frames: int, ahead: float) -> Gait:
+    steps = Steps(frames / RATE, 0.29, 0.06, ahead, 0.1, 0.85, 0.17, 0.06, 0.35, 0.55)
+    return Gait(speed, yaw_rate, frames, steps, RUN)
+
+
+GAITS = {
+    "Walk": _walk(1.35, 0.0, 62, 0.082, -0.07),
+    "WalkTurnWide": _walk(1.3, 45.0, 62, 0.084, -0.065),
+    "WalkTurnMedium": _walk(1.12, 90.0, 58, 0.09, -0.045),
+    "WalkTurnShort": _walk(0.9, 135.0, 52, 0.1, -0.03),
+    "Run": _run(3.4, 0.0, 42, -0.11),
+    "RunTurnWide": _run(3.2, 67.5, 42, -0.1),
+    "RunTurnMedium": _run(2.8, 135.0, 40, -0.09),
+}
+"""Speeds fall a little as turns get tighter, and feet go wider apart."""
+
+
+def stride(skeleton: Skeleton, name: str, gait: Gait) -> Clip:
     """Return one cycle of a gait along an arc, as a loop with root motion."""
-    frames = round(steps.cycle * RATE)
-    phase = np.arange(frames + 1) / frames
+    path = Path(gait.speed, float(np.radians(gait.yaw_rate)))
+    steps, style = gait.steps, gait.style
+    phase = np.arange(gait.frames + 1) / gait.frames
     feet = {s: foot_motion(path, steps, FOOT, sign, phase) for s, sign in SIDES}
-    puppet = Puppet(skeleton, frames + 1)
+    puppet = Puppet(skeleton, gait.frames + 1)
     bank = np.arctan(path.speed * path.yaw_rate / 9.81)
     _carry_pelvis(puppet, style, phase, bank)
     _fit_height(puppet, feet, style.reach)
@@ -128,7 +177,7 @@ def _carry_trunk(puppet: Puppet, style: Style, phase: Array, yaw_rate: float) ->
         pitch = 0.22 * style.lean + 0.8 * _wave(phase, 0.12 + lag, 2)
         puppet.turn(name, turned(pitch, yaw, roll))
     gaze = turned(
-        2 + 1.2 * _wave(phase, 0.16, 2), 0.12 * into + 2 * _wave(phase, 0.1), -0.04 * into
+        -5 + 1.2 * _wave(phase, 0.16, 2), 0.12 * into + 2 * _wave(phase, 0.1), -0.04 * into
     )
     above = rotations.multiply(rotations.conjugate(puppet.facing("chest")), gaze)
     puppet.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.45))
@@ -181,30 +230,13 @@ def mirrored_half_cycle(clip: Clip, skeleton: Skeleton, name: str) -> Clip:
 
 
 def locomotion(skeleton: Skeleton) -> dict[str, Clip]:
-    """Return the twelve gaits by name."""
-    walk = {
-        "": (1.35, 0, 62),
-        "Wide": (1.3, 45, 62),
-        "Medium": (1.12, 90, 60),
-        "Short": (0.9, 135, 56),
-    }
-    run = {"": (3.4, 0, 42), "Wide": (3.2, 67.5, 42), "Medium": (2.8, 135, 40)}
+    """Return the twelve gaits, straight and in turns of both sides, by name."""
     clips = {}
-    for gait, turns in (("Walk", walk), ("Run", run)):
-        for size, (speed, rate, frames) in turns.items():
-            cycle = frames / RATE
-            path = Path(speed, float(np.radians(rate)))
-            if gait == "Walk":
-                steps = Steps(cycle, 0.61, 0.082, -0.07, 0.36, 0.8, 0.035)
-                style = WALK
-            else:
-                steps = Steps(cycle, 0.32, 0.06, -0.06, 0.10, 0.85, 0.17, 0.06, 0.35, 0.55)
-                style = RUN
-            if size:
-                left = stride(skeleton, f"{gait}Left{size}", path, steps, style)
-                clips[left.name] = left
-                right = mirrored_half_cycle(left, skeleton, f"{gait}Right{size}")
-                clips[right.name] = right
-            else:
-                clips[gait] = stride(skeleton, gait, path, steps, style)
+    for name, gait in GAITS.items():
+        straight = gait.yaw_rate == 0
+        clip = stride(skeleton, name if straight else name.replace("Turn", "Left"), gait)
+        clips[clip.name] = clip
+        if not straight:
+            right = mirrored_half_cycle(clip, skeleton, name.replace("Turn", "Right"))
+            clips[right.name] = right
     return clips

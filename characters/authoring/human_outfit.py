@@ -24,14 +24,14 @@ from characters.authoring.shapes import (
 from characters.mesh import Mesh
 from characters.pose import Skeleton
 
-TEAL = rgb("#0fa3a6")
-DEEP_TEAL = rgb("#0a7c86")
+TEAL = rgb("#12b3b3")
+DEEP_TEAL = rgb("#0c8a93")
 CREAM = rgb("#fff3dc")
-MUSTARD = rgb("#f5b02e")
-LEATHER = rgb("#a8611f")
-INDIGO = rgb("#323a6e")
-PALE_INDIGO = rgb("#6d78b8")
-CORAL = rgb("#f0563f")
+MUSTARD = rgb("#fbb832")
+LEATHER = rgb("#b86a24")
+INDIGO = rgb("#3e4a8c")
+PALE_INDIGO = rgb("#8590d4")
+CORAL = rgb("#f75c43")
 
 
 def outfit_parts() -> list[Part]:

@@ -12,7 +12,7 @@ JOINTS: dict[str, tuple[str, Vector]] = {
     "chest": ("spine2", (0.0, 1.10, -0.015)),
     "neck": ("chest", (0.0, 1.225, -0.01)),
     "head": ("neck", (0.0, 1.295, 0.0)),
-    "LeftEyelid": ("head", (0.066, 1.462, 0.115)),
+    "LeftEyelid": ("head", (0.068, 1.463, 0.11)),
     "LeftShoulder": ("chest", (0.045, 1.185, -0.01)),
     "LeftArm": ("LeftShoulder", (0.15, 1.175, -0.012)),
     "LeftForeArm": ("LeftArm", (0.30, 0.985, -0.02)),
@@ -24,7 +24,7 @@ JOINTS: dict[str, tuple[str, Vector]] = {
 }
 """Parent and place of each joint [m]; the right side is the mirror image."""
 
-EYE_RADII = (0.048, 0.06, 0.06)
+EYE_RADII = (0.052, 0.066, 0.066)
 """Of an eyeball, a solid of revolution about x, so that an eyelid can turn over it [m]."""
 
 
