@@ -62,9 +62,11 @@ class VideoSource(FrameSource):
     def _decoded(self, container: InputContainer) -> Generator[Frame, None, None]:
         timeline, start, count = Timeline(), None, 0
         stream = container.streams.video[0]
+        # AVI holds times of packets only, and B frames come out in another order than packets.
+        untimed = container.format.name == "avi" and stream.codec_context.has_b_frames
         try:
             for picture in container.decode(stream):
-                if picture.pts is None or picture.time_base is None:
+                if untimed or picture.pts is None or picture.time_base is None:
                     seconds = count / float(stream.average_rate or 30)
                 else:
                     # A ratio of whole numbers, divided once: no error builds up.
