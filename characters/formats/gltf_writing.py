@@ -13,10 +13,11 @@ from characters.clip import Clip
 from characters.errors import CharacterError
 from characters.formats.gltf_file import COMPONENTS, WIDTHS
 from characters.mesh import Material, Mesh
-from characters.pose import Skeleton
+from characters.pose import Array, Skeleton
 
 _TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 2: "VEC2", 16: "MAT4"}
 _COMPONENT_OF = {np.dtype(dtype): code for code, dtype in COMPONENTS.items()}
+_STILL = 1e-7  # [m or part of a quaternion]: what changes less does not move
 _ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
 
 assert all(WIDTHS[name] == width for width, name in _TYPES.items())
@@ -64,6 +65,7 @@ class _Packer:
         self.character = character
         self.blob = bytearray()
         self.skins: dict[bytes, int] = {}
+        self.times: dict[bytes, int] = {}
         self.document = pygltflib.GLTF2(
             asset=pygltflib.Asset(version="2.0", generator="cubeling"), scene=0
         )
@@ -100,7 +102,9 @@ class _Packer:
             POSITION=self._accessor(mesh.positions, np.float32, _ARRAY_BUFFER, bounds=True),
             NORMAL=self._accessor(mesh.normals, np.float32, _ARRAY_BUFFER),
             JOINTS_0=self._accessor(mesh.joints, np.uint8 if small else np.uint16, _ARRAY_BUFFER),
-            WEIGHTS_0=self._accessor(mesh.weights, np.float32, _ARRAY_BUFFER),
+            WEIGHTS_0=self._accessor(
+                _levels(mesh.weights), np.uint16, _ARRAY_BUFFER, normalized=True
+            ),
         )
         if mesh.colors is not None:
             levels = np.round(np.clip(mesh.colors, 0.0, 1.0) * 65535)
@@ -164,28 +168,44 @@ class _Packer:
         animation = pygltflib.Animation(
             name=clip.name, extras={"rate": float(clip.rate), "loop": clip.loop}
         )
-        times = self._accessor(np.arange(len(clip)) / clip.rate, np.float32, bounds=True)
+        for joint, path, values in self._tracks(clip):
+            frames = np.arange(len(clip))
+            if np.ptp(values, axis=0).max() < _STILL:
+                frames = frames[[0, -1]]
+            sampler = pygltflib.AnimationSampler(
+                input=self._times(frames / clip.rate),
+                output=self._accessor(values[frames], np.float32),
+            )
+            target = pygltflib.AnimationChannelTarget(node=joint, path=path)
+            channel = pygltflib.AnimationChannel(sampler=len(animation.samplers), target=target)
+            animation.samplers.append(sampler)
+            animation.channels.append(channel)
+        self.document.animations.append(animation)
+
+    def _tracks(self, clip: Clip) -> list[tuple[int, str, Array]]:
+        """Return joint, path and values (frames, components) of all that leaves its rest."""
         rest, poses = self.character.skeleton.rest, clip.poses
-        tracks = {
-            "translation": (poses.translations, rest.translations),
-            "rotation": (poses.rotations, rest.rotations),
-        }
+        kinds = [
+            ("translation", poses.translations, rest.translations),
+            ("rotation", poses.rotations, rest.rotations),
+        ]
         if poses.scales is not None:
             still = np.ones_like(rest.translations) if rest.scales is None else rest.scales
-            tracks["scale"] = (poses.scales, still)
-        for path, (values, resting) in tracks.items():
-            for joint in range(values.shape[1]):
-                always = joint == 0 and path == "rotation"  # keeps the clip's length
-                if not always and np.abs(values[:, joint] - resting[joint]).max() < 1e-7:
-                    continue
-                sampler = pygltflib.AnimationSampler(
-                    input=times, output=self._accessor(values[:, joint], np.float32)
-                )
-                target = pygltflib.AnimationChannelTarget(node=joint, path=path)
-                channel = pygltflib.AnimationChannel(sampler=len(animation.samplers), target=target)
-                animation.samplers.append(sampler)
-                animation.channels.append(channel)
-        self.document.animations.append(animation)
+            kinds.append(("scale", poses.scales, still))
+        return [
+            (joint, path, values[:, joint])
+            for path, values, resting in kinds
+            for joint in range(values.shape[1])
+            if (joint == 0 and path == "rotation")  # keeps the clip's length
+            or np.abs(values[:, joint] - resting[joint]).max() >= _STILL
+        ]
+
+    def _times(self, times: Array) -> int:
+        """Return the accessor of key times, which many tracks share."""
+        key = times.tobytes()
+        if key not in self.times:
+            self.times[key] = self._accessor(times, np.float32, bounds=True)
+        return self.times[key]
 
     def _accessor(
         self,
@@ -218,6 +238,14 @@ class _Packer:
         self.blob += data + bytes(-len(data) % 4)
         self.document.bufferViews.append(view)
         return len(self.document.bufferViews) - 1
+
+
+def _levels(weights: NDArray[np.float32]) -> Array:
+    """Return skin weights in 65535ths that sum to the whole: the rest goes to the largest."""
+    levels = np.round(weights.astype(float) * 65535)
+    rows = np.arange(len(levels))
+    levels[rows, levels.argmax(1)] += 65535 - levels.sum(1)
+    return levels
 
 
 def _container(document: pygltflib.GLTF2, blob: bytes) -> bytes:

@@ -75,7 +75,7 @@ def gait(skeleton: Skeleton) -> Callable[..., Clip]:
 def _box(skeleton: Skeleton) -> Mesh:
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (0, 1) for z in (-1, 1)], float)
     positions = corners * [0.2, 1.7, 0.1]
-    inverse_bind = np.linalg.inv(skeleton.rest.globals(skeleton))
+    inverse_bind = np.asarray(np.linalg.inv(skeleton.rest.globals(skeleton)), np.float64)
     joints = np.zeros((8, 4), np.uint16)
     joints[:, 0], joints[:, 1] = 1, 2
     normals = positions / np.linalg.norm(positions, axis=1, keepdims=True)

@@ -22,7 +22,7 @@ def random_tree(seed, joints, batch=()):
 def test_globals_equal_a_walk_down_the_tree(seed, joints):
     skeleton, pose = random_tree(seed, joints)
     locals_ = pose.locals()
-    expected = []
+    expected: list[np.ndarray] = []
     for joint, parent in enumerate(skeleton.parents):
         above = np.eye(4) if parent < 0 else expected[parent]
         expected.append(above @ locals_[joint])

@@ -112,7 +112,8 @@ def test_the_way_over_the_ground_is_whole_across_a_switch():
 
 def test_a_machine_is_a_motion_and_knows_its_states():
     machine = switched(Spin("y", 0, 0, 0), Spin("x", 1, 0, 0))
-    assert isinstance(machine, Motion)
+    motion: Motion = machine
+    assert isinstance(motion, Motion)
     assert (machine.state, machine.entered) == ("new", 1.0)
     machine.request("new", 5.0)
     assert machine.entered == 1.0
