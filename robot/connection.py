@@ -54,7 +54,7 @@ def connect(
     if protocol not in DRIVERS:
         raise RobotError(f"no robot speaks {protocol!r} here; known are: {', '.join(DRIVERS)}")
     port = open_port(url, clock)
-    # Two programs must not be taken for one; the clock is as good a source as any, and seeded.
+    # So that two programs are not taken for one: the microsecond in which this one connects.
     host = int(clock() * 1e6) % 0xFFFFFFFF + 1
     robot = Robot(url, port, DRIVERS[protocol](host), clock, on_bytes)
     try:

@@ -95,12 +95,11 @@ def renewed(document: str) -> str:
     }
     for name, text in parts.items():
         begin, end = f"<!-- {name}: drawn from the code -->", f"<!-- end of {name} -->"
-        pattern = re.escape(begin) + ".*?" + re.escape(end)
-        document, count = re.subn(
-            pattern, lambda _, new=f"{begin}\n{text}\n{end}": new, document, flags=re.DOTALL
-        )
+        pattern = re.compile(re.escape(begin) + ".*?" + re.escape(end), re.DOTALL)
+        count = len(pattern.findall(document))
         if count != 1:
             raise ValueError(f"{DOCUMENT.name} must have one part marked {name!r}, not {count}")
+        document = pattern.sub(f"{begin}\n{text}\n{end}", document)
     return document
 
 

@@ -104,8 +104,8 @@ class FieldForm:
         low = smallest if self.low is None else round(self.low / self.scale)
         high = largest if self.high is None else round(self.high / self.scale)
         if not low <= count <= high:
-            low, high = low * self.scale, high * self.scale
-            raise error(f"{self.name} must be from {low:g} to {high:g}, not {count * self.scale:g}")
+            least, most, value = (n * self.scale for n in (low, high, count))
+            raise error(f"{self.name} must be from {least:g} to {most:g}, not {value:g}")
 
 
 @dataclass(frozen=True)

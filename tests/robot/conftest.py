@@ -53,7 +53,7 @@ class Line:
             wrong[self.random.integers(len(data))] ^= 1 << self.random.integers(8)
             data = bytes(wrong)
         if garbage:
-            data = self.random.bytes(self.random.integers(1, 40)) + data
+            data = self.random.bytes(int(self.random.integers(1, 40))) + data
         late = now + self.harm.delay
         if split:
             middle = int(self.random.integers(1, len(data)))

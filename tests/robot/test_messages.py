@@ -1,6 +1,7 @@
 """Every message keeps its meaning over the wire, and nonsense has none."""
 
 import contextlib
+from typing import get_args
 
 import pytest
 from hypothesis import given
@@ -8,7 +9,7 @@ from hypothesis import strategies as st
 
 from robot import messages as m
 from robot import wire
-from robot.schema import FORMS, HEADER, FieldForm, MessageError, MessageForm, pack, unpack
+from robot.schema import FORMS, HEADER, FieldForm, MessageError, MessageForm, Sender, pack, unpack
 
 forms = st.sampled_from(sorted(FORMS.values(), key=lambda form: form.number))
 
@@ -67,7 +68,8 @@ def test_an_unknown_message_is_skipped(number, rest):
 
 @given(st.binary(max_size=wire.MAX_BODY))
 def test_any_body_gives_a_message_or_a_message_error(body):
-    for sender in ("host", "robot"):
+    senders: tuple[Sender, ...] = get_args(Sender)
+    for sender in senders:
         with contextlib.suppress(MessageError):
             unpack(body, sender)
 

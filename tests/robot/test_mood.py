@@ -8,12 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.errors import RobotError
-from robot.mood import GAP_MAX, MoodLine, next_label
+from robot.mood import GAP_MAX, Action, Label, MoodLine, next_label
 
 FRAME = 1 / 30
 
 
-def time_until(line: MoodLine, label: str, action: str, weight: float, start: float = 0.0) -> float:
+def time_until(
+    line: MoodLine, label: Label, action: Action, weight: float, start: float = 0.0
+) -> float:
     """Frames of one action until the label is reached [s]; infinite after two minutes."""
     for frame in range(int(120 / FRAME)):
         mood = line.update(action, weight, start + frame * FRAME)
@@ -51,7 +53,8 @@ def test_the_way_from_the_angry_extreme_to_happy_takes_13_3_seconds():
 )
 def test_three_actions_in_three_moods(start, action, reaches):
     line = MoodLine()
-    towards = {"happy": "kiss", "angry": "shout", "neutral": "idle"}[start]
+    ways: dict[str, Action] = {"happy": "kiss", "angry": "shout", "neutral": "idle"}
+    towards = ways[start]
     mood = [line.update(towards, 1.0, frame * FRAME) for frame in range(150)][-1]
     assert mood.label == start
     labels = [mood.label]
@@ -89,7 +92,8 @@ def test_whatever_is_done_the_mood_stays_on_its_line_and_passes_neutral(done, ga
 
 
 def test_a_label_is_left_only_where_the_value_has_come_back_by_the_hysteresis():
-    label, seen = "neutral", []
+    label: Label = "neutral"
+    seen = []
     for value in (0.33, 0.331, 0.30, 0.281, 0.279, 0.30, -0.33, -0.331, -0.281, -0.279):
         label = next_label(label, value)
         seen.append(label)

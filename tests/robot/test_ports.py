@@ -12,7 +12,7 @@ def test_a_pleo_is_recognised_and_usb_comes_first(monkeypatch):
         SimpleNamespace(device="/dev/ttyS0", description="n/a", vid=None, pid=None),
         SimpleNamespace(device="/dev/ttyACM0", description="Pleo", vid=0x6962, pid=1),
     ]
-    monkeypatch.setattr(ports.list_ports, "comports", lambda: found)
+    monkeypatch.setattr("serial.tools.list_ports.comports", lambda: found)
     pleo, plain = ports.serial_ports()
     assert (pleo.url, pleo.guess) == ("/dev/ttyACM0", "a Pleo")
     assert (plain.url, plain.guess) == ("/dev/ttyS0", None)

@@ -1,5 +1,7 @@
 """Host and robot over a good line: sessions, commands, silence, failsafe."""
 
+from typing import Any
+
 import pytest
 
 from robot import messages as m
@@ -258,11 +260,11 @@ def test_only_the_robots_voice_lost_does_not_take_the_emotion_from_it(open_world
 
 
 def test_a_robot_that_was_not_ticked_looks_at_its_clock_before_its_mail():
-    link = Simulator().link
-    link.receive(encode_frame(pack(m.Hello(1, 5), 1)), 0.0)
-    link.receive(encode_frame(pack(m.Express(1, 0.5, 0), 1)), timing.FAILSAFE_PROMISE)
-    assert link.session == 0
-    assert link.body.target == Emotion(0, 0)
+    robot = Simulator()
+    robot.link.receive(encode_frame(pack(m.Hello(1, 5), 1)), 0.0)
+    robot.link.receive(encode_frame(pack(m.Express(1, 0.5, 0), 1)), timing.FAILSAFE_PROMISE)
+    assert robot.link.session == 0
+    assert robot.body.target == Emotion(0, 0)
 
 
 def test_goodbye_makes_the_robot_neutral_at_once(open_world):
@@ -299,7 +301,7 @@ class Stranger:
         self.robot = Simulator()
         self._reader = FrameReader()
 
-    def say(self, message: object, session: int = 1, now: float = 0.0) -> list[object]:
+    def say(self, message: object, session: int = 1, now: float = 0.0) -> list[Any]:
         self.robot.receive(encode_frame(pack(message, session)), now)
         return [unpack(b, "robot")[1] for b in self._reader.feed(self.robot.bytes_to_send())]
 
