@@ -1,0 +1,382 @@
+"""Cameras and phones: the newest frame, and one line in time when nothing comes."""
+
+import itertools
+import queue
+import threading
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from typing import ClassVar
+
+import cv2
+import numpy as np
+import pytest
+
+from tracking import TrackingError, open_source
+from tracking.sources.camera import MJPG, CameraSource
+from tracking.sources.http import HttpSource
+
+SIZE = (64, 48)
+ENOUGH_S = 10.0
+"""Real time after which a test that waits for another thread has failed."""
+
+
+def picture(number):
+    image = np.zeros((SIZE[1], SIZE[0], 3), np.uint8)
+    cv2.circle(image, (8 + number % 40, 24), 6, (40, 200, 250), -1)
+    return image
+
+
+def jpeg(number):
+    return cv2.imencode(".jpg", picture(number))[1].tobytes()
+
+
+def fast_clock(step=0.25):
+    """A clock that runs as fast as it is looked at, so that seconds pass in milliseconds."""
+    ticks = itertools.count()
+    return lambda: next(ticks) * step
+
+
+class FakeCapture:
+    """Behaves as `cv2.VideoCapture` does on V4L2, good drivers and bad ones."""
+
+    def __init__(self, *, opened=True, honours_mjpg=True, rate=30.0):
+        self.opened, self.honours_mjpg, self.rate = opened, honours_mjpg, rate
+        self.settings = {}
+        self.frames: queue.Queue[np.ndarray | None] = queue.Queue()
+        self.patience = 0.02
+        """How long `read` blocks when there is no frame [s]."""
+        self.asked = threading.Semaphore(0)
+        self.released = threading.Event()
+
+    def isOpened(self):  # noqa: N802
+        return self.opened
+
+    def set(self, prop, value):
+        self.settings[prop] = value
+        return True
+
+    def get(self, prop):
+        if prop == cv2.CAP_PROP_FOURCC:
+            return float(self.settings.get(prop, 0) if self.honours_mjpg else 0)
+        return self.rate if prop == cv2.CAP_PROP_FPS else 0.0
+
+    def read(self):
+        self.asked.release()
+        try:
+            frame = self.frames.get(timeout=self.patience)
+        except queue.Empty:
+            frame = None
+        return frame is not None, frame
+
+    def release(self):
+        self.released.set()
+
+
+def encoded(number):
+    """A JPEG as V4L2 gives it: one row of bytes."""
+    return np.frombuffer(jpeg(number), np.uint8)[None]
+
+
+@pytest.fixture
+def capture():
+    made = FakeCapture()
+    yield made
+    made.frames.put(None)  # lets a thread that still reads come to its end
+
+
+def open_camera(capture, clock=None):
+    return CameraSource(0, SIZE, clock=clock or (lambda: 0.0), capture=lambda device: capture)
+
+
+def test_a_camera_is_asked_for_jpeg_of_the_wanted_size_and_hands_out_its_own_bytes(capture):
+    capture.frames.put(encoded(0))
+    with open_camera(capture) as source:
+        assert (source.size, source.rate, source.live) == (SIZE, 30.0, True)
+        assert capture.settings[cv2.CAP_PROP_FOURCC] == MJPG
+        assert capture.settings[cv2.CAP_PROP_FRAME_WIDTH] == SIZE[0]
+        assert capture.settings[cv2.CAP_PROP_CONVERT_RGB] == 0
+        frame = next(iter(source))
+    assert (frame.encoded, frame.encoding, frame.index) == (jpeg(0), "jpeg", 0)
+    np.testing.assert_array_equal(frame.image, cv2.imdecode(encoded(0), 1))
+
+
+def test_a_camera_without_jpeg_gives_pixels(capture):
+    capture.honours_mjpg = False
+    capture.frames.put(picture(3))
+    with open_camera(capture) as source:
+        frame = next(iter(source))
+    assert cv2.CAP_PROP_CONVERT_RGB not in capture.settings
+    assert (frame.encoded, frame.encoding) == (None, "")
+    np.testing.assert_array_equal(frame.image, picture(3))
+
+
+def test_raw_and_grey_pictures_become_bgr(capture):
+    capture.frames.put(np.full((48, 64, 2), 128, np.uint8))
+    with open_camera(capture) as source:
+        frames = iter(source)
+        np.testing.assert_allclose(next(frames).image[0, 0].astype(int), 130, atol=2)
+        capture.frames.put(np.full((48, 64), 77, np.uint8))
+        assert next(frames).image[5, 5].tolist() == [77, 77, 77]
+
+
+def test_who_comes_late_gets_the_newest_frame(capture):
+    capture.patience = ENOUGH_S  # so that each question but the last was answered
+    capture.frames.put(encoded(0))
+    with open_camera(capture) as source:
+        frames = iter(source)
+        assert next(frames).encoded == jpeg(0)
+        for number in (1, 2, 3):
+            capture.frames.put(encoded(number))
+        for _ in range(5):  # the fifth question means that four frames were taken
+            assert capture.asked.acquire(timeout=ENOUGH_S)
+        frame = next(frames)
+        assert frame.encoded == jpeg(3)
+        assert frame.index == 1
+
+
+def test_torn_pictures_are_left_out(capture):
+    capture.frames.put(encoded(0))
+    with open_camera(capture) as source:
+        frames = iter(source)
+        next(frames)
+        capture.frames.put(encoded(1)[:, :200])
+        assert capture.asked.acquire(timeout=ENOUGH_S)
+        capture.frames.put(encoded(2))
+        assert next(frames).encoded == jpeg(2)
+
+
+def fails(make, words):
+    with pytest.raises(TrackingError) as caught:
+        make()
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("patience", [0.001, ENOUGH_S])
+def test_a_camera_that_opens_but_never_gives_a_frame_is_one_line(capture, patience):
+    """Whether `read` fails at once, or blocks for ever."""
+    capture.patience = patience
+    fails(lambda: open_camera(capture, fast_clock()), "camera 0 gave no picture for 2 s")
+
+
+def test_a_driver_that_blocks_for_ever_while_opening_hangs_nobody():
+    never = threading.Event()
+
+    def block(device):
+        never.wait(ENOUGH_S)
+        return FakeCapture(opened=False)
+
+    fails(
+        lambda: CameraSource(0, SIZE, clock=fast_clock(), capture=block),
+        "camera 0 did not open within 8 s",
+    )
+    never.set()
+
+
+def test_a_camera_that_was_left_behind_while_opening_is_released_when_it_comes():
+    opened, came = threading.Event(), FakeCapture()
+    came.frames.put(None)
+
+    def slow(device):
+        opened.wait(ENOUGH_S)
+        return came
+
+    fails(lambda: CameraSource(0, SIZE, clock=fast_clock(), capture=slow), "did not open")
+    opened.set()
+    assert came.released.wait(ENOUGH_S)
+
+
+def test_a_camera_that_does_not_open_is_one_line():
+    closed = FakeCapture(opened=False)
+    fails(lambda: open_camera(closed), "camera 0 does not open: another program may use it")
+    assert closed.released.wait(ENOUGH_S)
+
+
+def test_a_driver_that_raises_is_one_line():
+    def broken(device):
+        raise OSError("no such ioctl")
+
+    fails(lambda: CameraSource(0, SIZE, capture=broken), "camera 0 failed: no such ioctl")
+
+
+def test_a_camera_that_is_unplugged_gives_its_last_frame_and_then_one_line(capture):
+    capture.frames.put(encoded(0))
+    with open_camera(capture, fast_clock()) as source:
+        frames = iter(source)
+        assert next(frames).encoded == jpeg(0)
+        for _ in range(20):
+            capture.frames.put(None)
+        fails(lambda: next(frames), "camera 0 gave no picture for 2 s")
+
+
+def test_a_camera_that_repeats_its_last_frame_for_ever_counts_as_gone(capture):
+    """OpenCV #5746: after an unplug, some drivers hand out the same picture again and again."""
+    for _ in range(200):
+        capture.frames.put(encoded(0))
+
+    def watch():
+        with open_camera(capture, fast_clock()) as source:
+            for _ in source:
+                pass
+
+    fails(watch, "has given the very same picture for 2 s")
+
+
+def test_garbage_that_goes_on_is_one_line(capture):
+    capture.patience = 0.001
+    garbage = (np.full((1, 500), number % 256, np.uint8) for number in itertools.count())
+    wait, capture.frames.get = capture.frames.get, lambda timeout: next(garbage)
+    fails(lambda: open_camera(capture, fast_clock()), "pictures that cannot be decoded")
+    capture.frames.get = wait
+
+
+def test_a_picture_that_changes_its_size_is_one_line(capture):
+    capture.frames.put(picture(0))
+    with open_camera(capture) as source:
+        frames = iter(source)
+        next(frames)
+        capture.frames.put(np.zeros((64, 48, 3), np.uint8))
+        fails(lambda: next(frames), "changed from 64x48 to 48x64")
+
+
+def test_close_ends_the_iteration_and_releases_the_camera(capture):
+    capture.frames.put(encoded(0))
+    source = open_camera(capture)
+    capture.frames.put(encoded(1))
+    source.close()
+    source.close()
+    assert list(source) == []
+    assert capture.released.wait(ENOUGH_S)
+
+
+def test_a_camera_that_is_not_there_is_one_line():
+    fails(lambda: open_source("camera:97"), "camera 97")
+    fails(lambda: open_source("camera:/dev/none"), "camera /dev/none")
+
+
+class Phone(BaseHTTPRequestHandler):
+    """Serves what phone apps serve, and what they should not."""
+
+    ended = threading.Event()
+    heard: ClassVar[list[str]] = []
+
+    def log_message(self, *arguments):
+        pass
+
+    def answer(self, kind, status=200, **headers):
+        self.send_response(status)
+        self.send_header("Content-Type", kind)
+        for name, value in headers.items():
+            self.send_header(name, value)
+        self.end_headers()
+
+    def part(self, data, length=True):
+        head = f"Content-Length: {len(data)}\r\n" if length else ""
+        self.wfile.write(
+            f"--frame\r\nContent-Type: image/jpeg\r\n{head}\r\n".encode() + data + b"\r\n"
+        )
+
+    def do_GET(self):
+        kind = "multipart/x-mixed-replace; boundary=frame"
+        self.heard.append(self.headers.get("Authorization", ""))
+        match self.path:
+            case "/page":
+                self.answer("text/html")
+            case "/photo":
+                self.answer("image/jpeg")
+            case "/secret":
+                self.answer("text/html", 401)
+            case "/moved":
+                self.answer("text/html", 302, Location="http://elsewhere/video")
+            case "/silent":
+                self.answer(kind)
+                self.ended.wait(ENOUGH_S)
+            case "/bare":
+                self.answer('multipart/x-mixed-replace; boundary="--frame"')
+                for number in range(3):
+                    self.part(jpeg(number), length=False)
+                self.wfile.write(b"--frame--\r\n")
+            case "/video?quality=high":
+                self.answer(kind)
+                self.part(jpeg(0))
+                self.part(jpeg(1))
+                self.ended.wait(ENOUGH_S)
+            case "/stops":
+                self.answer(kind)
+                self.part(jpeg(0))
+            case _:
+                self.answer("text/plain", 404)
+
+
+class QuietServer(ThreadingHTTPServer):
+    daemon_threads = True
+
+    def handle_error(self, request, client_address):
+        """The client hung up, as it may."""
+
+
+@pytest.fixture(scope="module")
+def phone():
+    Phone.ended.clear()
+    server = QuietServer(("127.0.0.1", 0), Phone)
+    thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.01})
+    thread.start()
+    yield f"127.0.0.1:{server.server_port}"
+    Phone.ended.set()
+    server.shutdown()
+    thread.join()
+    server.server_close()
+
+
+def test_a_phone_gives_its_own_jpeg_bytes(phone):
+    with open_source(f"http://{phone}/video?quality=high", clock=lambda: 5.0) as source:
+        assert (source.size, source.live, source.intrinsics) == (SIZE, True, None)
+        frame = next(iter(source))
+        assert frame.encoded in (jpeg(0), jpeg(1))
+        assert (frame.encoding, frame.timestamp) == ("jpeg", 5.0)
+
+
+def test_a_phone_that_bends_the_standard_is_understood(phone):
+    with open_source(f"http://{phone}/bare") as source:
+        frames = iter(source)
+        assert next(frames).encoded in {jpeg(number) for number in range(3)}
+        with pytest.raises(TrackingError, match="ended its stream"):
+            list(frames)
+
+
+def test_name_and_password_go_to_the_phone_and_into_no_message(phone):
+    Phone.heard.clear()
+    with pytest.raises(TrackingError) as caught:
+        open_source(f"http://anna:s%20cret@{phone}/secret")
+    assert Phone.heard == ["Basic YW5uYTpzIGNyZXQ="]
+    assert "cret" not in str(caught.value).replace("/secret", "")
+    assert "wants a password" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("/page", "is text/html, not a stream of JPEG pictures"),
+        ("/photo", "is image/jpeg, not a stream of JPEG pictures"),
+        ("/moved", "has moved: open http://elsewhere/video instead"),
+        ("/none", "answers 404"),
+    ],
+)
+def test_an_answer_that_is_no_stream_is_one_line(phone, path, words):
+    fails(lambda: open_source(f"http://{phone}{path}"), words)
+
+
+def test_a_phone_that_falls_silent_is_one_line(phone):
+    fails(lambda: HttpSource(f"http://{phone}/silent", clock=fast_clock()), "no picture for 2 s")
+
+
+def test_a_phone_that_hangs_up_is_one_line_after_its_last_frame(phone):
+    with open_source(f"http://{phone}/stops") as source:
+        frames = iter(source)
+        assert next(frames).encoded == jpeg(0)
+        fails(lambda: next(frames), "ended its stream")
+
+
+def test_addresses_where_nobody_answers_are_one_line(phone):
+    fails(lambda: open_source("http://127.0.0.1:1/video"), "cannot connect to http://127.0.0.1:1")
+    fails(lambda: open_source("http://"), "names no host")
+    fails(lambda: open_source("http://phone:ninety/"), "is no web address")

@@ -1,0 +1,80 @@
+"""Parts come out whole wherever the network cuts the stream."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tracking.sources.multipart import LARGEST_PART, MultipartError, MultipartParser
+
+bodies = st.lists(
+    st.binary(max_size=60)
+    .map(lambda body: b"\xff\xd8" + body + b"\xff\xd9")
+    .filter(lambda body: b"--cut" not in body),
+    max_size=5,
+)
+
+
+def stream(parts, *, line=b"\r\n", lengths=True, preamble=b"", dashes=b""):
+    written = preamble
+    for part in parts:
+        head = b"Content-type:  image/jpeg" + line
+        if lengths:
+            head += b"CONTENT-LENGTH: %d" % len(part) + line
+        written += dashes + b"--cut" + line + head + line + part + line
+    return written + dashes + b"--cut--" + line
+
+
+@given(
+    parts=bodies,
+    line=st.sampled_from([b"\r\n", b"\n"]),
+    lengths=st.booleans(),
+    preamble=st.sampled_from([b"", b"\r\n", b"hello\r\n"]),
+    dashes=st.sampled_from([b"", b"--"]),
+    data=st.data(),
+)
+def test_the_same_parts_come_out_however_the_stream_is_cut(
+    parts, line, lengths, preamble, dashes, data
+):
+    written = stream(parts, line=line, lengths=lengths, preamble=preamble, dashes=dashes)
+    cuts = data.draw(st.lists(st.integers(0, len(written)), max_size=8).map(sorted))
+    parser = MultipartParser((dashes + b"cut").decode())
+    got = []
+    for start, end in zip([0, *cuts], [*cuts, len(written)], strict=True):
+        got += parser.feed(written[start:end])
+    assert got == parts
+    assert parser.ended
+
+
+def test_a_stream_cut_at_every_byte():
+    parts = [b"\xff\xd8one\xff\xd9", b"\xff\xd8\r\n--cu two\r\n\xff\xd9"]
+    for lengths in (True, False):
+        parser = MultipartParser("cut")
+        written = stream(parts, lengths=lengths)
+        got = [part for byte in written for part in parser.feed(bytes([byte]))]
+        assert got == parts
+
+
+def test_a_length_lets_a_body_hold_the_boundary_itself():
+    parts = [b"\xff\xd8\r\n--cut\r\n\r\n\xff\xd9"]
+    assert MultipartParser("cut").feed(stream(parts)) == parts
+
+
+def test_a_part_comes_out_as_soon_as_its_last_byte_is_in():
+    """With a length nothing waits for the next boundary: a whole frame of delay less."""
+    parser = MultipartParser("cut")
+    assert parser.feed(b"--cut\r\nContent-Length: 3\r\n\r\nabc") == [b"abc"]
+
+
+@given(st.lists(st.binary(max_size=200), max_size=10))
+def test_garbage_gives_no_exception(chunks):
+    parser = MultipartParser("cut")
+    for chunk in chunks:
+        parser.feed(chunk)
+
+
+def test_a_stream_without_boundaries_does_not_fill_the_memory():
+    parser = MultipartParser("cut")
+    for _ in range(LARGEST_PART // 2**20):
+        assert parser.feed(bytes(2**20)) == []
+    with pytest.raises(MultipartError, match="more than 32 MB"):
+        parser.feed(b"!")
