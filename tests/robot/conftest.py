@@ -6,10 +6,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from robot.emotion import Emotion
 from robot.host import HostLink
 from robot.simulator import Simulator
+
+# A busy machine is no reason for a property to fail.
+settings.register_profile("no deadline", deadline=None)
+settings.load_profile("no deadline")
 
 
 @dataclass

@@ -1,9 +1,11 @@
 """The thread at the port: real pseudo-terminals, real sockets, ports that are bad."""
 
+import contextlib
 import os
 import socket
 import sys
 import threading
+import time
 from typing import Literal
 
 import pytest
@@ -40,7 +42,11 @@ def port(request):
 
 
 def descriptors() -> int:
-    return len(os.listdir("/proc/self/fd"))
+    return len(os.listdir("/dev/fd")) if os.path.isdir("/dev/fd") else 0
+
+
+def threads() -> int:
+    return sum(thread.name.startswith("robot") for thread in threading.enumerate())
 
 
 def test_an_emotion_travels_to_the_robot_and_back_over_a_real_port(port, soon):
@@ -126,7 +132,7 @@ def test_a_pseudo_terminal_that_is_gone_is_lost_and_not_looked_for_again(soon):
 
 
 def test_closing_twice_is_closing_once_and_nothing_is_left_open(port, soon):
-    before, threads = descriptors(), threading.active_count()
+    before, running = descriptors(), threads()
     dino = robot.connect(port.url)
     dino.close()
     dino.close()
@@ -135,16 +141,16 @@ def test_closing_twice_is_closing_once_and_nothing_is_left_open(port, soon):
     with pytest.raises(RobotError, match="was closed"):
         dino.check()
     soon(lambda: descriptors() <= before + 1)  # the far end of a socket that has just been left
-    assert threading.active_count() == threads
+    assert threads() == running
 
 
 def test_a_simulated_port_leaves_nothing_open():
-    before, threads = descriptors(), threading.active_count()
+    before, running = descriptors(), threads()
     for kind in KINDS:
         port = SimulatedPort(kind=kind)
         port.close()
         port.close()
-    assert (descriptors(), threading.active_count()) == (before, threads)
+    assert (descriptors(), threads()) == (before, running)
 
 
 def test_an_unknown_motion_is_refused_and_the_known_ones_named():
@@ -195,10 +201,10 @@ def test_an_unknown_protocol_is_refused():
 
 
 def test_a_line_that_only_echoes_is_not_taken_for_a_robot():
-    threads = threading.active_count()
+    running = threads()
     with pytest.raises(RobotError, match=r"nobody on loop:// answers .* within 0\.2 s"):
         robot.connect("loop://", answer_within=0.2)
-    assert threading.active_count() == threads
+    assert threads() == running
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are not on Windows")
@@ -220,3 +226,28 @@ def test_a_robot_that_does_not_read_its_line_stops_nobody(soon):
     finally:
         os.close(near)
         os.close(far)
+
+
+def test_a_line_that_babbles_is_given_up_in_time_and_stops_nobody():
+    # Somebody sends garbage as fast as the line takes it.
+    ending = threading.Event()
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def babble() -> None:
+            client, _ = server.accept()
+            with client, contextlib.suppress(OSError):
+                client.settimeout(0.05)
+                while not ending.is_set():
+                    with contextlib.suppress(TimeoutError):
+                        client.send(bytes(range(256)) * 16)
+
+        babbler = threading.Thread(target=babble)
+        babbler.start()
+        start = time.monotonic()
+        try:
+            with pytest.raises(RobotError, match="nobody on"):
+                robot.connect(f"socket://127.0.0.1:{server.getsockname()[1]}", answer_within=0.3)
+            assert time.monotonic() - start < 2
+        finally:
+            ending.set()
+            babbler.join()

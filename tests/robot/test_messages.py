@@ -57,7 +57,7 @@ def test_a_message_cut_short_is_refused(sent, data):
 @given(contents())
 def test_an_echo_of_the_own_side_is_no_message(sent):
     form, content = sent
-    other = "robot" if form.sender == "host" else "host"
+    other: Sender = "robot" if form.sender == "host" else "host"
     assert unpack(pack(content, 3), other) == (3, None)
 
 
