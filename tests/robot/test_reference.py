@@ -10,6 +10,7 @@ from robot.schema import FORMS, unpack
 from robot.wire import FrameReader
 
 TEXT = DOCUMENT.read_text("utf-8")
+PROSE = " ".join(TEXT.split())
 HEX = re.compile(r"^ *(00(?: [0-9a-f]{2})+)(?:  +(.*))?$", re.MULTILINE)
 
 
@@ -43,9 +44,9 @@ def test_what_the_document_tells_to_refuse_is_refused():
 
 
 def test_numbers_quoted_in_the_prose_are_those_of_the_code():
-    assert f"2 … {wire.MAX_BODY + 1} bytes" in TEXT
-    assert f"After {wire.MAX_FRAME + 1} bytes without an edge" in TEXT
-    assert f"has {8 * (wire.MAX_BODY + 1)} bits and 16 of the check" in TEXT
+    assert f"2 … {wire.MAX_BODY + 1} bytes" in PROSE
+    assert f"After {wire.MAX_FRAME + 1} bytes without an edge" in PROSE
+    assert f"has {8 * (wire.MAX_BODY + 1)} bits and 16 of the check" in PROSE
 
 
 def test_a_document_without_its_marks_is_refused():
