@@ -11,7 +11,7 @@ import numpy as np
 
 from characters.blend import Blend, BlendSpace1D, Paced
 from characters.clip import Clip
-from characters.phase import Cyclic, Still, phased
+from characters.phase import Still, phased
 from characters.pose import Pose, Skeleton
 
 IDLE_SPEED = 0.5
@@ -52,6 +52,7 @@ _STROLL, _BRISK, _JOG, _SPRINT = 0.5, 1.3, 0.8, 1.25
 # Of the slowdown to a stroll, this power goes into shorter steps and the rest into slower ones:
 # people do both (Grieve and Gear, "The relationships between length of stride …", 1966).
 _SHORTENING = 0.5
+_SMALLER = 0.4  # how much smaller steps on the spot are than steps on the way
 
 
 class Gaits:
@@ -71,7 +72,10 @@ class Gaits:
         self._walk = _tree(clips, WALK_CLIPS, skeleton)
         self._run = _tree(clips, RUN_CLIPS, skeleton) if "Run" in clips else self._walk
         self._still = Still(standing, self._walk.at(0.0).duration)
-        walk, run = (_pace(tree.at(0.0)) for tree in (self._walk, self._run))
+        straight = [tree.at(0.0) for tree in (self._walk, self._run)]
+        self._lengths = [motion.between(0.0, 1.0).length for motion in straight]
+        self._cadences = [1.0 / motion.duration for motion in straight]
+        walk, run = (x * y for x, y in zip(self._lengths, self._cadences, strict=True))
         self._speeds = [IDLE_SPEED, *_BAND, TOP_SPEED]
         self._paces = [_STROLL * walk, _BRISK * walk, max(_JOG * run, _BRISK * walk), _SPRINT * run]
 
@@ -100,26 +104,32 @@ class Gaits:
         stride
             What the way over the ground is multiplied with, to turn tighter than any clip.
         """
-        straight, rate = self._mixed(speed, 0.0)
-        curved, _ = self._mixed(speed, math.degrees(angular)) if angular else (straight, rate)
-        return Paced(curved, rate, stride)
-
-    def _mixed(self, speed: float, degrees: float) -> tuple[Cyclic, float]:
-        """Return the clips' mix and the rate at which going straight it has the right pace."""
         running = float(np.interp(speed, _BAND, (0.0, 1.0)))
-        mixed: Cyclic
+        # Steps on the spot are small ones.
+        smaller = 1.0 - _SMALLER * (1.0 - stride)
+        rate, share = self._effort(speed, running)
+        share *= smaller
+        mixed = self._mixed(running, math.degrees(angular))
+        if share < 1.0:
+            mixed = Blend((mixed, self._still), (share, 1.0 - share))
+        return Paced(mixed, rate / math.sqrt(smaller), stride)
+
+    def _effort(self, speed: float, running: float) -> tuple[float, float]:
+        """Return how fast the clips play and how far their steps reach, for the right pace."""
+        length = self._lengths[0] * (1.0 - running) + self._lengths[1] * running
+        cadence = self._cadences[0] * (1.0 - running) + self._cadences[1] * running
+        rate = self.pace(speed) / (length * cadence)
+        share = rate**_SHORTENING if rate < 1.0 and running == 0.0 else 1.0
+        return rate / share, share
+
+    def _mixed(self, running: float, degrees: float) -> Blend:
+        """Return the clips' mix."""
         if running == 0.0:
-            mixed = self._walk.at(degrees)
-        elif running == 1.0:
-            mixed = self._run.at(degrees)
-        else:
-            trees = (self._walk.at(degrees), self._run.at(degrees))
-            mixed = Blend(trees, (1.0 - running, running))
-        rate = self.pace(speed) / _pace(mixed)
-        if rate < 1.0 and running == 0.0:
-            shorter = rate**_SHORTENING
-            return Blend((mixed, self._still), (shorter, 1.0 - shorter)), rate / shorter
-        return mixed, rate
+            return self._walk.at(degrees)
+        if running == 1.0:
+            return self._run.at(degrees)
+        trees = (self._walk.at(degrees), self._run.at(degrees))
+        return Blend(trees, (1.0 - running, running))
 
 
 def _tree(
@@ -130,8 +140,3 @@ def _tree(
     return BlendSpace1D(
         tuple(there), tuple(phased(clips[name], skeleton) for name in there.values())
     )
-
-
-def _pace(motion: Cyclic) -> float:
-    """Return the mean speed over the ground [m/s]."""
-    return motion.between(0.0, 1.0).length / motion.duration

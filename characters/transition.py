@@ -75,6 +75,9 @@ class Transition:
     shifts: Fade
     """Translations, (joints, 3) [m]."""
 
+    growth: Fade | None
+    """Scales, (joints, 3); None where nothing is scaled."""
+
     @staticmethod
     def begin(
         old: tuple[Pose, Pose], new: tuple[Pose, Pose], step: float, length: float
@@ -94,7 +97,9 @@ class Transition:
         before = _nearer(before, at)
         was, shifts = (a.translations - b.translations for a, b in zip(old, new, strict=True))
         return Transition(
-            Fade(at, (at - before) / step, length), Fade(shifts, (shifts - was) / step, length)
+            Fade(at, (at - before) / step, length),
+            Fade(shifts, (shifts - was) / step, length),
+            _growth(old[1], new[1], length),
         )
 
     def apply(self, pose: Pose, time: float) -> Pose:
@@ -102,10 +107,13 @@ class Transition:
         if time >= self.turns.length:
             return pose
         turned = rotations.from_rotation_vector(self.turns.at(time))
+        scales = pose.scales
+        if self.growth is not None:
+            scales = _scales(pose) + self.growth.at(time)
         return Pose(
             pose.translations + self.shifts.at(time),
             rotations.multiply(turned, pose.rotations),
-            pose.scales,
+            scales,
         )
 
 
@@ -114,6 +122,18 @@ def _turns(old: Pose, new: Pose) -> Array:
     return rotations.to_rotation_vector(
         rotations.multiply(old.rotations, rotations.conjugate(new.rotations))
     )
+
+
+def _growth(old: Pose, new: Pose, length: float) -> Fade | None:
+    """Return the fade of the scales; without velocity, so that nothing shrinks below nought."""
+    if old.scales is None and new.scales is None:
+        return None
+    offset = _scales(old) - _scales(new)
+    return Fade(offset, np.zeros_like(offset), length)
+
+
+def _scales(pose: Pose) -> Array:
+    return np.ones_like(pose.translations) if pose.scales is None else pose.scales
 
 
 def _nearer(vectors: Array, reference: Array) -> Array:

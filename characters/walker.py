@@ -37,7 +37,7 @@ class Walker:
         self.state, self.speed, self.angular = "idle", 0.0, 0.0
         self.weight, self.height = 0.0, 0.0
         self._scale = scale
-        self._stride = 1.0
+        self._course_in_use = STAY
         self._turning = False
         self._pilot = Pilot(self.gaits, scale)
         self._steps = Live(self.gaits.at(IDLE_SPEED, 0.0))
@@ -54,9 +54,10 @@ class Walker:
     def update(self, command: CharacterCommand, elapsed: float) -> Pose:
         """Advance by a time [s] under a command and return the pose, with the root in place."""
         course = self._course(command)
-        self._follow(course, elapsed)
+        used = self._course_in_use = self._follow(course, elapsed)
         now, self._time = self._time, self._time + elapsed
-        self._play(course, now)
+        self._play(used, course.speed > 0.0, now)
+        self._report(used, course.speed > 0.0 and not self._turning)
         step = self._machine.travel(now, self._time)
         self.place = self.place.then(Step(step.x * self._scale, step.z * self._scale, step.yaw))
         return self._machine.sample(self._time)
@@ -84,29 +85,33 @@ class Walker:
             return STAY
         return Course(_TURN_SPEED, min(max(2 * error, -STEEPEST), STEEPEST), 0.0)
 
-    def _follow(self, course: Course, elapsed: float) -> None:
-        """Let Speed, Angular and stride go after the course."""
+    def _follow(self, course: Course, elapsed: float) -> Course:
+        """Let Speed, Angular and stride go after a course and return them."""
+        used = self._course_in_use
         if self._machine.state == "idle":
             # From standing it sets off in the right way at once; the transition is the easing.
-            self.speed, self.angular, self._stride = 0.0, course.angular, course.stride
-        self.speed = eased(self.speed, course.speed, elapsed, _SPEED_LAG)
-        self.angular = eased(self.angular, course.angular, elapsed, _ANGULAR_LAG)
-        self._stride = eased(self._stride, course.stride, elapsed, _STRIDE_LAG)
+            used = Course(0.0, course.angular, course.stride)
+        return Course(
+            eased(used.speed, course.speed, elapsed, _SPEED_LAG),
+            eased(used.angular, course.angular, elapsed, _ANGULAR_LAG),
+            eased(used.stride, course.stride, elapsed, _STRIDE_LAG),
+        )
 
-    def _play(self, course: Course, now: float) -> None:
+    def _play(self, used: Course, moving: bool, now: float) -> None:
         """Keep the right state going with the parameters in use."""
-        moving = course.speed > 0.0
-        motion = self.gaits.at(self.speed, self.angular, self._stride)
+        motion = self.gaits.at(used.speed, used.angular, used.stride)
         if self._machine.state == "move":
             self._steps.change(motion, now - self._machine.entered)
         elif moving:
             self._steps.restart(motion, self._first)
         self._machine.request("move" if moving else "idle", now)
-        if not moving:
-            self.speed, self.angular = 0.0, 0.0
-        self.state = "idle"
-        if moving and not self._turning:
-            self.state = "run" if self.speed > RUN_SPEED else "walk"
+
+    def _report(self, used: Course, going: bool) -> None:
+        """Say what it is doing; to turn on the spot is to stand."""
+        self.state, self.speed, self.angular = "idle", 0.0, 0.0
+        if going:
+            self.state = "run" if used.speed > RUN_SPEED else "walk"
+            self.speed, self.angular = used.speed, used.angular
 
 
 def _likest(pose: Pose, motion: Cyclic, skeleton: Skeleton) -> float:

@@ -38,8 +38,8 @@ def head_parts() -> list[Part]:
 def face_lines(skeleton: Skeleton) -> list[Mesh]:
     """Return the brows and the mouth, laid on the face."""
     face = _face()
-    across = np.linspace(-0.052, 0.052, 7)
-    smile = _laid_on(face, across, 1.364 + 4.5 * across**2)
+    across = np.linspace(-0.058, 0.058, 7)
+    smile = _laid_on(face, across, 1.361 + 4.8 * across**2)
     lines = [
         cord(
             smile, [0.003, 0.006, 0.0075, 0.008, 0.0075, 0.006, 0.003], LIP, "head", skeleton, 6, 11
@@ -47,7 +47,7 @@ def face_lines(skeleton: Skeleton) -> list[Mesh]:
     ]
     for sign in (1.0, -1.0):
         x = np.linspace(0.026, 0.11, 5)
-        brow = _laid_on(face, sign * x, 1.571 - 5.0 * (x - 0.062) ** 2 - 0.1 * (x - 0.062))
+        brow = _laid_on(face, sign * x, 1.571 - 5.0 * (x - 0.062) ** 2 - 0.02 * (x - 0.062))
         lines.append(cord(brow, [0.009, 0.012, 0.0115, 0.009, 0.005], HAIR, "head", skeleton, 7, 9))
     return lines
 

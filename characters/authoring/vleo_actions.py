@@ -70,13 +70,13 @@ def kiss(level: int, bound: Skeleton) -> Performance:
     big = (1.0, 1.05, 1.15)[level]
     breathe(act, 1)
     throw = keys(
-        n, (0.10, 0), (0.31, 20), (0.44, -33), (0.51, -25), (0.60, -24), (0.80, 2), (0.90, 0)
+        n, (0.10, 0), (0.31, 22), (0.44, -28), (0.51, -20), (0.60, -19), (0.80, 2), (0.90, 0)
     )
     throw *= big * DEGREE
     act.turn("neck1", up=throw)
     act.turn("neck2", up=0.6 * later(throw, 0.012))
     act.turn("neck3", up=0.2 * later(throw, 0.024))
-    chin = keys(n, (0.10, 10), (0.31, -14), (0.45, 52), (0.53, 44), (0.61, 42), (0.82, 8))
+    chin = keys(n, (0.10, 10), (0.31, -14), (0.45, 52), (0.53, 43), (0.61, 40), (0.82, 8))
     act.turn("head", up=big * DEGREE * chin)
     lean = keys(n, (0.08, 0), (0.30, -9), (0.45, 18), (0.60, 15), (0.80, 0)) * DEGREE
     act.turn("head", tilt=lean)
@@ -86,11 +86,11 @@ def kiss(level: int, bound: Skeleton) -> Performance:
         _kiss_legs(act, level)
     if level == 2:
         wag = 18 * DEGREE * wave(n, 5)
-        tail(act, DEGREE * keys(n, (0.0, 13), (0.31, 3), (0.47, 20), (0.8, 14)), wag, 1.9, 0.8)
-        act.turn("hips", left=4 * DEGREE * wave(n, 5, -0.02), tilt=3 * DEGREE * wave(n, 5, -0.05))
-        act.turn(
-            "chest", left=-3 * DEGREE * wave(n, 5, -0.02), tilt=-3 * DEGREE * wave(n, 5, -0.05)
-        )
+        tail(act, DEGREE * keys(n, (0.0, 14), (0.31, 4), (0.47, 20), (0.8, 15)), wag, 1.9, 0.8)
+        wiggle = wave(n, 5, -0.03)  # the tail wags the dog
+        act.turn("hips", left=7 * DEGREE * wiggle, tilt=3 * DEGREE * wiggle)
+        act.turn("chest", left=-5 * DEGREE * wiggle, tilt=-3 * DEGREE * wiggle)
+        act.move("hips", x=-0.005 * wiggle)
     else:
         bob = 0.12 * follow(throw, KISS_SECONDS, 2.0, 0.5) * (1 + level)
         tail(act, 4 * DEGREE - bob, (3 + 3 * level) * DEGREE * wave(n, 1), 1.4)
@@ -223,7 +223,18 @@ def _shout_tail(act: Performance, level: int) -> None:
         tail(act, stiff, (1 + 2 * level) * DEGREE * wave(n, 2), 1.2)
         return
     slam = keys(
-        n, (0.0, 6), (0.21, 30), (0.31, -13), (0.39, 14), (0.485, -12), (0.56, 10), (0.80, 8)
+        n, (0.0, 9), (0.21, 32), (0.31, -13), (0.40, 24), (0.53, 22), (0.625, -12), (0.72, 14)
     )
-    whip = keys(n, (0.0, 0), (0.21, 4), (0.31, 0), (0.40, 17), (0.52, -19), (0.64, 18), (0.77, -10))
+    whip = keys(
+        n,
+        (0.0, 0),
+        (0.10, -7),
+        (0.21, 4),
+        (0.31, 0),
+        (0.40, 21),
+        (0.49, -23),
+        (0.59, 14),
+        (0.72, -10),
+        (0.86, 8),
+    )
     tail(act, DEGREE * slam, DEGREE * whip, 1.1, 0.55)

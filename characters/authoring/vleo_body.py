@@ -286,7 +286,7 @@ def _painted(points: Array, normals: Array) -> Array:
     chin = Ellipsoid((0.0, 0.200, 0.150), (0.052, 0.030, 0.046)).distance(points)
     lower = _ease((lip_line(points) - 0.003 - points[:, 1]) / 0.004)
     colors = _coat(colors, CREAM, lower * _ease(0.5 - chin / 0.012))
-    inside = -np.maximum(whole().distance(points) + 0.0012, Smile().distance(points) - 0.0018)
+    inside = -np.maximum(whole().distance(points) + 0.0004, Smile().distance(points) - 0.0018)
     colors = _coat(colors, MAROON, _ease(0.5 + inside / 0.0012))
     tongue = Ellipsoid((0.0, 0.2105, 0.160), (0.0135, 0.0045, 0.0200)).distance(points)
     return _coat(colors, TONGUE, _ease(1 - tongue / 0.0012))

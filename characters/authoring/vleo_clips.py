@@ -13,7 +13,7 @@ from characters.pose import Pose, Skeleton
 
 RATE = 30.0
 """Frames a second [Hz]."""
-SHUT, LOWER_SHUT = 1.55, 0.85
+SHUT, LOWER_SHUT = 1.22, 1.20
 """How far an upper and a lower lid roll to meet [rad]."""
 MOUTH_SHUT = 0.13
 """Turn of the jaw that closes the mouth, which rests in an open smile [rad]."""
@@ -40,8 +40,8 @@ def blink(frames: int, *starts: float, seconds: float = 0.24) -> Array:
 
 def lids(act: Performance, shut: Array | float, smile: Array | float, anger: Array | float) -> None:
     """Close the eyes (0…1), push the lower lids up in a smile (0…1), slant them in anger (0…1)."""
-    upper = np.minimum(1.0, shut + 0.40 * np.asarray(anger) * (1 - np.asarray(shut)))
-    lower = np.maximum(shut, 0.62 * np.asarray(smile) + 0.25 * np.asarray(anger))
+    upper = np.minimum(1.0, shut + 0.50 * np.asarray(anger) * (1 - np.asarray(shut)))
+    lower = np.maximum(shut, 0.44 * np.asarray(smile) + 0.18 * np.asarray(anger))
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         slant = 0.42 * np.asarray(anger) - 0.28 * np.asarray(shut)  # inward is fierce, outward kind
         act.turn(f"{side}UpperLid", up=-SHUT * upper, tilt=sign * slant)

@@ -26,7 +26,7 @@ def _heart(joint: str, color: Vector) -> Part:
     half = Cone(side, low, 0.0125, 0.0018, (1.0, 1.0, 0.75), bones=(joint,), color=color)
     light = Ellipsoid(_at(-0.0135, 0.0125, 0.006), (0.0045, 0.0035, 0.006))
     shine = Paint(light, (1.0, 0.75, 0.8), 0.003, 0.9)
-    return Part(Union((half, half.mirrored()), 0.003), 0.0060, (shine,), soft_skin=0.0)
+    return Part(Union((half, half.mirrored()), 0.003), 0.0052, (shine,), soft_skin=0.0)
 
 
 def _burst(joint: str, bound: Skeleton) -> Mesh:
@@ -38,7 +38,7 @@ def _burst(joint: str, bound: Skeleton) -> Mesh:
         if not way.any():
             continue
         size = 1.0 if np.count_nonzero(way) == 1 else 0.8
-        rings = size * np.array([[0, 0], [9.5, 5], [4.5, 20], [0, 34]]) / 1000
+        rings = size * np.array([[0, 0], [10.5, 7], [5, 20], [0, 34]]) / 1000
         place = facing(way, np.array(MOUTH))
         rays.append(lathe(rings, [YELLOW, FLAME, EMBER], place, joint, bound, 5))
     return join("", rays)

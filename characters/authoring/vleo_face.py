@@ -45,7 +45,7 @@ SPINES = 12
 
 def face(body: Body, bound: Skeleton) -> list[Mesh]:
     """Return all crisp pieces, bound to the skeleton."""
-    pieces = [_mouth_rim(body, bound), _lips(bound)]
+    pieces = [*_mouth_rims(body, bound), _lips(bound)]
     for side in (1.0, -1.0):
         pieces += _eye(side, bound)
         pieces += [_brow(side, bound), *_claws(side, bound)]
@@ -74,7 +74,7 @@ def _eye(side: float, bound: Skeleton) -> list[Mesh]:
 
 def _lid(elevation: float, size: float, joint: str, center: Array, bound: Skeleton) -> Mesh:
     """Return half a shell around an eye with a dark rim; `elevation` is that of its pole."""
-    angle = np.radians([90, 85, 62, 40, 20, 0])
+    angle = np.radians([90, 80, 60, 40, 20, 0])
     dome = np.stack([np.sin(angle), np.cos(angle)], axis=1)
     rings = EYE_RADIUS * size * np.vstack([[0.0, 0.0], dome])
     yaw = LID_YAW * (1 if joint.startswith("Left") else -1)
@@ -102,13 +102,16 @@ def _lips(bound: Skeleton) -> Mesh:
     return lathe(np.array(profile) / 1000, bands, place, "lips", bound, 20)
 
 
-def _mouth_rim(body: Body, bound: Skeleton) -> Mesh:
-    """Return a thin dark tube around the mouth: the line of the smile."""
+def _mouth_rims(body: Body, bound: Skeleton) -> list[Mesh]:
+    """Return a thin dark line along each lip: the smile, crisp whatever the triangles."""
     x = _corner_side(Smile().corner - 0.004) * np.sin(np.linspace(-np.pi / 2, np.pi / 2, 33))
-    line = _lip(x, 1.0)
-    line -= 0.0004 * normals_of(whole().distance, line, 0.006)
-    above = line + np.array([0.0, 0.004, 0.0])  # holds on to the upper lip
-    return _tube(line, 0.0011, face_weights(above, bound), MAROON, body)
+    rims = []
+    for sign, radius in ((1.0, 0.0011), (-1.0, 0.0010)):
+        line = _lip(x, sign)
+        hold = face_weights(line + np.array([0.0, 0.004 * sign, 0.0]), bound)
+        line -= (0.0004 if sign > 0 else 0.0010) * normals_of(whole().distance, line, 0.006)
+        rims.append(_tube(line, radius, hold, MAROON, body))
+    return rims
 
 
 def _lip(x: Array, sign: float) -> Array:

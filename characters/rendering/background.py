@@ -15,8 +15,8 @@ Image = NDArray[np.uint8]
 class Background:
     """Straightens camera frames, and fits them to the size of the picture.
 
-    The maps of `cv2.remap` are computed once a camera and kept in fixed point, which makes a frame of
-    1280×720 pixels a matter of two milliseconds.
+    The maps of `cv2.remap` are computed once a camera and kept in fixed point, which makes a frame
+    of 1280×720 pixels a matter of two milliseconds.
 
     Parameters
     ----------

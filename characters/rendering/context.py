@@ -1,14 +1,15 @@
 """Where a picture can be drawn: an OpenGL context, with or without a window."""
 
-import sys
+import platform
 from ctypes.util import find_library
+from typing import Any
 
 import moderngl
 
 from characters.errors import CharacterError
 
 REQUIRED = 330
-"""OpenGL 3.3 core: the newest that every driver of the last ten years has, Mesa's software one included."""
+"""OpenGL 3.3 core: every driver of the last ten years has it, Mesa's software one included."""
 
 
 def create_context(window: bool = False) -> moderngl.Context:
@@ -28,9 +29,9 @@ def create_context(window: bool = False) -> moderngl.Context:
     try:
         if window:
             return moderngl.create_context(require=REQUIRED)
-        if sys.platform.startswith("linux"):
-            return moderngl.create_standalone_context(require=REQUIRED, backend="egl")
-        return moderngl.create_standalone_context(require=REQUIRED)
+        # Linux has EGL, which needs no display; elsewhere the native way opens none.
+        settings: dict[str, Any] = {"backend": "egl"} if platform.system() == "Linux" else {}
+        return moderngl.create_context(REQUIRED, standalone=True, **settings)
     except Exception as error:
         # glcontext raises bare exceptions of many types, all with one terse line.
         raise CharacterError(_diagnosis(window, str(error))) from error
@@ -43,7 +44,7 @@ def _diagnosis(window: bool, reason: str) -> str:
             f"the window has no OpenGL 3.3 ({reason}): update the graphics driver, or play without "
             "a window"
         )
-    if sys.platform.startswith("linux"):
+    if platform.system() == "Linux":
         for name, package in (("EGL", "libegl1"), ("GL", "libgl1")):
             if find_library(name) is None:
                 return (

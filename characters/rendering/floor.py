@@ -92,7 +92,10 @@ def _runs(path: FloorPath) -> list[NDArray[np.float32]]:
 
 
 def _dashes(points: Array, closed: bool, chosen: NDArray[np.bool_]) -> list[Array]:
-    """Return the dashes of each leg as capsules, (n, 7): centre, direction, half length, radius, hole."""
+    """Return the dashes of each leg as capsules, (n, 7).
+
+    Centre and direction on the table, half length, radius, radius of the hole.
+    """
     count = len(points)
     legs = [(i, (i + 1) % count) for i in range(count if closed and count > 2 else count - 1)]
     clear = np.where(chosen, RING[1], DISC) + CLEAR

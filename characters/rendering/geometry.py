@@ -45,7 +45,10 @@ class Geometry:
     """Each material with the number of its indices, in their order."""
 
     binds: tuple[Array, ...]
-    """The different sets of inverse bind matrices, each (joints, 4, 4); the palette is one after the other."""
+    """The different sets of inverse bind matrices, each (joints, 4, 4).
+
+    The palette is one after the other.
+    """
 
     @classmethod
     def of(cls, meshes: Sequence[Mesh]) -> Self:
@@ -87,7 +90,7 @@ class Geometry:
         return np.concatenate([world_from_joint @ bind for bind in self.binds])
 
     def skinned(self, palette: Array, chosen: NDArray[np.intp] | slice) -> Array:
-        """Return some vertices under a palette, (n, 3), on the processor; `skin.vert` does the same."""
+        """Return some vertices under a palette, (n, 3), as `skin.vert` does on the card."""
         positions = self.positions[chosen]
         points = np.concatenate([positions, np.ones((len(positions), 1))], axis=1)
         placed = np.zeros((len(points), 3))
@@ -96,9 +99,10 @@ class Geometry:
         return placed
 
     def outline(self) -> NDArray[np.intp]:
-        """Return the numbers of vertices that stand out: of each joint's own, the furthest in 14 directions.
+        """Return the numbers of vertices that stand out (n,).
 
-        The box around them is that around all vertices in any pose, to within a pixel or two.
+        Of each joint's own they are the furthest in 14 directions. The box around them is
+        that around all vertices in any pose, to within a pixel or two.
         """
         along = self.positions @ WAYS.T
         owner = self.joints[np.arange(len(along)), self.weights.argmax(axis=1)]
@@ -169,7 +173,7 @@ def _runs(meshes: Sequence[Mesh]) -> tuple[tuple[Material, int], ...]:
 
 
 def _distinct_binds(meshes: Sequence[Mesh]) -> tuple[tuple[Array, ...], list[np.uint32]]:
-    """Return the different sets of inverse bind matrices, and the first palette row of each mesh."""
+    """Return the different sets of inverse bind matrices, and each mesh's first palette row."""
     binds: list[Array] = []
     rows: list[np.uint32] = []
     for mesh in meshes:

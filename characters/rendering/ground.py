@@ -36,7 +36,7 @@ class Ground:
         self._box = context.vertex_array(programs.box, [(self._corners, "3f", "position")])
 
     def draw(self, patch: Image) -> None:
-        """Lay a part of the picture (height, width, 3) into the framebuffer in use, pixel for pixel."""
+        """Lay a part of the picture (height, width, 3) into the framebuffer in use."""
         self._patches.upload(patch).use(0)
         self._context.enable_only(moderngl.NOTHING)
         self._screen.render(moderngl.TRIANGLES, vertices=3)

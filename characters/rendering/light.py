@@ -96,7 +96,7 @@ class LightEstimate:
         """Return what a white sheet would show, judged from all of the picture."""
         bright = (linear**self.MINKOWSKI).mean(axis=0) ** (1 / self.MINKOWSKI) / self.BRIGHTEST
         level = float(bright @ LUMA)
-        return _toned(bright, self.TRUST) * np.sqrt(self.USUAL / max(level, 1e-6))
+        return _toned(bright, self.TRUST) * float(np.sqrt(self.USUAL / max(level, 1e-6)))
 
 
 def _toned(color: Array, share: float) -> Array:

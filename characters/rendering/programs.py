@@ -46,8 +46,8 @@ class Programs:
         self.plain = build("character.vert", "character.frag")
         """Vertices to colour, without a texture."""
         self.textured = build("character.vert", "character.frag", "TEXTURED")
-        """Vertices to colour, with one; a program of its own because drivers that run on the processor
-        would take the sample even where a condition says no."""
+        """Vertices to colour, with one. A program of its own: drivers on the processor take a
+        sample even where a condition says no."""
         self.over = build("screen.vert", "over.frag")
         """Figures onto the ground."""
         self.copy = build("copy.vert", "copy.frag")
@@ -68,8 +68,8 @@ def _source(name: str, *defines: str) -> str:
 def assign(program: moderngl.Program, **values: "bool | float | Sequence[float] | Array") -> None:
     """Set uniforms of a program by name.
 
-    Arrays are written as float32 as they lie in memory, but for 4×4 matrices, which GLSL takes column by
-    column. A uniform that the driver removed because no result depends on it is passed over.
+    Arrays are written as float32 as they lie in memory, but for 4×4 matrices, which GLSL takes
+    column by column. A uniform that the driver removed, for no result needs it, is passed over.
     """
     for name, value in values.items():
         uniform = program.get(name, None)

@@ -20,8 +20,8 @@ FIXED = 12_000
 def clip_from_camera(matrix: Array, part: Rectangle) -> Array:
     """Return the projection that draws one part of a picture into a viewport of the same size.
 
-    OpenCV puts the centre of the top-left pixel at (0, 0), OpenGL its corner at (0, 0) of a viewport;
-    hence the halves. Row 0 of the viewport is the top row of the part: what is read back needs no flip.
+    OpenCV puts the centre of the top-left pixel at (0, 0), OpenGL the corner of a viewport; hence
+    the halves. Row 0 of the viewport is the part's top row: what is read back needs no flip.
 
     Parameters
     ----------

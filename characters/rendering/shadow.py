@@ -17,7 +17,7 @@ TAPS = 12
 """Of the blur on each side; `TAPS` in `blur.frag` too."""
 
 SLOPE = TO_LIGHT[[0, 2]] / TO_LIGHT[1]
-"""How far a point's shadow lies from the point below it for each metre of height, (x, z), negated."""
+"""How far (x, z) a point's shadow is from right below it for each metre of height, negated."""
 
 LEVELS = (0.0, 0.1, 0.4, 1.0)
 """Heights at which the shadow is blurred apart, as shares of the character's."""
@@ -84,12 +84,12 @@ class Shadow:
         # What faces away from the light is kept: it is nearest to the table, and soles touch it.
         context.enable_only(moderngl.BLEND | moderngl.CULL_FACE)
         context.front_face = "ccw"
-        context.blend_equation = moderngl.MAX
+        context.blend_equation = moderngl.MAX, moderngl.MAX
         context.blend_func = moderngl.ONE, moderngl.ONE
         for first, count, double_sided in character.coarse_runs:
             (context.disable if double_sided else context.enable)(moderngl.CULL_FACE)
             character.caster.render(vertices=count, first=first, instances=2)
-        context.blend_equation = moderngl.FUNC_ADD
+        context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         context.enable_only(moderngl.NOTHING)
         self._soften(height)
         x, z = self._reach[[0, 2, 2, 0]], self._reach[[1, 1, 3, 3]]

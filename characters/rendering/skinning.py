@@ -14,8 +14,8 @@ from characters.rendering.view import Drawable
 Array = NDArray[np.float64]
 
 CASTER_CELLS = 56
-"""Cells along a character's height to which the caster of its shadow is simplified: the shadow's map
-is not much finer."""
+"""Cells along a character's height to which the caster of its shadow is simplified: the map of
+the shadow is not much finer."""
 
 SRGB8_ALPHA8 = 0x8C43
 """OpenGL's name of the format that decodes sRGB when it is sampled."""

@@ -139,6 +139,8 @@ class Stage:
 
     def release(self) -> None:
         """Give back everything but the context; a second call does nothing."""
+        # The next framebuffer to be made would bind again what was bound: it must still be there.
+        self._context.detect_framebuffer(0).use()
         while self._characters:
             self._characters.popitem()[1][1].release()
         while self._shadows:
@@ -215,7 +217,7 @@ class Stage:
         return target
 
     def _pose(self, actors: Sequence[Actor]) -> tuple[list[Cast], Array]:
-        """Skin all characters and cast their shadows; return them, and points around them (n, 3)."""
+        """Skin all characters, cast their shadows, and find points around them, (n, 3)."""
         casts: list[Cast] = []
         around = [np.zeros((0, 3))]
         # Transform feedback needs a complete framebuffer in use, though it draws nothing.
@@ -225,8 +227,9 @@ class Stage:
             if not actor.posed.visible or not is_rigid(place):
                 continue
             character = self._skinned(actor.character)
-            joints = actor.posed.pose.globals(actor.character.skeleton)
-            enclosing = character.pose(joints, place)
+            with np.errstate(invalid="ignore", over="ignore"):  # `pose` tells such numbers
+                joints = actor.posed.pose.globals(actor.character.skeleton)
+                enclosing = character.pose(joints, place)
             if enclosing is None:
                 continue
             if len(casts) == len(self._shadows):

@@ -10,8 +10,8 @@ SAMPLES = 4
 """Samples a pixel of the ground, where the driver has that many."""
 
 FINER = 2
-"""How much finer a figure is drawn than the picture, along each side. Its triangles are about as large
-as a pixel, for which many samples a pixel cost software rendering more than more pixels do."""
+"""How much finer a figure is drawn than the picture, along each side. Its triangles are about as
+large as a pixel: many samples a pixel then cost software rendering more than more pixels do."""
 
 STEP = 64
 """Sizes are rounded up to it [px], so that a walking character does not ask for a new one

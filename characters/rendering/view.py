@@ -39,7 +39,7 @@ class View:
     """Distortion of the lens as OpenCV takes it, (n,); n = 0, 4, 5, 8, 12 or 14."""
 
     camera_from_table: Array | None
-    """The table's frame, (4, 4) [m], +y up; None where it is not known: then only the frame is drawn."""
+    """The table's frame, (4, 4) [m], +y up; None where it is not known: nothing is drawn then."""
 
     occluders: tuple[Box, ...] = ()
     """Real cubes that hide what is behind them."""
