@@ -1,0 +1,197 @@
+"""How a hand moves a cube: smooth segments one after the other, and perfect rest between them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking import se3
+
+Array = NDArray[np.float64]
+
+UP = np.array([0.0, 1.0, 0.0])
+
+REACH_TIME = 0.45
+"""How long the hand takes to come and to go [s]."""
+
+TREMOR = (0.0004, np.deg2rad(0.25))
+"""Amplitude of the tremor of a hand that holds the cube [m], [rad]."""
+
+
+@dataclass(frozen=True)
+class Moment:
+    """Cube and hand at one time."""
+
+    table_from_cube: Array
+    """Pose of the cube, (4, 4) [m]."""
+
+    grip: float
+    """How near the hand is: 0 away, 1 holding the cube."""
+
+
+@dataclass(frozen=True)
+class _Segment:
+    start: float
+    end: float
+    held: bool
+    path: Callable[[float], Array]
+
+
+def eased(share: float) -> float:
+    """Minimum-jerk course from 0 to 1 (Flash and Hogan 1985).
+
+    >>> eased(0.5)
+    0.5
+    """
+    share = min(1.0, max(0.0, share))
+    return share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+
+
+@dataclass
+class Choreography:
+    """Builds a script: each method appends a segment and returns the choreography.
+
+    Parameters
+    ----------
+    edge
+        Edge of the cube [m].
+    """
+
+    edge: float
+    pose: Array = field(init=False)
+    """Where the cube is after the last segment, (4, 4)."""
+
+    length: float = 0.0
+    """Time of the end of the last segment [s]."""
+
+    _segments: list[_Segment] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.pose = np.eye(4)
+        self.pose[1, 3] = self.edge / 2
+
+    def stand(self, x: float, z: float, heading_deg: float = 0.0) -> Self:
+        """Put the cube somewhere before anything happens, turned clockwise by an angle."""
+        self.pose = np.eye(4)
+        self.pose[:3, :3] = se3.rotation(-np.deg2rad(heading_deg) * UP)
+        self.pose[:3, 3] = x, self.edge / 2, z
+        return self
+
+    def rest(self, seconds: float) -> Self:
+        """Let the cube lie, and the hand be away where there is time for it."""
+        pose = self.pose.copy()
+        return self._append(seconds, lambda share: pose, held=False)
+
+    def hold(self, seconds: float) -> Self:
+        """Keep the hand at the cube without moving it."""
+        pose = self.pose.copy()
+        return self._append(seconds, lambda share: pose, held=True)
+
+    def slide(self, x: float, z: float, seconds: float, bend: float = 0.0) -> Self:
+        """Slide over the table to (x, z), in a bow `bend` metres off the straight line."""
+        start, end = self.pose.copy(), self.pose.copy()
+        end[0, 3], end[2, 3] = x, z
+        aside = np.cross(UP, end[:3, 3] - start[:3, 3])
+        aside /= max(float(np.linalg.norm(aside)), 1e-9)
+
+        def path(share: float) -> Array:
+            course = eased(share)
+            pose = start.copy()
+            pose[:3, 3] += course * (end[:3, 3] - start[:3, 3])
+            pose[:3, 3] += 4 * bend * course * (1 - course) * aside
+            return pose
+
+        return self._append(seconds, path)
+
+    def turn(self, degrees: float, seconds: float) -> Self:
+        """Turn clockwise, seen from above, on the spot."""
+        start = self.pose.copy()
+
+        def path(share: float) -> Array:
+            pose = start.copy()
+            turned = -np.deg2rad(degrees) * eased(share) * UP
+            pose[:3, :3] = se3.rotation(turned) @ start[:3, :3]
+            return pose
+
+        return self._append(seconds, path)
+
+    def tip(self, normal: tuple[float, float, float], seconds: float = 1.2) -> Self:
+        """Lift, turn the face with this normal in the cube frame to the top, and put down."""
+        start = self.pose.copy()
+        outward = start[:3, :3] @ np.array(normal)
+        axis = np.cross(outward, UP)
+        size = float(np.linalg.norm(axis))
+        angle = float(np.arctan2(size, outward @ UP))
+        axis = axis / size if size > 1e-6 else np.array([1.0, 0.0, 0.0])
+
+        def path(share: float) -> Array:
+            pose = start.copy()
+            pose[:3, :3] = se3.rotation(axis * angle * eased(1.25 * share - 0.125)) @ start[:3, :3]
+            pose[1, 3] += 0.75 * self.edge * np.sin(np.pi * eased(share)) ** 2
+            return pose
+
+        return self._append(seconds, path)
+
+    def carry(self, x: float, z: float, height: float, seconds: float) -> Self:
+        """Lift the cube, carry it over the table and put it down at (x, z)."""
+        start = self.pose.copy()
+
+        def path(share: float) -> Array:
+            pose = start.copy()
+            pose[[0, 2], 3] += eased(1.6 * share - 0.3) * (np.array([x, z]) - start[[0, 2], 3])
+            pose[1, 3] += height * (eased(3 * share) - eased(3 * share - 2))
+            return pose
+
+        return self._append(seconds, path)
+
+    def shake(self, seconds: float, reach: float = 0.05, rate: float = 4.0) -> Self:
+        """Lift the cube and shake it sideways, `rate` times there and back a second."""
+        start = self.pose.copy()
+
+        def path(share: float) -> Array:
+            pose = start.copy()
+            lifted = eased(5 * share) - eased(5 * share - 4)
+            pose[1, 3] += 0.08 * lifted
+            pose[0, 3] += reach * lifted * np.sin(2 * np.pi * rate * seconds * share)
+            return pose
+
+        return self._append(seconds, path)
+
+    def at(self, time: float) -> Moment:
+        """Return cube and hand at a time [s]; before and after all segments both are still."""
+        if not self._segments:
+            return Moment(self.pose.copy(), 0.0)
+        time = min(max(time, 0.0), self.length)
+        segment = next(s for s in self._segments if time <= s.end)
+        pose = segment.path((time - segment.start) / max(segment.end - segment.start, 1e-9))
+        grip = self._grip(time)
+        if segment.held and grip > 0.99:
+            pose = _trembling(pose, time, segment)
+        return Moment(pose, grip)
+
+    def _append(self, seconds: float, path: Callable[[float], Array], held: bool = True) -> Self:
+        self._segments.append(_Segment(self.length, self.length + seconds, held, path))
+        self.length += seconds
+        self.pose = path(1.0)
+        return self
+
+    def _grip(self, time: float) -> float:
+        """How near the hand is: it comes before a segment that needs it, and goes after."""
+        away = min(
+            (max(s.start - time, time - s.end, 0.0) for s in self._segments if s.held),
+            default=np.inf,
+        )
+        return 1.0 - eased(float(away) / REACH_TIME)
+
+
+def _trembling(pose: Array, time: float, segment: _Segment) -> Array:
+    """Add a hand's tremor, fading in and out so that nothing leaps; 7 to 11 times a second."""
+    fade = min(1.0, (time - segment.start) / 0.15, (segment.end - time) / 0.15)
+    phases = 2 * np.pi * np.outer([7.3, 8.9, 10.7], [1.0, 1.13, 0.91]) * time
+    waves = np.sin(phases + np.arange(9).reshape(3, 3)).sum(axis=0) / 3
+    pose = pose.copy()
+    pose[:3, 3] += TREMOR[0] * fade * waves * (1.0, 0.3, 1.0)
+    pose[:3, :3] = se3.rotation(TREMOR[1] * fade * waves[::-1]) @ pose[:3, :3]
+    return pose

@@ -1,0 +1,154 @@
+"""What happens before the synthetic camera, by name."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking import se3
+from tracking.synthetic.choreography import Choreography, Moment
+from tracking.synthetic.options import Options
+
+Array = NDArray[np.float64]
+
+TOP, BOTTOM = (0, 1, 0), (0, -1, 0)
+FRONT, BACK = (0, 0, 1), (0, 0, -1)
+RIGHT, LEFT = (1, 0, 0), (-1, 0, 0)
+
+
+@dataclass(frozen=True)
+class Script:
+    """A cube, and where it is at any time."""
+
+    cube: str
+    """Name of the bundled cube."""
+
+    length: float
+    """Seconds until the end."""
+
+    at: Callable[[float], Moment]
+    """Cube and hand at a time [s]."""
+
+    loose: bool = False
+    """Whether every frame shows another pose, in the air, without a hand."""
+
+
+def follow(edge: float, options: Options) -> Script:
+    """Put the cube to walking, lead the character round, run, and come to rest."""
+    c = Choreography(edge).stand(0.0, 0.0)
+    c.rest(2.2).turn(90, 1.6).hold(0.3).slide(-0.17, 0.07, 2.2, 0.03).hold(0.8)
+    c.slide(-0.05, 0.17, 2.0, -0.03).hold(0.6).turn(75, 1.2).slide(0.16, 0.10, 1.6, -0.04)
+    c.hold(0.4).slide(0.12, -0.12, 1.5, -0.05).hold(0.4).slide(-0.10, -0.10, 1.6, -0.04).hold(0.6)
+    c.turn(-80, 1.3).slide(0.02, 0.06, 1.8, 0.02).turn(-85, 1.3).rest(2.6)
+    return _script("locomotion", c)
+
+
+def sketch(edge: float, options: Options) -> Script:
+    """Draw eight points round the desk, put the cube aside, and turn it through the gaits."""
+    c = Choreography(edge).stand(-0.20, 0.02).rest(1.4)
+    ring = np.deg2rad(np.arange(45, 360, 45))
+    for angle in ring:
+        c.slide(-0.20 * np.cos(angle), 0.02 - 0.15 * np.sin(angle), 0.95, 0.012).hold(0.6)
+    c.carry(0.30, 0.10, 0.09, 2.0).rest(1.0)
+    c.turn(90, 1.3).rest(5.0).turn(80, 1.2).rest(4.0).turn(-80, 1.2).rest(2.0).turn(-90, 1.3)
+    return _script("locomotion", c.rest(2.0))
+
+
+def companion(edge: float, options: Options) -> Script:
+    """Kisses until the robot is happy, shouts until it is angry, kisses again, and peace."""
+    c = Choreography(edge).stand(0.06, 0.02).rest(2.4)
+    c.tip(FRONT).rest(2.0).turn(180, 1.5).turn(180, 1.5).rest(4.2)
+    c.tip(RIGHT).rest(1.6).turn(180, 1.5).turn(180, 1.5).rest(9.6)
+    c.tip(FRONT).rest(0.8).turn(180, 1.3).turn(180, 1.3).rest(4.4)
+    return _script("companion", c.tip(TOP).rest(2.6))
+
+
+def static(edge: float, options: Options) -> Script:
+    """A cube at rest somewhere on the desk, turned somehow."""
+    random = np.random.default_rng(options.seed)
+    x, z, heading = random.uniform(-0.15, 0.15), random.uniform(-0.12, 0.15), random.uniform(0, 360)
+    return _script("locomotion", Choreography(edge).stand(x, z, heading).rest(2.0))
+
+
+def turn(edge: float, options: Options) -> Script:
+    """One whole turn clockwise, and back."""
+    c = Choreography(edge).stand(0.0, 0.0).rest(1.0)
+    for _ in range(4):
+        c.turn(90, 1.2)
+    c.rest(0.6)
+    for _ in range(4):
+        c.turn(-90, 1.2)
+    return _script("locomotion", c.rest(1.0))
+
+
+def turns(edge: float, options: Options) -> Script:
+    """A kiss face put down, two turns up, four down, two up: from end to end of the intensity."""
+    c = Choreography(edge).stand(0.0, 0.0).rest(1.2).tip(FRONT).rest(0.8)
+    for count in (2, -4, 2):
+        for _ in range(2 * abs(count)):
+            c.turn(180 * np.sign(count), 1.0)
+        c.rest(0.5)
+    return _script("companion", c)
+
+
+def tip(edge: float, options: Options) -> Script:
+    """Every face on top in turn, resting."""
+    c = Choreography(edge).stand(0.0, 0.0).rest(1.4)
+    for face in (FRONT, RIGHT, BACK, BOTTOM, LEFT, TOP):
+        c.tip(face).rest(1.2)
+    return _script("companion", c)
+
+
+def shake(edge: float, options: Options) -> Script:
+    """Rest, a shake in the air, and rest again."""
+    return _script("locomotion", Choreography(edge).stand(0.0, 0.0).rest(1.4).shake(1.6).rest(1.2))
+
+
+def sweep(edge: float, options: Options) -> Script:
+    """Slide to and fro, as fast as asked at the fastest."""
+    reach = 0.30
+    seconds = 1.875 * reach / options.speed  # a minimum-jerk move peaks at 15/8 of its mean speed
+    c = Choreography(edge).stand(-reach / 2, 0.04).rest(1.0)
+    for side in (1, -1, 1, -1):
+        c.slide(side * reach / 2, 0.04, seconds).hold(0.2)
+    return _script("locomotion", c.rest(0.8))
+
+
+def fingers(edge: float, options: Options) -> Script:
+    """The hand keeps hold of the cube, turning and sliding it a little."""
+    c = Choreography(edge).stand(0.0, 0.0).rest(1.0).hold(0.8)
+    c.turn(60, 1.2).hold(0.4).slide(0.06, 0.05, 1.0).hold(0.4).turn(-100, 1.4).hold(0.6)
+    return _script("locomotion", c)
+
+
+def poses(edge: float, options: Options) -> Script:
+    """Another pose in every frame, 0.3 to 0.7 m away: for statistics of the tracker's error."""
+
+    def at(time: float) -> Moment:
+        index = round(time * options.rate)
+        random = np.random.default_rng([options.seed, index])
+        focal = 900.0 * options.width / 1280
+        distance = random.uniform(0.3, 0.7)
+        room = np.array([options.width, options.height]) / 2 - 0.95 * edge * focal / distance - 8
+        x, y = random.uniform(-1, 1, 2) * np.maximum(room, 0) * distance / focal
+        axis = random.standard_normal(4)
+        axis /= np.linalg.norm(axis)
+        angle = 2 * np.arccos(np.clip(axis[0], -1, 1))
+        turned = axis[1:] / max(float(np.linalg.norm(axis[1:])), 1e-9) * angle
+        return Moment(se3.pose(se3.rotation(turned), np.array([x, y, distance])), 0.0)
+
+    return Script("locomotion", 10.0, at, loose=True)
+
+
+SCRIPTS: dict[str, Callable[[float, Options], Script]] = {
+    script.__name__: script
+    for script in (
+        follow, sketch, companion, static, turn, turns, tip, shake, sweep, fingers, poses,
+    )
+}  # fmt: skip
+"""Every script by its name."""
+
+
+def _script(cube: str, choreography: Choreography) -> Script:
+    return Script(cube, choreography.length, choreography.at)
