@@ -45,7 +45,7 @@ class CommandLane:
         self.refused = 0
         """Commands acknowledged but not carried out."""
         self.dropped = 0
-        """Actions lost with their session."""
+        """Actions given up before they were acknowledged."""
         self._order: Order = None
         self._ordered = False  # whether there is a standing order at all
         self._unsent = False  # whether it still has to be put in flight

@@ -105,7 +105,8 @@ class Robot:
     def play(self, name: str) -> None:
         """Let the robot play one of its motions or sounds once.
 
-        It is sent at most once: if the link is lost before the robot takes it, it is dropped.
+        It is taken at most once, and not late: if the link is lost now or before the robot takes
+        it, it is dropped and counted.
 
         Raises
         ------

@@ -60,7 +60,13 @@ class HostLink:
         self._lane.express(emotion)
 
     def play(self, item: int, index: int) -> bool:
-        """Ask for a motion or a sound once; False if too many wait already."""
+        """Ask for a motion or a sound once; False if too many wait already.
+
+        Without a session it is dropped at once: nobody wants a nod when the robot comes back.
+        """
+        if self._phase != "open":
+            self._lane.dropped += 1
+            return True
         return self._lane.play(item, index)
 
     def stop(self) -> None:

@@ -36,7 +36,7 @@ class LinkCounts:
     """Commands that the robot acknowledged but refused."""
 
     dropped: int = 0
-    """Motions, sounds and stops whose session ended before they were acknowledged."""
+    """Motions and sounds given up, by a stop or a lost link, before they were acknowledged."""
 
     sessions: int = 0
     """Sessions opened; every one after the first is a reconnection."""

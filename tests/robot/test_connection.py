@@ -3,6 +3,7 @@
 import contextlib
 import os
 import socket
+import subprocess
 import sys
 import threading
 import time
@@ -15,6 +16,7 @@ from robot.emotion import Emotion
 from robot.errors import RobotError
 from robot.pty import SimulatedPort
 from robot.simulator import Simulator
+from robot.timing import FAILSAFE_PROMISE
 from robot.wire import FrameReader
 
 HAPPY = Emotion(0.8, 0.5)
@@ -129,6 +131,23 @@ def test_a_pseudo_terminal_that_is_gone_is_lost_and_not_looked_for_again(soon):
         port.close()
         soon(lambda: dino.telemetry.state == "lost", within=1)
         dino.express(HAPPY)
+
+
+def test_a_program_that_is_killed_leaves_a_neutral_robot_behind(soon):
+    program = (
+        "import sys, robot; dino = robot.connect(sys.argv[1]);"
+        "dino.express(robot.Emotion(0.8, 0.5)); sys.stdin.read()"
+    )
+    simulator = Simulator()
+    with SimulatedPort(simulator) as port:
+        command = [sys.executable, "-c", program, port.url]
+        with subprocess.Popen(command, stdin=subprocess.PIPE) as child:
+            soon(lambda: simulator.body.target == HAPPY, within=20)
+            child.kill()
+            child.wait()
+            killed = time.monotonic()
+            soon(lambda: simulator.body.target == Emotion(0, 0))
+            assert time.monotonic() - killed < FAILSAFE_PROMISE + 0.2  # a busy machine
 
 
 def test_closing_twice_is_closing_once_and_nothing_is_left_open(port, soon):

@@ -197,5 +197,5 @@ def test_whatever_happens_in_whatever_order_the_promises_are_kept(world):
     class StormHere(Storm):
         make_world = world
 
-    patient = settings(max_examples=200, stateful_step_count=40, deadline=None)
+    patient = settings(max_examples=120, stateful_step_count=40, deadline=None)
     run_state_machine_as_test(StormHere, settings=patient)

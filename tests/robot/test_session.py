@@ -111,6 +111,17 @@ def test_stop_overtakes_what_waits_and_holds_the_neutral_pose(open_world):
     assert not w.telemetry.stopped
 
 
+def test_an_action_asked_for_while_the_robot_is_lost_is_dropped_and_not_played_late(open_world):
+    w = open_world
+    w.there.cut = w.back.cut = True
+    w.run(1)
+    assert w.host.play(m.ITEM_MOTION, 3)
+    w.there.cut = w.back.cut = False
+    w.run(0.5)
+    assert w.telemetry.motion == "neutral"
+    assert w.telemetry.counts.dropped == 1
+
+
 def test_an_index_that_the_robot_does_not_have_is_refused_and_counted(open_world):
     w = open_world
     w.host.play(m.ITEM_MOTION, 200)
