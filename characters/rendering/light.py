@@ -84,7 +84,8 @@ class LightEstimate:
         step = max(1, picture.shape[1] // 64)
         linear = DECODED[picture[step // 2 :: step, step // 2 :: step, ::-1].reshape(-1, 3)]
         white = self._guess(linear) if paper is None else _toned(paper / self.PAPER, 0.8)
-        white = white * np.clip(white @ LUMA, *self.LIMITS) / max(float(white @ LUMA), 1e-6)
+        white = np.maximum(white, 1e-3)
+        white = white * np.clip(white @ LUMA, *self.LIMITS) / (white @ LUMA)
         ground = np.maximum(linear.mean(axis=0), 0.25 * self.LIMITS[0])
         if self._white is None or self._ground is None:
             self._white, self._ground = white, ground

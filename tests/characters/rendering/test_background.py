@@ -1,0 +1,104 @@
+"""The camera's frame is straightened, fitted, and read for its light."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from characters.rendering.background import Background
+from characters.rendering.context import create_context
+from characters.rendering.light import LightEstimate
+from characters.rendering.paper import paper_of
+
+BENT = np.array([0.12, -0.2, 0.001, -0.002, 0.05])
+
+
+def test_a_straightened_frame_shows_points_where_the_pinhole_puts_them(view):
+    point = np.array([0.09, -0.04, 0.6])
+    bent, _ = cv2.projectPoints(point, np.zeros(3), np.zeros(3), view.matrix, BENT)
+    yy, xx = np.mgrid[:180, :320]
+    spot = np.exp(-((xx - bent[0, 0, 0]) ** 2 + (yy - bent[0, 0, 1]) ** 2) / 8)
+    frame = np.repeat((250 * spot)[..., None], 3, axis=2).astype(np.uint8)
+    straight, matrix = Background((320, 180)).of(replace(view, image=frame, distortion=BENT))
+    weight = straight[..., 0].astype(float)
+    seen = [(weight * xx).sum(), (weight * yy).sum()] / weight.sum()
+    assert seen == pytest.approx((matrix @ point / point[2])[:2], abs=0.05)
+
+
+def test_a_frame_without_distortion_passes_untouched_and_is_not_shared(view):
+    picture, matrix = Background((320, 180)).of(view)
+    assert np.array_equal(picture, view.image)
+    assert not np.shares_memory(picture, view.image)
+    assert np.array_equal(matrix, view.matrix)
+
+
+def test_a_frame_of_another_size_is_fitted_with_its_matrix(view):
+    picture, matrix = Background((640, 400)).of(view)
+    assert picture.shape == (400, 640, 3)
+    assert matrix[0, 0] == pytest.approx(2 * view.matrix[0, 0])
+    middle = matrix @ np.linalg.inv(view.matrix) @ [159.5, 89.5, 1.0]
+    assert middle[:2] == pytest.approx([319.5, 199.5])
+
+
+def test_the_maps_are_made_once_a_camera(view, monkeypatch):
+    background = Background((320, 180))
+    bent = replace(view, distortion=BENT)
+    background.of(bent)
+    monkeypatch.setattr(cv2, "initUndistortRectifyMap", None)
+    background.of(bent)
+    with pytest.raises(TypeError):
+        background.of(replace(view, distortion=2 * BENT))
+
+
+def test_a_darker_and_redder_room_gives_a_darker_and_redder_light(view):
+    bright = LightEstimate().update(np.full((180, 320, 3), 180, np.uint8))
+    image = np.full((180, 320, 3), (40, 50, 70), np.uint8)
+    dim = LightEstimate().update(image)
+    assert (dim.white < bright.white).all()
+    assert dim.white[0] > dim.white[1] > dim.white[2]
+    assert (LightEstimate().update(np.zeros_like(image)).white > 0.1).all()
+
+
+def test_the_light_follows_slowly(view):
+    estimate = LightEstimate()
+    first = estimate.update(np.full((180, 320, 3), 60, np.uint8)).white
+    second = estimate.update(np.full((180, 320, 3), 240, np.uint8)).white
+    for _ in range(80):
+        last = estimate.update(np.full((180, 320, 3), 240, np.uint8)).white
+    assert (first < second).all()
+    assert ((second - first) < 0.1 * (last - first)).all()
+
+
+def test_the_paper_of_a_cube_is_read_between_its_markers(view, cube):
+    corners = np.array([(-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1)]) / 2
+    image = np.full_like(view.image, 255)
+    for scale, value in ((1.0, 180), (0.66, 20)):
+        seen = cube.edge * corners * [scale, scale, 1.0]
+        seen = seen @ cube.camera_from_box[:3, :3].T + cube.camera_from_box[:3, 3]
+        pixels = np.rint((seen / seen[:, 2:] @ view.matrix.T)[:, :2]).astype(int)
+        cv2.fillConvexPoly(image, pixels, (value,) * 3)
+    image[:72] = 0
+    paper = paper_of(image, view.matrix, replace(view, occluders=(cube,)))
+    assert paper is not None
+    assert paper_of(image, view.matrix, view) is None
+    broken = replace(cube, camera_from_box=np.full((4, 4), np.nan))
+    assert paper_of(image, view.matrix, replace(view, occluders=(broken,))) is None
+
+
+def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatch):
+    from characters.errors import CharacterError
+
+    def fails(*_, **__):
+        raise RuntimeError("libEGL.so not loaded")
+
+    monkeypatch.setattr("moderngl.create_context", fails)
+    monkeypatch.setattr("platform.system", lambda: "Linux")
+    monkeypatch.setattr("characters.rendering.context.find_library", lambda name: None)
+    with pytest.raises(CharacterError, match="libEGL is missing.*apt install libegl1"):
+        create_context()
+    monkeypatch.setattr("characters.rendering.context.find_library", lambda name: name)
+    with pytest.raises(CharacterError, match="libgl1-mesa-dri"):
+        create_context()
+    with pytest.raises(CharacterError, match="graphics driver"):
+        create_context(window=True)

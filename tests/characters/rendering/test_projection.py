@@ -1,0 +1,87 @@
+"""Points fall where OpenCV says, to a small part of a pixel."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from characters.mesh import Material
+from characters.rendering import Actor, Stage
+from characters.rendering.projection import clip_from_camera, merged, part_that_shows
+from characters.rendering.view import Rectangle
+
+MATRIX = np.array([[310.0, 0.7, 158.2], [0.0, 305.0, 92.4], [0.0, 0.0, 1.0]])
+
+
+@given(
+    point=st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.1, 5)),
+    corner=st.tuples(st.integers(-50, 200), st.integers(-50, 200)),
+    size=st.tuples(st.integers(1, 400), st.integers(1, 400)),
+)
+def test_clip_space_is_the_pinhole_with_centres_at_whole_numbers(point, corner, size):
+    part = Rectangle(*corner, *size)
+    clip = clip_from_camera(MATRIX, part) @ [*point, 1.0]
+    window = (clip[:2] / clip[3] + 1.0) / 2.0 * size
+    pixel = MATRIX[:2] @ (np.array(point) / point[2])
+    assert window == pytest.approx(pixel + 0.5 - corner, abs=1e-6)
+
+
+@pytest.mark.parametrize("at", [(0.0, 0.0), (-0.1, 0.04), (0.11, -0.05)])
+def test_a_drawn_square_lies_on_its_projected_corners(ctx, view, pawn, at):
+    """The centre of mass of a small bright square, coverage by coverage, is where OpenCV puts it."""
+    square = np.array([[-1, 0.5, 0], [1, 0.5, 0], [1, 2.5, 0], [-1, 2.5, 0]], np.float32)
+    mesh = replace(
+        pawn.meshes[0],
+        positions=square,
+        normals=np.tile(np.float32([0, 0, 1]), (4, 1)),
+        triangles=np.array([[0, 1, 2], [0, 2, 3]], np.uint32),
+        joints=np.zeros((4, 4), np.uint16),
+        weights=np.tile(np.float32([1, 0, 0, 0]), (4, 1)),
+        material=Material(base_color=(4.0, 4.0, 4.0, 1.0), double_sided=True),
+    )
+    view = replace(view, image=np.zeros_like(view.image), matrix=MATRIX)
+    actor = pawn.posed(at=at, height=0.008)
+    stage = Stage(ctx, (320, 180))
+    picture = stage.draw(view, [Actor(replace(pawn, meshes=(mesh,)), actor.posed)])
+    stage.release()
+    weight = picture.astype(float).sum(axis=2)
+    total = weight.sum()
+    drawn = [(weight.sum(axis=0) @ np.arange(320)), (weight.sum(axis=1) @ np.arange(180))] / total
+
+    # The truth is drawn by area: 64 × 64 points spread over the square.
+    grid = (np.stack(np.meshgrid(*[np.arange(64)] * 2), axis=-1).reshape(-1, 2) + 0.5) / 64
+    places = np.stack([2 * grid[:, 0] - 1, 2 * grid[:, 1] + 0.5, np.zeros(len(grid))], axis=1)
+    table = actor.posed.table_from_character
+    places = places @ table[:3, :3].T + table[:3, 3]
+    pose = view.camera_from_table
+    true, _ = cv2.projectPoints(places, cv2.Rodrigues(pose[:3, :3])[0], pose[:3, 3], MATRIX, None)
+    # `projectPoints` knows no skew.
+    seen = places @ pose[:3, :3].T + pose[:3, 3]
+    skewed = true.reshape(-1, 2).mean(axis=0) + [MATRIX[0, 1] * (seen[:, 1] / seen[:, 2]).mean(), 0]
+    assert drawn == pytest.approx(skewed, abs=0.05)
+
+
+def test_a_point_behind_the_camera_asks_for_the_whole_picture():
+    points = np.array([[0, 0, 1.0], [0, 0, -1.0]])
+    assert part_that_shows(points, MATRIX, np.eye(4), (320, 180)) == Rectangle(0, 0, 320, 180)
+    assert part_that_shows(points[1:], MATRIX, np.eye(4), (320, 180)) is None
+    assert part_that_shows(points[:0], MATRIX, np.eye(4), (320, 180)) is None
+
+
+@given(
+    st.lists(
+        st.builds(
+            Rectangle,
+            st.integers(0, 900), st.integers(0, 600), st.integers(1, 300), st.integers(1, 200),
+        ),
+        max_size=12,
+    )
+)  # fmt: skip
+def test_merged_parts_hold_all_that_they_were_made_of(parts):
+    fewer = merged(parts)
+    assert len(fewer) <= len(parts)
+    for part in parts:
+        assert any(other.joined(part) == other for other in fewer)

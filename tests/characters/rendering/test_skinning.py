@@ -1,0 +1,131 @@
+"""Skinning on the card, and what is known of a character's outline without it."""
+
+from dataclasses import replace
+
+import moderngl
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from characters.mesh import Material
+from characters.rendering.geometry import Geometry
+from characters.rendering.programs import Programs
+from characters.rendering.skinning import SkinnedCharacter
+
+
+@pytest.fixture
+def programs(ctx):
+    programs = Programs(ctx)
+    yield programs
+    programs.release()
+
+
+def skinned_on_the_card(ctx, programs, character, joints, place):
+    on_card = SkinnedCharacter(ctx, programs, character)
+    any_target = ctx.framebuffer([ctx.renderbuffer((4, 4), 4)])
+    any_target.use()
+    enclosing = on_card.pose(joints, place)
+    vertices = np.frombuffer(on_card.skinned.read(), np.float32).reshape(-1, 6)
+    on_card.release()
+    ctx.detect_framebuffer(0).use()
+    any_target.release()
+    return vertices, enclosing
+
+
+def matrices(seed, count, scale=1.0):
+    """Return affine matrices, (count, 4, 4), that turn, stretch and move."""
+    rng = np.random.default_rng(seed)
+    result = np.tile(np.eye(4), (count, 1, 1))
+    result[:, :3, :3] = scale * (np.eye(3) + 0.4 * rng.standard_normal((count, 3, 3)))
+    result[:, :3, 3] = rng.standard_normal((count, 3))
+    return result
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_card_skins_as_the_definition_says(ctx, programs, pawn, seed):
+    joints, place = matrices(seed, 2), matrices(seed + 100, 1, 0.1)[0]
+    vertices, _ = skinned_on_the_card(ctx, programs, pawn, joints, place)
+    mesh = pawn.meshes[0]
+    each = place @ joints @ mesh.inverse_bind
+    blended = np.einsum("vk,vkij->vij", mesh.weights.astype(float), each[mesh.joints])
+    positions = np.einsum("vij,vj->vi", blended[:, :3, :3], mesh.positions) + blended[:, :3, 3]
+    normals = np.einsum("vji,vj->vi", np.linalg.inv(blended[:, :3, :3]), mesh.normals)
+    normals *= np.sign(np.linalg.det(blended[:, :3, :3]))[:, None]
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    assert np.abs(vertices[:, :3] - positions).max() < 1e-4
+    assert np.abs(vertices[:, 3:] - normals).max() < 1e-3
+
+
+def test_two_hundred_joints_are_not_too_many(ctx, programs, pawn):
+    mesh, count = pawn.meshes[0], 200
+    numbers = (np.arange(mesh.joints.size).reshape(mesh.joints.shape) % count).astype(np.uint16)
+    weights = np.full(mesh.weights.shape, 0.25, np.float32)
+    binds = matrices(1, count)
+    crowd = replace(mesh, joints=numbers, weights=weights, inverse_bind=binds)
+    skeleton = replace(
+        pawn.skeleton,
+        names=tuple(f"j{i}" for i in range(count)),
+        parents=(-1,) * count,
+        rest=replace(
+            pawn.skeleton.rest,
+            translations=np.zeros((count, 3)),
+            rotations=np.tile([0.0, 0.0, 0.0, 1.0], (count, 1)),
+        ),
+    )
+    character = replace(pawn, meshes=(crowd,), skeleton=skeleton)
+    joints = matrices(2, count)
+    vertices, _ = skinned_on_the_card(ctx, programs, character, joints, np.eye(4))
+    geometry = Geometry.of([crowd])
+    expected = geometry.skinned(geometry.palette(joints), slice(None))
+    assert np.abs(vertices[:, :3] - expected).max() < 1e-4
+
+
+def test_meshes_with_other_bind_poses_keep_their_own(ctx, programs, pawn):
+    mesh = pawn.meshes[0]
+    lifted = np.array(mesh.inverse_bind)
+    lifted[:, 1, 3] += 0.5
+    blue = Material(base_color=(0.0, 0.0, 1.0, 1.0))
+    character = replace(
+        pawn, meshes=(mesh, replace(mesh, inverse_bind=lifted, material=blue), mesh)
+    )
+    vertices, _ = skinned_on_the_card(
+        ctx, programs, character, np.tile(np.eye(4), (2, 1, 1)), np.eye(4)
+    )
+    one, same, other = vertices[:, :3].reshape(3, -1, 3)  # meshes of one material lie together
+    assert np.allclose(one, same)
+    assert np.allclose(other - one, [0.0, 0.5, 0.0], atol=1e-6)
+    assert [count for _, count in Geometry.of(character.meshes).materials] == [
+        2 * mesh.triangles.size,
+        mesh.triangles.size,
+    ]
+
+
+@settings(max_examples=25, deadline=None)
+@given(bend=st.floats(-1.5, 1.5), turn=st.floats(-3.0, 3.0))
+def test_the_outline_encloses_all_vertices(pawn, bend, turn):
+    geometry = Geometry.of(pawn.meshes)
+    pose = pawn.posed(bend).posed.pose
+    turned = np.eye(4)
+    turned[[0, 0, 2, 2], [0, 2, 0, 2]] = np.cos(turn), np.sin(turn), -np.sin(turn), np.cos(turn)
+    palette = geometry.palette(turned @ pose.globals(pawn.skeleton))
+    every = geometry.skinned(palette, slice(None))
+    outline = geometry.skinned(palette, geometry.outline())
+    assert np.abs(outline.min(axis=0) - every.min(axis=0)).max() < 0.03
+    assert np.abs(outline.max(axis=0) - every.max(axis=0)).max() < 0.03
+
+
+def test_the_coarse_caster_has_fewer_triangles_and_the_same_size(pawn):
+    geometry = Geometry.of(pawn.meshes)
+    coarse, runs = geometry.coarse(16)
+    assert 0 < coarse.size < geometry.indices.size
+    assert runs == ((0, coarse.size, False),)
+    kept = geometry.positions[coarse]
+    assert np.abs(np.ptp(kept, axis=0) - np.ptp(geometry.positions, axis=0)).max() < 0.1
+
+
+def test_every_program_is_released(ctx):
+    programs = Programs(ctx)
+    programs.release()
+    programs.release()
+    assert all(isinstance(p.mglo, moderngl.InvalidObject) for p in vars(programs).values())
