@@ -26,6 +26,10 @@ BLUR_FLOOR = np.array([2e-3, 2e-3, 3e-3, 0.02, 0.02, 0.02])
 STRAY = 1.0
 """Edges and corners must agree to this share of a cell, or the edges found something else."""
 
+LONE_CORNERS = 1.15
+"""Where only one marker was read, its corners must be as near as this to the edges [px]: blur pulls
+the two apart, and would put the cube centimetres too near or too far."""
+
 SEEN = 0.3
 """Share of the edges in view that must be found beside the markers; fingers cover the rest."""
 
@@ -151,7 +155,8 @@ class CandidateFinder:
         if not all(self._solver.looks_at_camera(each.face.name, pose) for each in seen):
             return False
         cell = min(each.size for each in seen) / 6
-        strays = self._solver.error(pose, seen) > solution.error + STRAY * cell
+        limit = solution.error + STRAY * cell if len(seen) > 1 else LONE_CORNERS
+        strays = self._solver.error(pose, seen) > limit
         shares = [refinement.shares.get(each.face.name, 0.0) for each in seen]
         whole = max(shares) > (WHOLE_FACE if len(seen) == 1 else SEEN_ALONE)
         return refinement.support > SEEN and whole and not strays
@@ -169,7 +174,7 @@ class CandidateFinder:
         """Look for edges where the cube should be: blur hides markers sooner than edges."""
         expected = prediction.predicted(last, timestamp)
         best = self._best_refinement(grey, expected)
-        if best is None or best.support < SEEN_ALONE:
+        if best is None or min(best.support, best.inner) < SEEN_ALONE:
             return None
         faces = tuple(face for face, share in best.shares.items() if share > SEEN_ALONE)
         if not prediction.near(last, best.camera_from_cube, timestamp):

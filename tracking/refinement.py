@@ -47,6 +47,9 @@ MODEL_ERROR = 0.04
 WIDE, PRECISE = 5.0, (2.0, 1.0, 1.0)
 """Widths of the step that is fitted [px] in the wide search, and in the steps of Gauss-Newton."""
 
+FAINT = 0.4
+"""An edge with less than this share of the contrast of good edges is covered, or none."""
+
 FEWEST = 40
 """Fewer edge points than this do not make a pose."""
 
@@ -73,6 +76,9 @@ class Refinement:
 
     points: int
     """Number of edge points found."""
+
+    inner: float
+    """The same for the edges inside the markers, which tell them apart."""
 
     shares: dict[str, float]
     """The same for each face in view."""
@@ -164,7 +170,7 @@ class EdgeRefiner:
         self, grey: NDArray[np.uint8], current: Array, profiles: _Profiles, blur: float
     ) -> Refinement | None:
         offset, contrast, information = edge_offsets(grey, profiles, blur)
-        strong = contrast > max(8.0, 0.3 * float(np.percentile(contrast, 70)))
+        strong = contrast > max(8.0, FAINT * float(np.percentile(contrast, 70)))
         strong &= np.abs(offset) < profiles.reach
         if np.count_nonzero(strong) < FEWEST:
             return None
@@ -184,18 +190,23 @@ class EdgeRefiner:
         chi = float((weights * residual**2).sum()) / max(1.0, float(robust.sum()) - 7)
         covariance = np.linalg.inv(normal)[:6, :6] * max(chi, 0.25) * OPTIMISM
         spread = float(np.sqrt((robust * residual**2).sum() / robust.sum()))
-        found = self._model.face[profiles.numbers[strong][kept]]
+        found = profiles.numbers[strong][kept]
         return Refinement(
             se3.moved(current, solution[:6]),
             (covariance + covariance.T) / 2,
             spread,
             used / len(profiles.numbers),
             used,
+            self._inner(profiles, found),
             self._shares(profiles, found),
         )
 
+    def _inner(self, profiles: _Profiles, found: NDArray[np.intp]) -> float:
+        wanted = np.count_nonzero(~self._model.outline[profiles.numbers])
+        return float(np.count_nonzero(~self._model.outline[found])) / max(1, wanted)
+
     def _shares(self, profiles: _Profiles, found: NDArray[np.intp]) -> dict[str, float]:
-        counts = np.bincount(found, minlength=len(self._names))
+        counts = np.bincount(self._model.face[found], minlength=len(self._names))
         wanted = np.bincount(self._model.face[profiles.numbers], minlength=len(self._names))
         rows = zip(self._names, counts.tolist(), wanted.tolist(), strict=True)
         return {name: n / of for name, n, of in rows if of > 10}
