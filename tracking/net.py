@@ -51,11 +51,16 @@ TAB_DEPTH = 0.18
 """Depth of a tab as a share of the edge."""
 
 
+TAB_SLANT = 1.12
+"""How far a tab narrows at each end, as a share of its depth; 1 is 45°."""
+
+
 @dataclass(frozen=True)
 class Tab:
     """A glue tab: a trapezoid that folds under another face.
 
-    Its slanted sides run at 45°: tabs that meet under one face then touch and never overlap.
+    Tabs that meet under one face share its corner. Slants of 45° would let them touch; these are a
+    little flatter, so that thick paper and a child's scissors leave room.
     """
 
     face: str
@@ -153,7 +158,7 @@ class Net:
         first, last = self._side(face, side)
         depth = TAB_DEPTH * self.edge
         outwards = depth * np.array(SIDES[side])
-        along = depth * (last - first) / self.edge
+        along = TAB_SLANT * depth * (last - first) / self.edge
         return np.array([first, first + outwards + along, last + outwards - along, last])
 
     def _over(self, side: str, angle: float, beyond: float) -> Array:

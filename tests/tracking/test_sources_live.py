@@ -99,6 +99,12 @@ def test_a_camera_is_asked_for_jpeg_of_the_wanted_size_and_hands_out_its_own_byt
     np.testing.assert_array_equal(frame.image, cv2.imdecode(encoded(0), 1))
 
 
+def test_what_a_driver_leaves_behind_the_picture_is_cut_off(capture):
+    capture.frames.put(np.frombuffer(jpeg(0) + bytes(999) + jpeg(1)[200:], np.uint8)[None])
+    with open_camera(capture) as source:
+        assert next(iter(source)).encoded == jpeg(0)
+
+
 def test_a_camera_without_jpeg_gives_pixels(capture):
     capture.honours_mjpg = False
     capture.frames.put(picture(3))

@@ -123,12 +123,21 @@ def open_capture(device: int | str) -> VideoCapture:
 def _picture(given: NDArray[np.uint8]) -> Picture | bytes | None:
     """Tell a JPEG from pixels by the shape in which OpenCV gives it."""
     if 1 in given.shape[:2] or given.ndim == 1:
-        return given.tobytes()
+        return _trimmed(given.tobytes())
     if given.ndim == 2:
         return np.asarray(cv2.cvtColor(given, cv2.COLOR_GRAY2BGR), np.uint8)
     if given.shape[2] == 2:  # the camera does not do MJPG after all
         return np.asarray(cv2.cvtColor(given, cv2.COLOR_YUV2BGR_YUY2), np.uint8)
     return given
+
+
+def _trimmed(data: bytes) -> bytes:
+    """Drop what follows the picture: some drivers give their whole buffer, old frames and all.
+
+    Behind the start of scan (FF DA), FF D9 can be nothing but the end of the picture.
+    """
+    end = data.find(b"\xff\xd9", max(data.find(b"\xff\xda"), 0))
+    return data if end < 0 else data[: end + 2]
 
 
 def _check_present(device: int | str) -> None:
