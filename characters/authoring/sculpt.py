@@ -187,7 +187,7 @@ def skin_weights(
     leg to the other through the air, nor from an arm to the flank.
     """
     joints = skeleton.rest.globals(skeleton)[:, :3, 3]
-    owner = np.argmin(distances, axis=1)
+    owner = np.argmin(distances + 1e-6 * np.arange(len(solids)), axis=1)  # no ties
     weights = np.zeros((len(points), len(skeleton.names)))
     for number, solid in enumerate(solids):
         mine = np.flatnonzero(owner == number)

@@ -108,7 +108,8 @@ def _tangential(field: Field, points: Array, move: Array, cell: float) -> Array:
 def _split(points: Array, quads: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return the quads cut along their shorter diagonals."""
     p = points[quads]
-    first = np.linalg.norm(p[:, 0] - p[:, 2], axis=1) <= np.linalg.norm(p[:, 1] - p[:, 3], axis=1)
+    ac, bd = (np.linalg.norm(p[:, i] - p[:, i + 2], axis=1) for i in (0, 1))
+    first = ac < bd + 1e-6  # equal ones alike on every machine
     a, b, c, d = quads.T
     along_ac = np.stack([a, b, c, a, c, d], axis=1)
     along_bd = np.stack([a, b, d, b, c, d], axis=1)
