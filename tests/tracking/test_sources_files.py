@@ -9,7 +9,7 @@ import pytest
 from foxglove_schemas_protobuf.CameraCalibration_pb2 import CameraCalibration
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType
 from mcap_protobuf.writer import Writer
@@ -162,6 +162,7 @@ def test_of_a_session_cut_at_any_byte_every_whole_frame_is_read(session, tmp_pat
 
 
 @given(place=st.floats(0.1, 0.9), bit=st.integers(0, 7))
+@settings(max_examples=40)
 def test_a_flipped_bit_never_gives_a_wrong_picture(session, tmp_path_factory, place, bit):
     data = bytearray(session.read_bytes())
     data[int(place * len(data))] ^= 1 << bit
