@@ -165,7 +165,7 @@ def shout(level: int, bound: Skeleton) -> Performance:
     act.turn("head", left=10 * DEGREE * shake, tilt=6 * DEGREE * raging * wave(n, 8, 0.33))
     act.turn("neck2", left=-5 * DEGREE * later(shake, 0.01))
     jaw = keys(
-        n, (0.0, 0.12), (0.22, 0.13), (0.30, -0.80), (0.37, -0.68), (0.60, -0.74), (0.70, 0.12)
+        n, (0.0, -0.10), (0.21, 0.12), (0.30, -0.80), (0.37, -0.68), (0.60, -0.74), (0.72, -0.06)
     )
     act.turn("jaw", up=jaw + 0.05 * raging * wave(n, 16))
     corners(act, keys(n, (0.0, -1), (0.22, -1), (0.30, -0.3), (0.60, -0.3), (0.72, -1)), 0.0)

@@ -52,7 +52,7 @@ TRUNK_CELL, FACE_CELL = (0.0086, 0.0106, 0.0108), (0.0056, 0.0044, 0.0047)
 """Edges of a grid cell far from the mouth and about it, along x, y, z [m]."""
 MOUTH_BOX = ((-0.044, 0.044), (0.192, 0.246), (0.134, 0.300))
 """Where the cells are small, along x, y, z [m]."""
-CORNER_REACH = 0.016
+CORNER_REACH = 0.018
 """How far a corner of the mouth pulls the skin about it [m]."""
 
 
@@ -177,7 +177,7 @@ def _head() -> Shape:
 @cache
 def skin() -> Shape:
     """Return the body with its mouth open, and a tongue in it."""
-    tongue = Ellipsoid((0.0, 0.2105, 0.160), (0.0135, 0.0045, 0.0200), bones=("jaw",))
+    tongue = Ellipsoid((0.0, 0.2088, 0.159), (0.0135, 0.0042, 0.0190), bones=("jaw",))
     return Union((Cut(whole(), Smile(), 0.004), tongue), 0.004)
 
 
@@ -288,7 +288,7 @@ def _painted(points: Array, normals: Array) -> Array:
     colors = _coat(colors, CREAM, lower * _ease(0.5 - chin / 0.012))
     inside = -np.maximum(whole().distance(points) + 0.0004, Smile().distance(points) - 0.0018)
     colors = _coat(colors, MAROON, _ease(0.5 + inside / 0.0012))
-    tongue = Ellipsoid((0.0, 0.2105, 0.160), (0.0135, 0.0045, 0.0200)).distance(points)
+    tongue = Ellipsoid((0.0, 0.2088, 0.159), (0.0135, 0.0042, 0.0190)).distance(points)
     return _coat(colors, TONGUE, _ease(1 - tongue / 0.0012))
 
 

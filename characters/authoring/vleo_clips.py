@@ -13,7 +13,7 @@ from characters.pose import Pose, Skeleton
 
 RATE = 30.0
 """Frames a second [Hz]."""
-SHUT, LOWER_SHUT = 1.22, 1.20
+SHUT, LOWER_SHUT = 1.36, 1.20
 """How far an upper and a lower lid roll to meet [rad]."""
 MOUTH_SHUT = 0.13
 """Turn of the jaw that closes the mouth, which rests in an open smile [rad]."""
@@ -45,7 +45,8 @@ def lids(act: Performance, shut: Array | float, smile: Array | float, anger: Arr
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         slant = 0.42 * np.asarray(anger) - 0.28 * np.asarray(shut)  # inward is fierce, outward kind
         act.turn(f"{side}UpperLid", up=-SHUT * upper, tilt=sign * slant)
-        act.turn(f"{side}LowerLid", up=LOWER_SHUT * lower)
+        level = -0.28 * sign * np.asarray(shut)
+        act.turn(f"{side}LowerLid", up=LOWER_SHUT * lower, tilt=level)
         deep = 0.014 * (1 - np.clip(anger, 0, 1))  # out of sight in the head unless angry
         act.move(f"{side}Brow", y=-0.4 * deep, z=-deep)
         grown = np.clip(anger, HIDDEN, 1.2) + np.zeros(act.frames)
@@ -55,7 +56,7 @@ def lids(act: Performance, shut: Array | float, smile: Array | float, anger: Arr
 def corners(act: Performance, grin: Array | float, pucker: Array | float) -> None:
     """Raise (1) or drop (−1) the corners of the mouth, or draw them together (0…1)."""
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
-        up = 0.004 * np.maximum(grin, 0) - 0.013 * np.maximum(-np.asarray(grin), 0)
+        up = 0.004 * np.maximum(grin, 0) - 0.021 * np.maximum(-np.asarray(grin), 0)
         act.move(
             f"{side}MouthCorner",
             x=-0.012 * sign * np.asarray(pucker),

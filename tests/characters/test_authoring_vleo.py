@@ -7,6 +7,7 @@ from characters import rotations
 from characters.authoring.loops import follow, keys, later, wave
 from characters.authoring.vleo import build_vleo
 from characters.authoring.vleo_rig import BURSTS, FEET, HEARTS
+from characters.blend import mix
 from characters.character import Character, skin
 from characters.pose import Pose
 
@@ -107,6 +108,20 @@ def test_soles_that_stand_do_not_slide(vleo: Character, name: str) -> None:
         assert np.ptp(places[:, sole], axis=0).max() < 0.002, foot
 
 
+@pytest.mark.parametrize(("less", "more"), [("head", "legs"), ("legs", "tail")])
+@pytest.mark.parametrize("action", ["kiss", "shout"])
+def test_feet_that_stand_hardly_slide_in_a_blend_at_equal_phase(
+    vleo: Character, action: str, less: str, more: str
+) -> None:
+    clips = [vleo.clips[f"{action}_{name}"] for name in (less, more)]
+    times = np.arange(0, clips[0].duration, 1 / 30)
+    for foot in PLANTED.get(clips[1].name, ()):
+        joint = vleo.skeleton.index(foot)
+        half = [mix([clip.sample(time) for clip in clips], [0.5, 0.5]) for time in times]
+        places = np.array([pose.globals(vleo.skeleton)[joint, :3, 3] for pose in half])
+        assert np.ptp(places, axis=0).max() < 0.004, foot
+
+
 @pytest.mark.parametrize("name", CLIPS)
 def test_legs_stretch_only_a_little(vleo: Character, name: str) -> None:
     for foot in FEET:
@@ -161,7 +176,7 @@ def test_eyes_shut_at_the_kiss_and_mouth_gapes_at_the_shout(vleo: Character) -> 
         return float(np.degrees(np.linalg.norm(rotations.to_rotation_vector(turn))))
 
     for kiss, shout in zip(KISSES, SHOUTS, strict=True):
-        assert turned(kiss, lid, 0.45) > 75
+        assert turned(kiss, lid, 0.45) > 65
         assert turned(shout, lid, 0.45) < 50
         assert turned(shout, jaw, 0.33) > 30
         assert turned(kiss, jaw, 0.45) < 10
