@@ -13,6 +13,9 @@ NEAR, FAR = 0.02, 20.0
 """Depths between which things are drawn [m]: from a hand before the lens to the end of a room."""
 
 
+SLACK = 0.02
+"""Share of its size by which a part is larger than its points: a few stand for many."""
+
 FIXED = 12_000
 """Pixels that software rendering draws in the time that one more part costs."""
 
@@ -82,8 +85,10 @@ def part_that_shows(
     if behind.any():
         return Rectangle(0, 0, width, height)
     pixels = (seen / seen[:, 2:]) @ matrix[:2].T
-    low = np.clip(np.floor(pixels.min(axis=0)) - margin, 0, size).astype(int)
-    high = np.clip(np.ceil(pixels.max(axis=0)) + margin + 1, 0, size).astype(int)
+    low, high = pixels.min(axis=0), pixels.max(axis=0)
+    rim = margin + SLACK * (high - low)
+    low = np.clip(np.floor(low - rim), 0, size).astype(int)
+    high = np.clip(np.ceil(high + rim) + 1, 0, size).astype(int)
     if (high <= low).any():
         return None
     return Rectangle(int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1]))

@@ -62,6 +62,6 @@ void main() {
                + key * f0 * min(highlight, 6.0) * clamp(nl * 4.0, 0.0, 1.0)
                + mirror * around;
     // A shoulder instead of a cliff where the light is strong.
-    light = light / (1.0 + 0.12 * light * light);
+    light *= 1.06 / (1.0 + 0.12 * light);
     color = vec4(clamp(encoded(light), 0.0, 1.0).bgr, 1.0);
 }
