@@ -46,7 +46,7 @@ def write_sheet(
     edge_mm
         Edge of the cube [mm] where it shall not be the cube's own; markers scale with it.
     paper
-        "a4", "letter" or "a3".
+        "a4", "letter" or "a3", in either case.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def write_sheet(
 
     if edge_mm is not None:
         cube = cube.scaled(edge_mm / 1000)
-    sheet = Sheet(cube, paper)
+    sheet = Sheet(cube, paper.lower())
     pen = Pen(*sheet.page, f"{cube.name} cube, {cube.edge * 1000:g} mm")
     draw_net(pen, sheet)
     draw_notes(pen, sheet)

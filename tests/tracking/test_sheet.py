@@ -110,7 +110,7 @@ def test_captions_move_no_marker_corner_even_for_a_camera_far_away(tmp_path):
         np.testing.assert_allclose(corners, far["bare"][number], atol=0.02)
 
 
-@pytest.mark.parametrize(("edge_mm", "paper"), [(30, "a4"), (64, "letter"), (95, "a3")])
+@pytest.mark.parametrize(("edge_mm", "paper"), [(30, "a4"), (64, "letter"), (95, "A3")])
 def test_another_edge_scales_the_markers_with_it(tmp_path, edge_mm, paper):
     cube = CubeModel.load("companion")
     path = tmp_path / "cube.pdf"
@@ -122,7 +122,7 @@ def test_another_edge_scales_the_markers_with_it(tmp_path, edge_mm, paper):
     document = pypdfium2.PdfDocument(path)
     width, height = document[0].get_size()
     document.close()
-    assert (width * 25.4 / 72, height * 25.4 / 72) == pytest.approx(PAPERS[paper], abs=0.01)
+    assert (width * 25.4 / 72, height * 25.4 / 72) == pytest.approx(PAPERS[paper.lower()], abs=0.01)
 
 
 def test_turned_markers_and_missing_faces_are_drawn_as_the_file_says(tmp_path):
