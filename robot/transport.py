@@ -1,6 +1,7 @@
 """Ports: what pySerial opens, and a simulated robot that reads and writes like one."""
 
-import math
+import re
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -14,6 +15,12 @@ from robot.errors import RobotError
 from robot.simulator import Simulator
 
 Clock = Callable[[], float]
+
+_REFUSALS: tuple[type[Exception], ...] = (OSError, ValueError)  # SerialException is an OSError
+if sys.platform != "win32":
+    import termios
+
+    _REFUSALS += (termios.error,)  # pySerial lets it through where a port vanishes while it opens
 
 READ_TIMEOUT = 0.005
 """Longest wait in one read [s]: how late a beat or a repeat may be, and a close be noticed."""
@@ -41,6 +48,22 @@ class Port(Protocol):
 
 SIMULATORS: dict[str, Callable[[int], Simulator]] = {"cubeling": Simulator}
 """The simulated robots by name, as in "sim:cubeling"; made from a seed."""
+
+
+_NO_PORT = "there is no such port; `cubeling robot list` shows those there are"
+_NOT_SERIAL = "that is no serial port; `cubeling robot list` shows those there are"
+_REASONS = {
+    "FileNotFoundError": _NO_PORT,
+    "No such file": _NO_PORT,
+    "Inappropriate ioctl": _NOT_SERIAL,
+    "Is a directory": _NOT_SERIAL,
+    "exclusively lock": "another program is using it",
+    "Permission": "no permission; on Linux join the group dialout, elsewhere close other programs",
+    "Access is denied": "another program is using it",
+    "refused": "nobody listens there",
+    "timed out": "nobody answers there",
+}
+"""Signs in the systems' messages, and what they mean."""
 
 
 def open_port(url: str, clock: Clock = time.monotonic) -> Port:
@@ -71,8 +94,9 @@ def open_port(url: str, clock: Clock = time.monotonic) -> Port:
             write_timeout=WRITE_TIMEOUT,
             exclusive=True,  # two programs on one port look like a broken robot to both
         )
-    except (OSError, ValueError) as error:  # SerialException is an OSError
-        raise RobotError(f"cannot open the port {url}: {_reason(error)}") from error
+    except _REFUSALS as error:
+        shown = url if url.isprintable() else repr(url)
+        raise RobotError(f"cannot open the port {shown}: {_reason(url, error)}") from error
     return cast(Port, port)
 
 
@@ -90,17 +114,15 @@ def _simulator_of(url: str) -> Simulator:
     return SIMULATORS[name](int(seed))
 
 
-def _reason(error: Exception) -> str:
+def _reason(url: str, error: Exception) -> str:
+    """Say in a person's words why a port does not open; pySerial's own where none is known."""
     text = " ".join(str(error).split())
-    if "FileNotFoundError" in text or "No such file" in text:
-        return "there is no such port; `cubeling robot list` shows those there are"
-    if "Permission" in text or "Access is denied" in text:
-        return (
-            "no permission; on Linux join the group dialout, and close other programs that use it"
-        )
-    if "exclusively lock" in text or "temporarily unavailable" in text:
-        return "another program is using it"
-    return text
+    for sign, words in _REASONS.items():
+        if sign in text:
+            return words
+    if url.startswith("socket://") and "Errno" not in text:
+        return "a socket needs a host and a port, as in socket://localhost:5000"
+    return re.sub(r"^.*\[Errno -?\d+\] ", "", text)
 
 
 class MemoryPort:
@@ -151,7 +173,5 @@ class MemoryPort:
     def _live(self) -> None:
         if not self._open:
             raise serial.PortNotOpenError
-        now = self._clock()
-        if math.isfinite(now):
-            self.simulator.advance(now)
+        self.simulator.advance(self._clock())
         self._arrived += self.simulator.bytes_to_send()
