@@ -39,29 +39,33 @@ def desk_picture(random: np.random.Generator, clutter: bool) -> Picture:
 
 def seen_through(lens: Lens, camera_from_table: Array, picture: Picture) -> Picture:
     """Return the camera's picture of the desk and the wall behind it, (H, W, 3)."""
-    finer = 2
-    rays = lens.rays(lens.whole(), finer)
-    table_from_camera = np.linalg.inv(camera_from_table)
-    ways = rays @ table_from_camera[:3, :2].T.astype(np.float32) + table_from_camera[:3, 2].astype(
-        np.float32
-    )
-    eye = table_from_camera[:3, 3]
-    down = np.minimum(ways[..., 1], -1e-4)
-    reach = (-eye[1] / down).astype(np.float32)
-    x, z = eye[0] + reach * ways[..., 0], eye[2] + reach * ways[..., 2]
+    x, z, _ = _places(lens, camera_from_table, 2)
     scale = TEXELS / (2 * HALF)
     desk = cv2.remap(
         picture,
-        ((x + HALF) * scale - 0.5).astype(np.float32),
-        ((z + HALF) * scale - 0.5).astype(np.float32),
+        (x + HALF) * scale - 0.5,
+        (z + HALF) * scale - 0.5,
         cv2.INTER_LINEAR,
         borderMode=cv2.BORDER_REFLECT,
     )
-    seen = _lit(np.asarray(desk, np.float32), x, z)
-    behind = (z < FAR_EDGE) | (ways[..., 1] > -1e-3)
-    seen = _with_wall(seen, behind, x, z)
-    small = cv2.resize(seen, lens.size, interpolation=cv2.INTER_AREA)
-    return np.asarray(small, np.float32)
+    small = np.asarray(cv2.resize(desk, lens.size, interpolation=cv2.INTER_AREA), np.float32)
+    # Light changes slowly: one sample a pixel shows it.
+    x, z, below = _places(lens, camera_from_table, 1)
+    return _with_wall(_lit(small, x, z), (z < FAR_EDGE) | ~below, x, z)
+
+
+def _places(
+    lens: Lens, camera_from_table: Array, finer: int
+) -> tuple[Picture, Picture, NDArray[np.bool_]]:
+    """Return x and z of the desk's plane at every sample [m], and whether it looks down at all."""
+    rays = lens.rays(lens.whole(), finer)
+    table_from_camera = np.linalg.inv(camera_from_table)
+    turn, eye = table_from_camera[:3, :3].astype(np.float32), table_from_camera[:3, 3]
+    ways = rays @ turn[:, :2].T + turn[:, 2]
+    reach = np.float32(-eye[1]) / np.minimum(ways[..., 1], np.float32(-1e-4))
+    x = np.float32(eye[0]) + reach * ways[..., 0]
+    z = np.float32(eye[2]) + reach * ways[..., 2]
+    return x, z, ways[..., 1] < -1e-3
 
 
 def _lit(desk: Picture, x: Picture, z: Picture) -> Picture:
@@ -89,7 +93,7 @@ def _planks(random: np.random.Generator) -> Picture:
         shift = int(random.integers(TEXELS))
         figure = np.roll(grain, shift, axis=1)[rows]
         color = WOOD[int(random.integers(len(WOOD)))] * random.uniform(0.95, 1.04)
-        picture[rows] = color * (1.0 + 0.085 * figure[..., None] * (1.15, 1.0, 0.9))
+        picture[rows] = color * (1.0 + 0.075 * figure[..., None] * (1.15, 1.0, 0.9))
         if number:
             picture[top - 1 : top + 1] *= 0.62  # the gap between two planks
             picture[top + 1] *= 1.05
@@ -127,16 +131,19 @@ def _quad(x: float, z: float, width: float, depth: float, turn: float) -> NDArra
 
 def _lay(picture: Picture, outline: NDArray[np.int32], color: tuple[float, float, float]) -> None:
     """Lay something flat on the desk, with a soft shadow under its edge."""
+    low = np.maximum(outline.min(axis=0) // 16 - 32, 0)
+    high = outline.max(axis=0) // 16 + 32
+    picture = picture[low[1] : high[1], low[0] : high[0]]  # a view: the rest stays as it is
     mask = np.zeros(picture.shape[:2], np.float32)
-    cv2.fillConvexPoly(mask, outline, 1.0, cv2.LINE_8, 4)
+    cv2.fillConvexPoly(mask, outline - low * 16, 1.0, cv2.LINE_8, 4)
     shadow = cv2.GaussianBlur(np.roll(mask, (5, 6), (0, 1)), (0, 0), 6.0)
     picture *= (1.0 - 0.34 * shadow * (1.0 - mask))[..., None]
     edge = cv2.GaussianBlur(mask, (0, 0), 0.7)[..., None]
-    picture += (np.float32(color) - picture) * edge
+    picture += (np.array(color, np.float32) - picture) * edge
 
 
 def _paper(picture: Picture, random: np.random.Generator) -> None:
-    """A sheet with lines of writing."""
+    """Lay a sheet with lines of writing."""
     turn, x, z = 0.22, 0.40, -0.20
     _lay(picture, _quad(x, z, 0.21, 0.297, turn), (206, 214, 218))
     cos, sin = np.cos(turn), np.sin(turn)
@@ -149,7 +156,7 @@ def _paper(picture: Picture, random: np.random.Generator) -> None:
 
 
 def _notes(picture: Picture, random: np.random.Generator) -> None:
-    """Three sticky notes."""
+    """Lay three sticky notes."""
     for x, z, turn, color in (
         (-0.47, 0.06, 0.20, (110, 220, 242)),
         (-0.43, 0.14, -0.12, (150, 205, 130)),
@@ -159,7 +166,7 @@ def _notes(picture: Picture, random: np.random.Generator) -> None:
 
 
 def _coaster(picture: Picture, random: np.random.Generator) -> None:
-    """A cork coaster, where the mug stands."""
+    """Lay a cork coaster where the mug stands."""
     circle = [
         _at(MUG.x + 0.058 * np.cos(a), MUG.z + 0.058 * np.sin(a))
         for a in np.linspace(0, 2 * np.pi, 60)

@@ -6,13 +6,14 @@ from numpy.typing import NDArray
 
 from tracking.synthetic.choreography import Moment
 from tracking.synthetic.desk import add_things, desk_picture, seen_through
-from tracking.synthetic.hand import bones, draw_hand, hand_region
+from tracking.synthetic.hand import Hand, draw_hand, hand_at, hand_region
 from tracking.synthetic.lens import Lens, Region
 from tracking.synthetic.options import Options
 from tracking.synthetic.paper_cube import TO_LIGHT, PaperCube
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.float32]
+Sensed = NDArray[np.uint8]
 
 STEP = 0.6
 """How far a corner may move between two moments of one exposure [px]."""
@@ -53,7 +54,7 @@ class Exposure:
         size = (lens.size[1] + 128, lens.size[0] + 128, 3)
         self._noise = random.standard_normal(size, dtype=np.float32)
 
-    def draw(self, moments: list[Moment], poses: list[Array], index: int, loose: bool) -> Picture:
+    def draw(self, moments: list[Moment], poses: list[Array], index: int, loose: bool) -> Sensed:
         """Return the picture of one exposure, (H, W, 3) uint8 BGR.
 
         Parameters
@@ -71,12 +72,17 @@ class Exposure:
         picture = self._desk.copy()
         options = self._options
         middle = moments[len(moments) // 2]
+        hand = None
+        if options.hand and not loose and middle.grip > 0.01:
+            hand = hand_at(middle.table_from_cube[:3, 3], self._cube.cube.edge, middle.grip)
         if options.shadow and not loose:
             self._passing_shadow(picture, index / options.rate)
+            if hand is not None:
+                self._hand_shadow(picture, hand)
             self._cube_shadow(picture, middle.table_from_cube)
         self._add_cube(picture, poses)
-        if options.hand and not loose and middle.grip > 0.01:
-            self._add_hand(picture, middle)
+        if hand is not None:
+            self._add_hand(picture, hand, poses[len(poses) // 2])
         picture *= self._vignette
         return self._sensed(picture, index)
 
@@ -85,22 +91,42 @@ class Exposure:
         if any(region.empty for region in regions):
             return
         region = _union(regions)
-        finer = 4 if len(poses) == 1 else 3
+        finer = 4 if len(poses) == 1 else 3 if len(poses) < 6 else 2  # blur hides what is coarse
         color, cover = self._cube.draw(region, poses, self._to_light, finer)
         part = picture[region.of]
         part *= 1.0 - cover
         part += color
 
-    def _add_hand(self, picture: Picture, moment: Moment) -> None:
-        position = moment.table_from_cube[:3, 3]
-        parts = bones(position, self._cube.cube.edge, moment.grip)
-        region = hand_region(self._lens, parts, self._pose)
+    def _add_hand(self, picture: Picture, hand: Hand, camera_from_cube: Array) -> None:
+        region = hand_region(self._lens, hand, self._pose)
         if region.empty:
             return
-        color, cover = draw_hand(self._lens, region, parts, self._pose, self._to_light)
+        color, cover, depth = draw_hand(self._lens, region, hand, self._pose, self._to_light)
+        # Fingertips behind the cube are hidden by it.
+        behind = depth - self._cube.depth(region, camera_from_cube)
+        cover *= 1.0 - np.clip(behind / 0.0015, 0.0, 1.0)
         part = picture[region.of]
-        part *= 1.0 - cover
-        part += color
+        part += (color - part) * cover[..., None]
+
+    def _hand_shadow(self, picture: Picture, hand: Hand) -> None:
+        """Throw the hand's shadow on the desk: wide strokes, drawn small, made soft."""
+        coarse = 4
+        width, height = (side // coarse for side in self._lens.size)
+        dark = np.zeros((height, width), np.float32)
+        away = TO_LIGHT / TO_LIGHT[1]
+        for bone in hand.skin + hand.sleeve[:1]:
+            ends = np.linspace(bone.start, bone.end, 2)
+            foot = ends - away * ends[:, 1:2]
+            there = foot @ self._pose[:3, :3].T + self._pose[:3, 3]
+            if (there[:, 2] < 0.05).any():
+                continue
+            span = 2 * bone.radii[0] * self._lens.intrinsics.matrix[0, 0] / there[0, 2] / coarse
+            (x, y), (u, v) = np.rint(self._lens.pixels(there) / coarse * 16).astype(int).tolist()
+            cv2.line(dark, (x, y), (u, v), 1.0, max(1, round(float(span))), cv2.LINE_8, 4)
+        height_of_tip = float(hand.skin[0].start[1])
+        soft = cv2.GaussianBlur(dark, (0, 0), 2.0 + 45.0 * max(0.0, height_of_tip))
+        shade = cv2.resize(1.0 - 0.34 * soft, self._lens.size)
+        picture *= shade[..., None]
 
     def _cube_shadow(self, picture: Picture, table_from_cube: Array) -> None:
         half = self._cube.cube.edge / 2
@@ -137,7 +163,7 @@ class Exposure:
         shade = 1.0 - 0.22 * np.exp(-2.2 * away) * (0.75 + 0.25 * np.sin(0.6 * time))
         picture *= cv2.resize(shade.astype(np.float32), (width, height))[..., None]
 
-    def _sensed(self, picture: Picture, index: int) -> NDArray[np.uint8]:
+    def _sensed(self, picture: Picture, index: int) -> Sensed:
         options = self._options
         if options.defocus > 0:
             picture = np.asarray(cv2.GaussianBlur(picture, (0, 0), options.defocus), np.float32)

@@ -58,6 +58,21 @@ class PaperCube:
             return Region(0, 0, 0, 0)
         return self._lens.around(self._lens.pixels(corners), margin)
 
+    def depth(self, region: Region, camera_from_cube: Array) -> Picture:
+        """Return how far the cube's surface is, (h, w) [m]; infinite where there is no cube."""
+        rays = self._lens.rays(region, 1)
+        enters = np.zeros(rays.shape[:2], np.float32)
+        leaves = np.full(rays.shape[:2], np.inf, np.float32)
+        for axis in range(3):
+            for sign in (1.0, -1.0):
+                normal = sign * camera_from_cube[:3, axis]
+                offset = float(normal @ camera_from_cube[:3, 3]) + self.cube.edge / 2
+                slope = rays @ normal[:2].astype(np.float32) + np.float32(normal[2])
+                reach = np.float32(offset) / np.where(slope == 0, np.float32(1e-9), slope)
+                np.maximum(enters, np.where(slope < 0, reach, 0.0), out=enters)
+                np.minimum(leaves, np.where(slope < 0, np.inf, reach), out=leaves)
+        return np.where(enters < leaves, enters, np.float32(np.inf))
+
     def draw(
         self, region: Region, poses: list[Array], up: Array, finer: int
     ) -> tuple[Picture, Picture]:
@@ -124,7 +139,8 @@ def face_picture(cube: CubeModel, face: Face | None, random: np.random.Generator
     """Draw what is printed on a face, (TEXELS, TEXELS, 3) BGR grey levels; None is blank paper."""
     grain = random.standard_normal((TEXELS // 8, TEXELS // 8)).astype(np.float32)
     paper = cv2.resize(grain, (TEXELS, TEXELS), interpolation=cv2.INTER_CUBIC) * 1.2 + WHITE
-    picture = np.repeat(np.asarray(paper)[..., None], 3, axis=2) * np.float32([0.985, 0.995, 1.0])
+    tint = np.array([0.985, 0.995, 1.0], np.float32)
+    picture = np.asarray(np.asarray(paper)[..., None] * tint, np.float32)
     if face is not None:
         _print_marker(picture, cube, face)
         _print_icon(picture, cube, face)

@@ -65,7 +65,7 @@ def companion(edge: float, options: Options) -> Script:
 
 
 def static(edge: float, options: Options) -> Script:
-    """A cube at rest somewhere on the desk, turned somehow."""
+    """Rest somewhere on the desk, turned somehow."""
     random = np.random.default_rng(options.seed)
     x, z, heading = random.uniform(-0.15, 0.15), random.uniform(-0.12, 0.15), random.uniform(0, 360)
     return _script("locomotion", Choreography(edge).stand(x, z, heading).rest(2.0))
@@ -83,7 +83,7 @@ def turn(edge: float, options: Options) -> Script:
 
 
 def turns(edge: float, options: Options) -> Script:
-    """A kiss face put down, two turns up, four down, two up: from end to end of the intensity."""
+    """Put a kiss face down, then two turns up, four down, two up: from end to end of the knob."""
     c = Choreography(edge).stand(0.0, 0.0).rest(1.2).tip(FRONT).rest(0.8)
     for count in (2, -4, 2):
         for _ in range(2 * abs(count)):
@@ -116,7 +116,7 @@ def sweep(edge: float, options: Options) -> Script:
 
 
 def fingers(edge: float, options: Options) -> Script:
-    """The hand keeps hold of the cube, turning and sliding it a little."""
+    """Keep hold of the cube, turning and sliding it a little."""
     c = Choreography(edge).stand(0.0, 0.0).rest(1.0).hold(0.8)
     c.turn(60, 1.2).hold(0.4).slide(0.06, 0.05, 1.0).hold(0.4).turn(-100, 1.4).hold(0.6)
     return _script("locomotion", c)

@@ -94,7 +94,7 @@ class SyntheticSource:
         self.close()
 
     def close(self) -> None:
-        """Nothing to let go of."""
+        """Do nothing: there is nothing to let go of."""
 
     def time(self, index: int) -> float:
         """Return the time of a frame, the middle of its exposure [s]."""
