@@ -51,8 +51,9 @@ def main() -> None:
     try:
         code = app(standalone_mode=False)
     except typer.exceptions.TyperException as error:
-        complain(usage(error))
-        code = BAD_INPUT
+        told = usage(error)
+        complain(told)
+        code = BAD_INPUT if told else 0  # a bare `cubeling` shows its help, which is no mistake
     except (AppError, TrackingError, CharacterError, RobotError) as error:
         if debug:
             raise
@@ -68,11 +69,13 @@ def usage(error: typer.exceptions.TyperException) -> str:
     context = getattr(error, "ctx", None)
     where = context.command_path if context else "cubeling"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
-    return f"{message.rstrip('.')} (see {where} --help)"
+    return f"{message.rstrip('.')} (see {where} --help)" if message else ""
 
 
 def complain(line: str) -> None:
-    """Print one line on standard error."""
+    """Print one line on standard error; nothing where there is nothing to say."""
+    if not line:
+        return
     Console(stderr=True, soft_wrap=True, highlight=False, markup=False).print(
         "cubeling: " + " ".join(line.split())
     )

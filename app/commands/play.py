@@ -7,8 +7,9 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.progress import play_to_end
+from app.commands.progress import finished_video, play_to_end
 from app.opening import Wish, open_session
+from app.scenarios import scenario_cube
 from app.show.display import require_display
 
 CAMERA = "camera:0"
@@ -86,9 +87,12 @@ def play(
         output,
         pictures,
     )
+    scenario_cube(scenario)  # a wrong name is told before a missing display
     if pictures and output is None:
         require_display()
     with ExitStack() as closing:
         plan = open_session(wish, closing)
         summary = play_to_end(plan, Console(), f"playing {scenario}")
     Console().print(summary)
+    if output is not None:
+        Console().print(finished_video(output))

@@ -61,7 +61,7 @@ def list_() -> None:
         return
     table = Table("port", "what", "probably")
     for port in ports:
-        table.add_row(port.url, port.description, port.guess or "")
+        table.add_row(port.url, port.description.replace("n/a", ""), port.guess or "")
     console.print(table)
 
 

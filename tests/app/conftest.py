@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -73,4 +73,9 @@ def hand() -> Hand:
     return Hand()
 
 
-Play = Callable[..., list[object]]
+@pytest.fixture(scope="session")
+def bundled_session() -> Path:
+    """A whole session that comes with the program."""
+    from app.commands.replay import bundled
+
+    return bundled("companion")
