@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from characters import rotations
 from characters.errors import CharacterError
+from characters.legs import Legs
 from characters.motion import STANDING, Step
 from characters.phase import Cyclic
 from characters.pose import Array, Pose
@@ -54,6 +55,9 @@ class Blend:
     weights: tuple[float, ...]
     """How much of each; none negative, sum one."""
 
+    legs: Legs | None = None
+    """Whose feet are kept where the members' feet are, or None to mix joints alone."""
+
     @property
     def duration(self) -> float:
         """Length of one cycle [s]."""
@@ -63,7 +67,12 @@ class Blend:
     def at(self, phase: float) -> Pose:
         """Return the mixed pose at a phase."""
         heard = self._heard()
-        return mix([member.at(phase) for member, _ in heard], [weight for _, weight in heard])
+        poses = [member.at(phase) for member, _ in heard]
+        weights = [weight for _, weight in heard]
+        mixed = mix(poses, weights)
+        if self.legs is None or len(poses) == 1:
+            return mixed
+        return self.legs.plant(mixed, poses, weights)
 
     def between(self, start: float, end: float) -> Step:
         """Return the mean of the members' ways over the ground between two phases."""
@@ -83,8 +92,16 @@ class Blend:
         return self.between(start / duration, end / duration)
 
     def _heard(self) -> list[tuple[Cyclic, float]]:
-        pairs = zip(self.members, self.weights, strict=True)
-        return [(member, weight) for member, weight in pairs if weight > 0]
+        """Return what sounds, with blends inside this one taken apart."""
+        heard: list[tuple[Cyclic, float]] = []
+        for member, weight in zip(self.members, self.weights, strict=True):
+            if weight <= 0:
+                continue
+            if isinstance(member, Blend):
+                heard += [(inner, weight * share) for inner, share in member._heard()]
+            else:
+                heard.append((member, weight))
+        return heard
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import numpy as np
 
 from characters.blend import Blend, BlendSpace1D, Paced
 from characters.clip import Clip
+from characters.legs import find_legs
 from characters.phase import Still, phased
 from characters.pose import Pose, Skeleton
 
@@ -71,6 +72,7 @@ class Gaits:
     def __init__(self, clips: Mapping[str, Clip], skeleton: Skeleton, standing: Pose) -> None:
         self._walk = _tree(clips, WALK_CLIPS, skeleton)
         self._run = _tree(clips, RUN_CLIPS, skeleton) if "Run" in clips else self._walk
+        self._legs = find_legs(skeleton)
         self._still = Still(standing, self._walk.at(0.0).duration)
         straight = [tree.at(0.0) for tree in (self._walk, self._run)]
         self._lengths = [motion.between(0.0, 1.0).length for motion in straight]
@@ -112,7 +114,8 @@ class Gaits:
         mixed = self._mixed(running, math.degrees(angular))
         if share < 1.0:
             mixed = Blend((mixed, self._still), (share, 1.0 - share))
-        return Paced(mixed, rate / math.sqrt(smaller), stride)
+        planted = Blend(mixed.members, mixed.weights, self._legs)
+        return Paced(planted, rate / math.sqrt(smaller), stride)
 
     def _effort(self, speed: float, running: float) -> tuple[float, float]:
         """Return how fast the clips play and how far their steps reach, for the right pace."""

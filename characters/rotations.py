@@ -150,11 +150,29 @@ def between(start: ArrayLike, end: ArrayLike) -> Array:
     a, b = np.broadcast_arrays(np.asarray(start, float), np.asarray(end, float))
     a = a / np.linalg.norm(a, axis=-1, keepdims=True)
     b = b / np.linalg.norm(b, axis=-1, keepdims=True)
-    half = np.concatenate([np.cross(a, b), 1 + (a * b).sum(-1, keepdims=True)], axis=-1)
-    # Opposite directions: any axis across them will do.
-    across = np.cross(a, np.eye(3)[np.abs(a).argmin(-1)])
-    half = np.where(half[..., 3:] < 1e-9, np.concatenate([across, 0 * half[..., 3:]], -1), half)
+    half = np.empty((*a.shape[:-1], 4))
+    half[..., :3] = cross(a, b)
+    half[..., 3] = 1 + np.einsum("...i,...i->...", a, b)
+    opposite = half[..., 3] < 1e-9
+    if opposite.any():  # any axis across them will do
+        across = cross(a, np.eye(3)[np.abs(a).argmin(-1)])
+        half[..., :3] = np.where(opposite[..., None], across, half[..., :3])
+        half[..., 3] = np.where(opposite, 0.0, half[..., 3])
     return normalize(half)
+
+
+def cross(a: ArrayLike, b: ArrayLike) -> Array:
+    """Return the vector products of (…, 3); several times as fast as NumPy's on a few vectors.
+
+    >>> cross([1, 0, 0], [0, 1, 0]).tolist()
+    [0.0, 0.0, 1.0]
+    """
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    product: Array = a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]
+    return product
+
+
+_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
 def from_rotation_vector(vector: ArrayLike) -> Array:
