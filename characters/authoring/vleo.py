@@ -6,10 +6,12 @@ import numpy as np
 
 from characters.authoring.sculpt import join
 from characters.authoring.vleo_actions import clips
-from characters.authoring.vleo_body import body
 from characters.authoring.vleo_effects import effects
-from characters.authoring.vleo_face import face, skin_mesh
+from characters.authoring.vleo_face import face
+from characters.authoring.vleo_marks import marks
+from characters.authoring.vleo_pieces import skin_mesh
 from characters.authoring.vleo_rig import resting, skeleton
+from characters.authoring.vleo_skin import body
 from characters.character import Character
 from characters.mesh import Material, Mesh
 from characters.pose import Skeleton
@@ -24,7 +26,7 @@ def build_vleo() -> Character:
 def mesh(bound: Skeleton) -> Mesh:
     """Return Vleo's one mesh, bound to the skeleton's pose."""
     skin = body(bound)
-    pieces = [skin_mesh(skin, bound), *face(skin, bound), *effects(bound)]
+    pieces = [skin_mesh(skin, bound), *face(skin, bound), *marks(skin, bound), *effects(bound)]
     return _welded(join("Vleo", pieces, Material(roughness=0.55)))
 
 

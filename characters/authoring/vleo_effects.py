@@ -4,7 +4,7 @@ import numpy as np
 
 from characters.authoring.sculpt import Paint, Part, join, lathe, sculpt
 from characters.authoring.shapes import Cone, Ellipsoid, Union, Vector, rgb
-from characters.authoring.vleo_face import facing
+from characters.authoring.vleo_pieces import facing
 from characters.authoring.vleo_rig import BURSTS, HEARTS, MOUTH
 from characters.mesh import Mesh
 from characters.pose import Skeleton

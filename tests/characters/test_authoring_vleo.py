@@ -77,6 +77,13 @@ def test_every_vertex_is_held_wholly_by_its_joints(vleo: Character) -> None:
         assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-3)
 
 
+def test_triangles_face_outward(vleo: Character) -> None:
+    mesh = vleo.meshes[0]
+    a, b, c = (mesh.positions[mesh.triangles[:, corner]] for corner in range(3))
+    outward = np.sum(np.cross(b - a, c - a) * mesh.normals[mesh.triangles].mean(axis=1), axis=1)
+    assert (outward < 0).mean() < 0.005  # but for slivers in the corners of the mouth
+
+
 def test_knows_to_idle_and_two_actions_at_three_intensities(vleo: Character) -> None:
     assert sorted(vleo.clips) == sorted(CLIPS)
     assert vleo.clips["idle"].duration == pytest.approx(7.0)

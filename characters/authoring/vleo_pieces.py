@@ -1,0 +1,114 @@
+"""Pieces of geometry that ride on Vleo's skin: patches, tubes, and whatever is stuck to it."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.authoring.shapes import Array, Vector
+from characters.authoring.surface import normals_of, project
+from characters.authoring.vleo_body import whole
+from characters.authoring.vleo_skin import Body
+from characters.mesh import Mesh
+from characters.pose import Skeleton
+
+
+def skin_mesh(body: Body, bound: Skeleton) -> Mesh:
+    """Return the skin itself as a mesh bound to the skeleton."""
+    bare = _mesh(body.points, body.normals, body.triangles, (1.0, 1.0, 1.0), body)
+    colors = np.column_stack([body.colors, np.ones(len(body.colors))]).astype(np.float32)
+    inverse_bind = np.asarray(np.linalg.inv(bound.rest.globals(bound)), np.float64)
+    return replace(_skinned(bare, body.weights), colors=colors, inverse_bind=inverse_bind)
+
+
+def patches(near: Array, radii: Array, colors: list[Vector], body: Body) -> list[Mesh]:
+    """Return round patches on the skin next to points (n, 3), half a millimetre proud of it."""
+    field, sides = whole().distance, 12
+    centers = project(field, near, 0.05, 8)
+    frames = np.stack(
+        [facing(n, c) for n, c in zip(normals_of(field, centers, 0.006), centers, strict=True)]
+    )
+    angle = np.linspace(0, 2 * np.pi, sides, endpoint=False)
+    circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(sides)], axis=1)
+    flat = np.vstack([np.zeros((1, 3)), 0.6 * circle, circle]) * radii[:, None, None]
+    points = flat @ frames[:, :3, :3].swapaxes(1, 2) + centers[:, None]
+    points = project(field, points.reshape(-1, 3), 0.01, 4)
+    normals = normals_of(field, points, 0.006)
+    lift = np.where(np.arange(1 + 2 * sides) <= sides, 0.0007, 0.0003)
+    proud = points + np.tile(lift, len(near))[:, None] * normals
+    i = np.arange(sides)
+    j = (i + 1) % sides
+    fan = np.stack([0 * i, 1 + i, 1 + j], axis=1)
+    strip = np.stack([1 + i, 1 + sides + i, 1 + sides + j, 1 + i, 1 + sides + j, 1 + j], axis=1)
+    triangles = np.vstack([fan, strip.reshape(-1, 3)])
+    made = []
+    for rows, color in zip(np.split(np.arange(len(points)), len(near)), colors, strict=True):
+        bare = _mesh(proud[rows], normals[rows], triangles, color, body)
+        made.append(carried(bare, points[rows], body))
+    return made
+
+
+def tube(line: Array, radius: float, weights: Array, color: Vector, body: Body) -> Mesh:
+    """Return a tube around points (n, 3), pointed at its ends, with one row of weights each."""
+    along = np.gradient(line, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    out = normals_of(whole().distance, line, 0.006)
+    across = np.cross(along, out)
+    sides = 6
+    angle = np.linspace(0, 2 * np.pi, sides, endpoint=False)[None, :, None]
+    ring = np.cos(angle) * out[:, None] + np.sin(angle) * across[:, None]
+    thick = radius * np.minimum(1.0, np.sin(np.linspace(0, np.pi, len(line))) * 4)
+    points = (line[:, None] + thick[:, None, None] * ring).reshape(-1, 3)
+    i, k = np.meshgrid(np.arange(len(line) - 1), np.arange(sides), indexing="ij")
+    k2 = (k + 1) % sides
+    a, b, c, d = i * sides + k, i * sides + k2, (i + 1) * sides + k2, (i + 1) * sides + k
+    triangles = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+    mesh = _mesh(points, ring.reshape(-1, 3), triangles, color, body)
+    return _skinned(mesh, np.repeat(weights, sides, axis=0))
+
+
+def carried(mesh: Mesh, points: Array, body: Body) -> Mesh:
+    """Return a piece that moves with the skin at points (one a vertex)."""
+    away = np.linalg.norm(points[:, None] - body.points[None], axis=2)
+    nearest = np.argsort(away, axis=1, kind="stable")[:, :4]
+    share = 1 / (np.take_along_axis(away, nearest, axis=1) + 1e-4)
+    share /= share.sum(axis=1, keepdims=True)
+    return _skinned(mesh, np.einsum("vk,vkj->vj", share, body.weights[nearest]))
+
+
+def _skinned(mesh: Mesh, weights: Array) -> Mesh:
+    """Return a piece with the four largest of weights (vertices, joints)."""
+    joints = np.argsort(-weights, axis=1, kind="stable")[:, :4]
+    four = np.take_along_axis(weights, joints, axis=1)
+    four[four < 0.01] = 0.0
+    four /= four.sum(axis=1, keepdims=True)
+    joints = np.where(four > 0, joints, 0)
+    return replace(mesh, joints=joints.astype(np.uint16), weights=four.astype(np.float32))
+
+
+def _mesh(
+    points: Array, normals: Array, triangles: NDArray[np.int64], color: Vector, body: Body
+) -> Mesh:
+    """Return an unskinned piece of one colour."""
+    return Mesh(
+        name="",
+        positions=points.astype(np.float32),
+        normals=normals.astype(np.float32),
+        triangles=triangles.astype(np.uint32),
+        joints=np.zeros((len(points), 4), np.uint16),
+        weights=np.tile(np.array([1, 0, 0, 0], np.float32), (len(points), 1)),
+        inverse_bind=np.zeros((body.weights.shape[1], 4, 4)),
+        colors=np.tile(np.array([*color, 1.0], np.float32), (len(points), 1)),
+    )
+
+
+def facing(axis: Array, place: Array) -> Array:
+    """Return the (4, 4) frame at a place whose +z is the axis and whose +y is as high as can be."""
+    z = axis / np.linalg.norm(axis)
+    hint = np.array([0.0, 1.0, 0.0]) if abs(z[1]) < 0.95 else np.array([0.0, 0.0, -1.0])
+    x = np.cross(hint, z)
+    x /= np.linalg.norm(x)
+    frame = np.eye(4)
+    frame[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
+    frame[:3, 3] = place
+    return frame
