@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.programs import Programs, assign
-from characters.rendering.projection import is_rigid
-from characters.rendering.view import Box
+from characters.rendering.projection import is_rigid, part_that_shows
+from characters.rendering.view import Box, Rectangle
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -43,16 +43,16 @@ class Ground:
 
     def hide(self, boxes: Sequence[Box], clip_from_camera: Array) -> None:
         """Write the depth of the real cubes into the framebuffer in use, and no colour."""
+        if not boxes:
+            return
         framebuffer = self._context.fbo
         framebuffer.color_mask = False, False, False, False
         framebuffer.use()  # masks take effect then
         self._context.enable_only(moderngl.DEPTH_TEST)
         for box in boxes:
-            if is_rigid(box.camera_from_box) and np.isfinite(box.edge):
-                scale = np.diag([box.edge, box.edge, box.edge, 1.0])
-                clip = clip_from_camera @ box.camera_from_box @ scale
-                assign(self._programs.box, clip_from_box=clip)
-                self._box.render(moderngl.TRIANGLES)
+            clip = clip_from_camera @ box.camera_from_box @ np.diag([*(3 * [box.edge]), 1.0])
+            assign(self._programs.box, clip_from_box=clip)
+            self._box.render(moderngl.TRIANGLES)
         framebuffer.color_mask = True, True, True, True
         framebuffer.use()
 
@@ -62,6 +62,19 @@ class Ground:
         self._screen.release()
         self._box.release()
         self._corners.release()
+
+
+def that_show(
+    boxes: Sequence[Box], matrix: Array, size: tuple[int, int]
+) -> list[tuple[Box, Rectangle]]:
+    """Return the boxes that are seen, each with the part of the picture around it."""
+    seen = []
+    for box in boxes:
+        if is_rigid(box.camera_from_box) and np.isfinite(box.edge) and box.edge > 0.0:
+            part = part_that_shows(box.edge * UNIT_CUBE, matrix, box.camera_from_box, size)
+            if part is not None:
+                seen.append((box, part))
+    return seen
 
 
 class Patches:

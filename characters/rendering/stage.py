@@ -1,6 +1,5 @@
 """The picture: characters on the table in the camera's frame."""
 
-from collections import OrderedDict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -10,8 +9,9 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.rendering.background import Background
+from characters.rendering.figures import Cast, Figures
 from characters.rendering.floor import FloorMarks
-from characters.rendering.ground import Ground, Patches
+from characters.rendering.ground import Ground, Patches, that_show
 from characters.rendering.light import TO_LIGHT, Light, LightEstimate
 from characters.rendering.paper import paper_of
 from characters.rendering.programs import Programs, assign
@@ -22,30 +22,28 @@ from characters.rendering.projection import (
     merged,
     part_that_shows,
 )
-from characters.rendering.shadow import Shadow
-from characters.rendering.skinning import SkinnedCharacter
 from characters.rendering.target import FINER, Target, Targets
-from characters.rendering.view import Actor, Drawable, FloorPath, Rectangle, View
+from characters.rendering.view import Actor, Box, FloorPath, Rectangle, View
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
-KEPT_CHARACTERS = 8
-"""How many characters stay on the graphics card; the one not drawn for longest leaves first."""
-
 
 @dataclass(frozen=True)
-class Cast:
-    """A character that is posed on the graphics card, with its shadow."""
+class Room:
+    """What one part of the picture shows, without the characters."""
 
-    character: SkinnedCharacter
-    """Skinned in the table frame."""
+    clip_from_camera: Array
+    """The camera of this part, (4, 4)."""
 
-    shadow: Shadow
-    """Its map is ready."""
+    camera_from_table: Array
+    """The table, (4, 4)."""
 
-    height: float
-    """On the table [m]."""
+    cubes: Sequence[Box]
+    """Real cubes in this part."""
+
+    light: Light
+    """What lights it."""
 
 
 class Stage:
@@ -79,8 +77,7 @@ class Stage:
         self._targets = Targets(context, self._programs)
         self._ground = Ground(context, self._programs)
         self._marks = FloorMarks(context, self._programs)
-        self._shadows: list[Shadow] = []
-        self._characters: OrderedDict[int, tuple[Drawable, SkinnedCharacter]] = OrderedDict()
+        self._figures = Figures(context, self._programs)
         self._frame = Patches(context)
         self._copy = context.vertex_array(self._programs.copy, [])
 
@@ -141,11 +138,8 @@ class Stage:
         """Give back everything but the context; a second call does nothing."""
         # The next framebuffer to be made would bind again what was bound: it must still be there.
         self._context.detect_framebuffer(0).use()
-        while self._characters:
-            self._characters.popitem()[1][1].release()
-        while self._shadows:
-            self._shadows.pop().release()
-        for owned in (self._marks, self._targets, self._ground, self._frame, self._programs):
+        parts = (self._figures, self._marks, self._targets, self._ground, self._frame)
+        for owned in (*parts, self._programs):
             owned.release()
         self._copy.release()
 
@@ -165,7 +159,8 @@ class Stage:
         table = view.camera_from_table
         if table is None or not is_pinhole(view.matrix) or not is_rigid(table):
             return
-        casts, around = self._pose(actors)
+        self._targets.at_least(1, 1).result.use()
+        casts, around = self._figures.pose(actors)
         strewn = [
             part_that_shows(points, matrix, table, self.size) for points in self._marks.lay(floor)
         ]
@@ -175,102 +170,50 @@ class Stage:
         if figures is not None:
             jobs = [job for job in jobs if figures.joined(job[0]) != figures]
             jobs.append((figures, casts))
+        cubes = that_show(view.occluders, matrix, self.size)
         patches = [picture[part.rows_and_columns].copy() for part, _ in jobs]
         for (part, cast), patch in zip(jobs, patches, strict=True):
-            clip = clip_from_camera(matrix, part)
-            yield part, self._draw_part(part, patch, clip, view, cast, light)
+            room = Room(
+                clip_from_camera(matrix, part),
+                np.asarray(table, float),
+                [box for box, place in cubes if place.meets(part)],
+                light,
+            )
+            yield part, self._draw_part(part, patch, room, cast)
 
     def _draw_part(
-        self,
-        part: Rectangle,
-        patch: Image,
-        clip: Array,
-        view: View,
-        casts: Sequence[Cast],
-        light: Light,
+        self, part: Rectangle, patch: Image, room: Room, casts: Sequence[Cast]
     ) -> Target:
         """Draw the ground with marks and shadows, then the figures, then one over the other."""
-        context, table = self._context, np.asarray(view.camera_from_table, float)
+        context, light = self._context, room.light
+        clip_from_table = room.clip_from_camera @ room.camera_from_table
         target = self._targets.at_least(part.width, part.height)
+        # Marks and shadows are smooth by themselves; only the edge of a cube needs samples.
+        ground = target.ground if room.cubes else target.result
         context.front_face = "cw"  # the rows of the canvas run downwards
-        target.ground.use()
-        target.ground.viewport = (0, 0, part.width, part.height)
-        target.ground.clear()
+        ground.use()
+        ground.viewport = (0, 0, part.width, part.height)
+        ground.clear()
         self._ground.draw(patch)
-        self._ground.hide(view.occluders, clip)
-        target.ground.depth_mask = False  # marks and shadows lie in one plane
-        target.ground.use()
+        self._ground.hide(room.cubes, room.clip_from_camera)
+        ground.depth_mask = False  # marks and shadows lie in one plane
+        ground.use()
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        self._marks.draw(clip @ table, light.white)
+        self._marks.draw(clip_from_table, light.white)
         context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
         for cast in casts:
-            cast.shadow.draw(clip @ table, light.key * TO_LIGHT[1] / light.white)
-        target.ground.depth_mask = True
+            cast.shadow.draw(clip_from_table, light.key * TO_LIGHT[1] / light.white)
+        ground.depth_mask = True
         if casts:
             target.figures.use()
             target.figures.viewport = (0, 0, FINER * part.width, FINER * part.height)
             target.figures.clear()
-            self._ground.hide(view.occluders, clip)
-            self._figures(casts, clip @ table, np.linalg.inv(table)[:3, 3], light)
-        target.resolve(with_figures=bool(casts))
+            self._ground.hide(room.cubes, room.clip_from_camera)
+            eye = np.asarray(np.linalg.inv(room.camera_from_table)[:3, 3], float)
+            self._figures.draw(casts, clip_from_table, eye, light)
+        target.resolve(ground, with_figures=bool(casts))
         return target
-
-    def _pose(self, actors: Sequence[Actor]) -> tuple[list[Cast], Array]:
-        """Skin all characters, cast their shadows, and find points around them, (n, 3)."""
-        casts: list[Cast] = []
-        around = [np.zeros((0, 3))]
-        # Transform feedback needs a complete framebuffer in use, though it draws nothing.
-        self._targets.at_least(1, 1).result.use()
-        for actor in actors:
-            place = np.asarray(actor.posed.table_from_character, float)
-            if not actor.posed.visible or not is_rigid(place):
-                continue
-            character = self._skinned(actor.character)
-            with np.errstate(invalid="ignore", over="ignore"):  # `pose` tells such numbers
-                joints = actor.posed.pose.globals(actor.character.skeleton)
-                enclosing = character.pose(joints, place)
-            if enclosing is None:
-                continue
-            if len(casts) == len(self._shadows):
-                self._shadows.append(Shadow(self._context, self._programs))
-            shadow = self._shadows[len(casts)]
-            height = character.height * float(np.linalg.norm(place[:3, 1]))
-            around += [enclosing, shadow.cast(character, enclosing, height)]
-            casts.append(Cast(character, shadow, height))
-        return casts, np.concatenate(around)
-
-    def _skinned(self, character: Drawable) -> SkinnedCharacter:
-        """Return a character's buffers, made when it is first seen."""
-        key = id(character)
-        kept = self._characters.pop(key, None)
-        if kept is None:
-            kept = (character, SkinnedCharacter(self._context, self._programs, character))
-        self._characters[key] = kept
-        if len(self._characters) > KEPT_CHARACTERS:
-            self._characters.popitem(last=False)[1][1].release()
-        return kept[1]
-
-    def _figures(
-        self, casts: Sequence[Cast], clip_from_table: Array, eye: Array, light: Light
-    ) -> None:
-        """Draw the characters into the framebuffer in use."""
-        context = self._context
-        context.enable_only(moderngl.DEPTH_TEST)
-        for cast in casts:
-            for part in cast.character.parts:
-                textured = part.texture is not None
-                program = self._programs.textured if textured else self._programs.plain
-                surface = cast.character.textured if textured else cast.character.plain
-                material = part.material
-                assign(program, clip_from_table=clip_from_table, eye=eye, to_light=TO_LIGHT)
-                assign(program, key=light.key, sky=light.sky, ground=light.ground)
-                assign(program, height=cast.height, base_color=material.base_color[:3])
-                assign(program, metallic=material.metallic, roughness=material.roughness)
-                if part.texture is not None:
-                    part.texture.use(0)
-                (context.disable if material.double_sided else context.enable)(moderngl.CULL_FACE)
-                surface.render(vertices=part.count, first=part.first)
 
     def _show(
         self,

@@ -54,13 +54,17 @@ class Target:
         """To read the result from."""
         self._over = context.vertex_array(programs.over, [])
 
-    def resolve(self, with_figures: bool) -> None:
-        """Average the samples of the ground into the result, and lay the figures over it."""
-        self._context.copy_framebuffer(self.result, self.ground)
+    def resolve(self, ground: moderngl.Framebuffer, with_figures: bool) -> None:
+        """Average the samples of the ground into the result, and lay the figures over it.
+
+        The ground may have been drawn in the result itself, where nothing needs many samples.
+        """
+        if ground is not self.result:
+            self._context.copy_framebuffer(self.result, ground)
         if not with_figures:
             return
         self.result.use()
-        self.result.viewport = self.ground.viewport
+        self.result.viewport = ground.viewport
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         self._figures.use(0)

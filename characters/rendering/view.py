@@ -111,6 +111,18 @@ class Rectangle:
         """Number of pixels."""
         return self.width * self.height
 
+    def meets(self, other: "Rectangle") -> bool:
+        """Return whether both have a pixel in common.
+
+        >>> Rectangle(0, 0, 2, 2).meets(Rectangle(1, 1, 5, 5))
+        True
+        >>> Rectangle(0, 0, 2, 2).meets(Rectangle(2, 0, 5, 5))
+        False
+        """
+        across = max(self.x, other.x) < min(self.x + self.width, other.x + other.width)
+        down = max(self.y, other.y) < min(self.y + self.height, other.y + other.height)
+        return across and down
+
     def joined(self, other: "Rectangle") -> "Rectangle":
         """Return the smallest rectangle that holds both.
 

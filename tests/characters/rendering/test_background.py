@@ -95,7 +95,7 @@ def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatc
     monkeypatch.setattr("moderngl.create_context", fails)
     monkeypatch.setattr("platform.system", lambda: "Linux")
     monkeypatch.setattr("characters.rendering.context.find_library", lambda name: None)
-    with pytest.raises(CharacterError, match="libEGL is missing.*apt install libegl1"):
+    with pytest.raises(CharacterError, match=r"libEGL is missing.*apt install libegl1"):
         create_context()
     monkeypatch.setattr("characters.rendering.context.find_library", lambda name: name)
     with pytest.raises(CharacterError, match="libgl1-mesa-dri"):

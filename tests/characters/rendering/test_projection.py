@@ -24,9 +24,9 @@ MATRIX = np.array([[310.0, 0.7, 158.2], [0.0, 305.0, 92.4], [0.0, 0.0, 1.0]])
 def test_clip_space_is_the_pinhole_with_centres_at_whole_numbers(point, corner, size):
     part = Rectangle(*corner, *size)
     clip = clip_from_camera(MATRIX, part) @ [*point, 1.0]
-    window = (clip[:2] / clip[3] + 1.0) / 2.0 * size
+    window = (clip[:2] / clip[3] + 1.0) / 2.0 * np.array(size)
     pixel = MATRIX[:2] @ (np.array(point) / point[2])
-    assert window == pytest.approx(pixel + 0.5 - corner, abs=1e-6)
+    assert window == pytest.approx(pixel + 0.5 - np.array(corner), abs=1e-6)
 
 
 @pytest.mark.parametrize("at", [(0.0, 0.0), (-0.1, 0.04), (0.11, -0.05)])

@@ -1,0 +1,120 @@
+"""The characters of a picture, with their shadows, on the graphics card."""
+
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.rendering.light import TO_LIGHT, Light
+from characters.rendering.programs import Programs, assign
+from characters.rendering.projection import is_rigid
+from characters.rendering.shadow import Shadow
+from characters.rendering.skinning import SkinnedCharacter
+from characters.rendering.view import Actor, Drawable
+
+Array = NDArray[np.float64]
+
+KEPT = 8
+"""How many characters stay on the graphics card; the one not drawn for longest leaves first."""
+
+
+@dataclass(frozen=True)
+class Cast:
+    """A character that is posed on the graphics card, with its shadow."""
+
+    character: SkinnedCharacter
+    """Skinned in the table frame."""
+
+    shadow: Shadow
+    """Its map is ready."""
+
+    height: float
+    """On the table [m]."""
+
+
+class Figures:
+    """Poses and draws characters, and keeps those that it has seen.
+
+    Parameters
+    ----------
+    context, programs
+        Where to draw.
+    """
+
+    def __init__(self, context: moderngl.Context, programs: Programs) -> None:
+        self._context = context
+        self._programs = programs
+        self._shadows: list[Shadow] = []
+        self._characters: OrderedDict[int, tuple[Drawable, SkinnedCharacter]] = OrderedDict()
+
+    def pose(self, actors: Sequence[Actor]) -> tuple[list[Cast], Array]:
+        """Skin the actors that are visible and cast their shadows.
+
+        Some framebuffer must be in use: transform feedback asks for one, though it draws nothing.
+
+        Returns
+        -------
+        casts
+            One for each visible actor whose pose is finite.
+        around
+            Points of the table frame around them and their shadows, (n, 3).
+        """
+        casts: list[Cast] = []
+        around = [np.zeros((0, 3))]
+        for actor in actors:
+            place = np.asarray(actor.posed.table_from_character, float)
+            if not actor.posed.visible or not is_rigid(place):
+                continue
+            character = self._skinned(actor.character)
+            with np.errstate(invalid="ignore", over="ignore"):  # `pose` tells such numbers
+                joints = actor.posed.pose.globals(actor.character.skeleton)
+                enclosing = character.pose(joints, place)
+            if enclosing is None:
+                continue
+            if len(casts) == len(self._shadows):
+                self._shadows.append(Shadow(self._context, self._programs))
+            shadow = self._shadows[len(casts)]
+            height = character.height * float(np.linalg.norm(place[:3, 1]))
+            around += [enclosing, shadow.cast(character, enclosing, height)]
+            casts.append(Cast(character, shadow, height))
+        return casts, np.concatenate(around)
+
+    def draw(self, casts: Sequence[Cast], clip_from_table: Array, eye: Array, light: Light) -> None:
+        """Draw posed characters into the framebuffer in use; `eye` (3,) is in the table frame."""
+        context = self._context
+        context.enable_only(moderngl.DEPTH_TEST)
+        for cast in casts:
+            for part in cast.character.parts:
+                textured = part.texture is not None
+                program = self._programs.textured if textured else self._programs.plain
+                surface = cast.character.textured if textured else cast.character.plain
+                material = part.material
+                assign(program, clip_from_table=clip_from_table, eye=eye, to_light=TO_LIGHT)
+                assign(program, key=light.key, sky=light.sky, ground=light.ground)
+                assign(program, height=cast.height, base_color=material.base_color[:3])
+                assign(program, metallic=material.metallic, roughness=material.roughness)
+                if part.texture is not None:
+                    part.texture.use(0)
+                (context.disable if material.double_sided else context.enable)(moderngl.CULL_FACE)
+                surface.render(vertices=part.count, first=part.first)
+
+    def release(self) -> None:
+        """Give the card's memory back; a second call does nothing."""
+        while self._characters:
+            self._characters.popitem()[1][1].release()
+        while self._shadows:
+            self._shadows.pop().release()
+
+    def _skinned(self, character: Drawable) -> SkinnedCharacter:
+        """Return a character's buffers, made when it is first seen."""
+        key = id(character)
+        kept = self._characters.pop(key, None)
+        if kept is None:
+            kept = (character, SkinnedCharacter(self._context, self._programs, character))
+        self._characters[key] = kept
+        if len(self._characters) > KEPT:
+            self._characters.popitem(last=False)[1][1].release()
+        return kept[1]
