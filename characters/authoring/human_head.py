@@ -29,9 +29,9 @@ def head_parts() -> list[Part]:
     cheeks = Union((blush, blush.mirrored()))
     face = Union((_face(), ear, ear.mirrored()), 0.015)
     return [
-        Part(face, 0.028, (Paint(cheeks, BLUSH, 0.03, 0.55),)),
-        Part(neck, 0.033, soft_skin=0.02),
-        Part(_hair(), 0.0245),
+        Part(face, 0.03, (Paint(cheeks, BLUSH, 0.03, 0.55),)),
+        Part(neck, 0.045, soft_skin=0.02),
+        Part(_hair(), 0.0255),
     ]
 
 
@@ -50,6 +50,15 @@ def face_lines(skeleton: Skeleton) -> list[Mesh]:
         brow = _laid_on(face, sign * x, 1.571 - 5.0 * (x - 0.062) ** 2 - 0.02 * (x - 0.062))
         lines.append(cord(brow, [0.009, 0.012, 0.0115, 0.009, 0.005], HAIR, "head", skeleton, 7, 9))
     return lines
+
+
+def cowlick(skeleton: Skeleton) -> list[Mesh]:
+    """Return the pointed locks on the crown."""
+    locks = (
+        [(0.0, 1.63, -0.03), (0.0, 1.7, -0.045), (-0.03, 1.745, -0.06), (-0.07, 1.765, -0.065)],
+        [(0.04, 1.63, -0.0), (0.055, 1.69, 0.0), (0.06, 1.73, 0.02), (0.045, 1.755, 0.055)],
+    )
+    return [cord(line, [0.075, 0.05, 0.027, 0.003], HAIR, "head", skeleton, 9, 9) for line in locks]
 
 
 def _face() -> Shape:
@@ -92,8 +101,6 @@ def _hair() -> Shape:
         lock((-0.108, 1.6472, 0.054), (-0.1706, 1.55, 0.0918), 0.0486, 0.0173),
     ]
     tufts = [
-        lock((0.0, 1.6796, -0.0324), (-0.0594, 1.7714, -0.054), 0.0594, 0.017),
-        lock((0.0432, 1.6796, -0.0216), (0.054, 1.7552, 0.0216), 0.054, 0.017),
         lock((0.0, 1.6256, -0.1404), (0.0216, 1.6472, -0.243), 0.0648, 0.019),
         lock((0.0864, 1.5176, -0.1404), (0.1188, 1.4744, -0.2214), 0.0648, 0.019),
         lock((-0.0864, 1.5176, -0.1404), (-0.108, 1.4528, -0.216), 0.0648, 0.019),
@@ -113,7 +120,7 @@ def eyes(skeleton: Skeleton) -> list[Mesh]:
         ball = np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
         white, iris, pupil = EYE_WHITE, BROWN, INK
         colors = [white] * 7 + [INK] + [iris] + [pupil] * 3
-        meshes.append(lathe(ball, colors, place, "head", skeleton, 20))
+        meshes.append(lathe(ball, colors, place, "head", skeleton, 18))
         meshes.append(_highlight(center, skeleton))
     return meshes
 
@@ -144,4 +151,4 @@ def _lid(center: Array, side: str, skeleton: Skeleton) -> Mesh:
     tip = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
     place = np.column_stack([np.diag(EYE_RADII) @ tip @ up, center])
     colors = [SKIN] * 4 + [INK] * 2 + [SKIN] * 5  # lashes along the rim
-    return lathe(rings, colors, place, f"{side}Eyelid", skeleton, 16)
+    return lathe(rings, colors, place, f"{side}Eyelid", skeleton, 14)

@@ -63,22 +63,22 @@ def cords(skeleton: Skeleton) -> list[Mesh]:
 def ribbing(skeleton: Skeleton) -> list[Mesh]:
     """Return what is turned on the lathe: the hem, the cuffs and the turned-up trousers."""
     hem = np.array([[0.178, 0, 0, 0], [0, 0, 0.036, 0.835], [0, -0.138, 0, 0]])
-    meshes = [_ring(hem, DEEP_TEAL, "hips", skeleton, 28)]
+    meshes = [_ring(hem, DEEP_TEAL, "hips", skeleton, 22)]
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         elbow, wrist, knee, ankle = (
             np.array(JOINTS[f"Left{name}"][1]) * [sign, 1.0, 1.0]
             for name in ("ForeArm", "Hand", "Leg", "Foot")
         )
         cuff = _across(elbow, wrist, -0.018, 0.066, 0.032)
-        meshes.append(_ring(cuff, DEEP_TEAL, f"{side}ForeArm", skeleton, 16))
+        meshes.append(_ring(cuff, DEEP_TEAL, f"{side}ForeArm", skeleton, 13))
         turn_up = _across(knee, ankle, -0.073, 0.081, 0.034)
-        meshes.append(_ring(turn_up, PALE_INDIGO, f"{side}Leg", skeleton, 16))
+        meshes.append(_ring(turn_up, PALE_INDIGO, f"{side}Leg", skeleton, 13))
     return meshes
 
 
 def _ring(place: Array, color: Vector, joint: str, skeleton: Skeleton, segments: int) -> Mesh:
     """Return a band with a round rim, of radius and half height 1 before it is placed."""
-    tilt = np.linspace(-np.pi / 2, np.pi / 2, 7)
+    tilt = np.linspace(-np.pi / 2, np.pi / 2, 6)
     rim = np.stack([0.82 + 0.18 * np.cos(tilt), np.sin(tilt)], axis=-1)
     rings = np.vstack([[0.0, -1.0], rim, [0.0, 1.0]])
     return lathe(rings, [color] * (len(rings) - 1), place, joint, skeleton, segments)
@@ -137,9 +137,9 @@ def _torso_parts() -> list[Part]:
         (0, 0.93, 0.1), (0.085, 0.05, 0.04), power=3.5, bones=("spine1", "hips"), color=DEEP_TEAL
     )
     return [
-        Part(hoodie, 0.034, soft_skin=0.045),
+        Part(hoodie, 0.0385, soft_skin=0.045),
         Part(pocket, 0.027, soft_skin=0.03),
-        Part(_hood(), 0.028, soft_skin=0.02),
+        Part(_hood(), 0.031, soft_skin=0.02),
         *_backpack(),
     ]
 
@@ -178,7 +178,7 @@ def _backpack() -> list[Part]:
 def _arm_parts() -> list[Part]:
     elbow, wrist = (np.array(JOINTS[f"Left{n}"][1]) for n in ("ForeArm", "Hand"))
     along = (wrist - elbow) / np.linalg.norm(wrist - elbow)
-    return [Part(_hand(wrist, along), 0.0172, soft_skin=0.0)]
+    return [Part(_hand(wrist, along), 0.0185, soft_skin=0.0)]
 
 
 def _hand(wrist: Array, along: Array) -> Shape:
@@ -216,7 +216,7 @@ def _leg_parts() -> list[Part]:
     shin_end = ankle + 0.07 * (knee - ankle) / np.linalg.norm(knee - ankle)
     leg = chain([hip, knee, shin_end], (0.086, 0.07, 0.07), ("LeftUpLeg", "LeftLeg"), INDIGO, 0.03)
     return [
-        Part(Union((seat, leg), 0.03), 0.036, soft_skin=0.045),
+        Part(Union((seat, leg), 0.03), 0.0385, soft_skin=0.045),
         *_shoe(),
     ]
 
@@ -238,10 +238,10 @@ def _shoe() -> list[Part]:
     )
     upper = Cut(Union((toe, heel, ankle), 0.035), HalfSpace((0, 0.025, 0), (0, 1, 0)), 0.01)
     cap = Ellipsoid(
-        (0.119, 0.042, 0.15), (0.054, 0.04, 0.048), power=2.4, bones=("LeftToe",), color=CREAM
+        (0.119, 0.044, 0.148), (0.052, 0.04, 0.043), power=2.4, bones=("LeftToe",), color=CREAM
     )
     return [
-        Part(Cut(sole, ground, 0.008), 0.018, soft_skin=0.025),
+        Part(Cut(sole, ground, 0.008), 0.0175, soft_skin=0.025),
         Part(upper, 0.026, soft_skin=0.025),
         Part(Cut(cap, ground, 0.01), 0.024, soft_skin=0.0),
     ]
