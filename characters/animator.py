@@ -8,6 +8,7 @@ import numpy as np
 from characters.actor import Actor
 from characters.character import Character
 from characters.command import CharacterCommand, PosedCharacter
+from characters.errors import CharacterError
 from characters.motion import Step
 from characters.pose import Array, Pose
 from characters.walker import Walker
@@ -81,7 +82,13 @@ class Animator:
         """Advance to the command's time and return the character as it is to be drawn.
 
         The first call starts at rest. Time that runs backwards counts as none.
+
+        Raises
+        ------
+        CharacterError
+            If a number in the command is not finite, or the character does not know the action.
         """
+        _check(command)
         elapsed = 0.0 if self._now is None else command.timestamp - self._now
         self._now = command.timestamp
         performer = self._performer
@@ -95,6 +102,20 @@ class Animator:
             angular=performer.angular,
             weight=performer.weight,
             timestamp=command.timestamp,
+        )
+
+
+def _check(command: CharacterCommand) -> None:
+    """Refuse numbers that would stay with the character for ever."""
+    numbers = [command.timestamp, command.speed, command.weight]
+    for point in (command.target, command.look_at):
+        if point is not None:
+            numbers += [float(value) for value in point]
+    if not all(map(math.isfinite, numbers)):
+        raise CharacterError(
+            f"command at {command.timestamp} s has a number that is not finite: speed "
+            f"{command.speed}, weight {command.weight}, target {command.target}, look_at "
+            f"{command.look_at}; leave out what is not known"
         )
 
 

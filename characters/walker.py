@@ -6,6 +6,7 @@ import numpy as np
 
 from characters.character import Character
 from characters.command import CharacterCommand
+from characters.errors import CharacterError
 from characters.live import Live
 from characters.locomotion import IDLE_SPEED, RUN_SPEED, STEEPEST, TOP_SPEED, Gaits
 from characters.machine import StateMachine
@@ -53,6 +54,10 @@ class Walker:
 
     def update(self, command: CharacterCommand, elapsed: float) -> Pose:
         """Advance by a time [s] under a command and return the pose, with the root in place."""
+        if command.action not in ("idle", "move"):
+            raise CharacterError(
+                f"the character does not know {command.action!r}; it knows idle, move"
+            )
         course = self._course(command)
         used = self._course_in_use = self._follow(course, elapsed)
         now, self._time = self._time, self._time + elapsed

@@ -5,9 +5,14 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from characters import Character, Clip, Mesh, Pose, Skeleton, rotations
 from characters.motion import Step
+
+# A suite that runs by the same examples everywhere, however busy the machine is.
+settings.register_profile("suite", derandomize=True, deadline=None)
+settings.load_profile("suite")
 
 STANCE = 0.6
 SIDES = (("Left", 0.1, 0.0), ("Right", -0.1, 0.5))

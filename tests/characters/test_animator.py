@@ -288,5 +288,24 @@ def test_an_action_that_it_does_not_know_is_refused(performer):
         Animator(performer).update(CharacterCommand(0.0, "sing"))
 
 
+def test_a_walker_knows_no_actions(anyone):
+    with pytest.raises(CharacterError, match="does not know 'kiss'; it knows idle, move"):
+        Animator(anyone).update(CharacterCommand(0.0, "kiss"))
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_numbers_that_are_none_are_refused_and_leave_no_trace(anyone, bad):
+    animator, target = Animator(anyone), np.array([0.0, 1.0])
+    play(animator, 0.5, action="move", speed=2.0, target=target)
+    for command in (
+        CharacterCommand(0.6, "move", 2.0, np.array([bad, 0.0])),
+        CharacterCommand(0.6, "move", bad, target),
+        CharacterCommand(bad, "move", 2.0, target),
+    ):
+        with pytest.raises(CharacterError, match="not finite"):
+            animator.update(command)
+    assert np.isfinite(place(animator.update(CharacterCommand(0.6, "move", 2.0, target)))).all()
+
+
 def test_a_walker_can_also_be_asked_to_hide(anyone):
     assert not Animator(anyone).update(CharacterCommand(0.0, visible=False)).visible

@@ -37,6 +37,12 @@ def human():
     return Character.load("human")
 
 
+def planted(body, poses, weights):
+    legs = find_legs(body)
+    assert legs is not None
+    return legs.plant(mix(poses, weights), poses, weights)
+
+
 def bent(body, angles):
     """A pose with hips, knees and ankles bent; knees only backward."""
     hip, knee, ankle, hip2, knee2, ankle2 = angles
@@ -52,8 +58,8 @@ bends = st.tuples(*[st.floats(-0.5, 0.9), st.floats(0.1, 1.2), st.floats(-0.4, 0
 @given(bends, bends, st.floats(0, 1))
 def test_the_feet_of_a_mix_are_the_mean_of_the_feet(body, one, other, share):
     poses, weights = [bent(body, one), bent(body, other)], [1 - share, share]
-    planted = find_legs(body).plant(mix(poses, weights), poses, weights)
-    feet, single = planted.globals(body), [pose.globals(body) for pose in poses]
+    shown = planted(body, poses, weights)
+    feet, single = shown.globals(body), [pose.globals(body) for pose in poses]
     mean = (1 - share) * single[0] + share * single[1]
     for hip, ankle, toes in ((2, 4, 5), (6, 8, 9)):
         wanted = mean[toes, :3, 3]
@@ -65,8 +71,8 @@ def test_the_feet_of_a_mix_are_the_mean_of_the_feet(body, one, other, share):
 @given(bends)
 def test_a_pose_mixed_with_itself_is_left_as_it_is(body, one):
     pose = bent(body, one)
-    planted = find_legs(body).plant(pose, [pose, pose], [0.5, 0.5])
-    moved = planted.globals(body)[:, :3, 3] - pose.globals(body)[:, :3, 3]
+    shown = planted(body, [pose, pose], [0.5, 0.5])
+    moved = shown.globals(body)[:, :3, 3] - pose.globals(body)[:, :3, 3]
     assert np.abs(moved).max() < 2e-3
 
 

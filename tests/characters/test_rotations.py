@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy.spatial.transform import Rotation
@@ -58,6 +58,7 @@ def test_slerp_takes_equal_parts_of_the_shorter_way(a, b, u):
 
 @given(quaternions, quaternions)
 def test_the_sign_of_a_quaternion_does_not_matter_to_mixes(a, b):
+    assume(np.abs((a * b).sum(1)).min() > 1e-6)  # half a turn apart, both ways are the shorter one
     assert same(rotations.nlerp(a, b, 0.4), rotations.nlerp(a, -b, 0.4))
     assert same(rotations.slerp(a, b, 0.4), rotations.slerp(a, -b, 0.4))
 
