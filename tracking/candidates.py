@@ -17,7 +17,7 @@ from tracking.solver import NEAREST, CornerSolution, CornerSolver
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
-FLOOR = np.array([2e-5, 2e-5, 4e-5, 1e-4, 1e-4, 1e-4])
+FLOOR = np.array([5e-6, 5e-6, 1.2e-5, 6e-5, 6e-5, 4e-5])
 """Smallest standard deviations of a shift-turn that are claimed [m, rad]: no model is better."""
 
 BLUR_FLOOR = np.array([2e-3, 2e-3, 3e-3, 0.02, 0.02, 0.02])

@@ -104,29 +104,29 @@ class CubeTracker:
 
     def _confirmed(self, candidate: Candidate, now: float) -> bool:
         """Whether a hand can have brought the cube there, or a second frame says so too."""
-        pose, before = candidate.camera_from_cube, self._jump
+        pose, jump = candidate.camera_from_cube, self._jump
         if self._last is None or now - self._last.timestamp > FORGOTTEN:
+            return True
+        if jump and now - jump.timestamp <= MEMORY and prediction.plausible(jump, pose, now):
+            # It stayed where it jumped to: that is its past now.
+            self._last = jump
             return True
         if prediction.plausible(self._last, pose, now):
             return True
         self._jump = Sighting(pose, np.zeros(6), candidate.covariance, now)
-        if before is None or not now - before.timestamp <= MEMORY:
-            return False
-        if not prediction.plausible(before, pose, now):
-            return False
-        self._last = before
-        return True
+        return False
 
     def _seen(self, candidate: Candidate, now: float) -> CubeState:
         pose = candidate.camera_from_cube
         velocity = prediction.velocity(self._last, pose, now)
-        self._last = Sighting(pose, velocity, candidate.covariance, now)
+        covariance = candidate.covariance + prediction.blur_covariance(velocity)
+        self._last = Sighting(pose, velocity, covariance, now)
         self._jump = None
         return CubeState(
             visible=True,
             camera_from_cube=pose,
             velocity=velocity,
-            covariance=candidate.covariance,
+            covariance=covariance,
             source=candidate.source,
             faces=candidate.faces,
             reprojection_error=candidate.error,
