@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking import se3
+from tracking.cube import FACE_AXES
 
 Array = NDArray[np.float64]
 
@@ -30,6 +31,21 @@ class Moment:
     grip: float
     """How near the hand is: 0 away, 1 holding the cube."""
 
+    resting: bool = False
+    """Whether the cube lies on the desk and nobody touches it."""
+
+    turns: float = 0.0
+    """Turns since the cube was last put down, clockwise from above."""
+
+    @property
+    def top_face(self) -> str:
+        """Name of the face that looks up most."""
+        upwards = {
+            name: float(self.table_from_cube[1, :3] @ np.cross(right, up))
+            for name, (right, up) in FACE_AXES.items()
+        }
+        return max(upwards, key=upwards.__getitem__)
+
 
 @dataclass(frozen=True)
 class _Segment:
@@ -37,6 +53,8 @@ class _Segment:
     end: float
     held: bool
     path: Callable[[float], Array]
+    turns: float
+    turned: float
 
 
 def eased(share: float) -> float:
@@ -67,6 +85,7 @@ class Choreography:
     """Time of the end of the last segment [s]."""
 
     _segments: list[_Segment] = field(default_factory=list)
+    _turns: float = 0.0
 
     def __post_init__(self) -> None:
         self.pose = np.eye(4)
@@ -115,10 +134,11 @@ class Choreography:
             pose[:3, :3] = se3.rotation(turned) @ start[:3, :3]
             return pose
 
-        return self._append(seconds, path)
+        return self._append(seconds, path, turned=degrees / 360)
 
     def tip(self, normal: tuple[float, float, float], seconds: float = 1.2) -> Self:
         """Lift, turn the face with this normal in the cube frame to the top, and put down."""
+        self._turns = 0.0
         start = self.pose.copy()
         outward = start[:3, :3] @ np.array(normal)
         axis = np.cross(outward, UP)
@@ -136,6 +156,7 @@ class Choreography:
 
     def carry(self, x: float, z: float, height: float, seconds: float) -> Self:
         """Lift the cube, carry it over the table and put it down at (x, z)."""
+        self._turns = 0.0
         start = self.pose.copy()
 
         def path(share: float) -> Array:
@@ -148,6 +169,7 @@ class Choreography:
 
     def shake(self, seconds: float, reach: float = 0.05, rate: float = 4.0) -> Self:
         """Lift the cube and shake it sideways, `rate` times there and back a second."""
+        self._turns = 0.0
         start = self.pose.copy()
 
         def path(share: float) -> Array:
@@ -165,15 +187,25 @@ class Choreography:
             return Moment(self.pose.copy(), 0.0)
         time = min(max(time, 0.0), self.length)
         segment = next(s for s in self._segments if time <= s.end)
-        pose = segment.path((time - segment.start) / max(segment.end - segment.start, 1e-9))
+        share = (time - segment.start) / max(segment.end - segment.start, 1e-9)
+        pose = segment.path(share)
         grip = self._grip(time)
         if segment.held and grip > 0.99:
             pose = _trembling(pose, time, segment)
-        return Moment(pose, grip)
+        turns = segment.turns + segment.turned * eased(share)
+        return Moment(pose, grip, not segment.held, turns)
 
-    def _append(self, seconds: float, path: Callable[[float], Array], held: bool = True) -> Self:
-        self._segments.append(_Segment(self.length, self.length + seconds, held, path))
-        self.length += seconds
+    def _append(
+        self,
+        seconds: float,
+        path: Callable[[float], Array],
+        held: bool = True,
+        turned: float = 0.0,
+    ) -> Self:
+        end = self.length + seconds
+        self._segments.append(_Segment(self.length, end, held, path, self._turns, turned))
+        self._turns += turned
+        self.length = end
         self.pose = path(1.0)
         return self
 

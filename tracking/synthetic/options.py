@@ -63,8 +63,11 @@ class Options:
         kinds = {field.name: field.type for field in fields(cls)}
         changes: dict[str, object] = {}
         for key, text in parse_qsl(query, keep_blank_values=True):
+            if key == "size":
+                changes.update(_size(name, text))
+                continue
             if key not in kinds:
-                known = ", ".join(kinds)
+                known = ", ".join(("size", *kinds))
                 raise TrackingError(f"synthetic:{name} has no option '{key}': it has {known}")
             try:
                 changes[key] = _value(kinds[key], text)
@@ -93,6 +96,13 @@ class Options:
                 raise TrackingError(
                     f"synthetic:{name}: {key} must be from {low:g} to {high:g}, not {value:g}"
                 )
+
+
+def _size(name: str, text: str) -> dict[str, int]:
+    width, _, height = text.partition("x")
+    if not (width.isdecimal() and height.isdecimal()):
+        raise TrackingError(f"synthetic:{name}: size={text} is no size; write size=640x360")
+    return {"width": int(width), "height": int(height)}
 
 
 def _value(kind: object, text: str) -> object:

@@ -15,6 +15,9 @@ Picture = NDArray[np.float32]
 TEXELS = 640
 """Samples along the edge of a face's picture."""
 
+LEVELS = 4
+"""How many times a face is kept, each half as fine as the one before."""
+
 WHITE, BLACK = 232.0, 26.0
 """Paper and toner in the camera's grey levels at full light."""
 
@@ -43,7 +46,9 @@ class PaperCube:
         self._lens = lens
         random = np.random.default_rng(seed)
         by_name = {face.name: face for face in cube.faces}
-        self._pictures = {name: face_picture(cube, by_name.get(name), random) for name in FACE_AXES}
+        self._pictures = {
+            name: _halved(face_picture(cube, by_name.get(name), random)) for name in FACE_AXES
+        }
 
     def corners(self, camera_from_cube: Array) -> Array:
         """Return the cube's eight corners in the camera frame, (8, 3)."""
@@ -96,31 +101,44 @@ class PaperCube:
         rays = self._lens.rays(region, finer)
         sums = np.zeros((region.height, region.width, 4), np.float32)
         for pose in poses:
-            sums += averaged(self._samples(rays, pose, up), finer)
+            sums += averaged(self._samples(rays, pose, up, finer), finer)
         sums /= len(poses)
         return sums[..., :3], sums[..., 3:]
 
-    def _samples(self, rays: Picture, pose: Array, to_light: Array) -> Picture:
+    def _samples(self, rays: Picture, pose: Array, to_light: Array, finer: int) -> Picture:
         shown = np.zeros((*rays.shape[:2], 4), np.float32)
         for name, (right, up) in FACE_AXES.items():
             axes = pose[:3, :3] @ np.array([right, up, np.cross(right, up)], float).T
             center = pose[:3, 3] + axes[:, 2] * self.cube.edge / 2
             if axes[:, 2] @ center >= 0:
                 continue  # it looks away
-            self._face(shown, rays, axes, center, self._pictures[name], to_light)
+            self._face(shown, rays, axes, center, self._chosen(name, center, finer), to_light)
         return shown
+
+    def _chosen(self, name: str, center: Array, finer: int) -> Picture:
+        """Pick the picture of a face that has about one texel for each sample.
+
+        A finer one would be sampled between its edges, which then snap to the samples.
+        """
+        focal = self._lens.intrinsics.matrix[0, 0] * finer
+        samples = focal * self.cube.edge / float(np.linalg.norm(center))
+        level = int(np.clip(np.ceil(np.log2(TEXELS / samples)), 0, LEVELS - 1))
+        return self._pictures[name][level]
 
     def _face(
         self, shown: Picture, rays: Picture, axes: Array, center: Array, face: Picture, light: Array
     ) -> None:
         """Add one face: texel = homography · ray."""
         plane = np.column_stack([axes[:, 0], -axes[:, 1], center])
-        scale = TEXELS / self.cube.edge
-        to_texel = np.array([[scale, 0, TEXELS / 2 - 0.5], [0, scale, TEXELS / 2 - 0.5], [0, 0, 1]])
+        texels = len(face)
+        scale, middle = texels / self.cube.edge, texels / 2 - 0.5
+        to_texel = np.array([[scale, 0, middle], [0, scale, middle], [0, 0, 1]])
         matrix = (to_texel @ np.linalg.inv(plane)).astype(np.float32)
         flat = rays @ matrix[:, :2].T + matrix[:, 2]
-        x, y = flat[..., 0] / flat[..., 2], flat[..., 1] / flat[..., 2]
-        inside = (x >= -0.5) & (x < TEXELS - 0.5) & (y >= -0.5) & (y < TEXELS - 0.5)
+        with np.errstate(divide="ignore", invalid="ignore"):  # rays along the face's plane
+            x, y = flat[..., 0] / flat[..., 2], flat[..., 1] / flat[..., 2]
+        end = texels - 0.5
+        inside = (x >= -0.5) & (x < end) & (y >= -0.5) & (y < end)
         rows = np.flatnonzero(inside.any(axis=1))
         if not len(rows):
             return
@@ -149,6 +167,15 @@ def face_picture(cube: CubeModel, face: Face | None, random: np.random.Generator
     for side in (np.s_[:rim], np.s_[-rim:], np.s_[:, :rim], np.s_[:, -rim:]):
         picture[side] *= 0.90
     return picture
+
+
+def _halved(picture: Picture) -> list[Picture]:
+    levels = [picture]
+    for level in range(1, LEVELS):
+        size = (TEXELS >> level, TEXELS >> level)
+        small = cv2.resize(picture, size, interpolation=cv2.INTER_AREA)
+        levels.append(np.asarray(small, np.float32))
+    return levels
 
 
 def _print_marker(picture: Picture, cube: CubeModel, face: Face) -> None:
