@@ -50,7 +50,7 @@ class Figures:
         self._shadows: list[Shadow] = []
         self._characters: OrderedDict[int, tuple[Drawable, SkinnedCharacter]] = OrderedDict()
 
-    def pose(self, actors: Sequence[Actor]) -> tuple[list[Cast], Array]:
+    def pose(self, actors: Sequence[Actor]) -> tuple[list[Cast], Array, Array]:
         """Skin the actors that are visible and cast their shadows.
 
         Some framebuffer must be in use: transform feedback asks for one, though it draws nothing.
@@ -59,11 +59,11 @@ class Figures:
         -------
         casts
             One for each visible actor whose pose is finite.
-        around
-            Points of the table frame around them and their shadows, (n, 3).
+        bodies, shadows
+            Points of the table frame around them and around their shadows, (n, 3).
         """
         casts: list[Cast] = []
-        around = [np.zeros((0, 3))]
+        bodies, shadows = [np.zeros((0, 3))], [np.zeros((0, 3))]
         for actor in actors:
             place = np.asarray(actor.posed.table_from_character, float)
             if not actor.posed.visible or not is_rigid(place):
@@ -78,9 +78,10 @@ class Figures:
                 self._shadows.append(Shadow(self._context, self._programs))
             shadow = self._shadows[len(casts)]
             height = character.height * float(np.linalg.norm(place[:3, 1]))
-            around += [enclosing, shadow.cast(character, enclosing, height)]
+            bodies.append(enclosing)
+            shadows.append(shadow.cast(character, enclosing, height))
             casts.append(Cast(character, shadow, height))
-        return casts, np.concatenate(around)
+        return casts, np.concatenate(bodies), np.concatenate(shadows)
 
     def draw(self, casts: Sequence[Cast], clip_from_table: Array, eye: Array, light: Light) -> None:
         """Draw posed characters into the framebuffer in use; `eye` (3,) is in the table frame."""

@@ -10,10 +10,10 @@ from characters.rendering.skinning import SkinnedCharacter
 
 Array = NDArray[np.float64]
 
-SIDE = 96
+SIDE = 80
 """Texels along the map; a character covers about half of them."""
 
-TAPS = 12
+TAPS = 10
 """Of the blur on each side; `TAPS` in `blur.frag` too."""
 
 SLOPE = TO_LIGHT[[0, 2]] / TO_LIGHT[1]

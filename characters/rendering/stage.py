@@ -160,29 +160,36 @@ class Stage:
         if table is None or not is_pinhole(view.matrix) or not is_rigid(table):
             return
         self._targets.at_least(1, 1).result.use()
-        casts, around = self._figures.pose(actors)
+        casts, bodies, shadows = self._figures.pose(actors)
         strewn = [
             part_that_shows(points, matrix, table, self.size) for points in self._marks.lay(floor)
         ]
         parts = merged([part for part in strewn if part is not None])
+        around = np.concatenate([bodies, shadows])
         figures = part_that_shows(around, matrix, table, self.size)
-        jobs: list[tuple[Rectangle, Sequence[Cast]]] = [(part, ()) for part in parts]
+        inner = part_that_shows(bodies, matrix, table, self.size)
+        jobs: list[tuple[Rectangle, Rectangle | None]] = [(part, None) for part in parts]
         if figures is not None:
             jobs = [job for job in jobs if figures.joined(job[0]) != figures]
-            jobs.append((figures, casts))
+            jobs.append((figures, inner or figures))
         cubes = that_show(view.occluders, matrix, self.size)
         patches = [picture[part.rows_and_columns].copy() for part, _ in jobs]
-        for (part, cast), patch in zip(jobs, patches, strict=True):
+        for (part, inside), patch in zip(jobs, patches, strict=True):
             room = Room(
                 clip_from_camera(matrix, part),
                 np.asarray(table, float),
                 [box for box, place in cubes if place.meets(part)],
                 light,
             )
-            yield part, self._draw_part(part, patch, room, cast)
+            yield part, self._draw_part(part, patch, room, casts, inside)
 
     def _draw_part(
-        self, part: Rectangle, patch: Image, room: Room, casts: Sequence[Cast]
+        self,
+        part: Rectangle,
+        patch: Image,
+        room: Room,
+        casts: Sequence[Cast],
+        figures: Rectangle | None,
     ) -> Target:
         """Draw the ground with marks and shadows, then the figures, then one over the other."""
         context, light = self._context, room.light
@@ -202,17 +209,20 @@ class Stage:
         context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
         self._marks.draw(clip_from_table, light.white)
         context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
-        for cast in casts:
+        for cast in casts if figures else ():
             cast.shadow.draw(clip_from_table, light.key * TO_LIGHT[1] / light.white)
         ground.depth_mask = True
-        if casts:
+        inside = None
+        if figures is not None:
+            inside = figures.seen_from(part)
             target.figures.use()
             target.figures.viewport = (0, 0, FINER * part.width, FINER * part.height)
-            target.figures.clear()
+            target.figures.clear(viewport=inside.scaled(FINER).sides)
             self._ground.hide(room.cubes, room.clip_from_camera)
             eye = np.asarray(np.linalg.inv(room.camera_from_table)[:3, 3], float)
             self._figures.draw(casts, clip_from_table, eye, light)
-        target.resolve(ground, with_figures=bool(casts))
+        target.resolve(ground, inside)
+        context.front_face = "ccw"  # as others expect it
         return target
 
     def _show(

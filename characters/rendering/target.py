@@ -5,6 +5,7 @@ from collections import OrderedDict
 import moderngl
 
 from characters.rendering.programs import Programs
+from characters.rendering.view import Rectangle
 
 SAMPLES = 4
 """Samples a pixel of the ground, where the driver has that many."""
@@ -54,17 +55,22 @@ class Target:
         """To read the result from."""
         self._over = context.vertex_array(programs.over, [])
 
-    def resolve(self, ground: moderngl.Framebuffer, with_figures: bool) -> None:
+    def resolve(self, ground: moderngl.Framebuffer, figures: Rectangle | None) -> None:
         """Average the samples of the ground into the result, and lay the figures over it.
 
-        The ground may have been drawn in the result itself, where nothing needs many samples.
+        Parameters
+        ----------
+        ground
+            Where it was drawn: in `result` itself if nothing needed many samples.
+        figures
+            The part of the target with figures in it, if any.
         """
         if ground is not self.result:
             self._context.copy_framebuffer(self.result, ground)
-        if not with_figures:
+        if figures is None:
             return
         self.result.use()
-        self.result.viewport = ground.viewport
+        self.result.viewport = figures.sides
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
         self._figures.use(0)

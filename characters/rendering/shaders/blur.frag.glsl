@@ -2,7 +2,7 @@
 
 // One direction of a Gaussian whose width differs between the four heights. The map's halves do not mix.
 
-const int TAPS = 12;
+const int TAPS = 10;
 
 uniform sampler2D source;
 uniform ivec2 direction;
