@@ -1,6 +1,5 @@
 """From what a person asks for to the parts of a session."""
 
-import dataclasses
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
@@ -113,18 +112,12 @@ def fitting(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:
         return Intrinsics.guess(size)
     if intrinsics.size == size:
         return intrinsics
-    scale = size[0] / intrinsics.size[0]
-    if abs(intrinsics.size[1] * scale - size[1]) > 1.0:
+    if abs(intrinsics.size[1] * size[0] / intrinsics.size[0] - size[1]) > 1.0:
         raise AppError(
             f"the calibration is for {intrinsics.size[0]}x{intrinsics.size[1]} pictures, "
             f"the camera gives {size[0]}x{size[1]}: calibrate it at this size"
         )
-    matrix = intrinsics.matrix.copy()
-    # Pixel centres lie at whole numbers, so the picture's corner is at −0.5.
-    matrix[:2, 2] = (matrix[:2, 2] + 0.5) * scale - 0.5
-    matrix[0, :2] *= scale
-    matrix[1, 1] *= scale
-    return dataclasses.replace(intrinsics, matrix=matrix, size=size)
+    return intrinsics.scaled(size)
 
 
 def describe(wish: Wish, cube: CubeModel, source: FrameSource) -> dict[str, str]:

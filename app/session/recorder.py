@@ -17,6 +17,7 @@ from app.errors import AppError
 from app.playground import Step
 from app.session.arrows import ARROWS, encode, schema
 from tracking import Frame, Intrinsics
+from tracking.sources.base import nanoseconds_of
 
 CHUNK = 128 * 1024
 """Bytes that are gathered before they are written [B]: well under a second of any session."""
@@ -144,7 +145,7 @@ class Recorder:
             raise AppError("a frame must be prepared before it is recorded")
         kind = CompressedVideo if frame.encoding == "h264" else CompressedImage
         message = kind(frame_id="camera", data=frame.encoded, format=frame.encoding)
-        message.timestamp.FromNanoseconds(nanoseconds(frame.timestamp))
+        message.timestamp.FromNanoseconds(nanoseconds_of(frame.timestamp))
         self._protobuf("/camera/image", message, frame.timestamp)
 
     def _protobuf(self, topic: str, message: Any, timestamp: float) -> None:
@@ -176,10 +177,5 @@ class Recorder:
         )
 
     def _add(self, topic: str, data: bytes, timestamp: float) -> None:
-        time = nanoseconds(timestamp)
+        time = nanoseconds_of(timestamp)
         self._writer.add_message(self._channels[topic], time, data, time)
-
-
-def nanoseconds(timestamp: float) -> int:
-    """Return seconds as the whole nanoseconds of a session."""
-    return round(timestamp * 1e9)

@@ -1,6 +1,7 @@
 """The live window: the picture as large as it fits, and a panel for who wants to know more."""
 
 import contextlib
+import ctypes
 import time
 from collections import deque
 from typing import Any, Self
@@ -144,8 +145,8 @@ class Window:
         glfw.set_key_callback(self._window, self._key)
         imgui.create_context()
         imgui.get_io().set_ini_filename("")
-        address = glfw._glfw.glfwGetCurrentContext()  # the pointer that imgui's own GLFW code wants
-        imgui.backends.glfw_init_for_opengl(int(address), True)
+        address = ctypes.cast(self._window, ctypes.c_void_p).value
+        imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
 
     def _draw_panel(self, step: Step, robot: RobotView) -> None:
