@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking import prediction
+from tracking import prediction, se3
 from tracking.cube import CubeModel
 from tracking.detection import MarkerDetector, Region
 from tracking.prediction import Sighting
@@ -29,6 +29,9 @@ STRAY = 1.0
 LONE_CORNERS = 1.15
 """Where only one marker was read, its corners must be as near as this to the edges [px]: blur pulls
 the two apart, and would put the cube centimetres too near or too far."""
+
+CLEAR = 0.15
+"""An edge residual below this [px] is that of a sharp picture of the right pose."""
 
 SEEN = 0.3
 """Share of the edges in view that must be found beside the markers; fingers cover the rest."""
@@ -121,12 +124,24 @@ class CandidateFinder:
     ) -> list[Candidate]:
         observations = self._detector.detect(grey, region)
         solutions = self._solver.solve(observations, expected)
-        return [self._refined(grey, solution) for solution in solutions]
+        if expected is not None:
+            solutions.sort(key=lambda each: se3.angle_between(each.camera_from_cube, expected))
+        found: list[Candidate] = []
+        for solution in solutions:
+            start = solution.camera_from_cube
+            found.append(self._judged(solution, self._refiner.refine(grey, start)))
+            if expected is not None and found[0].certain and found[0].residual < CLEAR:
+                # Where the past expects it and as sharp as can be: no other pose need be tried.
+                return found
+        if any(each.certain for each in found):
+            return found
+        wide = [self._best_refinement(grey, each.camera_from_cube) for each in solutions]
+        return [self._judged(*pair) for pair in zip(solutions, wide, strict=True)]
 
-    def _refined(self, grey: Picture, solution: CornerSolution) -> Candidate:
+    def _judged(self, solution: CornerSolution, refinement: Refinement | None) -> Candidate:
+        """Take the edges' pose where they agree with the corners, else the corners' own."""
         seen = solution.observations
         faces = tuple(each.face.name for each in seen)
-        refinement = self._best_refinement(grey, solution.camera_from_cube)
         if refinement is None or not self._agree(solution, refinement):
             fine = min(each.size for each in seen) / 6 > FINE_CELL
             return Candidate(
