@@ -72,10 +72,11 @@ class StateMachine:
                 f"{self.entered:.3f} s; requests come in order"
             )
         motion, last = self.states[state], self._switches[-1]
-        old = (self._shown(last, time - _PROBE), self._shown(last, time))
-        new = (motion.sample(-_PROBE), motion.sample(0.0))
-        drift = _velocity(self._moved(last, time - _PROBE, time)) - _velocity(
-            motion.travel(-_PROBE, 0.0)
+        # Forward differences: just before its start, a loop that does not quite close would jump.
+        old = (self._shown(last, time), self._shown(last, time + _PROBE))
+        new = (motion.sample(0.0), motion.sample(_PROBE))
+        drift = _velocity(self._moved(last, time, time + _PROBE)) - _velocity(
+            motion.travel(0.0, _PROBE)
         )
         switch = _Switch(
             time,

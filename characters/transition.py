@@ -13,6 +13,8 @@ import numpy as np
 from characters import rotations
 from characters.pose import Array, Pose
 
+_FASTEST = 30.0  # [rad/s]: no joint turns faster; what seems to is a jump in the clip itself
+
 
 @dataclass(frozen=True)
 class Fade:
@@ -87,19 +89,20 @@ class Transition:
         Parameters
         ----------
         old, new
-            Two poses of each: `step` seconds before the switch, and at the switch.
+            Two poses of each: at the switch, and `step` seconds later as if it had not been.
         step
             Time between the two [s].
         length
             How long the transition takes [s].
         """
-        before, at = (_turns(a, b) for a, b in zip(old, new, strict=True))
-        before = _nearer(before, at)
-        was, shifts = (a.translations - b.translations for a, b in zip(old, new, strict=True))
+        turns, later = (_turns(a, b) for a, b in zip(old, new, strict=True))
+        spin = (_nearer(later, turns) - turns) / step
+        spin *= np.minimum(1.0, _FASTEST / np.maximum(_norm(spin), 1e-9))
+        shifts, moved = (a.translations - b.translations for a, b in zip(old, new, strict=True))
         return Transition(
-            Fade(at, (at - before) / step, length),
-            Fade(shifts, (shifts - was) / step, length),
-            _growth(old[1], new[1], length),
+            Fade(turns, spin, length),
+            Fade(shifts, (moved - shifts) / step, length),
+            _growth(old[0], new[0], length),
         )
 
     def apply(self, pose: Pose, time: float) -> Pose:
@@ -141,9 +144,10 @@ def _nearer(vectors: Array, reference: Array) -> Array:
 
     Next to half a turn the shorter way may change from one frame to the next; the motion does not.
     """
-    angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    other = vectors * (1 - 2 * np.pi / np.maximum(angle, 1e-9))
-    near = np.linalg.norm(vectors - reference, axis=-1) <= np.linalg.norm(
-        other - reference, axis=-1
-    )
-    return np.where(near[..., None], vectors, other)
+    other = vectors * (1 - 2 * np.pi / np.maximum(_norm(vectors), 1e-9))
+    return np.where(_norm(vectors - reference) <= _norm(other - reference), vectors, other)
+
+
+def _norm(vectors: Array) -> Array:
+    length: Array = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return length

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import CharacterError, Motion, Pose, StateMachine, rotations
+from characters import CharacterError, Clip, Motion, Pose, StateMachine, rotations
 from characters.motion import Step
 from characters.transition import Fade
 
@@ -121,3 +121,12 @@ def test_a_machine_is_a_motion_and_knows_its_states():
         machine.request("fly", 6.0)
     with pytest.raises(CharacterError, match="come in order"):
         machine.request("old", 0.5)
+
+
+def test_a_loop_that_does_not_quite_close_is_entered_calmly():
+    turns = rotations.about("x", np.linspace(0.0, 0.1, 31)[:, None])
+    open_loop = Clip("open", 30.0, Pose(np.zeros((31, 1, 3)), turns), loop=True)
+    machine = StateMachine({"old": Spin("x", 0, 0, 0), "new": open_loop}, "old", LENGTH)
+    machine.request("new", 1.0)
+    shown = [machine.sample(1.0 + t).rotations for t in np.linspace(0, LENGTH, 30)]
+    assert np.abs(rotations.to_rotation_vector(np.array(shown))).max() < 0.05
