@@ -39,8 +39,8 @@ class Room:
     camera_from_table: Array
     """The table, (4, 4)."""
 
-    cubes: Sequence[Box]
-    """Real cubes in this part."""
+    cubes: Sequence[tuple[Box, Rectangle]]
+    """Real cubes in this part, each with where it is in the picture."""
 
     light: Light
     """What lights it."""
@@ -178,7 +178,7 @@ class Stage:
             room = Room(
                 clip_from_camera(matrix, part),
                 np.asarray(table, float),
-                [box for box, place in cubes if place.meets(part)],
+                [cube for cube in cubes if cube[1].meets(part)],
                 light,
             )
             yield part, self._draw_part(part, patch, room, casts, inside)
@@ -202,7 +202,7 @@ class Stage:
         ground.viewport = (0, 0, part.width, part.height)
         ground.clear()
         self._ground.draw(patch)
-        self._ground.hide(room.cubes, room.clip_from_camera)
+        self._ground.hide([box for box, _ in room.cubes], room.clip_from_camera)
         ground.depth_mask = False  # marks and shadows lie in one plane
         ground.use()
         context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
@@ -218,7 +218,8 @@ class Stage:
             target.figures.use()
             target.figures.viewport = (0, 0, FINER * part.width, FINER * part.height)
             target.figures.clear(viewport=inside.scaled(FINER).sides)
-            self._ground.hide(room.cubes, room.clip_from_camera)
+            before = [box for box, place in room.cubes if place.meets(figures)]
+            self._ground.hide(before, room.clip_from_camera)
             eye = np.asarray(np.linalg.inv(room.camera_from_table)[:3, 3], float)
             self._figures.draw(casts, clip_from_table, eye, light)
         target.resolve(ground, inside)

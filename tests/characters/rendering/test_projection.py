@@ -36,10 +36,10 @@ def test_a_drawn_square_lies_where_opencv_projects_it(ctx, view, pawn, at):
     mesh = replace(
         pawn.meshes[0],
         positions=square,
-        normals=np.tile(np.float32([0, 0, 1]), (4, 1)),
+        normals=np.tile(np.array([0, 0, 1], np.float32), (4, 1)),
         triangles=np.array([[0, 1, 2], [0, 2, 3]], np.uint32),
         joints=np.zeros((4, 4), np.uint16),
-        weights=np.tile(np.float32([1, 0, 0, 0]), (4, 1)),
+        weights=np.tile(np.array([1, 0, 0, 0], np.float32), (4, 1)),
         material=Material(base_color=(99.0, 99.0, 99.0, 1.0), double_sided=True),
     )
     view = replace(view, image=np.zeros_like(view.image), matrix=MATRIX)
