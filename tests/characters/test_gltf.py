@@ -9,7 +9,7 @@ import pytest
 
 from characters import Character, CharacterError, Pose, rotations
 from characters.character import skin
-from characters.formats import gltf
+from characters.formats import gltf, load_clip
 
 # Characters of other makers, where they lie beside the checkout.
 SAMPLES = sorted((Path(__file__).parents[3] / "shared" / "data" / "gltf").glob("*.glb"))
@@ -334,3 +334,15 @@ def test_bundled_characters_load_and_say_who_they_are(name):
         assert np.allclose(mesh.weights.sum(1), 1, atol=1e-5)
     rest = character.skeleton.rest
     assert isinstance(rest, Pose)
+
+
+def test_one_clip_is_loaded_by_its_name_or_alone(tmp_path, arm, walker):
+    animate(arm, "LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
+    (tmp_path / "arm.glb").write_bytes(arm.bytes())
+    assert load_clip(tmp_path / "arm.glb").name == "a"
+    walker.save(tmp_path / "walker.glb")
+    assert load_clip(tmp_path / "walker.glb", "Run").duration == pytest.approx(0.7)
+    with pytest.raises(CharacterError, match="has idle, Walk, Run.*say which one"):
+        load_clip(tmp_path / "walker.glb")
+    with pytest.raises(CharacterError, match=r"\.glb and \.gltf"):
+        load_clip(tmp_path / "walk.xyz")
