@@ -158,9 +158,9 @@ def _paper(picture: Picture, random: np.random.Generator) -> None:
 def _notes(picture: Picture, random: np.random.Generator) -> None:
     """Lay three sticky notes."""
     for x, z, turn, color in (
-        (-0.47, 0.06, 0.20, (110, 220, 242)),
-        (-0.43, 0.14, -0.12, (150, 205, 130)),
-        (-0.50, 0.17, 0.45, (170, 160, 240)),
+        (-0.40, 0.03, 0.20, (110, 220, 242)),
+        (-0.37, 0.11, -0.12, (150, 205, 130)),
+        (-0.43, 0.14, 0.45, (170, 160, 240)),
     ):
         _lay(picture, _quad(x, z, 0.076, 0.076, turn), color)
 

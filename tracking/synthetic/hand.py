@@ -209,14 +209,21 @@ class _Layer:
         return np.asarray(self._sums[..., 5] / np.maximum(self._sums[..., 6], NOTHING), np.float32)
 
     def shaded(self, color: Coloring, to_light: Array) -> Picture:
-        """Return the layer's colour (h, w, 3) BGR."""
-        weight = np.maximum(self._sums[..., 6:], NOTHING)
-        mean = np.asarray(self._sums[..., :5] / weight, np.float32)
-        x, y, rise = mean[..., 0], mean[..., 1], mean[..., 2]
+        """Return the layer's colour (h, w, 3) BGR, black where there is none."""
+        shown = np.zeros((*self.cover.shape, 3), np.float32)
+        covered = self.cover > 0
+        rows, columns = (np.flatnonzero(covered.any(axis=axis)) for axis in (1, 0))
+        if not len(rows):
+            return shown
+        box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+        sums = self._sums[box]
+        mean = sums[..., :5] / np.maximum(sums[..., 6:], NOTHING)
+        x, y, rise, blush, along = np.moveaxis(np.asarray(mean, np.float32), -1, 0)
         light = np.float32(to_light[0]) * x + np.float32(to_light[1]) * y
-        light = np.clip(0.25 + 0.75 * (light - np.float32(to_light[2]) * rise), 0.0, 1.0)
-        light = np.asarray(light, np.float32)
-        return np.asarray(color(light, rise, mean[..., 3], mean[..., 4]), np.float32)
+        light = 0.25 + 0.75 * (light - np.float32(to_light[2]) * rise)
+        light = np.asarray(np.clip(light, 0.0, 1.0), np.float32)
+        shown[box] = color(light, rise, blush, along)
+        return shown
 
     def _box(self, ends: Array, radii: tuple[float, float]) -> tuple[slice, slice]:
         margin = max(radii) * self._focal / float(ends[:, 2].min()) + 2
