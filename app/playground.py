@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.scenarios import EmotionTarget, Inputs, Outcome, Scenario, make_scenario
 from characters import Animator, Character, CharacterCommand, PosedCharacter
-from characters.rendering import Actor, Box, Stage, View
+from characters.rendering import Actor, Box, FloorPath, Stage, View
 from tracking import (
     CubeControls,
     CubeGestures,
@@ -101,7 +101,7 @@ class Playground:
         self.character = character or Character.load(scenario.character)
         self._tracker = CubeTracker(self.cube, intrinsics)
         self._gestures = CubeGestures(self.cube)
-        self._animator = Animator(self.character)
+        self._animator = Animator(self.character, place=scenario.start)
         self._stage = None if context is None else Stage(context, intrinsics.size)
         self._posed: PosedCharacter | None = None
 
@@ -151,9 +151,9 @@ class Playground:
         controls: CubeControls,
         outcome: Outcome,
         posed: PosedCharacter,
-    ) -> tuple[View, tuple[Actor, ...], tuple[object, ...]]:
+    ) -> tuple[View, tuple[Actor, ...], tuple[FloorPath, ...]]:
         """Return what a stage needs: the view, who is in it, and what is on the floor."""
-        boxes = ()
+        boxes: tuple[Box, ...] = ()
         if state.camera_from_cube is not None:
             boxes = (Box(state.camera_from_cube, self.cube.edge),)
         view = View(

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from characters import CharacterCommand, PosedCharacter
+from characters import CharacterCommand, PosedCharacter, Step
 from characters.rendering import FloorPath
 from robot import Emotion
 from tracking import CubeControls
@@ -62,6 +62,9 @@ class Scenario(Protocol):
 
     character: str
     """Name of the bundled character that plays it."""
+
+    start: Step
+    """Where the character first stands on the table [m], and which way it looks [rad]."""
 
     def update(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.scenarios.base import EmotionTarget, Inputs, Outcome
 from app.scenarios.presence import Presence
-from characters import CharacterCommand, PosedCharacter
+from characters import CharacterCommand, PosedCharacter, Step
 from robot import MoodLine
 from tracking import CubeControls, CubeModel
 
@@ -38,6 +38,7 @@ class Companion:
     name = "companion"
     cube = "companion"
     character = "vleo"
+    start = Step(float(BESIDE[0]), float(BESIDE[1]), 0.2)
 
     def __init__(self, cube: CubeModel, turns: float = 2.0) -> None:
         self._roles = {face.name: face.role for face in cube.faces}

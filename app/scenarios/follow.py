@@ -1,19 +1,25 @@
 """AvatAR's interactive control: the character goes where the cube is."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from app.scenarios.base import EmotionTarget, Inputs, Outcome
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
-from characters import CharacterCommand, PosedCharacter
+from characters import CharacterCommand, PosedCharacter, Step
 from robot import Emotion
 from tracking import CubeControls
+
+Point = NDArray[np.float64]
 
 IDLE_BELOW = 0.5
 """Speed below which the character stands (AvatAR)."""
 
 RUN_ABOVE = 3.0
 """Speed above which it runs (AvatAR)."""
+
+ELBOW_ROOM = 0.04
+"""How far from the cube's centre the character aims, so that both have room [m]."""
 
 CAMERA = np.array([0.0, 2.0])
 """A point on the table far towards the camera, (x, z) [m]: where the player sits."""
@@ -25,6 +31,7 @@ class Follow:
     name = "follow"
     cube = "locomotion"
     character = "human"
+    start = Step(-0.15, 0.03, 0.0)
 
     def __init__(self, speed_map: str = "corrected") -> None:
         self._dial = SpeedDial(speed_map)
@@ -39,13 +46,22 @@ class Follow:
             timestamp=controls.timestamp,
             action="move" if speed > IDLE_BELOW else "idle",
             speed=speed,
-            target=controls.position,
+            target=_beside(controls.position, character),
             look_at=CAMERA,
             visible=self._presence.update(controls),
         )
         return Outcome(
             command, excitement(speed, controls.timestamp), _hint(controls, speed), gait(speed)
         )
+
+
+def _beside(cube: Point | None, character: PosedCharacter | None) -> Point | None:
+    """Return the point at the cube's near side: the character comes to it, not into it."""
+    if cube is None or character is None:
+        return cube
+    way = character.table_from_character[[0, 2], 3] - cube
+    distance = float(np.linalg.norm(way))
+    return cube + way * (min(ELBOW_ROOM, distance) / max(distance, 1e-9))
 
 
 def gait(speed: float) -> str:

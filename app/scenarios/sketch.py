@@ -7,7 +7,7 @@ from app.scenarios.base import Inputs, Outcome
 from app.scenarios.follow import CAMERA, IDLE_BELOW, excitement, gait
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
-from characters import CharacterCommand, ClosedPath, PosedCharacter
+from characters import CharacterCommand, ClosedPath, PosedCharacter, Step
 from characters.rendering import FloorPath
 from tracking import CubeControls
 
@@ -37,6 +37,7 @@ class Sketch:
     name = "sketch"
     cube = "locomotion"
     character = "human"
+    start = Step(0.0, 0.0, 0.0)
 
     def __init__(self, speed_map: str = "corrected") -> None:
         self._dial = SpeedDial(speed_map)

@@ -73,8 +73,9 @@ def _plain(value: object) -> object:
 
 def _with_gaps(array: NDArray[Any]) -> object:
     """Return nested lists with None where a number is not finite."""
-    gaps = np.isfinite(array)
-    return np.where(gaps, array.astype(object), None).tolist()
+    numbers = array.astype(object)
+    numbers[~np.isfinite(array)] = None
+    return numbers.tolist()
 
 
 def _single(array: NDArray[Any] | None) -> object:

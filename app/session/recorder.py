@@ -4,6 +4,7 @@ import json
 import queue
 import threading
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, Self
 
@@ -89,7 +90,7 @@ class Recorder:
         self._steps += 1
         self._picture(step.frame)
         for topic, arrow in step.arrows().items():
-            self._json(topic, lambda arrow=arrow: encode(arrow), step.frame.timestamp)
+            self._json(topic, partial(encode, arrow), step.frame.timestamp)
 
     def wire(self, direction: str, data: bytes, timestamp: float) -> None:
         """Record bytes that went to the robot ("tx") or came from it ("rx")."""
@@ -124,7 +125,7 @@ class Recorder:
             while (write := self._queue.get()) is not None:
                 write()
                 self._file.flush()  # a finished chunk must not wait for the next one
-            self._writer.finish()
+            self._writer.finish()  # type: ignore[no-untyped-call]  # mcap has no types here
         except (OSError, ValueError) as error:
             self.problem = f"recording to '{self.path}' stopped: {error}"
 

@@ -99,7 +99,7 @@ class Canvas:
         self.line(ends, color, height)
 
     def _fixed(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
-        return np.round((points * self.scale - 0.5) * 2**SUBPIXEL).astype(np.int32)
+        return np.asarray(np.round((points * self.scale - 0.5) * 2**SUBPIXEL), np.int32)
 
     def _stamp(self, mask: NDArray[np.uint8], left: int, top: int, color: Color) -> None:
         height, width = self.color.shape[:2]
@@ -124,7 +124,7 @@ def lettering(words: str, size: int) -> tuple[NDArray[np.uint8], int]:
 
 def text_width(words: str, size: float) -> float:
     """Return how wide a line of text is, in the units of `size`."""
-    return lettering(words, 100)[0].shape[1] * size / 100
+    return float(lettering(words, 100)[0].shape[1] * size / 100)
 
 
 @lru_cache(maxsize=32)
@@ -134,4 +134,4 @@ def rounded(width: int, height: int, radius: int, value: int) -> NDArray[np.uint
     dx = np.maximum(np.abs(x - width / 2) - (width / 2 - radius), 0.0)
     dy = np.maximum(np.abs(y - height / 2) - (height / 2 - radius), 0.0)
     inside = np.clip(radius - np.hypot(dx, dy) + 0.5, 0.0, 1.0)
-    return np.round(inside * value).astype(np.uint8)
+    return np.asarray(np.round(inside * value), np.uint8)

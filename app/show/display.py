@@ -1,16 +1,15 @@
 """Whether a window can be opened, asked before anything is."""
 
 import os
-import sys
+import platform
 
 from app.errors import AppError
 
 
 def has_display() -> bool:
     """Whether this computer shows a desktop to us."""
-    if sys.platform.startswith("linux"):
-        return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
-    return True
+    named = os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    return bool(named) or platform.system() in ("Windows", "Darwin")
 
 
 def require_display() -> None:

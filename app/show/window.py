@@ -146,6 +146,7 @@ class Window:
         imgui.create_context()
         imgui.get_io().set_ini_filename("")
         address = ctypes.cast(self._window, ctypes.c_void_p).value
+        assert address is not None, "the window was opened above"
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330")
 
@@ -191,7 +192,8 @@ class Window:
 
     def _toggle_full_screen(self) -> None:
         if glfw.get_window_monitor(self._window):
-            glfw.set_window_monitor(self._window, None, 60, 60, *_fitting(self._size), 0)
+            nowhere: Any = None  # glfw's types forget that this means a window again
+            glfw.set_window_monitor(self._window, nowhere, 60, 60, *_fitting(self._size), 0)
             return
         monitor = glfw.get_primary_monitor()
         mode = glfw.get_video_mode(monitor)

@@ -3,6 +3,7 @@
 import dataclasses
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -33,11 +34,11 @@ class Hand:
         )
         self.frames = 0
 
-    def frame(self, **changes: object) -> CubeControls:
+    def frame(self, **changes: Any) -> CubeControls:
         """The next frame: time goes on, events are over, and the rest stays unless given."""
         now = round(self.frames * FRAME, 9)
         events = {"placed": False, "shaken": False} if self.frames else {}
-        fields = {**events, **changes, "timestamp": now}
+        fields: dict[str, Any] = {**events, **changes, "timestamp": now}
         self.controls = dataclasses.replace(self.controls, **fields)
         self.frames += 1
         return self.controls

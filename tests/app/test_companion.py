@@ -56,7 +56,7 @@ def test_the_action_changes_only_when_the_cube_rests_again(companion, hand):
 
 
 def test_kisses_lead_from_angry_over_neutral_to_happy_and_shouts_back(companion, hand):
-    labels = []
+    labels: list[str] = []
 
     def live(frames):
         for controls in frames:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from app.commands.replay import bundled
+from app.opening import fitting
 from app.playground import Playground
 from app.scenarios import CUBES
 from app.session import about, messages
@@ -18,7 +19,7 @@ SHORT = 240
 def walk(name, count=None):
     """Every channel of a bundled recording as it comes out now."""
     with open_source(str(bundled(name))) as source:
-        playground = Playground(name, source.intrinsics)
+        playground = Playground(name, fitting(source.intrinsics, source.size))
         for frame in itertools.islice(source, count):
             step = playground.step(frame)
             for topic, arrow in step.arrows().items():

@@ -36,7 +36,7 @@ def test_legacy_map_is_as_printed():
 @pytest.mark.parametrize("name", MAPS)
 def test_one_turn_reads_idle_walk_run_walk_idle(name, hand):
     dial = SpeedDial(name)
-    gaits = []
+    gaits: list[str] = []
     for degrees in range(0, 361):
         controls = hand.heading(degrees)
         speed = dial.update(controls.camera_angle, controls.timestamp)

@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
+from app.opening import fitting
 from app.playground import Playground
 from app.scenarios.speed import MAPS
 from tracking import open_source
@@ -17,10 +18,8 @@ SMALL = "width=640&height=360&rate=15&clutter=0&shadow=0"
 def whole_turn():
     """One turn clockwise and back, tracked: angle of the camera, for every frame."""
     with open_synthetic(f"turn?{SMALL}") as source:
-        playground = Playground("follow", source.intrinsics)
-        return [
-            (playground.gesture(playground.track(frame)), frame.timestamp) for frame in source
-        ]
+        playground = Playground("follow", fitting(source.intrinsics, source.size))
+        return [(playground.gesture(playground.track(frame)), frame.timestamp) for frame in source]
 
 
 @pytest.mark.parametrize("name", MAPS)
@@ -44,7 +43,7 @@ def test_speed_is_the_same_either_way_round(whole_turn):
 def two_turns():
     """A kiss face put down, two turns up, four down, two up: the commands of every frame."""
     with open_synthetic(f"turns?{SMALL}") as source:
-        playground = Playground("companion", source.intrinsics)
+        playground = Playground("companion", fitting(source.intrinsics, source.size))
         steps = [playground.step(frame) for frame in source]
     return [(step.command, step.controls) for step in steps if step.command.action == "kiss"]
 
@@ -65,15 +64,12 @@ def test_a_new_face_starts_at_zero_and_two_turns_span_the_intensity(two_turns):
 def companion_session(bundled_session):
     """Every step of the bundled recording, without pictures."""
     with open_source(str(bundled_session)) as source:
-        playground = Playground("companion", source.intrinsics)
+        playground = Playground("companion", fitting(source.intrinsics, source.size))
         return [playground.step(frame) for frame in source]
 
 
 def test_kisses_make_happy_and_shouts_angry_never_skipping_neutral(companion_session):
-    told = [
-        (step.emotion.label, step.command.action)
-        for step in companion_session
-    ]
+    told = [(step.emotion.label, step.command.action) for step in companion_session]
     labels = [label for label, _ in itertools.groupby(told, key=lambda one: one[0])]
     assert labels == ["neutral", "happy", "neutral", "angry", "neutral"]
     by_action = {
@@ -92,9 +88,7 @@ def _runs(steps, action):
 
 
 def test_idle_leaves_the_mood(companion_session):
-    start = list(
-        itertools.takewhile(lambda step: step.command.action == "idle", companion_session)
-    )
+    start = list(itertools.takewhile(lambda step: step.command.action == "idle", companion_session))
     assert {step.emotion.emotion.valence for step in start} == {0.0}
 
 

@@ -21,7 +21,7 @@ def test_every_time_round_is_the_same(along, rounds):
 def test_who_follows_the_point_ahead_walks_the_whole_loop_in_order(points):
     path = ClosedPath(points)
     position = points[0].copy()
-    visited = []
+    visited: list[int] = []
     for _ in range(2000):
         target = path.ahead(position, 0.1)
         step = target - position

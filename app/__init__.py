@@ -1,0 +1,1 @@
+"""The program: cube, character and robot in one line."""
