@@ -5,22 +5,38 @@ from dataclasses import replace
 import numpy as np
 
 from characters.authoring.sculpt import join
-from characters.authoring.vleo_actions import clips
+from characters.authoring.vleo_clips import clip
 from characters.authoring.vleo_effects import effects
 from characters.authoring.vleo_face import face
+from characters.authoring.vleo_idle import idle
+from characters.authoring.vleo_kiss import kiss
 from characters.authoring.vleo_marks import marks
 from characters.authoring.vleo_pieces import skin_mesh
 from characters.authoring.vleo_rig import resting, skeleton
+from characters.authoring.vleo_shout import shout
 from characters.authoring.vleo_skin import body
 from characters.character import Character
+from characters.clip import Clip
 from characters.mesh import Material, Mesh
 from characters.pose import Skeleton
+
+LEVELS = ("head", "legs", "tail")
+"""What joins in at intensities −1, 0 and 1."""
 
 
 def build_vleo() -> Character:
     """Return Vleo, 0.45 m from nose to tail, as it is shipped."""
     bound = skeleton()
     return Character("vleo", resting(bound), clips(bound), (mesh(bound),))
+
+
+def clips(bound: Skeleton) -> dict[str, Clip]:
+    """Return all clips by name."""
+    made = [clip("idle", idle(), bound)]
+    for level, name in enumerate(LEVELS):
+        made.append(clip(f"kiss_{name}", kiss(level, bound), bound))
+        made.append(clip(f"shout_{name}", shout(level, bound), bound))
+    return {each.name: each for each in made}
 
 
 def mesh(bound: Skeleton) -> Mesh:

@@ -11,6 +11,7 @@ from characters.authoring.vleo_rig import HIDDEN, TAIL, Performance, poses
 from characters.clip import Clip
 from characters.pose import Pose, Skeleton
 
+DEGREE = np.pi / 180
 RATE = 30.0
 """Frames a second [Hz]."""
 SHUT, LOWER_SHUT = 1.36, 1.20
@@ -105,10 +106,13 @@ class Flight:
     """Where it gets to, from the mouth [m]."""
 
     size: float
-    """Its scale when fully grown."""
+    """Its scale when fully grown; 0 for one that only goes along, so that blends agree."""
 
     swirl: float = 0.0
     """How far it swings to the side on its way [m]."""
+
+    facing: float = 0.0
+    """Where it faces half way, to the left of ahead [rad]."""
 
     spin: float = 0.0
     """How far it turns about the upright [rad]."""
@@ -117,11 +121,11 @@ class Flight:
 def fly(
     act: Performance, joints: Sequence[str], flights: Sequence[Flight], bound: Skeleton
 ) -> None:
-    """Send effects out of the mouth as it is when each leaves; those without a flight hide."""
+    """Send effects out of the mouth as it is when each leaves."""
     pose = poses(act, bound)
     mouth = pose.globals(bound)[:, bound.index("lips"), :3, 3]
     home = bound.rest.translations
-    for joint, flight in zip(joints, flights, strict=False):
+    for joint, flight in zip(joints, flights, strict=True):
         leaves = mouth[round(flight.start * act.frames) % act.frames]
         age = ((phases(act.frames) - flight.start) % 1.0) / flight.life
         alive = age < 1
@@ -132,7 +136,11 @@ def fly(
         offset = leaves - home[bound.index(joint)] + rise + sideways[:, None] * np.array([1, 0, 0])
         act.moves[joint] = np.where(alive[:, None], offset, leaves - home[bound.index(joint)])
         act.scales[joint] = np.where(alive, np.maximum(flight.size * _pop(age), HIDDEN), HIDDEN)
-        act.turn(joint, left=flight.spin * (age - 0.5) * alive, tilt=0.3 * np.sin(6 * age) * alive)
+        act.turn(
+            joint,
+            left=(flight.facing + flight.spin * (age - 0.5)) * alive,
+            tilt=0.3 * np.sin(6 * age) * alive,
+        )
 
 
 def _pop(age: Array) -> Array:
