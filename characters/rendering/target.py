@@ -18,7 +18,10 @@ STEP = 64
 """Sizes are rounded up to it [px], so that a walking character does not ask for a new one
 each picture."""
 
-KEPT = 8
+WASTE = 1.5
+"""How much larger than needed a target may be: all of it is averaged, but a new one costs more."""
+
+KEPT = 12
 """How many sizes are kept."""
 
 
@@ -102,10 +105,18 @@ class Targets:
         self._kept: OrderedDict[tuple[int, int], Target] = OrderedDict()
 
     def at_least(self, width: int, height: int) -> Target:
-        """Return a target that is large enough, and little larger."""
+        """Return a target that is large enough, and not much larger."""
         size = (-(-width // STEP) * STEP, -(-height // STEP) * STEP)
-        target = self._kept.pop(size, None) or Target(self._context, self._programs, size)
-        self._kept[size] = target
+        fitting = [
+            kept
+            for kept in self._kept
+            if kept[0] >= width
+            and kept[1] >= height
+            and kept[0] * kept[1] <= WASTE * size[0] * size[1]
+        ]
+        chosen = min(fitting, key=lambda kept: kept[0] * kept[1], default=size)
+        target = self._kept.pop(chosen, None) or Target(self._context, self._programs, chosen)
+        self._kept[chosen] = target
         if len(self._kept) > KEPT:
             self._kept.popitem(last=False)[1].release()
         return target
