@@ -49,7 +49,7 @@ def main() -> None:
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `cubeling … | head` ends quietly
     debug = "--debug" in sys.argv
     try:
-        code = app(standalone_mode=False)
+        code = app(prog_name="cubeling", standalone_mode=False)
     except typer.exceptions.TyperException as error:
         told = usage(error)
         complain(told)

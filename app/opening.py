@@ -56,6 +56,9 @@ class Wish:
     pictures: bool = True
     """Whether to draw at all."""
 
+    salvage: bool = False
+    """Whether a source that breaks off is simply at its end."""
+
 
 def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = None) -> Plan:
     """Open all that a session needs; `closing` closes it.
@@ -87,6 +90,7 @@ def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = No
         codec=wish.codec,
         about=describe(wish, cube, source),
         paced=wish.output is None and wish.pictures,
+        salvage=wish.salvage,
     )
 
 

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from app.scenarios import Inputs
 from app.session import Recorder, preparation
 from app.show.screen import Screen
 from app.summary import Summary
-from tracking import Frame, FrameSource, Intrinsics
+from tracking import Frame, FrameSource, Intrinsics, TrackingError
 
 Progress = Callable[[Step], None]
 
@@ -46,6 +46,9 @@ class Plan:
 
     paced: bool = False
     """Whether a recording is played at the speed at which it was taken."""
+
+    salvage: bool = False
+    """Whether a source that breaks off is simply at its end."""
 
 
 def run(plan: Plan, progress: Progress | None = None) -> Summary:
@@ -94,7 +97,7 @@ def _frames(plan: Plan, clock: SessionClock) -> Iterator[Frame]:
     """Give out the frames: live ones as they come, recorded ones at their pace or at once."""
     start: float | None = None
     began = time.monotonic()
-    for frame in plan.source:
+    for frame in _salvaged(plan.source) if plan.salvage else plan.source:
         if start is None:
             start, began = frame.timestamp, time.monotonic()
         since = frame.timestamp - start
@@ -103,6 +106,12 @@ def _frames(plan: Plan, clock: SessionClock) -> Iterator[Frame]:
         elif not plan.source.live:
             clock.drive(since)
         yield frame
+
+
+def _salvaged(source: FrameSource) -> Iterator[Frame]:
+    """Give out what can be read of a source."""
+    with suppress(TrackingError):
+        yield from source
 
 
 @contextmanager

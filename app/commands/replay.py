@@ -53,6 +53,7 @@ def replay(
         codec=codec,
         output=output,
         pictures=drawing,
+        salvage=salvage,
     )
     if check:
         verdict = check_session(session, wish)

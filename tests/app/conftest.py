@@ -1,14 +1,22 @@
 """A hand that plays by numbers: controls as the gestures would give them."""
 
 import dataclasses
+import itertools
 import math
+import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import moderngl
 import numpy as np
 import pytest
 
-from tracking import CubeControls
+from app import cli
+from app.opening import fitting
+from app.playground import Playground, Step
+from app.session import Recorder
+from tracking import CubeControls, open_source
 
 FRAME = 1 / 30
 
@@ -80,3 +88,49 @@ def bundled_session() -> Path:
     from app.commands.replay import bundled
 
     return bundled("companion")
+
+
+@pytest.fixture
+def cubeling(monkeypatch, capsys, tmp_path):
+    """Run a command in an empty folder; gives its exit code, its output and its errors."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+
+    def run(*arguments):
+        monkeypatch.setattr(sys, "argv", ["cubeling", *map(str, arguments)])
+        with pytest.raises(SystemExit) as caught:
+            cli.main()
+        told = capsys.readouterr()
+        return caught.value.code, told.out, told.err
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def short_session(tmp_path_factory: pytest.TempPathFactory, bundled_session: Path) -> Path:
+    """The first two seconds of a bundled session, recorded anew."""
+    path = tmp_path_factory.mktemp("sessions") / "short.mcap"
+    about = {"scenario": "companion", "cube": "companion"}
+    with open_source(str(bundled_session)) as source, Recorder(path, about) as recorder:
+        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        recorder.camera(playground.intrinsics, 0.0)
+        for frame in itertools.islice(source, 60):
+            recorder.write(playground.step(frame))
+    return path
+
+
+@pytest.fixture
+def a_step(bundled_session: Path) -> Callable[[moderngl.Context | None], Step]:
+    """Make the first step of a bundled session, drawn if there is a context."""
+
+    def make(context: moderngl.Context | None) -> Step:
+        with open_source(str(bundled_session)) as source:
+            intrinsics = fitting(source.intrinsics, source.size)
+            playground = Playground("companion", intrinsics, context=context)
+            step = playground.step(next(iter(source)))
+            playground.close()
+        return step
+
+    return make

@@ -1,11 +1,9 @@
 """The command line: help that reads well, and one line for everything a person can put right."""
 
-import sys
 from pathlib import Path
 
 import pytest
 
-from app import cli
 from characters import Character
 
 COMMANDS = [
@@ -17,24 +15,6 @@ COMMANDS = [
     ["robot", "list"],
     ["doctor"],
 ]
-
-
-@pytest.fixture
-def cubeling(monkeypatch, capsys, tmp_path):
-    """Run a command in an empty folder; gives its exit code, its output and its errors."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "200")
-    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
-        monkeypatch.delenv(name, raising=False)
-
-    def run(*arguments):
-        monkeypatch.setattr(sys, "argv", ["cubeling", *map(str, arguments)])
-        with pytest.raises(SystemExit) as caught:
-            cli.main()
-        told = capsys.readouterr()
-        return caught.value.code, told.out, told.err
-
-    return run
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
@@ -90,7 +70,7 @@ def wrong_inputs():
         "no such folder": (["play", "follow", "-s", "camera:97", "-o", "no/x.mp4"], "folder"),
         "no display": (["play", "follow"], "display"),
         "nonsense option": (["play", "follow", "--colour"], "--colour"),
-        "nonsense number": (["play", "companion", "--turns", "many"], "many"),
+        "nonsense number": (["play", "companion", "--turns", "many"], "--turns"),
     }
 
 

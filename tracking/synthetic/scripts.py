@@ -35,24 +35,25 @@ class Script:
 
 
 def follow(edge: float, options: Options) -> Script:
-    """Put the cube to walking, lead the character round, run, and come to rest."""
+    """Turn to walking, lead the character round, then to running, once round, and to rest."""
     c = Choreography(edge).stand(0.0, 0.0)
-    c.rest(2.2).turn(90, 1.6).hold(0.3).slide(-0.17, 0.07, 2.2, 0.03).hold(0.8)
-    c.slide(-0.05, 0.17, 2.0, -0.03).hold(0.6).turn(75, 1.2).slide(0.16, 0.10, 1.6, -0.04)
-    c.hold(0.4).slide(0.12, -0.12, 1.5, -0.05).hold(0.4).slide(-0.10, -0.10, 1.6, -0.04).hold(0.6)
-    c.turn(-80, 1.3).slide(0.02, 0.06, 1.8, 0.02).turn(-85, 1.3).rest(2.6)
+    c.rest(2.2).turn(90, 1.6).hold(0.3).slide(0.21, 0.09, 2.3, -0.02).hold(0.8)
+    c.slide(-0.02, 0.18, 2.2, -0.03).hold(0.7).turn(85, 1.2).slide(-0.24, 0.08, 1.3, -0.04)
+    c.hold(0.5).slide(-0.17, -0.14, 1.3, -0.05).hold(0.3).slide(0.20, -0.13, 1.5, -0.04).hold(0.7)
+    c.turn(85, 1.3).slide(0.03, 0.05, 2.2, 0.03).hold(0.6).turn(100, 1.5).rest(2.6)
     return _script("locomotion", c)
 
 
 def sketch(edge: float, options: Options) -> Script:
-    """Draw eight points round the desk, put the cube aside, and turn it through the gaits."""
+    """Draw eight points round the desk, put the cube aside, and turn it once round the gaits."""
     c = Choreography(edge).stand(-0.20, 0.02).rest(1.4)
     ring = np.deg2rad(np.arange(45, 360, 45))
     for angle in ring:
         c.slide(-0.20 * np.cos(angle), 0.02 - 0.15 * np.sin(angle), 0.95, 0.012).hold(0.6)
     c.carry(0.30, 0.10, 0.09, 2.0).rest(1.0)
-    c.turn(90, 1.3).rest(5.0).turn(80, 1.2).rest(4.0).turn(-80, 1.2).rest(2.0).turn(-90, 1.3)
-    return _script("locomotion", c.rest(2.0))
+    for pause in (4.5, 4.0, 2.5, 2.0):
+        c.turn(90, 1.3).rest(pause)
+    return _script("locomotion", c)
 
 
 def companion(edge: float, options: Options) -> Script:
