@@ -29,7 +29,7 @@ a lamp of about 25° across, as a window or a ceiling light is from a desk."""
 SKY_BLUR = (0.022, 0.05, 0.11, 0.13)
 """The same for light from all sides."""
 
-SKY_KEEPS = (0.62, 0.55, 0.42, 0.18)
+SKY_KEEPS = (0.78, 0.7, 0.48, 0.2)
 """How much of the sky a surface at each height keeps from the table below it."""
 
 MARGIN = 0.22
@@ -102,13 +102,17 @@ class Shadow:
         assign(blur, side=SIDE)
         low = np.floor((self._reach[:2] - area[:2]) / area[2] * SIDE).astype(int)
         high = np.ceil((self._reach[2:] - area[:2]) / area[2] * SIDE).astype(int)
-        for half, deviations in ((0, KEY_BLUR), (SIDE, SKY_BLUR)):
-            assign(blur, weights=_gaussians(texels * np.array(deviations)), left=half)
-            for source, target, direction in ((0, 1, (1, 0)), (1, 0, (0, 1))):
-                self._targets[target].use()
+        halves = [
+            (half, _gaussians(texels * np.array(deviations)))
+            for half, deviations in ((0, KEY_BLUR), (SIDE, SKY_BLUR))
+        ]
+        for source, target, direction in ((0, 1, (1, 0)), (1, 0, (0, 1))):
+            self._targets[target].use()
+            self._maps[source].use(0)
+            assign(blur, direction=direction)
+            for half, weights in halves:
                 self._targets[target].viewport = (low[0] + half, low[1], *(high - low))
-                self._maps[source].use(0)
-                assign(blur, direction=direction)
+                assign(blur, weights=weights, left=half)
                 self._screen.render(moderngl.TRIANGLES, vertices=3)
 
     def draw(self, clip_from_table: Array, key_share: Array) -> None:

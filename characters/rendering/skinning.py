@@ -13,7 +13,7 @@ from characters.rendering.view import Drawable
 
 Array = NDArray[np.float64]
 
-CASTER_CELLS = 56
+CASTER_CELLS = 44
 """Cells along a character's height to which the caster of its shadow is simplified: the map of
 the shadow is not much finer."""
 

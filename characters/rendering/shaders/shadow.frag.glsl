@@ -15,7 +15,8 @@ void main() {
     vec4 blocked = texture(map, vec2(0.5 * at.x, at.y));
     vec4 closed = texture(map, vec2(0.5 + 0.5 * at.x, at.y));
     float shade = min(dot(blocked, vec4(1.0)), 1.0);
-    float sky = min(dot(closed, sky_keeps), 1.0);
+    // Under a foot it is dark, not black: some light comes off the foot and the table.
+    float sky = min(dot(closed, sky_keeps), 0.78);
     vec3 light = key * (1.0 - shade) + (1.0 - key) * (1.0 - sky);
     factor = vec4(pow(light, vec3(1.0 / 2.2)).bgr, 1.0);
 }
