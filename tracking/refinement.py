@@ -188,14 +188,17 @@ class EdgeRefiner:
         if used < FEWEST:
             return None
         chi = float((weights * residual**2).sum()) / max(1.0, float(robust.sum()) - 7)
-        covariance = np.linalg.inv(normal)[:6, :6] * max(chi, 0.25) * OPTIMISM
+        covariance = np.linalg.inv(normal)[:6, :6] * max(chi, 0.25)
+        support = used / len(profiles.numbers)
+        # What covers some edges, a finger and its shadow, disturbs those that it leaves.
+        covariance *= OPTIMISM / support**2
         spread = float(np.sqrt((robust * residual**2).sum() / robust.sum()))
         found = profiles.numbers[strong][kept]
         return Refinement(
             se3.moved(current, solution[:6]),
             (covariance + covariance.T) / 2,
             spread,
-            used / len(profiles.numbers),
+            support,
             used,
             self._inner(profiles, found),
             self._shares(profiles, found),
