@@ -51,7 +51,7 @@ def _welded(mesh: Mesh) -> Mesh:
     colors = np.ones((len(mesh.positions), 4)) if mesh.colors is None else mesh.colors
     columns = (mesh.positions, mesh.normals, mesh.joints, mesh.weights, colors)
     rows = np.hstack([np.asarray(column, np.float64) for column in columns])
-    _, first, number = np.unique(rows.round(6), axis=0, return_index=True, return_inverse=True)
+    _, first, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     order = np.sort(first)  # as they came
     rank = np.searchsorted(order, first)[number.reshape(-1)]
     triangles = rank[mesh.triangles].astype(np.uint32)

@@ -17,6 +17,7 @@ SPOTS = (  # half a back: side, height, forward, radius [mm]; those at 0 have no
     (26, 112, -94, 7), (17, 104, -124, 6), (13, 96, -156, 5), (10, 96, -188, 4),
 )  # fmt: skip
 SPINES = 12
+"""How many spines there are along the back."""
 
 
 def marks(body: Body, bound: Skeleton) -> list[Mesh]:
@@ -61,6 +62,7 @@ def _spines(body: Body, bound: Skeleton) -> list[Mesh]:
 
 
 def _claws(side: float, bound: Skeleton) -> list[Mesh]:
+    """Return three claws on each foot of one side."""
     name = "Left" if side > 0 else "Right"
     claws = []
     for which, x, z in (("Front", 0.043, 0.060), ("Hind", 0.045, -0.048)):
@@ -68,7 +70,7 @@ def _claws(side: float, bound: Skeleton) -> list[Mesh]:
             angle = np.radians([180, 120, 75, 40, 0])
             rings = 0.0066 * np.stack([np.sin(angle), np.cos(angle)], axis=1)
             place = facing(
-                np.array([across * 20, -0.1, 1.0]),
+                np.array([side * across * 20, -0.1, 1.0]),
                 np.array([side * (x + across), 0.0072, z + ahead]),
             )
             claws.append(lathe(rings, [CLAW] * 4, place, f"{name}{which}Foot", bound, 8))

@@ -23,29 +23,35 @@ def skin_mesh(body: Body, bound: Skeleton) -> Mesh:
 
 def patches(near: Array, radii: Array, colors: list[Vector], body: Body) -> list[Mesh]:
     """Return round patches on the skin next to points (n, 3), half a millimetre proud of it."""
-    field, sides = whole().distance, 12
+    field = whole().distance
     centers = project(field, near, 0.05, 8)
-    frames = np.stack(
-        [facing(n, c) for n, c in zip(normals_of(field, centers, 0.006), centers, strict=True)]
-    )
-    angle = np.linspace(0, 2 * np.pi, sides, endpoint=False)
-    circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(sides)], axis=1)
-    flat = np.vstack([np.zeros((1, 3)), 0.6 * circle, circle]) * radii[:, None, None]
+    normals = normals_of(field, centers, 0.006)
+    frames = np.stack([facing(n, c) for n, c in zip(normals, centers, strict=True)])
+    disc, triangles, lift = _disc()
+    flat = disc * radii[:, None, None]
     points = flat @ frames[:, :3, :3].swapaxes(1, 2) + centers[:, None]
     points = project(field, points.reshape(-1, 3), 0.01, 4)
     normals = normals_of(field, points, 0.006)
-    lift = np.where(np.arange(1 + 2 * sides) <= sides, 0.0007, 0.0003)
     proud = points + np.tile(lift, len(near))[:, None] * normals
-    i = np.arange(sides)
-    j = (i + 1) % sides
-    fan = np.stack([0 * i, 1 + i, 1 + j], axis=1)
-    strip = np.stack([1 + i, 1 + sides + i, 1 + sides + j, 1 + i, 1 + sides + j, 1 + j], axis=1)
-    triangles = np.vstack([fan, strip.reshape(-1, 3)])
     made = []
     for rows, color in zip(np.split(np.arange(len(points)), len(near)), colors, strict=True):
         bare = _mesh(proud[rows], normals[rows], triangles, color, body)
         made.append(carried(bare, points[rows], body))
     return made
+
+
+def _disc() -> tuple[Array, NDArray[np.int64], Array]:
+    """Return a unit disc facing +z, its triangles, and how far each vertex is off the skin [m]."""
+    sides = 12
+    angle = np.linspace(0, 2 * np.pi, sides, endpoint=False)
+    circle = np.stack([np.cos(angle), np.sin(angle), np.zeros(sides)], axis=1)
+    points = np.vstack([np.zeros((1, 3)), 0.6 * circle, circle])
+    i = 1 + np.arange(sides)
+    j = 1 + (np.arange(sides) + 1) % sides
+    fan = np.stack([0 * i, i, j], axis=1)
+    rim = np.stack([i, sides + i, sides + j, i, sides + j, j], axis=1)
+    lift = np.where(np.arange(1 + 2 * sides) <= sides, 0.0007, 0.0003)
+    return points, np.vstack([fan, rim.reshape(-1, 3)]), lift
 
 
 def tube(line: Array, radius: float, weights: Array, color: Vector, body: Body) -> Mesh:

@@ -1,14 +1,14 @@
 """Vleo's skeleton, and from a performance to poses: turns of joints, and feet that stay planted."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from characters import rotations
+from characters.authoring.ik import aim, bend
+from characters.authoring.rig import build_skeleton
+from characters.authoring.shapes import Array, Vector
 from characters.pose import Pose, Skeleton
-
-Array = NDArray[np.float64]
 
 FEET = ("LeftFrontFoot", "RightFrontFoot", "LeftHindFoot", "RightHindFoot")
 HEARTS = ("heart1", "heart2", "heart3")
@@ -21,7 +21,7 @@ LID_YAW = 0.45
 HIDDEN = 1e-3
 """Scale of a joint whose mesh is not to be seen; not zero, so that its matrix can be inverted."""
 
-_MIDDLE = {  # parent, then where the joint is in the character frame [m]
+_JOINTS: dict[str, tuple[str, Vector]] = {
     "root": ("", (0.0, 0.0, 0.0)),
     "hips": ("root", (0.0, 0.112, -0.045)),
     "spine1": ("hips", (0.0, 0.115, -0.012)),
@@ -39,8 +39,6 @@ _MIDDLE = {  # parent, then where the joint is in the character frame [m]
     "tail3": ("tail2", (0.0, 0.077, -0.161)),
     "tail4": ("tail3", (0.0, 0.079, -0.197)),
     "tail5": ("tail4", (0.0, 0.092, -0.232)),
-}
-_LEFT = {
     "LeftEye": ("head", (0.0300, 0.2575, 0.1475)),
     "LeftUpperLid": ("head", (0.0300, 0.2575, 0.1475)),
     "LeftLowerLid": ("head", (0.0300, 0.2575, 0.1475)),
@@ -61,20 +59,13 @@ MOUTH = (0.0, 0.222, 0.200)
 
 def skeleton() -> Skeleton:
     """Return the skeleton in its bind pose: axes as the character's but for lids, scales one."""
-    table = dict(_MIDDLE)
-    for name, (parent, (x, y, z)) in _LEFT.items():
-        table[name] = (parent, (x, y, z))
-        table[_right(name)] = (_right(parent), (-x, y, z))
-    table |= dict.fromkeys(HEARTS + BURSTS, ("root", MOUTH))
-    names = tuple(table)
-    parents = tuple(-1 if not parent else names.index(parent) for parent, _ in table.values())
-    places = np.array([place for _, place in table.values()])
-    offsets = places - np.where(np.array(parents)[:, None] < 0, 0.0, places[list(parents)])
-    still = np.tile(rotations.IDENTITY, (len(names), 1))
+    effects: dict[str, tuple[str, Vector]] = dict.fromkeys(HEARTS + BURSTS, ("root", MOUTH))
+    bound = build_skeleton(_JOINTS | effects)
+    still = bound.rest.rotations.copy()
     for name, side in (("Left", 1.0), ("Right", -1.0)):
         for lid in ("UpperLid", "LowerLid"):  # they roll about the axis of an eye that looks aside
-            still[names.index(name + lid)] = rotations.about("y", side * LID_YAW)
-    return Skeleton(names, parents, Pose(offsets, still))
+            still[bound.index(name + lid)] = rotations.about("y", side * LID_YAW)
+    return replace(bound, rest=Pose(bound.rest.translations, still))
 
 
 def resting(bound: Skeleton) -> Skeleton:
@@ -157,7 +148,7 @@ def poses(performance: Performance, bound: Skeleton) -> Pose:
 
 
 def _place_leg(foot: str, offset: Array, body: Array, local: Array, bound: Skeleton) -> Array:
-    """Turn the three joints of a leg so that its foot is where it should: two-bone IK.
+    """Turn the three joints of a leg so that its foot is where it should.
 
     Returns how much longer than at rest its bones must be, (frames, 1): legs of rubber give a
     little before a foot leaves its place.
@@ -169,49 +160,22 @@ def _place_leg(foot: str, offset: Array, body: Array, local: Array, bound: Skele
     parent = rotations.from_matrix(body[:, bound.parents[hip], :3, :3])
     start, target = body[:, hip, :3, 3], rest[ankle] + offset[:, :3]
     thigh, shin = rest[knee] - rest[hip], rest[ankle] - rest[knee]
-    a, b = np.linalg.norm(thigh), np.linalg.norm(shin)
+    upper, lower = float(np.linalg.norm(thigh)), float(np.linalg.norm(shin))
     reach = np.linalg.norm(target - start, axis=1, keepdims=True)
-    stretch = np.maximum(1.0, reach / (NEARLY_STRAIGHT * (a + b)))
-    a, b = a * stretch, b * stretch
-    down = _unit(target - start)
-    bend = _across(rotations.rotate(parent, _across(thigh, _unit(rest[ankle] - rest[hip]))), down)
-    cosine = (a * a + reach * reach - b * b) / (2 * a * reach)
-    bent = start + a * (cosine * down + np.sqrt(1 - cosine * cosine) * bend)
-    normal = np.cross(down, bend)
-    rest_normal = _unit(np.cross(rest[ankle] - rest[hip], thigh))
-    upper = _turned(thigh, rest_normal, bent - start, normal)
-    lower = _turned(shin, rest_normal, start + reach * down - bent, normal)
+    stretch = np.maximum(1.0, reach / (NEARLY_STRAIGHT * (upper + lower)))
+    straight = (thigh + shin) / np.linalg.norm(thigh + shin)
+    pole = rotations.rotate(parent, thigh - straight * float(straight @ thigh))
+    bent = stretch * bend(start / stretch, target / stretch, pole, upper, lower)
+    hinge, rest_hinge = np.cross(target - start, pole), np.cross(thigh + shin, thigh)
+    thigh_turn = aim(thigh, rest_hinge, bent - start, hinge)
+    shin_turn = aim(shin, rest_hinge, target - bent, hinge)
     sole = rotations.about("x", -offset[:, 3])
-    local[:, hip] = rotations.multiply(rotations.conjugate(parent), upper)
-    local[:, knee] = rotations.multiply(rotations.conjugate(upper), lower)
-    local[:, ankle] = rotations.multiply(rotations.conjugate(lower), sole)
+    local[:, hip] = rotations.multiply(rotations.conjugate(parent), thigh_turn)
+    local[:, knee] = rotations.multiply(rotations.conjugate(thigh_turn), shin_turn)
+    local[:, ankle] = rotations.multiply(rotations.conjugate(shin_turn), sole)
     return np.asarray(stretch)
-
-
-def _turned(bone: Array, normal: Array, new_bone: Array, new_normal: Array) -> Array:
-    """Return the turns (frames, 4) that take a bone and the normal of its bend to new ones."""
-    return rotations.from_matrix(_frame(new_bone, new_normal) @ _frame(bone, normal).T)
-
-
-def _frame(bone: Array, normal: Array) -> Array:
-    along = _unit(bone)
-    return np.stack([along, normal, np.cross(along, normal)], axis=-1)
-
-
-def _unit(vector: Array) -> Array:
-    unit: Array = vector / np.linalg.norm(vector, axis=-1, keepdims=True)
-    return unit
-
-
-def _across(vector: Array, along: Array) -> Array:
-    """Return the direction of a vector across a unit vector."""
-    return _unit(vector - along * np.sum(vector * along, axis=-1, keepdims=True))
 
 
 def _shipped_scales(bound: Skeleton) -> Array:
     scales = resting(bound).rest.scales
     return np.ones((len(bound), 3)) if scales is None else scales
-
-
-def _right(name: str) -> str:
-    return name.replace("Left", "Right", 1)
