@@ -131,7 +131,7 @@ def _painted(points: Array, normals: Array) -> Array:
     colors = _coat(colors, BACK_TEAL, 0.7 * _ease((normals[:, 1] - 0.1) / 0.8))
     legs = whole().solids()
     leg = np.min([s.distance(points) for s in legs if s.bones[0][-3:] in ("Leg", "oot")], axis=0)
-    under = _ease((_underside(points) - 0.46) / 0.16) * _ease((0.208 - points[:, 1]) / 0.012)
+    under = _ease((_underside(points) - 0.34) / 0.14) * _ease((0.208 - points[:, 1]) / 0.012)
     colors = _coat(colors, CREAM, under * _ease((leg - 0.001) / 0.009))
     chin = Ellipsoid((0.0, 0.200, 0.150), (0.052, 0.030, 0.046)).distance(points)
     lower = _ease((lip_line(points) - 0.003 - points[:, 1]) / 0.004)
