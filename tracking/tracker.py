@@ -19,6 +19,9 @@ Array = NDArray[np.float64]
 CLEARLY_BETTER = 0.6
 """Of two poses of one face, one with less than this share of the other's residual is right."""
 
+LONE_SPEED = 0.65
+"""A single face that moves faster than this [m/s] is too blurred to tell how far away it is."""
+
 FORGOTTEN = 1.0
 """After this time out of sight [s] the cube may appear anywhere without confirmation."""
 
@@ -85,7 +88,7 @@ class CubeTracker:
     ) -> tuple[Candidate, str]:
         """Choose between the poses that explain the same markers, or say why none is trusted."""
         best, *others = sorted(candidates, key=lambda candidate: candidate.residual)
-        if best.blurred:
+        if best.blurred or (len(best.faces) == 1 and _speed(best, recent, now) > LONE_SPEED):
             return best, "blurred"
         if not others or _close(best, others[0]):
             return best, ""
@@ -148,6 +151,11 @@ class CubeTracker:
             timestamp=now,
             refused=refused,
         )
+
+
+def _speed(candidate: Candidate, recent: Sighting | None, now: float) -> float:
+    """Speed at which the cube must have come from where it was last seen [m/s]."""
+    return float(np.linalg.norm(prediction.velocity(recent, candidate.camera_from_cube, now)[:3]))
 
 
 def _close(a: Candidate, b: Candidate) -> bool:
