@@ -1,8 +1,9 @@
 """Draws the pictures of the documents: `python -m app.pictures`.
 
-Every picture is a moment of a bundled recording, as the program shows it.
+Every picture is a moment of a bundled recording, as the program shows it, or a page that it prints.
 """
 
+import tempfile
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from app.opening import fitting
 from app.playground import Playground
 from app.show.overlay import RobotView, overlay
 from characters.rendering import create_context
-from tracking import open_source
+from tracking import CubeModel, open_source, write_sheet
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
 
@@ -51,7 +52,19 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
             Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")
 
 
+def draw_sheet(name: str) -> None:
+    """Draw a cube's sheet as a picture."""
+    import pypdfium2  # comes with the tools of the tests; the program itself reads no PDF
+
+    with tempfile.TemporaryDirectory() as folder:
+        pdf = Path(folder) / "sheet.pdf"
+        write_sheet(CubeModel.load(name), pdf)
+        page = pypdfium2.PdfDocument(pdf)[0]
+        page.render(scale=1.5).to_pil().save(FOLDER / f"sheet-{name}.png", optimize=True)
+
+
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
     for recording, pictures in MOMENTS.items():
         draw(recording, pictures)
+    draw_sheet("companion")

@@ -120,8 +120,27 @@ class Summary:
         )
 
 
+MOMENT = 0.6
+"""A state shorter than this is told as part of the one before it [s]."""
+
+
+def lasting(changes: list[tuple[float, str]], duration: float) -> list[tuple[float, str]]:
+    """Leave out what lasted for a moment only.
+
+    >>> lasting([(0.0, "idle"), (3.0, "run"), (3.2, "idle"), (9.0, "walk")], 12.0)
+    [(0.0, 'idle'), (9.0, 'walk')]
+    """
+    kept: list[tuple[float, str]] = []
+    for (start, state), end in zip(changes, [*(t for t, _ in changes[1:]), duration], strict=True):
+        if kept and (end - start < MOMENT or kept[-1][1] == state):
+            continue
+        kept.append((start, state))
+    return kept
+
+
 def _story(changes: list[tuple[float, str]], duration: float) -> str:
     """Return "idle 3 s → kiss 9 s → …", at most a dozen entries."""
+    changes = lasting(changes, duration)
     ends = [time for time, _ in changes[1:]] + [duration]
     told = [f"{what} {end - time:.1f} s" for (time, what), end in zip(changes, ends, strict=True)]
     if len(told) > 12:

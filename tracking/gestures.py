@@ -25,6 +25,14 @@ OTHER_TOP = np.deg2rad(30.0)
 LIFTED = 0.010
 """Height above the table from which the cube is lifted [m], beyond what is unsure of the table."""
 
+TO_CAMERA = np.array([0.0, 1.0, -1.0])
+"""Down in the picture and against the view [camera frame]: over the table both lead to the camera.
+
+The thesis measures the cube's angle from the view, not from the line to the camera (M10), so that
+a cube that is slid keeps its heading. Looking level the view alone would do, looking straight
+down the picture's edge; their sum does for every tilt between.
+"""
+
 NOISE = 0.1
 """What looks lifted or tipped for less than this is taken for an error of the tracker [s]."""
 
@@ -150,7 +158,8 @@ class CubeGestures:
         )
 
     def _place(self, table: Table, pose: Array, last_top: str | None) -> _Place:
-        table_from_cube = se3.inverse(table.camera_from_table) @ pose
+        table_from_camera = se3.inverse(table.camera_from_table)
+        table_from_cube = table_from_camera @ pose
         up = table_from_cube[1, :3]
         leans = {name: _angle(float(up @ normal)) for name, normal in DIRECTIONS.items()}
         top = min(leans, key=lambda name: leans[name])
@@ -159,10 +168,7 @@ class CubeGestures:
             top = last_top
         position = table_from_cube[[0, 2], 3]
         angle = clockwise_angle(table_from_cube, top)
-        camera = se3.inverse(table.camera_from_table)[[0, 2], 3]
-        towards = camera - position
-        if float(np.linalg.norm(towards)) < 0.02:
-            towards = np.array([0.0, 1.0])
+        towards = (table_from_camera[:3, :3] @ TO_CAMERA)[[0, 2]]
         heading = wrapped(angle - clockwise_angle_of(towards))
         height, spread = table.height(pose[:3, 3])
         return _Place(top, tilt, height - self._edge / 2, LIFTED + spread, angle, heading, position)

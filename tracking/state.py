@@ -56,12 +56,14 @@ class CubeControls:
     heading: float
     """Direction of the cube's forward side about the table's up axis [rad], −π…π.
 
-    0 where that side looks at the camera; positive turns are clockwise seen from above.
+    0 where that side looks against the camera's view, wherever the cube stands on the table;
+    positive turns are clockwise seen from above.
     The forward side is `front`, or `bottom` when `front` is up, `top` when `back` is up.
     """
 
     camera_angle: float
-    """Angle on the table between the forward side and the direction to the camera [rad], 0…π."""
+    """Angle on the table between the forward side and the camera's view, reversed [rad], 0…π:
+    AvatAR's angle between camera and cube (Fernández-Baena 2015, section 5.2.4)."""
 
     turns: float
     """Whole and part turns about the table's up axis since the cube was placed, unwrapped;

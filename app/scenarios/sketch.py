@@ -37,7 +37,7 @@ class Sketch:
     name = "sketch"
     cube = "locomotion"
     character = "human"
-    start = Step(0.0, 0.0, 0.0)
+    start = Step(0.14, 0.0, 0.0)
 
     def __init__(self, speed_map: str = "corrected") -> None:
         self._dial = SpeedDial(speed_map)

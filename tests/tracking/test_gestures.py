@@ -130,6 +130,14 @@ def test_heading_is_zero_towards_the_camera_and_grows_clockwise(top: str) -> Non
     assert controls.camera_angle == pytest.approx(np.deg2rad(90))
 
 
+@pytest.mark.parametrize("pitch", [5, 35, 89])
+def test_a_cube_that_is_slid_keeps_its_heading(pitch: float) -> None:
+    hand = Hand(pitch)
+    hand.hold(standing("top", 90), 1)
+    for x, z in ((0.3, 0.1), (-0.3, -0.2)):
+        assert hand.show(standing("top", 90, x, z)).camera_angle == pytest.approx(np.pi / 2)
+
+
 @pytest.mark.parametrize("turns", [2, -2, 0.25, -3.5])
 @pytest.mark.parametrize("top", ["top", "front", "left"])
 def test_turns_are_counted_past_whole_ones_either_way(top: str, turns: float) -> None:
