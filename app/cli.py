@@ -1,6 +1,5 @@
 """`cubeling`: the command line."""
 
-import signal
 import sys
 from typing import Annotated
 
@@ -45,8 +44,6 @@ def common(
 
 def main() -> None:
     """Run a command; bad input ends in one line and exit code 2."""
-    if hasattr(signal, "SIGPIPE"):
-        signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # `cubeling … | head` ends quietly
     debug = "--debug" in sys.argv
     try:
         code = app(prog_name="cubeling", standalone_mode=False)

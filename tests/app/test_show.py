@@ -53,7 +53,7 @@ def test_a_video_appears_only_when_it_is_whole(tmp_path):
 def test_a_video_that_fails_leaves_nothing(tmp_path):
     wrong = np.zeros((48, 64), np.uint8)
     with (
-        pytest.raises(ValueError, match="dimension"),
+        pytest.raises(ValueError, match="ndim"),
         VideoFile(tmp_path / "out.mp4", (64, 48), 30) as video,
     ):
         video.write(wrong, 0.0)
