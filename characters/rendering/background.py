@@ -15,8 +15,8 @@ Image = NDArray[np.uint8]
 class Background:
     """Straightens camera frames, and fits them to the size of the picture.
 
-    The maps of `cv2.remap` are computed once a camera and kept in fixed point, which makes a frame
-    of 1280×720 pixels a matter of two milliseconds.
+    The maps of `cv2.remap` are computed once a camera. It is given four channels, the last unused:
+    OpenCV has a fast path for those, twice as fast as that for three even with both conversions.
 
     Parameters
     ----------
@@ -27,7 +27,9 @@ class Background:
     def __init__(self, size: tuple[int, int]) -> None:
         self._size = size
         self._camera: tuple[bytes, ...] = ()
-        self._maps: tuple[NDArray[np.int16], NDArray[np.uint16]] | None = None
+        self._maps: tuple[NDArray[np.float32], NDArray[np.float32]] | None = None
+        self._wide = np.empty((0, 0, 4), np.uint8)
+        self._wide_straight = np.empty((size[1], size[0], 4), np.uint8)
         self._matrix = np.eye(3)
         self._backdrop: Image | None = None
 
@@ -50,14 +52,28 @@ class Background:
             self._camera = camera
         if self._maps is None:
             return image.copy(), self._matrix
-        straight = cv2.remap(
-            image, *self._maps, interpolation=cv2.INTER_LINEAR, borderMode=cv2.BORDER_REFLECT_101
+        return self._straightened(image, *self._maps), self._matrix
+
+    def _straightened(
+        self, image: Image, columns: NDArray[np.float32], rows: NDArray[np.float32]
+    ) -> Image:
+        """Return a picture that takes each pixel from some column and row of the frame."""
+        if self._wide.shape[:2] != image.shape[:2]:
+            self._wide = np.empty((*image.shape[:2], 4), np.uint8)
+        cv2.cvtColor(image, cv2.COLOR_BGR2BGRA, dst=self._wide)
+        cv2.remap(
+            self._wide,
+            columns,
+            rows,
+            interpolation=cv2.INTER_LINEAR,
+            dst=self._wide_straight,
+            borderMode=cv2.BORDER_REFLECT_101,
         )
-        return np.asarray(straight, np.uint8), self._matrix
+        return np.asarray(cv2.cvtColor(self._wide_straight, cv2.COLOR_BGRA2BGR), np.uint8)
 
     def _maps_of(
         self, matrix: Array, distortion: Array, frame: tuple[int, int]
-    ) -> tuple[Array, tuple[NDArray[np.int16], NDArray[np.uint16]] | None]:
+    ) -> tuple[Array, tuple[NDArray[np.float32], NDArray[np.float32]] | None]:
         """Return the matrix of the picture and the maps from it to the frame, if any are needed."""
         bent = bool(
             distortion.size in (4, 5, 8, 12, 14)
@@ -67,10 +83,15 @@ class Background:
         if not bent and frame == self._size:
             return matrix, None
         fitted = _fit(frame, self._size) @ matrix
-        maps = cv2.initUndistortRectifyMap(
-            matrix, distortion if bent else np.zeros(5), np.eye(3), fitted, self._size, cv2.CV_16SC2
+        columns, rows = cv2.initUndistortRectifyMap(
+            matrix,
+            distortion if bent else np.zeros(5),
+            np.eye(3),
+            fitted,
+            self._size,
+            cv2.CV_32FC1,
         )
-        return fitted, (np.asarray(maps[0], np.int16), np.asarray(maps[1], np.uint16))
+        return fitted, (np.asarray(columns, np.float32), np.asarray(rows, np.float32))
 
     def _fitted(self, image: Image, frame: tuple[int, int]) -> Image:
         """Scale a frame of an unknown camera to the picture."""
