@@ -53,9 +53,10 @@ def test_a_new_face_starts_at_zero_and_two_turns_span_the_intensity(two_turns):
     assert weights[0] == 0.0
     assert weights.max() == 1.0
     assert weights.min() == -1.0
-    # Up by two turns saturates after one; then two turns down lead from one end to the other.
-    top = int(np.flatnonzero(weights == 1.0)[-1])
-    bottom = top + int(np.flatnonzero(weights[top:] == -1.0)[0])
+    # Two turns up saturate after one; the two turns down lead from one end to the other.
+    first = int(np.argmax(weights == 1.0))
+    top = first + int(np.argmax(weights[first:] < 1.0)) - 1
+    bottom = top + int(np.argmax(weights[top:] == -1.0))
     turned = two_turns[top][1].turns - two_turns[bottom][1].turns
     assert turned == pytest.approx(2.0, abs=0.05)
 
