@@ -1,5 +1,6 @@
 """One session: frames in, pictures and emotions out, everything recorded that is asked for."""
 
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -67,13 +68,14 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
         if plan.record is not None:
             prepare = preparation(plan.codec, plan.source.size, plan.source.rate)
             recorder = closing.enter_context(Recorder(plan.record, plan.about or {}))
-        robot = closing.enter_context(
-            RobotLine.open(plan.robot, clock, recorder.wire if recorder else None)
-        )
+        tap = WireTap(recorder) if recorder is not None else None
+        robot = closing.enter_context(RobotLine.open(plan.robot, clock, tap))
         closing.callback(clock.release)  # a robot says goodbye in real time
         closing.enter_context(_interruptible(summary))
         inputs = Inputs()
         for frame in _frames(plan, clock):
+            if tap is not None:
+                tap.align(frame.timestamp - clock())
             began = time.perf_counter()
             step = plan.playground.step(prepare(frame) if prepare else frame, inputs)
             robot.feel(step.emotion)
@@ -91,6 +93,42 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
         # whether it came back is told at the end.
         robot.check()
     return summary
+
+
+class WireTap:
+    """Records what goes over the wire in the time of the frames; called from the link's thread.
+
+    Until the first frame the two times cannot be compared, so the greeting waits for it.
+
+    Parameters
+    ----------
+    recorder
+        Where it is recorded.
+    """
+
+    def __init__(self, recorder: Recorder) -> None:
+        self._recorder = recorder
+        self._lock = threading.Lock()
+        self._early: list[tuple[str, bytes, float]] = []
+        self._shift: float | None = None
+
+    def __call__(self, direction: str, data: bytes, time: float) -> None:
+        """Record bytes of one direction at a time of the session's clock [s]."""
+        with self._lock:
+            if self._shift is None:
+                self._early.append((direction, data, time))
+            else:
+                self._recorder.wire(direction, data, max(0.0, time + self._shift))
+
+    def align(self, shift: float) -> None:
+        """Say what to add to the clock's time for that of the frames; the first call counts."""
+        with self._lock:
+            if self._shift is not None:
+                return
+            self._shift = shift
+            for direction, data, time in self._early:
+                self._recorder.wire(direction, data, max(0.0, time + shift))
+            self._early.clear()
 
 
 def _frames(plan: Plan, clock: SessionClock) -> Iterator[Frame]:

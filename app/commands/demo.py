@@ -11,7 +11,6 @@ from app.commands.progress import finished_video, play_to_end
 from app.commands.replay import bundled
 from app.opening import Wish, open_session
 from app.scenarios import scenario_cube
-from app.session import about
 from app.show.display import has_display
 from tracking import FrameSource, TrackingError, open_source
 
@@ -62,13 +61,12 @@ def demo(
 def render(scenario: str, output: Path, console: Console) -> None:
     """Render the bundled recording of a scenario to a video and say what happened."""
     wish = _recorded(scenario, output)
-    seconds = about(Path(wish.source)).duration
-    console.print(
-        f"No window here, so the bundled recording of [bold]{scenario}[/] ({seconds:.0f} s) "
-        f"is rendered to [bold]{output}[/]."
-    )
     with ExitStack() as closing:
         plan = open_session(wish, closing)
+        console.print(
+            f"The bundled recording of [bold]{scenario}[/] ({plan.source.duration or 0:.0f} s) "
+            f"is rendered to [bold]{output}[/], as there is no display or you asked for it."
+        )
         summary = play_to_end(plan, console, f"rendering {output.name}")
     console.print(summary)
     console.print(finished_video(output.resolve()))

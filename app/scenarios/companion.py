@@ -17,6 +17,9 @@ Action = Literal["idle", "kiss", "shout"]
 BESIDE = np.array([-0.135, -0.01])
 """Where Vleo stands from the cube, (x, z) on the table [m]: to its left, as the player sees it."""
 
+ALL = 0.97
+"""Intensity from which there is nothing more to give: a knob is never turned exactly to its end."""
+
 NEAREST, FARTHEST = 0.09, 0.26
 """How near the cube may come to Vleo, and how far it may be, before Vleo moves over [m]."""
 
@@ -108,6 +111,6 @@ class Companion:
             return "Choose a face and put the cube down"
         if self._action == "idle":
             return "Tip the cube: heart for a kiss, burst for a shout"
-        if self._weight >= 1.0:
+        if self._weight > ALL:
             return "That is all I can give!"
         return "Turn the cube like a knob: right for more, left for less"
