@@ -6,6 +6,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.rendering.cubes import Outlines
 from characters.rendering.programs import Programs, assign
 from characters.rendering.view import FloorPath
 
@@ -60,10 +61,11 @@ class FloorMarks:
         self._buffer.write(vertices)
         return [np.insert(run[:, :2].astype(float), 1, 0.0, axis=1) for run in runs]
 
-    def draw(self, clip_from_table: Array, white: Array) -> None:
-        """Paint the marks into the framebuffer in use."""
+    def draw(self, clip_from_table: Array, white: Array, outlines: Outlines) -> None:
+        """Paint the marks into the framebuffer in use, but where `outlines` of cubes hide them."""
         if self._count:
             assign(self._program, clip_from_table=clip_from_table, light=white)
+            assign(self._program, cubes=outlines.count, outlines=outlines.sides)
             self._array.render(moderngl.TRIANGLES, vertices=self._count)
 
     def release(self) -> None:

@@ -1,5 +1,6 @@
 """The shaders, read from the package and built once a context."""
 
+import re
 from collections.abc import Sequence
 from importlib.resources import files
 
@@ -35,8 +36,6 @@ class Programs:
         """Vertices to what they keep from the table, sorted by height."""
         self.blur = build("screen.vert", "blur.frag")
         """Softens each height as far as a lamp of some width would."""
-        self.backdrop = build("screen.vert", "backdrop.frag")
-        """The camera's picture."""
         self.box = build("box.vert", "nothing.frag")
         """Depth of a real cube."""
         self.marks = build("marks.vert", "marks.frag")
@@ -60,9 +59,17 @@ class Programs:
 
 
 def _source(name: str, *defines: str) -> str:
-    """Return the text of a shader, with some names defined after its version line."""
-    version, text = (SHADERS / f"{name}.glsl").read_text(encoding="utf-8").split("\n", 1)
+    """Return the text of a shader, with some names defined after its version line.
+
+    A line `#include "name"` is replaced by the text of that file; GLSL itself has none.
+    """
+    version, text = _text(name).split("\n", 1)
+    text = re.sub(r'^#include "([\w.]+)"$', lambda found: _text(found[1]), text, flags=re.MULTILINE)
     return "\n".join([version, *(f"#define {define}" for define in defines), text])
+
+
+def _text(name: str) -> str:
+    return (SHADERS / f"{name}.glsl").read_text(encoding="utf-8")
 
 
 def assign(program: moderngl.Program, **values: "bool | float | Sequence[float] | Array") -> None:

@@ -4,6 +4,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.rendering.cubes import Outlines
 from characters.rendering.light import TO_LIGHT
 from characters.rendering.programs import Programs, assign
 from characters.rendering.skinning import SkinnedCharacter
@@ -115,11 +116,12 @@ class Shadow:
                 assign(blur, weights=weights, left=half)
                 self._screen.render(moderngl.TRIANGLES, vertices=3)
 
-    def draw(self, clip_from_table: Array, key_share: Array) -> None:
-        """Darken the table of the framebuffer in use, behind what is nearer there."""
+    def draw(self, clip_from_table: Array, key_share: Array, outlines: Outlines) -> None:
+        """Darken the table in the framebuffer in use, but where `outlines` of cubes hide it."""
         program = self._programs.shadow
         assign(program, clip_from_table=clip_from_table, area=self._area, reach=self._reach)
         assign(program, key=key_share, sky_keeps=SKY_KEEPS)
+        assign(program, cubes=outlines.count, outlines=outlines.sides)
         self._maps[0].use(0)
         self._table.render(moderngl.TRIANGLE_STRIP, vertices=4)
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.rendering.background import Background
+from characters.rendering.cubes import Cubes, Outlines, that_show
 from characters.rendering.figures import Cast, Figures
 from characters.rendering.floor import FloorMarks
-from characters.rendering.ground import Ground, Patches, that_show
 from characters.rendering.light import TO_LIGHT, Light, LightEstimate
 from characters.rendering.paper import paper_of
 from characters.rendering.programs import Programs, assign
@@ -22,7 +22,7 @@ from characters.rendering.projection import (
     merged,
     part_that_shows,
 )
-from characters.rendering.target import FINER, Target, Targets
+from characters.rendering.target import FINER, Patches, Target, Targets, widened
 from characters.rendering.view import Actor, Box, FloorPath, Rectangle, View
 
 Array = NDArray[np.float64]
@@ -41,6 +41,9 @@ class Room:
 
     cubes: Sequence[tuple[Box, Rectangle]]
     """Real cubes in this part, each with where it is in the picture."""
+
+    outlines: Outlines
+    """Of these cubes."""
 
     light: Light
     """What lights it."""
@@ -75,7 +78,7 @@ class Stage:
         self._background = Background(size)
         self._estimate = LightEstimate()
         self._targets = Targets(context, self._programs)
-        self._ground = Ground(context, self._programs)
+        self._cubes = Cubes(context, self._programs)
         self._marks = FloorMarks(context, self._programs)
         self._figures = Figures(context, self._programs)
         self._frame = Patches(context)
@@ -138,7 +141,7 @@ class Stage:
         """Give back everything but the context; a second call does nothing."""
         # The next framebuffer to be made would bind again what was bound: it must still be there.
         self._context.detect_framebuffer(0).use()
-        parts = (self._figures, self._marks, self._targets, self._ground, self._frame)
+        parts = (self._figures, self._marks, self._targets, self._cubes, self._frame)
         for owned in (*parts, self._programs):
             owned.release()
         self._copy.release()
@@ -173,12 +176,13 @@ class Stage:
             jobs = [job for job in jobs if figures.joined(job[0]) != figures]
             jobs.append((figures, inner or figures))
         cubes = that_show(view.occluders, matrix, self.size)
-        patches = [picture[part.rows_and_columns].copy() for part, _ in jobs]
+        patches = [widened(picture[part.rows_and_columns]) for part, _ in jobs]
         for (part, inside), patch in zip(jobs, patches, strict=True):
             room = Room(
                 clip_from_camera(matrix, part),
                 np.asarray(table, float),
                 [cube for cube in cubes if cube[1].meets(part)],
+                Outlines.of([box for box, place in cubes if place.meets(part)], matrix, part),
                 light,
             )
             yield part, self._draw_part(part, patch, room, casts, inside)
@@ -191,38 +195,31 @@ class Stage:
         casts: Sequence[Cast],
         figures: Rectangle | None,
     ) -> Target:
-        """Draw the ground with marks and shadows, then the figures, then one over the other."""
+        """Draw marks and shadows on the picture, then the figures, then these over it."""
         context, light = self._context, room.light
         clip_from_table = room.clip_from_camera @ room.camera_from_table
         target = self._targets.at_least(part.width, part.height)
-        # Marks and shadows are smooth by themselves; only the edge of a cube needs samples.
-        ground = target.ground if room.cubes else target.result
+        target.lay(patch)
+        target.result.use()
+        target.result.viewport = (0, 0, part.width, part.height)
+        context.enable_only(moderngl.BLEND)
         context.front_face = "cw"  # the rows of the canvas run downwards
-        ground.use()
-        ground.viewport = (0, 0, part.width, part.height)
-        ground.clear()
-        self._ground.draw(patch)
-        self._ground.hide([box for box, _ in room.cubes], room.clip_from_camera)
-        ground.depth_mask = False  # marks and shadows lie in one plane
-        ground.use()
-        context.enable_only(moderngl.DEPTH_TEST | moderngl.BLEND)
         context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        self._marks.draw(clip_from_table, light.white)
+        self._marks.draw(clip_from_table, light.white, room.outlines)
         context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
         for cast in casts if figures else ():
-            cast.shadow.draw(clip_from_table, light.key * TO_LIGHT[1] / light.white)
-        ground.depth_mask = True
-        inside = None
+            share = light.key * TO_LIGHT[1] / light.white
+            cast.shadow.draw(clip_from_table, share, room.outlines)
         if figures is not None:
             inside = figures.seen_from(part)
             target.figures.use()
             target.figures.viewport = (0, 0, FINER * part.width, FINER * part.height)
             target.figures.clear(viewport=inside.scaled(FINER).sides)
             before = [box for box, place in room.cubes if place.meets(figures)]
-            self._ground.hide(before, room.clip_from_camera)
+            self._cubes.hide(before, room.clip_from_camera)
             eye = np.asarray(np.linalg.inv(room.camera_from_table)[:3, 3], float)
             self._figures.draw(casts, clip_from_table, eye, light)
-        target.resolve(ground, inside)
+            target.combine(inside)
         context.front_face = "ccw"  # as others expect it
         return target
 

@@ -2,13 +2,15 @@
 
 from collections import OrderedDict
 
+import cv2
 import moderngl
+import numpy as np
+from numpy.typing import NDArray
 
 from characters.rendering.programs import Programs
 from characters.rendering.view import Rectangle
 
-SAMPLES = 4
-"""Samples a pixel of the ground, where the driver has that many."""
+Image = NDArray[np.uint8]
 
 FINER = 2
 """How much finer a figure is drawn than the picture, along each side. Its triangles are about as
@@ -26,7 +28,7 @@ KEPT = 12
 
 
 class Target:
-    """What a part of a picture is drawn in: the ground, and the figures above it.
+    """What a part of a picture is drawn in: the camera's picture, and the figures above it.
 
     Parameters
     ----------
@@ -39,39 +41,26 @@ class Target:
     def __init__(
         self, context: moderngl.Context, programs: Programs, size: tuple[int, int]
     ) -> None:
-        samples = min(SAMPLES, context.max_samples)
         fine = (FINER * size[0], FINER * size[1])
         self._context = context
-        self._color = context.renderbuffer(size, 4, samples=samples)
-        self._depth = context.depth_renderbuffer(size, samples=samples)
-        self.ground = context.framebuffer([self._color], self._depth)
-        """The camera's picture with marks and shadows, several samples a pixel."""
         self._figures = context.texture(fine, 4)
         self._figures.repeat_x = self._figures.repeat_y = False
         self._fine_depth = context.depth_renderbuffer(fine)
         self.figures = context.framebuffer([self._figures], self._fine_depth)
         """The characters on nothing, premultiplied, `FINER` times as large."""
         self.picture = context.texture(size, 4)
-        """The result."""
+        """The camera's picture with all that is drawn on it."""
         self.picture.repeat_x = self.picture.repeat_y = False
         self.result = context.framebuffer([self.picture])
-        """To read the result from."""
+        """Draws on `picture`. Marks and shadows are smooth by themselves."""
         self._over = context.vertex_array(programs.over, [])
 
-    def resolve(self, ground: moderngl.Framebuffer, figures: Rectangle | None) -> None:
-        """Average the samples of the ground into the result, and lay the figures over it.
+    def lay(self, patch: Image) -> None:
+        """Take a part of the camera's picture, (height, width, 4), its first row first."""
+        self.picture.write(patch, viewport=(0, 0, patch.shape[1], patch.shape[0]))
 
-        Parameters
-        ----------
-        ground
-            Where it was drawn: in `result` itself if nothing needed many samples.
-        figures
-            The part of the target with figures in it, if any.
-        """
-        if ground is not self.result:
-            self._context.copy_framebuffer(self.result, ground)
-        if figures is None:
-            return
+    def combine(self, figures: Rectangle) -> None:
+        """Lay the figures over the picture, in the part of the target where there are some."""
         self.result.use()
         self.result.viewport = figures.sides
         self._context.enable_only(moderngl.BLEND)
@@ -81,13 +70,50 @@ class Target:
 
     def release(self) -> None:
         """Give the card's memory back; a second call does nothing."""
-        for framebuffer in (self.ground, self.figures, self.result):
+        for framebuffer in (self.figures, self.result):
             framebuffer.release()
-        for buffer in (self._color, self._depth, self._fine_depth):
-            buffer.release()
+        self._fine_depth.release()
         for texture in (self._figures, self.picture):
             texture.release()
         self._over.release()
+
+
+class Patches:
+    """One texture that takes patches of pictures, made anew when one is larger.
+
+    Parameters
+    ----------
+    context
+        Where it lives.
+    """
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._texture: moderngl.Texture | None = None
+
+    def upload(self, patch: Image) -> moderngl.Texture:
+        """Send a patch (height, width, 3) to the first texels of the texture, first row first."""
+        height, width = patch.shape[:2]
+        texture = self._texture
+        if texture is None or texture.width < width or texture.height < height:
+            room = (0, 0) if texture is None else texture.size
+            self.release()
+            texture = self._context.texture((max(room[0], width), max(room[1], height)), 3)
+            texture.repeat_x = texture.repeat_y = False
+            self._texture = texture
+        texture.write(np.ascontiguousarray(patch), viewport=(0, 0, width, height), alignment=1)
+        return texture
+
+    def release(self) -> None:
+        """Give the card's memory back; a second call does nothing."""
+        if self._texture is not None:
+            self._texture.release()
+            self._texture = None
+
+
+def widened(part: Image) -> Image:
+    """Return a part of a picture (height, width, 3) with a fourth, opaque channel, in one piece."""
+    return np.asarray(cv2.cvtColor(part, cv2.COLOR_BGR2BGRA), np.uint8)
 
 
 class Targets:

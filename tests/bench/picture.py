@@ -23,9 +23,9 @@ from characters.character import Character
 from characters.command import PosedCharacter
 from characters.rendering import Actor, Box, FloorPath, Stage, View, create_context
 from characters.rendering.background import Background
+from characters.rendering.cubes import Cubes
 from characters.rendering.figures import Figures
 from characters.rendering.floor import FloorMarks
-from characters.rendering.ground import Ground
 from characters.rendering.light import LightEstimate
 from characters.rendering.shadow import Shadow
 from characters.rendering.skinning import SkinnedCharacter
@@ -38,12 +38,12 @@ PARTS = (
     ("judge the light", LightEstimate, "update"),
     ("skin", SkinnedCharacter, "pose"),
     ("cast the shadow", Shadow, "cast"),
-    ("upload, lay the frame", Ground, "draw"),
-    ("the cube's depth", Ground, "hide"),
+    ("upload the frame", Target, "lay"),
+    ("the cube's depth", Cubes, "hide"),
     ("floor marks", FloorMarks, "draw"),
     ("shadow on the table", Shadow, "draw"),
     ("characters", Figures, "draw"),
-    ("resolve, combine", Target, "resolve"),
+    ("lay figures over it", Target, "combine"),
     ("read back", moderngl.Framebuffer, "read"),
 )
 

@@ -11,11 +11,13 @@ in vec3 paint;
 
 out vec4 color;
 
+#include "seen"
+
 void main() {
     float off = length(vec2(max(abs(at.x) - capsule.x, 0.0), at.y));
     float soft = max(fwidth(off), 1e-6);
     float cover = clamp((capsule.y - off) / soft + 0.5, 0.0, 1.0);
     if (capsule.z > 0.0) cover *= clamp((off - capsule.z) / soft + 0.5, 0.0, 1.0);
     vec3 lit = pow(clamp(paint * light, 0.0, 1.0), vec3(1.0 / 2.2));
-    color = vec4(lit.bgr, 0.82 * cover);
+    color = vec4(lit.bgr, 0.82 * cover * seen());
 }

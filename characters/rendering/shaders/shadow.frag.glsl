@@ -11,6 +11,8 @@ in vec2 at;
 
 out vec4 factor;
 
+#include "seen"
+
 void main() {
     vec4 blocked = texture(map, vec2(0.5 * at.x, at.y));
     vec4 closed = texture(map, vec2(0.5 + 0.5 * at.x, at.y));
@@ -18,5 +20,5 @@ void main() {
     // Under a foot it is dark, not black: some light comes off the foot and the table.
     float sky = min(dot(closed, sky_keeps), 0.78);
     vec3 light = key * (1.0 - shade) + (1.0 - key) * (1.0 - sky);
-    factor = vec4(pow(light, vec3(1.0 / 2.2)).bgr, 1.0);
+    factor = vec4(mix(vec3(1.0), pow(light, vec3(1.0 / 2.2)).bgr, seen()), 1.0);
 }

@@ -196,14 +196,6 @@ def test_a_second_release_does_nothing(ctx, view, pawn):
     stage.release()
 
 
-def test_a_card_without_many_samples_still_draws(ctx, view, pawn, cube, monkeypatch):
-    monkeypatch.setattr("characters.rendering.target.SAMPLES", 0)
-    stage = Stage(ctx, (320, 180))
-    picture = stage.draw(replace(view, occluders=(cube,)), [pawn.posed()])
-    stage.release()
-    assert (picture != view.image).any()
-
-
 def on_screen(view: View, point):
     assert view.camera_from_table is not None
     seen = view.camera_from_table @ [*point, 1.0]
