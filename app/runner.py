@@ -15,6 +15,7 @@ from app.scenarios import Inputs
 from app.session import Recorder, preparation
 from app.show.screen import Screen
 from app.summary import Summary
+from robot import RobotError
 from tracking import Frame, FrameSource, Intrinsics, TrackingError
 
 Progress = Callable[[Step], None]
@@ -91,7 +92,10 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
                 break
         # A robot that falls silent stops nobody's play, and the link keeps trying;
         # whether it came back is told at the end.
-        robot.check()
+        try:
+            robot.check()
+        except RobotError as lost:
+            summary.robot_lost = lost
     return summary
 
 

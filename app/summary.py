@@ -10,6 +10,7 @@ from rich.text import Text
 
 from app.playground import Step
 from app.show.overlay import RobotView
+from robot import RobotError
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 
@@ -36,6 +37,9 @@ class Summary:
     times: list[float] = field(default_factory=list)
     """How long each frame took, from the camera's picture to the finished one [s]."""
 
+    robot_lost: RobotError | None = None
+    """Why the robot could not be reached at the end, or None."""
+
     interrupted: bool = False
     """Whether the player ended it with Ctrl-C."""
 
@@ -57,6 +61,11 @@ class Summary:
             self.spans.append((now - self.first, step.posed.state))
         self.moods.append((now - self.first, robot.mood, robot.label))
         self.times.append(seconds)
+
+    def check(self) -> None:
+        """Raise `RobotError` if the robot was lost: told last, for the rest of the session is whole."""
+        if self.robot_lost is not None:
+            raise self.robot_lost
 
     @property
     def tracking_rate(self) -> float:

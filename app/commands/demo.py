@@ -56,6 +56,7 @@ def demo(
         plan = open_session(wish, closing, camera)
         summary = play_to_end(plan, console, scenario)
     console.print(summary)
+    summary.check()
 
 
 def render(scenario: str, output: Path, console: Console) -> None:
@@ -70,6 +71,7 @@ def render(scenario: str, output: Path, console: Console) -> None:
         summary = play_to_end(plan, console, f"rendering {output.name}")
     console.print(summary)
     console.print(finished_video(output.resolve()))
+    summary.check()
 
 
 def _recorded(scenario: str, output: Path | None = None) -> Wish:

@@ -96,3 +96,4 @@ def play(
     Console().print(summary)
     if output is not None:
         Console().print(finished_video(output))
+    summary.check()

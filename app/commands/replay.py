@@ -65,6 +65,7 @@ def replay(
     console.print(summary)
     if output is not None:
         console.print(finished_video(output))
+    summary.check()
 
 
 def bundled(name: str) -> Path:

@@ -127,7 +127,8 @@ class Recorder:
                 self._file.flush()  # a finished chunk must not wait for the next one
             self._writer.finish()  # type: ignore[no-untyped-call]  # mcap has no types here
         except (OSError, ValueError) as error:
-            self.problem = f"recording to '{self.path}' stopped: {error}"
+            reason = (error.strerror if isinstance(error, OSError) else None) or error
+            self.problem = f"recording to '{self.path}' stopped: {reason}"
 
     def _submit(self, write: Callable[[], None] | None) -> None:
         if self.problem is not None:

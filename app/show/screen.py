@@ -1,6 +1,7 @@
 """Where the finished pictures go."""
 
 import os
+from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import Protocol, Self
@@ -109,23 +110,31 @@ class VideoFile:
         try:
             self._file.mux(self._stream.encode(frame))
         except OSError as error:
-            raise AppError(f"writing the video '{self._path}' failed: {error.strerror}") from error
+            raise self._failed(error) from error
 
     def close(self) -> None:
         """Finish the file and give it its name."""
         if not self._open:
             return
+        try:
+            self._file.mux(self._stream.encode())
+            self._file.close()
+            os.replace(self._partial, self._path)
+        except OSError as error:
+            self.discard()
+            raise self._failed(error) from error
         self._open = False
-        self._file.mux(self._stream.encode())
-        self._file.close()
-        os.replace(self._partial, self._path)
 
     def discard(self) -> None:
         """Leave nothing behind."""
         if self._open:
             self._open = False
-            self._file.close()
+            with suppress(OSError):  # a full disk, which is why it is discarded
+                self._file.close()
             self._partial.unlink(missing_ok=True)
+
+    def _failed(self, error: OSError) -> AppError:
+        return AppError(f"writing the video '{self._path}' failed: {error.strerror}")
 
 
 QUALITY = {"preset": "veryfast", "crf": "19"}
