@@ -63,7 +63,7 @@ class Summary:
         self.times.append(seconds)
 
     def check(self) -> None:
-        """Raise `RobotError` if the robot was lost: told last, for the rest of the session is whole."""
+        """Raise `RobotError` if the robot was lost; asked last, as all else is whole."""
         if self.robot_lost is not None:
             raise self.robot_lost
 

@@ -39,6 +39,9 @@ class Outlines:
     count: int
     """Of cubes."""
 
+    longest: int
+    """How many sides the one with the most has."""
+
     sides: Array
     """(`MOST`, `SIDES`, 3). A side times (x, y, 1), a place in the part with the corner of its
     first pixel as the origin, is how far inside of it that is [px]."""
@@ -49,10 +52,12 @@ class Outlines:
         nearest = sorted(boxes, key=lambda box: float(np.linalg.norm(box.camera_from_box[:3, 3])))
         sides = np.zeros((MOST, SIDES, 3))
         sides[..., 2] = 1e6  # a side that is not there leaves everything inside
+        longest = 0
         for row, box in zip(sides, nearest, strict=False):
             found = _outline(box, matrix)
             row[: len(found)] = found @ _shift(part)
-        return cls(min(len(boxes), MOST), sides)
+            longest = max(longest, len(found))
+        return cls(min(len(boxes), MOST), longest, sides)
 
 
 class Cubes:

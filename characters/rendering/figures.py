@@ -50,7 +50,7 @@ class Figures:
         self._shadows: list[Shadow] = []
         self._characters: OrderedDict[int, tuple[Drawable, SkinnedCharacter]] = OrderedDict()
 
-    def pose(self, actors: Sequence[Actor]) -> tuple[list[Cast], Array, Array]:
+    def pose(self, actors: Sequence[Actor], light: Light) -> tuple[list[Cast], Array, Array]:
         """Skin the actors that are visible and cast their shadows.
 
         Some framebuffer must be in use: transform feedback asks for one, though it draws nothing.
@@ -63,6 +63,7 @@ class Figures:
             Points of the table frame around them and around their shadows, (n, 3).
         """
         casts: list[Cast] = []
+        key_share = light.key * TO_LIGHT[1] / light.white
         bodies, shadows = [np.zeros((0, 3))], [np.zeros((0, 3))]
         for actor in actors:
             place = np.asarray(actor.posed.table_from_character, float)
@@ -79,7 +80,7 @@ class Figures:
             shadow = self._shadows[len(casts)]
             height = character.height * float(np.linalg.norm(place[:3, 1]))
             bodies.append(enclosing)
-            shadows.append(shadow.cast(character, enclosing, height))
+            shadows.append(shadow.cast(character, enclosing, height, key_share))
             casts.append(Cast(character, shadow, height))
         return casts, np.concatenate(bodies), np.concatenate(shadows)
 

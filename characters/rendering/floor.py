@@ -65,7 +65,8 @@ class FloorMarks:
         """Paint the marks into the framebuffer in use, but where `outlines` of cubes hide them."""
         if self._count:
             assign(self._program, clip_from_table=clip_from_table, light=white)
-            assign(self._program, cubes=outlines.count, outlines=outlines.sides)
+            assign(self._program, cubes=outlines.count, longest=outlines.longest)
+            assign(self._program, outlines=outlines.sides)
             self._array.render(moderngl.TRIANGLES, vertices=self._count)
 
     def release(self) -> None:

@@ -36,12 +36,14 @@ class Programs:
         """Vertices to what they keep from the table, sorted by height."""
         self.blur = build("screen.vert", "blur.frag")
         """Softens each height as far as a lamp of some width would."""
+        self.keep = build("screen.vert", "keep.frag")
+        """The softened map to what is left of the light."""
         self.box = build("box.vert", "nothing.frag")
         """Depth of a real cube."""
         self.marks = build("marks.vert", "marks.frag")
         """Discs and dashes on the table."""
         self.shadow = build("shadow.vert", "shadow.frag")
-        """The softened shadow onto the table."""
+        """What is left of the light onto the table."""
         self.plain = build("character.vert", "character.frag")
         """Vertices to colour, without a texture."""
         self.textured = build("character.vert", "character.frag", "TEXTURED")

@@ -54,10 +54,13 @@ class Shadow:
             texture.repeat_x = texture.repeat_y = False
         self._targets = [context.framebuffer([texture]) for texture in self._maps]
         self._screen = context.vertex_array(programs.blur, [])
+        self._keep = context.vertex_array(programs.keep, [])
         self._table = context.vertex_array(programs.shadow, [])
         self._area, self._reach = np.zeros(4), np.zeros(4)
 
-    def cast(self, character: SkinnedCharacter, enclosing: Array, height: float) -> Array:
+    def cast(
+        self, character: SkinnedCharacter, enclosing: Array, height: float, key_share: Array
+    ) -> Array:
         """Make the map of a character that was just posed.
 
         Parameters
@@ -68,6 +71,8 @@ class Shadow:
             Points of the table frame around it, (n, 3).
         height
             Of the character on the table [m].
+        key_share
+            Share of the key light in what reaches the table, (3,).
 
         Returns
         -------
@@ -93,16 +98,16 @@ class Shadow:
         context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
         context.enable_only(moderngl.NOTHING)
         self._soften(height)
+        self._weigh(key_share)
         x, z = self._reach[[0, 2, 2, 0]], self._reach[[1, 1, 3, 3]]
         return np.stack([x, np.zeros(4), z], axis=1)
 
     def _soften(self, height: float) -> None:
         """Blur the map where there may be a shadow: along x, then along z."""
-        blur, area = self._programs.blur, self._area
-        texels = SIDE / area[2] * height
+        blur = self._programs.blur
+        texels = SIDE / self._area[2] * height
         assign(blur, side=SIDE)
-        low = np.floor((self._reach[:2] - area[:2]) / area[2] * SIDE).astype(int)
-        high = np.ceil((self._reach[2:] - area[:2]) / area[2] * SIDE).astype(int)
+        x, z, width, depth = self._used()
         halves = [
             (half, _gaussians(texels * np.array(deviations)))
             for half, deviations in ((0, KEY_BLUR), (SIDE, SKY_BLUR))
@@ -112,22 +117,38 @@ class Shadow:
             self._maps[source].use(0)
             assign(blur, direction=direction)
             for half, weights in halves:
-                self._targets[target].viewport = (low[0] + half, low[1], *(high - low))
+                self._targets[target].viewport = (x + half, z, width, depth)
                 assign(blur, weights=weights, left=half)
                 self._screen.render(moderngl.TRIANGLES, vertices=3)
 
-    def draw(self, clip_from_table: Array, key_share: Array, outlines: Outlines) -> None:
+    def _weigh(self, key_share: Array) -> None:
+        """Put into one map what is left of the light: few texels, where the table has many pixels."""
+        assign(self._programs.keep, side=SIDE, key=key_share, sky_keeps=SKY_KEEPS)
+        self._targets[1].use()
+        self._targets[1].viewport = self._used()
+        self._maps[0].use(0)
+        self._keep.render(moderngl.TRIANGLES, vertices=3)
+
+    def _used(self) -> tuple[int, int, int, int]:
+        """Return the texels of a half where there may be a shadow: first x and z, and how many."""
+        area = self._area
+        x, z = np.floor((self._reach[:2] - area[:2]) / area[2] * SIDE).astype(int).tolist()
+        right, far = np.ceil((self._reach[2:] - area[:2]) / area[2] * SIDE).astype(int).tolist()
+        return x, z, right - x, far - z
+
+    def draw(self, clip_from_table: Array, outlines: Outlines) -> None:
         """Darken the table in the framebuffer in use, but where `outlines` of cubes hide it."""
         program = self._programs.shadow
         assign(program, clip_from_table=clip_from_table, area=self._area, reach=self._reach)
-        assign(program, key=key_share, sky_keeps=SKY_KEEPS)
-        assign(program, cubes=outlines.count, outlines=outlines.sides)
-        self._maps[0].use(0)
+        assign(program, cubes=outlines.count, longest=outlines.longest)
+        assign(program, outlines=outlines.sides)
+        self._maps[1].use(0)
         self._table.render(moderngl.TRIANGLE_STRIP, vertices=4)
 
     def release(self) -> None:
         """Give the card's memory back; a second call does nothing."""
         self._screen.release()
+        self._keep.release()
         self._table.release()
         for target, texture in zip(self._targets, self._maps, strict=True):
             target.release()

@@ -12,7 +12,7 @@ from characters.rendering.background import Background
 from characters.rendering.cubes import Cubes, Outlines, that_show
 from characters.rendering.figures import Cast, Figures
 from characters.rendering.floor import FloorMarks
-from characters.rendering.light import TO_LIGHT, Light, LightEstimate
+from characters.rendering.light import Light, LightEstimate
 from characters.rendering.paper import paper_of
 from characters.rendering.programs import Programs, assign
 from characters.rendering.projection import (
@@ -163,7 +163,7 @@ class Stage:
         if table is None or not is_pinhole(view.matrix) or not is_rigid(table):
             return
         self._targets.at_least(1, 1).result.use()
-        casts, bodies, shadows = self._figures.pose(actors)
+        casts, bodies, shadows = self._figures.pose(actors, light)
         strewn = [
             part_that_shows(points, matrix, table, self.size) for points in self._marks.lay(floor)
         ]
@@ -208,8 +208,7 @@ class Stage:
         self._marks.draw(clip_from_table, light.white, room.outlines)
         context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
         for cast in casts if figures else ():
-            share = light.key * TO_LIGHT[1] / light.white
-            cast.shadow.draw(clip_from_table, share, room.outlines)
+            cast.shadow.draw(clip_from_table, room.outlines)
         if figures is not None:
             inside = figures.seen_from(part)
             target.figures.use()

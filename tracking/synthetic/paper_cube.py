@@ -195,6 +195,6 @@ def _print_icon(picture: Picture, cube: CubeModel, face: Face) -> None:
         return
     ink = np.array(INK.get(face.icon, (60, 60, 60))[::-1], np.float32)
     mask = icon_mask(face.icon, size).astype(np.float32)[..., None] / 255
-    top, left = int((margin - size) / 2), (TEXELS - size) // 2
+    top, left = TEXELS - int((margin + size) / 2), (TEXELS - size) // 2
     part = picture[top : top + size, left : left + size]
     part += (ink - part) * mask

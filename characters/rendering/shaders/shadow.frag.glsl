@@ -1,11 +1,8 @@
 #version 330 core
 
-// What the character keeps from the table: the key light where its shadow falls, and a part of the sky
-// near it. The factor multiplies linear light; a power of it multiplies the encoded picture the same way.
+// Multiplies the table by what a character leaves of its light.
 
-uniform sampler2D map;
-uniform vec3 key;       // share of the key light in what reaches the table, by channel
-uniform vec4 sky_keeps; // how much of the sky each height can keep
+uniform sampler2D factors;
 
 in vec2 at;
 
@@ -14,11 +11,5 @@ out vec4 factor;
 #include "seen"
 
 void main() {
-    vec4 blocked = texture(map, vec2(0.5 * at.x, at.y));
-    vec4 closed = texture(map, vec2(0.5 + 0.5 * at.x, at.y));
-    float shade = min(dot(blocked, vec4(1.0)), 1.0);
-    // Under a foot it is dark, not black: some light comes off the foot and the table.
-    float sky = min(dot(closed, sky_keeps), 0.78);
-    vec3 light = key * (1.0 - shade) + (1.0 - key) * (1.0 - sky);
-    factor = vec4(mix(vec3(1.0), pow(light, vec3(1.0 / 2.2)).bgr, seen()), 1.0);
+    factor = vec4(mix(vec3(1.0), texture(factors, vec2(0.5 * at.x, at.y)).rgb, seen()), 1.0);
 }
