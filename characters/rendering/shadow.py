@@ -122,10 +122,12 @@ class Shadow:
                 self._screen.render(moderngl.TRIANGLES, vertices=3)
 
     def _weigh(self, key_share: Array) -> None:
-        """Put into one map what is left of the light: few texels, where the table has many pixels."""
+        """Put into one map what is left of the light: it has fewer texels than the table pixels."""
         assign(self._programs.keep, side=SIDE, key=key_share, sky_keeps=SKY_KEEPS)
         self._targets[1].use()
-        self._targets[1].viewport = self._used()
+        x, z, width, depth = self._used()
+        # One texel more on each side: the table reads between texels.
+        self._targets[1].viewport = (x - 1, z - 1, width + 2, depth + 2)
         self._maps[0].use(0)
         self._keep.render(moderngl.TRIANGLES, vertices=3)
 
