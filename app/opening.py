@@ -124,6 +124,11 @@ def fitting(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:
     return intrinsics.scaled(size)
 
 
+def guessed(wish: Wish, source: FrameSource) -> bool:
+    """Whether nothing is known of the camera's lens."""
+    return wish.intrinsics is None and source.intrinsics is None
+
+
 def describe(wish: Wish, cube: CubeModel, source: FrameSource) -> dict[str, str]:
     """Return what a recording says of itself."""
     return {

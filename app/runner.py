@@ -3,7 +3,7 @@
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -74,7 +74,7 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
         closing.callback(clock.release)  # a robot says goodbye in real time
         closing.enter_context(_interruptible(summary))
         inputs = Inputs()
-        for frame in _frames(plan, clock):
+        for frame in _frames(plan, clock, summary):
             if tap is not None:
                 tap.align(frame.timestamp - clock())
             began = time.perf_counter()
@@ -95,7 +95,7 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
         try:
             robot.check()
         except RobotError as lost:
-            summary.robot_lost = lost
+            summary.lost = summary.lost or lost
     return summary
 
 
@@ -135,11 +135,11 @@ class WireTap:
             self._early.clear()
 
 
-def _frames(plan: Plan, clock: SessionClock) -> Iterator[Frame]:
+def _frames(plan: Plan, clock: SessionClock, summary: Summary) -> Iterator[Frame]:
     """Give out the frames: live ones as they come, recorded ones at their pace or at once."""
     start: float | None = None
     began = time.monotonic()
-    for frame in _salvaged(plan.source) if plan.salvage else plan.source:
+    for frame in _readable(plan, summary):
         if start is None:
             start, began = frame.timestamp, time.monotonic()
         since = frame.timestamp - start
@@ -150,10 +150,19 @@ def _frames(plan: Plan, clock: SessionClock) -> Iterator[Frame]:
         yield frame
 
 
-def _salvaged(source: FrameSource) -> Iterator[Frame]:
-    """Give out what can be read of a source."""
-    with suppress(TrackingError):
-        yield from source
+def _readable(plan: Plan, summary: Summary) -> Iterator[Frame]:
+    """Give out what can be read; a camera that breaks off ends the session, and what it made stays.
+
+    A file that breaks off is an error: it can be played again with `salvage`.
+    """
+    try:
+        yield from plan.source
+    except TrackingError as error:
+        if plan.salvage:
+            return
+        if not plan.source.live or not summary.frames:
+            raise
+        summary.lost = error
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from rich.text import Text
 from app.playground import Step
 from app.show.overlay import RobotView
 from robot import RobotError
+from tracking import TrackingError
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 
@@ -37,8 +38,8 @@ class Summary:
     times: list[float] = field(default_factory=list)
     """How long each frame took, from the camera's picture to the finished one [s]."""
 
-    robot_lost: RobotError | None = None
-    """Why the robot could not be reached at the end, or None."""
+    lost: RobotError | TrackingError | None = None
+    """Why the robot could not be reached at the end, or the camera stopped; None if all is well."""
 
     interrupted: bool = False
     """Whether the player ended it with Ctrl-C."""
@@ -63,9 +64,9 @@ class Summary:
         self.times.append(seconds)
 
     def check(self) -> None:
-        """Raise `RobotError` if the robot was lost; asked last, as all else is whole."""
-        if self.robot_lost is not None:
-            raise self.robot_lost
+        """Raise what went wrong with robot or camera; asked last, as all else is whole by then."""
+        if self.lost is not None:
+            raise self.lost
 
     @property
     def tracking_rate(self) -> float:

@@ -1,5 +1,6 @@
 """Cards that lie over the picture, drawn at the size they are shown."""
 
+from copy import copy
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -34,22 +35,22 @@ class Card:
     color: NDArray[np.uint8]
     """(height, width, 3) BGR."""
 
-    alpha: NDArray[np.uint8]
-    """(height, width): 0 lets the picture through, 255 hides it."""
+    cover: NDArray[np.float32]
+    """(height, width): 0 lets the picture through, 1 hides it."""
+
+    gap: NDArray[np.float32]
+    """What `cover` leaves of the picture, (height, width)."""
 
     def over(self, picture: NDArray[np.uint8]) -> None:
         """Lay the card over a picture (H, W, 3), in place; what sticks out is cut off."""
-        height, width = self.alpha.shape
+        height, width = self.cover.shape
         top, left = max(0, self.y), max(0, self.x)
         part = picture[top : self.y + height, left : self.x + width]
         if part.size == 0:
             return
         rows, columns = part.shape[:2]
         inside = np.s_[top - self.y : top - self.y + rows, left - self.x : left - self.x + columns]
-        weights = self.alpha[inside].astype(np.float32)[..., None] / 255.0
-        part[:] = cv2.blendLinear(
-            self.color[inside], np.ascontiguousarray(part), weights[..., 0], 1.0 - weights[..., 0]
-        )
+        part[:] = cv2.blendLinear(self.color[inside], part, self.cover[inside], self.gap[inside])
 
 
 class Canvas:
@@ -64,8 +65,15 @@ class Canvas:
     def card(self, x: float, y: float, opacity: float = 0.93) -> Card:
         """Finish: a card with its corner at (x, y)."""
         height, width = self.color.shape[:2]
-        mask = rounded(width, height, round(min(18 * self.scale, height / 2)), round(255 * opacity))
-        return Card(round(x * self.scale), round(y * self.scale), self.color, mask)
+        radius = round(min(18 * self.scale, height / 2))
+        shares = _shares(width, height, radius, round(255 * opacity))
+        return Card(round(x * self.scale), round(y * self.scale), self.color, *shares)
+
+    def copy(self) -> "Canvas":
+        """Return a canvas of its own with the same on it: what never changes is drawn once."""
+        canvas = copy(self)
+        canvas.color = self.color.copy()
+        return canvas
 
     def text(
         self, x: float, y: float, words: str, size: float, color: Color, align: str = "left"
@@ -135,3 +143,12 @@ def rounded(width: int, height: int, radius: int, value: int) -> NDArray[np.uint
     dy = np.maximum(np.abs(y - height / 2) - (height / 2 - radius), 0.0)
     inside = np.clip(radius - np.hypot(dx, dy) + 0.5, 0.0, 1.0)
     return np.asarray(np.round(inside * value), np.uint8)
+
+
+@lru_cache(maxsize=32)
+def _shares(
+    width: int, height: int, radius: int, value: int
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return how much of a card is seen, and of the picture below it, each (height, width)."""
+    cover = rounded(width, height, radius, value).astype(np.float32) / 255.0
+    return cover, 1.0 - cover

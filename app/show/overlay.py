@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,15 @@ from app.show.robot_face import draw_face
 
 HEIGHT = 720.0
 """Height of a picture in design units."""
+
+LEFT, WIDE = 108.0, 160.0
+"""Left end of the bar for speed or intensity on its card, and its length."""
+
+MOODS_LEFT, MOODS_WIDE = 116.0, 176.0
+"""The same of the bar for the robot's mood."""
+
+LEVEL = 70.0
+"""How far below a card's top edge its bar is."""
 
 WORDS = {
     "stand": "Stand",
@@ -55,6 +65,7 @@ def overlay(picture: NDArray[np.uint8], step: Step, robot: RobotView) -> NDArray
     return picture
 
 
+@lru_cache(maxsize=16)
 def _hint(words: str, width: float, scale: float) -> Card:
     wide = text_width(words, 24) + 56
     canvas = Canvas(wide, 48, scale)
@@ -63,60 +74,74 @@ def _hint(words: str, width: float, scale: float) -> Card:
 
 
 def _action(step: Step, scale: float) -> Card:
-    canvas = Canvas(292, 108, scale)
     name = step.outcome.icon
-    color = ACTION.get(name, INK)
-    canvas.disc(54, 54, 38, color)
-    canvas.icon(32, 32, 44, name, PAPER)
-    canvas.text(108, 42, WORDS.get(name, name.title()), 28, INK)
-    if step.command.action == "move" or name in ("stand", "walk", "run"):
-        _speed(canvas, step.command.speed, color)
-    else:
-        _intensity(canvas, step.command.weight, color, name)
+    moves = step.command.action == "move" or name in ("stand", "walk", "run")
+    canvas = _action_blank(name, moves, scale).copy()
+    if moves:
+        _speed(canvas, step.command.speed, ACTION.get(name, INK))
+    elif name != "idle":
+        _intensity(canvas, step.command.weight, ACTION.get(name, INK))
     return canvas.card(24, HEIGHT - 132)
 
 
+@lru_cache(maxsize=16)
+def _action_blank(name: str, moves: bool, scale: float) -> Canvas:
+    """Draw what stays as long as the action does."""
+    canvas = Canvas(292, 108, scale)
+    canvas.disc(54, 54, 38, ACTION.get(name, INK))
+    canvas.icon(32, 32, 44, name, PAPER)
+    canvas.text(108, 42, WORDS.get(name, name.title()), 28, INK)
+    canvas.bar(LEFT, LEVEL, WIDE, 10, RULE)
+    if moves:
+        canvas.text(LEFT, 95, "speed", 15, QUIET)
+    elif name == "idle":
+        canvas.text(LEFT, 95, "resting", 15, QUIET)
+    else:
+        canvas.text(LEFT, 95, "a little", 15, QUIET)
+        canvas.text(LEFT + WIDE, 95, "a lot", 15, QUIET, "right")
+    return canvas
+
+
 def _speed(canvas: Canvas, speed: float, color: Color) -> None:
-    left, wide, y = 108.0, 160.0, 70.0
-    canvas.bar(left, y, wide, 10, RULE)
-    canvas.bar(left, y, max(10.0, wide * min(speed, 5.0) / 5.0), 10, color)
+    canvas.bar(LEFT, LEVEL, max(10.0, WIDE * min(speed, 5.0) / 5.0), 10, color)
     for mark in (0.5, 3.0):
-        canvas.disc(left + wide * mark / 5.0, y, 2.2, PAPER)
-    canvas.text(left, 95, "speed", 15, QUIET)
-    canvas.text(left + wide, 95, f"{speed:.1f}", 15, QUIET, "right")
+        canvas.disc(LEFT + WIDE * mark / 5.0, LEVEL, 2.2, PAPER)
+    canvas.text(LEFT + WIDE, 95, f"{speed:.1f}", 15, QUIET, "right")
 
 
-def _intensity(canvas: Canvas, weight: float, color: Color, name: str) -> None:
-    left, wide, y = 108.0, 160.0, 70.0
-    middle = left + wide / 2
-    canvas.bar(left, y, wide, 10, RULE)
-    if name == "idle":
-        canvas.text(left, 95, "resting", 15, QUIET)
-        return
-    knob = left + 7 + (wide - 14) * (weight + 1) / 2
-    canvas.line([[middle, y], [knob, y]], between(color, PAPER, 0.35), 10)
-    canvas.disc(middle, y, 2.5, QUIET)
-    canvas.disc(knob, y, 11, PAPER)
-    canvas.disc(knob, y, 8.5, color)
-    canvas.text(left, 95, "a little", 15, QUIET)
-    canvas.text(left + wide, 95, "a lot", 15, QUIET, "right")
+def _intensity(canvas: Canvas, weight: float, color: Color) -> None:
+    middle = LEFT + WIDE / 2
+    knob = LEFT + 7 + (WIDE - 14) * (weight + 1) / 2
+    canvas.line([[middle, LEVEL], [knob, LEVEL]], between(color, PAPER, 0.35), 10)
+    canvas.disc(middle, LEVEL, 2.5, QUIET)
+    canvas.disc(knob, LEVEL, 11, PAPER)
+    canvas.disc(knob, LEVEL, 8.5, color)
 
 
 def _robot(robot: RobotView, width: float, scale: float) -> Card:
-    canvas = Canvas(316, 108, scale)
-    mood = robot.mood if math.isfinite(robot.mood) else 0.0
-    draw_face(canvas, 56, 54, 38, mood)
     words = {"none": "no robot", "ready": f"robot is {robot.label}"}.get(
         robot.link, f"robot {robot.link}"
     )
-    canvas.text(112, 42, words, 25, INK)
-    left, wide, y = 116.0, 176.0, 70.0
-    for share in np.linspace(0.0, 1.0, 64):
-        canvas.disc(left + wide * share, y, 5.0, mood_color(2 * share - 1))
-    knob = left + wide * (mood + 1) / 2
-    canvas.disc(knob, y, 12, PAPER)
-    canvas.disc(knob, y, 9.0, INK)
-    for words, share in (("angry", 0.0), ("neutral", 0.5), ("happy", 1.0)):
-        align = {0.0: "left", 0.5: "middle", 1.0: "right"}[share]
-        canvas.text(left + wide * share, 97, words, 14, QUIET, align)
+    canvas = _robot_blank(words, scale).copy()
+    mood = robot.mood if math.isfinite(robot.mood) else 0.0
+    draw_face(canvas, 56, 54, 38, mood)
+    knob = MOODS_LEFT + MOODS_WIDE * (mood + 1) / 2
+    canvas.disc(knob, LEVEL, 12, PAPER)
+    canvas.disc(knob, LEVEL, 9.0, INK)
     return canvas.card(width - 316 - 24, HEIGHT - 132)
+
+
+@lru_cache(maxsize=16)
+def _robot_blank(words: str, scale: float) -> Canvas:
+    """Draw what stays whatever the robot's mood is."""
+    canvas = Canvas(316, 108, scale)
+    canvas.text(112, 42, words, 25, INK)
+    for share in np.linspace(0.0, 1.0, 64):
+        canvas.disc(MOODS_LEFT + MOODS_WIDE * share, LEVEL, 5.0, mood_color(2 * share - 1))
+    for name, share, align in (
+        ("angry", 0.0, "left"),
+        ("neutral", 0.5, "middle"),
+        ("happy", 1.0, "right"),
+    ):
+        canvas.text(MOODS_LEFT + MOODS_WIDE * share, 97, name, 14, QUIET, align)
+    return canvas

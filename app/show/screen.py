@@ -79,7 +79,8 @@ class VideoFile:
         stream = self._file.add_stream("libx264", rate=Fraction(round(rate)), options=QUALITY)
         stream.width, stream.height = (side - side % 2 for side in size)
         stream.pix_fmt = "yuv420p"
-        stream.time_base = Fraction(1, TICKS)
+        # In the encoder too: in steps of 1/rate, two frames of a live camera become one.
+        stream.time_base = stream.codec_context.time_base = Fraction(1, TICKS)
         self._stream = stream
         self._open = True
 

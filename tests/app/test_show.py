@@ -50,6 +50,18 @@ def test_a_video_appears_only_when_it_is_whole(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_a_video_keeps_the_uneven_times_of_a_live_camera(tmp_path):
+    path = tmp_path / "out.mp4"
+    gaps = np.random.default_rng(3).choice([0.001, 0.012, 0.033, 0.034, 0.1, 0.7], 120)
+    times = 5000.0 + np.cumsum(gaps)
+    with VideoFile(path, (64, 48), 30) as video:
+        for time in times:
+            video.write(np.full((48, 64, 3), 90, np.uint8), float(time))
+    with av.open(str(path)) as file:
+        seen = [frame.time for frame in file.decode(video=0)]
+    assert seen == pytest.approx(times - times[0], abs=0.003)
+
+
 def test_a_video_that_fails_leaves_nothing(tmp_path):
     wrong = np.zeros((48, 64), np.uint8)
     with (
