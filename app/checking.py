@@ -9,6 +9,7 @@ from pathlib import Path
 from rich.table import Table
 
 from app.opening import Wish, open_session
+from app.scenarios import Inputs
 from app.session import messages
 from app.session.arrows import ARROWS, encode
 
@@ -50,7 +51,7 @@ def check_session(path: Path, wish: Wish) -> Verdict:
         made = (
             (topic, step.frame.timestamp, encode(arrow))
             for frame in plan.source
-            for step in (plan.playground.step(frame),)
+            for step in (plan.playground.step(frame, Inputs(frame.timestamp in plan.cues)),)
             for topic, arrow in step.arrows().items()
         )
         for old, new in zip_longest(recorded, made):

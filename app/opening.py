@@ -8,8 +8,10 @@ import moderngl
 
 from app.errors import AppError
 from app.playground import Playground
+from app.recorded import recorded_arrows
 from app.runner import Plan
 from app.scenarios import make_scenario, scenario_cube
+from app.session import cues
 from app.show.screen import Nowhere, Screen, VideoFile
 from characters import Character
 from characters.rendering import create_context
@@ -59,6 +61,9 @@ class Wish:
     salvage: bool = False
     """Whether a source that breaks off is simply at its end."""
 
+    start: str = "camera"
+    """From which arrow on a session is replayed: one of `STARTS`."""
+
 
 def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = None) -> Plan:
     """Open all that a session needs; `closing` closes it.
@@ -91,6 +96,8 @@ def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = No
         about=describe(wish, cube, source),
         paced=wish.output is None and wish.pictures,
         salvage=wish.salvage,
+        cues=cues(Path(wish.source)) if wish.source.endswith(".mcap") else frozenset(),
+        given=None if wish.start == "camera" else recorded_arrows(wish.source, wish.start),
     )
 
 

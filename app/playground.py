@@ -1,6 +1,6 @@
 """The whole line for one frame: from a picture of the cube to a picture of the character."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import moderngl
 import numpy as np
@@ -64,6 +64,23 @@ class Step:
         }
 
 
+@dataclass(frozen=True)
+class Given:
+    """Arrows that are known already: a recording replayed from further down the line."""
+
+    state: CubeState | None = None
+    """Where the cube is; None to track it."""
+
+    controls: CubeControls | None = None
+    """What the hand does; None to read it from the state."""
+
+    command: CharacterCommand | None = None
+    """What the character is asked; None to ask the scenario."""
+
+    posed: PosedCharacter | None = None
+    """The character; None to animate it."""
+
+
 class Playground:
     """The line of the design from the camera to the picture, without clock, window or threads.
 
@@ -105,12 +122,26 @@ class Playground:
         self._stage = None if context is None else Stage(context, intrinsics.size)
         self._posed: PosedCharacter | None = None
 
-    def step(self, frame: Frame, inputs: Inputs | None = None) -> Step:
-        """Walk one frame down the line."""
-        state = self.track(frame)
-        controls = self.gesture(state)
+    def step(self, frame: Frame, inputs: Inputs | None = None, given: Given | None = None) -> Step:
+        """Walk one frame down the line.
+
+        Parameters
+        ----------
+        frame
+            The camera's picture.
+        inputs
+            What else the player asked for.
+        given
+            Arrows to take as they are instead of working them out.
+        """
+        given = given or Given()
+        state = given.state or self.track(frame)
+        controls = given.controls or self.gesture(state)
         outcome = self.decide(controls, inputs or Inputs())
-        posed = self.animate(outcome.command)
+        if given.command is not None:
+            outcome = replace(outcome, command=given.command)
+        posed = given.posed or self.animate(outcome.command)
+        self._posed = posed
         picture = self.draw(frame, state, controls, outcome, posed)
         return Step(frame, state, controls, outcome, posed, picture)
 
@@ -128,8 +159,7 @@ class Playground:
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:
         """Fourth arrow: move the character."""
-        self._posed = self._animator.update(command)
-        return self._posed
+        return self._animator.update(command)
 
     def draw(
         self,

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from app.clock import SessionClock
 from app.errors import AppError
-from app.playground import Playground, Step
+from app.playground import Given, Playground, Step
 from app.robots import RobotLine
 from app.scenarios import Inputs
-from app.session import Recorder, preparation
+from app.session import START_OVER, Recorder, preparation
 from app.show.screen import Screen
 from app.summary import Summary
 from robot import RobotError
@@ -52,6 +52,12 @@ class Plan:
     salvage: bool = False
     """Whether a source that breaks off is simply at its end."""
 
+    cues: frozenset[float] = frozenset()
+    """Times of the frames in which the player started over, in a replay [s]."""
+
+    given: Iterator[Given] | None = None
+    """Arrows of a replay that are taken as recorded, a frame at a time."""
+
 
 def run(plan: Plan, progress: Progress | None = None) -> Summary:
     """Play a session to its end, until the player closes it, or until Ctrl-C.
@@ -78,11 +84,16 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
             if tap is not None:
                 tap.align(frame.timestamp - clock())
             began = time.perf_counter()
-            step = plan.playground.step(prepare(frame) if prepare else frame, inputs)
+            if frame.timestamp in plan.cues:
+                inputs = Inputs(clear=True)
+            given = next(plan.given, None) if plan.given is not None else None
+            step = plan.playground.step(prepare(frame) if prepare else frame, inputs, given)
             robot.feel(step.emotion)
             seconds = time.perf_counter() - began
             view = robot.view()
             if recorder is not None:
+                if inputs.clear:
+                    recorder.event(START_OVER, frame.timestamp)
                 _record(recorder, plan.playground.intrinsics, step, first=summary.frames == 0)
             inputs = plan.screen.show(step, view)
             summary.add(step, view, seconds)

@@ -26,6 +26,14 @@ def replay(
     codec: Codec = "jpeg",
     output: Output = None,
     pictures: Pictures = True,
+    start: Annotated[
+        str,
+        typer.Option(
+            "--from",
+            help="Take the recorded channels up to this one: camera (none), state, controls, "
+            "command or pose.",
+        ),
+    ] = "camera",
     salvage: Annotated[
         bool, typer.Option(help="Play what is whole of a session that was cut off.")
     ] = False,
@@ -54,6 +62,7 @@ def replay(
         output=output,
         pictures=drawing,
         salvage=salvage,
+        start=start,
     )
     if check:
         verdict = check_session(session, wish)

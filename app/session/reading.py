@@ -14,6 +14,9 @@ from mcap.stream_reader import StreamReader
 
 from app.errors import AppError
 
+START_OVER = "start over"
+"""The event of a player who starts over: an input, so a replay gives it again."""
+
 MAGIC = b"\x89MCAP0\r\n"
 
 BROKEN = (McapError, EOFError, ValueError, struct.error)
@@ -143,6 +146,11 @@ def messages(path: Path, *topics: str) -> Iterator[tuple[str, float, bytes]]:
                 yield channel.topic, message.log_time / 1e9, message.data
         except BROKEN:
             return
+
+
+def cues(path: Path) -> frozenset[float]:
+    """Return the times of the frames in which the player started over [s]."""
+    return frozenset(time for time, what in events(path) if what == START_OVER)
 
 
 def events(path: Path) -> list[tuple[float, str]]:

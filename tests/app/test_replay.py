@@ -5,12 +5,17 @@ import itertools
 import numpy as np
 import pytest
 
+from app.checking import check_session
 from app.commands.replay import bundled
-from app.opening import fitting
+from app.errors import AppError
+from app.opening import Wish, fitting
 from app.playground import Playground
-from app.scenarios import CUBES
-from app.session import about, messages
+from app.recorded import STARTS, recorded_arrows
+from app.runner import Plan, run
+from app.scenarios import CUBES, Inputs
+from app.session import about, cues, messages
 from app.session.arrows import ARROWS, decode, encode
+from app.show.screen import Nowhere
 from tracking import open_source
 
 SHORT = 240
@@ -39,6 +44,45 @@ def test_a_replay_agrees_with_what_was_recorded(name):
         if old != new:
             one, other = decode(ARROWS[topic], old), decode(ARROWS[topic], new)
             _agree(topic, time, one, other)
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_a_replay_may_start_from_any_arrow(short_session, start):
+    """What comes after the start is worked out again, and comes out the same."""
+    with open_source(str(short_session)) as source:
+        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        given = iter(()) if start == "camera" else recorded_arrows(str(short_session), start)
+        made = [
+            (topic, step.frame.timestamp, encode(arrow))
+            for frame in source
+            for step in (playground.step(frame, given=next(given, None)),)
+            for topic, arrow in step.arrows().items()
+        ]
+    assert made == list(messages(short_session, *ARROWS))
+
+
+def test_a_start_that_is_none_is_refused(short_session):
+    with pytest.raises(AppError, match="choose one of camera"):
+        recorded_arrows(str(short_session), "middle")
+
+
+def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session):
+    class Presses(Nowhere):
+        """Presses C after 20 frames."""
+
+        shown = 0
+
+        def show(self, step, robot):
+            self.shown += 1
+            return Inputs(clear=self.shown == 20)
+
+    path = tmp_path / "cleared.mcap"
+    with open_source(str(short_session)) as source:
+        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        notes = {"scenario": "companion", "cube": "companion"}
+        run(Plan(source, playground, Presses(), record=path, about=notes))
+    assert len(cues(path)) == 1
+    assert check_session(path, Wish("companion", str(path))).identical
 
 
 def _agree(topic, time, one, other):

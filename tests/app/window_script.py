@@ -35,9 +35,10 @@ def main(session: str) -> None:
             window._key(window._window, key, 0, glfw.PRESS, 0)
         assert window.show(step, robot).clear
         assert not window.show(step, robot).clear
-        assert not window.closed
+        quits = [window.closed]
         window._key(window._window, glfw.KEY_ESCAPE, 0, glfw.PRESS, 0)
-        assert window.closed
+        quits.append(window.closed)
+        assert quits == [False, True]
         playground.close()
     window.close()  # again: does nothing
     assert window.closed
