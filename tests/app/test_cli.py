@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from characters import Character
+from app import doctor
+from characters import Character, CharacterError
 
 COMMANDS = [
     ["demo"],
@@ -142,6 +143,18 @@ def test_the_doctor_says_what_is_there(cubeling):
     assert code == 0
     for name in ("Python", "OpenCV", "drawing", "recordings", "display"):
         assert name in out
+
+
+def test_the_doctor_names_a_missing_driver_and_its_remedy(cubeling, monkeypatch):
+    def fail():
+        raise CharacterError("cannot draw: the library libEGL is missing")
+
+    monkeypatch.setattr(doctor, "create_context", fail)
+    monkeypatch.setattr("shutil.which", lambda tool: f"/usr/bin/{tool}")
+    code, out, _ = cubeling("doctor", "--no-cameras")
+    assert code == 2
+    assert "libEGL is missing" in out
+    assert "apt-get install -y libegl1" in out
 
 
 def test_a_cube_sheet_is_written(cubeling):
