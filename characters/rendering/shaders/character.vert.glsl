@@ -1,13 +1,16 @@
 #version 330 core
 
 uniform mat4 clip_from_table;
+uniform vec3 eye;           // in the table frame
+uniform float height;       // of the character [m]
 
 in vec3 position;
 in vec3 normal;
 in vec3 color;
 in vec2 uv;
 
-out vec3 place;
+out vec3 toward;            // the eye; triangles are small, so it stays a unit vector
+out float above;            // the ground, as a share of what is near it
 out vec3 facing;
 out vec3 tint;
 #ifdef TEXTURED
@@ -15,7 +18,8 @@ out vec2 where;
 #endif
 
 void main() {
-    place = position;
+    toward = normalize(eye - position);
+    above = position.y / (0.28 * height);
     facing = normal;
     tint = color;
 #ifdef TEXTURED
