@@ -33,8 +33,8 @@ Image = NDArray[np.uint8]
 class Room:
     """What one part of the picture shows, without the characters."""
 
-    clip_from_camera: Array
-    """The camera of this part, (4, 4)."""
+    matrix: Array
+    """Pinhole matrix of the picture, (3, 3) [px]."""
 
     camera_from_table: Array
     """The table, (4, 4)."""
@@ -179,7 +179,7 @@ class Stage:
         patches = [widened(picture[part.rows_and_columns]) for part, _ in jobs]
         for (part, inside), patch in zip(jobs, patches, strict=True):
             room = Room(
-                clip_from_camera(matrix, part),
+                matrix,
                 np.asarray(table, float),
                 [cube for cube in cubes if cube[1].meets(part)],
                 Outlines.of([box for box, place in cubes if place.meets(part)], matrix, part),
@@ -197,7 +197,7 @@ class Stage:
     ) -> Target:
         """Draw marks and shadows on the picture, then the figures, then these over it."""
         context, light = self._context, room.light
-        clip_from_table = room.clip_from_camera @ room.camera_from_table
+        clip_from_table = clip_from_camera(room.matrix, part) @ room.camera_from_table
         target = self._targets.at_least(part.width, part.height)
         target.lay(patch)
         target.result.use()
@@ -210,17 +210,22 @@ class Stage:
         for cast in casts if figures else ():
             cast.shadow.draw(clip_from_table, room.outlines)
         if figures is not None:
-            inside = figures.seen_from(part)
-            target.figures.use()
-            target.figures.viewport = (0, 0, FINER * part.width, FINER * part.height)
-            target.figures.clear(viewport=inside.scaled(FINER).sides)
-            before = [box for box, place in room.cubes if place.meets(figures)]
-            self._cubes.hide(before, room.clip_from_camera)
-            eye = np.asarray(np.linalg.inv(room.camera_from_table)[:3, 3], float)
-            self._figures.draw(casts, clip_from_table, eye, light)
-            target.combine(inside)
+            fine = self._draw_figures(figures, room, casts)
+            target.combine(fine, figures.seen_from(part))
         context.front_face = "ccw"  # as others expect it
         return target
+
+    def _draw_figures(self, part: Rectangle, room: Room, casts: Sequence[Cast]) -> Target:
+        """Draw the figures in a part of the picture, on nothing."""
+        fine = self._targets.at_least(part.width, part.height)
+        fine.figures.use()
+        fine.figures.viewport = (0, 0, FINER * part.width, FINER * part.height)
+        fine.figures.clear()
+        clip = clip_from_camera(room.matrix, part)
+        self._cubes.hide([box for box, place in room.cubes if place.meets(part)], clip)
+        eye = np.asarray(np.linalg.inv(room.camera_from_table)[:3, 3], float)
+        self._figures.draw(casts, clip @ room.camera_from_table, eye, room.light)
+        return fine
 
     def _show(
         self,

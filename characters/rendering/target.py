@@ -7,7 +7,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.programs import Programs
+from characters.rendering.programs import Programs, assign
 from characters.rendering.view import Rectangle
 
 Image = NDArray[np.uint8]
@@ -59,13 +59,22 @@ class Target:
         """Take a part of the camera's picture, (height, width, 4), its first row first."""
         self.picture.write(patch, viewport=(0, 0, patch.shape[1], patch.shape[0]))
 
-    def combine(self, figures: Rectangle) -> None:
-        """Lay the figures over the picture, in the part of the target where there are some."""
+    def combine(self, fine: "Target", place: Rectangle) -> None:
+        """Lay the figures of some target over the picture of this one.
+
+        Parameters
+        ----------
+        fine
+            Its figures start in its first texel; this target itself, or another.
+        place
+            Where they belong in this target.
+        """
         self.result.use()
-        self.result.viewport = figures.sides
+        self.result.viewport = place.sides
         self._context.enable_only(moderngl.BLEND)
         self._context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
-        self._figures.use(0)
+        assign(self._over.program, corner=(place.x, place.y))
+        fine._figures.use(0)
         self._over.render(moderngl.TRIANGLES, vertices=3)
 
     def release(self) -> None:

@@ -116,11 +116,6 @@ class Rectangle:
         """Left column, top row, columns and rows."""
         return self.x, self.y, self.width, self.height
 
-    def scaled(self, factor: int) -> "Rectangle":
-        """Return the same rectangle where pixels are that many times finer."""
-        x, y, width, height = self.sides
-        return Rectangle(factor * x, factor * y, factor * width, factor * height)
-
     def seen_from(self, other: "Rectangle") -> "Rectangle":
         """Return the same rectangle with rows and columns counted from another's corner."""
         return Rectangle(self.x - other.x, self.y - other.y, self.width, self.height)
