@@ -41,6 +41,9 @@ class EdgeModel:
     face: NDArray[np.intp]
     """Number of the face in `CubeModel.faces`, (N,)."""
 
+    line: NDArray[np.intp]
+    """Number of the straight line that the edge lies on, white on one and the same side, (N,)."""
+
     normals: Array
     """Outward normals of the cube's faces, (faces, 3)."""
 
@@ -57,7 +60,11 @@ class EdgeModel:
         numbers = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
         normals = np.stack([face.normal for face in cube.faces])
         centres = np.stack([face.corners.mean(axis=0) for face in cube.faces])
-        return cls(points, along, across, to_end, outline > 0, numbers, normals, centres)
+        # In one face a line is told by the way to its white side and how far out it lies that way.
+        places = np.einsum("ij,ij->i", points, across)
+        keys = np.column_stack([numbers, np.round(np.column_stack([across, places]), 9)])
+        line = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
+        return cls(points, along, across, to_end, outline > 0, numbers, line, normals, centres)
 
 
 def marker_cells(dictionary: str, marker_id: int) -> NDArray[np.bool_]:

@@ -44,6 +44,9 @@ BLOOM = 0.3
 MODEL_ERROR = 0.04
 """Error of a single edge place that does not come from noise [px]: neighbouring cells, sampling."""
 
+SHARED_ERROR = 0.025
+"""The part of it that all points of a line have in common if they lie alike on the pixels [px]."""
+
 WIDE, PRECISE = 5.0, (2.0, 1.0, 1.0)
 """Widths of the step that is fitted [px] in the wide search, and in the steps of Gauss-Newton."""
 
@@ -188,12 +191,15 @@ class EdgeRefiner:
         if used < FEWEST:
             return None
         chi = float((weights * residual**2).sum()) / max(1.0, float(robust.sum()) - 7)
-        covariance = np.linalg.inv(normal)[:6, :6] * max(chi, 0.25)
+        inverse = np.linalg.inv(normal)
+        found = profiles.numbers[strong]
+        scores = self._shared_scores(rows * weights[:, None], profiles.pixels[strong], found)
+        shared = (scores @ inverse)[:, :6] * SHARED_ERROR
         support = used / len(profiles.numbers)
         # What covers some edges, a finger and its shadow, disturbs those that it leaves.
-        covariance *= OPTIMISM / support**2
+        covariance = inverse[:6, :6] * (max(chi, 0.25) * OPTIMISM / support**2) + shared.T @ shared
         spread = float(np.sqrt((robust * residual**2).sum() / robust.sum()))
-        found = profiles.numbers[strong][kept]
+        found = found[kept]
         return Refinement(
             se3.moved(current, solution[:6]),
             (covariance + covariance.T) / 2,
@@ -203,6 +209,20 @@ class EdgeRefiner:
             self._inner(profiles, found),
             self._shares(profiles, found),
         )
+
+    def _shared_scores(self, weighted: Array, pixels: Array, numbers: NDArray[np.intp]) -> Array:
+        """Pull of each line whose points all err alike, (lines, 7).
+
+        The error of an edge place goes with where it lies between two pixels. Along a slanted line
+        that changes from point to point and averages out; along one that runs with the rows or
+        columns it is the same everywhere, invisible to the residuals if the pose can take it up.
+        """
+        lines = self._model.line[numbers]
+        on_line = (lines == np.unique(lines)[:, None]).astype(np.float64)
+        phases = 2 * np.pi * pixels
+        means = np.hypot(on_line @ np.cos(phases), on_line @ np.sin(phases))
+        alike = means.max(axis=1, keepdims=True) / on_line.sum(axis=1, keepdims=True)
+        return np.asarray(alike * (on_line @ weighted), np.float64)
 
     def _inner(self, profiles: _Profiles, found: NDArray[np.intp]) -> float:
         wanted = int(np.count_nonzero(~self._model.outline[profiles.numbers]))

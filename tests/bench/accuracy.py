@@ -16,7 +16,15 @@ from tracking.state import CubeState
 from tracking.synthetic import SyntheticSource, open_synthetic
 from tracking.tracker import CubeTracker
 
-SCENES = ("poses", "static", "fingers", "sweep?speed=0.25", "sweep?speed=0.5")
+SCENES = (
+    "poses",
+    "static",
+    "fingers",
+    "follow",
+    "companion",
+    "sweep?speed=0.25",
+    "sweep?speed=0.5",
+)
 WRONG = (0.020, np.deg2rad(10))
 """A pose further off than this [m, rad] is silently wrong: given out as if it were right."""
 
