@@ -50,7 +50,7 @@ class ClosedPath:
         return float(self._starts[leg] + shares[leg] * self._lengths[leg])
 
     def ahead(self, position: Array, distance: float) -> Array:
-        """Return the point (2,) to head for from `position`, `distance` metres away where it can be.
+        """Return the point (2,) to head for from `position`, `distance` metres away if it can be.
 
         The point only ever moves forwards, so a path that crosses itself is walked in its order.
         """

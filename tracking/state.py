@@ -33,13 +33,13 @@ class CubeState:
     """Names of the faces whose markers were used."""
 
     reprojection_error: float
-    """Root mean square distance of the corners from where the pose puts them [px]; NaN if no pose."""
+    """Root mean square distance of the corners from where the pose puts them [px]; NaN if none."""
 
     timestamp: float
     """That of the frame [s]."""
 
     refused: str = ""
-    """Why a pose that was seen was not trusted, "ambiguous", "mirror" …; "" where none was refused."""
+    """Why a pose was not trusted: "ambiguous", "blurred", "jump"; "" where none was refused."""
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,8 @@ class CubeControls:
     """Whether a face lies on the table and the cube does not travel; it may turn on the spot."""
 
     placed: bool
-    """True in the one frame in which the cube came to rest after it was lifted or tipped to another face,
-    and in the first frame in which it rests at all."""
+    """True in the one frame in which the cube came to rest after it was lifted or tipped to another
+    face, and in the first frame in which it rests at all."""
 
     lifted: bool
     """Whether the cube is off the table or tipped on its way to another face."""
