@@ -20,9 +20,9 @@ from tracking import CubeModel, open_source, write_sheet
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
 
 MOMENTS: dict[str, dict[str, float]] = {
-    "companion": {"kiss": 14.0, "shout": 26.0},
-    "follow": {"walk": 9.0, "run": 16.0},
-    "sketch": {"path": 24.0},
+    "companion": {"kiss": 12.2, "shout": 27.3},
+    "follow": {"walk": 6.2, "run": 12.6},
+    "sketch": {"path": 22.6},
 }
 """For every recording, the pictures taken from it and when [s]."""
 
