@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import Self
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.cube import CubeModel, Face, aruco_dictionary
+from tracking.cube import CubeModel, Face
+from tracking.marker import marker_cells
 
 Array = NDArray[np.float64]
 
@@ -67,15 +67,9 @@ class EdgeModel:
         return cls(points, along, across, to_end, outline > 0, numbers, line, normals, centres)
 
 
-def marker_cells(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
-    """Cells of a marker with its black border, (n + 2, n + 2), True where white."""
-    markers = aruco_dictionary(dictionary)
-    cells = markers.markerSize + 2
-    return np.asarray(cv2.aruco.generateImageMarker(markers, marker_id, cells, borderBits=1)) > 127
-
-
 def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, ...]:
-    cells = np.pad(marker_cells(cube.dictionary, face.marker_id), 1, constant_values=True)
+    white = ~marker_cells(cube.dictionary, face.marker_id)
+    cells = np.pad(white, 1, constant_values=True)
     count = len(cells) - 2
     # Upright edges (between columns), then level ones (between rows), in units of cells from the
     # top-left.

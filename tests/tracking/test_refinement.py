@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from tracking import se3
 from tracking.cube import CubeModel
-from tracking.edges import EdgeModel, marker_cells
+from tracking.edges import EdgeModel
+from tracking.marker import marker_cells
 from tracking.projection import Projection
 from tracking.refinement import EdgeRefiner, bilinear
 from tracking.synthetic import open_synthetic
@@ -29,7 +30,7 @@ def test_edges_lie_between_black_and_white() -> None:
     cube = CubeModel.load("companion")
     model = EdgeModel.of(cube)
     for number, face in enumerate(cube.faces):
-        cells = np.pad(marker_cells(cube.dictionary, face.marker_id), 1, constant_values=True)
+        cells = np.pad(~marker_cells(cube.dictionary, face.marker_id), 1, constant_values=True)
         side = len(cells) - 2
         axes = np.stack([face.corners[1] - face.corners[0], face.corners[3] - face.corners[0]])
         of_face = model.face == number

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 
 from tracking import se3
 from tracking.cube import CubeModel, Face, aruco_dictionary
-from tracking.edges import marker_cells
 from tracking.errors import TrackingError
 from tracking.frame import Frame
 from tracking.gestures import CubeGestures
 from tracking.intrinsics import Intrinsics
+from tracking.marker import marker_cells
 from tracking.state import CubeState
 from tracking.synthetic import open_synthetic
 from tracking.table import DIRECTIONS
@@ -41,7 +41,7 @@ def tilted(x: float = 0.5, y: float = 0.6, z: float = 0.1, at: tuple[float, ...]
 
 def paste(canvas: Picture, face: Face, pose: Array, half: float) -> None:
     """Draw one face with its white paper, for a camera without distortion."""
-    cells = np.pad(marker_cells(CUBE.dictionary, face.marker_id), 1, constant_values=True)
+    cells = np.pad(~marker_cells(CUBE.dictionary, face.marker_id), 1, constant_values=True)
     right = (face.corners[1] - face.corners[0]) / CUBE.marker_size
     down = (face.corners[3] - face.corners[0]) / CUBE.marker_size
     centre = face.corners.mean(axis=0)
