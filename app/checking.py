@@ -45,7 +45,7 @@ def check_session(path: Path, wish: Wish) -> Verdict:
     """Walk a session's frames down the line again and compare every arrow with the recorded one."""
     verdict = Verdict()
     wish = replace(wish, pictures=False, robot="none", record=None, output=None)
-    recorded = ((topic, time, data) for topic, time, data in messages(path, *ARROWS))
+    recorded = messages(path, *ARROWS)
     with ExitStack() as closing:
         plan = open_session(wish, closing)
         made = (

@@ -141,6 +141,7 @@ def describe(wish: Wish, cube: CubeModel, source: FrameSource) -> dict[str, str]
     return {
         "scenario": wish.scenario,
         "cube": wish.cube or cube.name,
+        "character": wish.character or "",
         "speed_map": wish.speed_map,
         "turns": f"{wish.turns:g}",
         "source": wish.source.split("://")[0] if "://" in wish.source else Path(wish.source).name,

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from app.commands.play import CAMERA
 from app.commands.progress import finished_video, play_to_end
 from app.commands.replay import bundled
 from app.opening import Wish, open_session
@@ -14,7 +15,6 @@ from app.scenarios import scenario_cube
 from app.show.display import has_display
 from tracking import FrameSource, TrackingError, open_source
 
-CAMERA = "camera:0"
 VIDEO = Path("demo.mp4")
 
 

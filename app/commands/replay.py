@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from app.checking import check_session
-from app.commands.play import Codec, Output, Pictures, Record, RobotUrl
+from app.commands.play import Actor, Codec, Output, Pictures, Record, RobotUrl
 from app.commands.progress import finished_video, play_to_end
 from app.errors import AppError
 from app.opening import Wish, open_session
@@ -21,6 +21,7 @@ def replay(
         Path, typer.Argument(help="A session recorded with --record, or a bundled one.")
     ],
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
+    character: Actor = None,
     robot: RobotUrl = "sim",
     record: Record = None,
     codec: Codec = "jpeg",
@@ -54,6 +55,7 @@ def replay(
         scenario or told.scenario,
         str(session),
         cube=told.cube or None,
+        character=character or told.character or None,
         speed_map=told.speed_map,
         turns=told.turns,
         robot=robot,

@@ -33,6 +33,9 @@ class About:
     cube: str
     """Name of the cube."""
 
+    character: str
+    """Name or file of the character; "" for the scenario's own."""
+
     speed_map: str
     """The Speed map that was in use."""
 
@@ -81,6 +84,7 @@ def _about(path: Path, frames: int, seconds: float) -> About:
     return About(
         notes["scenario"],
         notes.get("cube", ""),
+        notes.get("character", ""),
         notes.get("speed_map", "corrected"),
         float(notes.get("turns", "2")),
         frames,
@@ -108,11 +112,7 @@ def _notes(path: Path) -> dict[str, str]:
 def whole(path: Path) -> None:
     """Refuse a file that is no session or was cut off, in one line."""
     _begins_well(path)
-    with path.open("rb") as file:
-        size = file.seek(0, os.SEEK_END)
-        file.seek(-len(MAGIC), os.SEEK_END)
-        end = file.read()
-    if end == MAGIC and size > len(MAGIC):
+    if _ends_well(path):
         return
     times = [time for _, time, _ in messages(path, "/camera/image")]
     seconds = times[-1] - times[0] if times else 0.0
@@ -132,13 +132,23 @@ def _begins_well(path: Path) -> None:
         raise AppError(f"'{path}' is not a session: it does not begin as an .mcap file does")
 
 
+def _ends_well(path: Path) -> bool:
+    """Whether a file that begins well was written to its end."""
+    with path.open("rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(-min(size, len(MAGIC)), os.SEEK_END)
+        return file.read() == MAGIC and size > len(MAGIC)
+
+
 def messages(path: Path, *topics: str) -> Iterator[tuple[str, float, bytes]]:
     """Yield (topic, timestamp [s], bytes) in the order of the file, for some topics or all.
 
     A file that was cut off gives what is whole, without complaint.
     """
     with path.open("rb") as file:
-        reader = NonSeekingReader(file, validate_crcs=True)
+        # The index of a whole session leads straight to the chunks that hold a topic.
+        kind = SeekingReader if _ends_well(path) else NonSeekingReader
+        reader = kind(file, validate_crcs=True)
         try:
             for _, channel, message in reader.iter_messages(
                 topics=topics or None, log_time_order=False

@@ -110,3 +110,13 @@ def test_bundled_recordings_are_small_and_whole(name):
 def test_the_cube_is_found_in_nearly_every_frame(name):
     states = [decode(ARROWS[t], data) for t, _, data in messages(bundled(name), "/cube/state")]
     assert np.mean([state.visible for state in states]) > 0.97
+
+
+def test_a_replay_takes_the_character_that_was_recorded(cubeling, short_session, tmp_path):
+    code, _, err = cubeling(
+        "replay", short_session, "--character", "human", "--no-pictures", "--record", "human.mcap"
+    )
+    assert (code, err) == (0, "")
+    assert about(tmp_path / "human.mcap").character == "human"
+    code, _, err = cubeling("replay", "human.mcap", "--check")
+    assert (code, err) == (0, "")
