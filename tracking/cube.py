@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.errors import TrackingError
+from tracking.folded import measured_corners
 from tracking.icons import INK
 
 FACE_AXES: dict[str, tuple[tuple[int, int, int], tuple[int, int, int]]] = {
@@ -40,7 +41,8 @@ class Face:
     corners: NDArray[np.float64]
     """Corners of the black square in the cube frame, (4, 3) in metres.
 
-    Top-left, top-right, bottom-right, bottom-left of the marker, seen from outside.
+    Top-left, top-right, bottom-right, bottom-left of the marker, seen from outside: where they
+    should be, or where `cubeling calibrate` found them on the cube as it was folded (`corners_mm`).
     """
 
     role: str = ""
@@ -54,9 +56,14 @@ class Face:
 
     @property
     def normal(self) -> NDArray[np.float64]:
-        """Outward unit normal in the cube frame, (3,)."""
+        """Outward unit normal in the cube frame, (3,); that of the corners where they are askew."""
         right, up = FACE_AXES[self.name]
-        return np.cross(right, up).astype(np.float64)
+        square = np.cross(right, up).astype(np.float64)
+        first, second = self.corners[2] - self.corners[0], self.corners[1] - self.corners[3]
+        normal = np.cross(first, second)
+        normal /= np.linalg.norm(normal)
+        # An axis to the last bit, or recorded sessions would replay in other bits.
+        return square if np.abs(normal - square).max() < 1e-9 else normal
 
 
 @dataclass(frozen=True)
@@ -249,4 +256,6 @@ def _face(table: object, marker: float, edge: float, where: str) -> Face:
     if icon and icon not in INK:
         raise TrackingError(f"{of_face} has the icon '{icon}'; use one of {', '.join(INK)}")
     corners = face_corners(name, int(roll), marker, edge)
+    if "corners_mm" in table:
+        corners = measured_corners(table["corners_mm"], corners, marker, of_face)
     return Face(name, marker_id, corners, role, icon, int(roll))

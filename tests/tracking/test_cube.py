@@ -1,6 +1,7 @@
 """A cube file is read exactly or refused in one line."""
 
 import contextlib
+import dataclasses
 import math
 
 import numpy as np
@@ -8,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking import CubeModel, TrackingError
+from tracking import CubeModel, TrackingError, se3
 from tracking.cube import FACE_AXES, bundled, face_corners
+from tracking.cube_file import write_cube
 from tracking.marker import marker_cells
 
 GOOD = """
@@ -189,3 +191,70 @@ def assert_printable(cube):
     assert len(set(ids)) == len(ids) > 0
     for face in cube.faces:
         assert np.isfinite(face.corners).all()
+
+
+def folded(cube, turn, shift):
+    """The cube with each face a little off: turned about its centre and shifted."""
+    faces = []
+    for number, face in enumerate(cube.faces):
+        centre = face.corners.mean(axis=0)
+        turned = (face.corners - centre) @ se3.rotation(turn * (1 + number)).T
+        faces.append(dataclasses.replace(face, corners=turned + centre + shift))
+    return dataclasses.replace(cube, faces=tuple(faces))
+
+
+@given(st.tuples(*[st.floats(-0.004, 0.004)] * 3), st.tuples(*[st.floats(-0.001, 0.001)] * 3))
+def test_a_measured_cube_is_read_back_to_a_ten_thousandth_of_a_millimetre(
+    tmp_path_factory, turn, shift
+):
+    cube = folded(CubeModel.load("companion"), np.array(turn), np.array(shift))
+    path = tmp_path_factory.getbasetemp() / "measured.toml"
+    write_cube(cube, path)
+    again = CubeModel.load(path)
+    for old, new in zip(cube.faces, again.faces, strict=True):
+        np.testing.assert_allclose(new.corners, old.corners, atol=1e-7)
+        assert dataclasses.replace(new, corners=old.corners) == old
+        edges = new.corners[1:3] - new.corners[0]
+        assert np.abs(edges @ new.normal).max() < 2e-7
+        assert np.linalg.norm(new.normal) == pytest.approx(1)
+    assert (again.name, again.hint, again.dictionary) == (cube.name, cube.hint, cube.dictionary)
+    assert (again.edge, again.marker_size) == (cube.edge, cube.marker_size)
+
+
+def test_a_perfect_cube_is_written_without_measured_corners_and_read_back_to_the_last_bit(tmp_path):
+    path = tmp_path / "cube.toml"
+    cube = CubeModel.load("locomotion")
+    write_cube(cube, path)
+    assert "corners_mm" not in path.read_text(encoding="utf-8")
+    for old, new in zip(cube.faces, CubeModel.load(path).faces, strict=True):
+        np.testing.assert_array_equal(new.corners, old.corners)
+        right, up = FACE_AXES[new.name]
+        np.testing.assert_array_equal(new.normal, np.cross(right, up))
+
+
+SQUARE = "[[-22.5, 22.5, 30], [22.5, 22.5, 30], [22.5, -22.5, 30], [-22.5, -22.5, 30]]"
+
+
+@pytest.mark.parametrize(
+    ("corners", "words"),
+    [
+        ("[[1, 2, 3]]", "4 corners of 3 numbers"),
+        ('"none"', "4 corners of 3 numbers"),
+        (SQUARE.replace("30]]", "nan]]"), "4 corners of 3 numbers"),
+        (SQUARE.replace("22.5", "21.5"), "no square of 45 mm"),
+        (SQUARE.replace("[[-22.5, 22.5, 30]", "[[-22.5, 22.5, 32]"), "no square of 45 mm"),
+        (SQUARE.replace("30", "-30"), "60.0 mm from where the marker should be"),
+    ],
+)
+def test_measured_corners_that_are_not_the_marker_are_refused(tmp_path, corners, words):
+    text = GOOD.replace("marker_id = 3", f"marker_id = 3\ncorners_mm = {corners}")
+    assert words in refusal(tmp_path, text)
+
+
+def test_a_cube_is_written_to_a_toml_file_or_not_at_all(tmp_path):
+    cube = CubeModel.load("companion")
+    with pytest.raises(TrackingError, match=r"\.toml file, not in"):
+        write_cube(cube, tmp_path / "cube.yaml")
+    with pytest.raises(TrackingError, match="cannot write the cube"):
+        write_cube(cube, tmp_path / "none" / "cube.toml")
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,58 @@
+"""Where the markers of a hand-folded cube really are: `corners_mm` in its file."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.errors import TrackingError
+
+Corners = NDArray[np.float64]
+
+UNEVEN = 0.02
+"""A marker is a square to this share of its side."""
+
+ASTRAY = 0.15
+"""No corner of a face that is where it belongs is further off than this share of its side."""
+
+
+def measured_corners(value: object, ideal: Corners, marker: float, of_face: str) -> Corners:
+    """Read the corners that `write_cube` wrote.
+
+    Parameters
+    ----------
+    value
+        What stands in the file: 4 corners of 3 numbers [mm].
+    ideal
+        Where the corners should be, (4, 3) [m].
+    marker
+        Side of the black square [m].
+    of_face
+        Names file and face in errors.
+
+    Returns
+    -------
+    Corners in the cube frame, (4, 3) [m].
+
+    Raises
+    ------
+    TrackingError
+        They are no corners of such a square near its place.
+    """
+    try:
+        corners = np.array(value, np.float64) / 1000
+    except (TypeError, ValueError):
+        corners = np.empty(0)
+    if corners.shape != (4, 3) or not np.isfinite(corners).all():
+        raise TrackingError(f"{of_face} needs 4 corners of 3 numbers each as corners_mm")
+    spans, right = (np.linalg.norm(c[:, None] - c, axis=2) for c in (corners, ideal))
+    warp = np.linalg.norm(corners[0] - corners[1] + corners[2] - corners[3])
+    if max(np.abs(spans - right).max(), warp) > UNEVEN * marker:
+        raise TrackingError(
+            f"{of_face}: corners_mm are those of no square of {marker * 1000:g} mm, the marker_mm"
+        )
+    away = float(np.linalg.norm(corners - ideal, axis=1).max())
+    if away > ASTRAY * marker:
+        raise TrackingError(
+            f"{of_face}: corners_mm lie {away * 1000:.1f} mm from where the marker should be; "
+            "check their order (top-left, top-right, bottom-right, bottom-left) and roll_deg"
+        )
+    return corners
