@@ -8,7 +8,7 @@ endif
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := demo
-.PHONY: demo test check bench recordings assets pictures clean
+.PHONY: demo test check bench bench-tracking recordings assets pictures clean
 
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
@@ -27,6 +27,9 @@ bench: .venv/ready-dev  ## every figure that the documents name
 	$(BIN)/python -m tests.bench.animation
 	$(BIN)/python -m tests.bench.picture
 	$(BIN)/python -m tests.bench.wire
+
+bench-tracking: .venv/ready-dev  ## the cube's tracker and its rivals, on the same frames
+	$(BIN)/python -m tests.bench.tracking --readme tracking/README.md
 
 recordings: .venv/ready-dev  ## draw the bundled recordings anew
 	$(BIN)/python -m app.recordings

@@ -1,0 +1,139 @@
+"""The bar that Cubeling sets itself, and whether the figures hold it."""
+
+from collections.abc import Callable, Iterator
+from collections.abc import Sequence as Rows
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.bench.tracking.scoring import Score
+from tests.bench.tracking.table import OURS, angle, length, number, of, ratio, share
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One target, and what was measured."""
+
+    target: str
+    """What is to be reached."""
+
+    measured: str
+    """The worst that was measured, and where."""
+
+    miss: str | None
+    """By how much it is missed; "" where it holds, None where nothing was measured."""
+
+    def __str__(self) -> str:
+        """Say it in one line."""
+        if self.miss is None:
+            return f"not measured         {self.target}"
+        verdict = f"misses by {self.miss}" if self.miss else "holds"
+        return f"{verdict:<21}{self.target}: {self.measured}"
+
+
+def verdicts(scores: Rows[Score]) -> Iterator[Verdict]:
+    """Judge every target of the bar."""
+    ours = [score for score in scores if score.tracker == OURS]
+    fast = [score for score in ours if score.sequence == "sweep-1.0"]
+    moving = [score for score in ours if score.sequence not in ("static", "poses", "sweep-1.0")]
+    yield _at_least("recall ≥ 98 %", [s for s in ours if s not in fast], 0.98)
+    yield _at_least("recall at 1 m/s ≥ 90 %", fast, 0.90)
+    yield _never_wrong(ours)
+    yield from _sharp([score for score in ours if score.sequence == "poses"])
+    rest = [score for score in ours if score.sequence == "static"]
+    yield _at_most("rest jitter ≤ 0.03 mm", rest, lambda s: s.jitter[0], 0.03e-3, _mm)
+    yield _at_most("rest jitter ≤ 0.02°", rest, lambda s: s.jitter[1], np.deg2rad(0.02), _degrees)
+    followed = [score for score in ours if score.sequence != "poses"]
+    yield _at_most(
+        "time ÷ full-frame cv2 SUBPIX ≤ 0.5, followed", followed, lambda s: ratio(scores, s), 0.5
+    )
+    yield _at_most(
+        "time ÷ full-frame cv2 SUBPIX ≤ 0.5, each pose found anew",
+        [score for score in ours if score.sequence == "poses"],
+        lambda s: ratio(scores, s),
+        0.5,
+    )
+    yield _constant(ours)
+    yield _honest(ours)
+    yield _at_most("50 ms ahead ≤ 4 mm", moving, lambda s: s.predicted, 4e-3, _mm)
+    yield _at_most("50 ms ahead at 1 m/s ≤ 4 mm", fast, lambda s: s.predicted, 4e-3, _mm)
+
+
+def _at_least(target: str, scores: Rows[Score], bound: float) -> Verdict:
+    below = sorted((s for s in scores if s.seen), key=lambda s: s.recall)
+    if not below:
+        return Verdict(target, "", None)
+    missing = [s for s in below if s.recall < bound] or below[:1]
+    said = ", ".join(f"{s.sequence} {share(s.recall)} %" for s in missing)
+    lack = 100 * (bound - below[0].recall)
+    return Verdict(target, said, f"{lack:.1f} points" if lack > 0 else "")
+
+
+def _at_most(
+    target: str,
+    scores: Rows[Score],
+    value: Callable[[Score], float],
+    bound: float,
+    written: Callable[[float], str] = lambda value: number(value, 2),
+) -> Verdict:
+    known = sorted(((value(s), s.sequence) for s in scores if not np.isnan(value(s))), reverse=True)
+    if not known:
+        return Verdict(target, "", None)
+    missing = [each for each in known if each[0] > bound] or known[:1]
+    said = ", ".join(f"{name} {written(worst)}" for worst, name in missing)
+    return Verdict(target, said, _excess(known[0][0], bound))
+
+
+def _never_wrong(ours: Rows[Score]) -> Verdict:
+    wrong, frames = sum(s.wrong for s in ours), sum(s.frames for s in ours)
+    where = ", ".join(f"{s.sequence} {s.wrong}" for s in ours if s.wrong)
+    said = f"{wrong} of {frames} frames" + (f" ({where})" if where else "")
+    if not frames:
+        return Verdict("silently wrong 0", "", None)
+    return Verdict("silently wrong 0", said, f"{wrong} frames" if wrong else "")
+
+
+def _sharp(poses: Rows[Score]) -> Iterator[Verdict]:
+    for which, name, millimetres, degrees in ((0, "median", 0.2, 0.05), (1, "95 %", 0.6, 0.15)):
+        target = f"sharp cube, {name} ≤ {millimetres} mm"
+        yield _at_most(target, poses, lambda s, i=which: s.shift[i], millimetres / 1000, _mm)  # type: ignore[misc]
+        target = f"sharp cube, {name} ≤ {degrees}°"
+        yield _at_most(target, poses, lambda s, i=which: s.turn[i], np.deg2rad(degrees), _degrees)  # type: ignore[misc]
+
+
+def _constant(ours: Rows[Score]) -> Verdict:
+    target = "time in darkness within 30 % of that in light"
+    dark, light = of(ours, "darkness", OURS), of(ours, LIGHT, OURS)
+    if dark is None or light is None:
+        return Verdict(target, "", None)
+    change = dark.milliseconds / light.milliseconds - 1
+    return Verdict(target, f"{change:+.0%}", _excess(abs(change), 0.3))
+
+
+LIGHT = "static"
+"""The sequence that differs from "darkness" by its light alone."""
+
+
+def _honest(ours: Rows[Score]) -> Verdict:
+    """Judge the covariance over all frames together, and name the sequences outside the band."""
+    target = "stated 95 % region holds the truth in 90 to 98 %"
+    known = [s for s in ours if not np.isnan(s.inside)]
+    if not known:
+        return Verdict(target, "", None)
+    whole = sum(s.inside * s.given for s in known) / sum(s.given for s in known)
+    outside = [f"{s.sequence} {share(s.inside)}" for s in known if not 0.90 <= s.inside <= 0.98]
+    said = f"{share(whole)} % of all" + (f"; outside: {', '.join(outside)}" if outside else "")
+    lack = 100 * max(0.90 - whole, whole - 0.98)
+    return Verdict(target, said, f"{lack:.1f} points" if lack > 0 else "")
+
+
+def _excess(value: float, bound: float) -> str:
+    return f"{value / bound - 1:.0%}" if value > bound else ""
+
+
+def _mm(metres: float) -> str:
+    return f"{length(metres)} mm"
+
+
+def _degrees(radians: float) -> str:
+    return f"{angle(radians)}°"

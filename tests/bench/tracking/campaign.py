@@ -1,0 +1,178 @@
+"""Looks for silently wrong poses of Cubeling in many frames of many seeds.
+
+Run `python -m tests.bench.tracking.campaign --frames 10000 --seed 7 [--log FILE]`. Every wrong
+frame is printed with what is needed to draw it again; the exit code is 1 if there is any. A run
+with `--log` that was broken off goes on where it was.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from tests.bench.tracking.scoring import INSIDE, RIGHT, WRONG, errors
+from tests.bench.tracking.sequences import NAMES, Sequence, sequence
+from tests.bench.tracking.table import share
+from tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
+
+AT_REST = ("static",)
+"""Sequences whose frames differ by noise alone: they would only make the number look good."""
+
+Result = dict[str, Any]
+
+
+def plan(names: tuple[str, ...], frames: int, length: int, seed: int) -> Iterator[tuple[str, int]]:
+    """Name sequences and seeds until they hold `frames`: all of one seed, then of the next.
+
+    >>> list(plan(("a", "b"), 250, 100, 7))
+    [('a', 7), ('b', 7), ('a', 8)]
+    """
+    planned = 0
+    while planned < frames:
+        for name in names:
+            if planned < frames:
+                yield name, seed
+                planned += length
+        seed += 1
+
+
+def follow(drawn: Sequence) -> Iterator[tuple[int, CubeState]]:
+    """Track one sequence; where each frame is another pose, each with a tracker of its own."""
+    camera = Intrinsics(drawn.matrix, drawn.distortion, drawn.size)
+    cube = CubeModel.load(drawn.cube)
+    tracker = CubeTracker(cube, camera)
+    for index in range(drawn.count):
+        if drawn.independent:
+            tracker = CubeTracker(cube, camera)
+        frame = Frame(drawn.frame(index), drawn.timestamp(index), index)
+        yield index, tracker.update(frame)
+
+
+def judge(drawn: Sequence) -> Result:
+    """Count what became of the frames of one sequence."""
+    result: Result = {"sequence": drawn.name, "seed": drawn.seed, "frames": drawn.count}
+    result |= {"seen": 0, "given": 0, "right": 0, "held": 0, "wrong": []}
+    for index, state in follow(drawn):
+        seen = bool(drawn.in_view(index))
+        result["seen"] += seen
+        if not state.visible or state.camera_from_cube is None:
+            continue
+        error = errors(state.camera_from_cube[None], drawn.truth(index)[None])[0]
+        shift, turn = (float(np.linalg.norm(part)) for part in (error[:3], error[3:]))
+        result["given"] += seen
+        result["right"] += seen and shift <= RIGHT[0] and turn <= RIGHT[1]
+        held = float(error @ np.linalg.solve(state.covariance, error))
+        result["held"] += seen and held <= INSIDE
+        if shift > WRONG[0] or turn > WRONG[1]:
+            result["wrong"].append(_wrong(index, state, shift, turn, held))
+    return result
+
+
+def _wrong(index: int, state: CubeState, shift: float, turn: float, held: float) -> Result:
+    return {
+        "index": index,
+        "mm": 1000 * shift,
+        "deg": float(np.rad2deg(turn)),
+        "source": state.source,
+        "verdict": state.refused or "trusted",
+        "faces": list(state.faces),
+        "stated_mm": 1000 * float(np.sqrt(np.trace(state.covariance[:3, :3]))),
+        "chi2": held,
+    }
+
+
+def main() -> None:
+    """Track, count, tell."""
+    options = _options()
+    progress = Console(stderr=True, width=120)
+    done = _read(options.log)
+    results: list[Result] = []
+    names = tuple(options.sequences)
+    for name, seed in plan(names, options.frames, options.length, options.seed):
+        result = done.get((name, seed, options.length))
+        if result is None:
+            result = judge(sequence(name, seed, options.length))
+            _note(options.log, result)
+        results.append(result)
+        for wrong in result["wrong"]:
+            progress.print(f"wrong: {name} seed {seed} frame {wrong['index']}: {_described(wrong)}")
+        frames, found = (sum(each) for each in zip(*_counts(results), strict=True))
+        progress.print(f"{frames} of {options.frames} frames, {found} wrong: {name} seed {seed}")
+    _print(Console(width=120), results)
+    sys.exit(any(result["wrong"] for result in results))
+
+
+def _counts(results: list[Result]) -> Iterator[tuple[int, int]]:
+    return ((result["frames"], len(result["wrong"])) for result in results)
+
+
+def _described(wrong: Result) -> str:
+    return (
+        f"{wrong['mm']:.1f} mm {wrong['deg']:.1f}° off, from {wrong['source']} of "
+        f"{'+'.join(wrong['faces']) or 'no face'}, {wrong['verdict']}, "
+        f"stated ±{wrong['stated_mm']:.2f} mm, χ² {wrong['chi2']:.3g}"
+    )
+
+
+def _print(console: Console, results: list[Result]) -> None:
+    table = Table(title="Cubeling alone, many seeds", box=SIMPLE_HEAD, title_justify="left")
+    for column in ("sequence", "frames", "given %", "recall %", "held %", "wrong"):
+        table.add_column(column, justify="left" if column == "sequence" else "right")
+    for name in (*dict.fromkeys(result["sequence"] for result in results), "all"):
+        some = [result for result in results if name in (result["sequence"], "all")]
+        seen, given, right, held = (
+            sum(result[key] for result in some) for key in ("seen", "given", "right", "held")
+        )
+        frames, wrong = (sum(each) for each in zip(*_counts(some), strict=True))
+        shares = (given / max(seen, 1), right / max(seen, 1), held / max(given, 1))
+        table.add_row(name, str(frames), *map(share, shares), str(wrong))
+    console.print(table)
+    for result in results:
+        for wrong in result["wrong"]:
+            where = f"{result['sequence']} seed {result['seed']} frame {wrong['index']}"
+            console.print(f"wrong: {where} of {result['frames']}: {_described(wrong)}")
+
+
+def _read(log: Path | None) -> dict[tuple[str, int, int], Result]:
+    """Read what an earlier run finished; a last line that was cut short does not count."""
+    done: dict[tuple[str, int, int], Result] = {}
+    if log is None or not log.is_file():
+        return done
+    for line in log.read_text(encoding="utf-8").splitlines():
+        try:
+            result = json.loads(line)
+        except json.JSONDecodeError:
+            continue
+        done[result["sequence"], result["seed"], result["frames"]] = result
+    return done
+
+
+def _note(log: Path | None, result: Result) -> None:
+    if log is not None:
+        with log.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(result) + "\n")
+
+
+def _options() -> argparse.Namespace:
+    moving = [name for name in NAMES if name not in AT_REST]
+    parser = argparse.ArgumentParser(prog="python -m tests.bench.tracking.campaign",
+                                     description=__doc__)  # fmt: skip
+    parser.add_argument("--frames", type=int, default=10_000, help="in all")
+    parser.add_argument("--length", type=int, default=120, help="frames of each sequence")
+    parser.add_argument("--seed", type=int, default=7, help="the first; each round takes the next")
+    parser.add_argument("--sequences", nargs="+", choices=NAMES, default=moving, metavar="NAME",
+                        help=", ".join(NAMES))  # fmt: skip
+    parser.add_argument("--log", type=Path, metavar="FILE",
+                        help="note what is finished there, and do not do it again")  # fmt: skip
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,43 @@
+"""Cubeling's tracker among the others: the same frames, the same process around it."""
+
+from importlib.metadata import version
+from typing import Any
+
+import cv2
+import numpy as np
+
+from tests.bench.tracking.rivals.serving import Array, Picture, Scene, serve
+from tests.bench.tracking.scoring import AHEAD
+from tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
+
+
+class Ours:
+    """`CubeTracker` as anybody uses it."""
+
+    def __init__(self, scene: Scene) -> None:
+        camera = Intrinsics(scene.matrix, scene.distortion, scene.size)
+        self._tracker = CubeTracker(CubeModel.load(scene.cube), camera)
+        self._state: CubeState | None = None
+        self._count = 0
+
+    def track(self, image: Picture, timestamp: float) -> Array | None:
+        """Return the pose where the tracker stands by it."""
+        self._state = self._tracker.update(Frame(image, timestamp, self._count))
+        self._count += 1
+        return self._state.camera_from_cube if self._state.visible else None
+
+    def notes(self) -> dict[str, Any]:
+        """Tell what its state says besides, and where it expects the cube a moment later."""
+        state = self._state
+        assert state is not None
+        notes: dict[str, Any] = {"source": state.source, "refused": state.refused}
+        if not state.visible:
+            return notes
+        notes |= {"covariance": state.covariance.tolist(), "velocity": state.velocity.tolist()}
+        predict = getattr(self._tracker, "predict", None)
+        expected = predict(state.timestamp + AHEAD).camera_from_cube if predict else None
+        return notes | {"expected": None if expected is None else np.asarray(expected).tolist()}
+
+
+if __name__ == "__main__":
+    serve(Ours, {"cubeling": version("cubeling"), "opencv": cv2.__version__})

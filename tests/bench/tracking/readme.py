@@ -1,0 +1,169 @@
+"""The section of `tracking/README.md` that `make bench-tracking` writes."""
+
+import datetime
+import os
+import platform
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Self
+
+from tests.bench.tracking import bar
+from tests.bench.tracking.scoring import Score
+from tests.bench.tracking.table import (
+    OURS,
+    angle,
+    length,
+    number,
+    of,
+    own_figures,
+    ratio,
+    share,
+)
+
+OPENING, CLOSING = "<!-- bench-tracking -->", "<!-- /bench-tracking -->"
+
+RENDERER = (
+    "The pictures are ray-cast in linear light by a renderer that shares neither geometry nor blur "
+    "with the tracker:\nits own lens and cube, soft focus, vignetting, every sample of a pixel at "
+    "a moment of its own in the exposure, shot and read noise, a camera's curve.\n"
+    "Poses are spread over all six degrees of freedom by Halton's sequence."
+)
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of the benchmark."""
+
+    command: str
+    """That was given."""
+
+    frames: int
+    """Of each sequence."""
+
+    seed: int
+    """Of all sequences."""
+
+    threads: int
+    """That each tracker might use."""
+
+    date: str
+    """ISO, of the day."""
+
+    machine: str
+    """Processor and number of its cores."""
+
+    scores: tuple[Score, ...] = ()
+    """Of every tracker on every sequence."""
+
+    versions: dict[str, str] = field(default_factory=dict)
+    """For each tracker what it rests on."""
+
+    left_out: dict[str, str] = field(default_factory=dict)
+    """For each tracker that did not take part: why."""
+
+    @classmethod
+    def now(cls, command: str, frames: int, seed: int, threads: int) -> Self:
+        """Note the circumstances."""
+        day = datetime.date.today().isoformat()
+        return cls(command, frames, seed, threads, day, f"{_processor()}, {os.cpu_count()} cores")
+
+    @property
+    def circumstances(self) -> str:
+        """In one line."""
+        return (
+            f"{self.date}, {self.machine}, {self.threads} threads for each tracker, one tracker at "
+            f"a time; {self.frames} frames of 1280×720 a sequence, seed {self.seed}"
+        )
+
+
+def write(path: Path, run: Run) -> None:
+    """Put the tables between the two marks of a file.
+
+    Raises
+    ------
+    ValueError
+        The file has not both marks, in this order.
+    """
+    text = path.read_text(encoding="utf-8")
+    before, opening, rest = text.partition(OPENING)
+    _, closing, after = rest.partition(CLOSING)
+    if not opening or not closing:
+        raise ValueError(f"{path} has no section between '{OPENING}' and '{CLOSING}'")
+    section = "\n".join(lines(run))
+    path.write_text(f"{before}{OPENING}\n{section}\n{CLOSING}{after}", encoding="utf-8")
+
+
+def lines(run: Run) -> Iterator[str]:
+    """Write the section, line by line."""
+    yield f"`{run.command}` printed this: {run.circumstances}."
+    yield RENDERER
+    yield ""
+    yield from _matrix(run, "recall % / silently wrong %", _found)
+    yield from _matrix(run, "error mm, median (95 %)", lambda s: _pair(s.shift, length))
+    yield from _matrix(run, "error °, median (95 %)", lambda s: _pair(s.turn, angle))
+    yield from _matrix(run, "ms (÷ detection of cv2 SUBPIX)", lambda s: _time(run, s))
+    yield from _jitter(run)
+    yield from _own(run)
+    yield "Rivals: " + "; ".join(f"{title}: {what}" for title, what in run.versions.items()) + "."
+    for title, reason in run.left_out.items():
+        yield f"{title} was left out: {reason}."
+    yield ""
+    yield "```"
+    yield from (str(verdict) for verdict in bar.verdicts(run.scores))
+    yield "```"
+
+
+def _matrix(run: Run, title: str, cell: Callable[[Score], str]) -> Iterator[str]:
+    trackers = list(dict.fromkeys(score.tracker for score in run.scores))
+    yield f"| {title} | " + " | ".join(trackers) + " |"
+    yield "|---|" + "---|" * len(trackers)
+    for name in dict.fromkeys(score.sequence for score in run.scores):
+        found = (of(run.scores, name, tracker) for tracker in trackers)
+        yield f"| {name} | " + " | ".join(cell(s) if s else "–" for s in found) + " |"
+    yield ""
+
+
+def _found(score: Score) -> str:
+    return f"{share(score.recall)} / {share(score.wrong / score.frames)}"
+
+
+def _pair(values: tuple[float, float], written: Callable[[float], str]) -> str:
+    return f"{written(values[0])} ({written(values[1])})" if values[0] == values[0] else "–"
+
+
+def _time(run: Run, score: Score) -> str:
+    return f"{number(score.milliseconds, 1)} ({number(ratio(run.scores, score), 2)})"
+
+
+def _jitter(run: Run) -> Iterator[str]:
+    rest = [score for score in run.scores if score.sequence == "static"]
+    if rest:
+        said = (f"{s.tracker} {length(s.jitter[0])} / {angle(s.jitter[1])}" for s in rest)
+        yield "Jitter at rest, unfiltered but where the tracker itself filters, mm / °: "
+        yield ", ".join(said) + "."
+        yield ""
+
+
+def _own(run: Run) -> Iterator[str]:
+    yield (
+        f"| {OURS} alone | held by the 95 % ellipsoid | 50 ms ahead, mm | at constant velocity | "
+        "last pose held | velocity off by mm/s | °/s |"
+    )
+    yield "|---|---|---|---|---|---|---|"
+    for score in run.scores:
+        if score.tracker == OURS:
+            rest = own_figures(score)[2:]
+            yield f"| {score.sequence} | {share(score.inside)} % | " + " | ".join(rest) + " |"
+    yield ""
+
+
+def _processor() -> str:
+    """Name the processor, where the system tells."""
+    try:
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    except OSError:
+        pass  # not Linux
+    return platform.processor() or platform.machine()

@@ -1,0 +1,149 @@
+"""The figures as a person reads them in a terminal, 120 columns wide."""
+
+from collections.abc import Sequence as Rows
+
+import numpy as np
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+
+from tests.bench.tracking.scoring import Score
+
+OURS, YARDSTICK = "Cubeling", "cv2 SUBPIX"
+"""Titles of the tracker that is judged, and of the one whose time is the yardstick."""
+
+COLUMNS = ("tracker", "frames", "recall %", "wrong %", "mm", "95 %", "°", "95 %", "ms", "÷ cv2")
+OWN = (
+    "sequence", "held %", "jitter mm", "jitter °", "50 ms ahead mm", "straight on", "held still",
+    "velocity mm/s", "°/s",
+)  # fmt: skip
+
+
+def show(console: Console, scores: Rows[Score]) -> None:
+    """Print every tracker on every sequence, then what only Cubeling tells, then the rest."""
+    console.print(_everybody(scores))
+    console.print(
+        "wrong: given, but more than 20 mm or 10° off. 95 %: percentile of the error. "
+        f"÷ cv2: of the time that {YARDSTICK} takes to detect, without solving.\n"
+    )
+    console.print(_ours(scores))
+    console.print(_rest(scores))
+    for score in scores:
+        if score.failed:
+            console.print(
+                f"{score.tracker} broke down in {score.failed} frames of {score.sequence}: "
+                f"{'; '.join(score.failures)[:200]}"
+            )
+
+
+def of(scores: Rows[Score], sequence: str, tracker: str) -> Score | None:
+    """Find the score of one tracker on one sequence."""
+    found = [s for s in scores if s.sequence == sequence and s.tracker == tracker]
+    return found[0] if found else None
+
+
+def ratio(scores: Rows[Score], score: Score) -> float:
+    """Time of a tracker ÷ that of the yardstick's detection on the same frames."""
+    yardstick = of(scores, score.sequence, YARDSTICK)
+    return score.milliseconds / yardstick.detection_ms if yardstick else float("nan")
+
+
+def number(value: float, digits: int, factor: float = 1.0) -> str:
+    """Write a figure in another unit; "–" where there is none.
+
+    >>> number(0.0123, 1, 1000), number(float("nan"), 1)
+    ('12.3', '–')
+    """
+    return "–" if np.isnan(value) else f"{value * factor:.{digits}f}"
+
+
+def share(value: float) -> str:
+    """Write a share in per cent, and never round a lack away.
+
+    >>> share(1.0), share(0.99996), share(0.9712), share(0.00004), share(0.0)
+    ('100', '99.9', '97.1', '0.1', '0')
+    """
+    if np.isnan(value):
+        return "–"
+    if value in (0, 1):
+        return f"{100 * value:.0f}"
+    return f"{np.clip(100 * value, 0.1, 99.9):.1f}"
+
+
+def length(metres: float) -> str:
+    """Write a length in mm with three digits or so.
+
+    >>> length(0.0000123), length(0.00123), length(0.123)
+    ('0.012', '1.23', '123.0')
+    """
+    return number(metres, 3 if metres < 0.001 else 2 if metres < 0.01 else 1, 1000)
+
+
+def angle(radians: float) -> str:
+    """Write an angle in degrees with three digits or so."""
+    degrees = np.rad2deg(radians)
+    return number(degrees, 3 if degrees < 1 else 2 if degrees < 10 else 1)
+
+
+def _everybody(scores: Rows[Score]) -> Table:
+    table = Table(title="Pose of the cube against the truth", box=SIMPLE_HEAD, title_justify="left")
+    table.add_column("sequence")
+    for column in COLUMNS:
+        table.add_column(column, justify="left" if column == "tracker" else "right")
+    for name in dict.fromkeys(score.sequence for score in scores):
+        group = [score for score in scores if score.sequence == name]
+        for line, score in enumerate(group):
+            table.add_row("" if line else name, *_row(scores, score))
+        table.add_section()
+    return table
+
+
+def _row(scores: Rows[Score], score: Score) -> tuple[str, ...]:
+    return (
+        score.tracker,
+        str(score.frames),
+        share(score.recall),
+        share(score.wrong / score.frames),
+        *(length(value) for value in score.shift),
+        *(angle(value) for value in score.turn),
+        number(score.milliseconds, 2),
+        number(ratio(scores, score), 2),
+    )
+
+
+def _ours(scores: Rows[Score]) -> Table:
+    table = Table(title="What Cubeling alone tells", box=SIMPLE_HEAD, title_justify="left")
+    for column in OWN:
+        table.add_column(column, justify="left" if column == "sequence" else "right")
+    for score in scores:
+        if score.tracker == OURS:
+            table.add_row(score.sequence, share(score.inside), *own_figures(score))
+    return table
+
+
+def own_figures(score: Score) -> tuple[str, ...]:
+    """Jitter where the cube rests, prediction and velocity where it moves; (7,) texts."""
+    rests = score.sequence == "static"
+    moves = not rests
+    return (
+        length(score.jitter[0]) if rests else "",
+        angle(score.jitter[1]) if rests else "",
+        *(length(each) if moves else "" for each in foresight(score)),
+        *(number(each, 1, factor) if moves else ""
+          for each, factor in zip(score.speed, (1000, 180 / np.pi), strict=True)),
+    )  # fmt: skip
+
+
+def foresight(score: Score) -> tuple[float, float, float]:
+    """Errors of the prediction, of constant velocity, and of the last pose held [m]."""
+    return score.predicted, score.extrapolated, score.held
+
+
+def _rest(scores: Rows[Score]) -> Table:
+    table = Table(title="Jitter at rest", box=SIMPLE_HEAD, title_justify="left")
+    for column in ("tracker", "mm", "°"):
+        table.add_column(column, justify="left" if column == "tracker" else "right")
+    for score in scores:
+        if score.sequence == "static":
+            table.add_row(score.tracker, length(score.jitter[0]), angle(score.jitter[1]))
+    return table
