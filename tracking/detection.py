@@ -7,10 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.cube import CubeModel, Face, aruco_dictionary
+from tracking.patch import Patch
 
 Array = NDArray[np.float64]
-Region = tuple[int, int, int, int]
-"""Left, top, right, bottom [px]; right and bottom are not part of it."""
 
 
 @dataclass(frozen=True)
@@ -49,16 +48,15 @@ class MarkerDetector:
         parameters.adaptiveThreshWinSizeStep = 10
         self._detector = cv2.aruco.ArucoDetector(aruco_dictionary(cube.dictionary), parameters)
 
-    def detect(self, grey: NDArray[np.uint8], region: Region | None = None) -> list[Observation]:
-        """Find the cube's markers in a grey picture, (H, W), or in one region of it.
+    def detect(self, patch: Patch) -> list[Observation]:
+        """Find the cube's markers in a picture.
 
         A marker can be seen twice: which of the two is the cube's is for `solver` to say.
         """
-        left, top, right, bottom = region or (0, 0, grey.shape[1], grey.shape[0])
-        squares, ids = self._detector.detectMarkers(grey[top:bottom, left:right])[:2]
+        squares, ids = self._detector.detectMarkers(patch.grey.astype(np.uint8))[:2]
         # None where there is no marker; (N,) in OpenCV 5, (N, 1) in OpenCV 4.
         numbers = [] if ids is None else [int(number) for number in np.ravel(ids)]
-        corner = np.array([left, top], np.float64)
+        corner = np.array([patch.left, patch.top], np.float64)
         return [
             Observation(self._faces[number], np.reshape(square, (4, 2)) + corner)
             for number, square in zip(numbers, squares, strict=True)

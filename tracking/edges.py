@@ -42,13 +42,16 @@ class EdgeModel:
     """Number of the face in `CubeModel.faces`, (N,)."""
 
     line: NDArray[np.intp]
-    """Number of the straight line that the edge lies on, white on one and the same side, (N,)."""
+    """Number of the straight line that the edge lies on, white on one and the same side, (N,).
 
-    normals: Array
-    """Outward normals of the cube's faces, (faces, 3)."""
+    It never falls from one point to the next.
+    """
 
-    centres: Array
-    """Centres of the cube's faces, (faces, 3) [m]."""
+    def of_faces(self, faces: tuple[int, ...]) -> "EdgeModel":
+        """Keep the edges of some faces, by their numbers."""
+        kept = np.isin(self.face, faces)
+        parts = (self.points, self.along, self.across, self.to_end, self.outline)
+        return EdgeModel(*(part[kept] for part in parts), self.face[kept], self.line[kept])
 
     @classmethod
     def of(cls, cube: CubeModel) -> Self:
@@ -58,13 +61,13 @@ class EdgeModel:
             np.concatenate(columns) for columns in zip(*parts, strict=True)
         )
         numbers = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
-        normals = np.stack([face.normal for face in cube.faces])
-        centres = np.stack([face.corners.mean(axis=0) for face in cube.faces])
         # In one face a line is told by the way to its white side and how far out it lies that way.
         places = np.einsum("ij,ij->i", points, across)
         keys = np.column_stack([numbers, np.round(np.column_stack([across, places]), 9)])
         line = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
-        return cls(points, along, across, to_end, outline > 0, numbers, line, normals, centres)
+        order = np.argsort(line, kind="stable")
+        parts = (points, along, across, to_end, outline > 0, numbers, line)
+        return cls(*(part[order] for part in parts))
 
 
 def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, ...]:

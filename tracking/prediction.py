@@ -1,5 +1,6 @@
 """What the last seen poses say about now: velocity, and where the cube should be."""
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,13 +20,6 @@ FASTEST = (4.0, 40.0)
 """Nobody moves a cube faster in front of a camera [m/s, rad/s]; what does so is another cube."""
 
 
-BLUR_TIME = (8e-4, 0.013)
-"""Motion blur biases a pose by its speed times this [s], and its attitude by [rad/m · s].
-
-A tenth of a usual exposure: a cube that moves by 1 mm during it is seen 0.1 mm beside its middle.
-"""
-
-
 @dataclass(frozen=True)
 class Sighting:
     """A trusted pose."""
@@ -43,23 +37,52 @@ class Sighting:
     """When [s]."""
 
 
-def velocity(before: Sighting | None, camera_from_cube: Array, timestamp: float) -> Array:
-    """Mean velocity since the last sighting, (6,): one difference, no filter, so half a frame old.
+class Track:
+    """The last trusted poses of one cube, and what follows from them."""
 
-    Zero for a first sighting, and after one so old that the cube's way since is not known.
-    """
-    if before is None:
-        return np.zeros(6)
-    elapsed = timestamp - before.timestamp
-    if elapsed <= 0 or elapsed > MEMORY:
-        return np.zeros(6) if elapsed > 0 else before.velocity
-    return se3.motion(before.camera_from_cube, camera_from_cube) / elapsed
+    def __init__(self) -> None:
+        self._sightings: deque[Sighting] = deque(maxlen=3)
 
+    @property
+    def last(self) -> Sighting | None:
+        """The latest sighting, however old."""
+        return self._sightings[-1] if self._sightings else None
 
-def blur_covariance(motion: Array) -> Array:
-    """Covariance that a velocity, (6,), adds to a pose seen in motion, (6, 6)."""
-    speed = float(np.sqrt(motion[:3] @ motion[:3] + (0.05**2) * (motion[3:] @ motion[3:])))
-    return np.diag(np.square(speed * np.repeat(BLUR_TIME, 3)))
+    def recent(self, timestamp: float) -> Sighting | None:
+        """Return the latest sighting, if it is not too old to tell where the cube is."""
+        last = self.last
+        return last if last and 0 <= timestamp - last.timestamp <= MEMORY else None
+
+    def add(self, sighting: Sighting) -> None:
+        """Remember a trusted pose."""
+        self._sightings.append(sighting)
+
+    def restart(self, sighting: Sighting) -> None:
+        """Forget the way so far: the cube has jumped."""
+        self._sightings.clear()
+        self._sightings.append(sighting)
+
+    def velocity(self, camera_from_cube: Array, timestamp: float) -> Array:
+        """Velocity at a new pose, (6,): the slope of the parabola through it and the last two.
+
+        A plain difference would be that of half a frame ago. Zero for a first sighting, and after
+        one so old that the cube's way since is not known.
+        """
+        last = self.last
+        if last is None:
+            return np.zeros(6)
+        elapsed = timestamp - last.timestamp
+        if elapsed <= 0 or elapsed > MEMORY:
+            return np.zeros(6) if elapsed > 0 else last.velocity
+        now = se3.motion(last.camera_from_cube, camera_from_cube) / elapsed
+        if len(self._sightings) < 2:
+            return now
+        earlier = self._sightings[-2]
+        before = last.timestamp - earlier.timestamp
+        if not 0 < before <= MEMORY:
+            return now
+        mean = se3.motion(earlier.camera_from_cube, last.camera_from_cube) / before
+        return np.asarray(now + (now - mean) * (elapsed / (elapsed + before)), np.float64)
 
 
 def predicted(last: Sighting, timestamp: float) -> Array:

@@ -9,6 +9,10 @@ from tracking.intrinsics import Intrinsics
 Array = NDArray[np.float64]
 
 
+NEAREST = 0.03
+"""A cube closer to the camera than this [m] cannot be seen whole; a pose that says so is wrong."""
+
+
 class Projection:
     """The pinhole with its lens distortion, for any distortion model that OpenCV knows.
 

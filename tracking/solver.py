@@ -10,12 +10,9 @@ from numpy.typing import NDArray
 from tracking import se3
 from tracking.cube import CubeModel, Face
 from tracking.detection import Observation
-from tracking.projection import Projection
+from tracking.projection import NEAREST, Projection
 
 Array = NDArray[np.float64]
-
-NEAREST = 0.03
-"""A cube closer to the camera than this [m] cannot be seen whole; a pose that says so is wrong."""
 
 GRAZING = 0.05
 """Cosine between a face's normal and the line of sight below which its marker cannot be read."""

@@ -1,17 +1,20 @@
 """From camera frames to where the cube is: what one frame proposes, weighed against the past."""
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from tracking import prediction, se3
-from tracking.candidates import Candidate, CandidateFinder
+from tracking.candidates import CandidateFinder
 from tracking.cube import CubeModel
+from tracking.detection import MarkerDetector
 from tracking.errors import TrackingError
+from tracking.following import Candidate, Follower
 from tracking.frame import Frame
 from tracking.intrinsics import Intrinsics
-from tracking.prediction import MEMORY, Sighting
+from tracking.patch import Patch, Region
+from tracking.prediction import MEMORY, Sighting, Track
 from tracking.projection import Projection
+from tracking.shutter import Shutter
 from tracking.state import CubeState
 
 Array = NDArray[np.float64]
@@ -46,8 +49,12 @@ class CubeTracker:
     def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
         self.cube = cube
         self.intrinsics = intrinsics
-        self._finder = CandidateFinder(cube, Projection(intrinsics))
-        self._last: Sighting | None = None
+        projection = Projection(intrinsics)
+        self._detector = MarkerDetector(cube)
+        self._follower = Follower(cube, projection)
+        self._finder = CandidateFinder(cube, projection, self._follower)
+        self._track = Track()
+        self._shutter = Shutter()
         self._jump: Sighting | None = None
 
     def update(self, frame: Frame) -> CubeState:
@@ -58,9 +65,35 @@ class CubeTracker:
         TrackingError
             The frame has not the size that the intrinsics hold for.
         """
+        self._check(frame)
+        return self.follow(frame) or self._acquire(frame, None)
+
+    def predict(self, timestamp: float) -> CubeState:
+        """Say where the cube will be, or was, at a time near that of the last frame.
+
+        The velocity is carried on; see `tracking/README.md` for how far off that is.
+        """
+        return self._unseen(timestamp, "")
+
+    def follow(self, frame: Frame) -> CubeState | None:
+        """Find the cube near where it should be; None where it is not found there."""
         now = frame.timestamp
-        recent = self._recent(now)
-        candidates = self._finder.find(self._grey(frame), recent, now)
+        recent = self._track.recent(now)
+        if recent is None:
+            return None
+        found = self._follower.follow(frame.image, recent, now, self._shutter.exposure)
+        return self._seen(found, now) if found else None
+
+    def _acquire(self, frame: Frame, region: Region | None) -> CubeState:
+        """Find the cube anywhere by its markers."""
+        now = frame.timestamp
+        recent = self._track.recent(now)
+        expected = prediction.predicted(recent, now) if recent else None
+        patch = Patch.of(frame.image, region)
+        observations = self._detector.detect(patch)
+        candidates = self._finder.find(patch, observations, expected)
+        if recent is not None:
+            candidates = [each for each in candidates if _fits(each, recent, now)]
         if not candidates:
             return self._unseen(now, "")
         candidate, refused = self._chosen(candidates, recent, now)
@@ -68,12 +101,7 @@ class CubeTracker:
             refused = "jump"
         return self._unseen(now, refused) if refused else self._seen(candidate, now)
 
-    def _recent(self, now: float) -> Sighting | None:
-        if self._last is None or not 0 <= now - self._last.timestamp <= MEMORY:
-            return None
-        return self._last
-
-    def _grey(self, frame: Frame) -> NDArray[np.uint8]:
+    def _check(self, frame: Frame) -> None:
         height, width = frame.image.shape[:2]
         if (width, height) != self.intrinsics.size:
             wanted = "×".join(str(n) for n in self.intrinsics.size)
@@ -81,14 +109,13 @@ class CubeTracker:
                 f"frame {frame.index} is {width}×{height} but the intrinsics hold for {wanted}; "
                 "scale them or calibrate at this size"
             )
-        return np.asarray(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY), np.uint8)
 
     def _chosen(
         self, candidates: list[Candidate], recent: Sighting | None, now: float
     ) -> tuple[Candidate, str]:
         """Choose between the poses that explain the same markers, or say why none is trusted."""
         best, *others = sorted(candidates, key=lambda candidate: candidate.residual)
-        if best.blurred or (len(best.faces) == 1 and _speed(best, recent, now) > LONE_SPEED):
+        if best.blurred or (len(best.faces) == 1 and self._speed(best, now) > LONE_SPEED):
             return best, "blurred"
         if not others or _close(best, others[0]):
             return best, ""
@@ -105,31 +132,37 @@ class CubeTracker:
                 return (best, other)[near[1]], ""
         return best, "ambiguous"
 
+    def _speed(self, candidate: Candidate, now: float) -> float:
+        """Speed at which the cube must have come from where it was last seen [m/s]."""
+        velocity = self._track.velocity(candidate.camera_from_cube, now)
+        return float(np.linalg.norm(velocity[:3]))
+
     def _confirmed(self, candidate: Candidate, now: float) -> bool:
         """Whether a hand can have brought the cube there, or a second frame says so too."""
-        pose, jump = candidate.camera_from_cube, self._jump
-        if self._last is None or now - self._last.timestamp > FORGOTTEN:
+        pose, jump, last = candidate.camera_from_cube, self._jump, self._track.last
+        if last is None or now - last.timestamp > FORGOTTEN:
             return True
         if jump and now - jump.timestamp <= MEMORY and prediction.plausible(jump, pose, now):
             # It stayed where it jumped to: that is its past now.
-            self._last = jump
+            self._track.restart(jump)
             return True
-        if prediction.plausible(self._last, pose, now):
+        if prediction.plausible(last, pose, now):
             return True
         self._jump = Sighting(pose, np.zeros(6), candidate.covariance, now)
         return False
 
     def _seen(self, candidate: Candidate, now: float) -> CubeState:
         pose = candidate.camera_from_cube
-        velocity = prediction.velocity(self._last, pose, now)
-        covariance = candidate.covariance + prediction.blur_covariance(velocity)
-        self._last = Sighting(pose, velocity, covariance, now)
+        velocity = self._track.velocity(pose, now)
+        if candidate.sweep is not None:
+            self._shutter.learn(candidate.sweep, candidate.sweep_covariance, velocity)
+        self._track.add(Sighting(pose, velocity, candidate.covariance, now))
         self._jump = None
         return CubeState(
             visible=True,
             camera_from_cube=pose,
             velocity=velocity,
-            covariance=covariance,
+            covariance=candidate.covariance,
             source=candidate.source,
             faces=candidate.faces,
             reprojection_error=candidate.error,
@@ -138,7 +171,7 @@ class CubeTracker:
 
     def _unseen(self, now: float, refused: str) -> CubeState:
         """Carry the last pose on for a moment, ever less sure of it."""
-        recent = self._recent(now)
+        recent = self._track.recent(now)
         unknown = np.full((6, 6), np.nan)
         return CubeState(
             visible=False,
@@ -153,9 +186,13 @@ class CubeTracker:
         )
 
 
-def _speed(candidate: Candidate, recent: Sighting | None, now: float) -> float:
-    """Speed at which the cube must have come from where it was last seen [m/s]."""
-    return float(np.linalg.norm(prediction.velocity(recent, candidate.camera_from_cube, now)[:3]))
+def _fits(candidate: Candidate, last: Sighting, timestamp: float) -> bool:
+    """Whether a pose that rests on a single marker is where the cube should be."""
+    return (
+        candidate.certain
+        or len(candidate.faces) > 1
+        or prediction.near(last, candidate.camera_from_cube, timestamp)
+    )
 
 
 def _close(a: Candidate, b: Candidate) -> bool:

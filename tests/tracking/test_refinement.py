@@ -1,6 +1,5 @@
 """Edges say where the cube is to a hundredth of a pixel, and say nothing where there are none."""
 
-import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -9,21 +8,21 @@ from tracking import se3
 from tracking.cube import CubeModel
 from tracking.edges import EdgeModel
 from tracking.marker import marker_cells
+from tracking.patch import Patch
 from tracking.projection import Projection
-from tracking.refinement import EdgeRefiner, bilinear
+from tracking.refinement import EdgeRefiner
 from tracking.synthetic import open_synthetic
 
 Array = NDArray[np.float64]
 
 
 @pytest.fixture(scope="module")
-def scene() -> tuple[EdgeRefiner, NDArray[np.uint8], Array]:
+def scene() -> tuple[EdgeRefiner, Patch, Array]:
     """A refiner, a picture of a cube at rest, and the truth."""
     source = open_synthetic("static?frames=1")
     assert source.intrinsics is not None
-    grey = cv2.cvtColor(source.frame(0).image, cv2.COLOR_BGR2GRAY)
     refiner = EdgeRefiner(source.cube, Projection(source.intrinsics))
-    return refiner, np.asarray(grey, np.uint8), source.truth(0)
+    return refiner, Patch.of(source.frame(0).image), source.truth(0)
 
 
 def test_edges_lie_between_black_and_white() -> None:
@@ -43,11 +42,11 @@ def test_edges_lie_between_black_and_white() -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_rough_start_ends_at_the_truth(
-    scene: tuple[EdgeRefiner, NDArray[np.uint8], Array], seed: int
+    scene: tuple[EdgeRefiner, Patch, Array], seed: int
 ) -> None:
-    refiner, grey, truth = scene
+    refiner, patch, truth = scene
     offset = np.random.default_rng(seed).uniform(-1, 1, 6) * ([1e-3] * 3 + [0.015] * 3)
-    result = refiner.refine(grey, se3.moved(truth, offset))
+    result = refiner.refine(patch, se3.moved(truth, offset))
     assert result is not None
     step = se3.motion(result.camera_from_cube, truth)
     assert np.linalg.norm(step[:3]) < 1e-4
@@ -56,37 +55,30 @@ def test_a_rough_start_ends_at_the_truth(
 
 
 def test_a_wide_search_comes_from_a_whole_cell_away(
-    scene: tuple[EdgeRefiner, NDArray[np.uint8], Array],
+    scene: tuple[EdgeRefiner, Patch, Array],
 ) -> None:
-    refiner, grey, truth = scene
-    result = refiner.refine(grey, se3.moved(truth, np.array([5e-3, 0, 0, 0, 0, 0.03])), wide=True)
+    refiner, patch, truth = scene
+    result = refiner.refine(patch, se3.moved(truth, np.array([5e-3, 0, 0, 0, 0, 0.03])), wide=True)
     assert result is not None
     assert np.linalg.norm(se3.motion(result.camera_from_cube, truth)[:3]) < 1e-4
 
 
 def test_other_markers_are_not_taken_for_the_cube(
-    scene: tuple[EdgeRefiner, NDArray[np.uint8], Array],
+    scene: tuple[EdgeRefiner, Patch, Array],
 ) -> None:
     """A cube of the same shape whose markers differ: outlines fit, insides do not."""
-    _, grey, truth = scene
+    _, patch, truth = scene
     source = open_synthetic("static?frames=1")
     assert source.intrinsics is not None
     other = EdgeRefiner(CubeModel.load("companion"), Projection(source.intrinsics))
-    result = other.refine(grey, truth)
+    result = other.refine(patch, truth)
     assert result is None or result.inner < 0.6
 
 
 def test_a_picture_without_edges_refines_nothing(
-    scene: tuple[EdgeRefiner, NDArray[np.uint8], Array],
+    scene: tuple[EdgeRefiner, Patch, Array],
 ) -> None:
-    refiner, grey, truth = scene
-    assert refiner.refine(np.full_like(grey, 120), truth) is None
+    refiner, patch, truth = scene
+    assert refiner.refine(Patch(np.full_like(patch.grey, 120), 0, 0), truth) is None
     behind = se3.pose(truth[:3, :3], -truth[:3, 3])
-    assert refiner.refine(grey, behind) is None
-
-
-def test_grey_values_between_pixels_are_linear() -> None:
-    rows, columns = np.mgrid[0:20, 0:30]
-    ramp = (3 * columns + 2 * rows).astype(np.uint8)
-    places = np.random.default_rng(0).uniform([0, 0], [28, 18], (50, 2))
-    assert np.allclose(bilinear(ramp, places), places @ [3, 2])
+    assert refiner.refine(patch, behind) is None

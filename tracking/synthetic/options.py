@@ -50,6 +50,10 @@ class Options:
     speed: float = 0.5
     """Greatest speed of the script "sweep" [m/s]."""
 
+    fold: float = 0.0
+    """How badly the cube is folded: each face is off by up to so many millimetres along each axis,
+    and turned by as many degrees about each."""
+
     @classmethod
     def parse(cls, uri: str) -> tuple[str, Self]:
         """Split "NAME?key=value" into the name and the options.
@@ -89,6 +93,7 @@ class Options:
             ("defocus", 0.0, 10.0),
             ("distortion", -2.0, 2.0),
             ("speed", 0.01, 3.0),
+            ("fold", 0.0, 3.0),
             ("frames", 0, 1_000_000),
         ):
             value = getattr(self, key)

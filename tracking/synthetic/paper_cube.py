@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from tracking.cube import FACE_AXES, CubeModel, Face
 from tracking.icons import ICONS, INK, icon_mask
 from tracking.marker import marker_cells
+from tracking.synthetic.folding import placements
 from tracking.synthetic.lens import Lens, Region, averaged
 
 Array = NDArray[np.float64]
@@ -46,6 +47,7 @@ class PaperCube:
         self._lens = lens
         random = np.random.default_rng(seed)
         by_name = {face.name: face for face in cube.faces}
+        self._askew = placements(cube)
         self._pictures = {
             name: _halved(face_picture(cube, by_name.get(name), random)) for name in FACE_AXES
         }
@@ -61,6 +63,8 @@ class PaperCube:
         corners = self.corners(camera_from_cube)
         if (corners[:, 2] < 0.02).any():
             return Region(0, 0, 0, 0)
+        if self._askew:  # a face may stick out by some millimetres
+            margin += 0.1 * float(np.ptp(self._lens.pixels(corners), axis=0).max())
         return self._lens.around(self._lens.pixels(corners), margin)
 
     def depth(self, region: Region, camera_from_cube: Array) -> Picture:
@@ -110,6 +114,10 @@ class PaperCube:
         for name, (right, up) in FACE_AXES.items():
             axes = pose[:3, :3] @ np.array([right, up, np.cross(right, up)], float).T
             center = pose[:3, 3] + axes[:, 2] * self.cube.edge / 2
+            if name in self._askew:
+                turn, place = self._askew[name]
+                axes = pose[:3, :3] @ turn @ np.array([right, up, np.cross(right, up)], float).T
+                center = pose[:3, 3] + pose[:3, :3] @ place
             if axes[:, 2] @ center >= 0:
                 continue  # it looks away
             self._face(shown, rays, axes, center, self._chosen(name, center, finer), to_light)

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking import se3
-from tracking.synthetic.choreography import Choreography, Moment
+from tracking.cube import FACE_AXES
+from tracking.synthetic.choreography import Choreography, Moment, eased
 from tracking.synthetic.options import Options
 
 Array = NDArray[np.float64]
@@ -32,6 +33,10 @@ class Script:
 
     loose: bool = False
     """Whether every frame shows another pose, in the air, without a hand."""
+
+    aloft: bool = False
+    """Whether the cube moves in the air, without a hand; its poses are then those in the camera's
+    frame, as they are where it is `loose`."""
 
 
 def follow(edge: float, options: Options) -> Script:
@@ -142,10 +147,52 @@ def poses(edge: float, options: Options) -> Script:
     return Script("locomotion", 10.0, at, loose=True)
 
 
+def wave(edge: float, options: Options) -> Script:
+    """Wave the cube before the camera for 20 s, with stops, as one does to calibrate it."""
+    stations = _stations(edge, options)
+    move, stop = 0.47, 0.30
+
+    def at(time: float) -> Moment:
+        number, since = divmod(max(time, 0.0), move + stop)
+        first = min(int(number), len(stations) - 1)
+        second = min(first + 1, len(stations) - 1)
+        pose = stations[first]
+        step = se3.motion(pose, stations[second]) * eased((since - stop) / move)
+        tremble = 2 * np.pi * np.array([7.3, 8.9, 10.7]) * time
+        step[:3] += 0.0002 * np.sin(tremble)
+        step[3:] += np.deg2rad(0.1) * np.sin(tremble[::-1])
+        return Moment(se3.moved(pose, step), 0.0)
+
+    return Script("locomotion", len(stations) * (move + stop), at, aloft=True)
+
+
+def _stations(edge: float, options: Options) -> list[Array]:
+    """Stops of `wave`: every face in turn, tilted every way, all over the picture, near and far."""
+    random = np.random.default_rng([options.seed, 5])
+    places = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)], float)
+    order = np.concatenate([random.permutation(9) for _ in range(3)])[:26]
+    focal = 900.0 * options.width / 1280
+    half = np.array([options.width, options.height]) / 2
+    stations = []
+    for number, place in enumerate(places[order]):
+        right, up = (np.array(axis, float) for axis in list(FACE_AXES.values())[number % 6])
+        # The face's right, down and inward are the camera's x, y and z where it is met squarely.
+        square = np.stack([right, -up, -np.cross(right, up)])
+        way = 2 * np.pi * (number / 4 + random.uniform(-0.1, 0.1))
+        tilt = np.deg2rad(random.uniform(18, 42)) * np.array([np.cos(way), np.sin(way), 0.0])
+        roll = np.array([0.0, 0.0, random.uniform(-0.6, 0.6)])
+        distance = random.uniform(0.24, 0.5)
+        room = np.maximum(half - 0.8 * edge * focal / distance, 0) * distance / focal
+        turn = se3.rotation(tilt) @ se3.rotation(roll) @ square
+        stations.append(se3.pose(turn, np.array([*(place * room), distance])))
+    return stations
+
+
 SCRIPTS: dict[str, Callable[[float, Options], Script]] = {
     script.__name__: script
     for script in (
         follow, sketch, companion, static, turn, turns, tip, shake, sweep, fingers, poses,
+        wave,
     )
 }  # fmt: skip
 """Every script by its name."""

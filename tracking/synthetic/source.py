@@ -14,6 +14,7 @@ from tracking.frame import Frame
 from tracking.intrinsics import Intrinsics
 from tracking.synthetic.choreography import Moment
 from tracking.synthetic.exposure import Exposure, moments_of
+from tracking.synthetic.folding import folded
 from tracking.synthetic.lens import Lens
 from tracking.synthetic.options import Options
 from tracking.synthetic.paper_cube import PaperCube
@@ -65,8 +66,8 @@ class SyntheticSource:
         self.size = (options.width, options.height)
         self.rate = options.rate
         bundled = SCRIPTS[name](0.06, options).cube
-        self.cube = CubeModel.load(bundled)
-        """The cube that is seen."""
+        self.cube = folded(CubeModel.load(bundled), options.fold, options.seed)
+        """The cube that is seen, as it was folded."""
         self._script: Script = SCRIPTS[name](self.cube.edge, options)
         self.camera_from_table = looking(EYE, LOOKS_AT)
         """Where the desk is: its frame has +y up, +z towards the camera, (4, 4)."""
@@ -121,11 +122,11 @@ class SyntheticSource:
         shifts = np.linspace(-half, half, count) if count > 1 else np.zeros(1)
         moments = [self._script.at(time + float(shift)) for shift in shifts]
         poses = [self._camera_from_cube(moment) for moment in moments]
-        image = exposure.draw(moments, poses, index, self._script.loose)
+        image = exposure.draw(moments, poses, index, self._script.loose or self._script.aloft)
         return Frame(image, time, index)
 
     def _camera_from_cube(self, moment: Moment) -> Array:
-        if self._script.loose:
+        if self._script.loose or self._script.aloft:
             return moment.table_from_cube
         return np.asarray(self.camera_from_table @ moment.table_from_cube)
 

@@ -1,0 +1,179 @@
+"""Following the cube from where it should be: by its edges, or by its blurred picture."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking import prediction
+from tracking.cube import CubeModel
+from tracking.marker import marker_cells
+from tracking.patch import Patch, Region
+from tracking.prediction import Sighting
+from tracking.projection import NEAREST, Projection
+from tracking.reading import CellReader, Reading
+from tracking.refinement import EdgeRefiner, Refinement
+from tracking.swept import Alignment, SweptAligner
+
+Array = NDArray[np.float64]
+
+SEEN = 0.55
+"""Share of the edges in view that must be found for the edges alone to prove the cube."""
+
+SEEN_FEW = 0.25
+"""The same where the markers can be read as well; fingers cover the rest."""
+
+READ = 0.9
+"""Share of a face's cells that must be as they should for it to count as read."""
+
+LIKE = 0.85
+"""Correlation of a blurred picture with the drawn one, from which on it is the cube."""
+
+STREAK = 0.6
+"""Cells that an edge may cross during the exposure and still be measured as an edge."""
+
+SWEEP_SPREAD = (0.35, 0.004, 0.06)
+"""What is not known of an expected sweep: a share of it, and [m, rad] besides."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A pose found in one frame, before it is trusted."""
+
+    camera_from_cube: Array
+    """Pose of the cube, (4, 4) [m]."""
+
+    covariance: Array
+    """Of a shift-turn, (6, 6)."""
+
+    source: Literal["markers", "image"]
+    """As in `CubeState.source`."""
+
+    faces: tuple[str, ...]
+    """As in `CubeState.faces`."""
+
+    error: float
+    """As in `CubeState.reprojection_error` [px]."""
+
+    residual: float
+    """Edge residual over the share of edges found, or the corner error [px]; smaller is better."""
+
+    certain: bool
+    """Whether edges confirm it beyond doubt, or two markers and edges do."""
+
+    blurred: bool = False
+    """Whether one marker alone vouches for it, whose edges should have been seen but were not."""
+
+    sweep: Array | None = None
+    """Shift-turn of the cube while the shutter was open, (6,), where it was measured."""
+
+    sweep_covariance: Array = field(default_factory=lambda: np.zeros((6, 6)))
+    """Of `sweep`, (6, 6)."""
+
+
+class Follower:
+    """Finds the cube again near where it should be."""
+
+    def __init__(self, cube: CubeModel, projection: Projection) -> None:
+        self._projection = projection
+        self.refiner = EdgeRefiner(cube, projection)
+        self.aligner = SweptAligner(cube, projection)
+        self.reader = CellReader(cube, projection)
+        signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+        self._hull = np.array(signs, np.float64) * cube.edge / 2
+        self._half = cube.edge / 2
+        cells = len(marker_cells(cube.dictionary, cube.faces[0].marker_id))
+        self._cell = cube.marker_size / cells
+
+    def follow(
+        self, image: NDArray[np.uint8], last: Sighting, timestamp: float, exposure: float
+    ) -> Candidate | None:
+        """Look where the past says that the cube should be; None where it is not found there."""
+        expected = prediction.predicted(last, timestamp)
+        region = self.region(expected)
+        if region is None:
+            return None
+        patch = Patch.of(image, region)
+        sweep = last.velocity * exposure
+        if self.streak(expected, sweep) < STREAK:
+            found = self.by_edges(patch, expected, sweep)
+            if found is not None:
+                return found
+        aligned = self._aligned(patch, expected, sweep)
+        if aligned is None:
+            return None
+        if self.streak(aligned.camera_from_cube, aligned.sweep) < STREAK:
+            found = self.by_edges(patch, aligned.camera_from_cube, aligned.sweep)
+            if found is not None:
+                return found
+        return _blurred(aligned)
+
+    def by_edges(self, patch: Patch, start: Array, sweep: Array | None) -> Candidate | None:
+        """Refine a pose on the edges, and take it if they prove that this is the cube."""
+        found = self.refiner.refine(patch, start, sweep)
+        if found is None or found.support < SEEN_FEW:
+            return None
+        reading = self.reader.read(patch, found.camera_from_cube)
+        if not _proved(found, reading):
+            return None
+        return Candidate(
+            camera_from_cube=found.camera_from_cube,
+            covariance=found.covariance,
+            source="markers" if reading.best >= READ else "image",
+            faces=tuple(face for face, share in found.shares.items() if share > SEEN_FEW),
+            error=found.residual,
+            residual=found.residual / found.support,
+            certain=True,
+        )
+
+    def _aligned(self, patch: Patch, expected: Array, sweep: Array) -> Alignment | None:
+        share, shift, turn = SWEEP_SPREAD
+        spread = share * np.repeat([np.linalg.norm(sweep[:3]), np.linalg.norm(sweep[3:])], 3)
+        prior = np.hypot(spread, np.repeat([shift, turn], 3))
+        found = self.aligner.align(patch, expected, sweep, prior)
+        return found if found and found.likeness > LIKE else None
+
+    def streak(self, camera_from_cube: Array, sweep: Array) -> float:
+        """How many cells an edge crosses at most while the shutter is open."""
+        across = float(np.linalg.norm(sweep[:3])) + self._half * float(np.linalg.norm(sweep[3:]))
+        return across / self._cell
+
+    def region(self, expected: Array) -> Region | None:
+        """Surround the predicted cube, with room for a hand's acceleration."""
+        points = self._hull @ expected[:3, :3].T + expected[:3, 3]
+        if points[:, 2].min() < NEAREST:
+            return None
+        pixels = self._projection.pixels(points)
+        low, high = pixels.min(axis=0), pixels.max(axis=0)
+        margin = 0.15 * float((high - low).max()) + 12
+        width, height = self._projection.size
+        left, top = max(0, int(low[0] - margin)), max(0, int(low[1] - margin))
+        right, bottom = (
+            min(width, int(high[0] + margin + 1)),
+            min(height, int(high[1] + margin + 1)),
+        )
+        if right - left < 32 or bottom - top < 32:
+            return None
+        return left, top, right, bottom
+
+
+def _proved(found: Refinement, reading: Reading) -> bool:
+    if min(found.support, found.inner) > SEEN and reading.best > 0.6:
+        return True
+    return reading.best >= READ or (found.support > SEEN and reading.best > 0.75)
+
+
+def _blurred(aligned: Alignment) -> Candidate:
+    faces = tuple(face for face, share in aligned.shares.items() if share > LIKE)
+    return Candidate(
+        camera_from_cube=aligned.camera_from_cube,
+        covariance=aligned.covariance[:6, :6],
+        source="image",
+        faces=faces,
+        error=float("nan"),
+        residual=aligned.residual,
+        certain=True,
+        sweep=aligned.sweep,
+        sweep_covariance=aligned.covariance[6:, 6:],
+    )
