@@ -1,0 +1,142 @@
+"""The benchmark's camera: its lens, its blur, its sensor. Shares no code with the tracker.
+
+The lens is that of Brown (1971) in the order of OpenCV's coefficients; it is inverted by Newton's
+method. Light is linear until `develop` counts electrons and applies the curve of sRGB.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+FINE = 2
+"""Sub-pixels per pixel and axis on which rays are cast and the lens blurs."""
+
+
+@dataclass(frozen=True, eq=False)
+class Lens:
+    """A camera without noise: where rays go. Pixel centres have whole coordinates."""
+
+    matrix: NDArray[np.float64]
+    """Focal lengths and principal point [px], (3, 3)."""
+
+    distortion: NDArray[np.float64]
+    """k1, k2, p1, p2, k3, (5,)."""
+
+    size: tuple[int, int]
+    """Width and height [px]."""
+
+    def bend(self, ideal: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Distort ideal image coordinates (..., 2) at depth 1; also return the Jacobian (..., 2, 2).
+
+        Brown, "Close-range camera calibration", 1971: radial and tangential terms.
+        """
+        k1, k2, p1, p2, k3 = self.distortion
+        x, y = ideal[..., 0], ideal[..., 1]
+        square = x * x + y * y
+        radial = 1 + square * (k1 + square * (k2 + square * k3))
+        # The slope of `radial` by the squared radius; the squared radius has the slope (2x, 2y).
+        slope = k1 + square * (2 * k2 + square * 3 * k3)
+        bent = np.empty_like(ideal)
+        bent[..., 0] = x * radial + 2 * p1 * x * y + p2 * (square + 2 * x * x)
+        bent[..., 1] = y * radial + p1 * (square + 2 * y * y) + 2 * p2 * x * y
+        jacobian = np.empty((*ideal.shape, 2))
+        jacobian[..., 0, 0] = radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x
+        jacobian[..., 0, 1] = 2 * x * y * slope + 2 * p1 * x + 2 * p2 * y
+        jacobian[..., 1, 0] = jacobian[..., 0, 1]
+        jacobian[..., 1, 1] = radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x
+        return bent, jacobian
+
+    def project(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Pixels (..., 2) of points (..., 3) in the camera frame [m], in front of the camera."""
+        bent, _ = self.bend(points[..., :2] / points[..., 2:])
+        return np.asarray(bent * self.matrix[[0, 1], [0, 1]] + self.matrix[:2, 2])
+
+    def directions(self, pixels: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Where rays through `pixels` (..., 2) meet the plane at depth 1, (..., 2)."""
+        target = (pixels - self.matrix[:2, 2]) / self.matrix[[0, 1], [0, 1]]
+        ideal = target.copy()
+        for _ in range(4):  # Newton's method: the error squares in each round.
+            bent, jacobian = self.bend(ideal)
+            bent -= target
+            (a, b), (c, d) = np.moveaxis(jacobian, (-2, -1), (0, 1))
+            size = a * d - b * c
+            ideal[..., 0] -= (d * bent[..., 0] - b * bent[..., 1]) / size
+            ideal[..., 1] -= (a * bent[..., 1] - c * bent[..., 0]) / size
+        return ideal
+
+    @cached_property
+    def rays(self) -> NDArray[np.float32]:
+        """`directions` of the centre of every sub-pixel, (height · FINE, width · FINE, 2)."""
+        width, height = self.size
+        pixels = np.empty((height * FINE, width * FINE, 2))
+        pixels[..., 0] = (np.arange(width * FINE) + 0.5) / FINE - 0.5
+        pixels[..., 1] = ((np.arange(height * FINE) + 0.5) / FINE - 0.5)[:, None]
+        found = np.empty(pixels.shape, np.float32)
+        for rows in range(0, len(pixels), 90):
+            found[rows : rows + 90] = self.directions(pixels[rows : rows + 90])
+        return found
+
+    @cached_property
+    def vignette(self) -> NDArray[np.float32]:
+        """Share of the light that arrives at each pixel, (height, width): cos⁴ of the ray, softened.
+
+        The natural fall-off of a thin lens; webcams correct a part of it, so here it is cos².
+        """
+        width, height = self.size
+        x = (np.arange(width) - self.matrix[0, 2]) / self.matrix[0, 0]
+        y = (np.arange(height) - self.matrix[1, 2]) / self.matrix[1, 1]
+        return (1 / (1 + x[None] ** 2 + y[:, None] ** 2)).astype(np.float32)
+
+
+def point_spread(gauss: float = 0.55, disk: float = 0.87) -> NDArray[np.float32]:
+    """Return the blur of the lens on the sub-pixel grid, odd and square, summing to 1.
+
+    Parameters
+    ----------
+    gauss
+        Standard deviation of diffraction, aberrations and the sensor's filter [px].
+    disk
+        Radius of the circle of confusion [px]. Together with `gauss`: 0.70 px per axis.
+    """
+    reach, dense = 5, 9
+    grid = (np.arange((2 * reach + 1) * dense) + 0.5) / dense - reach - 0.5
+    inside = (grid[None] ** 2 + grid[:, None] ** 2 <= (disk * FINE) ** 2).astype(np.float64)
+    cells = inside.reshape(2 * reach + 1, dense, 2 * reach + 1, dense).mean((1, 3))
+    bell = np.exp(-0.5 * (np.arange(-reach, reach + 1) / (gauss * FINE)) ** 2)
+    kernel = cv2.sepFilter2D(cells, cv2.CV_64F, bell, bell, borderType=cv2.BORDER_CONSTANT)
+    return (kernel / kernel.sum()).astype(np.float32)
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """From linear light to 8 bit: photons are counted, then the curve of sRGB is applied."""
+
+    electrons: float = 4000.0
+    """Electrons of a pixel at full scale: fewer in the dark, where the gain makes up for them."""
+
+    read_noise: float = 5.0
+    """Noise of reading a pixel [electrons]."""
+
+    def develop(self, light: NDArray[np.float32], random: np.random.Generator) -> NDArray[np.uint8]:
+        """Picture (H, W, 3) BGR of linear light (H, W, 3), 1 being white; overwrites `light`.
+
+        The noise is that of luminance: webcams thin out the noise of colour.
+        """
+        mean = cv2.max(light[..., 1], 0.0)
+        spread = cv2.sqrt(mean / self.electrons + (self.read_noise / self.electrons) ** 2)
+        spread *= random.standard_normal(mean.shape, np.float32)
+        light += spread[..., None]
+        levels = (CURVE.size - 1) * np.clip(light, 0, 1, out=light)
+        return np.take(CURVE, levels.astype(np.uint16))
+
+
+def encoded(light: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Curve of sRGB (IEC 61966-2-1): linear light 0…1 to 0…1."""
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+CURVE = np.rint(255 * encoded((np.arange(1 << 14) + 0.5) / (1 << 14))).astype(np.uint8)
+"""8-bit value of each of 2¹⁴ equal steps of linear light."""

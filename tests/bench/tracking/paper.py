@@ -1,0 +1,112 @@
+"""The paper cube as the benchmark draws it: read from its TOML file by code of its own."""
+
+import tomllib
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+CUBES = Path(__file__).resolve().parents[3] / "tracking" / "cubes"
+
+PAPER, INK = 0.85, 0.06
+"""Share of the light that white paper and printed black throw back."""
+
+_X, _Y, _Z = np.eye(3)
+AXES = {
+    "front": (_X, _Y, _Z),
+    "back": (-_X, _Y, -_Z),
+    "right": (-_Z, _Y, _X),
+    "left": (_Z, _Y, -_X),
+    "top": (_X, -_Z, _Y),
+    "bottom": (_X, _Z, -_Y),
+}
+"""Of each face as one looks at it: what points right, what points up, and its normal."""
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """One face: a grid of black and white squares, in space."""
+
+    name: str
+    """front, back, left, right, top or bottom."""
+
+    marker_id: int
+    """Number of its marker in the cube's dictionary."""
+
+    albedo: NDArray[np.float32]
+    """Share of light thrown back by each square of the grid, (n, n), the upper row first."""
+
+    place: NDArray[np.float64]
+    """Point [m] in the cube frame of (column, row, 1) in `albedo`, (3, 3).
+
+    Whole numbers are the middles of squares.
+    """
+
+    normal: NDArray[np.float64]
+    """Outward unit normal in the cube frame, (3,)."""
+
+    corners: NDArray[np.float64]
+    """Corners of the black square [m], (4, 3), from the marker's own top left on clockwise."""
+
+
+@dataclass(frozen=True, eq=False)
+class PaperCube:
+    """A cube of paper."""
+
+    dictionary: str
+    """Name of OpenCV's dictionary."""
+
+    edge: float
+    """Edge [m]."""
+
+    sides: tuple[Side, ...]
+    """The faces that carry a marker; a face without one is not drawn."""
+
+    @classmethod
+    def load(cls, name: str) -> "PaperCube":
+        """Read the bundled cube `name`."""
+        document = tomllib.loads((CUBES / f"{name}.toml").read_text(encoding="utf-8"))
+        edge, marker = document["edge_mm"] / 1000, document["marker_mm"] / 1000
+        sides = tuple(
+            _side(table, document["dictionary"], edge, marker) for table in document["face"]
+        )
+        return cls(document["dictionary"], edge, sides)
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """The eight corners of the cube [m], (8, 3)."""
+        signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T
+        return np.asarray(signs * (self.edge / 2))
+
+
+def bits(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
+    """White cells of a marker with its black border, (n, n)."""
+    known = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
+    cells = known.markerSize + 2
+    return cv2.aruco.generateImageMarker(known, marker_id, cells) > 127
+
+
+def _side(table: dict[str, object], dictionary: str, edge: float, marker: float) -> Side:
+    name, marker_id, turns = (
+        str(table["name"]),
+        int(str(table["marker_id"])),
+        int(str(table.get("roll_deg", 0))) // 90,
+    )
+    if "corners_mm" in table:
+        raise ValueError(f"face '{name}' has measured corners; this renderer draws true cubes")
+    right, up, normal = AXES[name]
+    pattern = np.rot90(bits(dictionary, marker_id), -turns)
+    # The grid is as fine as it must be for the white border to be a whole number of squares.
+    border = Fraction((edge - marker) / 2 / (marker / len(pattern))).limit_denominator(50)
+    pattern = np.kron(pattern, np.ones((border.denominator,) * 2, bool))
+    pattern = np.pad(pattern, border.numerator, constant_values=True)
+    step = edge / len(pattern)
+    first = (edge / 2) * normal + (step - edge) / 2 * right + (edge - step) / 2 * up
+    place = np.stack([right * step, -up * step, first], axis=1)
+    corners = np.array([m * right + n * up for m, n in ((-1, 1), (1, 1), (1, -1), (-1, -1))])
+    corners = np.roll(corners * marker / 2 + normal * edge / 2, -turns, axis=0)
+    albedo = np.where(pattern, PAPER, INK).astype(np.float32)
+    return Side(name, marker_id, albedo, place, normal, corners)

@@ -1,0 +1,73 @@
+"""What happens in each sequence of the benchmark, in numbers."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How the cube is moved, held and lit."""
+
+    speed: float = 0.0
+    """Peak speed of the cube's centre [m/s]."""
+
+    turning: float = 0.0
+    """Peak angular speed [rad/s]."""
+
+    exposure: float = 0.008
+    """Exposure of a frame [s]."""
+
+    depth: tuple[float, float] = (0.4, 0.6)
+    """Bounds of where the cube starts along the optical axis [m]."""
+
+    reach: tuple[float, float, float] = (1.0, 0.45, 0.35)
+    """Shape of the motion: how far along each axis of the camera."""
+
+    turns: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    """Shape of the turning: how far about each axis of the camera."""
+
+    pace: tuple[float, float] = (2.6, 4.2)
+    """Bounds of the slowest wave's angular frequency [rad/s]."""
+
+    facing: str = "any"
+    """How the cube is held: "any" way, "frontal" with one face seen, "corner" with two or three."""
+
+    fingers: str = ""
+    """When fingers are laid on the cube: "" never, "later" within ten frames, "start"."""
+
+    light: float = 1.0
+    """Light in the room, 1 being a lit room; the camera's gain makes up for three quarters of it."""
+
+    shadows: bool = False
+    """Whether edges of shadow fall across the cube."""
+
+    foreign: int = 0
+    """Markers on the table that belong to no cube."""
+
+    independent: bool = False
+    """Whether each frame shows another pose."""
+
+    count: int = 90
+    """Frames, if nobody asks for another number."""
+
+
+LONG = 1 / 60
+"""The exposure of a webcam in a room lit by lamps [s]."""
+
+PLANS: dict[str, Plan] = {
+    "static": Plan(count=60),
+    "far": Plan(speed=0.15, turning=0.6, depth=(0.8, 1.4)),
+    "twist": Plan(turning=3.0, turns=(0.0, 0.7, 1.0)),
+    "sweep-0.25": Plan(speed=0.25, turning=1.0, exposure=LONG),
+    "sweep-0.5": Plan(speed=0.5, turning=2.0, exposure=LONG),
+    "sweep-0.5-short": Plan(speed=0.5, turning=2.0),
+    "sweep-1.0": Plan(speed=1.0, turning=3.0, exposure=LONG, pace=(4.0, 5.5)),
+    "tumble": Plan(speed=0.3, turning=7.0, exposure=LONG, pace=(2.0, 3.0)),
+    "frontal": Plan(speed=0.1, turning=0.3, depth=(0.35, 0.6), facing="frontal"),
+    "fingers": Plan(speed=0.25, turning=0.8, exposure=LONG, facing="corner", fingers="later"),
+    "fingers-start": Plan(speed=0.25, turning=0.8, exposure=LONG, facing="corner", fingers="start"),
+    "darkness": Plan(speed=0.15, turning=0.6, light=1 / 8),
+    "shaded": Plan(speed=0.15, turning=0.6, shadows=True),
+    "cluttered": Plan(speed=0.25, turning=1.0, foreign=10),
+    "poses": Plan(depth=(0.3, 0.7), independent=True, count=60),
+}
+"""Each sequence by its name."""

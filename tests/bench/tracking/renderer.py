@@ -1,0 +1,212 @@
+"""Draws the benchmark's pictures: rays through a lens to a paper cube, spread over the exposure.
+
+Each sub-pixel sends one ray in each of many passes. A pass has its own time within the exposure,
+so a moving cube is blurred as its own path, turning included, smears it; there is no rolling
+shutter. The ray meets the planes of the faces, and reads the very square that it hits. All is linear
+light until the sensor.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tests.bench.tracking.hand import SKIN, Finger, draw_fingers
+from tests.bench.tracking.light import Light
+from tests.bench.tracking.optics import FINE, Lens, point_spread
+from tests.bench.tracking.paper import PaperCube, Side
+from tests.bench.tracking.paths import Poses
+
+TINT = np.array([0.97, 1.0, 1.0], np.float32)
+"""Colour of the paper (BGR): a little warm."""
+
+WHITE = 0.75
+"""Linear light in the picture of a perfectly white surface under light 1."""
+
+REST, MOST = 10, 56
+"""Passes for a cube at rest, and the most for one that moves."""
+
+MARGIN = 6
+"""Pixels drawn round the cube: as far as the lens blurs, and the bow of a distorted edge."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """All that a frame shows, except the noise."""
+
+    lens: Lens
+    """The camera."""
+
+    cube: PaperCube
+    """What it looks at."""
+
+    light: Light
+    """What falls on the cube."""
+
+    background: NDArray[np.float32]
+    """Linear light of all that does not move, blurred by the lens, (height, width, 3) BGR."""
+
+    poses: Poses
+    """Where the cube is at any time."""
+
+    fingers: Callable[[float], tuple[Finger, ...]]
+    """The fingers at a time [s], in the cube frame."""
+
+    brightness: float = 1.0
+    """How bright the picture is: gain and light together."""
+
+
+@dataclass(frozen=True)
+class Window:
+    """The part of the picture that is drawn anew: whole pixels."""
+
+    left: int
+    top: int
+    right: int
+    bottom: int
+
+    @property
+    def pixels(self) -> tuple[slice, slice]:
+        """Rows and columns of the picture."""
+        return slice(self.top, self.bottom), slice(self.left, self.right)
+
+    @property
+    def fine(self) -> tuple[slice, slice]:
+        """Rows and columns of the sub-pixels."""
+        return (
+            slice(self.top * FINE, self.bottom * FINE),
+            slice(self.left * FINE, self.right * FINE),
+        )
+
+
+def expose(
+    scene: Scene, middle: float, exposure: float, random: np.random.Generator
+) -> NDArray[np.float32]:
+    """Linear light (H, W, 3) that falls on the sensor; 1 is white.
+
+    Parameters
+    ----------
+    scene
+        What there is to see.
+    middle, exposure
+        Middle and length of the exposure [s].
+    random
+        Where the rays of a pixel lie is drawn from it.
+    """
+    picture = scene.background.copy()
+    ends = scene.poses(middle + np.array([-0.5, 0.0, 0.5]) * exposure)
+    passes = _passes(scene, ends)
+    times = middle + exposure * ((np.arange(passes) + 0.5) / passes - 0.5)
+    poses, fingers = scene.poses(times), scene.fingers(middle)
+    solids = scene.cube.vertices
+    reach = [solids, *(finger.around for finger in fingers)]
+    window = _window(scene.lens, np.concatenate(reach), np.concatenate([poses, ends]))
+    if window is None:
+        return picture * np.float32(scene.brightness)
+    layers = _gather(scene, window, poses, fingers, random)
+    layers = cv2.filter2D(layers, cv2.CV_32F, KERNEL, borderType=cv2.BORDER_REPLICATE)
+    share, paper, hand, skin = cv2.split(
+        cv2.resize(layers, None, fx=1 / FINE, fy=1 / FINE, interpolation=cv2.INTER_AREA)
+    )
+    fall = scene.lens.vignette[window.pixels] * np.float32(WHITE)
+    part = picture[window.pixels]
+    part *= (1 - share - hand)[..., None]
+    part += (paper * fall)[..., None] * TINT + (skin * fall)[..., None] * SKIN
+    return picture * np.float32(scene.brightness)
+
+
+def _passes(scene: Scene, ends: NDArray[np.float64]) -> int:
+    """As many passes as leave at most 0.7 pixels between two of them."""
+    corners = np.einsum("nij,kj->nki", ends[:, :3, :3], scene.cube.vertices) + ends[:, None, :3, 3]
+    seen = scene.lens.project(corners)
+    smear = np.linalg.norm(np.diff(seen, axis=0), axis=-1).sum(0).max()
+    return int(np.clip(np.ceil(smear / 0.7), REST, MOST))
+
+
+def _window(lens: Lens, points: NDArray[np.float64], poses: NDArray[np.float64]) -> Window | None:
+    """Box of the picture that holds `points` (n, 3) at all `poses`, or None if it is out of view."""
+    there = np.einsum("nij,kj->nki", poses[:, :3, :3], points) + poses[:, None, :3, 3]
+    seen = lens.project(there).reshape(-1, 2)
+    first = np.maximum(np.floor(seen.min(0)).astype(int) - MARGIN, 0)
+    last = np.minimum(np.ceil(seen.max(0)).astype(int) + MARGIN + 1, lens.size)
+    if (first >= last).any():
+        return None
+    return Window(int(first[0]), int(first[1]), int(last[0]), int(last[1]))
+
+
+def _gather(
+    scene: Scene,
+    window: Window,
+    poses: NDArray[np.float64],
+    fingers: tuple[Finger, ...],
+    random: np.random.Generator,
+) -> NDArray[np.float32]:
+    """Mean over all passes: share and light of the paper, share and light of the skin, (h, w, 4)."""
+    rays = scene.lens.rays[window.fine]
+    spacing = np.float32(1 / (FINE * scene.lens.matrix[0, 0]))
+    jitter = random.random(rays.shape, np.float32)
+    total = np.zeros((*rays.shape[:2], 4), np.float32)
+    shift = (np.arange(len(poses))[:, None] * R2 + random.random(2)) % 1
+    for pose, offset in zip(poses, shift.astype(np.float32), strict=True):
+        aim = jitter + offset
+        aim -= np.floor(aim)
+        aim -= np.float32(0.5)
+        aim *= spacing
+        aim += rays
+        seen = np.zeros(rays.shape[:2], np.float32)
+        for side in scene.cube.sides:
+            _draw_side(scene, side, pose, aim, seen, window)
+        if fingers:
+            skin = draw_fingers(fingers, pose, aim, scene.light)
+            seen[skin > 0] = 0
+            total[..., 2] += skin > 0
+            total[..., 3] += skin
+        total[..., 0] += seen > 0
+        total[..., 1] += seen
+    total /= np.float32(len(poses))
+    return total
+
+
+R2 = np.array([0.7548776662466927, 0.5698402909980532])
+"""Steps of the R2 sequence (Roberts 2018): points in a square that keep apart."""
+
+KERNEL = point_spread()
+"""Blur of the lens on the sub-pixels."""
+
+
+def _draw_side(
+    scene: Scene,
+    side: Side,
+    pose: NDArray[np.float64],
+    aim: NDArray[np.float32],
+    seen: NDArray[np.float32],
+    window: Window,
+) -> None:
+    """Write the light that `side` throws back into `seen` (h, w), where the rays `aim` hit it."""
+    place = pose[:3, :3] @ side.place
+    place[:, 2] += pose[:3, 3]
+    normal = pose[:3, :3] @ side.normal
+    count = len(side.albedo)
+    edge = np.array([(-0.5, -0.5), (count - 0.5, -0.5), (count - 0.5,) * 2, (-0.5, count - 0.5)])
+    corners = np.c_[edge, np.ones(4)] @ place.T
+    if normal @ corners[0] >= 0:  # It looks away.
+        return
+    box = _box(scene.lens.project(corners), window)
+    # A ray (x, y, 1) meets the plane where place @ (column, row, 1) is parallel to it.
+    grid = cv2.perspectiveTransform(aim[box], np.linalg.inv(place))
+    value = cv2.remap(side.albedo, grid, None, cv2.INTER_NEAREST, borderMode=cv2.BORDER_CONSTANT)
+    if scene.light.is_even:
+        value *= np.float32(sum(scene.light.even(normal)))
+    else:
+        value *= scene.light.on(normal, place, grid)
+    np.maximum(seen[box], value, out=seen[box])
+
+
+def _box(pixels: NDArray[np.float64], window: Window) -> tuple[slice, slice]:
+    """Rows and columns of a window's sub-pixels that hold `pixels` (n, 2)."""
+    origin = np.array([window.left, window.top])
+    first = np.maximum(np.floor(pixels.min(0)).astype(int) - 3 - origin, 0) * FINE
+    last = np.maximum(np.ceil(pixels.max(0)).astype(int) + 4 - origin, 0) * FINE
+    return slice(int(first[1]), int(last[1])), slice(int(first[0]), int(last[0]))
