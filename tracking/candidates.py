@@ -60,13 +60,17 @@ class CandidateFinder:
         if expected is not None:
             solutions.sort(key=lambda each: se3.angle_between(each.camera_from_cube, expected))
         refine = self._follower.refiner.refine
-        found = [self._judged(each, refine(patch, each.camera_from_cube)) for each in solutions]
+        found = [
+            self._judged(patch, each, refine(patch, each.camera_from_cube)) for each in solutions
+        ]
         if any(each.certain for each in found):
             return found
         wide = [self._best_refinement(patch, each.camera_from_cube) for each in solutions]
-        return [self._judged(*pair) for pair in zip(solutions, wide, strict=True)]
+        return [self._judged(patch, *pair) for pair in zip(solutions, wide, strict=True)]
 
-    def _judged(self, solution: CornerSolution, refinement: Refinement | None) -> Candidate:
+    def _judged(
+        self, patch: Patch, solution: CornerSolution, refinement: Refinement | None
+    ) -> Candidate:
         """Take the edges' pose where they agree with the corners, else the corners' own."""
         seen = solution.observations
         faces = tuple(each.face.name for each in seen)
@@ -80,7 +84,7 @@ class CandidateFinder:
                 error=solution.error,
                 residual=max(solution.error, 0.5),
                 certain=False,
-                blurred=fine and len(seen) == 1,
+                blurred=fine or len(seen) == 1,
             )
         return Candidate(
             camera_from_cube=refinement.camera_from_cube,
@@ -89,7 +93,8 @@ class CandidateFinder:
             faces=faces,
             error=self._solver.error(refinement.camera_from_cube, seen),
             residual=refinement.residual / refinement.support,
-            certain=len(seen) > 1 or refinement.support > SEEN_ALONE,
+            certain=self._follower.proved(patch, refinement),
+            lines=refinement.lines,
         )
 
     def _agree(self, solution: CornerSolution, refinement: Refinement) -> bool:

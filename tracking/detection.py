@@ -1,5 +1,6 @@
 """Markers in a picture: which faces of the cube are seen, and where."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -7,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.cube import CubeModel, Face, aruco_dictionary
-from tracking.patch import Patch
 
 Array = NDArray[np.float64]
 
@@ -28,11 +28,27 @@ class Observation:
         return float(np.linalg.norm(self.corners - np.roll(self.corners, 1, axis=0), axis=1).mean())
 
 
-class MarkerDetector:
-    """Finds the markers of one cube, and no others of its dictionary."""
+@dataclass(frozen=True)
+class Marker:
+    """A marker of some cube, or of none."""
 
-    def __init__(self, cube: CubeModel) -> None:
-        self._faces = {face.marker_id: face for face in cube.faces}
+    number: int
+    """Its number in the dictionary."""
+
+    corners: Array
+    """As in `Observation.corners`, (4, 2) [px]."""
+
+
+class MarkerDetector:
+    """Finds all markers of one dictionary.
+
+    Parameters
+    ----------
+    dictionary
+        Name of the OpenCV dictionary, "DICT_4X4_50" …
+    """
+
+    def __init__(self, dictionary: str) -> None:
         parameters = cv2.aruco.DetectorParameters()
         # Not one wrong bit: with 6 of 50 ids wanted, OpenCV's default of 0.6 finds markers in
         # clutter (opencv#28953).
@@ -46,19 +62,27 @@ class MarkerDetector:
         parameters.adaptiveThreshWinSizeMin = 3
         parameters.adaptiveThreshWinSizeMax = 23
         parameters.adaptiveThreshWinSizeStep = 10
-        self._detector = cv2.aruco.ArucoDetector(aruco_dictionary(cube.dictionary), parameters)
+        self._detector = cv2.aruco.ArucoDetector(aruco_dictionary(dictionary), parameters)
 
-    def detect(self, patch: Patch) -> list[Observation]:
-        """Find the cube's markers in a picture.
-
-        A marker can be seen twice: which of the two is the cube's is for `solver` to say.
-        """
-        squares, ids = self._detector.detectMarkers(patch.grey.astype(np.uint8))[:2]
+    def detect(self, grey: NDArray[np.uint8]) -> list[Marker]:
+        """Find markers in a grey picture, (H, W)."""
+        squares, ids = self._detector.detectMarkers(grey)[:2]
         # None where there is no marker; (N,) in OpenCV 5, (N, 1) in OpenCV 4.
         numbers = [] if ids is None else [int(number) for number in np.ravel(ids)]
-        corner = np.array([patch.left, patch.top], np.float64)
         return [
-            Observation(self._faces[number], np.reshape(square, (4, 2)) + corner)
+            Marker(number, np.reshape(square, (4, 2)).astype(np.float64))
             for number, square in zip(numbers, squares, strict=True)
-            if number in self._faces
         ]
+
+
+def observed(cube: CubeModel, markers: Sequence[Marker]) -> list[Observation]:
+    """Keep the markers of one cube.
+
+    A marker can be seen twice: which of the two is the cube's is for `solver` to say.
+    """
+    faces = {face.marker_id: face for face in cube.faces}
+    return [
+        Observation(faces[marker.number], marker.corners)
+        for marker in markers
+        if marker.number in faces
+    ]

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking import se3
 from tracking.cube import CubeModel, Face
 
 Array = NDArray[np.float64]
@@ -34,6 +35,20 @@ class Faces:
     def facing(self, camera_from_cube: Array, least: float) -> tuple[int, ...]:
         """Numbers of the faces whose cosine is greater than `least`."""
         return tuple(np.flatnonzero(self.cosines(camera_from_cube) > least).tolist())
+
+    def mirrored(self, camera_from_cube: Array, face: int) -> Array:
+        """Pose of the cube if one face leans to the other side of its line of sight, (4, 4).
+
+        The centre of the face stays where it is.
+        """
+        turn = camera_from_cube[:3, :3]
+        centre = turn @ self.centres[face] + camera_from_cube[:3, 3]
+        normal, back = turn @ self.normals[face], -centre / np.linalg.norm(centre)
+        axis = np.cross(normal, back)
+        sine = float(np.linalg.norm(axis))
+        angle = 2 * float(np.arctan2(sine, normal @ back))
+        turned = se3.rotation(axis / max(sine, 1e-9) * angle) @ turn
+        return se3.pose(turned, centre - turned @ self.centres[face])
 
 
 def plane_normal(face: Face) -> Array:

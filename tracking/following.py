@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from tracking import prediction
 from tracking.cube import CubeModel
+from tracking.faces import Faces
 from tracking.marker import marker_cells
 from tracking.patch import Patch, Region
 from tracking.prediction import Sighting
@@ -24,11 +25,17 @@ SEEN = 0.55
 SEEN_FEW = 0.25
 """The same where the markers can be read as well; fingers cover the rest."""
 
+CRISP = 0.55
+"""Edges that are duller than this across one direction are blurred in a way that was not told."""
+
 READ = 0.9
 """Share of a face's cells that must be as they should for it to count as read."""
 
 LIKE = 0.85
 """Correlation of a blurred picture with the drawn one, from which on it is the cube."""
+
+SURE = 0.95
+"""The same where there is no past."""
 
 STREAK = 0.6
 """Cells that an edge may cross during the exposure and still be measured as an edge."""
@@ -71,6 +78,9 @@ class Candidate:
     sweep_covariance: Array = field(default_factory=lambda: np.zeros((6, 6)))
     """Of `sweep`, (6, 6)."""
 
+    lines: int = 8
+    """How many independent measurements the residual rests on, roughly."""
+
 
 class Follower:
     """Finds the cube again near where it should be."""
@@ -82,6 +92,7 @@ class Follower:
         self.reader = CellReader(cube, projection)
         signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
         self._hull = np.array(signs, np.float64) * cube.edge / 2
+        self._faces = Faces(cube)
         self._half = cube.edge / 2
         cells = len(marker_cells(cube.dictionary, cube.faces[0].marker_id))
         self._cell = cube.marker_size / cells
@@ -109,13 +120,27 @@ class Follower:
                 return found
         return _blurred(aligned)
 
+    def other(self, candidate: Candidate) -> Array:
+        """Return the mirrored pose of a single face, (4, 4), not refined."""
+        face = self._faces.names.index(candidate.faces[0])
+        return self._faces.mirrored(candidate.camera_from_cube, face)
+
+    def mirrored(self, image: NDArray[np.uint8], candidate: Candidate) -> Candidate | None:
+        """Refine the other pose that a single face could have; None where there is no such pose.
+
+        Seen from afar, a square that leans towards the camera looks like one that leans away.
+        """
+        other = self.other(candidate)
+        region = self.region(other)
+        return self.by_edges(Patch.of(image, region), other, None) if region else None
+
     def by_edges(self, patch: Patch, start: Array, sweep: Array | None) -> Candidate | None:
         """Refine a pose on the edges, and take it if they prove that this is the cube."""
         found = self.refiner.refine(patch, start, sweep)
         if found is None or found.support < SEEN_FEW:
             return None
         reading = self.reader.read(patch, found.camera_from_cube)
-        if not _proved(found, reading):
+        if not _proves(found, reading):
             return None
         return Candidate(
             camera_from_cube=found.camera_from_cube,
@@ -125,7 +150,26 @@ class Follower:
             error=found.residual,
             residual=found.residual / found.support,
             certain=True,
+            lines=found.lines,
         )
+
+    def unblurred(self, patch: Patch, start: Array) -> Candidate | None:
+        """Align a cube without a past, whose corners alone were read: it may move any way.
+
+        A way and its reverse blur alike, so half of all directions will do.
+        """
+        best: Alignment | None = None
+        prior = np.repeat([1.5 * self._cell, 0.15], 3)
+        for angle in np.arange(4) * np.pi / 4:
+            sweep = self._cell * np.array([np.cos(angle), np.sin(angle), 0, 0, 0, 0])
+            found = self.aligner.align(patch, start, sweep, prior)
+            if found and found.likeness > max(SURE, best.likeness if best else 0.0):
+                best = found
+        return _blurred(best) if best else None
+
+    def proved(self, patch: Patch, found: Refinement) -> bool:
+        """Whether edges and cells at a pose prove that this is the cube."""
+        return _proves(found, self.reader.read(patch, found.camera_from_cube))
 
     def _aligned(self, patch: Patch, expected: Array, sweep: Array) -> Alignment | None:
         share, shift, turn = SWEEP_SPREAD
@@ -158,7 +202,9 @@ class Follower:
         return left, top, right, bottom
 
 
-def _proved(found: Refinement, reading: Reading) -> bool:
+def _proves(found: Refinement, reading: Reading) -> bool:
+    if found.crisp < CRISP:
+        return False
     if min(found.support, found.inner) > SEEN and reading.best > 0.6:
         return True
     return reading.best >= READ or (found.support > SEEN and reading.best > 0.75)

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+Floats = NDArray[np.float32]
+
 BORDER = cv2.BORDER_REPLICATE
 
 Region = tuple[int, int, int, int]
@@ -19,7 +21,7 @@ Region = tuple[int, int, int, int]
 class Patch:
     """A rectangle of a picture, in grey."""
 
-    grey: NDArray[np.float32]
+    grey: Floats
     """Grey values, 0…255, (h, w)."""
 
     left: int
@@ -40,18 +42,22 @@ class Patch:
         """Distance of pixels, (N, 2), to the nearest border, negative outside, (N,) [px]."""
         height, width = self.grey.shape
         inner = pixels - (self.left, self.top)
-        return np.minimum(inner, (width - 1, height - 1) - inner).min(axis=1)
+        least = np.minimum(inner, (width - 1, height - 1) - inner)
+        return np.minimum(least[:, 0], least[:, 1])
 
-    def at(self, places: Array) -> NDArray[np.float32]:
-        """Grey values between pixel centres, bilinear, places (N, M, 2) [px] → (N, M).
+    def at(self, places: Array) -> Floats:
+        """Grey values between pixel centres, bilinear, places (N, M, 2) [px] → (N, M)."""
+        inner = (places - (self.left, self.top)).astype(np.float32)
+        return self.inside(inner[..., 0], inner[..., 1])
+
+    def inside(self, x: Floats, y: Floats) -> Floats:
+        """Do the same for columns and rows of this part, (N, M) each, counted from its corner.
 
         `remap` of 32 bit floats is exact in OpenCV 5; that of bytes rounds places to 1/32 px, which
         is coarser than what is measured here (test_patch.py guards it).
         """
-        inner = (places - (self.left, self.top)).astype(np.float32)
-        return np.asarray(
-            cv2.remap(self.grey, inner, None, cv2.INTER_LINEAR, None, BORDER), np.float32
-        )
+        values = cv2.remap(self.grey, x, y, cv2.INTER_LINEAR, borderMode=BORDER)
+        return np.asarray(values, np.float32)
 
     def smoothed(self, sigma: float) -> "Patch":
         """Blur it by a Gaussian of `sigma` [px]."""

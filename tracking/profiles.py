@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.edges import EdgeModel
-from tracking.patch import Patch
+from tracking.patch import Floats, Patch
 from tracking.projection import NEAREST, Projection
 
 
@@ -122,9 +122,7 @@ def lay_out(
     )
 
 
-def offsets(
-    patch: Patch, profiles: Profiles, shifts: Array | float, blur: float
-) -> tuple[Array, Array, Array]:
+def offsets(patch: Patch, profiles: Profiles, shifts: Array | float, blur: float) -> "Measured":
     """Fit a blurred step to the picture across each edge point.
 
     The model a + b·S(u/σ) − b·δ·s(u/σ)/σ, (S a smooth step, s its slope), is linear in a, b and
@@ -143,30 +141,59 @@ def offsets(
 
     Returns
     -------
-    Offset of the edge from its shifted place along the normal [px], contrast b [grey levels], and
-    the information about the offset [1/px²], each (N,).
+    What was found, with offsets from the shifted places.
     """
-    taps = UNIT_TAPS * profiles.reach[:, None]
-    along = taps + np.reshape(shifts, (-1, 1))
-    x = profiles.pixels[:, 0, None] + along * profiles.normals[:, 0, None]
-    y = profiles.pixels[:, 1, None] + along * profiles.normals[:, 1, None]
-    values = patch.at(np.stack([x, y], axis=2))
+    reach, normals = profiles.reach.astype(np.float32), profiles.normals.astype(np.float32)
+    places = profiles.pixels + np.reshape(shifts, (-1, 1)) * profiles.normals
+    inner = (places - (patch.left, patch.top)).astype(np.float32)
+    taps = UNIT_TAPS * reach[:, None]
+    x = inner[:, 0, None] + taps * normals[:, 0, None]
+    y = inner[:, 1, None] + taps * normals[:, 1, None]
+    values = patch.inside(x, y)
     # A swept edge is a ramp; a smooth step of 0.35 of its length is the nearest of this family.
     wide = np.sqrt(blur**2 + (0.35 * profiles.sweep) ** 2)
-    width = np.minimum(wide, profiles.reach * 0.45)[:, None]
+    width = np.minimum(wide, profiles.reach * 0.45).astype(np.float32)[:, None]
     step = np.tanh(taps / width) / 2
-    slope = (0.25 - step * step) * 2 / width
+    slope = (0.25 - step * step) * (2 / width)
     slope -= slope.mean(axis=1, keepdims=True)
-    contrast = (step * values).sum(axis=1) / (step * step).sum(axis=1)
-    energy = (slope * slope).sum(axis=1)
-    shifted = -(slope * values).sum(axis=1) / energy
+    contrast = _dot(step, values) / _dot(step, step)
+    energy = _dot(slope, slope)
+    shifted = -_dot(slope, values) / energy
     safe = np.where(np.abs(contrast) > 1, contrast, 1)
     # Two grey levels of noise; its true size is found from the residuals.
     variance = 4 / (safe * safe * energy) + MODEL_ERROR**2
-    return shifted / safe, contrast, 1 / variance
+    half = TAPS // 2
+    rise = (values[:, half + 1] - values[:, half - 1]).astype(np.float64)
+    fitted = contrast * (step[:, half + 1] - step[:, half - 1])
+    return Measured(shifted / safe, contrast, 1 / variance, rise, fitted)
 
 
-UNIT_TAPS = np.linspace(-1, 1, TAPS)[None]
+@dataclass(frozen=True)
+class Measured:
+    """What profiles show, each (N,)."""
+
+    offset: Array
+    """Offset of the edge along the normal [px]."""
+
+    contrast: Array
+    """Height of the step, white over black [grey levels]."""
+
+    information: Array
+    """About the offset [1/px²]."""
+
+    rise: Array
+    """How much the picture rises over the middle quarter of the profile [grey levels]."""
+
+    fitted: Array
+    """The same of the step that was fitted."""
+
+
+def _dot(a: Floats, b: Floats) -> Array:
+    """Sums of products of rows, (N, M) and (N, M) → (N,)."""
+    return np.einsum("ij,ij->i", a, b).astype(np.float64)
+
+
+UNIT_TAPS = np.linspace(-1, 1, TAPS, dtype=np.float32)[None]
 
 
 def _pushed(slopes: Array, vectors: Array) -> Array:

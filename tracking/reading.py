@@ -8,13 +8,17 @@ from numpy.typing import NDArray
 from tracking.cube import CubeModel
 from tracking.faces import Faces
 from tracking.marker import marker_cells
-from tracking.patch import Patch
+from tracking.patch import Floats, Patch
 from tracking.projection import Projection
+from tracking.robust import quantile
 
 Array = NDArray[np.float64]
 
 GRAZING = 0.2
 """Cosine of the viewing angle below which a marker's cells are too foreshortened to be read."""
+
+LEAST = 6.0
+"""A marker with less contrast than this [grey levels] is not read."""
 
 DOUBT = 0.12
 """A cell nearer than this share of the contrast to the middle between black and white is unread."""
@@ -64,21 +68,25 @@ class CellReader:
         points = self._centres[facing].reshape(-1, 3)
         points = points @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
         pixels = self._projection.pixels(points)
-        values = patch.at(pixels[:, None])[:, 0].reshape(len(facing), -1)
-        inside = (patch.room(pixels) > 0).reshape(values.shape)
-        shares = {}
-        for number, value, seen in zip(facing, values, inside, strict=True):
-            white = self._white[number]
-            if np.count_nonzero(seen) > len(white) // 2:
-                shares[self._faces.names[number]] = _agreement(value[seen], white[seen])
-        return Reading(shares)
+        count = len(self._white[0])
+        values = patch.at(pixels[:, None])[:, 0].reshape(-1, count)
+        inside = (patch.room(pixels) > 0).reshape(-1, count)
+        return Reading(
+            {
+                self._faces.names[number]: _agreement(value[seen], self._white[number][seen])
+                for number, value, seen in zip(facing, values, inside, strict=True)
+                if np.count_nonzero(seen) > count // 2
+            }
+        )
 
 
-def _agreement(value: NDArray[np.float32], white: NDArray[np.bool_]) -> float:
-    if not white.any() or white.all():
+def _agreement(value: Floats, white: NDArray[np.bool_]) -> float:
+    bright, dark = value[white], value[~white]
+    if not len(bright) or not len(dark):
         return 0.0
-    bright, dark = float(np.median(value[white])), float(np.median(value[~white]))
-    if bright - dark < 6:
+    high, low = quantile(bright, 0.5), quantile(dark, 0.5)
+    middle, unsure = (high + low) / 2, DOUBT * (high - low)
+    if high - low < LEAST:
         return 0.0
-    above = (value - (bright + dark) / 2) / (bright - dark)
-    return float(np.mean(np.where(white, above, -above) > DOUBT))
+    right = np.count_nonzero(bright > middle + unsure) + np.count_nonzero(dark < middle - unsure)
+    return right / len(value)

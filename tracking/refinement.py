@@ -16,7 +16,7 @@ from tracking.cube import CubeModel
 from tracking.edges import EdgeModel
 from tracking.faces import Faces
 from tracking.patch import Patch
-from tracking.profiles import Profiles, lay_out, offsets
+from tracking.profiles import Measured, Profiles, lay_out, offsets
 from tracking.projection import Projection
 from tracking.robust import quantile, tukey
 
@@ -40,7 +40,7 @@ FAINT = 0.4
 FEWEST = 36
 """Fewer edge points than this do not make a pose."""
 
-CLOSE = 0.5
+CLOSE = 0.7
 """Once no edge moves by more than this [px] the profiles need not be laid out anew."""
 
 ROUNDS = 6
@@ -66,16 +66,26 @@ class Refinement:
     points: int
     """Number of edge points found."""
 
+    lines: int
+    """Number of straight lines that they lie on."""
+
     inner: float
     """The same share for the edges inside the markers, which tell them apart."""
 
     shares: dict[str, float]
     """The same share for each face in view."""
 
+    crisp: float
+    """How steep the dullest edges are beside the steepest, both against what the sweep makes them;
+    well below 1 where the cube moved in a way that was not told."""
+
 
 @dataclass(frozen=True)
 class _Fit:
     """The weighted least squares of one step."""
+
+    measured: Measured
+    """What all profiles show."""
 
     solution: Array
     """Shift-turn from the pose of the profiles, then the two blooms, (8,)."""
@@ -176,20 +186,29 @@ class EdgeRefiner:
             float(np.sqrt((fit.robust * fit.residual**2).sum() / fit.robust.sum())),
             len(kept) / len(numbers),
             len(kept),
+            len(np.unique(model.line[numbers[kept]])),
             float(np.count_nonzero(inner[kept])) / max(1, int(np.count_nonzero(inner))),
             {
                 self._faces.names[number]: float(found[number] / wanted[number])
                 for number in np.flatnonzero(wanted > 10).tolist()
             },
+            _crisp(fit.measured, kept, model.line[numbers[kept]]),
         )
+
+
+def _crisp(measured: Measured, kept: NDArray[np.intp], lines: NDArray[np.intp]) -> float:
+    starts = np.flatnonzero(np.diff(lines, prepend=-1))
+    rise = np.add.reduceat(measured.rise[kept], starts)
+    fitted = np.add.reduceat(measured.fitted[kept], starts)
+    steep = rise / np.maximum(fitted, 1e-9)
+    return quantile(steep, 0.15) / max(quantile(steep, 0.85), 1e-9)
 
 
 def _fit(patch: Patch, profiles: Profiles, shifts: Array | None, blur: float) -> _Fit | None:
     """Measure all profiles, and solve for the shift-turn and the blooms with robust weights."""
-    beside, contrast, information = offsets(
-        patch, profiles, 0.0 if shifts is None else shifts, blur
-    )
-    good = contrast > _least_contrast(profiles.face, contrast)
+    measured = offsets(patch, profiles, 0.0 if shifts is None else shifts, blur)
+    beside = measured.offset
+    good = measured.contrast > _least_contrast(profiles.face, measured.contrast)
     good &= np.abs(beside) < profiles.reach
     strong = np.flatnonzero(good)
     if len(strong) < FEWEST:
@@ -200,7 +219,7 @@ def _fit(patch: Patch, profiles: Profiles, shifts: Array | None, blur: float) ->
     rows[:, :6] = profiles.slopes[strong]
     rows[:, 6] = 1
     rows[:, 7] = profiles.sweep[strong]
-    information = information[strong]
+    information = measured.information[strong]
     weights, robust = information, np.ones(count)
     for _ in range(3):
         weighted = rows * weights[:, None]
@@ -210,7 +229,7 @@ def _fit(patch: Patch, profiles: Profiles, shifts: Array | None, blur: float) ->
         scale = 1.4826 * quantile(np.abs(residual), 0.5)
         robust = tukey(residual, max(4.685 * scale, 0.1))
         weights = information * robust
-    return _Fit(solution, strong, rows, weights, robust, residual, normal)
+    return _Fit(measured, solution, strong, rows, weights, robust, residual, normal)
 
 
 PRIOR = np.diag([1e-3] * 6 + [1 / BLOOM**2, 1 / SWEPT_BLOOM**2])

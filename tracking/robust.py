@@ -1,12 +1,14 @@
 """Robust statistics, quick on small arrays."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
 
-def quantile(values: Array, share: float) -> float:
+def quantile(values: NDArray[np.floating[Any]], share: float) -> float:
     """Return the value below which a share of all lies; eight times faster than `np.quantile`.
 
     >>> quantile(np.array([3.0, 1.0, 2.0]), 0.5)

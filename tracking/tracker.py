@@ -1,17 +1,21 @@
 """From camera frames to where the cube is: what one frame proposes, weighed against the past."""
 
+from collections.abc import Sequence
+from dataclasses import replace
+
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from tracking import prediction, se3
 from tracking.candidates import CandidateFinder
 from tracking.cube import CubeModel
-from tracking.detection import MarkerDetector
+from tracking.detection import Marker, MarkerDetector, observed
 from tracking.errors import TrackingError
 from tracking.following import Candidate, Follower
 from tracking.frame import Frame
 from tracking.intrinsics import Intrinsics
-from tracking.patch import Patch, Region
+from tracking.patch import Patch
 from tracking.prediction import MEMORY, Sighting, Track
 from tracking.projection import Projection
 from tracking.shutter import Shutter
@@ -21,6 +25,13 @@ Array = NDArray[np.float64]
 
 CLEARLY_BETTER = 0.6
 """Of two poses of one face, one with less than this share of the other's residual is right."""
+
+DECISIVE = 14.0
+"""Twice the logarithm of a likelihood ratio from which on the better of two poses is right."""
+
+SQUARE, HARMLESS = np.deg2rad(16), np.deg2rad(7)
+"""Two poses of one face that differ by less than the first may be taken for each other by time, and
+those that differ by less than the second are both right enough."""
 
 LONE_SPEED = 0.65
 """A single face that moves faster than this [m/s] is too blurred to tell how far away it is."""
@@ -50,12 +61,13 @@ class CubeTracker:
         self.cube = cube
         self.intrinsics = intrinsics
         projection = Projection(intrinsics)
-        self._detector = MarkerDetector(cube)
+        self._detector = MarkerDetector(cube.dictionary)
         self._follower = Follower(cube, projection)
         self._finder = CandidateFinder(cube, projection, self._follower)
         self._track = Track()
         self._shutter = Shutter()
         self._jump: Sighting | None = None
+        self._settled = False
 
     def update(self, frame: Frame) -> CubeState:
         """Find the cube in the next frame.
@@ -65,8 +77,12 @@ class CubeTracker:
         TrackingError
             The frame has not the size that the intrinsics hold for.
         """
-        self._check(frame)
-        return self.follow(frame) or self._acquire(frame, None)
+        self.check(frame)
+        followed = self.follow(frame)
+        if followed is not None:
+            return followed
+        grey = grey_of(frame)
+        return self.acquire(frame, grey, self._detector.detect(grey))
 
     def predict(self, timestamp: float) -> CubeState:
         """Say where the cube will be, or was, at a time near that of the last frame.
@@ -82,26 +98,80 @@ class CubeTracker:
         if recent is None:
             return None
         found = self._follower.follow(frame.image, recent, now, self._shutter.exposure)
-        return self._seen(found, now) if found else None
+        if found is None:
+            return None
+        if len(found.faces) != 1:
+            self._settled = True
+            return self._seen(found, now)
+        found, refused = self._settle(frame, found, recent, now)
+        return self._unseen(now, refused) if refused else self._seen(found, now)
 
-    def _acquire(self, frame: Frame, region: Region | None) -> CubeState:
-        """Find the cube anywhere by its markers."""
+    def _settle(
+        self, frame: Frame, found: Candidate, recent: Sighting, now: float
+    ) -> tuple[Candidate, str]:
+        """Tell which way a single face leans: by its edges, else by time, else not at all.
+
+        Once that is settled it stays so until the face comes square to the camera, where it can
+        pass from one to the other.
+        """
+        if found.sweep is not None:
+            return found, "" if self._settled else "ambiguous"
+        lean = se3.angle_between(found.camera_from_cube, self._follower.other(found))
+        if self._settled and lean > SQUARE:
+            return found, ""
+        other = self._follower.mirrored(frame.image, found)
+        if other is None or _close(found, other):
+            self._settled &= other is None
+            return found, ""
+        best, worse = sorted((found, other), key=lambda each: each.residual)
+        if best.lines * 2 * np.log(worse.residual / best.residual) > DECISIVE:
+            self._settled = True
+            return best, ""
+        if lean < HARMLESS:
+            return _doubled(found, other), ""
+        return found, "ambiguous"
+
+    def acquire(
+        self, frame: Frame, grey: NDArray[np.uint8], markers: Sequence[Marker]
+    ) -> CubeState:
+        """Find the cube anywhere in a frame.
+
+        Parameters
+        ----------
+        frame
+            The frame, of the right size.
+        grey
+            The same picture in grey, (H, W).
+        markers
+            All markers of the cube's dictionary that were read in it.
+        """
         now = frame.timestamp
         recent = self._track.recent(now)
         expected = prediction.predicted(recent, now) if recent else None
-        patch = Patch.of(frame.image, region)
-        observations = self._detector.detect(patch)
-        candidates = self._finder.find(patch, observations, expected)
+        patch = Patch.of(grey)
+        candidates = self._finder.find(patch, observed(self.cube, markers), expected)
         if recent is not None:
             candidates = [each for each in candidates if _fits(each, recent, now)]
         if not candidates:
             return self._unseen(now, "")
+        if not any(each.certain for each in candidates):
+            candidates = self._unblurred(frame, candidates)
         candidate, refused = self._chosen(candidates, recent, now)
         if not refused and not self._confirmed(candidate, now):
             refused = "jump"
         return self._unseen(now, refused) if refused else self._seen(candidate, now)
 
-    def _check(self, frame: Frame) -> None:
+    def _unblurred(self, frame: Frame, candidates: list[Candidate]) -> list[Candidate]:
+        """Align the picture round poses that corners alone vouch for, where it shows the cube."""
+        found = []
+        for each in candidates:
+            region = self._follower.region(each.camera_from_cube)
+            patch = Patch.of(frame.image, region) if region else None
+            found.append(self._follower.unblurred(patch, each.camera_from_cube) if patch else None)
+        return [each for each in found if each] or candidates
+
+    def check(self, frame: Frame) -> None:
+        """Raise a `TrackingError` where a frame has not the intrinsics' size."""
         height, width = frame.image.shape[:2]
         if (width, height) != self.intrinsics.size:
             wanted = "×".join(str(n) for n in self.intrinsics.size)
@@ -186,6 +256,11 @@ class CubeTracker:
         )
 
 
+def grey_of(frame: Frame) -> NDArray[np.uint8]:
+    """Return a frame's picture in grey, (H, W)."""
+    return np.asarray(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY), np.uint8)
+
+
 def _fits(candidate: Candidate, last: Sighting, timestamp: float) -> bool:
     """Whether a pose that rests on a single marker is where the cube should be."""
     return (
@@ -193,6 +268,12 @@ def _fits(candidate: Candidate, last: Sighting, timestamp: float) -> bool:
         or len(candidate.faces) > 1
         or prediction.near(last, candidate.camera_from_cube, timestamp)
     )
+
+
+def _doubled(found: Candidate, other: Candidate) -> Candidate:
+    """Doubt a pose as much as the other one that it could be demands."""
+    apart = se3.motion(found.camera_from_cube, other.camera_from_cube)
+    return replace(found, covariance=found.covariance + np.outer(apart, apart) / 4)
 
 
 def _close(a: Candidate, b: Candidate) -> bool:
