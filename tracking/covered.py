@@ -8,7 +8,7 @@ from tracking.cube import CubeModel
 from tracking.detection import Observation
 from tracking.marker import marker_cells
 from tracking.patch import Region
-from tracking.squares import Squares, find_squares
+from tracking.squares import Squares, find_squares, sampled
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -67,7 +67,7 @@ class CoveredMarkerDetector:
         Markers, the surest first. Whole ones are among them, and a marker can be seen twice.
         """
         left, top, right, bottom = region or (0, 0, grey.shape[1], grey.shape[0])
-        soft = np.asarray(cv2.GaussianBlur(grey[top:bottom, left:right], (3, 3), 0), np.uint8)
+        soft = np.asarray(cv2.GaussianBlur(grey[top:bottom, left:right], (5, 5), 0), np.uint8)
         squares = find_squares(soft)
         if not len(squares):
             return []
@@ -87,9 +87,7 @@ class CoveredMarkerDetector:
     def _read(self, soft: Picture, squares: Squares) -> tuple[NDArray[np.intp], Array]:
         """Name the marker in each square: 4 × its place in the cube + its turn, or −1; its fit."""
         places = squares.at(self._places)
-        flat = places.astype(np.float32)
-        drawn = cv2.remap(soft, flat, None, cv2.INTER_LINEAR, None, cv2.BORDER_REPLICATE)
-        values = np.asarray(drawn, np.float64).reshape(places.shape[:2])
+        values = sampled(soft, places)
         seen = self._uncovered(squares) & _inside(places, soft.shape)
         white = _median(values[:, self._paper], seen[:, self._paper])[:, None]
         black = _median(values[:, self._border], seen[:, self._border])[:, None]
@@ -127,10 +125,11 @@ def _inside(places: Array, shape: tuple[int, ...]) -> Flags:
 
 
 def _median(values: Array, seen: Flags) -> Array:
-    """Median of what is seen in each row; infinite where nothing is."""
+    """Median of what is seen in each row; 0 where nothing is."""
     ordered = np.sort(np.where(seen, values, np.inf), axis=1)
     middle = np.maximum(seen.sum(axis=1) - 1, 0) // 2
-    return np.asarray(np.take_along_axis(ordered, middle[:, None], axis=1)[:, 0])
+    median = np.take_along_axis(ordered, middle[:, None], axis=1)[:, 0]
+    return np.asarray(np.where(seen.any(axis=1), median, 0.0))
 
 
 def _share(sign: Array) -> Array:

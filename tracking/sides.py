@@ -76,14 +76,14 @@ def find_sides(grey: Picture) -> Sides:
         for outline in outlines
         if len(outline) >= SHORTEST_BLOB
     ]
-    loops = [loop for loop in loops if len(loop) > 3]
     if not loops:
         return Sides(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, np.intp))
-    start = np.concatenate(loops).astype(np.float64)
-    end = np.concatenate([np.roll(loop, -1, axis=0) for loop in loops]).astype(np.float64)
-    blob = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
+    counts = np.array([len(loop) for loop in loops])
+    points = np.concatenate(loops).astype(np.float64)
+    following = np.arange(1, len(points) + 1)
+    following[np.cumsum(counts) - 1] -= counts
     # OpenCV walks round a blob with the dark on the left hand (y down): turn all round.
-    sides = Sides(end, start, blob)
+    sides = Sides(points[following], points, np.repeat(np.arange(len(loops)), counts))
     sides = sides.of(sides.length >= SHORTEST)
     return _longest(sides.of(_bordering(sides, grey)))
 
@@ -120,20 +120,22 @@ def quadrilaterals(sides: Sides) -> tuple[Index, Array]:
 
     Returns
     -------
-    Numbers of the sides, (Q, 4), clockwise as seen (y down), and the corners, (Q, 4, 2) [px]: corner
-    k lies between the sides k − 1 and k.
+    Numbers of the sides, (Q, 4), clockwise as seen (y down), and the corners, (Q, 4, 2) [px]:
+    corner k lies between the sides k − 1 and k.
     """
     first, second, corner = _neighbours(sides)
+    if not len(first):
+        return np.zeros((0, 4), np.intp), np.zeros((0, 4, 2))
     begins = np.searchsorted(first, np.arange(len(sides) + 1))
     chain = np.stack([first, second], axis=1)
     meets = corner[:, None]
     for _ in range(2):
         chain, meets = _extended(chain, meets, begins, second, corner)
-    # The fourth side must meet the first again.
-    pair = {key: number for number, key in enumerate(zip(first.tolist(), second.tolist()))}
-    last = [pair.get(key, -1) for key in zip(chain[:, 3].tolist(), chain[:, 0].tolist())]
-    closing = np.asarray(last, np.intp)
-    whole = closing >= 0
+    # The fourth side must meet the first again: look its pair up.
+    key = first * len(sides) + second
+    wanted = chain[:, 3] * len(sides) + chain[:, 0]
+    closing = np.minimum(np.searchsorted(key, wanted), len(key) - 1)
+    whole = key[closing] == wanted
     corners = np.concatenate([corner[closing[whole]][:, None], meets[whole]], axis=1)
     return chain[whole], corners
 

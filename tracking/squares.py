@@ -78,6 +78,13 @@ def find_squares(grey: Picture) -> Squares:
     return Squares(corners, _gaps(used, corners), share[keep].mean(axis=1))
 
 
+def sampled(grey: Picture, places: Array) -> Array:
+    """Grey values between pixel centres, bilinear, places (N, M, 2) [px] → (N, M)."""
+    x, y = np.moveaxis(places.astype(np.float32), -1, 0)
+    border = cv2.BORDER_REPLICATE
+    return np.asarray(cv2.remap(grey, x, y, cv2.INTER_LINEAR, borderMode=border), np.float64)
+
+
 def cross(a: Array, b: Array) -> Array:
     """Cross product of vectors in the plane, (…, 2)."""
     return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0], np.float64)
@@ -96,9 +103,7 @@ def _sharpened(grey: Picture, used: Sides) -> Array:
     reach = np.arange(-REACH, REACH + 1.25, 0.5)  # outlines lie on the dark pixels
     middle = used.start[:, None] + along[:, None] * (used.end - used.start)[:, None]
     places = middle[:, :, None] + reach[:, None] * across[:, None, None]
-    flat = places.reshape(-1, len(reach), 2).astype(np.float32)
-    drawn = cv2.remap(grey, flat, None, cv2.INTER_LINEAR, None, cv2.BORDER_REPLICATE)
-    values = drawn.astype(np.float64).reshape(places.shape[:-1])
+    values = sampled(grey, places.reshape(-1, len(reach), 2)).reshape(places.shape[:-1])
     slope = np.maximum(values[..., 2:] - values[..., :-2], 0.0) ** 2 + 1e-3
     offset = (slope * reach[1:-1]).sum(axis=-1) / slope.sum(axis=-1)
     middle_off, lean = _line(along - 0.5, offset)
