@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from tests.bench.tracking import bar, readme, table
-from tests.bench.tracking.readme import Run
+from tests.bench.tracking.run import Run
 from tests.bench.tracking.scoring import Truth, errors, later, score
 
 RATE = 30.0
@@ -182,7 +182,7 @@ def test_the_readme_keeps_all_but_its_section(tmp_path):
     page.write_text(
         f"before\n{readme.OPENING}\nof last year\n{readme.CLOSING}\nafter\n", encoding="utf-8"
     )
-    run = Run("make it", 40, 1, 2, "2026-01-01", "a machine", tuple(scores_of((0.001, 0, 0))))
+    run = Run("make it", 40, 1, 2, "2026-01-01", "a machine", 0.0, tuple(scores_of((0.001, 0, 0))))
     readme.write(page, run)
     readme.write(page, run)
     text = page.read_text(encoding="utf-8")
@@ -197,5 +197,5 @@ def test_a_readme_without_the_marks_is_left_alone(tmp_path):
     page = tmp_path / "README.md"
     page.write_text("mine", encoding="utf-8")
     with pytest.raises(ValueError, match="no section"):
-        readme.write(page, Run("make it", 40, 1, 2, "2026-01-01", "a machine"))
+        readme.write(page, Run("make it", 40, 1, 2, "2026-01-01", "a machine", 0.0))
     assert page.read_text(encoding="utf-8") == "mine"

@@ -13,8 +13,8 @@ from rich.console import Console
 
 from tests.bench.tracking import bar, readme, table
 from tests.bench.tracking.contest import Contest
-from tests.bench.tracking.readme import Run
 from tests.bench.tracking.rivals.environments import ENTRIES
+from tests.bench.tracking.run import Run
 from tests.bench.tracking.sequences import NAMES, sequence
 
 
@@ -29,6 +29,7 @@ def main() -> None:
         for name in options.sequences:
             drawn = sequence(name, options.seed, options.frames)
             run = replace(run, scores=(*run.scores, *contest.run(drawn)))
+            progress.print(f"{name}: {table.brief(run.scores, name)}", highlight=False)
         run = replace(run, versions=contest.versions, left_out=contest.left_out)
     _print(console, run)
     if options.json:

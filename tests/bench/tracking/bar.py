@@ -26,9 +26,9 @@ class Verdict:
     def __str__(self) -> str:
         """Say it in one line."""
         if self.miss is None:
-            return f"not measured         {self.target}"
+            return f"not measured            {self.target}"
         verdict = f"misses by {self.miss}" if self.miss else "holds"
-        return f"{verdict:<21}{self.target}: {self.measured}"
+        return f"{verdict:<24}{self.target}: {self.measured}"
 
 
 def verdicts(scores: Rows[Score]) -> Iterator[Verdict]:
@@ -110,8 +110,8 @@ def _constant(ours: Rows[Score]) -> Verdict:
     return Verdict(target, f"{change:+.0%}", _excess(abs(change), 0.3))
 
 
-LIGHT = "static"
-"""The sequence that differs from "darkness" by its light alone."""
+LIGHT = "shaded"
+"""The sequence in which the cube is moved as in "darkness", in a lit room."""
 
 
 def _honest(ours: Rows[Score]) -> Verdict:

@@ -1,14 +1,10 @@
 """The section of `tracking/README.md` that `make bench-tracking` writes."""
 
-import datetime
-import os
-import platform
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Self
 
 from tests.bench.tracking import bar
+from tests.bench.tracking.run import Run
 from tests.bench.tracking.scoring import Score
 from tests.bench.tracking.table import (
     OURS,
@@ -29,52 +25,6 @@ RENDERER = (
     "a moment of its own in the exposure, shot and read noise, a camera's curve.\n"
     "Poses are spread over all six degrees of freedom by Halton's sequence."
 )
-
-
-@dataclass(frozen=True)
-class Run:
-    """One run of the benchmark."""
-
-    command: str
-    """That was given."""
-
-    frames: int
-    """Of each sequence."""
-
-    seed: int
-    """Of all sequences."""
-
-    threads: int
-    """That each tracker might use."""
-
-    date: str
-    """ISO, of the day."""
-
-    machine: str
-    """Processor and number of its cores."""
-
-    scores: tuple[Score, ...] = ()
-    """Of every tracker on every sequence."""
-
-    versions: dict[str, str] = field(default_factory=dict)
-    """For each tracker what it rests on."""
-
-    left_out: dict[str, str] = field(default_factory=dict)
-    """For each tracker that did not take part: why."""
-
-    @classmethod
-    def now(cls, command: str, frames: int, seed: int, threads: int) -> Self:
-        """Note the circumstances."""
-        day = datetime.date.today().isoformat()
-        return cls(command, frames, seed, threads, day, f"{_processor()}, {os.cpu_count()} cores")
-
-    @property
-    def circumstances(self) -> str:
-        """In one line."""
-        return (
-            f"{self.date}, {self.machine}, {self.threads} threads for each tracker, one tracker at "
-            f"a time; {self.frames} frames of 1280×720 a sequence, seed {self.seed}"
-        )
 
 
 def write(path: Path, run: Run) -> None:
@@ -156,14 +106,3 @@ def _own(run: Run) -> Iterator[str]:
             rest = own_figures(score)[2:]
             yield f"| {score.sequence} | {share(score.inside)} % | " + " | ".join(rest) + " |"
     yield ""
-
-
-def _processor() -> str:
-    """Name the processor, where the system tells."""
-    try:
-        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-            if line.startswith("model name"):
-                return line.partition(":")[2].strip()
-    except OSError:
-        pass  # not Linux
-    return platform.processor() or platform.machine()

@@ -14,7 +14,7 @@ OURS, YARDSTICK = "Cubeling", "cv2 SUBPIX"
 
 COLUMNS = ("tracker", "frames", "recall %", "wrong %", "mm", "95 %", "°", "95 %", "ms", "÷ cv2")
 OWN = (
-    "sequence", "held %", "jitter mm", "jitter °", "50 ms ahead mm", "straight on", "held still",
+    "sequence", "inside %", "jitter mm", "jitter °", "50 ms ahead mm", "const. velocity", "held",
     "velocity mm/s", "°/s",
 )  # fmt: skip
 
@@ -27,6 +27,11 @@ def show(console: Console, scores: Rows[Score]) -> None:
         f"÷ cv2: of the time that {YARDSTICK} takes to detect, without solving.\n"
     )
     console.print(_ours(scores))
+    console.print(
+        "inside: the stated 95 % ellipsoid holds the truth. 50 ms ahead: median distance between "
+        "where the tracker's\nprediction, its last two poses continued, or its last pose has the "
+        "cube and where it is then.\nvelocity: median error of the stated one.\n"
+    )
     console.print(_rest(scores))
     for score in scores:
         if score.failed:
@@ -34,6 +39,15 @@ def show(console: Console, scores: Rows[Score]) -> None:
                 f"{score.tracker} broke down in {score.failed} frames of {score.sequence}: "
                 f"{'; '.join(score.failures)[:200]}"
             )
+
+
+def brief(scores: Rows[Score], sequence: str) -> str:
+    """Tell a sequence's outcome in one line, for whoever waits."""
+    return "; ".join(
+        f"{s.tracker} {share(s.recall)} % {length(s.shift[0])} mm {number(s.milliseconds, 1)} ms"
+        for s in scores
+        if s.sequence == sequence
+    )
 
 
 def of(scores: Rows[Score], sequence: str, tracker: str) -> Score | None:
