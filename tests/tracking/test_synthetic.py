@@ -87,6 +87,29 @@ def test_marker_corners_are_drawn_where_the_truth_projects_them() -> None:
     assert np.median(np.linalg.norm(apart, axis=-1)) < 0.3
 
 
+def test_a_folded_cube_is_seen_where_its_measured_corners_are() -> None:
+    source = open_synthetic("wave?fold=2&noise=0&defocus=0.3")
+    frame = source.frame(4)
+    grey = cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY)
+    detector = cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50))
+    squares, ids, _ = detector.detectMarkers(grey)
+    assert len(ids) == 2
+    faces = {face.marker_id: face for face in source.cube.faces}
+    ideal = {face.marker_id: face for face in CubeModel.load("locomotion").faces}
+    truth, camera = source.truth(4), source.intrinsics
+    assert camera is not None
+    for number, square in zip(np.ravel(ids), squares, strict=True):
+        away = []
+        for cube in (faces, ideal):
+            points = cube[int(number)].corners @ truth[:3, :3].T + truth[:3, 3]
+            pixels = cv2.projectPoints(
+                points, np.zeros(3), np.zeros(3), camera.matrix, camera.distortion
+            )[0]
+            away.append(np.linalg.norm(pixels.reshape(4, 2) - square.reshape(4, 2), axis=1).max())
+        assert away[0] < 1.5  # OpenCV gives whole pixels here
+        assert away[1] > 3
+
+
 def test_the_same_seed_gives_the_same_pictures() -> None:
     one, other = (open_synthetic("follow?seed=3&width=640&height=360") for _ in range(2))
     for index in (0, 75):
@@ -110,6 +133,8 @@ def test_every_script_moves_smoothly_and_ends(name: str) -> None:
     poses = np.array([source.moment(index).table_from_cube for index in range(source.count)])
     speed = np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1) * 120
     assert speed.max() < 1.6
+    if name == "wave":
+        return  # it is far above the desk, and its poses are those in the camera's frame
     half = source.cube.edge / 2
     lowest = poses[:, 1, 3] - half * np.abs(poses[:, 1, :3]).sum(axis=1)
     assert lowest.min() > -0.004  # a trembling hand presses it no deeper into the desk

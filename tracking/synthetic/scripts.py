@@ -150,7 +150,7 @@ def poses(edge: float, options: Options) -> Script:
 def wave(edge: float, options: Options) -> Script:
     """Wave the cube before the camera for 20 s, with stops, as one does to calibrate it."""
     stations = _stations(edge, options)
-    move, stop = 0.47, 0.30
+    move, stop = 0.49, 0.25
 
     def at(time: float) -> Moment:
         number, since = divmod(max(time, 0.0), move + stop)
@@ -167,14 +167,15 @@ def wave(edge: float, options: Options) -> Script:
 
 
 def _stations(edge: float, options: Options) -> list[Array]:
-    """Stops of `wave`: every face in turn, tilted every way, all over the picture, near and far."""
+    """Return the stops of `wave`: every face, tilted every way, everywhere, near and far."""
     random = np.random.default_rng([options.seed, 5])
-    places = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)], float)
-    order = np.concatenate([random.permutation(9) for _ in range(3)])[:26]
+    # To and fro in rows, from one end of the picture to the other and back: no long ways.
+    rows = [(x * way, y) for y, way in ((-1, 1), (0, -1), (1, 1)) for x in (-1, 0, 1)]
+    places = np.array([*rows, *rows[::-1], *rows], float)
     focal = 900.0 * options.width / 1280
     half = np.array([options.width, options.height]) / 2
     stations = []
-    for number, place in enumerate(places[order]):
+    for number, place in enumerate(places):
         right, up = (np.array(axis, float) for axis in list(FACE_AXES.values())[number % 6])
         # The face's right, down and inward are the camera's x, y and z where it is met squarely.
         square = np.stack([right, -up, -np.cross(right, up)])
