@@ -7,90 +7,35 @@ to 45 unknowns however many views there are.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking import se3
-from tracking.calibration import lens
+from tracking.calibration.unknowns import (
+    PRIOR_BLOOM,
+    Adjusted,
+    Model,
+    Setting,
+    add_priors,
+    errors,
+    linearised,
+    movable,
+    prior_cost,
+    stepped,
+)
 from tracking.calibration.view import View
 
 Array = NDArray[np.float64]
 
-PRIOR_PLATE = (0.0012, np.deg2rad(1.2))
-"""How far a face of a hand-made cube is off, one standard deviation [m], [rad]."""
-
-PRIOR_BLOOM = 0.3
-"""How far white may grow over black [px], one standard deviation."""
-
 QUIETEST = 0.02
 """The error of a row is never taken to be smaller than this [px]."""
-
-NEAREST = 0.02
-"""No point of the target is nearer to the camera than this [m]."""
 
 ROUNDS = 40
 """Steps of Levenberg-Marquardt at most."""
 
 DONE = 1e-4
 """A step that lowers the cost by less than this is the last one."""
-
-
-@dataclass(frozen=True)
-class Model:
-    """All unknowns of a calibration."""
-
-    camera: Array
-    """The camera's numbers, (9,); see `lens.PARAMETERS`."""
-
-    plates: Array
-    """`target_from_plate` for each plate, (P, 4, 4): where a point that should be at x really is.
-    Identity for a perfect target."""
-
-    poses: Array
-    """`camera_from_target` of each view, (V, 4, 4)."""
-
-    blooms: Array
-    """How far white has grown in each view [px], (V,)."""
-
-
-@dataclass(frozen=True)
-class Adjusted:
-    """The best model, and how sure it is."""
-
-    model: Model
-    """The unknowns."""
-
-    covariance: Array
-    """Of the camera's nine numbers, then of the plates' shift-turns, (9 + 6 P,) squared; zero for
-    what was held."""
-
-    residual: float
-    """Robust standard deviation of a row [px]."""
-
-    view_residuals: Array
-    """Root mean square of each view's rows [px], outliers left in but cut at 3 px, (V,)."""
-
-    cost: float
-    """What was minimised: squared errors in units of their standard deviations, priors included."""
-
-
-@dataclass(frozen=True)
-class Setting:
-    """What is free and what is known beforehand."""
-
-    size: tuple[int, int]
-    """Of the pictures [px]."""
-
-    free: NDArray[np.bool_]
-    """Which of the camera's numbers may move, (9,)."""
-
-    centres: Array
-    """Where the centres of the plates should be, (P, 3) [m]; they turn about these."""
-
-    crooked: bool
-    """Whether the plates may be off their places; a board's one plate is the target itself."""
 
 
 def adjust(views: Sequence[View], start: Model, setting: Setting) -> Adjusted:
@@ -100,7 +45,7 @@ def adjust(views: Sequence[View], start: Model, setting: Setting) -> Adjusted:
     shared, steps = _normal_equations(views, model, setting, sigma)
     cost = _cost(views, model, setting, sigma)
     for _ in range(ROUNDS):
-        moved = _stepped(model, setting, *_solved(shared, steps, damping, setting))
+        moved = stepped(model, setting, *_solved(shared, steps, damping, setting))
         after = _cost(views, moved, setting, sigma)
         if after > cost:
             damping *= 8
@@ -117,34 +62,6 @@ def adjust(views: Sequence[View], start: Model, setting: Setting) -> Adjusted:
     return _finished(views, model, setting, sigma, cost)
 
 
-def errors(view: View, model: Model, number: int, setting: Setting) -> Array:
-    """How far each row of a view is off [px], (N,)."""
-    return _rows(view, model, number, setting)[0]
-
-
-def _rows(
-    view: View, model: Model, number: int, setting: Setting
-) -> tuple[Array, Array, Array, Array]:
-    """Return errors (N,) and their slopes by camera (N, 9), own plate (N, 6) and view (N, 7)."""
-    offsets = view.points - setting.centres[view.plates]
-    plates = model.plates[view.plates]
-    turned = np.einsum("nij,nj->ni", plates[:, :3, :3], offsets)
-    places = turned + setting.centres[view.plates] + plates[:, :3, 3]
-    turn, origin = model.poses[number, :3, :3], model.poses[number, :3, 3]
-    swung = places @ turn.T
-    seen = swung + origin
-    seen = np.where(seen[:, 2:] < NEAREST, seen * (1, 1, 0) + (0, 0, NEAREST), seen)
-    pixels, by_point, by_camera = lens.projected(model.camera, seen)
-    away = np.einsum("ni,ni->n", view.normals, view.pixels - pixels)
-    away -= view.bloom * model.blooms[number]
-    across = np.einsum("ni,nij->nj", view.normals, by_point)
-    on_plate = across @ turn
-    camera = np.einsum("ni,nij->nj", view.normals, by_camera)
-    plate = np.concatenate([on_plate, np.cross(turned, on_plate)], axis=1)
-    own = np.concatenate([across, np.cross(swung, across), view.bloom[:, None]], axis=1)
-    return away, camera, plate, own
-
-
 def _huber(away: Array, sigma: float) -> Array:
     """Weights that let no row pull harder than one that is two standard deviations off."""
     return np.asarray(1 / np.maximum(1.0, np.abs(away) / (2 * sigma)), np.float64)
@@ -153,7 +70,7 @@ def _huber(away: Array, sigma: float) -> Array:
 def _spread(views: Sequence[View], model: Model, setting: Setting) -> float:
     """Return the robust standard deviation of a row [px], what the unknowns took up given back."""
     away = np.concatenate([errors(view, model, n, setting) for n, view in enumerate(views)])
-    unknowns = 7 * len(views) + len(_movable(setting, 9 + 6 * len(model.plates)))
+    unknowns = 7 * len(views) + len(movable(setting, 9 + 6 * len(model.plates)))
     taken = len(away) / max(len(away) - unknowns, 0.25 * len(away))
     return max(QUIETEST, 1.4826 * float(np.median(np.abs(away))) * float(np.sqrt(taken)))
 
@@ -163,17 +80,7 @@ def _cost(views: Sequence[View], model: Model, setting: Setting, sigma: float) -
     for number, view in enumerate(views):
         away = np.abs(errors(view, model, number, setting)) / sigma
         total += float(np.where(away < 2, away**2, 4 * away - 4).sum())
-    return total + float((model.blooms**2).sum()) / PRIOR_BLOOM**2 + _prior_cost(model, setting)
-
-
-def _prior_cost(model: Model, setting: Setting) -> float:
-    rows, values = lens.prior(setting.size, model.camera[0], setting.free)
-    cost = float(((rows @ model.camera - values) ** 2).sum())
-    for plate in model.plates if setting.crooked else ():
-        step = se3.motion(np.eye(4), plate)
-        cost += float((step[:3] ** 2).sum()) / PRIOR_PLATE[0] ** 2
-        cost += float((step[3:] ** 2).sum()) / PRIOR_PLATE[1] ** 2
-    return cost
+    return total + float((model.blooms**2).sum()) / PRIOR_BLOOM**2 + prior_cost(model, setting)
 
 
 Blocks = tuple[Array, Array]
@@ -195,7 +102,7 @@ def _normal_equations(
     count = 9 + 6 * len(model.plates)
     normal, right, steps = np.zeros((count, count)), np.zeros(count), []
     for number, view in enumerate(views):
-        away, camera, plate, own = _rows(view, model, number, setting)
+        away, camera, plate, own = linearised(view, model, number, setting)
         rows = np.zeros((len(away), count))
         rows[:, :9] = camera
         columns = 9 + 6 * view.plates[:, None] + np.arange(6)
@@ -208,25 +115,8 @@ def _normal_equations(
         block[6, 6] += 1 / PRIOR_BLOOM**2
         pull[6] -= model.blooms[number] / PRIOR_BLOOM**2
         steps.append(_Step(block, pull, own.T @ (rows * weights)))
-    _add_priors(normal, right, model, setting)
+    add_priors(normal, right, model, setting)
     return (normal, right), steps
-
-
-def _add_priors(normal: Array, right: Array, model: Model, setting: Setting) -> None:
-    rows, values = lens.prior(setting.size, model.camera[0], setting.free)
-    normal[:9, :9] += rows.T @ rows
-    right[:9] -= rows.T @ (rows @ model.camera - values)
-    for number, plate in enumerate(model.plates):
-        at = slice(9 + 6 * number, 15 + 6 * number)
-        strength = np.repeat(1 / np.square(PRIOR_PLATE), 3)
-        normal[at, at] += np.diag(strength)
-        right[at] -= strength * se3.motion(np.eye(4), plate)
-
-
-def _movable(setting: Setting, count: int) -> NDArray[np.intp]:
-    free = np.full(count, setting.crooked)
-    free[:9] = setting.free
-    return np.flatnonzero(free)
 
 
 def _reduced(shared: Blocks, steps: Sequence[_Step], damping: float) -> Blocks:
@@ -245,27 +135,14 @@ def _solved(
     shared: Blocks, steps: Sequence[_Step], damping: float, setting: Setting
 ) -> tuple[Array, list[Array]]:
     normal, right = _reduced(shared, steps, damping)
-    movable = _movable(setting, len(right))
+    moving = movable(setting, len(right))
     solution = np.zeros(len(right))
-    solution[movable] = np.linalg.solve(normal[np.ix_(movable, movable)], right[movable])
+    solution[moving] = np.linalg.solve(normal[np.ix_(moving, moving)], right[moving])
     own: list[Array] = []
     for step in steps:
         block = step.own + damping * np.diag(np.diag(step.own))
         own.append(np.asarray(np.linalg.solve(block, step.right - step.cross @ solution)))
     return solution, own
-
-
-def _stepped(model: Model, setting: Setting, shared: Array, own: Sequence[Array]) -> Model:
-    camera = model.camera + shared[:9]
-    # A focal length cannot leave the range of cameras, whatever one bad step says.
-    camera[:2] = np.clip(camera[:2], 0.2 * setting.size[0], 8 * setting.size[0])
-    plates = [
-        se3.moved(plate, step)
-        for plate, step in zip(model.plates, shared[9:].reshape(-1, 6), strict=True)
-    ]
-    poses = [se3.moved(pose, step[:6]) for pose, step in zip(model.poses, own, strict=True)]
-    blooms = model.blooms + np.array([step[6] for step in own])
-    return Model(camera, np.array(plates), np.array(poses), blooms)
 
 
 def _finished(
@@ -275,9 +152,9 @@ def _finished(
     alike = _alike(views, away, sigma)
     shared, steps = _normal_equations(views, model, setting, sigma * np.sqrt(alike))
     normal, _ = _reduced(shared, steps, 0.0)
-    movable = _movable(setting, len(normal))
+    moving = movable(setting, len(normal))
     covariance = np.zeros_like(normal)
-    covariance[np.ix_(movable, movable)] = np.linalg.inv(normal[np.ix_(movable, movable)])
+    covariance[np.ix_(moving, moving)] = np.linalg.inv(normal[np.ix_(moving, moving)])
     cut = [np.minimum(np.abs(part), 3.0) for part in away]
     spreads = np.array([np.sqrt((part**2).mean()) for part in cut])
     return Adjusted(model, covariance, sigma, spreads, cost)
@@ -296,8 +173,3 @@ def _alike(views: Sequence[View], away: Sequence[Array], sigma: float) -> float:
         together += float((sums**2).sum())
         alone += float((held**2).sum())
     return max(1.0, together / max(alone, 1e-12))
-
-
-def subset(model: Model, chosen: Sequence[int]) -> Model:
-    """Return the model of some of the views."""
-    return replace(model, poses=model.poses[list(chosen)], blooms=model.blooms[list(chosen)])

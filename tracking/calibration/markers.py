@@ -6,6 +6,8 @@ camera but a smooth map from the marker to the picture: a homography bent by a q
 follows any lens over so small a part of the picture.
 """
 
+from dataclasses import dataclass, replace
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +16,7 @@ from tracking.calibration.view import View
 from tracking.cube import CubeModel, Face
 from tracking.detection import Observation
 from tracking.marker import marker_cells
+from tracking.patch import Patch
 
 Array = NDArray[np.float64]
 
@@ -50,64 +53,96 @@ class EdgeMeter:
             face.name: (number, face, _layout(cube, face)) for number, face in enumerate(cube.faces)
         }
 
-    def measure(self, grey: NDArray[np.uint8], seen: Observation, timestamp: float) -> View | None:
+    def measure(self, patch: Patch, seen: Observation, timestamp: float) -> View | None:
         """Measure the edges of one marker that was found; None where they cannot be seen well."""
-        number, face, (places, along, across, to_end, lines) = self._layouts[seen.face.name]
+        number, face, layout = self._layouts[seen.face.name]
         square = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)
-        homography = np.asarray(
-            cv2.getPerspectiveTransform(square, seen.corners.astype(np.float32)), np.float64
-        )
-        bend = np.zeros((6, 2))
+        homography = cv2.getPerspectiveTransform(square, seen.corners.astype(np.float32))
+        warp = _Warp(np.asarray(homography, np.float64), np.zeros((6, 2)))
         for width in WIDTHS:
-            pixels = _mapped(homography, bend, places)
-            tangents = _mapped(homography, bend, places + along / 2) - _mapped(
-                homography, bend, places - along / 2
-            )
-            span = _mapped(homography, bend, places + across / 2) - _mapped(
-                homography, bend, places - across / 2
-            )
-            length = np.linalg.norm(tangents, axis=1)
-            normals = np.stack([-tangents[:, 1], tangents[:, 0]], axis=1) / length[:, None]
-            cell = np.einsum("ni,ni->n", normals, span)
-            normals *= np.sign(cell)[:, None]
-            reach = np.minimum(REACH, 0.45 * np.abs(cell))
-            good = (np.abs(cell) > NARROWEST) & (to_end * length > END_CLEARANCE)
-            good &= _inside(pixels, reach + 2, grey.shape)
-            if np.count_nonzero(good) < FEWEST:
+            edges = _measured(patch, layout, warp, width)
+            if edges is None:
                 return None
-            chosen = np.flatnonzero(good)
-            offset, contrast = _offsets(grey, pixels[good], normals[good], reach[good], width)
-            strong = (contrast > max(10.0, FAINT * float(np.quantile(contrast, 0.7)))) & (
-                np.abs(offset) < 0.7 * reach[good]
-            )
-            if np.count_nonzero(strong) < FEWEST:
-                return None
-            chosen, offset = chosen[strong], offset[strong]
-            step, kept = _bent(places[chosen], normals[chosen], offset)
-            bend += step
-        chosen, offset = chosen[kept], offset[kept]
+            chosen, pixels, normals, offset = edges
+            step, kept = _bent(layout.places[chosen], normals, offset)
+            warp = replace(warp, bend=warp.bend + step)
+        chosen, pixels, normals, offset = chosen[kept], pixels[kept], normals[kept], offset[kept]
+        if len(chosen) < FEWEST:
+            return None
         top_left, top_right, _, bottom_left = face.corners
         axes = np.stack([top_right - top_left, bottom_left - top_left])
         return View(
             timestamp,
             np.full(len(chosen), number, np.intp),
-            top_left + places[chosen] @ axes,
-            pixels[chosen] + offset[:, None] * normals[chosen],
-            normals[chosen],
+            top_left + layout.places[chosen] @ axes,
+            pixels + offset[:, None] * normals,
+            normals,
             np.ones(len(chosen)),
-            lines[chosen],
+            layout.lines[chosen],
         )
 
 
-def _layout(cube: CubeModel, face: Face) -> tuple[Array, Array, Array, Array, NDArray[np.intp]]:
-    """Lay points on a marker's edges: place, one cell along, one across, to the end, line."""
+@dataclass(frozen=True)
+class _Layout:
+    """Points on a marker's edges, in its unit square: x right, y down."""
+
+    places: Array
+    along: Array
+    across: Array
+    to_end: Array
+    lines: NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class _Warp:
+    """The map from a marker's unit square to the picture."""
+
+    homography: Array
+    bend: Array
+
+    def __call__(self, places: Array) -> Array:
+        """Map places (N, 2) to pixels (N, 2)."""
+        flat = np.column_stack([places, np.ones(len(places))]) @ self.homography.T
+        return np.asarray(flat[:, :2] / flat[:, 2:] + _powers(places) @ self.bend, np.float64)
+
+    def steps(self, places: Array, way: Array) -> Array:
+        """Return how a small way in the square looks in the picture, (N, 2) [px]."""
+        return self(places + way / 2) - self(places - way / 2)
+
+
+def _measured(
+    patch: Patch, layout: _Layout, warp: _Warp, width: float
+) -> tuple[NDArray[np.intp], Array, Array, Array] | None:
+    """Measure across the edges: numbers of the good ones, pixels, normals, offsets [px]."""
+    pixels = warp(layout.places)
+    tangents = warp.steps(layout.places, layout.along)
+    length = np.linalg.norm(tangents, axis=1)
+    normals = np.stack([-tangents[:, 1], tangents[:, 0]], axis=1) / length[:, None]
+    cell = np.einsum("ni,ni->n", normals, warp.steps(layout.places, layout.across))
+    normals *= np.sign(cell)[:, None]
+    reach = np.minimum(REACH, 0.45 * np.abs(cell))
+    good = (np.abs(cell) > NARROWEST) & (layout.to_end * length > END_CLEARANCE)
+    good &= patch.room(pixels) > reach + 2
+    if np.count_nonzero(good) < FEWEST:
+        return None
+    offset, contrast = _offsets(patch, pixels[good], normals[good], reach[good], width)
+    strong = contrast > max(10.0, FAINT * float(np.quantile(contrast, 0.7)))
+    strong &= np.abs(offset) < 0.7 * reach[good]
+    if np.count_nonzero(strong) < FEWEST:
+        return None
+    chosen = np.flatnonzero(good)[strong]
+    return chosen, pixels[chosen], normals[chosen], offset[strong]
+
+
+def _layout(cube: CubeModel, face: Face) -> _Layout:
+    """Lay points on a marker's edges."""
     white = np.pad(~marker_cells(cube.dictionary, face.marker_id), 1, constant_values=True)
     upright, level = _runs(white), _runs(white.T)
     rows = np.concatenate([upright, level[:, [1, 0, 3, 2, 5, 4, 6, 7]]])
     rows[len(upright) :, 7] += upright[:, 7].max() + 1
     count = len(white) - 2
     places, along, across = (rows[:, pair : pair + 2] / count for pair in (0, 2, 4))
-    return places, along, across, rows[:, 6], rows[:, 7].astype(np.intp)
+    return _Layout(places, along, across, rows[:, 6], rows[:, 7].astype(np.intp))
 
 
 def _runs(white: NDArray[np.bool_]) -> Array:
@@ -125,12 +160,6 @@ def _runs(white: NDArray[np.bool_]) -> Array:
                 rows.append((column - 1, run[0] - 1 + place, 0, 1, side, 0, end, line))
             line += 1
     return np.array(rows, np.float64)
-
-
-def _mapped(homography: Array, bend: Array, places: Array) -> Array:
-    """Map the marker's unit square to the picture, (N, 2) → (N, 2) [px]."""
-    flat = np.column_stack([places, np.ones(len(places))]) @ homography.T
-    return np.asarray(flat[:, :2] / flat[:, 2:] + _powers(places) @ bend, np.float64)
 
 
 def _powers(places: Array) -> Array:
@@ -161,17 +190,12 @@ def _bent(places: Array, normals: Array, offset: Array) -> tuple[Array, NDArray[
     return solution[:12].reshape(2, 6).T, weights > 0.1
 
 
-def _inside(pixels: Array, margin: Array, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    room = np.minimum(pixels, (shape[1] - 1, shape[0] - 1) - pixels).min(axis=1)
-    return np.asarray(room > margin)
-
-
 def _offsets(
-    grey: NDArray[np.uint8], pixels: Array, normals: Array, reach: Array, width: float
+    patch: Patch, pixels: Array, normals: Array, reach: Array, width: float
 ) -> tuple[Array, Array]:
     """Fit a blurred step across each edge, as `tracking.refinement` does: offset [px], contrast."""
     taps = np.linspace(-1, 1, TAPS)[None] * reach[:, None]
-    values = _bilinear(grey, pixels[:, None] + taps[..., None] * normals[:, None])
+    values = patch.at(pixels[:, None] + taps[..., None] * normals[:, None]).astype(np.float64)
     soft = np.minimum(width, reach * 0.45)[:, None]
     step = np.tanh(taps / soft) / 2
     slope = (0.25 - step**2) * 2 / soft
@@ -179,14 +203,3 @@ def _offsets(
     contrast = (step * values).sum(axis=1) / (step**2).sum(axis=1)
     shifted = -(slope * values).sum(axis=1) / (slope**2).sum(axis=1)
     return shifted / np.where(np.abs(contrast) > 1, contrast, 1), contrast
-
-
-def _bilinear(grey: NDArray[np.uint8], places: Array) -> Array:
-    """Grey values between pixel centres; OpenCV's `remap` would round places to 1/32 px."""
-    corner = places.astype(np.intp)
-    x, y = np.moveaxis(places - corner, -1, 0)
-    index = corner[..., 1] * grey.shape[1] + corner[..., 0]
-    flat, width = grey.reshape(-1), grey.shape[1]
-    upper = flat[index] * (1 - x) + flat[index + 1] * x
-    lower = flat[index + width] * (1 - x) + flat[index + width + 1] * x
-    return np.asarray(upper * (1 - y) + lower * y, np.float64)

@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking import se3
 from tracking.calibration import adjustment, lens, start
-from tracking.calibration.adjustment import Adjusted, Model, Setting
+from tracking.calibration.unknowns import Adjusted, Model, Setting, subset
 from tracking.calibration.view import View
 from tracking.cube import CubeModel
 from tracking.errors import TrackingError
@@ -138,7 +137,7 @@ def agreeing(found: Adjusted, views: Sequence[View]) -> tuple[Adjusted, list[Vie
     usual = max(float(np.median(found.view_residuals)), 0.1)
     chosen = np.flatnonzero(found.view_residuals < ODD * usual).tolist()
     _check_count(len(chosen))
-    model = adjustment.subset(found.model, chosen)
+    model = subset(found.model, chosen)
     return replace(found, model=model), [views[number] for number in chosen]
 
 
@@ -158,17 +157,6 @@ def measured_cube(cube: CubeModel, plates: Array) -> CubeModel:
         corners = (face.corners - centre) @ plate[:3, :3].T + centre + plate[:3, 3]
         faces.append(replace(face, corners=corners))
     return replace(cube, faces=tuple(faces))
-
-
-def fold_errors(plates: Array, half: float) -> tuple[float, float]:
-    """Return how far the faces are off, root mean square and worst of a marker's corner [m]."""
-    away = []
-    corners = half * np.array([(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)])
-    for plate in plates:
-        step = se3.motion(np.eye(4), plate)
-        away.append(np.linalg.norm(step[:3]) + np.linalg.norm(step[3:]) * np.sqrt(2) * half)
-    del corners
-    return float(np.sqrt(np.mean(np.square(away)))), float(np.max(away))
 
 
 def _freed(target: Setting, stage: str) -> Setting:

@@ -1,0 +1,25 @@
+"""Intrinsics of a camera from the printed cube itself, or from a ChArUco board."""
+
+from tracking.calibration.board import Board, write_board
+from tracking.calibration.checking import Check, check
+from tracking.calibration.coach import Coach, Look
+from tracking.calibration.collecting import Collector, Glance
+from tracking.calibration.finders import BoardFinder, CubeFinder, Finder
+from tracking.calibration.solving import Calibration, calibrate, measured_cube
+
+__all__ = [
+    "Board",
+    "BoardFinder",
+    "Calibration",
+    "Check",
+    "Coach",
+    "Collector",
+    "CubeFinder",
+    "Finder",
+    "Glance",
+    "Look",
+    "calibrate",
+    "check",
+    "measured_cube",
+    "write_board",
+]
