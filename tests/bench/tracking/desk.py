@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.bench.tracking.light import UP, Light
-from tests.bench.tracking.optics import FINE, Lens, point_spread
+from tests.bench.tracking.optics import Lens, point_spread, sampled
 from tests.bench.tracking.paper import bits
 
 HEIGHT = 0.62
@@ -48,13 +48,12 @@ def desk(
     place = np.stack([right, -front, middle * DENSITY - right * LONG / 2 + front * WIDE * 0.7], 1)
     place /= DENSITY
     rays = lens.rays
-    grid = cv2.perspectiveTransform(rays, np.linalg.inv(place))
-    fine = cv2.remap(linear, grid, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REFLECT)
-    fine *= light.on(up, place, grid)[..., None]
-    fine = cv2.filter2D(fine, cv2.CV_32F, point_spread())
-    picture = cv2.resize(fine, lens.size, interpolation=cv2.INTER_AREA)
-    picture *= lens.vignette[..., None]
-    return np.asarray(picture, np.float32)
+    grid = np.asarray(cv2.perspectiveTransform(rays, np.linalg.inv(place)), np.float32)
+    fine = sampled(np.asarray(linear, np.float32), grid, smooth=True)
+    fine = fine * light.on(up, place, grid)[..., None]
+    blurred = cv2.filter2D(fine, cv2.CV_32F, point_spread())
+    picture = cv2.resize(blurred, lens.size, interpolation=cv2.INTER_AREA)
+    return np.asarray(picture * lens.vignette[..., None], np.float32)
 
 
 def _wood(random: np.random.Generator) -> Picture:
@@ -62,7 +61,8 @@ def _wood(random: np.random.Generator) -> Picture:
     grain = cv2.resize(random.standard_normal((WIDE // 3, 40), np.float32), (LONG, WIDE))
     stains = cv2.resize(random.standard_normal((9, 12), np.float32), (LONG, WIDE), None, 0, 0, 2)
     tone = 1 + 0.05 * grain + 0.10 * stains
-    colour = random.uniform((60, 85, 110), (130, 150, 175)).astype(np.float32)
+    shade, warmth = random.uniform(75, 175), random.uniform(0.0, 0.22)
+    colour = (shade * (1 + warmth * np.array([-2, 0, 1]))).astype(np.float32)
     return np.clip(tone[..., None] * colour, 20, 240).astype(np.uint8)
 
 
@@ -78,7 +78,7 @@ def _quad(centre: tuple[float, float], size: tuple[float, float], turn: float) -
 def _book(drawing: Picture, random: np.random.Generator) -> None:
     spot, turn = _spot(random), float(random.uniform(0, 180))
     size = (float(random.uniform(110, 240)), float(random.uniform(150, 300)))
-    cover = random.integers(20, 230, 3).tolist()
+    cover = (random.integers(40, 200) + random.integers(-40, 41, 3)).tolist()
     cv2.fillConvexPoly(drawing, _quad(spot, size, turn), cover, cv2.LINE_AA)
     for share in (0.8, 0.55):
         smaller = (size[0] * share, size[1] * share)
@@ -151,7 +151,11 @@ def _lay_marker(
 
 
 def _paste(
-    drawing: Picture, tile: Picture, spot: tuple[float, float], turn_deg: float, scale: float
+    drawing: Picture,
+    tile: cv2.typing.MatLike,
+    spot: tuple[float, float],
+    turn_deg: float,
+    scale: float,
 ) -> None:
     """Lay a picture on the drawing with its middle at `spot`."""
     height, width = tile.shape[:2]

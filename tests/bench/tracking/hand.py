@@ -1,12 +1,13 @@
 """Fingers that hold the benchmark's cube: capsules that lie on its faces."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from tests.bench.tracking.light import UP, Light
 from tests.bench.tracking.paper import PaperCube, Side
+from tests.bench.tracking.paths import eased
 
 SKIN = np.array([0.30, 0.42, 0.66], np.float32)
 """Share of the light that skin throws back (BGR)."""
@@ -68,6 +69,27 @@ def _finger(
     root = corner + away * (cube.edge * 0.9) + lift - side.normal * 0.35 * cube.edge
     knuckle = corner + away * (cube.edge / 3) + lift
     return Finger(side.name, side.normal, 0.4 * root + 0.6 * knuckle, tip, radius)
+
+
+@dataclass(frozen=True, eq=False)
+class Hold:
+    """Fingers that lie on the cube from the start, or come within the first ten frames."""
+
+    fingers: tuple[Finger, ...] = ()
+    """Where they lie in the end."""
+
+    hand: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    """Direction from the cube to the hand in the cube frame, (3,)."""
+
+    start: bool = True
+    """Whether they lie there from the start."""
+
+    def __call__(self, time: float) -> tuple[Finger, ...]:
+        """Fingers at `time` [s]."""
+        if self.start:
+            return self.fingers
+        way = 0.09 * (1 - float(eased(np.array([time]), 0.03, 0.27)[0]))
+        return tuple(drawn_back(finger, self.hand, way) for finger in self.fingers)
 
 
 def drawn_back(finger: Finger, hand: NDArray[np.float64], way: float) -> Finger:

@@ -1,6 +1,6 @@
 """Light on the benchmark's cube: a lamp, a sky, and edges of shadow, all in linear units."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,7 +30,7 @@ class Shadow:
 
 @dataclass(frozen=True, eq=False)
 class Light:
-    """What falls on a surface; 1 falls on a surface that looks into the lamp and half at the sky."""
+    """What falls on a surface: 0.9 to 1 on one that looks into the lamp."""
 
     lamp: NDArray[np.float64]
     """Unit direction to the lamp, in the camera frame, (3,)."""
@@ -96,3 +96,16 @@ def lamp_light(random: np.random.Generator) -> Light:
     """Draw a lamp above and behind the camera."""
     towards = np.array([-0.45, -0.7, -0.75]) + random.uniform(-0.3, 0.3, 3)
     return Light(towards / np.linalg.norm(towards))
+
+
+def shaded(light: Light, place: NDArray[np.float64], random: np.random.Generator) -> Light:
+    """Let one hard and one soft edge of shadow fall near `place` (3,) [m], on a slope of light."""
+    shadows = []
+    for softness, depth in ((0.002, 0.85), (0.035, 0.6)):
+        edge = np.array([np.cos(a := random.uniform(0, np.pi)), np.sin(a), random.normal(0, 0.3)])
+        normal = np.cross(light.lamp, edge)
+        normal /= np.linalg.norm(normal)
+        near = place + random.uniform(-0.02, 0.02, 3)
+        shadows.append(Shadow(np.append(normal, -normal @ near), softness, depth))
+    # The slope is taken about `PIVOT`.
+    return replace(light, slope=random.uniform(-1.2, 1.2, 3), shadows=tuple(shadows))

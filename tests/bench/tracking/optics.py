@@ -29,7 +29,7 @@ class Lens:
     """Width and height [px]."""
 
     def bend(self, ideal: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Distort ideal image coordinates (..., 2) at depth 1; also return the Jacobian (..., 2, 2).
+        """Distort ideal image coordinates (..., 2) at depth 1; also give the Jacobian (…, 2, 2).
 
         Brown, "Close-range camera calibration", 1971: radial and tangential terms.
         """
@@ -81,14 +81,14 @@ class Lens:
 
     @cached_property
     def vignette(self) -> NDArray[np.float32]:
-        """Share of the light that arrives at each pixel, (height, width): cos⁴ of the ray, softened.
+        """Share of the light that arrives at each pixel, (height, width).
 
-        The natural fall-off of a thin lens; webcams correct a part of it, so here it is cos².
+        A thin lens lets it fall with cos⁴ of the angle; webcams correct a part, so here with cos².
         """
         width, height = self.size
         x = (np.arange(width) - self.matrix[0, 2]) / self.matrix[0, 0]
         y = (np.arange(height) - self.matrix[1, 2]) / self.matrix[1, 1]
-        return (1 / (1 + x[None] ** 2 + y[:, None] ** 2)).astype(np.float32)
+        return np.asarray(1 / (1 + x[None] ** 2 + y[:, None] ** 2), np.float32)
 
 
 def point_spread(gauss: float = 0.55, disk: float = 0.87) -> NDArray[np.float32]:
@@ -107,7 +107,7 @@ def point_spread(gauss: float = 0.55, disk: float = 0.87) -> NDArray[np.float32]
     cells = inside.reshape(2 * reach + 1, dense, 2 * reach + 1, dense).mean((1, 3))
     bell = np.exp(-0.5 * (np.arange(-reach, reach + 1) / (gauss * FINE)) ** 2)
     kernel = cv2.sepFilter2D(cells, cv2.CV_64F, bell, bell, borderType=cv2.BORDER_CONSTANT)
-    return (kernel / kernel.sum()).astype(np.float32)
+    return np.asarray(kernel / kernel.sum(), np.float32)
 
 
 @dataclass(frozen=True)
@@ -125,8 +125,8 @@ class Sensor:
 
         The noise is that of luminance: webcams thin out the noise of colour.
         """
-        mean = cv2.max(light[..., 1], 0.0)
-        spread = cv2.sqrt(mean / self.electrons + (self.read_noise / self.electrons) ** 2)
+        mean = np.maximum(light[..., 1], 0)
+        spread = np.sqrt(mean / self.electrons + (self.read_noise / self.electrons) ** 2)
         spread *= random.standard_normal(mean.shape, np.float32)
         light += spread[..., None]
         levels = (CURVE.size - 1) * np.clip(light, 0, 1, out=light)
@@ -140,3 +140,19 @@ def encoded(light: NDArray[np.float64]) -> NDArray[np.float64]:
 
 CURVE = np.rint(255 * encoded((np.arange(1 << 14) + 0.5) / (1 << 14))).astype(np.uint8)
 """8-bit value of each of 2¹⁴ equal steps of linear light."""
+
+
+def sampled(
+    picture: NDArray[np.float32], grid: NDArray[np.float32], smooth: bool
+) -> NDArray[np.float32]:
+    """Values of `picture` at columns and rows `grid` (h, w, 2).
+
+    If `smooth`, between pixels and mirrored at the rim; else those of the nearest pixel, and 0
+    outside.
+    """
+    way, rim = cv2.INTER_NEAREST, cv2.BORDER_CONSTANT
+    if smooth:
+        way, rim = cv2.INTER_LINEAR, cv2.BORDER_REFLECT
+    # One map of pairs needs no second; the stubs know of no None, and an empty array hangs.
+    found = cv2.remap(picture, grid, None, way, borderMode=rim)  # type: ignore[call-overload]
+    return np.asarray(found, np.float32)

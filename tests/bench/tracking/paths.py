@@ -89,7 +89,7 @@ def waves(
 
 
 def speeds(poses: Poses, times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Velocities (n, 6) at `times`: of the cube's centre [m/s] and of turning [rad/s], camera axes."""
+    """Velocities (n, 6) at `times`: of the centre [m/s] and of turning [rad/s], camera axes."""
     step = 1e-4
     before, after = poses(times - step), poses(times + step)
     turn = Rotation.from_matrix(after[:, :3, :3] @ before[:, :3, :3].transpose(0, 2, 1))

@@ -35,7 +35,7 @@ class Plan:
     """When fingers are laid on the cube: "" never, "later" within ten frames, "start"."""
 
     light: float = 1.0
-    """Light in the room, 1 being a lit room; the camera's gain makes up for three quarters of it."""
+    """Light in the room, 1 being a lit room; the gain of the camera makes up for most of a lack."""
 
     shadows: bool = False
     """Whether edges of shadow fall across the cube."""

@@ -2,8 +2,8 @@
 
 Each sub-pixel sends one ray in each of many passes. A pass has its own time within the exposure,
 so a moving cube is blurred as its own path, turning included, smears it; there is no rolling
-shutter. The ray meets the planes of the faces, and reads the very square that it hits. All is linear
-light until the sensor.
+shutter. The ray meets the planes of the faces, and reads the very square that it hits. All is
+linear light until the sensor.
 """
 
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from tests.bench.tracking.hand import SKIN, Finger, draw_fingers
 from tests.bench.tracking.light import Light
-from tests.bench.tracking.optics import FINE, Lens, point_spread
+from tests.bench.tracking.optics import FINE, Lens, point_spread, sampled
 from tests.bench.tracking.paper import PaperCube, Side
 from tests.bench.tracking.paths import Poses
 
@@ -106,9 +106,9 @@ def expose(
     if window is None:
         return picture * np.float32(scene.brightness)
     layers = _gather(scene, window, poses, fingers, random)
-    layers = cv2.filter2D(layers, cv2.CV_32F, KERNEL, borderType=cv2.BORDER_REPLICATE)
+    blurred = cv2.filter2D(layers, cv2.CV_32F, KERNEL, borderType=cv2.BORDER_REPLICATE)
     share, paper, hand, skin = cv2.split(
-        cv2.resize(layers, None, fx=1 / FINE, fy=1 / FINE, interpolation=cv2.INTER_AREA)
+        cv2.resize(blurred, None, fx=1 / FINE, fy=1 / FINE, interpolation=cv2.INTER_AREA)
     )
     fall = scene.lens.vignette[window.pixels] * np.float32(WHITE)
     part = picture[window.pixels]
@@ -126,7 +126,7 @@ def _passes(scene: Scene, ends: NDArray[np.float64]) -> int:
 
 
 def _window(lens: Lens, points: NDArray[np.float64], poses: NDArray[np.float64]) -> Window | None:
-    """Box of the picture that holds `points` (n, 3) at all `poses`, or None if it is out of view."""
+    """Box of the picture that holds `points` (n, 3) at all `poses`, or None if out of view."""
     there = np.einsum("nij,kj->nki", poses[:, :3, :3], points) + poses[:, None, :3, 3]
     seen = lens.project(there).reshape(-1, 2)
     first = np.maximum(np.floor(seen.min(0)).astype(int) - MARGIN, 0)
@@ -143,7 +143,7 @@ def _gather(
     fingers: tuple[Finger, ...],
     random: np.random.Generator,
 ) -> NDArray[np.float32]:
-    """Mean over all passes: share and light of the paper, share and light of the skin, (h, w, 4)."""
+    """Mean of all passes (h, w, 4): share and light of the paper, share and light of the skin."""
     rays = scene.lens.rays[window.fine]
     spacing = np.float32(1 / (FINE * scene.lens.matrix[0, 0]))
     jitter = random.random(rays.shape, np.float32)
@@ -195,12 +195,12 @@ def _draw_side(
         return
     box = _box(scene.lens.project(corners), window)
     # A ray (x, y, 1) meets the plane where place @ (column, row, 1) is parallel to it.
-    grid = cv2.perspectiveTransform(aim[box], np.linalg.inv(place))
-    value = cv2.remap(side.albedo, grid, None, cv2.INTER_NEAREST, borderMode=cv2.BORDER_CONSTANT)
+    grid = np.asarray(cv2.perspectiveTransform(aim[box], np.linalg.inv(place)), np.float32)
+    value = sampled(side.albedo, grid, smooth=False)
     if scene.light.is_even:
-        value *= np.float32(sum(scene.light.even(normal)))
+        value = value * np.float32(sum(scene.light.even(normal)))
     else:
-        value *= scene.light.on(normal, place, grid)
+        value = value * scene.light.on(normal, place, grid)
     np.maximum(seen[box], value, out=seen[box])
 
 
