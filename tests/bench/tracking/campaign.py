@@ -61,15 +61,15 @@ def judge(drawn: Sequence) -> Result:
     result |= {"seen": 0, "given": 0, "right": 0, "held": 0, "wrong": []}
     for index, state in follow(drawn):
         seen = bool(drawn.in_view(index))
-        result["seen"] += seen
+        result["seen"] += int(seen)
         if not state.visible or state.camera_from_cube is None:
             continue
         error = errors(state.camera_from_cube[None], drawn.truth(index)[None])[0]
         shift, turn = (float(np.linalg.norm(part)) for part in (error[:3], error[3:]))
-        result["given"] += seen
-        result["right"] += seen and shift <= RIGHT[0] and turn <= RIGHT[1]
+        result["given"] += int(seen)
+        result["right"] += int(seen and shift <= RIGHT[0] and turn <= RIGHT[1])
         held = float(error @ np.linalg.solve(state.covariance, error))
-        result["held"] += seen and held <= INSIDE
+        result["held"] += int(seen and held <= INSIDE)
         if shift > WRONG[0] or turn > WRONG[1]:
             result["wrong"].append(_wrong(index, state, shift, turn, held))
     return result
@@ -157,7 +157,7 @@ def _read(log: Path | None) -> dict[tuple[str, int, int], Result]:
 def _note(log: Path | None, result: Result) -> None:
     if log is not None:
         with log.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(result) + "\n")
+            file.write("\n" + json.dumps(result))  # begins a line: the last may be cut short
 
 
 def _options() -> argparse.Namespace:

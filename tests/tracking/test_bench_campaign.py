@@ -1,0 +1,54 @@
+"""The search for silently wrong poses finds them, and goes on where it was broken off."""
+
+import json
+import sys
+
+import numpy as np
+import pytest
+
+from tests.bench.tracking import campaign
+from tests.bench.tracking.sequences import Sequence, sequence
+
+FRAMES = 5
+
+
+@pytest.fixture
+def wrong_truth(monkeypatch):
+    """Let every truth lie 30 mm beside the picture."""
+    right = Sequence.truth
+    beside = np.array([[0, 0, 0, 0.03], *np.zeros((3, 4))])
+    monkeypatch.setattr(Sequence, "truth", lambda drawn, index: right(drawn, index) + beside)
+
+
+def test_every_seed_is_used_once_until_there_are_enough_frames():
+    assert list(campaign.plan(("a", "b"), 250, 100, 7)) == [("a", 7), ("b", 7), ("a", 8)]
+
+
+def test_a_good_pose_is_right_and_none_is_wrong():
+    result = campaign.judge(sequence("cluttered", 3, FRAMES))
+    assert json.loads(json.dumps(result)) == result
+    assert (result["seen"], result["given"], result["right"]) == (FRAMES,) * 3
+    assert result["wrong"] == []
+
+
+def test_a_pose_beside_the_truth_is_found_and_can_be_drawn_again(wrong_truth):
+    result = campaign.judge(sequence("cluttered", 3, FRAMES))
+    assert result["right"] == 0
+    assert [wrong["index"] for wrong in result["wrong"]] == list(range(FRAMES))
+    assert result["wrong"][0]["mm"] == pytest.approx(30, abs=1)
+    assert (result["sequence"], result["seed"], result["frames"]) == ("cluttered", 3, FRAMES)
+
+
+def test_what_was_finished_is_not_done_again(tmp_path, monkeypatch, capsys):
+    log = tmp_path / "log.jsonl"
+    done = {"sequence": "far", "seed": 7, "frames": 50, "seen": 50, "given": 49, "right": 48}
+    done |= {"held": 47, "wrong": []}
+    log.write_text(json.dumps(done) + '\n{"sequence": "far", "se', encoding="utf-8")
+    monkeypatch.setattr(
+        sys, "argv",
+        ["campaign", "--sequences", "far", "--frames", "50", "--length", "50", "--log", str(log)],
+    )  # fmt: skip
+    with pytest.raises(SystemExit) as ended:
+        campaign.main()
+    assert not ended.value.code
+    assert "98.0" in capsys.readouterr().out
