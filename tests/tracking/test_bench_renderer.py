@@ -43,7 +43,7 @@ def facing(name: str, tilt: tuple[float, float, float] = (0.25, -0.3, 0.4)) -> n
     right, up, normal = AXES[name]
     square = Rotation.from_matrix(np.stack([right, -up, -normal]))
     turned = Rotation.concatenate([Rotation.from_rotvec(tilt) * square])
-    return matrices(turned, np.array([[0.012, -0.009, 0.45]]))[0]
+    return np.asarray(matrices(turned, np.array([[0.012, -0.009, 0.45]]))[0])
 
 
 def drawn(what: Scene, exposure: float = 0.0) -> np.ndarray:

@@ -1,5 +1,6 @@
 """Fingers that hold the benchmark's cube: capsules that lie on its faces."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -106,10 +107,12 @@ def draw_fingers(
     pose: NDArray[np.float64],
     aim: NDArray[np.float32],
     light: Light,
+    box_of: Callable[[NDArray[np.float64]], tuple[slice, slice]],
 ) -> NDArray[np.float32]:
     """Light on the skin that rays `aim` (h, w, 2) meet, (h, w); 0 where they meet none.
 
     A capsule is drawn as the tapered stripe that it is on the plane at depth 1, nearest last.
+    `box_of` tells the rows and columns of `aim` that hold points of the camera frame.
     """
     skin = np.zeros(aim.shape[:2], np.float32)
     ends = {
@@ -119,7 +122,8 @@ def draw_fingers(
     for finger in sorted(fingers, key=lambda finger: -float(ends[finger.side][1, 2])):
         normal = pose[:3, :3] @ finger.normal
         if normal @ ends[finger.side][1] < 0:
-            _draw_capsule(ends[finger.side], finger.radius, aim, light, skin)
+            box = box_of(finger.around @ pose[:3, :3].T + pose[:3, 3])
+            _draw_capsule(ends[finger.side], finger.radius, aim[box], light, skin[box])
     return skin
 
 

@@ -105,7 +105,8 @@ def shaded(light: Light, place: NDArray[np.float64], random: np.random.Generator
         edge = np.array([np.cos(a := random.uniform(0, np.pi)), np.sin(a), random.normal(0, 0.3)])
         normal = np.cross(light.lamp, edge)
         normal /= np.linalg.norm(normal)
-        near = place + random.uniform(-0.02, 0.02, 3)
+        near = place + random.uniform(-0.012, 0.012, 3)
         shadows.append(Shadow(np.append(normal, -normal @ near), softness, depth))
-    # The slope is taken about `PIVOT`.
-    return replace(light, slope=random.uniform(-1.2, 1.2, 3), shadows=tuple(shadows))
+    return replace(
+        light, power=1.0, sky=0.2, slope=random.uniform(-1.2, 1.2, 3), shadows=tuple(shadows)
+    )

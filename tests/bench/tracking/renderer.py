@@ -147,7 +147,11 @@ def _gather(
     rays = scene.lens.rays[window.fine]
     spacing = np.float32(1 / (FINE * scene.lens.matrix[0, 0]))
     jitter = random.random(rays.shape, np.float32)
-    total = np.zeros((*rays.shape[:2], 4), np.float32)
+    total = np.zeros((4, *rays.shape[:2]), np.float32)
+
+    def box_of(points: NDArray[np.float64]) -> tuple[slice, slice]:
+        return _box(scene.lens.project(points), window)
+
     shift = (np.arange(len(poses))[:, None] * R2 + random.random(2)) % 1
     for pose, offset in zip(poses, shift.astype(np.float32), strict=True):
         aim = jitter + offset
@@ -157,16 +161,22 @@ def _gather(
         aim += rays
         seen = np.zeros(rays.shape[:2], np.float32)
         for side in scene.cube.sides:
-            _draw_side(scene, side, pose, aim, seen, window)
+            _draw_side(scene, side, pose, aim, seen, box_of)
         if fingers:
-            skin = draw_fingers(fingers, pose, aim, scene.light)
-            seen[skin > 0] = 0
-            total[..., 2] += skin > 0
-            total[..., 3] += skin
-        total[..., 0] += seen > 0
-        total[..., 1] += seen
+            skin = draw_fingers(fingers, pose, aim, scene.light, box_of)
+            hand = _met(skin)
+            seen *= 1 - hand
+            total[2] += hand
+            total[3] += skin
+        total[0] += _met(seen)
+        total[1] += seen
     total /= np.float32(len(poses))
-    return total
+    return np.asarray(cv2.merge(list(total)), np.float32)
+
+
+def _met(seen: NDArray[np.float32]) -> NDArray[np.float32]:
+    """1 where a ray met something that throws light back, else 0."""
+    return np.asarray(cv2.threshold(seen, 0, 1, cv2.THRESH_BINARY)[1], np.float32)
 
 
 R2 = np.array([0.7548776662466927, 0.5698402909980532])
@@ -182,7 +192,7 @@ def _draw_side(
     pose: NDArray[np.float64],
     aim: NDArray[np.float32],
     seen: NDArray[np.float32],
-    window: Window,
+    box_of: Callable[[NDArray[np.float64]], tuple[slice, slice]],
 ) -> None:
     """Write the light that `side` throws back into `seen` (h, w), where the rays `aim` hit it."""
     place = pose[:3, :3] @ side.place
@@ -193,7 +203,7 @@ def _draw_side(
     corners = np.c_[edge, np.ones(4)] @ place.T
     if normal @ corners[0] >= 0:  # It looks away.
         return
-    box = _box(scene.lens.project(corners), window)
+    box = box_of(corners)
     # A ray (x, y, 1) meets the plane where place @ (column, row, 1) is parallel to it.
     grid = np.asarray(cv2.perspectiveTransform(aim[box], np.linalg.inv(place)), np.float32)
     value = sampled(side.albedo, grid, smooth=False)

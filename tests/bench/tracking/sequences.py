@@ -120,15 +120,15 @@ def sequence(name: str, seed: int = 1, count: int | None = None) -> Sequence:
     # All seeds share the shift, so that together they fill the space of poses evenly.
     shift = np.random.default_rng(zlib.crc32(name.encode())).random(6)
     cube = PaperCube.load(CUBE)
+    times = np.arange(count) / RATE + plan.exposure / 2
     if plan.independent:
         paths = many(plan, cube, 1000 * seed, count, shift)
     else:
-        times = np.arange(count) / RATE + plan.exposure / 2
         paths = [moving(plan, cube, seed, shift, random, times)]
     first = paths[0](np.zeros(1))[0]
     light = lamp_light(random)
     if plan.shadows:
-        light = shaded(light, first[:3, 3], random)
+        light = shaded(light, paths[0](times)[:, :3, 3].mean(0), random)
     hold = _hold(plan, cube, first, random)
     brightness = GAIN * plan.light if plan.light < 1 else 1.0
     table = desk(LENS, light, random, cube.dictionary, _foreign(plan, cube, random))
