@@ -42,7 +42,7 @@ def test_a_pose_beside_the_truth_is_found_and_can_be_drawn_again(wrong_truth):
 def test_what_was_finished_is_not_done_again(tmp_path, monkeypatch, capsys):
     log = tmp_path / "log.jsonl"
     done = {"sequence": "far", "seed": 7, "frames": 50, "seen": 50, "given": 49, "right": 48}
-    done |= {"held": 47, "wrong": []}
+    done |= {"inside": 47, "wrong": []}
     log.write_text(json.dumps(done) + '\n{"sequence": "far", "se', encoding="utf-8")
     monkeypatch.setattr(
         sys, "argv",

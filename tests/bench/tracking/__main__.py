@@ -58,7 +58,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--trackers", nargs="+", choices=ENTRIES, default=list(ENTRIES),
                         metavar="NAME", help=", ".join(ENTRIES))  # fmt: skip
     parser.add_argument("--ours-only", action="store_true", help="no rival")
-    parser.add_argument("--frames", type=int, default=120, help="of each sequence")
+    parser.add_argument("--frames", type=int, default=100, help="of each sequence")
     parser.add_argument("--quick", action="store_true", help="24 frames of each sequence")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=os.cpu_count() or 1,

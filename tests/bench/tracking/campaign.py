@@ -58,7 +58,7 @@ def follow(drawn: Sequence) -> Iterator[tuple[int, CubeState]]:
 def judge(drawn: Sequence) -> Result:
     """Count what became of the frames of one sequence."""
     result: Result = {"sequence": drawn.name, "seed": drawn.seed, "frames": drawn.count}
-    result |= {"seen": 0, "given": 0, "right": 0, "held": 0, "wrong": []}
+    result |= {"seen": 0, "given": 0, "right": 0, "inside": 0, "wrong": []}
     for index, state in follow(drawn):
         seen = bool(drawn.in_view(index))
         result["seen"] += int(seen)
@@ -69,7 +69,7 @@ def judge(drawn: Sequence) -> Result:
         result["given"] += int(seen)
         result["right"] += int(seen and shift <= RIGHT[0] and turn <= RIGHT[1])
         held = float(error @ np.linalg.solve(state.covariance, error))
-        result["held"] += int(seen and held <= INSIDE)
+        result["inside"] += int(seen and held <= INSIDE)
         if shift > WRONG[0] or turn > WRONG[1]:
             result["wrong"].append(_wrong(index, state, shift, turn, held))
     return result
@@ -102,7 +102,7 @@ def main() -> None:
             _note(options.log, result)
         results.append(result)
         for wrong in result["wrong"]:
-            progress.print(f"wrong: {name} seed {seed} frame {wrong['index']}: {_described(wrong)}")
+            progress.print(f"wrong: {_where(result, wrong)}: {_described(wrong)}")
         frames, found = (sum(each) for each in zip(*_counts(results), strict=True))
         progress.print(f"{frames} of {options.frames} frames, {found} wrong: {name} seed {seed}")
     _print(Console(width=120), results)
@@ -111,6 +111,12 @@ def main() -> None:
 
 def _counts(results: list[Result]) -> Iterator[tuple[int, int]]:
     return ((result["frames"], len(result["wrong"])) for result in results)
+
+
+def _where(result: Result, wrong: Result) -> str:
+    """Say what draws the frame again: `sequence(name, seed, count).frame(index)`."""
+    call = f"sequence({result['sequence']!r}, {result['seed']}, {result['frames']})"
+    return f"{call}.frame({wrong['index']})"
 
 
 def _described(wrong: Result) -> str:
@@ -123,21 +129,20 @@ def _described(wrong: Result) -> str:
 
 def _print(console: Console, results: list[Result]) -> None:
     table = Table(title="Cubeling alone, many seeds", box=SIMPLE_HEAD, title_justify="left")
-    for column in ("sequence", "frames", "given %", "recall %", "held %", "wrong"):
+    for column in ("sequence", "frames", "given %", "recall %", "inside %", "wrong"):
         table.add_column(column, justify="left" if column == "sequence" else "right")
     for name in (*dict.fromkeys(result["sequence"] for result in results), "all"):
         some = [result for result in results if name in (result["sequence"], "all")]
-        seen, given, right, held = (
-            sum(result[key] for result in some) for key in ("seen", "given", "right", "held")
+        seen, given, right, inside = (
+            sum(result[key] for result in some) for key in ("seen", "given", "right", "inside")
         )
         frames, wrong = (sum(each) for each in zip(*_counts(some), strict=True))
-        shares = (given / max(seen, 1), right / max(seen, 1), held / max(given, 1))
+        shares = (given / max(seen, 1), right / max(seen, 1), inside / max(given, 1))
         table.add_row(name, str(frames), *map(share, shares), str(wrong))
     console.print(table)
     for result in results:
         for wrong in result["wrong"]:
-            where = f"{result['sequence']} seed {result['seed']} frame {wrong['index']}"
-            console.print(f"wrong: {where} of {result['frames']}: {_described(wrong)}")
+            console.print(f"wrong: {_where(result, wrong)}: {_described(wrong)}")
 
 
 def _read(log: Path | None) -> dict[tuple[str, int, int], Result]:

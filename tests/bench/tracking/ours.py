@@ -34,8 +34,7 @@ class Ours:
         if not state.visible:
             return notes
         notes |= {"covariance": state.covariance.tolist(), "velocity": state.velocity.tolist()}
-        predict = getattr(self._tracker, "predict", None)
-        expected = predict(state.timestamp + AHEAD).camera_from_cube if predict else None
+        expected = self._tracker.predict(state.timestamp + AHEAD).camera_from_cube
         return notes | {"expected": None if expected is None else np.asarray(expected).tolist()}
 
 
