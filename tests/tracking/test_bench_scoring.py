@@ -102,6 +102,7 @@ def test_a_true_covariance_holds_the_truth_in_95_percent(overstated, share):
     stated = (overstated * root @ root.T).tolist()
     found = score("x", truth(made), answers(given, covariance=stated))
     assert found.inside == pytest.approx(share, abs=0.02)
+    assert found.understated == pytest.approx(overstated**-0.5, rel=0.03)
 
 
 def test_where_the_cube_will_be_is_taken_from_between_the_frames():

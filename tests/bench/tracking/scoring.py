@@ -19,6 +19,9 @@ WRONG = (0.020, np.deg2rad(10.0))
 INSIDE = 12.592
 """The 95 % quantile of χ² with six degrees of freedom: inside it lies the stated ellipsoid."""
 
+MIDDLE = 5.348
+"""The median of the same."""
+
 AHEAD = 0.05
 """How far ahead predictions are judged [s]."""
 
@@ -89,6 +92,9 @@ class Score:
     inside: float
     """Share of the poses whose stated 95 % ellipsoid holds the truth."""
 
+    understated: float
+    """How many times too small the stated standard deviations are, judged by the median of χ²."""
+
     speed: tuple[float, float]
     """Median error of the stated velocity [m/s, rad/s]."""
 
@@ -121,6 +127,7 @@ def score(tracker: str, truth: Truth, answers: Rows[dict[str, Any]]) -> Score:
     right = (shift <= RIGHT[0]) & (turn <= RIGHT[1])
     wrong = has & ((shift > WRONG[0]) | (turn > WRONG[1]))
     judged = has & seen
+    chi2 = _chi2(answers, off, judged)
     failures = [answer["failure"] for answer in answers if "failure" in answer]
     return Score(
         sequence=truth.name,
@@ -135,7 +142,8 @@ def score(tracker: str, truth: Truth, answers: Rows[dict[str, Any]]) -> Score:
         milliseconds=_median([answer["ms"] for answer in answers]),
         detection_ms=_median([a["detection_ms"] for a in answers if "detection_ms" in a]),
         jitter=_jitter(off[judged]),
-        inside=_inside(answers, off, judged),
+        inside=_mean(chi2 <= INSIDE),
+        understated=float(np.sqrt(np.median(chi2) / MIDDLE)) if len(chi2) else np.nan,
         speed=_speed_errors(answers, truth, judged),
         **_foresight(answers, truth),
         failures=tuple(dict.fromkeys(failures)),
@@ -190,12 +198,13 @@ def _foresight(answers: Rows[dict[str, Any]], truth: Truth) -> dict[str, float]:
     return dict(zip(("predicted", "held", "extrapolated"), medians, strict=True))
 
 
-def _inside(answers: Rows[dict[str, Any]], off: Array, judged: NDArray[np.bool_]) -> float:
-    held = []
-    for answer, error, counts in zip(answers, off, judged, strict=True):
-        if counts and "covariance" in answer:
-            held.append(error @ np.linalg.solve(np.array(answer["covariance"]), error) <= INSIDE)
-    return _mean(held)
+def _chi2(answers: Rows[dict[str, Any]], off: Array, judged: NDArray[np.bool_]) -> Array:
+    """Squared error of each pose in units of its stated covariance, (N,)."""
+    return np.array([
+        error @ np.linalg.solve(np.array(answer["covariance"]), error)
+        for answer, error, counts in zip(answers, off, judged, strict=True)
+        if counts and "covariance" in answer
+    ])  # fmt: skip
 
 
 def _speed_errors(
@@ -228,5 +237,5 @@ def _median(values: Rows[float] | Array) -> float:
     return float(np.median(values)) if len(values) else float("nan")
 
 
-def _mean(values: Rows[bool] | NDArray[np.bool_]) -> float:
+def _mean(values: NDArray[np.bool_]) -> float:
     return float(np.mean(values)) if len(values) else float("nan")

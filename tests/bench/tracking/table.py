@@ -14,7 +14,7 @@ OURS, YARDSTICK = "Cubeling", "cv2 SUBPIX"
 
 COLUMNS = ("tracker", "frames", "recall %", "wrong %", "mm", "95 %", "°", "95 %", "ms", "÷ cv2")
 OWN = (
-    "sequence", "inside %", "jitter mm", "jitter °", "50 ms ahead mm", "const. velocity", "held",
+    "sequence", "inside %", "σ ×", "jitter mm", "jitter °", "50 ms ahead mm", "const. velocity", "held",
     "velocity mm/s", "°/s",
 )  # fmt: skip
 
@@ -28,9 +28,10 @@ def show(console: Console, scores: Rows[Score]) -> None:
     )
     console.print(_ours(scores))
     console.print(
-        "inside: the stated 95 % ellipsoid holds the truth. 50 ms ahead: median distance between "
-        "where the tracker's\nprediction, its last two poses continued, or its last pose has the "
-        "cube and where it is then.\nvelocity: median error of the stated one.\n"
+        "inside: the stated 95 % ellipsoid holds the truth; σ ×: how many times too small the stated "
+        "deviations are.\n50 ms ahead: median distance between where the tracker's prediction, its "
+        "last two poses continued, or its last\npose has the cube and where it is then. velocity: "
+        "median error of the stated one.\n"
     )
     console.print(_rest(scores))
     for score in scores:
@@ -131,7 +132,12 @@ def _ours(scores: Rows[Score]) -> Table:
         table.add_column(column, justify="left" if column == "sequence" else "right")
     for score in scores:
         if score.tracker == OURS:
-            table.add_row(score.sequence, share(score.inside), *own_figures(score))
+            table.add_row(
+                score.sequence,
+                share(score.inside),
+                number(score.understated, 2),
+                *own_figures(score),
+            )
     return table
 
 

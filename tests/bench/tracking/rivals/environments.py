@@ -84,5 +84,9 @@ def _run(environment: str, *command: str) -> None:
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode:
         said = [line for line in done.stderr.splitlines() if line.startswith("ERROR")]
-        reason = said[-1] if said else f"{' '.join(command[1:4])} ended with {done.returncode}"
+        reason = (
+            said[-1].removeprefix("ERROR: ")
+            if said
+            else f"{' '.join(command[1:4])} ended with {done.returncode}"
+        )
         raise UnavailableError(f"its environment .bench/{environment} cannot be made: {reason}")
