@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from tracking import se3
 from tracking.cube import CubeModel
 from tracking.detection import Observation
-from tracking.following import Candidate, Follower
+from tracking.following import DOUBT, Candidate, Follower
 from tracking.patch import Patch
 from tracking.projection import Projection
 from tracking.refinement import Refinement
@@ -88,7 +88,7 @@ class CandidateFinder:
             )
         return Candidate(
             camera_from_cube=refinement.camera_from_cube,
-            covariance=refinement.covariance,
+            covariance=refinement.covariance * DOUBT,
             source="markers",
             faces=faces,
             error=self._solver.error(refinement.camera_from_cube, seen),

@@ -15,6 +15,8 @@ from tracking.prediction import Sighting
 from tracking.projection import NEAREST, Projection
 from tracking.reading import CellReader, Reading
 from tracking.refinement import EdgeRefiner, Refinement
+from tracking.response import Response
+from tracking.shutter import Shutter
 from tracking.swept import Alignment, SweptAligner
 
 Array = NDArray[np.float64]
@@ -25,7 +27,7 @@ SEEN = 0.55
 SEEN_FEW = 0.25
 """The same where the markers can be read as well; fingers cover the rest."""
 
-CRISP = 0.55
+CRISP = 0.65
 """Edges that are duller than this across one direction are blurred in a way that was not told."""
 
 READ = 0.9
@@ -36,6 +38,16 @@ LIKE = 0.85
 
 SURE = 0.95
 """The same where there is no past."""
+
+TELLING = 0.2
+"""Cells that edges must be swept over for their tones to tell of the camera's response."""
+
+DOUBT, DOUBT_STREAK = 2.2, 0.25
+"""By how much edges err more than their residuals tell, at rest, and the streak that doubles it
+[cells]. Measured as the coverage that `make bench-tracking` prints."""
+
+DOUBT_SWEPT = (2.0, 4.0)
+"""The same for blurred pictures: at no streak, and more for each cell."""
 
 STREAK = 0.6
 """Cells that an edge may cross during the exposure and still be measured as an edge."""
@@ -87,6 +99,8 @@ class Follower:
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._projection = projection
+        self.response = Response()
+        self.shutter = Shutter()
         self.refiner = EdgeRefiner(cube, projection)
         self.aligner = SweptAligner(cube, projection)
         self.reader = CellReader(cube, projection)
@@ -98,27 +112,45 @@ class Follower:
         self._cell = cube.marker_size / cells
 
     def follow(
-        self, image: NDArray[np.uint8], last: Sighting, timestamp: float, exposure: float
+        self, image: NDArray[np.uint8], last: Sighting, timestamp: float
     ) -> Candidate | None:
         """Look where the past says that the cube should be; None where it is not found there."""
         expected = prediction.predicted(last, timestamp)
         region = self.region(expected)
         if region is None:
             return None
-        patch = Patch.of(image, region)
-        sweep = last.velocity * exposure
+        patch = Patch.of(image, region, self.response.table)
+        sweep = last.velocity * self.shutter.exposure
         if self.streak(expected, sweep) < STREAK:
             found = self.by_edges(patch, expected, sweep)
             if found is not None:
+                self._study(patch, found.camera_from_cube, last.velocity)
                 return found
         aligned = self._aligned(patch, expected, sweep)
         if aligned is None:
             return None
+        self._learn(aligned, last.velocity)
         if self.streak(aligned.camera_from_cube, aligned.sweep) < STREAK:
             found = self.by_edges(patch, aligned.camera_from_cube, aligned.sweep)
             if found is not None:
                 return found
-        return _blurred(aligned)
+        return self._blurred(aligned)
+
+    def _study(self, patch: Patch, pose: Array, velocity: Array) -> None:
+        """Take the time to learn what camera this is from a cube that is blurred a little."""
+        sweep = velocity * self.shutter.exposure
+        if (self.shutter.known and self.response.known) or self.streak(pose, sweep) < TELLING:
+            return
+        aligned = self._aligned(patch, pose, sweep, coarse=False)
+        if aligned is not None:
+            self._learn(aligned, velocity)
+
+    def _learn(self, aligned: Alignment, velocity: Array) -> None:
+        if aligned.likeness < SURE:
+            return
+        self.shutter.learn(*aligned.told, velocity)
+        if self.streak(aligned.camera_from_cube, aligned.sweep) > TELLING:
+            self.response.learn(aligned.bend, aligned.black)
 
     def other(self, candidate: Candidate) -> Array:
         """Return the mirrored pose of a single face, (4, 4), not refined."""
@@ -132,7 +164,11 @@ class Follower:
         """
         other = self.other(candidate)
         region = self.region(other)
-        return self.by_edges(Patch.of(image, region), other, None) if region else None
+        return (
+            self.by_edges(Patch.of(image, region, self.response.table), other, None)
+            if region
+            else None
+        )
 
     def by_edges(self, patch: Patch, start: Array, sweep: Array | None) -> Candidate | None:
         """Refine a pose on the edges, and take it if they prove that this is the cube."""
@@ -144,7 +180,7 @@ class Follower:
             return None
         return Candidate(
             camera_from_cube=found.camera_from_cube,
-            covariance=found.covariance,
+            covariance=found.covariance * self._doubt(found.camera_from_cube, sweep),
             source="markers" if reading.best >= READ else "image",
             faces=tuple(face for face, share in found.shares.items() if share > SEEN_FEW),
             error=found.residual,
@@ -165,18 +201,40 @@ class Follower:
             found = self.aligner.align(patch, start, sweep, prior)
             if found and found.likeness > max(SURE, best.likeness if best else 0.0):
                 best = found
-        return _blurred(best) if best else None
+        return self._blurred(best) if best else None
 
     def proved(self, patch: Patch, found: Refinement) -> bool:
         """Whether edges and cells at a pose prove that this is the cube."""
         return _proves(found, self.reader.read(patch, found.camera_from_cube))
 
-    def _aligned(self, patch: Patch, expected: Array, sweep: Array) -> Alignment | None:
+    def _aligned(
+        self, patch: Patch, expected: Array, sweep: Array, coarse: bool = True
+    ) -> Alignment | None:
         share, shift, turn = SWEEP_SPREAD
         spread = share * np.repeat([np.linalg.norm(sweep[:3]), np.linalg.norm(sweep[3:])], 3)
         prior = np.hypot(spread, np.repeat([shift, turn], 3))
-        found = self.aligner.align(patch, expected, sweep, prior)
+        found = self.aligner.align(patch, expected, sweep, prior, coarse)
         return found if found and found.likeness > LIKE else None
+
+    def _doubt(self, pose: Array, sweep: Array | None) -> float:
+        """By how much the variances of edges are to be raised."""
+        streak = self.streak(pose, sweep) if sweep is not None else 0.0
+        return DOUBT * (1 + (streak / DOUBT_STREAK) ** 2)
+
+    def _blurred(self, aligned: Alignment) -> Candidate:
+        faces = tuple(face for face, share in aligned.shares.items() if share > LIKE)
+        streak = self.streak(aligned.camera_from_cube, aligned.sweep)
+        return Candidate(
+            camera_from_cube=aligned.camera_from_cube,
+            covariance=aligned.covariance[:6, :6] * (DOUBT_SWEPT[0] + DOUBT_SWEPT[1] * streak),
+            source="image",
+            faces=faces,
+            error=float("nan"),
+            residual=aligned.residual,
+            certain=True,
+            sweep=aligned.sweep,
+            sweep_covariance=aligned.covariance[6:, 6:],
+        )
 
     def streak(self, camera_from_cube: Array, sweep: Array) -> float:
         """How many cells an edge crosses at most while the shutter is open."""
@@ -208,18 +266,3 @@ def _proves(found: Refinement, reading: Reading) -> bool:
     if min(found.support, found.inner) > SEEN and reading.best > 0.6:
         return True
     return reading.best >= READ or (found.support > SEEN and reading.best > 0.75)
-
-
-def _blurred(aligned: Alignment) -> Candidate:
-    faces = tuple(face for face, share in aligned.shares.items() if share > LIKE)
-    return Candidate(
-        camera_from_cube=aligned.camera_from_cube,
-        covariance=aligned.covariance[:6, :6],
-        source="image",
-        faces=faces,
-        error=float("nan"),
-        residual=aligned.residual,
-        certain=True,
-        sweep=aligned.sweep,
-        sweep_covariance=aligned.covariance[6:, 6:],
-    )

@@ -31,12 +31,28 @@ class Patch:
     """Row of the picture in which it begins [px]."""
 
     @classmethod
-    def of(cls, image: NDArray[np.uint8], region: Region | None = None) -> Self:
-        """Cut a region out of a picture, (H, W, 3) BGR or (H, W) grey; None for all of it."""
+    def of(
+        cls,
+        image: NDArray[np.uint8],
+        region: Region | None = None,
+        tone: Floats | None = None,
+    ) -> Self:
+        """Cut a region out of a picture.
+
+        Parameters
+        ----------
+        image
+            The picture, (H, W, 3) BGR or (H, W) grey.
+        region
+            What to cut out; None for all of it.
+        tone
+            What each grey value stands for, (256,); None for itself.
+        """
         left, top, right, bottom = region or (0, 0, image.shape[1], image.shape[0])
         part = image[top:bottom, left:right]
         grey = cv2.cvtColor(part, cv2.COLOR_BGR2GRAY) if part.ndim == 3 else part
-        return cls(grey.astype(np.float32), left, top)
+        values = grey.astype(np.float32) if tone is None else cv2.LUT(grey, tone)
+        return cls(np.asarray(values, np.float32), left, top)
 
     def room(self, pixels: Array) -> Array:
         """Distance of pixels, (N, 2), to the nearest border, negative outside, (N,) [px]."""

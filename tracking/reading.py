@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 GRAZING = 0.2
 """Cosine of the viewing angle below which a marker's cells are too foreshortened to be read."""
 
-LEAST = 6.0
+LEAST = 3.0
 """A marker with less contrast than this [grey levels] is not read."""
 
 DOUBT = 0.12

@@ -240,7 +240,7 @@ when all is lost."""
 def _least_contrast(face: NDArray[np.intp], contrast: Array) -> Array:
     """Contrast that an edge must have to be seen, by the other edges of its face, (N,)."""
     least = np.empty(len(face))
-    overall = 8.0 + 0.1 * quantile(contrast, 0.7)
+    overall = 3.0 + 0.1 * quantile(contrast, 0.7)
     starts = np.flatnonzero(np.diff(face, prepend=-1))
     for start, end in zip(starts, [*starts[1:], len(face)], strict=True):
         least[start:end] = max(overall, FAINT * quantile(contrast[start:end], 0.7))

@@ -29,12 +29,26 @@ class Shutter:
         self.exposure = FIRST
         """The best estimate [s]."""
 
-    def learn(self, sweep: Array, covariance: Array, velocity: Array) -> None:
-        """Take in a sweep, (6,), with its covariance, (6, 6), at a known velocity, (6,)."""
-        told = np.linalg.solve(covariance, velocity)
-        strength = float(velocity @ told)
+    @property
+    def known(self) -> bool:
+        """Whether it was measured often enough."""
+        return len(self._measured) > KEPT // 2
+
+    def learn(self, pull: Array, information: Array, velocity: Array) -> None:
+        """Take in what one blurred picture says of the sweep, at a known velocity, (6,).
+
+        Parameters
+        ----------
+        pull
+            Information times the sweep that explains the picture best, (6,).
+        information
+            About the sweep, from the picture alone, (6, 6).
+        velocity
+            Of the cube, (6,).
+        """
+        strength = float(velocity @ information @ velocity)
         # Only motion that blurs much more than the blur is uncertain tells anything.
         if strength * self.exposure**2 < 100:
             return
-        self._measured.append(float(np.clip(sweep @ told / strength, 0.0, LONGEST)))
+        self._measured.append(float(np.clip(velocity @ pull / strength, 0.0, LONGEST)))
         self.exposure = float(np.median(self._measured))

@@ -17,8 +17,8 @@ from tracking import se3
 from tracking.cube import CubeModel
 from tracking.faces import Faces, face_frame
 from tracking.marker import marker_cells
+from tracking.mixture import Mixture, Samples, fit
 from tracking.patch import Patch
-from tracking.robust import quantile
 from tracking.projection import NEAREST, Projection
 
 Array = NDArray[np.float64]
@@ -27,28 +27,41 @@ Image = NDArray[np.float32]
 TEXELS = 8
 """Texels of the drawing on each cell of a marker."""
 
-GRID = 16
-"""Samples on each side of a face."""
+COARSE, FINE = 12, 22
+"""Samples on each side of a face in the two searches: fewer miss edges."""
 
-MOMENTS = 7
-"""Moments of the way that the drawn mean is made of."""
+LADDER = np.geomspace(0.03, 0.6, 20)
+"""Blurs in which the drawing is kept [cells]: that of the picture, and the lens's own."""
 
-SOFT, SHARP = 0.55, 0.12
+LENS = 0.85
+"""Blur of a lens in focus with its pixels [px], one standard deviation."""
+
+RIM = 1.5
+"""Samples nearer than so many blurs to the border of their face are left out: what lies beyond is
+not known."""
+
+BLOCKS = 5
+"""Blocks of samples on each side of a face, which count as one measurement each."""
+
+MOMENTS = (5, 15)
+"""Moments of the way that the drawn mean is made of, at least and at most."""
+
+STRIDE = 0.22
+"""How far an edge may go from one moment to the next [cells]: less than drawing and lens blur it."""
+
+SOFT, SHARP = 0.5, 0.15
 """Blur of drawing and picture in the coarse search and in the fine one [cells]."""
 
-WHEN = np.linspace(-0.5, 0.5, MOMENTS)
-"""The moments, as shares of the exposure."""
-
-MEANS = np.stack([np.ones(MOMENTS), WHEN]).astype(np.float32) / MOMENTS
-"""Weights of the moments in the mean, and in the mean weighted by time."""
+STAGES = ((SOFT, COARSE, 4), (SHARP, FINE, 4))
+"""Blur, samples and rounds of the coarse search and of the fine one."""
 
 GRAZING = 0.25
 """Cosine of the viewing angle below which a face shows too little of its picture."""
 
-SETTLED = (5e-5, 5e-4)
+SETTLED = np.repeat([5e-5, 5e-4], 3)
 """A step smaller than this is the last [m, rad]."""
 
-FEWEST = 120
+FEWEST = 60
 """Fewer samples than this do not make a pose."""
 
 
@@ -65,17 +78,23 @@ class Alignment:
     covariance: Array
     """Of a shift-turn of the pose and then of the sweep, (12, 12)."""
 
+    told: tuple[Array, Array]
+    """What the picture alone says of the sweep: information times sweep (6,), information (6, 6)."""
+
     likeness: float
     """Correlation of the drawn and the seen picture, −1…1, over all samples that were in view."""
 
-    residual: float
-    """Root mean square difference of the samples that fit, as a share of the contrast."""
-
-    support: float
-    """Share of the samples in view that fit."""
-
     shares: dict[str, float]
-    """Correlation for each face in view."""
+    """The same for each face in view."""
+
+    residual: float
+    """Standard deviation of the samples that fit, as a share of the contrast."""
+
+    bend: float
+    """By how much mixtures of black and white are brighter than they should be, see `Response`."""
+
+    black: float
+    """What black is beside white, in the face whose contrast is greatest."""
 
 
 class SweptAligner:
@@ -90,11 +109,8 @@ class SweptAligner:
         side = round(cube.edge / self._cell * TEXELS)
         self._side = side
         drawing = [_drawn(cube, number, side) for number in range(len(cube.faces))]
-        self._layers = {blur: _layers(drawing, blur * TEXELS) for blur in (SOFT, SHARP)}
-        steps = ((np.arange(GRID) + 0.5) / GRID - 0.5) * cube.edge
-        grid = np.stack(np.meshgrid(steps, steps), axis=2).reshape(-1, 2)
-        flat = np.concatenate([grid, np.zeros((len(grid), 1)), np.ones((len(grid), 1))], 1)
-        self._grid = np.ascontiguousarray(flat.T)
+        self._layers = [_layers(drawing, blur * TEXELS) for blur in LADDER]
+        self._grids = {count: _grid(count, cube.edge) for count in (COARSE, FINE)}
 
     def align(
         self, patch: Patch, start: Array, sweep: Array, prior: Array, coarse: bool = True
@@ -118,67 +134,84 @@ class SweptAligner:
         -------
         None where the cube is not in view.
         """
-        pose, way, result = start, sweep, None
-        for blur, rounds in ((SOFT, 4), (SHARP, 4)) if coarse else ((SHARP, 3),):
-            scene = self._scene(patch, pose, blur)
+        pose, way = start, sweep
+        for blur, count, rounds in STAGES if coarse else STAGES[1:]:
+            scene = self._scene(patch, pose, blur, count)
+            for _ in range(rounds if scene else 0):
+                mixture = self._mixture(scene, pose, way)
+                if mixture is None:
+                    return None
+                step = mixture.step(sweep - way, prior)
+                pose, way, before = se3.moved(pose, step[:6]), way + step[6:], way
+                if (np.abs(step[:6]) < SETTLED).all():
+                    break
             if scene is None:
                 return None
-            for _ in range(rounds):
-                result = self._step(scene, pose, way, sweep, prior)
-                if result is None:
-                    return None
-                moved = se3.motion(pose, result.camera_from_cube)
-                pose, way = result.camera_from_cube, result.sweep
-                if np.abs(moved[:3]).max() < SETTLED[0] and np.abs(moved[3:]).max() < SETTLED[1]:
-                    break
-        return result
+        whole, *each = mixture.likeness.tolist()
+        return Alignment(
+            pose,
+            way,
+            mixture.covariance(prior),
+            mixture.told(before, step, prior),
+            whole,
+            {
+                self._faces.names[face]: share
+                for face, share in zip(scene.facing, each, strict=True)
+            },
+            mixture.scale / max(mixture.contrast, 1.0),
+            *mixture.tones,
+        )
 
-    def _scene(self, patch: Patch, pose: Array, blur: float) -> "_Scene | None":
+    def _scene(self, patch: Patch, pose: Array, blur: float, count: int) -> "_Scene | None":
         """Choose the samples, read the picture there, and say how the faces slide under them."""
         facing = np.array(self._faces.facing(pose, GRAZING), np.intp)
         if not len(facing):
             return None
         frames = pose @ self._frames[facing]
-        points = frames[:, :3] @ self._grid
+        points = frames[:, :3] @ self._grids[count]
         if points[:, 2].min() < NEAREST:
             return None
         flat = points.transpose(0, 2, 1).reshape(-1, 3)
         pixels = self._projection.pixels(flat)
-        sigma = blur * self._cell * float(self._projection.matrix[0, 0]) / pose[2, 3]
+        pixels_per_cell = self._cell * float(self._projection.matrix[0, 0]) / pose[2, 3]
+        sigma = blur * pixels_per_cell
         seen = patch.smoothed(sigma) if sigma > 0.8 else patch
         values = seen.at(pixels[:, None])[:, 0].astype(np.float64)
         rays = points / points[:, 2:]
         slides = self._slides(frames[:, :3, :2], points - pose[:3, 3, None], rays)
         inside = patch.room(pixels) > 1
-        return _Scene(facing, rays, slides, values, inside, self._layers[blur])
+        soft = np.hypot(sigma if sigma > 0.8 else 0.0, LENS) / pixels_per_cell
+        layers = self._layers[int(np.argmin(np.abs(np.log(LADDER / soft))))]
+        return _Scene(facing, rays, slides, values, inside, layers, RIM * soft * self._cell, count)
 
-    def _step(
-        self, scene: "_Scene", pose: Array, way: Array, expected: Array, prior: Array
-    ) -> Alignment | None:
-        poses = np.stack([se3.moved(pose, moment * way) for moment in WHEN])
+    def _mixture(self, scene: "_Scene", pose: Array, way: Array) -> Mixture | None:
+        """Draw the cube along its way, and fit the drawing's tones to the picture."""
+        when = self._moments(way)
+        poses = np.stack([se3.moved(pose, moment * way) for moment in when])
         texture, inside = self._looked_up(scene, *self._on_faces(scene, poses))
         use = np.flatnonzero(inside & scene.inside)
         if len(use) < FEWEST:
             return None
-        # The mean along the way; its slopes, plain and weighted by the time.
-        means = (MEANS @ texture.reshape(len(WHEN), -1)).reshape(2, -1, 3)[:, use]
+        # The mean along the way, and weighted by the time; with them go their slopes.
+        weights = np.stack([np.ones(len(when)), when]).astype(np.float32) / len(when)
+        means = (weights @ texture.reshape(len(when), -1)).reshape(2, -1, 3)[:, use]
         slides = scene.slides[use]
-        still, moving = (
+        slopes = [
             mean[:, 1, None] * slides[:, 0] + mean[:, 2, None] * slides[:, 1] for mean in means
-        )
-        number = use // self._grid.shape[1]
-        return self._solved(
-            scene,
-            number,
-            scene.values[use],
-            means[0, :, 0],
-            still,
-            moving,
-            pose,
-            way,
-            expected,
-            prior,
-        )
+        ]
+        number, place = np.divmod(use, scene.count**2)
+        row, column = np.divmod(place, scene.count)
+        block = (number * BLOCKS + row * BLOCKS // scene.count) * BLOCKS
+        block += column * BLOCKS // scene.count
+        drawn = means[0, :, 0].astype(np.float64)
+        samples = Samples(number, block, scene.values[use], drawn, np.concatenate(slopes, axis=1))
+        return fit(samples, len(scene.facing))
+
+    def _moments(self, way: Array) -> Array:
+        """Moments of the exposure, each in the middle of its share, −0.5…0.5."""
+        far = float(np.linalg.norm(way[:3])) + self._half * float(np.linalg.norm(way[3:]))
+        count = int(np.clip(np.ceil(far / (STRIDE * self._cell)), *MOMENTS))
+        return (np.arange(count) + 0.5) / count - 0.5
 
     def _on_faces(self, scene: "_Scene", poses: Array) -> tuple[Array, Array]:
         """Where the samples' rays meet their faces, each (moments, faces, N) [m]."""
@@ -189,7 +222,7 @@ class SweptAligner:
     def _looked_up(self, scene: "_Scene", u: Array, v: Array) -> tuple[Image, NDArray[np.bool_]]:
         """Read the drawing and its gradient; say which samples stay on their face all the way."""
         size, half = self._side, self._half
-        inside = (np.maximum(np.abs(u), np.abs(v)) < half).all(axis=0).ravel()
+        inside = (np.maximum(np.abs(u), np.abs(v)) < half - scene.rim).all(axis=0).ravel()
         scale = size / (2 * half)
         places = np.empty((*u.shape, 2), np.float32)
         places[..., 0] = np.clip((u + half) * scale - 0.5, 0, size - 1)
@@ -224,61 +257,6 @@ class SweptAligner:
         arms = arm.transpose(0, 2, 1).reshape(-1, 1, 3)
         return np.concatenate([by_shift, np.cross(arms, by_shift)], axis=2)
 
-    def _solved(
-        self,
-        scene: "_Scene",
-        number: NDArray[np.intp],
-        seen: Array,
-        drawn: Array,
-        still: Array,
-        moving: Array,
-        pose: Array,
-        way: Array,
-        expected: Array,
-        prior: Array,
-    ) -> Alignment | None:
-        faces = len(scene.facing)
-        light = (number[:, None] == np.arange(faces)).astype(np.float64)
-        tone = np.concatenate([light, light * drawn[:, None], (drawn * (1 - drawn))[:, None]], 1)
-        weights, robust = np.ones(len(seen)), np.ones(len(seen))
-        gain = np.linalg.lstsq(tone, seen, rcond=None)[0]
-        for _ in range(3):
-            weighted = tone * robust[:, None]
-            gain = np.linalg.solve(
-                weighted.T @ tone + np.eye(tone.shape[1]) * 1e-3, weighted.T @ seen
-            )
-            residual = seen - tone @ gain
-            scale = 1.4826 * float(quantile(np.abs(residual), 0.5)) + 0.5
-            robust = 1 / (1 + (residual / (2.0 * scale)) ** 2) ** 2
-        strength = (gain[faces : 2 * faces][number] + gain[-1] * (1 - 2 * drawn))[:, None]
-        rows = np.concatenate([still * strength, moving * strength, tone], axis=1)
-        weighted = rows * (robust / scale**2)[:, None]
-        normal = weighted.T @ rows
-        normal[:6, :6] += np.eye(6) * 1e-6
-        normal[6:12, 6:12] += np.diag(1 / prior**2)
-        normal[12:, 12:] += np.eye(tone.shape[1]) * 1e-3 / scale**2
-        right = weighted.T @ residual
-        right[6:12] += (expected - way) / prior**2
-        step = np.linalg.solve(normal, right)
-        covariance = np.linalg.inv(normal)[:12, :12]
-        contrast = float(np.median(gain[faces : 2 * faces]))
-        shares = {}
-        for face in range(faces):
-            of = number == face
-            if np.count_nonzero(of) > 30:
-                shares[self._faces.names[scene.facing[face]]] = _correlation(
-                    seen[of], (tone @ gain)[of]
-                )
-        return Alignment(
-            se3.moved(pose, step[:6]),
-            way + step[6:12],
-            covariance,
-            _correlation(seen, tone @ gain),
-            scale / max(abs(contrast), 1.0),
-            float(np.mean(np.abs(residual) < 3 * scale)),
-            shares,
-        )
-
 
 @dataclass(frozen=True)
 class _Scene:
@@ -290,6 +268,15 @@ class _Scene:
     values: Array
     inside: NDArray[np.bool_]
     layers: Image
+    rim: float
+    count: int
+
+
+def _grid(count: int, edge: float) -> Array:
+    """Lay points on a face in its own frame, as columns of (x, y, 0, 1), (4, count²)."""
+    steps = ((np.arange(count) + 0.5) / count - 0.5) * edge
+    x, y = np.meshgrid(steps, steps)
+    return np.stack([x.ravel(), y.ravel(), np.zeros(count**2), np.ones(count**2)])
 
 
 def _drawn(cube: CubeModel, face: int, side: int) -> Image:
@@ -314,8 +301,3 @@ def _layers(drawing: list[Image], sigma: float) -> Image:
         down, right = np.gradient(face)
         layers.append(np.stack([face, right, down], axis=2))
     return np.ascontiguousarray(np.concatenate(layers), np.float32)
-
-
-def _correlation(a: Array, b: Array) -> float:
-    a, b = a - a.mean(), b - b.mean()
-    return float(a @ b / np.sqrt(max(float((a @ a) * (b @ b)), 1e-12)))

@@ -18,7 +18,6 @@ from tracking.intrinsics import Intrinsics
 from tracking.patch import Patch
 from tracking.prediction import MEMORY, Sighting, Track
 from tracking.projection import Projection
-from tracking.shutter import Shutter
 from tracking.state import CubeState
 
 Array = NDArray[np.float64]
@@ -65,7 +64,6 @@ class CubeTracker:
         self._follower = Follower(cube, projection)
         self._finder = CandidateFinder(cube, projection, self._follower)
         self._track = Track()
-        self._shutter = Shutter()
         self._jump: Sighting | None = None
         self._settled = False
 
@@ -97,7 +95,7 @@ class CubeTracker:
         recent = self._track.recent(now)
         if recent is None:
             return None
-        found = self._follower.follow(frame.image, recent, now, self._shutter.exposure)
+        found = self._follower.follow(frame.image, recent, now)
         if found is None:
             return None
         if len(found.faces) != 1:
@@ -148,7 +146,7 @@ class CubeTracker:
         now = frame.timestamp
         recent = self._track.recent(now)
         expected = prediction.predicted(recent, now) if recent else None
-        patch = Patch.of(grey)
+        patch = Patch.of(grey, None, self._follower.response.table)
         candidates = self._finder.find(patch, observed(self.cube, markers), expected)
         if recent is not None:
             candidates = [each for each in candidates if _fits(each, recent, now)]
@@ -166,7 +164,7 @@ class CubeTracker:
         found = []
         for each in candidates:
             region = self._follower.region(each.camera_from_cube)
-            patch = Patch.of(frame.image, region) if region else None
+            patch = Patch.of(frame.image, region, self._follower.response.table) if region else None
             found.append(self._follower.unblurred(patch, each.camera_from_cube) if patch else None)
         return [each for each in found if each] or candidates
 
@@ -224,8 +222,6 @@ class CubeTracker:
     def _seen(self, candidate: Candidate, now: float) -> CubeState:
         pose = candidate.camera_from_cube
         velocity = self._track.velocity(pose, now)
-        if candidate.sweep is not None:
-            self._shutter.learn(candidate.sweep, candidate.sweep_covariance, velocity)
         self._track.add(Sighting(pose, velocity, candidate.covariance, now))
         self._jump = None
         return CubeState(
