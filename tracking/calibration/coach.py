@@ -118,6 +118,10 @@ class Coach:
         """Count a view."""
         self.counts.update(kinds(look, self._plates))
 
+    def offered(self, look: Look) -> set[str]:
+        """Say which wishes a look would fulfil."""
+        return kinds(look, self._plates)
+
     def share(self, kind: str) -> float:
         """How far a wish is fulfilled, 0…1."""
         return min(1.0, self.counts[kind] / self.needed[kind])

@@ -100,7 +100,7 @@ class CubeFinder:
 class BoardFinder:
     """Finds the inner corners of a ChArUco board."""
 
-    names = ("board",)
+    names: tuple[str, ...] = ("board",)
 
     def __init__(self, board: Board) -> None:
         self.board = board

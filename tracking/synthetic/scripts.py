@@ -182,7 +182,7 @@ def _stations(edge: float, options: Options) -> list[Array]:
         way = 2 * np.pi * (number / 4 + random.uniform(-0.1, 0.1))
         tilt = np.deg2rad(random.uniform(18, 42)) * np.array([np.cos(way), np.sin(way), 0.0])
         roll = np.array([0.0, 0.0, random.uniform(-0.6, 0.6)])
-        distance = random.uniform(0.24, 0.5)
+        distance = random.uniform(0.22, 0.5)
         room = np.maximum(half - 0.8 * edge * focal / distance, 0) * distance / focal
         turn = se3.rotation(tilt) @ se3.rotation(roll) @ square
         stations.append(se3.pose(turn, np.array([*(place * room), distance])))

@@ -1,0 +1,182 @@
+"""`cubeling calibrate`."""
+
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+
+from app.calibrating import Lesson, Teller
+from app.commands.play import CAMERA, Cube
+from app.errors import AppError
+from app.opening import fitting
+from app.show.coach_lines import CoachLines, write_coverage
+from app.show.display import has_display
+from tracking import CubeModel, FrameSource, Intrinsics, open_source
+from tracking.calibration import (
+    Board,
+    BoardFinder,
+    Calibration,
+    CubeFinder,
+    Finder,
+    check,
+    measured_cube,
+    write_board,
+)
+from tracking.cube import bundled, face_corners
+from tracking.cube_file import write_cube
+
+CAMERA_FILE = Path("camera.yaml")
+
+
+def calibrate(
+    source: Annotated[
+        str,
+        typer.Option(
+            "--source",
+            "-s",
+            "--camera",
+            help="camera:0, a video, a session (.mcap), http://PHONE:8080/video, synthetic:wave.",
+        ),
+    ] = CAMERA,
+    cube: Cube = None,
+    output: Annotated[
+        Path, typer.Option("--output", "-o", help="The camera file to write, for --intrinsics.")
+    ] = CAMERA_FILE,
+    save_cube: Annotated[
+        Path | None,
+        typer.Option(help="Keep the cube as it really is, folds and all, in this .toml file."),
+    ] = None,
+    board: Annotated[
+        str, typer.Option(help="charuco: use a printed board instead of the cube.")
+    ] = "",
+    print_board: Annotated[
+        Path | None, typer.Option(help="Write that board as a PDF to print, and end.")
+    ] = None,
+    paper: Annotated[str, typer.Option(help="Of --print-board: a4, letter or a3.")] = "a4",
+    checked: Annotated[
+        Path | None,
+        typer.Option("--check", help="Say whether this camera file still fits; write nothing."),
+    ] = None,
+    coverage: Annotated[
+        Path | None, typer.Option(help="Write a .png of where the views were.")
+    ] = None,
+    seconds: Annotated[
+        float, typer.Option(min=5, max=600, help="A live camera is watched no longer than this.")
+    ] = 120.0,
+    window: Annotated[
+        bool, typer.Option("--window/--no-window", help="Print the coach's lines instead.")
+    ] = True,
+) -> None:
+    """Find the camera's lens by waving the cube before it for about 20 seconds.
+
+    Follow the coach: tip the cube every way, take it to every corner of the picture, near and far,
+    and hold it still for a moment each time. Without a cube at hand print a board.
+    With --check the exit code is 0 for OK and 1 for DEGRADED.
+
+    Example: [cyan]cubeling calibrate -o camera.yaml --save-cube my-cube.toml[/]
+    """
+    console = Console(soft_wrap=True, highlight=False)
+    if print_board is not None:
+        write_board(print_board, paper)
+        console.print(f"[bold]{print_board}[/] is ready. Print it, and keep it flat.")
+        return
+    finders = finders_of(cube, board)
+    saved = None if checked is None else Intrinsics.load(checked)
+    shown = window and has_display()
+    for path in (output, save_cube, coverage):
+        _check_folder(path)
+    with ExitStack() as closing:
+        frames = closing.enter_context(open_source(source))
+        if saved is not None:
+            saved = fitting(saved, frames.size)
+        lesson = _taught(finders, frames, "board" if board else "cube", shown, seconds)
+    if coverage is not None:
+        write_coverage(coverage, lesson)
+    if checked is not None and saved is not None:
+        raise typer.Exit(_judge(lesson, checked, saved, frames.size, console))
+    found = lesson.calibrated()
+    found.intrinsics.save(output)
+    console.print(told_camera(output, found))
+    if isinstance(lesson.finder, CubeFinder):
+        _tell_cube(lesson.finder.cube, found, output, save_cube, console)
+
+
+def finders_of(cube: str | None, board: str) -> list[Finder]:
+    """Return what may be held up: the named cube, either bundled one, or the board."""
+    if board not in ("", "charuco"):
+        raise AppError(f"no board is called '{board}': there is only charuco")
+    if board:
+        return [BoardFinder(Board())]
+    return [CubeFinder(CubeModel.load(name)) for name in ([cube] if cube else bundled())]
+
+
+def told_camera(path: Path, found: Calibration) -> str:
+    """One line that says what was found, and how sure it is."""
+    focal = found.intrinsics.matrix[0, 0]
+    sure = "" if found.good else " (tilt more for a better one)"
+    return (
+        f"[bold]{path}[/] is ready: focal length {focal:.1f} px ± "
+        f"{200 * found.focal_spread:.2f} %{sure}, edges lie within {found.residual:.2f} px, "
+        f"from {found.views} views"
+    )
+
+
+def _taught(
+    finders: list[Finder], frames: FrameSource, target: str, shown: bool, seconds: float
+) -> Lesson:
+    """Teach in a window or on the terminal; Ctrl-C ends the lesson, not the program."""
+    lesson = Lesson(finders, frames.size)
+    with ExitStack() as closing, suppress(KeyboardInterrupt):
+        teller: Teller = CoachLines(Console(soft_wrap=True, highlight=False), target)
+        if shown:
+            from app.show.coach_window import CoachWindow  # needs a display's libraries
+
+            teller = closing.enter_context(CoachWindow(frames.size, target))
+        lesson.run(frames, teller, seconds)
+    return lesson
+
+
+def _judge(
+    lesson: Lesson, path: Path, saved: Intrinsics, size: tuple[int, int], console: Console
+) -> int:
+    """Hold a saved camera against the views; gives the exit code."""
+    lesson.check_seen()
+    verdict = check(lesson.collector.views, saved, lesson.finder.target(size))
+    color = "red" if verdict.degraded else "green"
+    x, y = verdict.centre_change
+    console.print(
+        f"[bold {color}]{verdict.verdict}[/]  {path}: focal length "
+        f"{100 * verdict.focal_change:+.2f} % (± {200 * verdict.focal_spread:.2f} %), middle "
+        f"{x:+.1f} {y:+.1f} px, edges off by {verdict.residual:.3f} px "
+        f"(at best {verdict.best_residual:.3f} px), from {verdict.views} views"
+    )
+    if verdict.degraded:
+        console.print(f"Calibrate again: [cyan]cubeling calibrate -o {path}[/]")
+    return int(verdict.degraded)
+
+
+def _tell_cube(
+    ideal: CubeModel, found: Calibration, camera: Path, path: Path | None, console: Console
+) -> None:
+    """Say how crooked the cube is, keep it if asked to, and say how to go on."""
+    cube = measured_cube(ideal, found.plates)
+    worst = 0.0
+    for face in cube.faces:
+        right = face_corners(face.name, face.roll_deg, cube.marker_size, cube.edge)
+        worst = max(worst, float(np.linalg.norm(face.corners - right, axis=1).max()))
+    if path is not None:
+        write_cube(cube, path)
+        console.print(f"[bold]{path}[/] keeps the cube: its sides are off by {worst * 1e3:.1f} mm")
+    else:
+        told = f"The cube's sides are off by up to {worst * 1e3:.1f} mm"
+        console.print(f"{told}; --save-cube my-cube.toml would keep that.")
+    option = "" if path is None else f" --cube {path}"
+    console.print(f"Now: [cyan]cubeling play companion --intrinsics {camera}{option}[/]")
+
+
+def _check_folder(path: Path | None) -> None:
+    if path is not None and not path.parent.is_dir():
+        raise AppError(f"there is no folder '{path.parent}' for '{path.name}'")
