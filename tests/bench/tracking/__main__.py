@@ -5,9 +5,12 @@ Run `python -m tests.bench.tracking [--quick] [--sequences NAME …] [--trackers
 
 import argparse
 import json
+import math
 import os
+import sys
 from dataclasses import asdict, replace
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
@@ -17,13 +20,15 @@ from tests.bench.tracking.rivals.environments import ENTRIES
 from tests.bench.tracking.run import Run
 from tests.bench.tracking.sequences import NAMES, sequence
 
+PROGRAM = "tests.bench.tracking"
+
 
 def main() -> None:
     """Draw, track, print."""
     options = _options()
     console, progress = Console(width=120), Console(stderr=True)
-    command = "make bench-tracking" if options.readme else "python -m tests.bench.tracking …"
-    run = Run.now(command, options.frames, options.seed, options.threads)
+    asked = ["make bench-tracking"] if options.readme else ["python -m", PROGRAM, *sys.argv[1:]]
+    run = Run.now(" ".join(asked), options.frames, options.seed, options.threads)
     names = ("ours",) if options.ours_only else tuple(options.trackers)
     with Contest(names, options.threads, progress.print) as contest:
         for name in options.sequences:
@@ -33,8 +38,8 @@ def main() -> None:
         run = replace(run, versions=contest.versions, left_out=contest.left_out)
     _print(console, run)
     if options.json:
-        document = asdict(run)
-        options.json.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+        document = json.dumps(_plain(asdict(run)), indent=1, ensure_ascii=False, allow_nan=False)
+        options.json.write_text(document + "\n", encoding="utf-8")
     if options.readme:
         readme.write(options.readme, run)
 
@@ -51,8 +56,17 @@ def _print(console: Console, run: Run) -> None:
         console.print(f"  {verdict}", highlight=False, soft_wrap=True)
 
 
+def _plain(value: Any) -> Any:
+    """Write what was not measured as null: JSON knows no NaN."""
+    if isinstance(value, dict):
+        return {key: _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
 def _options() -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="python -m tests.bench.tracking", description=__doc__)
+    parser = argparse.ArgumentParser(prog=f"python -m {PROGRAM}", description=__doc__)
     parser.add_argument("--sequences", nargs="+", choices=NAMES, default=NAMES, metavar="NAME",
                         help=", ".join(NAMES))  # fmt: skip
     parser.add_argument("--trackers", nargs="+", choices=ENTRIES, default=list(ENTRIES),

@@ -14,8 +14,8 @@ OURS, YARDSTICK = "Cubeling", "cv2 SUBPIX"
 
 COLUMNS = ("tracker", "frames", "recall %", "wrong %", "mm", "95 %", "°", "95 %", "ms", "÷ cv2")
 OWN = (
-    "sequence", "inside %", "σ ×", "jitter mm", "jitter °", "50 ms ahead mm", "const. velocity", "held",
-    "velocity mm/s", "°/s",
+    "sequence", "inside %", "σ ×", "jitter mm", "jitter °", "50 ms ahead mm",
+    "const. velocity", "held", "velocity mm/s", "°/s",
 )  # fmt: skip
 
 
@@ -28,8 +28,8 @@ def show(console: Console, scores: Rows[Score]) -> None:
     )
     console.print(_ours(scores))
     console.print(
-        "inside: the stated 95 % ellipsoid holds the truth; σ ×: how many times too small the stated "
-        "deviations are.\n50 ms ahead: median distance between where the tracker's prediction, its "
+        "inside: the stated 95 % ellipsoid holds the truth; σ ×: how many times too small the "
+        "stated deviations are.\n50 ms ahead: median distance between where the tracker's prediction, its "
         "last two poses continued, or its last\npose has the cube and where it is then. velocity: "
         "median error of the stated one.\n"
     )
