@@ -11,7 +11,7 @@ from tracking.cube import CubeModel
 from tracking.faces import Faces
 from tracking.marker import marker_cells
 from tracking.patch import Patch, Region
-from tracking.prediction import Sighting
+from tracking.prediction import Track
 from tracking.projection import NEAREST, Projection
 from tracking.reading import CellReader, Reading
 from tracking.refinement import EdgeRefiner, Refinement
@@ -38,6 +38,9 @@ LIKE = 0.85
 
 SURE = 0.95
 """The same where there is no past."""
+
+SURPRISE = 0.07
+"""Cells by which a sweep must differ from the expected one for the edges to be measured anew."""
 
 TELLING = 0.2
 """Cells that edges must be swept over for their tones to tell of the camera's response."""
@@ -112,9 +115,12 @@ class Follower:
         self._cell = cube.marker_size / cells
 
     def follow(
-        self, image: NDArray[np.uint8], last: Sighting, timestamp: float
+        self, image: NDArray[np.uint8], track: Track, timestamp: float
     ) -> Candidate | None:
         """Look where the past says that the cube should be; None where it is not found there."""
+        last = track.recent(timestamp)
+        if last is None:
+            return None
         expected = prediction.predicted(last, timestamp)
         region = self.region(expected)
         if region is None:
@@ -122,19 +128,34 @@ class Follower:
         patch = Patch.of(image, region, self.response.table)
         sweep = last.velocity * self.shutter.exposure
         if self.streak(expected, sweep) < STREAK:
-            found = self.by_edges(patch, expected, sweep)
+            found = self._sharp(patch, expected, sweep, track, timestamp)
             if found is not None:
                 self._study(patch, found.camera_from_cube, last.velocity)
                 return found
         aligned = self._aligned(patch, expected, sweep)
         if aligned is None:
             return None
-        self._learn(aligned, last.velocity)
+        self._learn(aligned, track.velocity(aligned.camera_from_cube, timestamp))
         if self.streak(aligned.camera_from_cube, aligned.sweep) < STREAK:
             found = self.by_edges(patch, aligned.camera_from_cube, aligned.sweep)
             if found is not None:
                 return found
         return self._blurred(aligned)
+
+    def _sharp(
+        self, patch: Patch, expected: Array, sweep: Array, track: Track, timestamp: float
+    ) -> Candidate | None:
+        """Refine on edges; once more where the cube turns out to move otherwise than expected."""
+        found = self.by_edges(patch, expected, sweep)
+        if found is None:
+            return None
+        pose = found.camera_from_cube
+        moved = track.velocity(pose, timestamp) * self.shutter.exposure
+        if self.streak(pose, moved) > STREAK:
+            return None
+        if self.streak(pose, moved - sweep) < SURPRISE:
+            return found
+        return self.by_edges(patch, pose, moved) or found
 
     def _study(self, patch: Patch, pose: Array, velocity: Array) -> None:
         """Take the time to learn what camera this is from a cube that is blurred a little."""

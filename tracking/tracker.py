@@ -95,7 +95,7 @@ class CubeTracker:
         recent = self._track.recent(now)
         if recent is None:
             return None
-        found = self._follower.follow(frame.image, recent, now)
+        found = self._follower.follow(frame.image, self._track, now)
         if found is None:
             return None
         if len(found.faces) != 1:
