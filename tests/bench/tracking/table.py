@@ -29,9 +29,9 @@ def show(console: Console, scores: Rows[Score]) -> None:
     console.print(_ours(scores))
     console.print(
         "inside: the stated 95 % ellipsoid holds the truth; σ ×: how many times too small the "
-        "stated deviations are.\n50 ms ahead: median distance between where the tracker's prediction, its "
-        "last two poses continued, or its last\npose has the cube and where it is then. velocity: "
-        "median error of the stated one.\n"
+        "stated deviations are.\n50 ms ahead: median distance between where the tracker's "
+        "prediction, its last two poses continued, or its last\npose has the cube and where it is "
+        "then. velocity: median error of the stated one.\n"
     )
     console.print(_rest(scores))
     for score in scores:
