@@ -39,6 +39,11 @@ class Finger:
         signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T
         return np.concatenate([end + signs * self.radius for end in (self.root, self.tip)])
 
+    def in_view(self, pose: NDArray[np.float64]) -> bool:
+        """Whether its face looks at the camera when the cube is at `pose` (4, 4)."""
+        tip = pose[:3, :3] @ self.tip + pose[:3, 3]
+        return bool(tip @ pose[:3, :3] @ self.normal < 0)
+
 
 def grip(
     cube: PaperCube, hand: NDArray[np.float64], random: np.random.Generator
@@ -120,8 +125,7 @@ def draw_fingers(
         for finger in fingers
     }
     for finger in sorted(fingers, key=lambda finger: -float(ends[finger.side][1, 2])):
-        normal = pose[:3, :3] @ finger.normal
-        if normal @ ends[finger.side][1] < 0:
+        if finger.in_view(pose):
             box = box_of(finger.around @ pose[:3, :3].T + pose[:3, 3])
             _draw_capsule(ends[finger.side], finger.radius, aim[box], light, skin[box])
     return skin
