@@ -7,6 +7,7 @@ from typing import Protocol, Self, runtime_checkable
 
 from tracking.frame import Frame
 from tracking.intrinsics import Intrinsics
+from tracking.sources.health import Health
 
 
 @runtime_checkable
@@ -16,6 +17,10 @@ class FrameSource(Protocol):
     Lifecycle: whoever opens a source closes it, best with `with`. `close` may be called twice, and
     of a live source from another thread than the one that iterates; the iteration then ends.
     A source is iterated once.
+
+    A device that is lost while it is iterated (unplugged, silent, frozen) is no error at once: the
+    source opens it anew until it is back, and goes on with the same clock; `LiveFrames` shows the
+    gap. A plain iteration waits through a gap of up to 30 s, then it ends with the error.
 
     Raises
     ------
@@ -58,6 +63,40 @@ class FrameSource(Protocol):
         trace: TracebackType | None,
     ) -> None:
         self.close()
+
+
+@runtime_checkable
+class LiveFrames(FrameSource, Protocol):
+    """A live source that says how it fares, for who must not be blocked: a window, a robot.
+
+    Whatever happens to the device, `wait` returns within its timeout, and `health` says within a
+    second that nothing new comes: "lost" (unplugged, silent, garbage), "frozen" (the very same
+    picture again and again) or, once the device is open again, "recovering"; all three last
+    until a new picture comes, however often the device is tried. Timestamps go on increasing
+    across a gap. `wait` and iterating may be mixed; one thread does either.
+    """
+
+    def wait(self, timeout: float, patience: float | None = None) -> Frame | None:
+        """Wait for a frame newer than the last.
+
+        Parameters
+        ----------
+        timeout
+            Return None when none came for so long [s].
+        patience
+            How long the source may be lost or frozen [s]; None: for ever.
+
+        Raises
+        ------
+        TrackingError
+            It was lost for longer than `patience`, or came back with pictures of another size.
+        """
+        ...
+
+    @property
+    def health(self) -> Health:
+        """How the source fares at this moment; callable from any thread."""
+        ...
 
 
 class Timeline:

@@ -1,39 +1,26 @@
 """Frames from a webcam; its own JPEG bytes where the driver gives them."""
 
-import os
 import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Protocol, TypeAlias
+from typing import TypeAlias
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from tracking.errors import TrackingError
+from tracking.sources.camera_options import CameraOptions
+from tracking.sources.devices import check_present, device_path, lasting_path
+from tracking.sources.health import Setting
 from tracking.sources.live import Clock, LiveSource
+from tracking.sources.locking import EXPOSURE, FOCUS, MS, Lock
 from tracking.sources.pictures import Picture
-
-BACKENDS = {"linux": cv2.CAP_V4L2, "win32": cv2.CAP_DSHOW, "darwin": cv2.CAP_AVFOUNDATION}
-"""One for each system: to try them all takes seconds and prints what each of them misses.
-
-DirectShow, as Media Foundation needs up to half a minute to open some cameras.
-"""
+from tracking.sources.videocapture import VideoCapture, open_capture
 
 MJPG = cv2.VideoWriter.fourcc(*"MJPG")
 """At 1280x720 most cameras reach 30 frames a second only in this format."""
-
-
-class VideoCapture(Protocol):
-    """What is used of `cv2.VideoCapture`."""
-
-    def isOpened(self) -> bool: ...  # noqa: D102, N802  # OpenCV's names
-    def set(self, prop: int, value: float) -> bool: ...  # noqa: D102
-    def get(self, prop: int) -> float: ...  # noqa: D102
-    def read(self) -> tuple[bool, Any]: ...  # noqa: D102
-    def release(self) -> None: ...  # noqa: D102
-
 
 OpenCapture: TypeAlias = Callable[[int | str], VideoCapture]
 
@@ -44,18 +31,21 @@ class CameraSource(LiveSource):
     Parameters
     ----------
     device
-        Its number, or its path such as "/dev/video0".
+        Its number, or its path such as "/dev/video0". Unplugged and plugged in again, it is found
+        by its own name, where Linux knows that, even if its number has moved.
     size
         Width and height to ask for [px]; the camera may answer with others.
+    options
+        What else to ask of it.
     clock
-        Seconds; stamps the frames.
+        Seconds; stamps the frames where the driver does not.
     capture
         Opens the device; another one serves tests.
 
     Raises
     ------
     TrackingError
-        The camera is not there, or gave no new picture for 2 s.
+        The camera is not there, or gave no picture for 2 s.
     """
 
     def __init__(
@@ -63,25 +53,35 @@ class CameraSource(LiveSource):
         device: int | str,
         size: tuple[int, int],
         *,
+        options: CameraOptions | None = None,
         clock: Clock = time.monotonic,
         capture: OpenCapture | None = None,
     ) -> None:
-        if capture is None:
-            _check_present(device)
-        opener = capture or open_capture
         name = f"camera {device}"
-        super().__init__(lambda: CaptureDevice(opener(device), name, size), name, clock)
+        opener = capture or _finder(device)
+        asked = options or CameraOptions()
+        super().__init__(lambda: CaptureDevice(opener(device), name, size, asked), name, clock)
 
     @classmethod
     def from_uri(cls, rest: str, size: tuple[int, int], clock: Clock) -> "CameraSource":
-        """Open what stands behind "camera:"; nothing means the first camera."""
-        return cls(int(rest or 0) if (rest or "0").isdecimal() else rest, size, clock=clock)
+        """Open what stands behind "camera:"; nothing means the first camera.
+
+        Raises
+        ------
+        TrackingError
+            An option behind "?" is unknown or has no such value, or the camera does not open.
+        """
+        device, options = CameraOptions.parse(rest)
+        number = int(device or 0) if (device or "0").isdecimal() else device
+        return cls(number, size, options=options, clock=clock)
 
 
 class CaptureDevice:
     """A camera behind OpenCV's `VideoCapture`."""
 
-    def __init__(self, capture: VideoCapture, name: str, size: tuple[int, int]) -> None:
+    def __init__(
+        self, capture: VideoCapture, name: str, size: tuple[int, int], options: CameraOptions
+    ) -> None:
         self._capture = capture
         if not capture.isOpened():
             capture.release()
@@ -89,6 +89,7 @@ class CaptureDevice:
                 f"{name} does not open: another program may use it, or it is no camera; "
                 "close the other program, or try the next number"
             )
+        self.exposed: float | None = None
         # The format first: the sizes that a camera offers depend on it.
         capture.set(cv2.CAP_PROP_FOURCC, MJPG)
         capture.set(cv2.CAP_PROP_FRAME_WIDTH, size[0])
@@ -99,11 +100,25 @@ class CaptureDevice:
             capture.set(cv2.CAP_PROP_CONVERT_RGB, 0)
         rate = capture.get(cv2.CAP_PROP_FPS)
         self.rate = float(rate) if 1 <= rate <= 1000 else 30.0
+        self._buffers = _ask_buffers(capture, options.buffers)
+        self._locks = _locks(capture, options)
+
+    @property
+    def settings(self) -> tuple[Setting, ...]:
+        """What the camera was asked for, and what became of it."""
+        return self._buffers, *(lock.setting for lock in self._locks)
 
     def read(self) -> Picture | bytes | None:
         """Wait for the next picture."""
-        good, picture = self._capture.read()
-        return _picture(picture) if good and picture is not None else None
+        good, given = self._capture.read()
+        picture = _picture(given) if good and given is not None else None
+        if picture is not None:
+            # V4L2: the buffer's own time, milliseconds of CLOCK_MONOTONIC; elsewhere anything,
+            # so `ExposureClock` holds it against the clock.
+            self.exposed = self._capture.get(cv2.CAP_PROP_POS_MSEC) / 1000.0
+            for lock in self._locks:
+                lock.look(picture)
+        return picture
 
     def interrupt(self) -> None:
         """Nothing can stop a driver that waits."""
@@ -113,11 +128,37 @@ class CaptureDevice:
         self._capture.release()
 
 
-def open_capture(device: int | str) -> VideoCapture:
-    """Open OpenCV's capture of this system, without its messages: errors are said in our words."""
-    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
-    backend = BACKENDS.get(sys.platform, cv2.CAP_ANY)
-    return cv2.VideoCapture(device, backend)
+def _finder(device: int | str) -> OpenCapture:
+    """Return what opens a camera, and opens the same one again wherever it was plugged in."""
+    given = device_path(device)
+    check_present(device, given)
+    if sys.platform != "linux":
+        return open_capture
+    path = lasting_path(given)
+
+    def find(_: int | str) -> VideoCapture:
+        check_present(device, path)
+        return open_capture(str(Path(path).resolve()))
+
+    return find
+
+
+def _ask_buffers(capture: VideoCapture, count: int) -> Setting:
+    capture.set(cv2.CAP_PROP_BUFFERSIZE, count)
+    given = int(capture.get(cv2.CAP_PROP_BUFFERSIZE))
+    if given <= 0:
+        return Setting("buffers", False, "the driver does not tell how many it has")
+    return Setting("buffers", given == count, f"{given}, asked for {count}")
+
+
+def _locks(capture: VideoCapture, options: CameraOptions) -> tuple[Lock, ...]:
+    if sys.platform != "linux":  # the other systems' drivers take and tell other numbers
+        return ()
+    exposure = None if options.exposure is None else options.exposure * MS
+    wanted = ((EXPOSURE, exposure), (FOCUS, options.focus))
+    return tuple(
+        Lock(capture, knob, value) for knob, value in wanted if options.lock or value is not None
+    )
 
 
 def _picture(given: NDArray[np.uint8]) -> Picture | bytes | None:
@@ -138,19 +179,3 @@ def _trimmed(data: bytes) -> bytes:
     """
     end = data.find(b"\xff\xd9", max(data.find(b"\xff\xda"), 0))
     return data if end < 0 else data[: end + 2]
-
-
-def _check_present(device: int | str) -> None:
-    """Say what is missing before OpenCV says less."""
-    if sys.platform != "linux":
-        return
-    path = Path(f"/dev/video{device}" if isinstance(device, int) else device)
-    if not path.exists():
-        others = sorted(str(other) for other in Path("/dev").glob("video*"))
-        there = f"there are {', '.join(others)}" if others else "no camera is connected"
-        raise TrackingError(f"camera {device} is not there ({path}): {there}")
-    if not os.access(path, os.R_OK | os.W_OK):
-        raise TrackingError(
-            f"camera {device} may not be opened by you: run 'sudo usermod -aG video $USER', "
-            "then log out and in again"
-        )

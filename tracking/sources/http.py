@@ -8,10 +8,15 @@ from http.client import HTTPConnection, HTTPException, HTTPResponse, HTTPSConnec
 from urllib.parse import SplitResult, unquote, urlsplit
 
 from tracking.errors import TrackingError
-from tracking.sources.live import SILENCE_S, Clock, LiveSource
+from tracking.sources.health import Setting
+from tracking.sources.live import Clock, LiveSource
 from tracking.sources.multipart import MultipartError, MultipartParser
 
 READ_SIZE = 64 * 1024
+
+QUIET_S = 3.0
+"""A connection on which nothing came for so long is made anew; a wireless network stalls for a
+second now and then, and the stream then goes on by itself."""
 
 
 class HttpSource(LiveSource):
@@ -28,6 +33,7 @@ class HttpSource(LiveSource):
     ------
     TrackingError
         Nobody answers, the answer is no stream of JPEG pictures, or none came for 2 s.
+        A stream that breaks off later is connected to anew: see `base.LiveFrames`.
     """
 
     def __init__(self, url: str, *, clock: Clock = time.monotonic) -> None:
@@ -47,11 +53,13 @@ class _Stream:
     """One HTTP answer that goes on and on."""
 
     rate = 30.0
+    settings: tuple[Setting, ...] = ()
+    exposed: float | None = None
 
     def __init__(self, address: SplitResult, name: str) -> None:
         self._name = name
         kind = HTTPSConnection if address.scheme == "https" else HTTPConnection
-        self._connection = kind(address.hostname or "", address.port, timeout=SILENCE_S)
+        self._connection = kind(address.hostname or "", address.port, timeout=QUIET_S)
         try:
             self._connection.connect()
             self._socket: socket.socket = self._connection.sock
@@ -75,7 +83,7 @@ class _Stream:
                 data = self._answer.read1(READ_SIZE)
                 pictures = self._parser.feed(data)
             except TimeoutError as error:
-                raise TrackingError(f"{self._name} sent nothing for {SILENCE_S:g} s") from error
+                raise TrackingError(f"{self._name} sent nothing for {QUIET_S:g} s") from error
             except (OSError, HTTPException, ValueError) as error:
                 raise TrackingError(f"{self._name} broke off: {_reason(error)}") from error
             except MultipartError as error:
