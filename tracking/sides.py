@@ -20,6 +20,9 @@ DARKER = 5
 SHORTEST_BLOB = 56
 """Length of the outline of the smallest blob [px]: a marker of 14 px."""
 
+THINNEST_BLOB = 12
+"""Smallest extent of a blob along rows and columns [px]: grain and lines of writing are thinner."""
+
 COARSE = 1.6
 """How far an outline may leave a straight side [px]."""
 
@@ -74,7 +77,7 @@ def find_sides(grey: Picture) -> Sides:
     loops = [
         cv2.approxPolyDP(outline, COARSE, True)[:, 0]
         for outline in outlines
-        if len(outline) >= SHORTEST_BLOB
+        if len(outline) >= SHORTEST_BLOB and min(cv2.boundingRect(outline)[2:]) >= THINNEST_BLOB
     ]
     if not loops:
         return Sides(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, np.intp))
