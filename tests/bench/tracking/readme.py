@@ -120,6 +120,6 @@ def _own(run: Run) -> Iterator[str]:
     yield "|---|---|---|---|---|---|---|"
     for score in run.scores:
         if score.tracker == OURS:
-            rest = own_figures(score)[2:]
-            yield f"| {score.sequence} | {share(score.inside)} % | " + " | ".join(rest) + " |"
+            inside = f"{share(score.inside)} %"
+            yield "| " + " | ".join([score.sequence, inside, *own_figures(score)]) + " |"
     yield ""

@@ -14,8 +14,8 @@ OURS, YARDSTICK = "Cubeling", "cv2 SUBPIX"
 
 COLUMNS = ("tracker", "frames", "recall %", "wrong %", "mm", "95 %", "°", "95 %", "ms", "÷ cv2")
 OWN = (
-    "sequence", "inside %", "σ ×", "jitter mm", "jitter °", "50 ms ahead mm",
-    "const. velocity", "held", "velocity mm/s", "°/s",
+    "sequence", "inside %", "σ ×", "50 ms ahead mm", "const. velocity", "held",
+    "velocity mm/s", "°/s",
 )  # fmt: skip
 
 
@@ -142,16 +142,14 @@ def _ours(scores: Rows[Score]) -> Table:
 
 
 def own_figures(score: Score) -> tuple[str, ...]:
-    """Jitter where the cube rests, prediction and velocity where it moves; (7,) texts."""
-    rests = score.sequence == "static"
-    moves = not rests
+    """Prediction and velocity, where the cube moves; (5,) texts."""
+    if score.sequence == "static":
+        return ("",) * 5
+    speeds = zip(score.speed, (1000, 180 / np.pi), strict=True)
     return (
-        length(score.jitter[0]) if rests else "",
-        angle(score.jitter[1]) if rests else "",
-        *(length(each) if moves else "" for each in foresight(score)),
-        *(number(each, 1, factor) if moves else ""
-          for each, factor in zip(score.speed, (1000, 180 / np.pi), strict=True)),
-    )  # fmt: skip
+        *(length(each) for each in foresight(score)),
+        *(number(each, 1, factor) for each, factor in speeds),
+    )
 
 
 def foresight(score: Score) -> tuple[float, float, float]:
