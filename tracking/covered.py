@@ -138,5 +138,6 @@ def _share(sign: Array) -> Array:
 
 
 def _same(one: Observation, other: Observation) -> bool:
-    apart = np.linalg.norm(one.corners.mean(axis=0) - other.corners.mean(axis=0))
-    return one.face is other.face and bool(apart < other.size / 2)
+    """Whether two squares are one marker; a false one of another size must not hide the true."""
+    apart = np.linalg.norm(one.corners - other.corners, axis=1).max()
+    return one.face is other.face and bool(apart < 0.2 * min(one.size, other.size))
