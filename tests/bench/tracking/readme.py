@@ -38,7 +38,8 @@ RULES = (
     "tracker's call, in the median; ÷: of the time that cv2 SUBPIX takes to detect. In `poses` "
     "every frame is another pose, found without a past. cv2 looks at the whole picture and solves "
     "by SQPNP and Levenberg-Marquardt from all corners, and so does `rapidtag`; cv2 APRILTAG is "
-    "asked for every fourth frame. `aprilcube` is given our cube's corners in its own format."
+    "asked for every fourth frame. `aprilcube` is given our cube's corners in its own format; raw: "
+    "without its Kalman filter."
 )
 
 

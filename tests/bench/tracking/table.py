@@ -23,8 +23,8 @@ def show(console: Console, scores: Rows[Score]) -> None:
     """Print every tracker on every sequence, then what only Cubeling tells, then the rest."""
     console.print(_everybody(scores))
     console.print(
-        "wrong: given, but more than 20 mm or 10° off. 95 %: percentile of the error. "
-        f"÷ cv2: of the time that {YARDSTICK} takes to detect, without solving.\n"
+        "wrong: given, but more than 20 mm or 10° off. 95 %: percentile of the error. raw: without "
+        f"its filter.\n÷ cv2: of the time that {YARDSTICK} takes to detect, without solving.\n"
     )
     console.print(_ours(scores))
     console.print(

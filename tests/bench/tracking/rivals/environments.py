@@ -49,7 +49,7 @@ ENTRIES = {
     "aruco3": Entry("cv2 ArUco3", f"{_RIVALS}.opencv", "ARUCO3"),
     "rapidtag": Entry("rapidtag", f"{_RIVALS}.rapid", environment="rapidtag"),
     "aprilcube": Entry("aprilcube", f"{_RIVALS}.april", "filtered", "aprilcube"),
-    "unfiltered": Entry("aprilcube, no filter", f"{_RIVALS}.april", "unfiltered", "aprilcube"),
+    "unfiltered": Entry("aprilcube raw", f"{_RIVALS}.april", "unfiltered", "aprilcube"),
 }
 """All trackers, by the name that `--trackers` takes."""
 
