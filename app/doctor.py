@@ -14,10 +14,12 @@ from app.commands.replay import bundled
 from app.errors import AppError
 from app.scenarios import CUBES
 from app.show.display import has_display
+from app.summary import camera_line
 from characters import Character, CharacterError
 from characters.rendering import create_context
 from robot import serial_ports
-from tracking import TrackingError, open_source
+from tracking import FrameSource, TrackingError, open_source
+from tracking.sources.base import LiveFrames
 
 
 @dataclass(frozen=True)
@@ -31,7 +33,7 @@ class Finding:
     """ "missing" can be done without, "bad" cannot."""
 
     found: str
-    """What was found, one line."""
+    """What was found; a line, of a camera several."""
 
     remedy: str = ""
     """A command that puts it right, or ""."""
@@ -139,12 +141,36 @@ def _ports() -> Finding:
     return Finding("robot", "good", ", ".join(port.url for port in ports))
 
 
+WATCHED_S = 4.0
+"""So long the doctor looks at a camera: it locks its exposure after a second or two."""
+
+
 def _camera() -> Finding:
     try:
         with open_source("camera:0") as source:
-            return Finding("camera", "good", f"camera:0, {source.size[0]}x{source.size[1]}")
+            watch(source, WATCHED_S)
+            return Finding("camera", "good", camera_words("camera:0", source))
     except TrackingError as error:
         return Finding("camera", "missing", str(error), "cubeling demo --recording")
+
+
+def watch(source: FrameSource, seconds: float) -> None:
+    """Take frames for so long, by their own timestamps [s]."""
+    start: float | None = None
+    for frame in source:
+        start = frame.timestamp if start is None else start
+        if frame.timestamp - start >= seconds:
+            return
+
+
+def camera_words(uri: str, source: FrameSource) -> str:
+    """Say what a camera gives, and what became of what it was asked for."""
+    size = f"{uri}, {source.size[0]}x{source.size[1]}"
+    if not isinstance(source, LiveFrames):
+        return size
+    health = source.health
+    settings = [f"{setting.name} {setting.told}" for setting in health.settings]
+    return "\n".join([f"{size}, {camera_line(health)}", *settings])
 
 
 def _installed(name: str) -> bool:

@@ -9,13 +9,16 @@ import moderngl
 from app.errors import AppError
 from app.playground import Playground
 from app.recorded import recorded_arrows
-from app.runner import Plan
+from app.runner import PATIENCE_S, Plan
 from app.scenarios import make_scenario, scenario_cube
 from app.session import cues
 from app.show.screen import Nowhere, Screen, VideoFile
 from characters import Character
 from characters.rendering import create_context
 from tracking import CubeModel, FrameSource, Intrinsics, open_source
+
+ALONE_S = 3.0
+"""Without a window nobody is told to plug a camera in: only a network's short stalls are borne."""
 
 
 @dataclass(frozen=True)
@@ -98,6 +101,7 @@ def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = No
         salvage=wish.salvage,
         cues=cues(Path(wish.source)) if wish.source.endswith(".mcap") else frozenset(),
         given=None if wish.start == "camera" else recorded_arrows(wish.source, wish.start),
+        patience=PATIENCE_S if wish.output is None and wish.pictures else ALONE_S,
     )
 
 

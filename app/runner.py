@@ -9,16 +9,26 @@ from pathlib import Path
 
 from app.clock import SessionClock
 from app.errors import AppError
+from app.gaps import Gaps
 from app.playground import Given, Playground, Step
 from app.robots import RobotLine
 from app.scenarios import Inputs
 from app.session import START_OVER, Recorder, preparation
+from app.show.notice import notice
 from app.show.screen import Screen
 from app.summary import Summary
 from robot import RobotError
 from tracking import Frame, FrameSource, Intrinsics, TrackingError
+from tracking.sources.base import LiveFrames
+from tracking.sources.health import Health
 
 Progress = Callable[[Step], None]
+
+BREATH_S = 0.05
+"""While no frame comes, the window is served at least so often."""
+
+PATIENCE_S = 30.0
+"""So long a lost camera may take to come back while somebody is there to plug it in."""
 
 
 @dataclass(frozen=True)
@@ -58,6 +68,9 @@ class Plan:
     given: Iterator[Given] | None = None
     """Arrows of a replay that are taken as recorded, a frame at a time."""
 
+    patience: float = PATIENCE_S
+    """How long a live source may be lost before the session ends [s]."""
+
 
 def run(plan: Plan, progress: Progress | None = None) -> Summary:
     """Play a session to its end, until the player closes it, or until Ctrl-C.
@@ -80,7 +93,13 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
         closing.callback(clock.release)  # a robot says goodbye in real time
         closing.enter_context(_interruptible(summary))
         inputs = Inputs()
+        gaps = Gaps(summary, recorder)
         for frame in _frames(plan, clock, summary):
+            if isinstance(frame, Health):
+                if _waiting(plan, frame, gaps):
+                    break
+                continue
+            gaps.back(frame)
             if tap is not None:
                 tap.align(frame.timestamp - clock())
             began = time.perf_counter()
@@ -107,7 +126,18 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
             robot.check()
         except RobotError as lost:
             summary.lost = summary.lost or lost
+    if isinstance(plan.source, LiveFrames):
+        summary.camera = plan.source.health
     return summary
+
+
+def _waiting(plan: Plan, health: Health, gaps: Gaps) -> bool:
+    """Keep the screen alive while no frame comes; returns whether the player has had enough."""
+    words = notice(health)
+    if words is not None:
+        gaps.lost()
+    plan.screen.wait(words)
+    return plan.screen.closed
 
 
 class WireTap:
@@ -146,11 +176,17 @@ class WireTap:
             self._early.clear()
 
 
-def _frames(plan: Plan, clock: SessionClock, summary: Summary) -> Iterator[Frame]:
-    """Give out the frames: live ones as they come, recorded ones at their pace or at once."""
+def _frames(plan: Plan, clock: SessionClock, summary: Summary) -> Iterator[Frame | Health]:
+    """Give out the frames: live ones as they come, recorded ones at their pace or at once.
+
+    While a live source has none, how it fares is given out instead, again and again.
+    """
     start: float | None = None
     began = time.monotonic()
     for frame in _readable(plan, summary):
+        if isinstance(frame, Health):
+            yield frame
+            continue
         if start is None:
             start, began = frame.timestamp, time.monotonic()
         since = frame.timestamp - start
@@ -161,19 +197,28 @@ def _frames(plan: Plan, clock: SessionClock, summary: Summary) -> Iterator[Frame
         yield frame
 
 
-def _readable(plan: Plan, summary: Summary) -> Iterator[Frame]:
+def _readable(plan: Plan, summary: Summary) -> Iterator[Frame | Health]:
     """Give out what can be read; a camera that breaks off ends the session, and what it made stays.
 
     A file that breaks off is an error: it can be played again with `salvage`.
     """
     try:
-        yield from plan.source
+        yield from _given_out(plan)
     except TrackingError as error:
         if plan.salvage:
             return
         if not plan.source.live or not summary.frames:
             raise
         summary.lost = error
+
+
+def _given_out(plan: Plan) -> Iterator[Frame | Health]:
+    if not isinstance(plan.source, LiveFrames):
+        yield from plan.source
+        return
+    while plan.source.health.state != "closed":
+        frame = plan.source.wait(BREATH_S, plan.patience)
+        yield frame or plan.source.health
 
 
 @contextmanager

@@ -12,6 +12,7 @@ from app.playground import Step
 from app.show.overlay import RobotView
 from robot import RobotError
 from tracking import TrackingError
+from tracking.sources.health import Health
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 
@@ -40,6 +41,12 @@ class Summary:
 
     lost: RobotError | TrackingError | None = None
     """Why the robot could not be reached at the end, or the camera stopped; None if all is well."""
+
+    gaps: list[tuple[float, float]] = field(default_factory=list)
+    """When the camera was lost [s, its timestamps], and how long until its next frame [s]."""
+
+    camera: Health | None = None
+    """How the camera fared, at the end; None where the source was none."""
 
     interrupted: bool = False
     """Whether the player ended it with Ctrl-C."""
@@ -91,6 +98,7 @@ class Summary:
     def document(self) -> dict[str, object]:
         """Return the same as plain numbers for JSON."""
         median, slow = self.frame_ms()
+        camera = {} if self.camera is None else {"camera": self._camera(self.camera)}
         return {
             "scenario": self.scenario,
             "frames": self.frames,
@@ -99,6 +107,18 @@ class Summary:
             "actions": [{"t_s": round(t, 3), "state": state} for t, state in self.spans],
             "robot": [{"t_s": round(t, 3), "label": label} for t, label in self.labels()],
             "frame_ms": {"median": round(median, 2), "p95": round(slow, 2)},
+            **camera,
+        }
+
+    def _camera(self, health: Health) -> dict[str, object]:
+        return {
+            "rate": round(health.rate, 2),
+            "latency_ms": round(1000 * health.latency, 1),
+            "stamped_by": health.stamped_by,
+            "dropped": health.dropped,
+            "queue": {"mean": round(health.depth, 2), "most": health.deepest},
+            "gaps": [{"t_s": round(t - self.first, 3), "s": round(s, 3)} for t, s in self.gaps],
+            "settings": {setting.name: setting.told for setting in health.settings},
         }
 
     def __rich__(self) -> RenderableType:
@@ -117,6 +137,12 @@ class Summary:
         table.add_row(
             "a frame took", f"{median:.1f} ms in the median, {slow:.1f} ms at the 95th percentile"
         )
+        if self.camera is not None:
+            table.add_row("camera", camera_line(self.camera))
+        if self.gaps:
+            lost = sum(seconds for _, seconds in self.gaps)
+            count = "once" if len(self.gaps) == 1 else f"{len(self.gaps)} times"
+            table.add_row("camera lost", f"{count}, {lost:.1f} s in all")
         return Panel(Group(table), title=f"[bold]{self.scenario}", title_align="left", expand=False)
 
     def _curve(self, width: int) -> str:
@@ -128,6 +154,20 @@ class Summary:
         return "".join(
             BLOCKS[min(7, int((min(1.0, max(-1.0, mood)) + 1) * 3.999))] for mood in picks
         )
+
+
+def camera_line(health: Health) -> str:
+    """Return a live source's figures in one line.
+
+    >>> camera_line(Health("camera 0", "running", 0.0, rate=30.0, latency=0.041, dropped=2))
+    '30.0 pictures/s, 41 ms old (since arrival), 2 left out for newer ones, none waited'
+    """
+    clock = "since exposure" if health.stamped_by == "driver" else "since arrival"
+    waited = f"at most {health.deepest} waited" if health.deepest else "none waited"
+    return (
+        f"{health.rate:.1f} pictures/s, {1000 * health.latency:.0f} ms old ({clock}), "
+        f"{health.dropped} left out for newer ones, {waited}"
+    )
 
 
 MOMENT = 0.6

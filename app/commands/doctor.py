@@ -12,7 +12,7 @@ MARKS = {"good": "[green]✓[/]", "missing": "[yellow]–[/]", "bad": "[red]✗[
 
 
 def doctor(
-    cameras: Annotated[bool, typer.Option(help="Look for a camera too (takes up to 2 s).")] = True,
+    cameras: Annotated[bool, typer.Option(help="Look for a camera too (takes about 5 s).")] = True,
 ) -> None:
     """Say what this computer has, what is missing, and the command that puts it right.
 

@@ -4,12 +4,14 @@ import math
 from dataclasses import dataclass
 from functools import lru_cache
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from app.playground import Step
 from app.show.canvas import Canvas, Card, text_width
-from app.show.palette import ACTION, INK, PAPER, QUIET, RULE, Color, between, mood_color
+from app.show.notice import Notice
+from app.show.palette import ACTION, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
 from app.show.robot_face import draw_face
 
 HEIGHT = 720.0
@@ -63,6 +65,30 @@ def overlay(picture: NDArray[np.uint8], step: Step, robot: RobotView) -> NDArray
     for card in cards(step, robot, (picture.shape[1], picture.shape[0])):
         card.over(picture)
     return picture
+
+
+DIMMED = 0.45
+"""What is left of the last picture's brightness while no new one comes."""
+
+
+def interrupted(picture: NDArray[np.uint8], notice: Notice) -> NDArray[np.uint8]:
+    """Return the last picture (H, W, 3), dimmed, with a card that says why no new one comes."""
+    dim = np.asarray(cv2.convertScaleAbs(picture, alpha=DIMMED), np.uint8)
+    scale = picture.shape[0] / HEIGHT
+    _notice(notice, picture.shape[1] / scale, scale).over(dim)
+    return dim
+
+
+@lru_cache(maxsize=4)
+def _notice(notice: Notice, width: float, scale: float) -> Card:
+    wide = max(text_width(notice.title, 30), text_width(notice.advice, 20)) + 152
+    canvas = Canvas(wide, 116, scale)
+    canvas.disc(58, 58, 34, ANGRY)
+    canvas.line([[58, 41], [58, 61]], PAPER, 8)
+    canvas.disc(58, 75, 4.6, PAPER)
+    canvas.text(112, 54, notice.title, 30, INK)
+    canvas.text(112, 86, notice.advice, 20, QUIET)
+    return canvas.card((width - wide) / 2, (HEIGHT - 116) / 2)
 
 
 @lru_cache(maxsize=16)

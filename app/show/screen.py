@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from app.errors import AppError
 from app.playground import Step
 from app.scenarios import Inputs
+from app.show.notice import Notice
 from app.show.overlay import RobotView, overlay
 
 
@@ -21,6 +22,13 @@ class Screen(Protocol):
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Show a step; returns what the player asks for."""
+        ...
+
+    def wait(self, notice: Notice | None) -> None:
+        """Stay alive while no frame comes; tell the player why, where there is something to tell.
+
+        What the player pressed meanwhile is returned by the next `show`.
+        """
         ...
 
     @property
@@ -41,6 +49,9 @@ class Nowhere:
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Do nothing."""
         return Inputs()
+
+    def wait(self, notice: Notice | None) -> None:
+        """Do nothing."""
 
     def close(self) -> None:
         """Do nothing."""
@@ -98,6 +109,9 @@ class VideoFile:
         if step.picture is not None:
             self.write(overlay(step.picture, step, robot), step.frame.timestamp)
         return Inputs()
+
+    def wait(self, notice: Notice | None) -> None:
+        """Write nothing: the last picture stands until the next one's time."""
 
     def write(self, picture: NDArray[np.uint8], timestamp: float) -> None:
         """Write one picture (H, W, 3) BGR at a time [s]."""

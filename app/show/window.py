@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from app.errors import AppError
 from app.playground import Step
 from app.scenarios import Inputs
-from app.show.overlay import RobotView, overlay
+from app.show.notice import Notice
+from app.show.overlay import RobotView, interrupted, overlay
 
 VERTEX = """
 #version 330
@@ -85,6 +86,7 @@ class Window:
         self._shown: deque[float] = deque(maxlen=60)
         self._panel = False
         self._clear = False
+        self._last: NDArray[np.uint8] | None = None
         self._open = True
 
     def __enter__(self) -> Self:
@@ -103,13 +105,23 @@ class Window:
         if self.closed:
             return Inputs()
         if step.picture is not None:
-            self._paint(overlay(step.picture, step, robot))
+            self._last = overlay(step.picture, step, robot)
+            self._paint(self._last)
         self._shown.append(time.perf_counter())
         self._draw_panel(step, robot)
         glfw.swap_buffers(self._window)
         glfw.poll_events()
         clear, self._clear = self._clear, False
         return Inputs(clear=clear)
+
+    def wait(self, notice: Notice | None) -> None:
+        """Hear the keys; over the last picture, say why no new one comes."""
+        if self.closed:
+            return
+        if notice is not None and self._last is not None:
+            self._paint(interrupted(self._last, notice))
+            glfw.swap_buffers(self._window)
+        glfw.poll_events()
 
     def close(self) -> None:
         """Close the window and release its context."""

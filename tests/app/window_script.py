@@ -7,6 +7,7 @@ import numpy as np
 
 from app.opening import fitting
 from app.playground import Playground
+from app.show.notice import Notice
 from app.show.overlay import RobotView
 from app.show.window import Window
 from tracking import open_source
@@ -31,6 +32,12 @@ def main(session: str) -> None:
         assert screen.size == source.size
         np.testing.assert_array_equal(shown[::-1, :, ::-1], step.picture)
 
+        window.wait(None)
+        for _ in range(2):  # both of the buffers that are swapped
+            window.wait(Notice("Camera lost", "Plug it in again."))
+        shown = np.frombuffer(screen.read(), np.uint8)
+        assert shown.mean() < 0.7 * step.picture.mean(), "the last picture is not dimmed"
+        assert shown.max() > 200, "no card lies over it"
         for key in (glfw.KEY_H, glfw.KEY_C):
             window._key(window._window, key, 0, glfw.PRESS, 0)
         assert window.show(step, robot).clear
