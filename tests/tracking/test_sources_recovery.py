@@ -6,7 +6,7 @@ import threading
 import numpy as np
 import pytest
 
-from tracking import TrackingError
+from tracking import Frame, TrackingError
 from tracking.sources.base import LiveFrames
 from tracking.sources.capture import LEFT_BEHIND, STUCK_S
 from tracking.sources.devices import lasting_path
@@ -34,7 +34,7 @@ class Bench:
 
     def __init__(self):
         self.clock = Clock()
-        self.pictures = queue.Queue()
+        self.pictures: queue.Queue[object] = queue.Queue()
         self.plugged = True
         self.opened = self.held = 0
         self.most_held = 0
@@ -110,7 +110,9 @@ def source(bench):
     bench.put(1)
     with LiveSource(bench, "camera 0", bench.clock) as opened:
         assert isinstance(opened, LiveFrames)
-        assert opened.wait(0.0).image[0, 0, 0] == 1
+        frame = opened.wait(0.0)
+        assert frame is not None
+        assert frame.image[0, 0, 0] == 1
         yield opened
 
 
@@ -122,7 +124,7 @@ def at(bench, seconds, source):
 
 def awaited(source, bench):
     """The next frame, given real time to come and no time of the clock."""
-    found = []
+    found: list[Frame] = []
 
     def came():
         found.extend(frame for frame in [source._next(0.0)] if frame is not None)
@@ -150,7 +152,12 @@ def test_a_camera_that_is_plugged_in_again_goes_on_by_itself(bench, source):
     bench.clock.now += 5.0
     assert source.wait(0.0, patience=6.0) is None
     bench.plugged = True
-    bench.until(lambda: (setattr(bench.clock, "now", bench.clock.now + 0.1), bench.opened == 2)[1])
+
+    def reopened():
+        bench.clock.now += 0.1
+        return bench.opened == 2
+
+    bench.until(reopened)
     bench.until(lambda: source.health.state == "recovering")
     bench.put(2)
     frame = awaited(source, bench)

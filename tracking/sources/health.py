@@ -66,6 +66,9 @@ class Health:
     settings: tuple[Setting, ...] = ()
     """What the device was asked for."""
 
+    still: bool = False
+    """Whether its trouble is, or before it was opened again was, a picture that stood still."""
+
     @property
     def running(self) -> bool:
         """Whether new pictures come."""

@@ -120,6 +120,7 @@ class LiveSource(FrameSource):
             capture.gauge.deepest,
             "driver" if capture.by_driver else "arrival",
             capture.settings,
+            capture.frozen and state in ("frozen", "recovering"),
         )
 
     def close(self) -> None:

@@ -1,0 +1,169 @@
+"""Exposure and focus: locked where the driver allows, and said where it does not."""
+
+import cv2
+import numpy as np
+import pytest
+
+from tracking import TrackingError
+from tracking.sources.camera import CameraSource, CaptureDevice
+from tracking.sources.camera_options import CameraOptions
+from tracking.sources.health import Setting
+from tracking.sources.locking import HOPELESS
+
+SIZE = (64, 48)
+
+
+class Driver:
+    """A camera with controls, as V4L2 drivers have them, good ones and bad ones."""
+
+    def __init__(self, **controls):
+        self.controls = {
+            cv2.CAP_PROP_AUTO_EXPOSURE: 3.0,
+            cv2.CAP_PROP_EXPOSURE: 156.0,
+            cv2.CAP_PROP_AUTOFOCUS: 1.0,
+            cv2.CAP_PROP_FOCUS: 30.0,
+            cv2.CAP_PROP_BUFFERSIZE: 4.0,
+            cv2.CAP_PROP_FPS: 30.0,
+        }
+        self.refused: set[int] = set()
+        self.absent: set[int] = set()
+        self.clamp = 1e9
+        self.light = 100
+        self.manual_light = 100
+        self.hunting = False
+        self.time = 0.0
+        self.reads = 0
+        self.released = False
+
+    def isOpened(self):  # noqa: N802
+        return True
+
+    def set(self, prop, value):
+        if prop in self.refused or prop in self.absent:
+            return False
+        self.controls[prop] = min(value, self.clamp) if prop == cv2.CAP_PROP_EXPOSURE else value
+        return True
+
+    def get(self, prop):
+        if prop == cv2.CAP_PROP_POS_MSEC:
+            return self.time
+        if prop in self.absent:
+            return -1.0
+        if prop == cv2.CAP_PROP_FOCUS and self.hunting:
+            return 30.0 + self.reads
+        return self.controls.get(prop, 0.0)
+
+    def read(self):
+        self.reads += 1
+        manual = self.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 1.0
+        return True, np.full((48, 64, 3), self.manual_light if manual else self.light, np.uint8)
+
+    def release(self):
+        self.released = True
+
+
+def after(driver, pictures, **options):
+    """What became of the settings after so many pictures."""
+    device = CaptureDevice(driver, "camera 0", SIZE, CameraOptions(**options))
+    for _ in range(pictures):
+        device.read()
+    return {setting.name: setting for setting in device.settings}
+
+
+def test_nothing_is_locked_before_it_has_settled():
+    driver = Driver()
+    settings = after(driver, 29)
+    assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
+    assert settings["exposure"] == Setting("exposure", False, "still automatic")
+
+
+def test_exposure_and_focus_are_locked_where_they_settled():
+    driver = Driver()
+    settings = after(driver, 100)
+    assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 1.0
+    assert driver.controls[cv2.CAP_PROP_AUTOFOCUS] == 0.0
+    assert settings["exposure"] == Setting("exposure", True, "locked at 15.6 ms")
+    assert settings["focus"] == Setting("focus", True, "locked at 30")
+
+
+def test_an_exposure_that_the_camera_misreports_is_left_automatic():
+    driver = Driver()
+    driver.manual_light = 40
+    settings = after(driver, 100)
+    assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
+    assert not settings["exposure"].honoured
+    assert "does not tell" in settings["exposure"].told
+
+
+def test_a_focus_that_hunts_is_left_automatic():
+    driver = Driver()
+    driver.hunting = True
+    settings = after(driver, HOPELESS + 30)
+    assert driver.controls[cv2.CAP_PROP_AUTOFOCUS] == 1.0
+    assert "does not come to rest" in settings["focus"].told
+
+
+def test_what_a_driver_refuses_is_said():
+    driver = Driver()
+    driver.refused = {cv2.CAP_PROP_AUTO_EXPOSURE}
+    driver.absent = {cv2.CAP_PROP_FOCUS, cv2.CAP_PROP_AUTOFOCUS}
+    settings = after(driver, 100)
+    assert settings["exposure"].told == "refused: the camera keeps its automatic on"
+    assert settings["focus"].told == "the camera has no such setting"
+    assert not settings["exposure"].honoured
+    assert not settings["focus"].honoured
+
+
+def test_a_short_exposure_is_set_at_once_and_read_back():
+    driver = Driver()
+    settings = after(driver, 0, exposure=5.0, focus=60.0)
+    assert driver.controls[cv2.CAP_PROP_EXPOSURE] == 50.0
+    assert settings["exposure"] == Setting("exposure", True, "set to 5 ms")
+    assert settings["focus"] == Setting("focus", True, "set to 60")
+    clamped = Driver()
+    clamped.clamp = 20.0
+    assert after(clamped, 0, exposure=5.0)["exposure"].told == "refused: the camera answers 2 ms"
+    assert clamped.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
+
+
+def test_nothing_is_touched_without_the_lock():
+    driver = Driver()
+    settings = after(driver, 100, lock=False)
+    assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
+    assert set(settings) == {"buffers"}
+
+
+def test_the_queue_is_asked_for_and_what_the_driver_gives_is_said():
+    assert after(Driver(), 0)["buffers"] == Setting("buffers", True, "2, asked for 2")
+    stubborn = Driver()
+    stubborn.refused = {cv2.CAP_PROP_BUFFERSIZE}
+    assert after(stubborn, 0)["buffers"] == Setting("buffers", False, "4, asked for 2")
+    silent = Driver()
+    silent.absent = {cv2.CAP_PROP_BUFFERSIZE}
+    assert "does not tell" in after(silent, 0)["buffers"].told
+
+
+def test_the_drivers_milliseconds_become_the_frames_timestamp():
+    driver = Driver()
+    driver.time = 99_960.5
+    with CameraSource(0, SIZE, clock=lambda: 100.0, capture=lambda device: driver) as source:
+        assert next(iter(source)).timestamp == pytest.approx(99.9605, abs=1e-9)
+        assert source.health.stamped_by == "driver"
+        assert source.health.latency == pytest.approx(0.0395, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("uri", "words"),
+    [
+        ("0?zoom=3", "has no option 'zoom': it has lock, exposure, focus, buffers"),
+        ("0?exposure=0", "exposure must be from 0.1 to 1000, not 0"),
+        ("0?exposure=nan", "exposure must be"),
+        ("0?exposure=short", "exposure=short is no number"),
+        ("0?lock=maybe", "lock=maybe is neither 0 nor 1"),
+        ("0?buffers=99", "buffers must be from 1 to 10"),
+    ],
+)
+def test_a_wrong_option_is_one_line(uri, words):
+    with pytest.raises(TrackingError) as caught:
+        CameraSource.from_uri(uri, SIZE, lambda: 0.0)
+    assert words in str(caught.value)
