@@ -93,7 +93,7 @@ def write_board(path: str | Path, paper: str = "a4") -> Board:
         raise TrackingError(f"no paper is called '{paper}': choose {', '.join(PAPERS)}")
     width, height = PAPERS[paper]
     room = min((width - 2 * MARGIN) / 5, (height - 2 * MARGIN - 14) / 7)
-    board = Board(square=np.floor(room) / 1000)
+    board = Board(square=float(np.floor(room)) / 1000)
     pen = Pen(width, height, "ChArUco board")
     side = board.square * 1000
     corner = np.array([(width - 5 * side) / 2, MARGIN])

@@ -145,8 +145,8 @@ class Coach:
 
         It stays the same until it is fulfilled, so that nobody is sent about.
         """
-        order = {kind: place for place, kind in enumerate((*FIRST, *self.needed))}
-        return min(self.missing(), key=lambda kind: order[kind], default="")
+        order = [*FIRST, *self.needed]
+        return min(self.missing(), key=order.index, default="")
 
     def ask_more(self) -> None:
         """Ask for two more of each tilt, and near: the views did not determine the camera."""
