@@ -39,6 +39,9 @@ LIKE = 0.85
 SURE = 0.95
 """The same where there is no past."""
 
+CLEAR_SWEEP = 3.5
+"""And pixels: below, an unknown lens blurs as much."""
+
 SURPRISE = 0.07
 """Cells by which a sweep must differ from the expected one for the edges to be measured anew."""
 
@@ -55,8 +58,9 @@ DOUBT_SWEPT = (2.0, 4.0)
 STREAK = 0.6
 """Cells that an edge may cross during the exposure and still be measured as an edge."""
 
-SWEEP_SPREAD = (0.35, 0.004, 0.06)
-"""What is not known of an expected sweep: a share of it, and [m, rad] besides."""
+SWEEP_SPREAD, FIRST_SPREAD = (0.12, 0.0025, 0.04), (0.35, 0.004, 0.06)
+"""What is not known of an expected sweep: a share of it, and [m, rad] besides; the second while the
+exposure is not known."""
 
 
 @dataclass(frozen=True)
@@ -114,9 +118,7 @@ class Follower:
         cells = len(marker_cells(cube.dictionary, cube.faces[0].marker_id))
         self._cell = cube.marker_size / cells
 
-    def follow(
-        self, image: NDArray[np.uint8], track: Track, timestamp: float
-    ) -> Candidate | None:
+    def follow(self, image: NDArray[np.uint8], track: Track, timestamp: float) -> Candidate | None:
         """Look where the past says that the cube should be; None where it is not found there."""
         last = track.recent(timestamp)
         if last is None:
@@ -126,16 +128,23 @@ class Follower:
         if region is None:
             return None
         patch = Patch.of(image, region, self.response.table)
-        sweep = last.velocity * self.shutter.exposure
+        sweep = prediction.velocity_at(last, timestamp) * self.shutter.exposure
         if self.streak(expected, sweep) < STREAK:
             found = self._sharp(patch, expected, sweep, track, timestamp)
             if found is not None:
-                self._study(patch, found.camera_from_cube, last.velocity)
+                self._study(
+                    patch,
+                    found.camera_from_cube,
+                    track.motion(found.camera_from_cube, found.covariance, timestamp)[0],
+                )
                 return found
         aligned = self._aligned(patch, expected, sweep)
         if aligned is None:
             return None
-        self._learn(aligned, track.velocity(aligned.camera_from_cube, timestamp))
+        self._learn(
+            aligned,
+            track.motion(aligned.camera_from_cube, aligned.covariance[:6, :6], timestamp)[0],
+        )
         if self.streak(aligned.camera_from_cube, aligned.sweep) < STREAK:
             found = self.by_edges(patch, aligned.camera_from_cube, aligned.sweep)
             if found is not None:
@@ -150,7 +159,7 @@ class Follower:
         if found is None:
             return None
         pose = found.camera_from_cube
-        moved = track.velocity(pose, timestamp) * self.shutter.exposure
+        moved = track.motion(pose, found.covariance, timestamp)[0] * self.shutter.exposure
         if self.streak(pose, moved) > STREAK:
             return None
         if self.streak(pose, moved - sweep) < SURPRISE:
@@ -167,10 +176,11 @@ class Follower:
             self._learn(aligned, velocity)
 
     def _learn(self, aligned: Alignment, velocity: Array) -> None:
-        if aligned.likeness < SURE:
+        sweep = self.streak(aligned.camera_from_cube, aligned.sweep)
+        if aligned.likeness < SURE or sweep * self._pixels_per_cell(aligned) < CLEAR_SWEEP:
             return
         self.shutter.learn(*aligned.told, velocity)
-        if self.streak(aligned.camera_from_cube, aligned.sweep) > TELLING:
+        if sweep > TELLING:
             self.response.learn(aligned.bend, aligned.black)
 
     def other(self, candidate: Candidate) -> Array:
@@ -229,13 +239,18 @@ class Follower:
         return _proves(found, self.reader.read(patch, found.camera_from_cube))
 
     def _aligned(
-        self, patch: Patch, expected: Array, sweep: Array, coarse: bool = True
+        self, patch: Patch, expected: Array, sweep: Array, coarse: bool | None = None
     ) -> Alignment | None:
-        share, shift, turn = SWEEP_SPREAD
+        """Align the picture of a moving cube: finely at once, and coarsely first where that fails."""
+        share, shift, turn = SWEEP_SPREAD if self.shutter.known else FIRST_SPREAD
         spread = share * np.repeat([np.linalg.norm(sweep[:3]), np.linalg.norm(sweep[3:])], 3)
         prior = np.hypot(spread, np.repeat([shift, turn], 3))
-        found = self.aligner.align(patch, expected, sweep, prior, coarse)
-        return found if found and found.likeness > LIKE else None
+        found = None
+        if not coarse:
+            found = self.aligner.align(patch, expected, sweep, prior, coarse=False)
+        if coarse is None and not (found and found.weakest > SURE):
+            found = self.aligner.align(patch, expected, sweep, prior)
+        return found if found and found.weakest > LIKE else None
 
     def _doubt(self, pose: Array, sweep: Array | None) -> float:
         """By how much the variances of edges are to be raised."""
@@ -256,6 +271,10 @@ class Follower:
             sweep=aligned.sweep,
             sweep_covariance=aligned.covariance[6:, 6:],
         )
+
+    def _pixels_per_cell(self, aligned: Alignment) -> float:
+        distance = float(aligned.camera_from_cube[2, 3])
+        return self._cell * float(self._projection.matrix[0, 0]) / distance
 
     def streak(self, camera_from_cube: Array, sweep: Array) -> float:
         """How many cells an edge crosses at most while the shutter is open."""

@@ -123,13 +123,13 @@ class Mixture:
 
     @property
     def likeness(self) -> Array:
-        """Correlation of the fitted drawing and the picture, over all and for each face."""
+        """Correlation of fitted drawing and picture, over all and for each face; NaN if unseen."""
         fitted = self.samples.seen - self.residual
         whole = [_correlation(self.samples.seen, fitted)]
         for face in range(self._faces):
             of = self.samples.face == face
             enough = np.count_nonzero(of) > 30
-            whole.append(_correlation(self.samples.seen[of], fitted[of]) if enough else 0.0)
+            whole.append(_correlation(self.samples.seen[of], fitted[of]) if enough else np.nan)
         return np.array(whole)
 
     @property

@@ -1,7 +1,7 @@
 """What the last seen poses say about now: velocity, and where the cube should be."""
 
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,13 @@ FASTEST = (4.0, 40.0)
 """Nobody moves a cube faster in front of a camera [m/s, rad/s]; what does so is another cube."""
 
 
+TRUST, NOISE = 0.85, 2.0
+"""Share of a clear acceleration that is carried on, and how much clearer than noise it must be."""
+
+LASTING = 0.07
+"""A hand does not accelerate the same way for longer than this [s]."""
+
+
 @dataclass(frozen=True)
 class Sighting:
     """A trusted pose."""
@@ -35,6 +42,9 @@ class Sighting:
 
     timestamp: float
     """When [s]."""
+
+    acceleration: Array = field(default_factory=lambda: np.zeros(6))
+    """How the velocity changes, as far as the poses tell, (6,) [m/s², rad/s²]."""
 
 
 class Track:
@@ -62,32 +72,48 @@ class Track:
         self._sightings.clear()
         self._sightings.append(sighting)
 
-    def velocity(self, camera_from_cube: Array, timestamp: float) -> Array:
-        """Velocity at a new pose, (6,): the slope of the parabola through it and the last two.
+    def motion(
+        self, camera_from_cube: Array, covariance: Array, timestamp: float
+    ) -> tuple[Array, Array]:
+        """Velocity and acceleration at a new pose, (6,) each: of the parabola through three poses.
 
-        A plain difference would be that of half a frame ago. Zero for a first sighting, and after
-        one so old that the cube's way since is not known.
+        A plain difference would be the velocity of half a frame ago. The acceleration counts only
+        as far as it stands out from the noise of the poses (Wiener, 1949), each axis by itself: so
+        a cube at rest stays at rest. Zero after a pause so long that the way is not known.
         """
+        still = np.zeros(6)
         last = self.last
         if last is None:
-            return np.zeros(6)
+            return still, still
         elapsed = timestamp - last.timestamp
         if elapsed <= 0 or elapsed > MEMORY:
-            return np.zeros(6) if elapsed > 0 else last.velocity
+            return (still, still) if elapsed > 0 else (last.velocity, last.acceleration)
         now = se3.motion(last.camera_from_cube, camera_from_cube) / elapsed
-        if len(self._sightings) < 2:
-            return now
-        earlier = self._sightings[-2]
-        before = last.timestamp - earlier.timestamp
-        if not 0 < before <= MEMORY:
-            return now
+        earlier = self._sightings[-2] if len(self._sightings) > 1 else None
+        before = last.timestamp - earlier.timestamp if earlier else 0.0
+        if earlier is None or not 0 < before <= MEMORY:
+            return now, still
         mean = se3.motion(earlier.camera_from_cube, last.camera_from_cube) / before
-        return np.asarray(now + (now - mean) * (elapsed / (elapsed + before)), np.float64)
+        span = (elapsed + before) / 2
+        change = (now - mean) / span
+        variances = (np.diag(covariance) + np.diag(last.covariance)) / elapsed**2
+        variances += (np.diag(earlier.covariance) + np.diag(last.covariance)) / before**2
+        noise = NOISE * variances / span**2
+        change *= TRUST * change**2 / (change**2 + noise)
+        return now + change * elapsed / 2, change
 
 
 def predicted(last: Sighting, timestamp: float) -> Array:
-    """Pose at `timestamp` if the cube keeps its velocity, (4, 4)."""
-    return se3.moved(last.camera_from_cube, last.velocity * (timestamp - last.timestamp))
+    """Pose at `timestamp` if the cube goes on as it does, (4, 4)."""
+    ahead = timestamp - last.timestamp
+    bend = np.clip(ahead, -LASTING, LASTING) ** 2 / 2
+    return se3.moved(last.camera_from_cube, last.velocity * ahead + last.acceleration * bend)
+
+
+def velocity_at(last: Sighting, timestamp: float) -> Array:
+    """Velocity at `timestamp` if the cube goes on as it does, (6,)."""
+    ahead = np.clip(timestamp - last.timestamp, -LASTING, LASTING)
+    return last.velocity + last.acceleration * ahead
 
 
 def predicted_covariance(last: Sighting, timestamp: float) -> Array:

@@ -43,8 +43,11 @@ FEWEST = 36
 CLOSE = 0.7
 """Once no edge moves by more than this [px] the profiles need not be laid out anew."""
 
-ROUNDS = 6
-"""Gauss-Newton steps at most."""
+STEADY = 0.04
+"""The profiles are measured again while edges move by more than this [px]."""
+
+LAYOUTS = 3
+"""So often they are laid out at most."""
 
 
 @dataclass(frozen=True)
@@ -145,19 +148,15 @@ class EdgeRefiner:
             if fit is None:
                 return None
             current = se3.moved(current, fit.solution[:6])
-        for blurs in (PRECISE, PRECISE[1:], PRECISE[1:]):
+        blurs = PRECISE
+        for _ in range(LAYOUTS):
             profiles = self._profiles(patch, current, sweep, False)
-            shifts = None
-            for blur in blurs if profiles else ():
-                fit = _fit(patch, profiles, shifts, blur)
-                if fit is None:
-                    return None
-                shifts = profiles.slopes @ fit.solution[:6]
-            if profiles is None or fit is None or shifts is None:
+            fit = _converged(patch, profiles, blurs) if profiles else None
+            if profiles is None or fit is None:
                 return None
-            if np.abs(shifts).max() < CLOSE:
+            if np.abs(profiles.slopes @ fit.solution[:6]).max() < CLOSE:
                 break
-            current = se3.moved(current, fit.solution[:6])
+            current, blurs = se3.moved(current, fit.solution[:6]), PRECISE[1:]
         return self._judged(current, profiles, fit)
 
     def _profiles(
@@ -202,6 +201,19 @@ def _crisp(measured: Measured, kept: NDArray[np.intp], lines: NDArray[np.intp]) 
     fitted = np.add.reduceat(measured.fitted[kept], starts)
     steep = rise / np.maximum(fitted, 1e-9)
     return quantile(steep, 0.15) / max(quantile(steep, 0.85), 1e-9)
+
+
+def _converged(patch: Patch, profiles: Profiles, blurs: tuple[float, ...]) -> _Fit | None:
+    """Fit until the edges stay where they are: the profiles follow them, the geometry stays."""
+    shifts = None
+    for blur in (*blurs, *PRECISE[1:] * 2):
+        fit = _fit(patch, profiles, shifts, blur)
+        if fit is None:
+            return None
+        before, shifts = shifts, profiles.slopes @ fit.solution[:6]
+        if before is not None and np.abs(shifts - before).max() < STEADY:
+            break
+    return fit
 
 
 def _fit(patch: Patch, profiles: Profiles, shifts: Array | None, blur: float) -> _Fit | None:

@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 
+from tracking.acquisition import Search
 from tracking.cube import CubeModel
 from tracking.detection import MarkerDetector
 from tracking.errors import TrackingError
 from tracking.frame import Frame
 from tracking.intrinsics import Intrinsics
 from tracking.state import CubeState
-from tracking.tracker import CubeTracker, grey_of
+from tracking.tracker import CubeTracker
 
 
 class CubesTracker:
@@ -59,12 +60,9 @@ class CubesTracker:
         states = [tracker.follow(frame) for tracker in self.trackers]
         lost = [number for number, state in enumerate(states) if state is None]
         if lost:
-            grey = grey_of(frame)
-            wanted = {self.trackers[number].cube.dictionary for number in lost}
-            markers = {name: self._detectors[name].detect(grey) for name in sorted(wanted)}
+            search = Search(frame, self._detectors)
             for number in lost:
-                tracker = self.trackers[number]
-                states[number] = tracker.acquire(frame, grey, markers[tracker.cube.dictionary])
+                states[number] = self.trackers[number].acquire(frame, search)
         return tuple(state for state in states if state is not None)
 
     def predict(self, timestamp: float) -> tuple[CubeState, ...]:

@@ -11,6 +11,7 @@ from tracking import se3
 from tracking.cube import CubeModel, Face
 from tracking.detection import Observation
 from tracking.projection import NEAREST, Projection
+from tracking.robust import quantile
 
 Array = NDArray[np.float64]
 
@@ -93,6 +94,8 @@ class CornerSolver:
         solutions: list[CornerSolution] = []
         for start in self._proposals(observations):
             solution = self._grow(start, observations)
+            if solution and 1 < len(observations) == len(solution.observations):
+                return [solution]
             if solution and not any(_same(solution, other) for other in solutions):
                 solutions.append(solution)
         solutions.sort(key=lambda solution: _rank(solution, expected))
@@ -166,7 +169,7 @@ class CornerSolver:
         for _ in range(6):
             residuals, rows = self._linearised(current, points, corners)
             lengths = np.sqrt((residuals**2).sum(axis=1))
-            weights = 1 / np.maximum(1, lengths / max(0.5, 2 * float(np.median(lengths))))
+            weights = 1 / np.maximum(1, lengths / max(0.5, 2 * quantile(lengths, 0.5)))
             weighted = (rows * weights[:, None, None]).reshape(-1, 6)
             flat = rows.reshape(-1, 6)
             step = np.linalg.solve(weighted.T @ flat, weighted.T @ residuals.ravel())

@@ -55,7 +55,7 @@ SOFT, SHARP = 0.5, 0.15
 STAGES = ((SOFT, COARSE, 4), (SHARP, FINE, 4))
 """Blur, samples and rounds of the coarse search and of the fine one."""
 
-GRAZING = 0.25
+GRAZING = 0.12
 """Cosine of the viewing angle below which a face shows too little of its picture."""
 
 SETTLED = np.repeat([5e-5, 5e-4], 3)
@@ -95,6 +95,11 @@ class Alignment:
 
     black: float
     """What black is beside white, in the face whose contrast is greatest."""
+
+    @property
+    def weakest(self) -> float:
+        """The least of these correlations."""
+        return min(self.likeness, *self.shares.values())
 
 
 class SweptAligner:

@@ -1,29 +1,26 @@
 """From camera frames to where the cube is: what one frame proposes, weighed against the past."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from tracking import prediction, se3
-from tracking.candidates import CandidateFinder
+from tracking.acquisition import Acquirer, Search
 from tracking.cube import CubeModel
-from tracking.detection import Marker, MarkerDetector, observed
+from tracking.detection import MarkerDetector
 from tracking.errors import TrackingError
 from tracking.following import Candidate, Follower
 from tracking.frame import Frame
 from tracking.intrinsics import Intrinsics
-from tracking.patch import Patch
 from tracking.prediction import MEMORY, Sighting, Track
 from tracking.projection import Projection
 from tracking.state import CubeState
 
 Array = NDArray[np.float64]
 
-CLEARLY_BETTER = 0.6
-"""Of two poses of one face, one with less than this share of the other's residual is right."""
+PATIENT, RARELY = 30, 5
+"""Frames without the cube in which it is sought by covered markers too, and how rarely then."""
 
 DECISIVE = 14.0
 """Twice the logarithm of a likelihood ratio from which on the better of two poses is right."""
@@ -60,12 +57,13 @@ class CubeTracker:
         self.cube = cube
         self.intrinsics = intrinsics
         projection = Projection(intrinsics)
-        self._detector = MarkerDetector(cube.dictionary)
+        self._detectors = {cube.dictionary: MarkerDetector(cube.dictionary)}
         self._follower = Follower(cube, projection)
-        self._finder = CandidateFinder(cube, projection, self._follower)
+        self._acquirer = Acquirer(cube, projection, self._follower)
         self._track = Track()
         self._jump: Sighting | None = None
         self._settled = False
+        self._missed = 0
 
     def update(self, frame: Frame) -> CubeState:
         """Find the cube in the next frame.
@@ -79,8 +77,7 @@ class CubeTracker:
         followed = self.follow(frame)
         if followed is not None:
             return followed
-        grey = grey_of(frame)
-        return self.acquire(frame, grey, self._detector.detect(grey))
+        return self.acquire(frame, Search(frame, self._detectors))
 
     def predict(self, timestamp: float) -> CubeState:
         """Say where the cube will be, or was, at a time near that of the last frame.
@@ -122,51 +119,37 @@ class CubeTracker:
             self._settled &= other is None
             return found, ""
         best, worse = sorted((found, other), key=lambda each: each.residual)
-        if best.lines * 2 * np.log(worse.residual / best.residual) > DECISIVE:
+        if _decisive(best, worse):
             self._settled = True
             return best, ""
         if lean < HARMLESS:
             return _doubled(found, other), ""
         return found, "ambiguous"
 
-    def acquire(
-        self, frame: Frame, grey: NDArray[np.uint8], markers: Sequence[Marker]
-    ) -> CubeState:
+    def acquire(self, frame: Frame, search: Search) -> CubeState:
         """Find the cube anywhere in a frame.
 
         Parameters
         ----------
         frame
             The frame, of the right size.
-        grey
-            The same picture in grey, (H, W).
-        markers
-            All markers of the cube's dictionary that were read in it.
+        search
+            The markers in it.
         """
         now = frame.timestamp
         recent = self._track.recent(now)
         expected = prediction.predicted(recent, now) if recent else None
-        patch = Patch.of(grey, None, self._follower.response.table)
-        candidates = self._finder.find(patch, observed(self.cube, markers), expected)
+        self._missed += 1
+        thorough = self._missed <= PATIENT or self._missed % RARELY == 0
+        candidates = self._acquirer.find(search, expected, thorough)
         if recent is not None:
             candidates = [each for each in candidates if _fits(each, recent, now)]
         if not candidates:
             return self._unseen(now, "")
-        if not any(each.certain for each in candidates):
-            candidates = self._unblurred(frame, candidates)
         candidate, refused = self._chosen(candidates, recent, now)
         if not refused and not self._confirmed(candidate, now):
             refused = "jump"
         return self._unseen(now, refused) if refused else self._seen(candidate, now)
-
-    def _unblurred(self, frame: Frame, candidates: list[Candidate]) -> list[Candidate]:
-        """Align the picture round poses that corners alone vouch for, where it shows the cube."""
-        found = []
-        for each in candidates:
-            region = self._follower.region(each.camera_from_cube)
-            patch = Patch.of(frame.image, region, self._follower.response.table) if region else None
-            found.append(self._follower.unblurred(patch, each.camera_from_cube) if patch else None)
-        return [each for each in found if each] or candidates
 
     def check(self, frame: Frame) -> None:
         """Raise a `TrackingError` where a frame has not the intrinsics' size."""
@@ -188,7 +171,7 @@ class CubeTracker:
         if not others or _close(best, others[0]):
             return best, ""
         other = others[0]
-        if best.residual < CLEARLY_BETTER * other.residual:
+        if _decisive(best, other):
             return best, ""
         if recent is not None:
             expected = prediction.predicted(recent, now)
@@ -202,7 +185,7 @@ class CubeTracker:
 
     def _speed(self, candidate: Candidate, now: float) -> float:
         """Speed at which the cube must have come from where it was last seen [m/s]."""
-        velocity = self._track.velocity(candidate.camera_from_cube, now)
+        velocity = self._track.motion(candidate.camera_from_cube, candidate.covariance, now)[0]
         return float(np.linalg.norm(velocity[:3]))
 
     def _confirmed(self, candidate: Candidate, now: float) -> bool:
@@ -221,9 +204,10 @@ class CubeTracker:
 
     def _seen(self, candidate: Candidate, now: float) -> CubeState:
         pose = candidate.camera_from_cube
-        velocity = self._track.velocity(pose, now)
-        self._track.add(Sighting(pose, velocity, candidate.covariance, now))
+        velocity, change = self._track.motion(pose, candidate.covariance, now)
+        self._track.add(Sighting(pose, velocity, candidate.covariance, now, change))
         self._jump = None
+        self._missed = 0
         return CubeState(
             visible=True,
             camera_from_cube=pose,
@@ -242,7 +226,7 @@ class CubeTracker:
         return CubeState(
             visible=False,
             camera_from_cube=prediction.predicted(recent, now) if recent else None,
-            velocity=recent.velocity if recent else np.zeros(6),
+            velocity=prediction.velocity_at(recent, now) if recent else np.zeros(6),
             covariance=prediction.predicted_covariance(recent, now) if recent else unknown,
             source="predicted",
             faces=(),
@@ -252,11 +236,6 @@ class CubeTracker:
         )
 
 
-def grey_of(frame: Frame) -> NDArray[np.uint8]:
-    """Return a frame's picture in grey, (H, W)."""
-    return np.asarray(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY), np.uint8)
-
-
 def _fits(candidate: Candidate, last: Sighting, timestamp: float) -> bool:
     """Whether a pose that rests on a single marker is where the cube should be."""
     return (
@@ -264,6 +243,12 @@ def _fits(candidate: Candidate, last: Sighting, timestamp: float) -> bool:
         or len(candidate.faces) > 1
         or prediction.near(last, candidate.camera_from_cube, timestamp)
     )
+
+
+def _decisive(best: Candidate, other: Candidate) -> bool:
+    """Whether the residuals tell which of two poses is right: a ratio of likelihoods."""
+    ratio = max(other.residual, 1e-6) / max(best.residual, 1e-6)
+    return bool(min(best.lines, other.lines) * 2 * np.log(ratio) > DECISIVE)
 
 
 def _doubled(found: Candidate, other: Candidate) -> Candidate:
