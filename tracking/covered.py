@@ -26,8 +26,11 @@ FRAME = 0.6
 RIGHT = 0.5
 """Share of the cells inside that must be read and be right."""
 
-WRONG = 0.13
-"""Largest share of the cells read that may be wrong: another finger may be anywhere."""
+WRONG = 0.07
+"""Largest share of the cells read that may be wrong where a corner is hidden; else none may be."""
+
+WHOLE = 0.7
+"""Cells of a side that may be missing at a corner that counts as seen."""
 
 AHEAD = 0.12
 """By what share of the cells the best marker must fit better than the second."""
@@ -97,9 +100,12 @@ class CoveredMarkerDetector:
         sign = np.where(seen & (np.abs(share - 0.5) > CLEAR), np.sign(share - 0.5), 0.0)
         framed = (contrast[:, 0] > 8) & (_share(sign[:, self._paper]) > FRAME)
         framed &= _share(-sign[:, self._border]) > FRAME
-        return self._matched(sign[:, self._bits], framed)
+        covered = squares.gaps.max(axis=1) > WHOLE / self._count
+        return self._matched(sign[:, self._bits], framed, np.where(covered, WRONG, 0.0))
 
-    def _matched(self, sign: Array, framed: Flags) -> tuple[NDArray[np.intp], Array]:
+    def _matched(
+        self, sign: Array, framed: Flags, wrong_share: Array
+    ) -> tuple[NDArray[np.intp], Array]:
         """Find the marker that agrees best with the signs of the cells inside, (N, cells)."""
         fit = sign @ (2 * self._white - 1).T  # right less wrong
         read = np.abs(sign).sum(axis=1)
@@ -108,7 +114,7 @@ class CoveredMarkerDetector:
         most, next_most = np.take_along_axis(fit, order[:, :-3:-1], axis=1).T
         right, wrong = (read + most) / 2, (read - most) / 2
         cells = sign.shape[1]
-        good = framed & (right >= RIGHT * cells) & (wrong <= WRONG * read)
+        good = framed & (right >= RIGHT * cells) & (wrong <= wrong_share * read)
         good &= most - next_most > AHEAD * cells
         return np.where(good, best, -1), np.asarray(most / cells, np.float64)
 
@@ -116,7 +122,7 @@ class CoveredMarkerDetector:
         """Which places are not near a corner at which the sides are not seen, (N, places)."""
         corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float64)
         away = np.linalg.norm(self._places[:, None] - corners, axis=-1)
-        gaps = np.where(squares.gaps > 0.7 / self._count, squares.gaps, 0.0)
+        gaps = np.where(squares.gaps > WHOLE / self._count, squares.gaps, 0.0)
         return np.asarray((away > np.minimum(gaps, 0.5)[:, None]).all(axis=-1))
 
 
