@@ -82,42 +82,26 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
     """
     summary = Summary(plan.playground.scenario.name)
     clock = SessionClock()
-    prepare = None
     with ExitStack() as closing:
         recorder: Recorder | None = None
         if plan.record is not None:
-            prepare = preparation(plan.codec, plan.source.size, plan.source.rate)
             recorder = closing.enter_context(Recorder(plan.record, plan.about or {}))
         tap = WireTap(recorder) if recorder is not None else None
         robot = closing.enter_context(RobotLine.open(plan.robot, clock, tap))
         closing.callback(clock.release)  # a robot says goodbye in real time
         closing.enter_context(_interruptible(summary))
-        inputs = Inputs()
+        play = _Play(plan, summary, recorder, robot)
         gaps = Gaps(summary, recorder)
         for frame in _frames(plan, clock, summary):
             if isinstance(frame, Health):
-                if _waiting(plan, frame, gaps):
-                    break
-                continue
-            gaps.back(frame)
-            if tap is not None:
-                tap.align(frame.timestamp - clock())
-            began = time.perf_counter()
-            if frame.timestamp in plan.cues:
-                inputs = Inputs(clear=True)
-            given = next(plan.given, None) if plan.given is not None else None
-            step = plan.playground.step(prepare(frame) if prepare else frame, inputs, given)
-            robot.feel(step.emotion)
-            seconds = time.perf_counter() - began
-            view = robot.view()
-            if recorder is not None:
-                if inputs.clear:
-                    recorder.event(START_OVER, frame.timestamp)
-                _record(recorder, plan.playground.intrinsics, step, first=summary.frames == 0)
-            inputs = plan.screen.show(step, view)
-            summary.add(step, view, seconds)
-            if progress is not None:
-                progress(step)
+                _wait(plan, frame, gaps)
+            else:
+                gaps.back(frame)
+                if tap is not None:
+                    tap.align(frame.timestamp - clock())
+                step = play.step(frame)
+                if progress is not None:
+                    progress(step)
             if plan.screen.closed:
                 break
         # A robot that falls silent stops nobody's play, and the link keeps trying;
@@ -131,13 +115,50 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
     return summary
 
 
-def _waiting(plan: Plan, health: Health, gaps: Gaps) -> bool:
-    """Keep the screen alive while no frame comes; returns whether the player has had enough."""
+class _Play:
+    """Takes a session from frame to frame."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        summary: Summary,
+        recorder: Recorder | None,
+        robot: RobotLine,
+    ) -> None:
+        self._plan, self._summary, self._recorder = plan, summary, recorder
+        self._robot = robot
+        self._inputs = Inputs()
+        self._prepare = None
+        if recorder is not None:
+            self._prepare = preparation(plan.codec, plan.source.size, plan.source.rate)
+
+    def step(self, frame: Frame) -> Step:
+        """Walk a frame down the line, show it, and record it."""
+        plan = self._plan
+        began = time.perf_counter()
+        inputs = Inputs(clear=True) if frame.timestamp in plan.cues else self._inputs
+        given = next(plan.given, None) if plan.given is not None else None
+        prepared = self._prepare(frame) if self._prepare else frame
+        step = plan.playground.step(prepared, inputs, given)
+        self._robot.feel(step.emotion)
+        seconds = time.perf_counter() - began
+        view = self._robot.view()
+        if self._recorder is not None:
+            if inputs.clear:
+                self._recorder.event(START_OVER, frame.timestamp)
+            first = self._summary.frames == 0
+            _record(self._recorder, plan.playground.intrinsics, step, first=first)
+        self._inputs = plan.screen.show(step, view)
+        self._summary.add(step, view, seconds)
+        return step
+
+
+def _wait(plan: Plan, health: Health, gaps: Gaps) -> None:
+    """Keep the screen alive while no frame comes."""
     words = notice(health)
     if words is not None:
         gaps.lost()
     plan.screen.wait(words)
-    return plan.screen.closed
 
 
 class WireTap:

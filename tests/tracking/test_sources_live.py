@@ -375,7 +375,9 @@ def test_an_answer_that_is_no_stream_is_one_line(phone, path, words):
 
 
 def test_a_phone_that_falls_silent_is_one_line(phone):
-    fails(lambda: HttpSource(f"http://{phone}/silent", clock=fast_clock(0.05)), "no picture for 2 s")
+    fails(
+        lambda: HttpSource(f"http://{phone}/silent", clock=fast_clock(0.05)), "no picture for 2 s"
+    )
 
 
 def test_a_phone_that_hangs_up_is_one_line_after_its_last_frame(phone):
@@ -383,6 +385,15 @@ def test_a_phone_that_hangs_up_is_one_line_after_its_last_frame(phone):
         frames = iter(source)
         assert next(frames).encoded == jpeg(0)
         fails(lambda: lost(source), "ended its stream")
+
+
+def test_a_phone_that_hangs_up_is_connected_to_again(phone):
+    with open_source(f"http://{phone}/stops", clock=fast_clock(0.02)) as source:
+        frames = iter(source)
+        first, second = next(frames), next(frames)
+        assert (first.encoded, second.encoded) == (jpeg(0), jpeg(0))
+        assert (second.index, second.timestamp > first.timestamp) == (1, True)
+        assert source.health.gaps >= 1
 
 
 def test_addresses_where_nobody_answers_are_one_line(phone):

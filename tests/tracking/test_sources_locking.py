@@ -33,6 +33,8 @@ class Driver:
         self.hunting = False
         self.time = 0.0
         self.reads = 0
+        self.only = 0
+        """How many pictures there are; 0: no end."""
         self.released = False
 
     def isOpened(self):  # noqa: N802
@@ -55,6 +57,8 @@ class Driver:
 
     def read(self):
         self.reads += 1
+        if self.only and self.reads > self.only:
+            return False, None
         manual = self.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 1.0
         return True, np.full((48, 64, 3), self.manual_light if manual else self.light, np.uint8)
 
@@ -145,7 +149,7 @@ def test_the_queue_is_asked_for_and_what_the_driver_gives_is_said():
 
 def test_the_drivers_milliseconds_become_the_frames_timestamp():
     driver = Driver()
-    driver.time = 99_960.5
+    driver.time, driver.only = 99_960.5, 1
     with CameraSource(0, SIZE, clock=lambda: 100.0, capture=lambda device: driver) as source:
         assert next(iter(source)).timestamp == pytest.approx(99.9605, abs=1e-9)
         assert source.health.stamped_by == "driver"

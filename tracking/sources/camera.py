@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from tracking.errors import TrackingError
 from tracking.sources.camera_options import CameraOptions
+from tracking.sources.device import Clock
 from tracking.sources.devices import check_present, device_path, lasting_path
 from tracking.sources.health import Setting
-from tracking.sources.live import Clock, LiveSource
+from tracking.sources.live import LiveSource
 from tracking.sources.locking import EXPOSURE, FOCUS, MS, Lock
 from tracking.sources.pictures import Picture
 from tracking.sources.videocapture import VideoCapture, open_capture

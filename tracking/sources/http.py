@@ -8,8 +8,9 @@ from http.client import HTTPConnection, HTTPException, HTTPResponse, HTTPSConnec
 from urllib.parse import SplitResult, unquote, urlsplit
 
 from tracking.errors import TrackingError
+from tracking.sources.device import Clock
 from tracking.sources.health import Setting
-from tracking.sources.live import Clock, LiveSource
+from tracking.sources.live import LiveSource
 from tracking.sources.multipart import MultipartError, MultipartParser
 
 READ_SIZE = 64 * 1024

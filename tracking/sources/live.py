@@ -14,10 +14,8 @@ from tracking.sources.capture import (
     POLL_S,
     SILENCE_S,
     Capture,
-    Clock,
-    Device,
-    Shot,
 )
+from tracking.sources.device import Clock, Device, Shot
 from tracking.sources.health import Health, SourceState
 from tracking.sources.pictures import decode_jpeg
 from tracking.sources.timing import RECENT
@@ -216,6 +214,3 @@ class LiveSource(FrameSource):
     @property
     def _undecodable(self) -> str:
         return f"{self._name} sends pictures that cannot be decoded"
-
-
-__all__ = ["PATIENCE_S", "Clock", "Device", "LiveSource"]
