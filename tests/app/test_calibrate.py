@@ -16,7 +16,9 @@ from tracking.synthetic import open_synthetic
 class Kept:
     """A source of pictures that were drawn once."""
 
-    rate, duration, intrinsics = 12.0, None, None
+    rate = 12.0
+    duration: float | None = None
+    intrinsics: Intrinsics | None = None
 
     def __init__(self, frames, live=False):
         self.frames, self.live = frames, live

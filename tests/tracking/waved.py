@@ -4,7 +4,7 @@ import numpy as np
 
 from tracking import se3
 from tracking.calibration import lens
-from tracking.calibration.view import of_corners
+from tracking.calibration.view import View, of_corners
 
 
 def folded_corners(cube, random, millimetres=1.0, degrees=1.0):
@@ -22,7 +22,7 @@ def corner_views(
     cube, real, camera, size, random, count, noise, tilt=40.0, near=0.25, only_main=False
 ):
     """Views of the corners: every face in turn, tilted any way by up to `tilt` degrees."""
-    views = []
+    views: list[View] = []
     while len(views) < count:
         number = len(views) % len(cube.faces)
         pose = _held(cube.faces[number].normal, random, tilt, near, size, camera[0])

@@ -6,6 +6,7 @@ from tracking.calibration.coach import Coach, Look
 from tracking.calibration.collecting import Collector, Glance
 from tracking.calibration.finders import BoardFinder, CubeFinder, Finder
 from tracking.calibration.solving import Calibration, calibrate, measured_cube
+from tracking.calibration.view import View
 
 __all__ = [
     "Board",
@@ -18,6 +19,7 @@ __all__ = [
     "Finder",
     "Glance",
     "Look",
+    "View",
     "calibrate",
     "check",
     "measured_cube",
