@@ -19,7 +19,8 @@ Source = Annotated[
     typer.Option(
         "--source",
         "-s",
-        help="camera:0, a video, a session (.mcap), http://PHONE:8080/video, synthetic:NAME.",
+        help="camera:0 (camera:0?exposure=8 in ms, ?lock=0), a video, a session (.mcap), "
+        "http://PHONE:8080/video, synthetic:NAME.",
     ),
 ]
 Cube = Annotated[str | None, typer.Option(help="A bundled cube, or the .toml file of your own.")]

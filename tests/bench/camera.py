@@ -126,15 +126,19 @@ def delays(driver: Driver, table: Table) -> None:
         )
 
 
+def runs(source: LiveSource) -> bool:
+    return source.health.running
+
+
 def losses(driver: Driver, console: Console) -> None:
     with LiveSource(driver, "camera 0") as source:
         for what in ("unplugged", "frozen"):
-            while source.wait(0.05) is None or not source.health.running:
+            while source.wait(0.05) is None or not runs(source):
                 pass
             began = time.monotonic()
             driver.frozen = what == "frozen"
             driver.pull(what != "unplugged")
-            while source.health.running:
+            while runs(source):
                 source.wait(0.01)
             told = time.monotonic() - began
             time.sleep(max(0.0, began + LOST_S - time.monotonic()))

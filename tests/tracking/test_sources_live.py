@@ -393,6 +393,7 @@ def test_a_phone_that_hangs_up_is_connected_to_again(phone):
         first, second = next(frames), next(frames)
         assert (first.encoded, second.encoded) == (jpeg(0), jpeg(0))
         assert (second.index, second.timestamp > first.timestamp) == (1, True)
+        assert isinstance(source, HttpSource)
         assert source.health.gaps >= 1
 
 
