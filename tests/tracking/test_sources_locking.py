@@ -99,6 +99,26 @@ def test_an_exposure_that_the_camera_misreports_is_left_automatic():
     assert "does not tell" in settings["exposure"].told
 
 
+def test_the_automatics_are_on_again_when_the_camera_is_closed():
+    driver = Driver()
+    driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] = 0.0  # this driver's word for automatic
+    device = CaptureDevice(driver, "camera 0", SIZE, CameraOptions(focus=60.0))
+    for _ in range(100):
+        device.read()
+    assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 1.0
+    device.close()
+    assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 0.0
+    assert driver.controls[cv2.CAP_PROP_AUTOFOCUS] == 1.0
+
+
+def test_an_exposure_that_a_killed_program_left_locked_settles_anew():
+    driver = Driver()
+    driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] = 1.0
+    after(driver, 10)
+    assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
+    assert after(driver, 100)["exposure"].honoured
+
+
 def test_a_focus_that_hunts_is_left_automatic():
     driver = Driver()
     driver.hunting = True

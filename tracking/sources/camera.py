@@ -125,7 +125,9 @@ class CaptureDevice:
         """Nothing can stop a driver that waits."""
 
     def close(self) -> None:
-        """Release the camera."""
+        """Release the camera, and leave its automatics on for whoever opens it next."""
+        for lock in self._locks:
+            lock.release()
         self._capture.release()
 
 

@@ -73,6 +73,9 @@ class Lock:
     their automatic has chosen, but an old or default one (opencv#5516): what was locked is
     therefore held against the brightness of the pictures, and undone if that changes.
 
+    V4L2 keeps what is set after the camera is closed, so `release` turns the automatic on again,
+    and so does the next start, in case the program was killed.
+
     Parameters
     ----------
     capture
@@ -91,10 +94,14 @@ class Lock:
         self._done = False
         self.setting = Setting(knob.name, False, "still automatic")
         """What became of it."""
+        present = capture.get(knob.switch)
+        self._automatic = knob.on if present == knob.off else present
         if not self._supported():
             self._settle(False, "the camera has no such setting")
         elif value is not None:
             self._engage(value, "set to")
+        else:
+            self.release()
 
     def look(self, picture: Picture | bytes) -> None:
         """Take in the next picture, and do what is due."""
@@ -103,6 +110,11 @@ class Lock:
             self._prove(picture)
         elif not self._done and self._count >= SETTLING and self._count % BETWEEN == 0:
             self._try(picture)
+
+    def release(self) -> None:
+        """Give the knob back to its automatic."""
+        if self._supported() and self._capture.get(self._knob.switch) == self._knob.off:
+            self._capture.set(self._knob.switch, self._automatic)
 
     def _try(self, picture: Picture | bytes) -> None:
         value = self._capture.get(self._knob.value)
@@ -121,7 +133,7 @@ class Lock:
             return
         self._proof = None
         if abs(brightness(picture) - before) > CHANGED * max(before, 1.0):
-            self._capture.set(self._knob.switch, self._knob.on)
+            self.release()
             self._settle(False, "left automatic: the camera does not tell the value it has chosen")
 
     def _engage(self, value: float, done: str) -> bool:
@@ -132,7 +144,7 @@ class Lock:
         if capture.get(knob.switch) != knob.off:
             self._settle(False, "refused: the camera keeps its automatic on")
         elif abs(kept - value) > TOLERANCE * max(abs(value), 1.0):
-            capture.set(knob.switch, knob.on)
+            self.release()
             self._settle(False, f"refused: the camera answers {knob.words(kept)}")
         else:
             self._settle(True, f"{done} {knob.words(kept)}")
