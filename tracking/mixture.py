@@ -91,7 +91,8 @@ class Mixture:
         count, taken = len(starts), self.rows.shape[1] / 2
         spread = pulls.T @ pulls * (count / max(count - taken, 1.0))
         own = inverse[:12, 6:12] / prior
-        return np.asarray(spread + own @ own.T, np.float64)
+        # A handful of blocks cannot span all directions; no sample is that sure either.
+        return np.asarray(spread + own @ own.T + 0.2 * inverse[:12, :12], np.float64)
 
     def told(self, way: Array, step: Array, prior: Array) -> tuple[Array, Array]:
         """Information times sweep, (6,), and information, (6, 6), from the picture alone.

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from tracking import se3
 from tracking.cube import CubeModel
+from tracking.drawing import Drawing
 from tracking.faces import Faces, face_frame
 from tracking.marker import marker_cells
 from tracking.mixture import Mixture, Samples, fit
@@ -29,9 +30,6 @@ TEXELS = 8
 
 COARSE, FINE = 12, 22
 """Samples on each side of a face in the two searches: fewer miss edges."""
-
-LADDER = np.geomspace(0.03, 0.6, 20)
-"""Blurs in which the drawing is kept [cells]: that of the picture, and the lens's own."""
 
 LENS = 0.85
 """Blur of a lens in focus with its pixels [px], one standard deviation."""
@@ -113,8 +111,7 @@ class SweptAligner:
         self._frames = np.stack([face_frame(face) for face in cube.faces])
         side = round(cube.edge / self._cell * TEXELS)
         self._side = side
-        drawing = [_drawn(cube, number, side) for number in range(len(cube.faces))]
-        self._layers = [_layers(drawing, blur * TEXELS) for blur in LADDER]
+        self._drawing = Drawing(cube, side)
         self._grids = {count: _grid(count, cube.edge) for count in (COARSE, FINE)}
 
     def align(
@@ -178,16 +175,22 @@ class SweptAligner:
             return None
         flat = points.transpose(0, 2, 1).reshape(-1, 3)
         pixels = self._projection.pixels(flat)
-        pixels_per_cell = self._cell * float(self._projection.matrix[0, 0]) / pose[2, 3]
-        sigma = blur * pixels_per_cell
-        seen = patch.smoothed(sigma) if sigma > 0.8 else patch
+        sigma = blur * self._cell * float(self._projection.matrix[0, 0]) / pose[2, 3]
+        smooth = sigma > LENS
+        seen = patch.smoothed(sigma) if smooth else patch
         values = seen.at(pixels[:, None])[:, 0].astype(np.float64)
+        soft = np.hypot(sigma if smooth else 0.0, LENS)
+        layers, rim = self._drawing.blurred(facing, self._texels_to_pixels(frames), soft)
         rays = points / points[:, 2:]
         slides = self._slides(frames[:, :3, :2], points - pose[:3, 3, None], rays)
         inside = patch.room(pixels) > 1
-        soft = np.hypot(sigma if sigma > 0.8 else 0.0, LENS) / pixels_per_cell
-        layers = self._layers[int(np.argmin(np.abs(np.log(LADDER / soft))))]
-        return _Scene(facing, rays, slides, values, inside, layers, RIM * soft * self._cell, count)
+        return _Scene(facing, rays, slides, values, inside, layers, RIM * rim, count)
+
+    def _texels_to_pixels(self, frames: Array) -> Array:
+        """How the picture of each face moves with its texels at its centre, (faces, 2, 2) [px]."""
+        centres = frames[:, :3, 3]
+        _, slopes = self._projection.pixels_and_slopes(np.ascontiguousarray(centres))
+        return np.asarray(slopes @ frames[:, :3, :2] * (2 * self._half / self._side), np.float64)
 
     def _mixture(self, scene: "_Scene", pose: Array, way: Array) -> Mixture | None:
         """Draw the cube along its way, and fit the drawing's tones to the picture."""
@@ -227,12 +230,13 @@ class SweptAligner:
     def _looked_up(self, scene: "_Scene", u: Array, v: Array) -> tuple[Image, NDArray[np.bool_]]:
         """Read the drawing and its gradient; say which samples stay on their face all the way."""
         size, half = self._side, self._half
-        inside = (np.maximum(np.abs(u), np.abs(v)) < half - scene.rim).all(axis=0).ravel()
+        inside = np.maximum(np.abs(u), np.abs(v)) < half - scene.rim[:, None]
+        inside = inside.all(axis=0).ravel()
         scale = size / (2 * half)
         places = np.empty((*u.shape, 2), np.float32)
         places[..., 0] = np.clip((u + half) * scale - 0.5, 0, size - 1)
         places[..., 1] = np.clip((v + half) * scale - 0.5, 0, size - 1)
-        places[..., 1] += (scene.facing * size)[:, None]
+        places[..., 1] += (np.arange(len(scene.facing)) * size)[:, None]
         flat = places.reshape(len(u), -1, 2)
         return np.asarray(cv2.remap(scene.layers, flat, None, cv2.INTER_LINEAR), np.float32), inside
 
@@ -273,7 +277,7 @@ class _Scene:
     values: Array
     inside: NDArray[np.bool_]
     layers: Image
-    rim: float
+    rim: Array
     count: int
 
 
@@ -282,27 +286,3 @@ def _grid(count: int, edge: float) -> Array:
     steps = ((np.arange(count) + 0.5) / count - 0.5) * edge
     x, y = np.meshgrid(steps, steps)
     return np.stack([x.ravel(), y.ravel(), np.zeros(count**2), np.ones(count**2)])
-
-
-def _drawn(cube: CubeModel, face: int, side: int) -> Image:
-    """Draw a face, 1 white and 0 black, (side, side)."""
-    fine = 4
-    cells = marker_cells(cube.dictionary, cube.faces[face].marker_id)
-    texel = (np.arange(side * fine) + 0.5) / (side * fine) * cube.edge - cube.edge / 2
-    place = (texel + cube.marker_size / 2) / cube.marker_size * len(cells)
-    inside = (place >= 0) & (place < len(cells))
-    index = np.clip(place.astype(int), 0, len(cells) - 1)
-    black = cells[index][:, index] & inside[:, None] & inside
-    picture = 1 - black.astype(np.float32)
-    return np.asarray(cv2.resize(picture, (side, side), interpolation=cv2.INTER_AREA), np.float32)
-
-
-def _layers(drawing: list[Image], sigma: float) -> Image:
-    """Blur the faces, and stack each with its slopes to the right and down, (faces · side, side, 3)."""
-    border = cv2.BORDER_REPLICATE
-    soft = [cv2.GaussianBlur(face, (0, 0), sigma, borderType=border) for face in drawing]
-    layers = []
-    for face in soft:
-        down, right = np.gradient(face)
-        layers.append(np.stack([face, right, down], axis=2))
-    return np.ascontiguousarray(np.concatenate(layers), np.float32)
