@@ -10,12 +10,17 @@ from pathlib import Path
 import cv2
 from rich.console import Console
 
+from app.calibrating import Advice, Lesson, Picture
 from app.commands.replay import bundled
 from app.opening import fitting
 from app.playground import Playground
+from app.show.coach import CoachView
+from app.show.coach_lines import write_coverage
 from app.show.overlay import RobotView, overlay
 from characters.rendering import create_context
 from tracking import CubeModel, open_source, write_sheet
+from tracking.calibration import CubeFinder
+from tracking.synthetic import open_synthetic
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
 
@@ -63,8 +68,44 @@ def draw_sheet(name: str) -> None:
         page.render(scale=1.5).to_pil().save(FOLDER / f"sheet-{name}.png", optimize=True)
 
 
+LESSON = {"tip": "tilt up", "corner": "top left"}
+"""For which wishes of the coach a picture is taken."""
+
+SHOWN = 0.8
+"""How long the wish has been shown by then [s]: half way through the coach's little drawing."""
+
+
+class _Album:
+    """Keeps some pictures of a lesson."""
+
+    closed = False
+
+    def __init__(self) -> None:
+        self._coach = CoachView("cube")
+        self._waiting = {wish: name for name, wish in LESSON.items()}
+        self._since = ("", 0.0)
+
+    def tell(self, picture: Picture, timestamp: float, advice: Advice) -> None:
+        """Draw the coach, and keep the picture if its time has come."""
+        shown = self._coach.draw(picture, timestamp, advice)
+        if advice.wish != self._since[0]:
+            self._since = advice.wish, timestamp
+        if advice.wish in self._waiting and timestamp - self._since[1] >= SHOWN:
+            path = FOLDER / f"calibrate-{self._waiting.pop(advice.wish)}.jpg"
+            cv2.imwrite(str(path), shown, (cv2.IMWRITE_JPEG_QUALITY, 88))
+
+
+def draw_lesson() -> None:
+    """Wave a drawn cube before the drawn camera, and keep what the coach shows."""
+    source = open_synthetic("wave?fold=0.8&seed=1&rate=15")
+    lesson = Lesson([CubeFinder(CubeModel.load("locomotion"))], source.size)
+    lesson.run(source, _Album(), 60.0)
+    write_coverage(FOLDER / "calibrate-coverage.jpg", lesson)
+
+
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
     for recording, pictures in MOMENTS.items():
         draw(recording, pictures)
     draw_sheet("companion")
+    draw_lesson()

@@ -1,6 +1,8 @@
 """Camera frames in; where the cube is, and what the hand does with it, out."""
 
+from tracking.calibration import Calibration, calibrate_camera
 from tracking.cube import CubeModel, Face
+from tracking.cube_file import write_cube
 from tracking.errors import TrackingError
 from tracking.frame import Frame
 from tracking.gestures import CubeGestures
@@ -12,6 +14,7 @@ from tracking.state import CubeControls, CubeState
 from tracking.tracker import CubeTracker
 
 __all__ = [
+    "Calibration",
     "CubeControls",
     "CubeGestures",
     "CubeModel",
@@ -22,8 +25,10 @@ __all__ = [
     "FrameSource",
     "Intrinsics",
     "TrackingError",
+    "calibrate_camera",
     "icon_mask",
     "icon_paths",
     "open_source",
+    "write_cube",
     "write_sheet",
 ]

@@ -12,7 +12,7 @@ from app.calibrating import Lesson, Teller
 from app.commands.play import CAMERA, Cube
 from app.errors import AppError
 from app.opening import fitting
-from app.show.coach_lines import CoachLines, write_coverage
+from app.show.coach_lines import FORMATS, CoachLines, write_coverage
 from app.show.display import has_display
 from tracking import CubeModel, FrameSource, Intrinsics, open_source
 from tracking.calibration import (
@@ -31,44 +31,53 @@ from tracking.cube_file import write_cube
 CAMERA_FILE = Path("camera.yaml")
 
 
+Source = Annotated[
+    str,
+    typer.Option(
+        "--source",
+        "-s",
+        "--camera",
+        help="camera:0, a video, a session (.mcap), http://PHONE:8080/video, synthetic:wave.",
+    ),
+]
+Output = Annotated[
+    Path, typer.Option("--output", "-o", help="The camera file to write, for --intrinsics.")
+]
+SaveCube = Annotated[
+    Path | None,
+    typer.Option(help="Keep the cube as it really is, folds and all, in this .toml file."),
+]
+BoardKind = Annotated[str, typer.Option(help="charuco: use a printed board, not the cube.")]
+PrintBoard = Annotated[
+    Path | None, typer.Option(help="Write that board as a PDF to print, and end.")
+]
+Checked = Annotated[
+    Path | None,
+    typer.Option("--check", help="Say whether this camera file still fits; write nothing."),
+]
+Coverage = Annotated[
+    Path | None, typer.Option(help="Write a .png or .jpg of where the views were.")
+]
+Seconds = Annotated[
+    float, typer.Option(min=5, max=600, help="A live camera is watched no longer than this.")
+]
+Shown = Annotated[
+    bool, typer.Option("--window/--no-window", help="Print the coach's lines instead.")
+]
+
+
 def calibrate(
-    source: Annotated[
-        str,
-        typer.Option(
-            "--source",
-            "-s",
-            "--camera",
-            help="camera:0, a video, a session (.mcap), http://PHONE:8080/video, synthetic:wave.",
-        ),
-    ] = CAMERA,
+    source: Source = CAMERA,
     cube: Cube = None,
-    output: Annotated[
-        Path, typer.Option("--output", "-o", help="The camera file to write, for --intrinsics.")
-    ] = CAMERA_FILE,
-    save_cube: Annotated[
-        Path | None,
-        typer.Option(help="Keep the cube as it really is, folds and all, in this .toml file."),
-    ] = None,
-    board: Annotated[
-        str, typer.Option(help="charuco: use a printed board instead of the cube.")
-    ] = "",
-    print_board: Annotated[
-        Path | None, typer.Option(help="Write that board as a PDF to print, and end.")
-    ] = None,
+    output: Output = CAMERA_FILE,
+    save_cube: SaveCube = None,
+    board: BoardKind = "",
+    print_board: PrintBoard = None,
     paper: Annotated[str, typer.Option(help="Of --print-board: a4, letter or a3.")] = "a4",
-    checked: Annotated[
-        Path | None,
-        typer.Option("--check", help="Say whether this camera file still fits; write nothing."),
-    ] = None,
-    coverage: Annotated[
-        Path | None, typer.Option(help="Write a .png of where the views were.")
-    ] = None,
-    seconds: Annotated[
-        float, typer.Option(min=5, max=600, help="A live camera is watched no longer than this.")
-    ] = 120.0,
-    window: Annotated[
-        bool, typer.Option("--window/--no-window", help="Print the coach's lines instead.")
-    ] = True,
+    checked: Checked = None,
+    coverage: Coverage = None,
+    seconds: Seconds = 120.0,
+    window: Shown = True,
 ) -> None:
     """Find the camera's lens by waving the cube before it for about 20 seconds.
 
@@ -85,9 +94,8 @@ def calibrate(
         return
     finders = finders_of(cube, board)
     saved = None if checked is None else Intrinsics.load(checked)
+    _check_paths(output, save_cube, coverage)
     shown = window and has_display()
-    for path in (output, save_cube, coverage):
-        _check_folder(path)
     with ExitStack() as closing:
         frames = closing.enter_context(open_source(source))
         if saved is not None:
@@ -177,6 +185,12 @@ def _tell_cube(
     console.print(f"Now: [cyan]cubeling play companion --intrinsics {camera}{option}[/]")
 
 
-def _check_folder(path: Path | None) -> None:
-    if path is not None and not path.parent.is_dir():
-        raise AppError(f"there is no folder '{path.parent}' for '{path.name}'")
+def _check_paths(output: Path, save_cube: Path | None, coverage: Path | None) -> None:
+    """Refuse what cannot be written before anybody waves a cube."""
+    for path in (output, save_cube, coverage):
+        if path is not None and not path.parent.is_dir():
+            raise AppError(f"there is no folder '{path.parent}' for '{path.name}'")
+    if coverage is not None and coverage.suffix not in FORMATS:
+        raise AppError(f"the picture '{coverage}' must be a .png or a .jpg file")
+    if save_cube is not None and save_cube.suffix != ".toml":
+        raise AppError(f"a cube is kept in a .toml file, not in '{save_cube}'")

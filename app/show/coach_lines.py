@@ -14,6 +14,9 @@ from app.show.coach import cover, words_of
 
 Picture = NDArray[np.uint8]
 
+FORMATS = (".png", ".jpg")
+"""What a picture of the coverage can be."""
+
 
 class CoachLines:
     """Prints a line when the advice changes, and no more often than it can be read.
@@ -59,7 +62,7 @@ def write_coverage(path: Path, lesson: Lesson) -> None:
         return
     picture = np.asarray(cv2.addWeighted(lesson.last, 0.45, lesson.last, 0.0, 40), np.uint8)
     cover(picture, lesson.collector.outlines)
-    good, data = cv2.imencode(".png", picture)
+    good, data = cv2.imencode(path.suffix, picture)
     try:
         path.write_bytes(data.tobytes() if good else b"")
     except OSError as error:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from tests.bench.tracking.sequences import sequence
+from tests.bench.tracking.sequences import Sequence, sequence
 from tests.tracking.waved import aligned
 from tracking import CubeModel, Frame
 from tracking.calibration import Collector, CubeFinder, View, calibrate, measured_cube
@@ -89,7 +89,7 @@ def traced(seed: int, fold: float, frames: int) -> Wave:
     return Wave(views, pictures.matrix, cube, ideal, pictures.size)
 
 
-def _folded_frames(pictures, cube: CubeModel) -> Iterator[Frame]:  # type: ignore[no-untyped-def]
+def _folded_frames(pictures: Sequence, cube: CubeModel) -> Iterator[Frame]:
     moved = placements(cube)
     scenes = []
     for scene in pictures.scenes:

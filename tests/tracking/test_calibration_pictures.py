@@ -8,7 +8,7 @@ import pypdfium2
 import pytest
 
 from tests.tracking.waved import aligned
-from tracking import CubeModel, Frame, Intrinsics, TrackingError
+from tracking import CubeModel, Frame, Intrinsics, TrackingError, calibrate_camera
 from tracking.calibration import (
     Board,
     BoardFinder,
@@ -54,6 +54,14 @@ def test_a_waved_folded_cube_tells_lens_and_folds():
     measured = np.array([face.corners for face in measured_cube(cube, found.plates).faces])
     assert aligned(ideal, real).max() > 0.0008
     assert aligned(measured, real).max() < 0.0001
+
+
+def test_frames_without_enough_of_a_cube_make_no_camera():
+    with pytest.raises(TrackingError, match="no frame"):
+        calibrate_camera([], CubeModel.load("locomotion"))
+    blank = np.full((360, 640, 3), 128, np.uint8)
+    with pytest.raises(TrackingError, match="only 0 still pictures"):
+        calibrate_camera([Frame(blank, 0.0, 0)], CubeModel.load("locomotion"))
 
 
 def test_a_moving_cube_and_a_view_seen_before_are_not_taken():

@@ -1,6 +1,7 @@
 """Intrinsics of a camera from the printed cube itself, or from a ChArUco board."""
 
 from tracking.calibration.board import Board, write_board
+from tracking.calibration.camera import calibrate_camera
 from tracking.calibration.checking import Check, check
 from tracking.calibration.coach import Coach, Look
 from tracking.calibration.collecting import Collector, Glance
@@ -21,6 +22,7 @@ __all__ = [
     "Look",
     "View",
     "calibrate",
+    "calibrate_camera",
     "check",
     "measured_cube",
     "write_board",

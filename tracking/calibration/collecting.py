@@ -57,7 +57,8 @@ class Collector:
 
     def __init__(self, finder: Finder, size: tuple[int, int]) -> None:
         self._finder = finder
-        self._size = size
+        self.size = size
+        """Width and height of the frames [px]."""
         # Any camera will do to tell tilts and turns apart.
         self._camera = lens.vector(Intrinsics.guess(size))
         self._last: Found | None = None
@@ -94,14 +95,14 @@ class Collector:
             return "full"
         if not self._new(pose, tuple(sorted(found.plates))):
             return "known"
-        return "taken" if self._speed(found, before) <= STILL * self._size[0] else "moving"
+        return "taken" if self._speed(found, before) <= STILL * self.size[0] else "moving"
 
     def _new(self, pose: Array, plates: tuple[int, ...]) -> bool:
         """Whether no view shows the same plates in nearly the same place and attitude."""
         for other, others in self._poses:
             step = se3.motion(other, pose)
             distance = max(float(pose[2, 3]), 1e-3)
-            beside = float(np.linalg.norm(step[:2])) * self._camera[0] / distance / self._size[0]
+            beside = float(np.linalg.norm(step[:2])) * self._camera[0] / distance / self.size[0]
             nearer = abs(float(np.log(distance / max(float(other[2, 3]), 1e-3))))
             turned = float(np.linalg.norm(step[3:]))
             alike = beside < NEW[0] and turned < NEW[1] and nearer < NEW[2]
@@ -128,10 +129,10 @@ class Collector:
             np.linalg.norm(outline - np.roll(outline, 1, axis=0), axis=1).mean()
             for outline in found.outlines
         ]
-        x, y = pixels.mean(axis=0) / self._size
+        x, y = pixels.mean(axis=0) / self.size
         return Look(
             (float(x), float(y)),
-            float(max(sides)) / self._size[1],
+            float(max(sides)) / self.size[1],
             self._tilt(found, pose),
             found.plates,
         )
