@@ -57,6 +57,7 @@ class CandidateFinder:
             Where the cube should be by its past, (4, 4), if that is known.
         """
         solutions = self._solver.solve(observations, expected)
+        solutions = [each for each in solutions if not _contradicted(each, observations)]
         if expected is not None:
             solutions.sort(key=lambda each: se3.angle_between(each.camera_from_cube, expected))
         refine = self._follower.refiner.refine
@@ -117,3 +118,11 @@ class CandidateFinder:
             if wide and (best is None or wide.support > best.support):
                 return wide
         return best
+
+
+def _contradicted(solution: CornerSolution, observations: list[Observation]) -> bool:
+    """Whether a pose rests on one marker while others of the same cube say that it is elsewhere.
+
+    A cube cut open and laid flat, its printed sheet, shows several; a cube never does.
+    """
+    return len(solution.observations) == 1 < len({each.face.name for each in observations})

@@ -30,6 +30,13 @@ SEEN_FEW = 0.25
 CRISP = 0.65
 """Edges that are duller than this across one direction are blurred in a way that was not told."""
 
+UNSHARP, CROOKED = 0.25, 0.0063
+"""Edges of a rigid cube lie within this of their places [px], or within this share of its edge,
+whichever is more: a cube folded 1 mm askew does, a cube on a screen seen from aside does not."""
+
+TOLD = 0.6
+"""Share of a face's cells that must be as they should for its edges to be called its own."""
+
 READ = 0.9
 """Share of a face's cells that must be as they should for it to count as read."""
 
@@ -52,11 +59,14 @@ DOUBT, DOUBT_STREAK = 2.2, 0.25
 """By how much edges err more than their residuals tell, at rest, and the streak that doubles it
 [cells]. Measured as the coverage that `make bench-tracking` prints."""
 
-DOUBT_SWEPT = (2.0, 4.0)
+DOUBT_SWEPT = (2.5, 5.0)
 """The same for blurred pictures: at no streak, and more for each cell."""
 
 STREAK = 0.6
 """Cells that an edge may cross during the exposure and still be measured as an edge."""
+
+SMEARED = 0.3
+"""Cells below which edges of the cube itself are seen."""
 
 SWEEP_SPREAD, FIRST_SPREAD = (0.12, 0.0025, 0.04), (0.35, 0.004, 0.06)
 """What is not known of an expected sweep: a share of it, and [m, rad] besides; the second while the
@@ -145,9 +155,14 @@ class Follower:
             aligned,
             track.motion(aligned.camera_from_cube, aligned.covariance[:6, :6], timestamp)[0],
         )
-        if self.streak(aligned.camera_from_cube, aligned.sweep) < STREAK:
+        return self._finished(patch, aligned)
+
+    def _finished(self, patch: Patch, aligned: Alignment) -> Candidate | None:
+        """Refine an alignment on its edges, where they are not smeared: there they must be right."""
+        streak = self.streak(aligned.camera_from_cube, aligned.sweep)
+        if streak < STREAK:
             found = self.by_edges(patch, aligned.camera_from_cube, aligned.sweep)
-            if found is not None:
+            if found is not None or streak < SMEARED:
                 return found
         return self._blurred(aligned)
 
@@ -207,13 +222,17 @@ class Follower:
         if found is None or found.support < SEEN_FEW:
             return None
         reading = self.reader.read(patch, found.camera_from_cube)
-        if not _proves(found, reading):
+        if not (self.rigid(found) and _proves(found, reading)):
             return None
         return Candidate(
             camera_from_cube=found.camera_from_cube,
             covariance=found.covariance * self._doubt(found.camera_from_cube, sweep),
             source="markers" if reading.best >= READ else "image",
-            faces=tuple(face for face, share in found.shares.items() if share > SEEN_FEW),
+            faces=tuple(
+                face
+                for face, share in found.shares.items()
+                if share > SEEN_FEW and reading.agreement.get(face, 1.0) > TOLD
+            ),
             error=found.residual,
             residual=found.residual / found.support,
             certain=True,
@@ -232,11 +251,17 @@ class Follower:
             found = self.aligner.align(patch, start, sweep, prior)
             if found and found.likeness > max(SURE, best.likeness if best else 0.0):
                 best = found
-        return self._blurred(best) if best else None
+        return self._finished(patch, best) if best else None
 
     def proved(self, patch: Patch, found: Refinement) -> bool:
         """Whether edges and cells at a pose prove that this is the cube."""
-        return _proves(found, self.reader.read(patch, found.camera_from_cube))
+        return self.rigid(found) and _proves(found, self.reader.read(patch, found.camera_from_cube))
+
+    def rigid(self, found: Refinement) -> bool:
+        """Whether the edges lie as those of one rigid cube do, and not as on a picture of one."""
+        distance = float(found.camera_from_cube[2, 3])
+        pixel = distance / float(self._projection.matrix[0, 0])
+        return found.residual < max(UNSHARP, CROOKED * 2 * self._half / pixel)
 
     def _aligned(
         self, patch: Patch, expected: Array, sweep: Array, coarse: bool | None = None

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 PATIENT, RARELY = 30, 5
 """Frames without the cube in which it is sought by covered markers too, and how rarely then."""
 
-DECISIVE = 14.0
+DECISIVE = 8.0
 """Twice the logarithm of a likelihood ratio from which on the better of two poses is right."""
 
 SQUARE, HARMLESS = np.deg2rad(16), np.deg2rad(7)
@@ -166,7 +166,9 @@ class CubeTracker:
     ) -> tuple[Candidate, str]:
         """Choose between the poses that explain the same markers, or say why none is trusted."""
         best, *others = sorted(candidates, key=lambda candidate: candidate.residual)
-        if best.blurred or (len(best.faces) == 1 and self._speed(best, now) > LONE_SPEED):
+        if not best.certain:
+            return best, "blurred" if best.blurred else "unproved"
+        if len(best.faces) == 1 and self._speed(best, now) > LONE_SPEED:
             return best, "blurred"
         if not others or _close(best, others[0]):
             return best, ""

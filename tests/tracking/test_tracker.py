@@ -118,7 +118,7 @@ def test_the_covariance_is_honest_where_edges_run_along_rows_of_pixels(scene: st
         step = se3.motion(state.camera_from_cube, source.truth(index))
         assert step @ np.linalg.solve(state.covariance, step) < 12.6
         # Nor is it bought with a wide one.
-        assert np.sqrt(np.diag(state.covariance)[:3]).max() < 2e-4
+        assert np.sqrt(np.diag(state.covariance)[:3]).max() < 3e-4
 
 
 def test_a_drawing_by_another_hand_is_found_too() -> None:
