@@ -8,13 +8,14 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import cv2
+import numpy as np
 from rich.console import Console
 
 from app.calibrating import Advice, Lesson, Picture
 from app.commands.replay import bundled
 from app.opening import fitting
 from app.playground import Playground
-from app.show.coach import CoachView
+from app.show.coach import PERIOD, CoachView
 from app.show.coach_lines import write_coverage
 from app.show.overlay import RobotView, overlay
 from characters.rendering import create_context
@@ -68,11 +69,14 @@ def draw_sheet(name: str) -> None:
         page.render(scale=1.5).to_pil().save(FOLDER / f"sheet-{name}.png", optimize=True)
 
 
-LESSON = {"tip": "tilt up", "corner": "top left"}
+LESSON = {"tip": "tilt up", "near": "near"}
 """For which wishes of the coach a picture is taken."""
 
-SHOWN = 0.8
+SHOWN = (0.6, 1.2)
 """How long the wish has been shown by then [s]: half way through the coach's little drawing."""
+
+FREE = 0.74
+"""The cube is above this share of the picture's height by then, where no card lies."""
 
 
 class _Album:
@@ -90,7 +94,10 @@ class _Album:
         shown = self._coach.draw(picture, timestamp, advice)
         if advice.wish != self._since[0]:
             self._since = advice.wish, timestamp
-        if advice.wish in self._waiting and timestamp - self._since[1] >= SHOWN:
+        held = SHOWN[0] <= (timestamp - self._since[1]) % PERIOD <= SHOWN[1]
+        lowest = max((outline[:, 1].max() for outline in advice.outlines), default=np.inf)
+        seen = lowest < FREE * picture.shape[0]
+        if advice.wish in self._waiting and held and seen:
             path = FOLDER / f"calibrate-{self._waiting.pop(advice.wish)}.jpg"
             cv2.imwrite(str(path), shown, (cv2.IMWRITE_JPEG_QUALITY, 88))
 

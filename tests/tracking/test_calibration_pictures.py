@@ -8,7 +8,7 @@ import pypdfium2
 import pytest
 
 from tests.tracking.waved import aligned
-from tracking import CubeModel, Frame, Intrinsics, TrackingError, calibrate_camera
+from tracking import CubeModel, Frame, Intrinsics, TrackingError, calibrate_camera, se3
 from tracking.calibration import (
     Board,
     BoardFinder,
@@ -151,3 +151,51 @@ def test_a_photograph_of_a_charuco_board_fits_its_camera_but_makes_none_alone():
     assert np.sqrt((away**2).mean()) < 0.8
     with pytest.raises(TrackingError, match="tilted more"):
         calibrate([view] * 8, target).check()
+
+
+def board_picture(board, camera, pose):
+    """The board as a camera sees it, (H, W): each pixel's ray meets the board's plane."""
+    width, height = camera.size
+    x, y = np.meshgrid(np.arange(width), np.arange(height))
+    straight = camera.undistorted(np.stack([x, y], axis=-1).astype(np.float64))
+    rays = np.concatenate([straight, np.ones((height, width, 1))], axis=-1)
+    rays = rays @ np.linalg.inv(camera.matrix).T
+    turn, origin = pose[:3, :3], pose[:3, 3]
+    reach = (origin @ turn[:, 2]) / (rays @ turn[:, 2])
+    places = (reach[..., None] * rays - origin) @ turn
+    dots = 40  # a square
+    texture = board.pattern.generateImage((5 * dots, 7 * dots), marginSize=0)
+    texture = cv2.copyMakeBorder(texture, dots, dots, dots, dots, cv2.BORDER_CONSTANT, value=255)
+    u, v = ((places[..., axis] / board.square + 1) * dots - 0.5 for axis in (0, 1))
+    seen = cv2.remap(
+        cv2.GaussianBlur(texture, (0, 0), 0.8),
+        u.astype(np.float32),
+        v.astype(np.float32),
+        cv2.INTER_LINEAR,
+        borderValue=120,
+    )
+    return cv2.cvtColor(cv2.GaussianBlur(seen, (0, 0), 0.6), cv2.COLOR_GRAY2BGR)
+
+
+def test_a_board_that_is_waved_tells_the_lens():
+    matrix = np.array([[610.0, 0, 325], [0, 611, 236], [0, 0, 1]])
+    camera = Intrinsics(matrix, np.array([-0.15, 0.07, 0.0005, -0.0005, 0]), (640, 480))
+    board = Board()
+    finder = BoardFinder(board)
+    collector = Collector(finder, camera.size)
+    random = np.random.default_rng(3)
+    for stop in range(15):
+        way = 2 * np.pi * stop / 4
+        tilt = np.deg2rad(random.uniform(20, 40)) * np.array([np.cos(way), np.sin(way), 0])
+        turn = se3.rotation(tilt) @ se3.rotation(np.array([0, 0, random.uniform(-0.5, 0.5)]))
+        middle = np.array([*random.uniform(-0.09, 0.09, 2), random.uniform(0.30, 0.42)])
+        pose = se3.pose(turn, middle - turn @ board.points.mean(axis=0))
+        picture = board_picture(board, camera, pose)
+        for shift in (0.0, 0.05):
+            collector.update(Frame(picture, stop + shift, 0))
+    found = calibrate(collector.views, finder.target(camera.size))
+    found.check()
+    assert len(collector.views) >= 9
+    assert found.intrinsics.matrix[0, 0] == pytest.approx(610, rel=0.005)
+    assert found.intrinsics.matrix[1, 1] == pytest.approx(611, rel=0.005)
+    np.testing.assert_allclose(found.intrinsics.matrix[:2, 2], (325, 236), atol=4)
