@@ -6,11 +6,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.candidate import Candidate
 from tracking.candidates import CandidateFinder
 from tracking.covered import CoveredMarkerDetector
 from tracking.cube import CubeModel
 from tracking.detection import Marker, MarkerDetector, Observation, observed
-from tracking.following import Candidate, Follower
+from tracking.following import Follower
 from tracking.frame import Frame
 from tracking.patch import Patch
 from tracking.projection import Projection

@@ -4,9 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking import se3
+from tracking.candidate import Candidate
 from tracking.cube import CubeModel
 from tracking.detection import Observation
-from tracking.following import DOUBT, Candidate, Follower
+from tracking.following import DOUBT, Follower
 from tracking.patch import Patch
 from tracking.projection import Projection
 from tracking.refinement import Refinement

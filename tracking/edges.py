@@ -1,7 +1,6 @@
 """The black and white edges of a cube's markers, as points in space."""
 
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,12 +48,21 @@ class EdgeModel:
 
     def of_faces(self, faces: tuple[int, ...]) -> "EdgeModel":
         """Keep the edges of some faces, by their numbers."""
-        kept = np.isin(self.face, faces)
-        parts = (self.points, self.along, self.across, self.to_end, self.outline)
-        return EdgeModel(*(part[kept] for part in parts), self.face[kept], self.line[kept])
+        return self._of(np.flatnonzero(np.isin(self.face, faces)))
+
+    def _of(self, chosen: NDArray[np.intp]) -> "EdgeModel":
+        return EdgeModel(
+            points=self.points[chosen],
+            along=self.along[chosen],
+            across=self.across[chosen],
+            to_end=self.to_end[chosen],
+            outline=self.outline[chosen],
+            face=self.face[chosen],
+            line=self.line[chosen],
+        )
 
     @classmethod
-    def of(cls, cube: CubeModel) -> Self:
+    def of(cls, cube: CubeModel) -> "EdgeModel":
         """Lay out the edges of a cube."""
         parts = [_face_edges(cube, face) for face in cube.faces]
         points, along, across, to_end, outline = (
@@ -65,9 +73,8 @@ class EdgeModel:
         places = np.einsum("ij,ij->i", points, across)
         keys = np.column_stack([numbers, np.round(np.column_stack([across, places]), 9)])
         line = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
-        order = np.argsort(line, kind="stable")
-        parts = (points, along, across, to_end, outline > 0, numbers, line)
-        return cls(*(part[order] for part in parts))
+        edges = EdgeModel(points, along, across, to_end, outline > 0, numbers, line)
+        return edges._of(np.argsort(line, kind="stable"))
 
 
 def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, ...]:

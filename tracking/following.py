@@ -1,12 +1,11 @@
 """Following the cube from where it should be: by its edges, or by its blurred picture."""
 
-from dataclasses import dataclass, field
-from typing import Literal
-
 import numpy as np
 from numpy.typing import NDArray
 
 from tracking import prediction
+from tracking.alignment import Alignment
+from tracking.candidate import Candidate
 from tracking.cube import CubeModel
 from tracking.faces import Faces
 from tracking.marker import marker_cells
@@ -17,7 +16,7 @@ from tracking.reading import CellReader, Reading
 from tracking.refinement import EdgeRefiner, Refinement
 from tracking.response import Response
 from tracking.shutter import Shutter
-from tracking.swept import Alignment, SweptAligner
+from tracking.swept import SweptAligner
 
 Array = NDArray[np.float64]
 
@@ -73,44 +72,6 @@ SWEEP_SPREAD, FIRST_SPREAD = (0.12, 0.0025, 0.04), (0.35, 0.004, 0.06)
 exposure is not known."""
 
 
-@dataclass(frozen=True)
-class Candidate:
-    """A pose found in one frame, before it is trusted."""
-
-    camera_from_cube: Array
-    """Pose of the cube, (4, 4) [m]."""
-
-    covariance: Array
-    """Of a shift-turn, (6, 6)."""
-
-    source: Literal["markers", "image"]
-    """As in `CubeState.source`."""
-
-    faces: tuple[str, ...]
-    """As in `CubeState.faces`."""
-
-    error: float
-    """As in `CubeState.reprojection_error` [px]."""
-
-    residual: float
-    """Edge residual over the share of edges found, or the corner error [px]; smaller is better."""
-
-    certain: bool
-    """Whether edges confirm it beyond doubt, or two markers and edges do."""
-
-    blurred: bool = False
-    """Whether one marker alone vouches for it, whose edges should have been seen but were not."""
-
-    sweep: Array | None = None
-    """Shift-turn of the cube while the shutter was open, (6,), where it was measured."""
-
-    sweep_covariance: Array = field(default_factory=lambda: np.zeros((6, 6)))
-    """Of `sweep`, (6, 6)."""
-
-    lines: int = 8
-    """How many independent measurements the residual rests on, roughly."""
-
-
 class Follower:
     """Finds the cube again near where it should be."""
 
@@ -158,7 +119,7 @@ class Follower:
         return self._finished(patch, aligned)
 
     def _finished(self, patch: Patch, aligned: Alignment) -> Candidate | None:
-        """Refine an alignment on its edges, where they are not smeared: there they must be right."""
+        """Refine an alignment on its edges; where they are not smeared they must be right."""
         streak = self.streak(aligned.camera_from_cube, aligned.sweep)
         if streak < STREAK:
             found = self.by_edges(patch, aligned.camera_from_cube, aligned.sweep)
@@ -266,7 +227,7 @@ class Follower:
     def _aligned(
         self, patch: Patch, expected: Array, sweep: Array, coarse: bool | None = None
     ) -> Alignment | None:
-        """Align the picture of a moving cube: finely at once, and coarsely first where that fails."""
+        """Align the picture of a moving cube: finely, and coarsely first where that fails."""
         share, shift, turn = SWEEP_SPREAD if self.shutter.known else FIRST_SPREAD
         spread = share * np.repeat([np.linalg.norm(sweep[:3]), np.linalg.norm(sweep[3:])], 3)
         prior = np.hypot(spread, np.repeat([shift, turn], 3))

@@ -59,7 +59,7 @@ class Patch:
         height, width = self.grey.shape
         inner = pixels - (self.left, self.top)
         least = np.minimum(inner, (width - 1, height - 1) - inner)
-        return np.minimum(least[:, 0], least[:, 1])
+        return np.asarray(np.minimum(least[:, 0], least[:, 1]), np.float64)
 
     def at(self, places: Array) -> Floats:
         """Grey values between pixel centres, bilinear, places (N, M, 2) [px] → (N, M)."""

@@ -113,7 +113,7 @@ def predicted(last: Sighting, timestamp: float) -> Array:
 def velocity_at(last: Sighting, timestamp: float) -> Array:
     """Velocity at `timestamp` if the cube goes on as it does, (6,)."""
     ahead = np.clip(timestamp - last.timestamp, -LASTING, LASTING)
-    return last.velocity + last.acceleration * ahead
+    return np.asarray(last.velocity + last.acceleration * ahead, np.float64)
 
 
 def predicted_covariance(last: Sighting, timestamp: float) -> Array:

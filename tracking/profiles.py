@@ -9,7 +9,6 @@ from tracking.edges import EdgeModel
 from tracking.patch import Floats, Patch
 from tracking.projection import NEAREST, Projection
 
-
 Array = NDArray[np.float64]
 
 NARROWEST = 2.5
@@ -189,8 +188,8 @@ class Measured:
 
 
 def _dot(a: Floats, b: Floats) -> Array:
-    """Sums of products of rows, (N, M) and (N, M) → (N,)."""
-    return np.einsum("ij,ij->i", a, b).astype(np.float64)
+    """Sum the products of rows, (N, M) and (N, M) → (N,)."""
+    return np.asarray(np.einsum("ij,ij->i", a, b), np.float64)
 
 
 UNIT_TAPS = np.linspace(-1, 1, TAPS, dtype=np.float32)[None]
@@ -206,4 +205,4 @@ def _cross(a: Array, b: Array) -> Array:
     x = a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1]
     y = a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2]
     z = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    return np.stack([x, y, z], axis=1)
+    return np.asarray(np.stack([x, y, z], axis=1), np.float64)

@@ -1,4 +1,4 @@
-"""Reading the markers where a pose says that they are: is this the cube, and which faces show?"""
+"""Reading the markers where a pose says that they are, to tell whether this is the cube."""
 
 from dataclasses import dataclass
 

@@ -39,7 +39,17 @@ class CubeState:
     """That of the frame [s]."""
 
     refused: str = ""
-    """Why a pose was not trusted: "ambiguous", "blurred", "jump"; "" where none was refused."""
+    """Why a pose was not trusted; "" where none was refused.
+
+    "ambiguous": a single face that may lean either way; "blurred": its edges should be seen and are
+    not; "jump": no hand moves so fast, a second frame must say so too; "unproved": too small or too
+    hidden to tell; "unsure": seen, but the pose may be off by a centimetre or a few degrees.
+    """
+
+    @property
+    def verdict(self) -> str:
+        """In a word: "trusted", why it was refused, or "unseen"."""
+        return "trusted" if self.visible else self.refused or "unseen"
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking import se3
+from tracking.alignment import Alignment
 from tracking.cube import CubeModel
 from tracking.drawing import Drawing
 from tracking.faces import Faces, face_frame
@@ -45,7 +46,7 @@ MOMENTS = (5, 15)
 """Moments of the way that the drawn mean is made of, at least and at most."""
 
 STRIDE = 0.22
-"""How far an edge may go from one moment to the next [cells]: less than drawing and lens blur it."""
+"""How far an edge may go from one moment to the next [cells]: less than it is blurred anyway."""
 
 SOFT, SHARP = 0.5, 0.15
 """Blur of drawing and picture in the coarse search and in the fine one [cells]."""
@@ -61,43 +62,6 @@ SETTLED = np.repeat([5e-5, 5e-4], 3)
 
 FEWEST = 60
 """Fewer samples than this do not make a pose."""
-
-
-@dataclass(frozen=True)
-class Alignment:
-    """A pose and a motion that explain a blurred picture."""
-
-    camera_from_cube: Array
-    """Pose of the cube in mid-exposure, (4, 4) [m]."""
-
-    sweep: Array
-    """Shift-turn of the cube while the shutter was open, (6,)."""
-
-    covariance: Array
-    """Of a shift-turn of the pose and then of the sweep, (12, 12)."""
-
-    told: tuple[Array, Array]
-    """What the picture alone says of the sweep: information times sweep (6,), information (6, 6)."""
-
-    likeness: float
-    """Correlation of the drawn and the seen picture, −1…1, over all samples that were in view."""
-
-    shares: dict[str, float]
-    """The same for each face in view."""
-
-    residual: float
-    """Standard deviation of the samples that fit, as a share of the contrast."""
-
-    bend: float
-    """By how much mixtures of black and white are brighter than they should be, see `Response`."""
-
-    black: float
-    """What black is beside white, in the face whose contrast is greatest."""
-
-    @property
-    def weakest(self) -> float:
-        """The least of these correlations."""
-        return min(self.likeness, *self.shares.values())
 
 
 class SweptAligner:
@@ -137,29 +101,41 @@ class SweptAligner:
         None where the cube is not in view.
         """
         pose, way = start, sweep
+        last: tuple[_Scene, Mixture, Array, Array] | None = None
         for blur, count, rounds in STAGES if coarse else STAGES[1:]:
             scene = self._scene(patch, pose, blur, count)
-            for _ in range(rounds if scene else 0):
+            if scene is None:
+                return None
+            for _ in range(rounds):
                 mixture = self._mixture(scene, pose, way)
                 if mixture is None:
                     return None
                 step = mixture.step(sweep - way, prior)
-                pose, way, before = se3.moved(pose, step[:6]), way + step[6:], way
+                last = scene, mixture, way, step
+                pose, way = se3.moved(pose, step[:6]), way + step[6:]
                 if (np.abs(step[:6]) < SETTLED).all():
                     break
-            if scene is None:
-                return None
+        return self._finished(pose, way, prior, *last) if last else None
+
+    def _finished(
+        self,
+        pose: Array,
+        way: Array,
+        prior: Array,
+        scene: "_Scene",
+        mixture: Mixture,
+        before: Array,
+        step: Array,
+    ) -> Alignment:
         whole, *each = mixture.likeness.tolist()
+        named = zip(scene.facing, each, strict=True)
         return Alignment(
             pose,
             way,
             mixture.covariance(prior),
             mixture.told(before, step, prior),
             whole,
-            {
-                self._faces.names[face]: share
-                for face, share in zip(scene.facing, each, strict=True)
-            },
+            {self._faces.names[face]: share for face, share in named if not np.isnan(share)},
             mixture.scale / max(mixture.contrast, 1.0),
             *mixture.tones,
         )
@@ -233,12 +209,12 @@ class SweptAligner:
         inside = np.maximum(np.abs(u), np.abs(v)) < half - scene.rim[:, None]
         inside = inside.all(axis=0).ravel()
         scale = size / (2 * half)
-        places = np.empty((*u.shape, 2), np.float32)
-        places[..., 0] = np.clip((u + half) * scale - 0.5, 0, size - 1)
-        places[..., 1] = np.clip((v + half) * scale - 0.5, 0, size - 1)
-        places[..., 1] += (np.arange(len(scene.facing)) * size)[:, None]
-        flat = places.reshape(len(u), -1, 2)
-        return np.asarray(cv2.remap(scene.layers, flat, None, cv2.INTER_LINEAR), np.float32), inside
+        x = np.clip((u + half) * scale - 0.5, 0, size - 1).astype(np.float32)
+        y = np.clip((v + half) * scale - 0.5, 0, size - 1).astype(np.float32)
+        y += (np.arange(len(scene.facing), dtype=np.float32) * size)[:, None]
+        count = len(u)
+        read = cv2.remap(scene.layers, x.reshape(count, -1), y.reshape(count, -1), cv2.INTER_LINEAR)
+        return np.asarray(read, np.float32), inside
 
     def _slides(self, axes: Array, arm: Array, rays: Array) -> Array:
         """How a face slides under each sample's ray with a shift-turn, (faces · N, 2, 6) [texels].

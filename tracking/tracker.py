@@ -1,16 +1,15 @@
 """From camera frames to where the cube is: what one frame proposes, weighed against the past."""
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
 from tracking import prediction, se3
 from tracking.acquisition import Acquirer, Search
+from tracking.candidate import Candidate, close, decisive, doubled
 from tracking.cube import CubeModel
 from tracking.detection import MarkerDetector
 from tracking.errors import TrackingError
-from tracking.following import Candidate, Follower
+from tracking.following import Follower
 from tracking.frame import Frame
 from tracking.intrinsics import Intrinsics
 from tracking.prediction import MEMORY, Sighting, Track
@@ -22,12 +21,12 @@ Array = NDArray[np.float64]
 PATIENT, RARELY = 30, 5
 """Frames without the cube in which it is sought by covered markers too, and how rarely then."""
 
-DECISIVE = 8.0
-"""Twice the logarithm of a likelihood ratio from which on the better of two poses is right."""
-
 SQUARE, HARMLESS = np.deg2rad(16), np.deg2rad(7)
 """Two poses of one face that differ by less than the first may be taken for each other by time, and
 those that differ by less than the second are both right enough."""
+
+UNSURE = (0.006, np.deg2rad(3.0))
+"""A pose with a greater standard deviation than this is not given out [m, rad]."""
 
 LONE_SPEED = 0.65
 """A single face that moves faster than this [m/s] is too blurred to tell how far away it is."""
@@ -115,15 +114,15 @@ class CubeTracker:
         if self._settled and lean > SQUARE:
             return found, ""
         other = self._follower.mirrored(frame.image, found)
-        if other is None or _close(found, other):
+        if other is None or close(found, other):
             self._settled &= other is None
             return found, ""
         best, worse = sorted((found, other), key=lambda each: each.residual)
-        if _decisive(best, worse):
+        if decisive(best, worse):
             self._settled = True
             return best, ""
         if lean < HARMLESS:
-            return _doubled(found, other), ""
+            return doubled(found, other), ""
         return found, "ambiguous"
 
     def acquire(self, frame: Frame, search: Search) -> CubeState:
@@ -170,10 +169,10 @@ class CubeTracker:
             return best, "blurred" if best.blurred else "unproved"
         if len(best.faces) == 1 and self._speed(best, now) > LONE_SPEED:
             return best, "blurred"
-        if not others or _close(best, others[0]):
+        if not others or close(best, others[0]):
             return best, ""
         other = others[0]
-        if _decisive(best, other):
+        if decisive(best, other):
             return best, ""
         if recent is not None:
             expected = prediction.predicted(recent, now)
@@ -210,6 +209,8 @@ class CubeTracker:
         self._track.add(Sighting(pose, velocity, candidate.covariance, now, change))
         self._jump = None
         self._missed = 0
+        if _unsure(candidate.covariance):
+            return self._unseen(now, "unsure")
         return CubeState(
             visible=True,
             camera_from_cube=pose,
@@ -247,18 +248,8 @@ def _fits(candidate: Candidate, last: Sighting, timestamp: float) -> bool:
     )
 
 
-def _decisive(best: Candidate, other: Candidate) -> bool:
-    """Whether the residuals tell which of two poses is right: a ratio of likelihoods."""
-    ratio = max(other.residual, 1e-6) / max(best.residual, 1e-6)
-    return bool(min(best.lines, other.lines) * 2 * np.log(ratio) > DECISIVE)
-
-
-def _doubled(found: Candidate, other: Candidate) -> Candidate:
-    """Doubt a pose as much as the other one that it could be demands."""
-    apart = se3.motion(found.camera_from_cube, other.camera_from_cube)
-    return replace(found, covariance=found.covariance + np.outer(apart, apart) / 4)
-
-
-def _close(a: Candidate, b: Candidate) -> bool:
-    step = se3.motion(a.camera_from_cube, b.camera_from_cube)
-    return bool(np.linalg.norm(step[:3]) < 0.004 and np.linalg.norm(step[3:]) < np.deg2rad(4))
+def _unsure(covariance: Array) -> bool:
+    """Whether a pose may well be off by more than a person would forgive."""
+    shift = np.linalg.eigvalsh(covariance[:3, :3])[-1]
+    turn = np.linalg.eigvalsh(covariance[3:, 3:])[-1]
+    return bool(shift > UNSURE[0] ** 2 or turn > UNSURE[1] ** 2)
