@@ -88,6 +88,7 @@ class CoachView:
     def __init__(self, target: str) -> None:
         self._target = target
         self._flash = -math.inf
+        self._right = False
         self._since: tuple[str, float] = ("", 0.0)
 
     def draw(self, picture: Picture, timestamp: float, advice: Advice) -> Picture:
@@ -106,7 +107,7 @@ class CoachView:
             _rim(picture, shine, scale)
         moved = (timestamp - self._since[1]) / PERIOD % 1.0
         self._hint(advice, width, scale).over(picture)
-        self._lesson(advice.wish, moved, scale).over(picture)
+        self._lesson(advice.wish, moved, scale, self._clear_of(advice, width, scale)).over(picture)
         _progress(advice, width, scale).over(picture)
         return picture
 
@@ -118,7 +119,16 @@ class CoachView:
         canvas.text(wide / 2, 43.5, words, 34, between(HAPPY, INK, 0.25) if good else INK, "middle")
         return canvas.card((width - wide) / 2, 22)
 
-    def _lesson(self, wish: str, moved: float, scale: float) -> Card:
+    def _clear_of(self, advice: Advice, width: float, scale: float) -> float:
+        """Return the left edge of the drawing's card, which gives way to the target."""
+        for outline in advice.outlines:
+            x, y = outline.T / scale
+            under = (y.max() > (HEIGHT - 240) / 2) and (y.min() < (HEIGHT + 240) / 2)
+            if under and (x.max() > width - 274 if self._right else x.min() < 274):
+                self._right = not self._right
+        return width - 254 if self._right else 24.0
+
+    def _lesson(self, wish: str, moved: float, scale: float, left: float) -> Card:
         canvas = Canvas(230, 200, scale)
         draw = draw_board if self._target == "board" else draw_cube
         # There and back, with a rest at both ends.
@@ -144,7 +154,7 @@ class CoachView:
             _ring(canvas, middle, 84.0, moved)
         else:
             draw(canvas, middle, 44.0, np.array([0.0, math.pi / 2 * share, 0.0]))
-        return canvas.card(24, (HEIGHT - 200) / 2)  # the corners must stay free
+        return canvas.card(left, (HEIGHT - 200) / 2)  # the corners must stay free
 
 
 def cover(picture: Picture, outlines: Iterable[Array]) -> None:

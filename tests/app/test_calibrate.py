@@ -169,6 +169,16 @@ def test_every_wish_has_words_and_a_drawing():
             assert (drawn[-30:, -30:] == 90).all()
 
 
+def test_the_drawing_gives_way_to_the_cube():
+    coach = Coach(["board"])
+    view = CoachView("cube")
+    for left, free in ((20.0, np.s_[120:240, :130]), (540.0, np.s_[120:240, -130:])):
+        outline = np.array([(left, 150), (left + 60, 150), (left + 60, 210), (left, 210)], float)
+        blank = np.full((360, 640, 3), 90, np.uint8)
+        drawn = view.draw(blank, 0.0, Advice("near", False, 3, coach, (outline,), ()))
+        assert (drawn[free] == 90).mean() > 0.9, "only the outline is drawn there"
+
+
 def test_the_cube_that_is_held_up_is_recognised(waved):
     finders = [CubeFinder(CubeModel.load(name)) for name in ("companion", "locomotion")]
     lesson = Lesson(finders, (640, 360))
