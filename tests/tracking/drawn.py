@@ -1,0 +1,134 @@
+"""Pictures of cubes, at rest or in motion, drawn with nothing of the room but their description.
+
+Light is mixed as a shutter mixes it, before the camera makes grey values of it.
+"""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking import se3
+from tracking.cube import CubeModel, Face
+from tracking.intrinsics import Intrinsics
+from tracking.marker import marker_cells
+
+Array = NDArray[np.float64]
+Light = NDArray[np.float32]
+Picture = NDArray[np.uint8]
+
+CAMERA = Intrinsics(
+    np.array([[600.0, 0, 319.5], [0, 600.0, 239.5], [0, 0, 1]]), np.zeros(5), (640, 480)
+)
+WIDE = Intrinsics(
+    np.array([[900.0, 0, 639.5], [0, 900.0, 359.5], [0, 0, 1]]), np.zeros(5), (1280, 720)
+)
+FINE, TEXELS = 3, 20
+"""Subsamples along a pixel, and texels along a cell."""
+
+BLACK, WHITE, DESK = 0.04, 0.75, 0.2
+"""Light that ink, paper and the desk throw back."""
+
+SHADE = {"front": 1.0, "back": 1.0, "left": 0.8, "right": 0.85, "top": 0.95, "bottom": 0.7}
+"""Light that falls on each face."""
+
+
+def held(
+    x: float = 0.5, y: float = 0.6, z: float = 0.1, at: tuple[float, float, float] = (0, 0, 0.4)
+) -> Array:
+    """Pose (4, 4) of an upright cube turned about y, then x, then z [rad]; seen at three faces."""
+    turns = [se3.rotation(angle * axis) for angle, axis in zip((x, y, z), np.eye(3), strict=True)]
+    return se3.pose(turns[2] @ turns[0] @ turns[1] @ np.diag([1.0, -1.0, -1.0]), np.array(at))
+
+
+def scene(
+    *cubes: tuple[CubeModel, Array], camera: Intrinsics = CAMERA, sweep: Array | None = None
+) -> Light:
+    """Light of cubes at their poses, all swept by one shift-turn, (H, W).
+
+    Parameters
+    ----------
+    cubes
+        Each with its pose in the middle of the exposure; a later one covers those before.
+    camera
+        It must have no distortion.
+    sweep
+        Shift-turn while the shutter was open, (6,).
+    """
+    width, height = camera.size
+    light = np.full((height, width), DESK, np.float32)
+    for cube, pose in cubes:
+        way = np.zeros(6) if sweep is None else sweep
+        count = 1 if sweep is None else 24
+        poses = [se3.moved(pose, ((n + 0.5) / count - 0.5) * way) for n in range(count)]
+        left, top, right, bottom = _window(cube, poses, camera)
+        part = light[top:bottom, left:right]
+        drawn = [_drawn(cube, each, camera, part, (left, top)) for each in poses]
+        light[top:bottom, left:right] = np.mean(drawn, axis=0)
+    return np.asarray(cv2.GaussianBlur(light, (0, 0), 0.6), np.float32)
+
+
+def photograph(light: Light, exponent: float = 2.2, noise: float = 1.0, seed: int = 1) -> Picture:
+    """Grey values of a camera whose light is the grey value to the power `exponent`, (H, W, 3)."""
+    grey = 255 * np.clip(light, 0, 1) ** (1 / exponent)
+    grey += np.random.default_rng(seed).normal(0, noise, grey.shape)
+    levels = np.clip(np.rint(grey), 0, 255).astype(np.uint8)
+    return np.repeat(levels[..., None], 3, axis=2)
+
+
+def off(pose: Array | None, truth: Array) -> tuple[float, float]:
+    """Errors of a pose [mm, °]."""
+    assert pose is not None
+    step = se3.motion(pose, truth)
+    return float(1000 * np.linalg.norm(step[:3])), float(np.rad2deg(np.linalg.norm(step[3:])))
+
+
+def _window(cube: CubeModel, poses: Sequence[Array], camera: Intrinsics) -> tuple[int, ...]:
+    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    points = np.concatenate([signs * cube.edge / 2 @ p[:3, :3].T + p[:3, 3] for p in poses])
+    seen = points @ camera.matrix.T
+    pixels = seen[:, :2] / seen[:, 2:]
+    low, high = np.maximum(pixels.min(axis=0) - 4, 0), pixels.max(axis=0) + 5
+    right, bottom = np.minimum(high, camera.size).astype(int).tolist()
+    left, top = low.astype(int).tolist()
+    return left, top, right, bottom
+
+
+def _drawn(
+    cube: CubeModel, pose: Array, camera: Intrinsics, behind: Light, origin: tuple[int, int]
+) -> Light:
+    """Draw a sharp cube over what is behind it in a window of the picture, (h, w)."""
+    height, width = behind.shape
+    canvas = np.repeat(np.repeat(behind, FINE, axis=0), FINE, axis=1)
+    finer = np.array([[FINE, 0, (FINE - 1) / 2], [0, FINE, (FINE - 1) / 2], [0, 0, 1.0]])
+    shifted = np.array([[1, 0, -origin[0]], [0, 1, -origin[1]], [0, 0, 1.0]])
+    for face in cube.faces:
+        centre = pose[:3, :3] @ face.corners.mean(axis=0) + pose[:3, 3]
+        if (pose[:3, :3] @ face.normal) @ centre >= 0:
+            continue
+        texture = _paper(cube, face)
+        homography = finer @ shifted @ camera.matrix @ _plane(cube, face, len(texture), pose)
+        size = (FINE * width, FINE * height)
+        seen = cv2.warpPerspective(texture, homography, size, flags=cv2.INTER_LINEAR)
+        solid = np.ones_like(texture)
+        inside = cv2.warpPerspective(solid, homography, size, flags=cv2.INTER_NEAREST) > 0
+        canvas[inside] = seen[inside]
+    return np.asarray(cv2.resize(canvas, (width, height), interpolation=cv2.INTER_AREA), np.float32)
+
+
+def _paper(cube: CubeModel, face: Face) -> Light:
+    """One face from outside, its white paper with it, square."""
+    cells = np.kron(marker_cells(cube.dictionary, face.marker_id), np.ones((TEXELS, TEXELS)))
+    rim = round((cube.edge / cube.marker_size - 1) / 2 * len(cells))
+    texture = WHITE + (BLACK - WHITE) * np.pad(cells, rim)
+    return (SHADE[face.name] * texture).astype(np.float32)
+
+
+def _plane(cube: CubeModel, face: Face, count: int, pose: Array) -> Array:
+    """Point in the camera's frame for the (column, row, 1) of a texel, (3, 3)."""
+    grow = cube.edge / cube.marker_size
+    centre = face.corners.mean(axis=0)
+    corners = (centre + grow * (face.corners - centre)) @ pose[:3, :3].T + pose[:3, 3]
+    right, down = (corners[1] - corners[0]) / count, (corners[3] - corners[0]) / count
+    return np.stack([right, down, corners[0] + (right + down) / 2], axis=1)
