@@ -165,7 +165,7 @@ def fit(samples: Samples, faces: int) -> Mixture:
     tone = np.concatenate([light, light * drawn[:, None], mixed], axis=1)
     robust, scale = np.ones(len(seen)), 1.0
     steady = np.eye(tone.shape[1]) * 1e-3
-    for _ in range(3):
+    for _ in range(2):
         weighted = tone * robust[:, None]
         gain = np.linalg.solve(weighted.T @ tone + steady, weighted.T @ seen)
         residual = seen - tone @ gain

@@ -100,6 +100,38 @@ def moved(transform: Array, shift_turn: Array) -> Array:
     return pose(rotation(shift_turn[3:]) @ transform[:3, :3], transform[:3, 3] + shift_turn[:3])
 
 
+def along(transform: Array, shift_turn: Array, shares: Array) -> Array:
+    """Poses on the way of a shift-turn, `moved(transform, share * shift_turn)` for each share.
+
+    Parameters
+    ----------
+    transform
+        A pose, (4, 4).
+    shift_turn
+        Where it goes, (6,).
+    shares
+        How far along, (N,).
+
+    Returns
+    -------
+    (N, 4, 4)
+
+    >>> way = np.array([0.1, 0.0, -0.2, 0.3, -0.1, 0.2])
+    >>> half = along(np.eye(4), way, np.array([0.5]))[0]
+    >>> bool(np.allclose(half, moved(np.eye(4), way / 2)))
+    True
+    """
+    angle = max(float(np.linalg.norm(shift_turn[3:])), 1e-12)
+    k = hat(shift_turn[3:] / angle)
+    turned = shares[:, None, None] * angle
+    turns = np.eye(3) + np.sin(turned) * k + (1 - np.cos(turned)) * (k @ k)
+    poses = np.zeros((len(shares), 4, 4))
+    poses[:, :3, :3] = turns @ transform[:3, :3]
+    poses[:, :3, 3] = transform[:3, 3] + shares[:, None] * shift_turn[:3]
+    poses[:, 3, 3] = 1
+    return poses
+
+
 def motion(start: Array, end: Array) -> Array:
     """Shift-turn, (6,), from one pose to another: `moved(start, motion(start, end))` is `end`."""
     turn = rotation_vector(end[:3, :3] @ start[:3, :3].T)

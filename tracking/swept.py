@@ -29,7 +29,7 @@ Image = NDArray[np.float32]
 TEXELS = 8
 """Texels of the drawing on each cell of a marker."""
 
-COARSE, FINE = 12, 22
+COARSE, FINE = 12, 20
 """Samples on each side of a face in the two searches: fewer miss edges."""
 
 LENS = 0.85
@@ -171,7 +171,7 @@ class SweptAligner:
     def _mixture(self, scene: "_Scene", pose: Array, way: Array) -> Mixture | None:
         """Draw the cube along its way, and fit the drawing's tones to the picture."""
         when = self._moments(way)
-        poses = np.stack([se3.moved(pose, moment * way) for moment in when])
+        poses = se3.along(pose, way, when)
         texture, inside = self._looked_up(scene, *self._on_faces(scene, poses))
         use = np.flatnonzero(inside & scene.inside)
         if len(use) < FEWEST:
