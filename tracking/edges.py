@@ -10,8 +10,8 @@ from tracking.marker import marker_cells
 
 Array = NDArray[np.float64]
 
-POINTS_PER_CELL = 3
-"""Points on each cell's length of an edge: 2 to 5 px apart at arm's length, so that their noise is
+POINTS_PER_CELL = 5
+"""Points on each cell's length of an edge: 2 to 3 px apart at arm's length, so that their noise is
 independent."""
 
 

@@ -54,7 +54,7 @@ SURPRISE = 0.07
 TELLING = 0.2
 """Cells that edges must be swept over for their tones to tell of the camera's response."""
 
-DOUBT, DOUBT_STREAK = 1.7, 0.2
+DOUBT, DOUBT_STREAK = 2.0, 0.2
 """By how much edges err more than their residuals tell, at rest, and the streak that doubles it
 [cells]. Measured as the coverage that `make bench-tracking` prints."""
 

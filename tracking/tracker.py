@@ -21,9 +21,10 @@ Array = NDArray[np.float64]
 PATIENT, RARELY = 30, 5
 """Frames without the cube in which it is sought by covered markers too, and how rarely then."""
 
-SQUARE, HARMLESS = np.deg2rad(16), np.deg2rad(7)
-"""Two poses of one face that differ by less than the first may be taken for each other by time, and
-those that differ by less than the second are both right enough."""
+SQUARE, HARMLESS, ALIKE = np.deg2rad(16), np.deg2rad(7), np.deg2rad(3)
+"""Two poses of one face that differ by less than the first may be taken for each other by time,
+those that differ by less than the second are both right enough, and those that differ by less than
+the third need not be told apart."""
 
 UNSURE = (0.006, np.deg2rad(3.0))
 """A pose with a greater standard deviation than this is not given out [m, rad]."""
@@ -111,6 +112,9 @@ class CubeTracker:
         if found.sweep is not None:
             return found, "" if self._settled else "ambiguous"
         lean = se3.angle_between(found.camera_from_cube, self._follower.other(found))
+        if lean < ALIKE:
+            self._settled = False
+            return found, ""
         if self._settled and lean > SQUARE:
             return found, ""
         other = self._follower.mirrored(frame.image, found)

@@ -118,7 +118,7 @@ def test_the_covariance_is_honest_where_edges_run_along_rows_of_pixels(scene: st
         step = se3.motion(state.camera_from_cube, source.truth(index))
         assert step @ np.linalg.solve(state.covariance, step) < 12.6
         # Nor is it bought with a wide one.
-        assert np.sqrt(np.diag(state.covariance)[:3]).max() < 3e-4
+        assert np.sqrt(np.diag(state.covariance)[:3]).max() < 4e-4
 
 
 def test_a_drawing_by_another_hand_is_found_too() -> None:
@@ -179,7 +179,7 @@ def test_one_face_seen_from_afar_is_right_or_refused() -> None:
         pose = tilted(lean, 0.0, 0.2, at=(0.05, 0.02, 1.1))
         state = show(draw(pose, only=("front",)))
         assert not state.visible or off(state, pose)[1] < 10
-        assert state.visible or state.refused in ("ambiguous", "blurred", "")
+        assert state.visible or state.verdict in ("ambiguous", "blurred", "unsure", "unproved")
 
 
 def test_a_hidden_cube_is_predicted_for_a_moment_with_growing_doubt() -> None:

@@ -22,7 +22,7 @@ from tests.bench.tracking.sequences import NAMES, Sequence, sequence
 from tests.bench.tracking.table import share
 from tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
 
-AT_REST = ("static",)
+AT_REST = ("static", "static-one")
 """Sequences whose frames differ by noise alone: they would only make the number look good."""
 
 Result = dict[str, Any]

@@ -54,7 +54,8 @@ LONG = 1 / 60
 """The exposure of a webcam in a room lit by lamps [s]."""
 
 PLANS: dict[str, Plan] = {
-    "static": Plan(count=60),
+    "static": Plan(count=60, facing="corner"),
+    "static-one": Plan(count=60, facing="frontal"),
     "far": Plan(speed=0.15, turning=0.6, depth=(0.8, 1.4)),
     "twist": Plan(turning=3.0, turns=(0.0, 0.7, 1.0)),
     "sweep-0.25": Plan(speed=0.25, turning=1.0, exposure=LONG),

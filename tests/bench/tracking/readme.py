@@ -106,11 +106,12 @@ def _time(run: Run, score: Score) -> str:
 
 
 def _jitter(run: Run) -> Iterator[str]:
-    rest = [score for score in run.scores if score.sequence == "static"]
-    if rest:
-        said = (f"{s.tracker} {length(s.jitter[0])} / {angle(s.jitter[1])}" for s in rest)
-        yield f"Jitter at rest (`static`), mm / °: {', '.join(said)}."
-        yield ""
+    for name, seen in (("static", "two or three faces"), ("static-one", "one face, square on")):
+        rest = [score for score in run.scores if score.sequence == name]
+        if rest:
+            said = (f"{s.tracker} {length(s.jitter[0])} / {angle(s.jitter[1])}" for s in rest)
+            yield f"Jitter at rest with {seen} in view (`{name}`), mm / °: {', '.join(said)}."
+            yield ""
 
 
 def _own(run: Run) -> Iterator[str]:

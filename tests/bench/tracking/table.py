@@ -143,7 +143,7 @@ def _ours(scores: Rows[Score]) -> Table:
 
 def own_figures(score: Score) -> tuple[str, ...]:
     """Prediction and velocity, where the cube moves; (5,) texts."""
-    if score.sequence == "static":
+    if score.sequence.startswith("static"):
         return ("",) * 5
     speeds = zip(score.speed, (1000, 180 / np.pi), strict=True)
     return (
@@ -159,9 +159,10 @@ def foresight(score: Score) -> tuple[float, float, float]:
 
 def _rest(scores: Rows[Score]) -> Table:
     table = Table(title="Jitter at rest", box=SIMPLE_HEAD, title_justify="left")
-    for column in ("tracker", "mm", "°"):
-        table.add_column(column, justify="left" if column == "tracker" else "right")
+    for column in ("sequence", "tracker", "mm", "°"):
+        table.add_column(column, justify="right" if column in ("mm", "°") else "left")
     for score in scores:
-        if score.sequence == "static":
-            table.add_row(score.tracker, length(score.jitter[0]), angle(score.jitter[1]))
+        if score.sequence.startswith("static"):
+            figures = length(score.jitter[0]), angle(score.jitter[1])
+            table.add_row(score.sequence, score.tracker, *figures)
     return table
