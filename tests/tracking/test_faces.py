@@ -44,7 +44,7 @@ def test_a_mirrored_face_keeps_its_centre_and_leans_as_far_to_the_other_side(
     assume(cosine > 0.05)
     other = FACES.mirrored(pose, face)
     centres = [each[:3, :3] @ FACES.centres[face] + each[:3, 3] for each in (pose, other)]
-    assert np.allclose(*centres, atol=1e-12)
+    assert np.allclose(centres[0], centres[1], atol=1e-12)
     assert FACES.cosines(other)[face] == pytest.approx(cosine, abs=1e-9)
     # Twice the lean apart, but for the roundness of arccos at 1.
     lean = np.arccos(min(cosine, 1.0))
