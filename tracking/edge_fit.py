@@ -98,7 +98,7 @@ def fit(patch: Patch, profiles: Profiles, shifts: Array | None, blur: float) -> 
     rows[:, 7] = profiles.sweep[strong]
     information = measured.information[strong]
     weights, robust = information, np.ones(count)
-    for _ in range(3):
+    for _ in range(2 if shifts is None else 3):
         weighted = rows * weights[:, None]
         normal = np.asarray(weighted.T @ rows + PRIOR, np.float64)
         solution = np.asarray(np.linalg.solve(normal, weighted.T @ offset), np.float64)

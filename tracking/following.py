@@ -48,6 +48,9 @@ SURE = 0.95
 CLEAR_SWEEP = 3.5
 """And pixels: below, an unknown lens blurs as much."""
 
+LESSONS = 60
+"""Sharp frames that are aligned as blurred ones at most, only to learn from them."""
+
 SURPRISE = 0.07
 """Cells by which a sweep must differ from the expected one for the edges to be measured anew."""
 
@@ -79,6 +82,7 @@ class Follower:
         self._projection = projection
         self.response = Response()
         self.shutter = Shutter()
+        self._lessons = 0
         self.refiner = EdgeRefiner(cube, projection)
         self.aligner = SweptAligner(cube, projection)
         self.reader = CellReader(cube, projection)
@@ -103,11 +107,7 @@ class Follower:
         if self.streak(expected, sweep) < STREAK:
             found = self._sharp(patch, expected, sweep, track, timestamp)
             if found is not None:
-                self._study(
-                    patch,
-                    found.camera_from_cube,
-                    track.motion(found.camera_from_cube, found.covariance, timestamp)[0],
-                )
+                self._study(patch, found, track, timestamp)
                 return found
         aligned = self._aligned(patch, expected, sweep)
         if aligned is None:
@@ -142,18 +142,24 @@ class Follower:
             return found
         return self.by_edges(patch, pose, moved) or found
 
-    def _study(self, patch: Patch, pose: Array, velocity: Array) -> None:
+    def _study(self, patch: Patch, found: Candidate, track: Track, timestamp: float) -> None:
         """Take the time to learn what camera this is from a cube that is blurred a little."""
-        sweep = velocity * self.shutter.exposure
-        if (self.shutter.known and self.response.known) or self.streak(pose, sweep) < TELLING:
+        if (self.shutter.known and self.response.known) or self._lessons >= LESSONS:
             return
+        pose = found.camera_from_cube
+        velocity = track.motion(pose, found.covariance, timestamp)[0]
+        sweep = velocity * self.shutter.exposure
+        streak = self.streak(pose, sweep)
+        if streak < TELLING or streak * self._pixels_per_cell(pose) < CLEAR_SWEEP:
+            return
+        self._lessons += 1
         aligned = self._aligned(patch, pose, sweep, coarse=False)
         if aligned is not None:
             self._learn(aligned, velocity)
 
     def _learn(self, aligned: Alignment, velocity: Array) -> None:
         sweep = self.streak(aligned.camera_from_cube, aligned.sweep)
-        if aligned.likeness < SURE or sweep * self._pixels_per_cell(aligned) < CLEAR_SWEEP:
+        if aligned.likeness < SURE or sweep * self._pixels_per_cell(aligned.camera_from_cube) < CLEAR_SWEEP:
             return
         self.shutter.learn(*aligned.told, velocity)
         if sweep > TELLING:
@@ -258,9 +264,8 @@ class Follower:
             sweep_covariance=aligned.covariance[6:, 6:],
         )
 
-    def _pixels_per_cell(self, aligned: Alignment) -> float:
-        distance = float(aligned.camera_from_cube[2, 3])
-        return self._cell * float(self._projection.matrix[0, 0]) / distance
+    def _pixels_per_cell(self, camera_from_cube: Array) -> float:
+        return self._cell * float(self._projection.matrix[0, 0]) / float(camera_from_cube[2, 3])
 
     def streak(self, camera_from_cube: Array, sweep: Array) -> float:
         """How many cells an edge crosses at most while the shutter is open."""

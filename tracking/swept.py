@@ -29,7 +29,7 @@ Image = NDArray[np.float32]
 TEXELS = 8
 """Texels of the drawing on each cell of a marker."""
 
-COARSE, FINE = 12, 20
+COARSE, FINE = 12, 16
 """Samples on each side of a face in the two searches: fewer miss edges."""
 
 LENS = 0.85
@@ -57,7 +57,7 @@ STAGES = ((SOFT, COARSE, 4), (SHARP, FINE, 4))
 GRAZING = 0.12
 """Cosine of the viewing angle below which a face shows too little of its picture."""
 
-SETTLED = np.repeat([5e-5, 5e-4], 3)
+SETTLED = np.repeat([1.5e-4, 1e-3], 3)
 """A step smaller than this is the last [m, rad]."""
 
 FEWEST = 60

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 PATIENT, RARELY = 30, 5
 """Frames without the cube in which it is sought by covered markers too, and how rarely then."""
 
-SQUARE, HARMLESS, ALIKE = np.deg2rad(16), np.deg2rad(7), np.deg2rad(3)
+SQUARE, HARMLESS, ALIKE = np.deg2rad(10), np.deg2rad(7), np.deg2rad(3)
 """Two poses of one face that differ by less than the first may be taken for each other by time,
 those that differ by less than the second are both right enough, and those that differ by less than
 the third need not be told apart."""
