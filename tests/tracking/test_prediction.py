@@ -165,8 +165,8 @@ def test_fifty_milliseconds_of_a_hand_are_foretold_better_than_by_a_steady_veloc
     held_, steady, foretold = (float(np.median(each)) for each in errors.values())
     assert 15 < held_ < 20
     assert 4 < steady < 7
-    assert foretold < 2.5
-    assert np.percentile(errors["predicted"], 95) < 4
+    assert foretold < 2
+    assert np.percentile(errors["predicted"], 95) < 3
 
 
 def test_doubt_grows_with_the_time_since_the_cube_was_seen() -> None:
