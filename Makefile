@@ -27,6 +27,9 @@ bench: .venv/ready-dev  ## every figure that the documents name
 	$(BIN)/python -m tests.bench.animation
 	$(BIN)/python -m tests.bench.picture
 	$(BIN)/python -m tests.bench.wire
+	$(BIN)/python -m tests.bench.several
+	$(BIN)/python -m tests.bench.camera
+	$(BIN)/python -m tests.bench.calibration --seeds 2
 
 bench-tracking: .venv/ready-dev  ## the cube's tracker and its rivals, on the same frames
 	$(BIN)/python -m tests.bench.tracking --readme tracking/README.md
@@ -52,4 +55,4 @@ pictures: .venv/ready-dev  ## draw the pictures of the documents anew
 	@touch $@
 
 clean:
-	rm -rf .venv build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf .venv .bench build *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -1,6 +1,6 @@
 """One calibration: frames in, advice out, until the camera is known or the frames end."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.errors import AppError
-from tracking import Frame, FrameSource, TrackingError
+from tracking import Frame, FrameSource, LiveFrames, TrackingError
 from tracking.calibration import Calibration, Coach, Collector, Finder, Glance, calibrate
 
 Picture = NDArray[np.uint8]
@@ -53,6 +53,24 @@ class Teller(Protocol):
         ...
 
 
+PATIENCE = 30.0
+"""A camera that is lost may come back for so long [s]."""
+
+BREATH = 0.05
+"""How long the window waits for a frame before it looks whether it is closed [s]."""
+
+
+def _frames(source: FrameSource, teller: Teller) -> Iterator[Frame]:
+    """Yield frames; a camera that is lost does not keep a person from closing the window."""
+    if not isinstance(source, LiveFrames):
+        yield from source
+        return
+    while not teller.closed:
+        frame = source.wait(BREATH, PATIENCE)
+        if frame is not None:
+            yield frame
+
+
 class Lesson:
     """Collects views of whichever target is held up first.
 
@@ -84,7 +102,7 @@ class Lesson:
     def run(self, source: FrameSource, teller: Teller, seconds: float) -> None:
         """Collect until the coach is content and the camera determined, or frames or time end."""
         first: float | None = None
-        for frame in source:
+        for frame in _frames(source, teller):
             first = frame.timestamp if first is None else first
             glance = self._glance(frame)
             # A recording is looked through to its end: it cannot be asked for anything.

@@ -18,8 +18,7 @@ from app.summary import camera_line
 from characters import Character, CharacterError
 from characters.rendering import create_context
 from robot import serial_ports
-from tracking import FrameSource, TrackingError, open_source
-from tracking.sources.base import LiveFrames
+from tracking import FrameSource, LiveFrames, TrackingError, open_source
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,7 @@ from app.show.notice import notice
 from app.show.screen import Screen
 from app.summary import Summary
 from robot import RobotError
-from tracking import Frame, FrameSource, Intrinsics, TrackingError
-from tracking.sources.base import LiveFrames
-from tracking.sources.health import Health
+from tracking import Frame, FrameSource, Health, Intrinsics, LiveFrames, TrackingError
 
 Progress = Callable[[Step], None]
 

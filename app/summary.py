@@ -11,8 +11,7 @@ from rich.text import Text
 from app.playground import Step
 from app.show.overlay import RobotView
 from robot import RobotError
-from tracking import TrackingError
-from tracking.sources.health import Health
+from tracking import Health, TrackingError
 
 BLOCKS = "▁▂▃▄▅▆▇█"
 

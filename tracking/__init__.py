@@ -8,8 +8,9 @@ from tracking.frame import Frame
 from tracking.gestures import CubeGestures
 from tracking.icons import icon_mask, icon_paths
 from tracking.intrinsics import Intrinsics
+from tracking.several import CubesTracker
 from tracking.sheet import write_sheet
-from tracking.sources import FrameSource, open_source
+from tracking.sources import FrameSource, Health, LiveFrames, open_source
 from tracking.state import CubeControls, CubeState
 from tracking.tracker import CubeTracker
 
@@ -20,10 +21,13 @@ __all__ = [
     "CubeModel",
     "CubeState",
     "CubeTracker",
+    "CubesTracker",
     "Face",
     "Frame",
     "FrameSource",
+    "Health",
     "Intrinsics",
+    "LiveFrames",
     "TrackingError",
     "calibrate_camera",
     "icon_mask",

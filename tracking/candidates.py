@@ -7,7 +7,7 @@ from tracking import se3
 from tracking.candidate import Candidate
 from tracking.cube import CubeModel
 from tracking.detection import Observation
-from tracking.following import DOUBT, Follower
+from tracking.following import Follower
 from tracking.patch import Patch
 from tracking.projection import Projection
 from tracking.refinement import Refinement
@@ -90,7 +90,7 @@ class CandidateFinder:
             )
         return Candidate(
             camera_from_cube=refinement.camera_from_cube,
-            covariance=refinement.covariance * DOUBT,
+            covariance=self._follower.doubted(refinement, None),
             source="markers",
             faces=faces,
             error=self._solver.error(refinement.camera_from_cube, seen),

@@ -36,7 +36,7 @@ whichever is more: a cube folded 1 mm askew does, a cube on a screen seen from a
 TOLD = 0.6
 """Share of a face's cells that must be as they should for its edges to be called its own."""
 
-READ = 0.9
+READ = 0.95
 """Share of a face's cells that must be as they should for it to count as read."""
 
 LIKE = 0.85
@@ -57,9 +57,12 @@ SURPRISE = 0.07
 TELLING = 0.2
 """Cells that edges must be swept over for their tones to tell of the camera's response."""
 
-DOUBT, DOUBT_STREAK = 2.0, 0.2
+DOUBT, DOUBT_STREAK = 1.5, 0.25
 """By how much edges err more than their residuals tell, at rest, and the streak that doubles it
 [cells]. Measured as the coverage that `make bench-tracking` prints."""
+
+COMMON = (0.01, 0.002, 0.005)
+"""What all edges err by together: to a side, in size and in lean, at the cube's border [px]."""
 
 DOUBT_SWEPT = (2.5, 5.0)
 """The same for blurred pictures: at no streak, and more for each cell."""
@@ -159,7 +162,10 @@ class Follower:
 
     def _learn(self, aligned: Alignment, velocity: Array) -> None:
         sweep = self.streak(aligned.camera_from_cube, aligned.sweep)
-        if aligned.likeness < SURE or sweep * self._pixels_per_cell(aligned.camera_from_cube) < CLEAR_SWEEP:
+        if (
+            aligned.likeness < SURE
+            or sweep * self._pixels_per_cell(aligned.camera_from_cube) < CLEAR_SWEEP
+        ):
             return
         self.shutter.learn(*aligned.told, velocity)
         if sweep > TELLING:
@@ -193,7 +199,7 @@ class Follower:
             return None
         return Candidate(
             camera_from_cube=found.camera_from_cube,
-            covariance=found.covariance * self._doubt(found.camera_from_cube, sweep),
+            covariance=self.doubted(found, sweep),
             source="markers" if reading.best >= READ else "image",
             faces=tuple(
                 face
@@ -241,13 +247,25 @@ class Follower:
         if not coarse:
             found = self.aligner.align(patch, expected, sweep, prior, coarse=False)
         if coarse is None and not (found and found.weakest > SURE):
-            found = self.aligner.align(patch, expected, sweep, prior)
-        return found if found and found.weakest > LIKE else None
+            again = self.aligner.align(patch, expected, sweep, prior)
+            if again and not (found and found.likeness > again.likeness):
+                found = again
+        return found if found and _shown(found) else None
 
-    def _doubt(self, pose: Array, sweep: Array | None) -> float:
-        """By how much the variances of edges are to be raised."""
+    def doubted(self, found: Refinement, sweep: Array | None) -> Array:
+        """Covariance of a pose on edges, (6, 6), with what no residual shows.
+
+        Lens, paper and light put all edges a little beside their places together: to the side, in
+        size, and in lean.
+        """
+        pose = found.camera_from_cube
         streak = self.streak(pose, sweep) if sweep is not None else 0.0
-        return DOUBT * (1 + (streak / DOUBT_STREAK) ** 2)
+        distance = float(pose[2, 3])
+        pixel = distance / float(self._projection.matrix[0, 0])
+        side, size, lean = np.array(COMMON) * pixel
+        size, lean = size * distance / self._half, lean / self._half
+        floor = np.square([side, side, size, lean, lean, lean])
+        return found.covariance * DOUBT * (1 + (streak / DOUBT_STREAK) ** 2) + np.diag(floor)
 
     def _blurred(self, aligned: Alignment) -> Candidate:
         faces = tuple(face for face, share in aligned.shares.items() if share > LIKE)
@@ -289,6 +307,14 @@ class Follower:
         if right - left < 32 or bottom - top < 32:
             return None
         return left, top, right, bottom
+
+
+def _shown(aligned: Alignment) -> bool:
+    """Whether a blurred picture shows the cube: all faces are like it, or two are beyond doubt."""
+    if aligned.weakest > LIKE:
+        return True
+    sure = sum(share > SURE for share in aligned.shares.values())
+    return aligned.likeness > LIKE and sure >= 2
 
 
 def _proves(found: Refinement, reading: Reading) -> bool:

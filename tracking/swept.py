@@ -60,7 +60,7 @@ GRAZING = 0.12
 SETTLED = np.repeat([1.5e-4, 1e-3], 3)
 """A step smaller than this is the last [m, rad]."""
 
-FEWEST = 60
+FEWEST = 40
 """Fewer samples than this do not make a pose."""
 
 

@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from app.commands.play import CAMERA
-from app.commands.progress import finished_video, play_to_end
+from app.commands.progress import finished_video, play_to_end, tell_guess
 from app.commands.replay import bundled
 from app.opening import Wish, open_session
 from app.scenarios import scenario_cube
@@ -54,6 +54,7 @@ def demo(
             )
             wish = Wish(scenario, CAMERA)
         plan = open_session(wish, closing, camera)
+        tell_guess(wish, plan.source, console)
         summary = play_to_end(plan, console, scenario)
     console.print(summary)
     summary.check()

@@ -7,8 +7,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.progress import finished_video, play_to_end
-from app.opening import Wish, guessed, open_session
+from app.commands.progress import finished_video, play_to_end, tell_guess
+from app.opening import Wish, open_session
 from app.scenarios import scenario_cube
 from app.show.display import require_display
 
@@ -93,8 +93,7 @@ def play(
         require_display()
     with ExitStack() as closing:
         plan = open_session(wish, closing)
-        if guessed(wish, plan.source):
-            Console().print("[dim]The camera is not calibrated: a lens of 60° is guessed.[/]")
+        tell_guess(wish, plan.source, Console())
         summary = play_to_end(plan, Console(), f"playing {scenario}")
     Console().print(summary)
     if output is not None:

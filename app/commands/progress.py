@@ -6,10 +6,12 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from app.errors import AppError
+from app.opening import Wish, guessed
 from app.playground import Step
 from app.runner import Plan, run
 from app.show.screen import VideoFile
 from app.summary import Summary
+from tracking import FrameSource
 
 
 def play_to_end(plan: Plan, console: Console, title: str) -> Summary:
@@ -41,6 +43,15 @@ def play_to_end(plan: Plan, console: Console, title: str) -> Summary:
     if summary.frames == 0 and not summary.interrupted:
         raise AppError("the source gave no picture at all")
     return summary
+
+
+def tell_guess(wish: Wish, source: FrameSource, console: Console) -> None:
+    """Say where lengths rest on a guessed lens, and what to do about it."""
+    if guessed(wish, source):
+        console.print(
+            "[dim]The camera is not calibrated: a lens of 60° is guessed. "
+            "[cyan]cubeling calibrate[/] finds the true one in 20 s.[/]"
+        )
 
 
 def finished_video(path: Path) -> str:

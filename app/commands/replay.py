@@ -9,7 +9,7 @@ from rich.console import Console
 
 from app.checking import check_session
 from app.commands.play import Actor, Codec, Output, Pictures, Record, RobotUrl
-from app.commands.progress import finished_video, play_to_end
+from app.commands.progress import finished_video, play_to_end, tell_guess
 from app.errors import AppError
 from app.opening import Wish, open_session
 from app.session import about, salvaged
@@ -72,6 +72,7 @@ def replay(
         raise typer.Exit(0 if verdict.identical else 1)
     with ExitStack() as closing:
         plan = open_session(wish, closing)
+        tell_guess(wish, plan.source, console)
         summary = play_to_end(plan, console, f"replaying {session.name}")
     console.print(summary)
     if output is not None:

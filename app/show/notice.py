@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from tracking.sources.health import Health
+from tracking import Health
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,8 @@ import time
 from collections.abc import Callable
 
 from tracking.errors import TrackingError
-from tracking.sources.base import FrameSource
+from tracking.sources.base import FrameSource, LiveFrames
+from tracking.sources.health import Health
 
 CAMERA_SIZE = (1280, 720)
 """What a camera is asked for where the caller does not say."""
@@ -24,8 +25,8 @@ def open_source(
     Parameters
     ----------
     uri
-        "camera:0", "camera:/dev/video0", "take.mp4", "session.mcap", "http://phone:8080/video",
-        or "synthetic:NAME".
+        "camera:0", "camera:/dev/video0", "camera:0?exposure=8&focus=30&lock=0", "take.mp4",
+        "session.mcap", "http://phone:8080/video", or "synthetic:NAME".
     size
         Width and height to ask of a camera [px]; other sources have their own.
     clock
@@ -60,4 +61,4 @@ def open_source(
     return VideoSource(uri)
 
 
-__all__ = ["FrameSource", "open_source"]
+__all__ = ["FrameSource", "Health", "LiveFrames", "open_source"]
