@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.candidate import Candidate
+from tracking.candidate import Candidate, close, decisive
 from tracking.candidates import CandidateFinder
 from tracking.covered import CoveredMarkerDetector
 from tracking.cube import CubeModel
@@ -93,15 +93,20 @@ class Acquirer:
 
         Returns
         -------
-        Those that edges prove, else those of the most thorough search that found any.
+        The first that edges prove and that leave no choice, else those of the most thorough search.
         """
         patch = Patch.of(search.grey, None, self._follower.response.table)
         found: list[Candidate] = []
         for observations in self._observations(search, thorough):
             candidates = self._finder.find(patch, observations, expected) if observations else []
             if any(each.certain for each in candidates):
-                return candidates
-            found = candidates or found
+                if _clear(candidates):
+                    return candidates
+                found = candidates
+            elif not any(each.certain for each in found):
+                found = candidates or found
+        if any(each.certain for each in found):
+            return found
         return self._unblurred(search, found)
 
     def _observations(self, search: Search, thorough: bool) -> Iterator[list[Observation]]:
@@ -121,3 +126,9 @@ class Acquirer:
                 patch = Patch.of(search.image, region, self._follower.response.table)
                 found.append(self._follower.unblurred(patch, each.camera_from_cube))
         return [each for each in found if each] or candidates
+
+
+def _clear(candidates: list[Candidate]) -> bool:
+    """Whether there is one pose, or one that is clearly better than the other."""
+    best, *others = sorted(candidates, key=lambda each: each.residual)
+    return all(close(best, other) or decisive(best, other) for other in others)

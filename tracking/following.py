@@ -29,7 +29,7 @@ SEEN_FEW = 0.25
 CRISP = 0.65
 """Edges that are duller than this across one direction are blurred in a way that was not told."""
 
-UNSHARP, CROOKED = 0.25, 0.0063
+UNSHARP, CROOKED = 0.5, 0.0063
 """Edges of a rigid cube lie within this of their places [px], or within this share of its edge,
 whichever is more: a cube folded 1 mm askew does, a cube on a screen seen from aside does not."""
 
@@ -265,7 +265,8 @@ class Follower:
         side, size, lean = np.array(COMMON) * pixel
         size, lean = size * distance / self._half, lean / self._half
         floor = np.square([side, side, size, lean, lean, lean])
-        return found.covariance * DOUBT * (1 + (streak / DOUBT_STREAK) ** 2) + np.diag(floor)
+        raised = found.covariance * DOUBT * (1 + (streak / DOUBT_STREAK) ** 2)
+        return np.asarray(raised + np.diag(floor), np.float64)
 
     def _blurred(self, aligned: Alignment) -> Candidate:
         faces = tuple(face for face, share in aligned.shares.items() if share > LIKE)
