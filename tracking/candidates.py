@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking import se3
-from tracking.candidate import Candidate
+from tracking.candidate import Candidate, close
 from tracking.cube import CubeModel
 from tracking.detection import Observation
 from tracking.following import Follower
@@ -66,9 +66,16 @@ class CandidateFinder:
             self._judged(patch, each, refine(patch, each.camera_from_cube)) for each in solutions
         ]
         if any(each.certain for each in found):
-            return found
+            return self._with_mirrored(patch, found)
         wide = [self._best_refinement(patch, each.camera_from_cube) for each in solutions]
         return [self._judged(patch, *pair) for pair in zip(solutions, wide, strict=True)]
+
+    def _with_mirrored(self, patch: Patch, found: list[Candidate]) -> list[Candidate]:
+        """Add the other pose of a single face, where the corners alone did not propose it."""
+        if len(found) > 1 or len(found[0].faces) > 1:
+            return found
+        other = self._follower.mirrored(patch, found[0])
+        return [*found, other] if other and not close(found[0], other) else found
 
     def _judged(
         self, patch: Patch, solution: CornerSolution, refinement: Refinement | None

@@ -176,18 +176,12 @@ class Follower:
         face = self._faces.names.index(candidate.faces[0])
         return self._faces.mirrored(candidate.camera_from_cube, face)
 
-    def mirrored(self, image: NDArray[np.uint8], candidate: Candidate) -> Candidate | None:
+    def mirrored(self, patch: Patch, candidate: Candidate) -> Candidate | None:
         """Refine the other pose that a single face could have; None where there is no such pose.
 
         Seen from afar, a square that leans towards the camera looks like one that leans away.
         """
-        other = self.other(candidate)
-        region = self.region(other)
-        return (
-            self.by_edges(Patch.of(image, region, self.response.table), other, None)
-            if region
-            else None
-        )
+        return self.by_edges(patch, self.other(candidate), None)
 
     def by_edges(self, patch: Patch, start: Array, sweep: Array | None) -> Candidate | None:
         """Refine a pose on the edges, and take it if they prove that this is the cube."""
@@ -222,7 +216,8 @@ class Follower:
         for angle in np.arange(4) * np.pi / 4:
             sweep = self._cell * np.array([np.cos(angle), np.sin(angle), 0, 0, 0, 0])
             found = self.aligner.align(patch, start, sweep, prior)
-            if found and found.likeness > max(SURE, best.likeness if best else 0.0):
+            surer = found and found.likeness > max(SURE, best.likeness if best else 0.0)
+            if found and surer and _shown(found):
                 best = found
         return self._finished(patch, best) if best else None
 

@@ -12,6 +12,7 @@ from tracking.errors import TrackingError
 from tracking.following import Follower
 from tracking.frame import Frame
 from tracking.intrinsics import Intrinsics
+from tracking.patch import Patch
 from tracking.prediction import MEMORY, Sighting, Track
 from tracking.projection import Projection
 from tracking.state import CubeState
@@ -31,6 +32,9 @@ UNSURE = (0.006, np.deg2rad(3.0))
 
 LONE_SPEED = 0.65
 """A single face that moves faster than this [m/s] is too blurred to tell how far away it is."""
+
+FRESH = 0.07
+"""The past tells two poses of a face apart no longer than this [s]."""
 
 FORGOTTEN = 1.0
 """After this time out of sight [s] the cube may appear anywhere without confirmation."""
@@ -117,7 +121,9 @@ class CubeTracker:
             return found, ""
         if self._settled and lean > SQUARE:
             return found, ""
-        other = self._follower.mirrored(frame.image, found)
+        region = self._follower.region(found.camera_from_cube)
+        patch = Patch.of(frame.image, region, self._follower.response.table) if region else None
+        other = self._follower.mirrored(patch, found) if patch else None
         if other is None or close(found, other):
             self._settled &= other is None
             return found, ""
@@ -178,7 +184,7 @@ class CubeTracker:
         other = others[0]
         if decisive(best, other):
             return best, ""
-        if recent is not None:
+        if recent is not None and now - recent.timestamp < FRESH:
             expected = prediction.predicted(recent, now)
             near, far = sorted(
                 (se3.angle_between(expected, each.camera_from_cube), number)
@@ -210,11 +216,12 @@ class CubeTracker:
     def _seen(self, candidate: Candidate, now: float) -> CubeState:
         pose = candidate.camera_from_cube
         velocity, change = self._track.motion(pose, candidate.covariance, now)
+        if _unsure(candidate.covariance):
+            # What the poses before say of now is better than this.
+            return self._unseen(now, "unsure")
         self._track.add(Sighting(pose, velocity, candidate.covariance, now, change))
         self._jump = None
         self._missed = 0
-        if _unsure(candidate.covariance):
-            return self._unseen(now, "unsure")
         return CubeState(
             visible=True,
             camera_from_cube=pose,
