@@ -95,7 +95,7 @@ class Acquirer:
         -------
         The first that edges prove and that leave no choice, else those of the most thorough search.
         """
-        patch = Patch.of(search.grey, None, self._follower.response.table)
+        patch = Patch.of(search.grey, None, self._follower.camera.tone)
         found: list[Candidate] = []
         for observations in self._observations(search, thorough):
             candidates = self._finder.find(patch, observations, expected) if observations else []
@@ -123,7 +123,7 @@ class Acquirer:
         for each in candidates:
             region = self._follower.region(each.camera_from_cube)
             if region is not None:
-                patch = Patch.of(search.image, region, self._follower.response.table)
+                patch = Patch.of(search.image, region, self._follower.camera.tone)
                 found.append(self._follower.unblurred(patch, each.camera_from_cube))
         return [each for each in found if each] or candidates
 

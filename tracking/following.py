@@ -8,14 +8,13 @@ from tracking.alignment import Alignment
 from tracking.candidate import Candidate
 from tracking.cube import CubeModel
 from tracking.faces import Faces
+from tracking.habits import CameraHabits
 from tracking.marker import marker_cells
 from tracking.patch import Patch, Region
 from tracking.prediction import Track
 from tracking.projection import NEAREST, Projection
 from tracking.reading import CellReader, Reading
 from tracking.refinement import EdgeRefiner, Refinement
-from tracking.response import Response
-from tracking.shutter import Shutter
 from tracking.swept import SweptAligner
 
 Array = NDArray[np.float64]
@@ -45,17 +44,8 @@ LIKE = 0.85
 SURE = 0.95
 """The same where there is no past."""
 
-CLEAR_SWEEP = 3.5
-"""And pixels: below, an unknown lens blurs as much."""
-
-LESSONS = 60
-"""Sharp frames that are aligned as blurred ones at most, only to learn from them."""
-
 SURPRISE = 0.07
 """Cells by which a sweep must differ from the expected one for the edges to be measured anew."""
-
-TELLING = 0.2
-"""Cells that edges must be swept over for their tones to tell of the camera's response."""
 
 DOUBT, DOUBT_STREAK = 1.5, 0.25
 """By how much edges err more than their residuals tell, at rest, and the streak that doubles it
@@ -83,9 +73,7 @@ class Follower:
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._projection = projection
-        self.response = Response()
-        self.shutter = Shutter()
-        self._lessons = 0
+        self.camera = CameraHabits()
         self.refiner = EdgeRefiner(cube, projection)
         self.aligner = SweptAligner(cube, projection)
         self.reader = CellReader(cube, projection)
@@ -105,8 +93,8 @@ class Follower:
         region = self.region(expected)
         if region is None:
             return None
-        patch = Patch.of(image, region, self.response.table)
-        sweep = prediction.velocity_at(last, timestamp) * self.shutter.exposure
+        patch = Patch.of(image, region, self.camera.tone)
+        sweep = prediction.velocity_at(last, timestamp) * self.camera.exposure
         if self.streak(expected, sweep) < STREAK:
             found = self._sharp(patch, expected, sweep, track, timestamp)
             if found is not None:
@@ -138,7 +126,7 @@ class Follower:
         if found is None:
             return None
         pose = found.camera_from_cube
-        moved = track.motion(pose, found.covariance, timestamp)[0] * self.shutter.exposure
+        moved = track.motion(pose, found.covariance, timestamp)[0] * self.camera.exposure
         if self.streak(pose, moved) > STREAK:
             return None
         if self.streak(pose, moved - sweep) < SURPRISE:
@@ -147,29 +135,23 @@ class Follower:
 
     def _study(self, patch: Patch, found: Candidate, track: Track, timestamp: float) -> None:
         """Take the time to learn what camera this is from a cube that is blurred a little."""
-        if (self.shutter.known and self.response.known) or self._lessons >= LESSONS:
+        if not self.camera.curious:
             return
         pose = found.camera_from_cube
         velocity = track.motion(pose, found.covariance, timestamp)[0]
-        sweep = velocity * self.shutter.exposure
-        streak = self.streak(pose, sweep)
-        if streak < TELLING or streak * self._pixels_per_cell(pose) < CLEAR_SWEEP:
+        sweep = velocity * self.camera.exposure
+        if not self.camera.tells(self.streak(pose, sweep), self._pixels_per_cell(pose)):
             return
-        self._lessons += 1
+        self.camera.lessons += 1
         aligned = self._aligned(patch, pose, sweep, coarse=False)
         if aligned is not None:
             self._learn(aligned, velocity)
 
     def _learn(self, aligned: Alignment, velocity: Array) -> None:
-        sweep = self.streak(aligned.camera_from_cube, aligned.sweep)
-        if (
-            aligned.likeness < SURE
-            or sweep * self._pixels_per_cell(aligned.camera_from_cube) < CLEAR_SWEEP
-        ):
-            return
-        self.shutter.learn(*aligned.told, velocity)
-        if sweep > TELLING:
-            self.response.learn(aligned.bend, aligned.black)
+        pose = aligned.camera_from_cube
+        streak = self.streak(pose, aligned.sweep)
+        if aligned.likeness >= SURE:
+            self.camera.learn(aligned, velocity, streak, self._pixels_per_cell(pose))
 
     def other(self, candidate: Candidate) -> Array:
         """Return the mirrored pose of a single face, (4, 4), not refined."""
@@ -235,7 +217,7 @@ class Follower:
         self, patch: Patch, expected: Array, sweep: Array, coarse: bool | None = None
     ) -> Alignment | None:
         """Align the picture of a moving cube: finely, and coarsely first where that fails."""
-        share, shift, turn = SWEEP_SPREAD if self.shutter.known else FIRST_SPREAD
+        share, shift, turn = SWEEP_SPREAD if self.camera.exposure_known else FIRST_SPREAD
         spread = share * np.repeat([np.linalg.norm(sweep[:3]), np.linalg.norm(sweep[3:])], 3)
         prior = np.hypot(spread, np.repeat([shift, turn], 3))
         found = None

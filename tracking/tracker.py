@@ -122,7 +122,7 @@ class CubeTracker:
         if self._settled and lean > SQUARE:
             return found, ""
         region = self._follower.region(found.camera_from_cube)
-        patch = Patch.of(frame.image, region, self._follower.response.table) if region else None
+        patch = Patch.of(frame.image, region, self._follower.camera.tone) if region else None
         other = self._follower.mirrored(patch, found) if patch else None
         if other is None or close(found, other):
             self._settled &= other is None

@@ -143,18 +143,18 @@ def show(film: Film, follower: Follower) -> None:
 def test_a_cube_that_moves_in_linear_light_teaches_two_point_two(in_linear_light: Film) -> None:
     follower = in_linear_light.follower()
     show(in_linear_light, follower)
-    assert follower.response.known
-    assert follower.response.exponent == pytest.approx(2.2, abs=0.15)
+    assert follower.camera.response.known
+    assert follower.camera.response.exponent == pytest.approx(2.2, abs=0.15)
 
 
 def test_who_took_grey_values_for_light_is_taught_better(in_linear_light: Film) -> None:
     """Each step is made with the table that was learnt before, so it takes a few."""
     follower = in_linear_light.follower()
-    teach(follower.response, 1.0, KEPT)
-    assert follower.response.exponent == pytest.approx(1.0, abs=0.03)
+    teach(follower.camera.response, 1.0, KEPT)
+    assert follower.camera.response.exponent == pytest.approx(1.0, abs=0.03)
     show(in_linear_light, follower)
     show(in_linear_light, follower)
-    assert follower.response.exponent == pytest.approx(2.2, abs=0.25)
+    assert follower.camera.response.exponent == pytest.approx(2.2, abs=0.25)
 
 
 def test_a_drawing_that_blurs_grey_values_teaches_nearly_one() -> None:
@@ -167,5 +167,5 @@ def test_a_drawing_that_blurs_grey_values_teaches_nearly_one() -> None:
         shots.append((source.frame(number).image, times, poses))
     follower = Follower(source.cube, Projection(source.intrinsics))
     show(Film(lambda: follower, shots), follower)
-    assert follower.response.known
-    assert 1.0 <= follower.response.exponent <= 1.3
+    assert follower.camera.response.known
+    assert 1.0 <= follower.camera.response.exponent <= 1.3

@@ -11,7 +11,8 @@ from tests.tracking.drawn import CAMERA, held, off, photograph, scene
 from tracking import se3
 from tracking.alignment import Alignment
 from tracking.cube import CubeModel
-from tracking.following import CLEAR_SWEEP, LIKE, Follower
+from tracking.following import LIKE, Follower
+from tracking.habits import CLEAR_SWEEP
 from tracking.patch import Patch
 from tracking.prediction import Sighting, Track
 from tracking.projection import Projection
