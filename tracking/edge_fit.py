@@ -24,6 +24,9 @@ when all is lost."""
 FAINT = 0.4
 """An edge with less than this share of the contrast of good edges is covered, or none."""
 
+NOISE, DARKEST = 3.0, 0.1
+"""Contrast that noise alone can show [grey levels], and the deepest shadow, beside good edges."""
+
 FEWEST = 36
 """Fewer edge points than this do not make a pose."""
 
@@ -85,7 +88,7 @@ def fit(patch: Patch, profiles: Profiles, shifts: Array | None, blur: float) -> 
     """
     measured = offsets(patch, profiles, 0.0 if shifts is None else shifts, blur)
     beside = measured.offset
-    good = measured.contrast > _least_contrast(profiles.face, measured.contrast)
+    good = _printed(profiles.face, measured)
     good &= np.abs(beside) < profiles.reach
     strong = np.flatnonzero(good)
     if len(strong) < FEWEST:
@@ -110,14 +113,19 @@ def fit(patch: Patch, profiles: Profiles, shifts: Array | None, blur: float) -> 
     return Fit(measured, solution, strong, rows, weights, robust, residual, normal)
 
 
-def _least_contrast(face: NDArray[np.intp], contrast: Array) -> Array:
-    """Contrast that an edge must have to be seen, by the other edges of its face, (N,)."""
+def _printed(face: NDArray[np.intp], measured: Measured) -> NDArray[np.bool_]:
+    """Whether an edge is as clear as the other edges of its face are, (N,).
+
+    Contrast is taken beside the light there (Weber's): ink on paper keeps it in a shadow, where
+    plain contrast falls; skin has little of it anywhere.
+    """
+    clear = measured.contrast / np.maximum(measured.level, 1.0)
     least = np.empty(len(face))
-    overall = 3.0 + 0.1 * quantile(contrast, 0.7)
     starts = np.flatnonzero(np.diff(face, prepend=-1))
     for start, end in zip(starts, [*starts[1:], len(face)], strict=True):
-        least[start:end] = max(overall, FAINT * quantile(contrast[start:end], 0.7))
-    return least
+        least[start:end] = FAINT * quantile(clear[start:end], 0.7)
+    overall = NOISE + DARKEST * quantile(measured.contrast, 0.7)
+    return np.asarray((clear > least) & (measured.contrast > overall), np.bool_)
 
 
 def covariance(fit: Fit, lines: NDArray[np.intp], pixels: Array) -> Array:

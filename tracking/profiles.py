@@ -164,7 +164,8 @@ def offsets(patch: Patch, profiles: Profiles, shifts: Array | float, blur: float
     half = TAPS // 2
     rise = (values[:, half + 1] - values[:, half - 1]).astype(np.float64)
     fitted = contrast * (step[:, half + 1] - step[:, half - 1])
-    return Measured(shifted / safe, contrast, 1 / variance, rise, fitted)
+    level = values.mean(axis=1).astype(np.float64)
+    return Measured(shifted / safe, contrast, level, 1 / variance, rise, fitted)
 
 
 @dataclass(frozen=True)
@@ -176,6 +177,9 @@ class Measured:
 
     contrast: Array
     """Height of the step, white over black [grey levels]."""
+
+    level: Array
+    """Mean of the picture along the profile [grey levels]."""
 
     information: Array
     """About the offset [1/px²]."""
