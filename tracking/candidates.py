@@ -32,6 +32,10 @@ WHOLE_FACE = 0.85
 """The same for the edges of the only face whose marker was read: blur that hides the other faces
 leaves less of it, fingers that do so leave all of it."""
 
+STEEP = 0.75
+"""Edges that are duller than this show a blurred picture: it is aligned as one, since blur of which
+nothing is known puts a lone face centimetres too near or too far."""
+
 FINE_CELL = 4.0
 """Cells larger than this [px] have edges that a sharp picture shows."""
 
@@ -102,7 +106,7 @@ class CandidateFinder:
             faces=faces,
             error=self._solver.error(refinement.camera_from_cube, seen),
             residual=refinement.residual / refinement.support,
-            certain=self._follower.proved(patch, refinement),
+            certain=refinement.steep > STEEP and self._follower.proved(patch, refinement),
             lines=refinement.lines,
         )
 

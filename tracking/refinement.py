@@ -72,6 +72,9 @@ class Refinement:
     """How steep the dullest edges are beside the steepest, both against what the sweep makes them;
     well below 1 where the cube moved in a way that was not told."""
 
+    steep: float
+    """How steep the edges are beside sharp ones that are swept as told; 1 in a sharp picture."""
+
 
 class EdgeRefiner:
     """Refines poses of one cube seen by one camera."""
@@ -153,16 +156,19 @@ class EdgeRefiner:
                 self._faces.names[number]: float(found[number] / wanted[number])
                 for number in np.flatnonzero(wanted > 10).tolist()
             },
-            _crisp(step.measured, kept, model.line[numbers[kept]]),
+            *_sharpness(step.measured, kept, model.line[numbers[kept]]),
         )
 
 
-def _crisp(measured: Measured, kept: NDArray[np.intp], lines: NDArray[np.intp]) -> float:
+def _sharpness(
+    measured: Measured, kept: NDArray[np.intp], lines: NDArray[np.intp]
+) -> tuple[float, float]:
+    """Compare the steepness of lines with each other, and with what it should be."""
     starts = np.flatnonzero(np.diff(lines, prepend=-1))
     rise = np.add.reduceat(measured.rise[kept], starts)
     fitted = np.add.reduceat(measured.fitted[kept], starts)
     steep = rise / np.maximum(fitted, 1e-9)
-    return quantile(steep, 0.15) / max(quantile(steep, 0.85), 1e-9)
+    return quantile(steep, 0.15) / max(quantile(steep, 0.85), 1e-9), quantile(steep, 0.5)
 
 
 def _converged(patch: Patch, profiles: Profiles, blurs: tuple[float, ...]) -> Fit | None:
