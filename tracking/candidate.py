@@ -1,6 +1,6 @@
 """A pose found in one frame, before it is trusted, and how two of them compare."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -44,9 +44,6 @@ class Candidate:
 
     sweep: Array | None = None
     """Shift-turn of the cube while the shutter was open, (6,), where it was measured."""
-
-    sweep_covariance: Array = field(default_factory=lambda: np.zeros((6, 6)))
-    """Of `sweep`, (6, 6)."""
 
     lines: int = 8
     """How many independent measurements the residual rests on, roughly."""

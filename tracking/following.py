@@ -257,7 +257,6 @@ class Follower:
             residual=aligned.residual,
             certain=True,
             sweep=aligned.sweep,
-            sweep_covariance=aligned.covariance[6:, 6:],
         )
 
     def _pixels_per_cell(self, camera_from_cube: Array) -> float:

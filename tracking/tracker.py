@@ -93,21 +93,16 @@ class CubeTracker:
     def follow(self, frame: Frame) -> CubeState | None:
         """Find the cube near where it should be; None where it is not found there."""
         now = frame.timestamp
-        recent = self._track.recent(now)
-        if recent is None:
-            return None
         found = self._follower.follow(frame.image, self._track, now)
         if found is None:
             return None
         if len(found.faces) != 1:
             self._settled = True
             return self._seen(found, now)
-        found, refused = self._settle(frame, found, recent, now)
+        found, refused = self._settle(frame, found)
         return self._unseen(now, refused) if refused else self._seen(found, now)
 
-    def _settle(
-        self, frame: Frame, found: Candidate, recent: Sighting, now: float
-    ) -> tuple[Candidate, str]:
+    def _settle(self, frame: Frame, found: Candidate) -> tuple[Candidate, str]:
         """Tell which way a single face leans: by its edges, else by time, else not at all.
 
         Once that is settled it stays so until the face comes square to the camera, where it can
