@@ -11,7 +11,7 @@ from characters.clip import Clip
 from characters.command import CharacterCommand, PosedCharacter
 from characters.errors import CharacterError
 from characters.machine import StateMachine
-from characters.mesh import Material, Mesh
+from characters.mesh import Material, Mesh, Morph
 from characters.motion import Motion, Step
 from characters.path import ClosedPath
 from characters.pose import Pose, Skeleton
@@ -28,6 +28,7 @@ __all__ = [
     "ClosedPath",
     "Material",
     "Mesh",
+    "Morph",
     "Motion",
     "Pose",
     "PosedCharacter",

@@ -30,10 +30,16 @@ def mix(poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
     if any(pose.scales is not None for pose in poses):
         ones = np.ones_like(poses[0].translations)
         scales = _sum([ones if p.scales is None else p.scales for p in poses], share)
+    morphs = None
+    if any(pose.morphs is not None for pose in poses):
+        width = max(0 if pose.morphs is None else pose.morphs.shape[-1] for pose in poses)
+        none = np.zeros(width)
+        morphs = _sum([none if p.morphs is None else p.morphs for p in poses], share)
     return Pose(
         _sum([pose.translations for pose in poses], share),
         rotations.normalize(np.tensordot(share, turns, 1)),
         scales,
+        morphs,
     )
 
 

@@ -1,6 +1,7 @@
 """A body, its skeleton and what it knows how to do."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
@@ -30,6 +31,12 @@ class Character:
 
     meshes: tuple[Mesh, ...]
     """What is drawn."""
+
+    morphs: tuple[str, ...] = ()
+    """Names of the morphs that `Pose.morphs` turns on, in its order."""
+
+    semantics: Mapping[str, str] = field(default_factory=dict)
+    """What joints are, where the file says so: name in `Anatomy` to name in the skeleton."""
 
     @staticmethod
     def load(name_or_path: "str | Path") -> "Character":
@@ -92,13 +99,17 @@ class Character:
         return float(self.bounds[1, 1] - min(self.bounds[0, 1], 0.0))
 
 
-def skin(mesh: Mesh, globals_: Array) -> Array:
+def skin(mesh: Mesh, globals_: Array, morphs: Mapping[str, float] | None = None) -> Array:
     """Return the vertices of a mesh, (vertices, 3), under `character_from_joint` (joints, 4, 4).
 
     Linear blend skinning on the processor, for measuring; the renderer does it on the card.
+    `morphs` says by name how far each is on.
     """
     matrices = globals_ @ mesh.inverse_bind
-    points = np.concatenate([mesh.positions, np.ones((len(mesh.positions), 1))], axis=1)
+    positions = mesh.positions.astype(float)
+    for morph in mesh.morphs:
+        positions[morph.vertices] += (morphs or {}).get(morph.name, 0.0) * morph.shifts
+    points = np.concatenate([positions, np.ones((len(positions), 1))], axis=1)
     moved = np.zeros((len(points), 3))
     for corner in range(mesh.joints.shape[1]):
         each = matrices[mesh.joints[:, corner], :3]

@@ -68,12 +68,13 @@ class Clip:
         frame, u = self.position(time)
         after = min(frame + 1, len(self) - 1)
         poses = self.in_place
-        t, r, s = poses.translations, poses.rotations, poses.scales
+        t, r, s, m = poses.translations, poses.rotations, poses.scales, poses.morphs
         # The signs were made continuous, so a straight mix goes the shorter way.
         return Pose(
             t[frame] + (t[after] - t[frame]) * u,
             rotations.normalize(r[frame] + (r[after] - r[frame]) * u),
             None if s is None else s[frame] + (s[after] - s[frame]) * u,
+            None if m is None else m[frame] + (m[after] - m[frame]) * u,
         )
 
     def travel(self, start: float, end: float) -> Step:
@@ -94,7 +95,7 @@ class Clip:
             translations[:, 0] = rotations.rotate(back, translations[:, 0] - ground)
             turns[:, 0] = rotations.multiply(back, turns[:, 0])
             turns = rotations.continuous(turns)
-        return Pose(translations, turns, self.poses.scales)
+        return Pose(translations, turns, self.poses.scales, self.poses.morphs)
 
     @cached_property
     def track(self) -> Array:

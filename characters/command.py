@@ -27,6 +27,9 @@ class CharacterCommand:
     look_at: NDArray[np.float64] | None = None
     """A point to turn to when standing, (x, z) in the table frame [m], or None."""
 
+    gaze: NDArray[np.float64] | None = None
+    """A point that head and eyes follow, (x, y, z) in the table frame [m], or None."""
+
     weight: float = 0.0
     """Intensity of the action, −1…1."""
 

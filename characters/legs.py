@@ -6,7 +6,7 @@ that stands still over the ground in every clip then stands still in the mix.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +62,7 @@ class Legs:
         turns[self.carriers[self.joints[:, 1:4].T]] = rotations.from_matrix(
             np.swapaxes(frames, -1, -2) @ within
         )
-        return Pose(mixed.translations, turns, mixed.scales)
+        return replace(mixed, rotations=turns)
 
     def _mean_feet(self, globals_: Array, share: Array) -> tuple[Array, Array]:
         """Return where the balls of the feet are, (legs, 3), and how the feet face, (legs, 4)."""

@@ -22,8 +22,44 @@ class Material:
     texture: NDArray[np.uint8] | None = None
     """Base colour, (height, width, 4) sRGB with alpha, or None."""
 
+    surface: NDArray[np.uint8] | None = None
+    """Roughness in green and metalness in blue, (height, width, 3) linear, or None; both
+    multiply the factors above."""
+
+    bumps: NDArray[np.uint8] | None = None
+    """Normal map in tangent space, (height, width, 3), +y up as in glTF, or None."""
+
+    bump_scale: float = 1.0
+    """How strongly the normal map leans the normals."""
+
+    glow: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Light of its own, linear RGB."""
+
+    cutoff: float | None = None
+    """Alpha below which nothing is drawn; None for an opaque surface."""
+
     double_sided: bool = False
     """Whether back faces are drawn."""
+
+
+@dataclass(frozen=True)
+class Morph:
+    """Another shape of some vertices of a mesh: a closed eye, an open mouth.
+
+    A vertex lies at its place plus, for each morph, the shift times how far that morph is on.
+    """
+
+    name: str
+    """One of `Character.morphs`; VRM's names of expressions where they fit: "blink", "aa" …"""
+
+    vertices: NDArray[np.uint32]
+    """Numbers of the vertices that it moves, (n,), ascending."""
+
+    shifts: NDArray[np.float32]
+    """How far each is moved, in the bind pose, (n, 3) [m]."""
+
+    normal_shifts: NDArray[np.float32] | None = None
+    """What their normals change by, (n, 3), or None to leave them."""
 
 
 @dataclass(frozen=True)
@@ -59,3 +95,6 @@ class Mesh:
 
     material: Material = field(default_factory=Material)
     """The surface."""
+
+    morphs: tuple[Morph, ...] = ()
+    """Its other shapes."""

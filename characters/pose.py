@@ -25,6 +25,9 @@ class Pose:
     scales: Array | None = None
     """(…, joints, 3), or None for all ones."""
 
+    morphs: Array | None = None
+    """How far each of the character's morphs is on, (…, morphs), or None for not at all."""
+
     def locals(self) -> Array:
         """Return `parent_from_joint` of every joint, (…, joints, 4, 4)."""
         matrices = np.zeros((*self.rotations.shape[:-1], 4, 4))
@@ -57,6 +60,7 @@ class Pose:
             self.translations[frames],
             self.rotations[frames],
             None if self.scales is None else self.scales[frames],
+            None if self.morphs is None else self.morphs[frames],
         )
 
 

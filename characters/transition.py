@@ -80,6 +80,9 @@ class Transition:
     growth: Fade | None
     """Scales, (joints, 3); None where nothing is scaled."""
 
+    looks: Fade | None = None
+    """Morphs, (morphs,); None where there are none."""
+
     @staticmethod
     def begin(
         old: tuple[Pose, Pose], new: tuple[Pose, Pose], step: float, length: float
@@ -103,6 +106,7 @@ class Transition:
             Fade(turns, spin, length),
             Fade(shifts, (moved - shifts) / step, length),
             _growth(old[0], new[0], length),
+            _looks(old[0], new[0], length),
         )
 
     def apply(self, pose: Pose, time: float) -> Pose:
@@ -113,10 +117,15 @@ class Transition:
         scales = pose.scales
         if self.growth is not None:
             scales = _scales(pose) + self.growth.at(time)
+        morphs = pose.morphs
+        if self.looks is not None:
+            faded = self.looks.at(time)
+            morphs = faded if morphs is None else morphs + faded
         return Pose(
             pose.translations + self.shifts.at(time),
             rotations.multiply(turned, pose.rotations),
             scales,
+            morphs,
         )
 
 
@@ -132,6 +141,16 @@ def _growth(old: Pose, new: Pose, length: float) -> Fade | None:
     if old.scales is None and new.scales is None:
         return None
     offset = _scales(old) - _scales(new)
+    return Fade(offset, np.zeros_like(offset), length)
+
+
+def _looks(old: Pose, new: Pose, length: float) -> Fade | None:
+    """Return the fade of the morphs; without velocity, so that none goes below nought."""
+    if old.morphs is None and new.morphs is None:
+        return None
+    before = np.zeros(1) if old.morphs is None else old.morphs
+    after = np.zeros(1) if new.morphs is None else new.morphs
+    offset: Array = before - after
     return Fade(offset, np.zeros_like(offset), length)
 
 
