@@ -1,0 +1,216 @@
+"""Many clips in one table, to sample and mix many of them, for many characters, at once.
+
+A pose is one row: what a character shows is a weighted sum of a few rows. So sampling and mixing
+any number of clips for any number of characters is one look-up, one product and one
+normalisation, whatever their number.
+
+A quaternion half way between two frames is a little shorter than one of them, and is mixed as it
+is: in a mix of motions that differ much, a joint may lie a thousandth of a turn beside where
+`blend.mix` puts it. Single motions are the same.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from characters import rotations
+from characters.clip import Clip
+from characters.errors import CharacterError
+from characters.pose import Array, Pose, Skeleton
+
+Numbers = NDArray[np.intp]
+Floats = NDArray[Any]
+
+_STILL = 1e-7  # [m], or part of a scale: what moves less is the same in every row
+
+
+@dataclass(frozen=True)
+class Bank:
+    """Clips of one skeleton, packed; see `Bank.of`."""
+
+    skeleton: Skeleton
+    """Whose joints the rows hold."""
+
+    table: Floats
+    """A row a frame, (rows, columns): quaternions, then what moves of the rest."""
+
+    starts: Numbers
+    """First row of each clip, (clips,)."""
+
+    lasts: Array
+    """Frames from the first to the last of each clip, (clips,)."""
+
+    rates: Array
+    """Frames a second of each clip, (clips,) [Hz]."""
+
+    loops: NDArray[np.bool_]
+    """Whether each clip repeats, (clips,)."""
+
+    still: Pose
+    """What every row shares: translations, scales and morphs that no clip changes."""
+
+    moved: Numbers
+    """Joints that some clip shifts, (n,); three columns each after the quaternions."""
+
+    scaled: Numbers
+    """Joints that some clip scales, (n,); three columns each after these."""
+
+    signs_agree: bool
+    """Whether all quaternions of a joint lie in one half of their sphere, so that any may be mixed
+    as they are."""
+
+    @staticmethod
+    def of(skeleton: Skeleton, clips: Sequence[Clip], dtype: DTypeLike = np.float32) -> "Bank":
+        """Pack clips; roots with root motion stay in place, as in `Clip.sample`.
+
+        Parameters
+        ----------
+        skeleton
+            Of all of them.
+        clips
+            What to pack; they are then called by their number.
+        dtype
+            Of the table. Single precision is good for 0.1 µm at arm's length.
+        """
+        joints = len(skeleton)
+        if not clips or any(clip.poses.rotations.shape[1] != joints for clip in clips):
+            raise CharacterError(
+                f"bank of {len(clips)} clips: each must move the skeleton's {joints} joints"
+            )
+        poses = [_twice_if_single(clip.in_place) for clip in clips]
+        counts = np.array([len(pose.rotations) for pose in poses])
+        turns = np.concatenate([pose.rotations for pose in poses])
+        turns, agree = _one_sided(turns, counts)
+        shifts = np.concatenate([pose.translations for pose in poses])
+        scales = _stacked([pose.scales for pose in poses], counts, shifts.shape[1:], 1.0)
+        width = max(0 if p.morphs is None else p.morphs.shape[-1] for p in poses)
+        morphs = _stacked([pose.morphs for pose in poses], counts, (width,), 0.0)
+        moved = np.flatnonzero((np.ptp(shifts, axis=0) > _STILL).any(-1))
+        scaled = np.flatnonzero((np.ptp(scales, axis=0) > _STILL).any(-1))
+        unscaled = not scaled.size and np.allclose(scales[0], 1.0, atol=_STILL)
+        parts = [turns, shifts[:, moved], scales[:, scaled], morphs]
+        table = np.concatenate([part.reshape(len(turns), -1) for part in parts], axis=1)
+        return Bank(
+            skeleton=skeleton,
+            table=np.ascontiguousarray(table, dtype),
+            starts=np.cumsum([0, *counts[:-1]]),
+            lasts=np.array([len(clip) - 1.0 for clip in clips]),
+            rates=np.array([clip.rate for clip in clips]),
+            loops=np.array([clip.loop for clip in clips]),
+            still=Pose(
+                shifts[0].astype(dtype),
+                turns[0].astype(dtype),
+                None if unscaled else scales[0].astype(dtype),
+                np.zeros(width, dtype) if width else None,
+            ),
+            moved=moved,
+            scaled=scaled,
+            signs_agree=agree,
+        )
+
+    def __len__(self) -> int:
+        """Return the number of clips."""
+        return len(self.starts)
+
+    def rows(self, clips: ArrayLike, times: ArrayLike) -> tuple[Numbers, Array]:
+        """Return the row at or before each time, (…), and the part of the way to the next.
+
+        Parameters
+        ----------
+        clips
+            Numbers of clips, (…).
+        times
+            Since the start of each [s], (…); loops repeat, others are held at their ends.
+        """
+        number = np.asarray(clips, np.intp)
+        last = self.lasts[number]
+        at = np.asarray(times, float) * self.rates[number]
+        safe = np.maximum(last, 1.0)
+        at = np.where(self.loops[number], np.mod(at, safe), np.clip(at, 0.0, last))
+        frame = np.minimum(at.astype(np.intp), np.maximum(last - 1.0, 0.0).astype(np.intp))
+        return self.starts[number] + frame, np.where(last > 0, at - frame, 0.0)
+
+    def mixed(self, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Floats:
+        """Return weighted sums of rows, (characters, columns), quaternions not yet at unit length.
+
+        Parameters
+        ----------
+        clips, times
+            What each character plays and when [s], (characters, voices).
+        weights
+            How much of each, (characters, voices); each row sums to one.
+        """
+        row, u = self.rows(clips, times)
+        share = np.asarray(weights, float)
+        factors = np.concatenate([share * (1.0 - u), share * u], axis=-1).astype(self.table.dtype)
+        looked_up = self.table[np.concatenate([row, row + 1], axis=-1)]
+        if not self.signs_agree:
+            self._bring_to_one_side(looked_up, factors)
+        total: Floats = (factors[:, None] @ looked_up)[:, 0]
+        return total
+
+    def sample(self, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Pose:
+        """Return mixed poses, (characters, joints, …); see `mixed` for the arguments."""
+        return self.pose(self.mixed(clips, times, weights))
+
+    def pose(self, rows: Floats) -> Pose:
+        """Return rows (characters, columns) as poses, with quaternions at unit length."""
+        count, joints = len(rows), len(self.skeleton)
+        edges = np.cumsum([4 * joints, 3 * self.moved.size, 3 * self.scaled.size])
+        turns, shifts, scales, morphs = np.split(rows, edges, axis=1)
+        turns = turns.reshape(count, joints, 4)
+        turns = turns / np.sqrt(np.einsum("cji,cji->cj", turns, turns))[..., None]
+        places = np.tile(self.still.translations, (count, 1, 1))
+        places[:, self.moved] = shifts.reshape(count, -1, 3)
+        sizes = None
+        if self.still.scales is not None:
+            sizes = np.tile(self.still.scales, (count, 1, 1))
+            sizes[:, self.scaled] = scales.reshape(count, -1, 3)
+        return Pose(places, turns, sizes, morphs if morphs.shape[1] else None)
+
+    def _bring_to_one_side(self, rows: Floats, factors: Floats) -> None:
+        """Turn the signs of quaternions to those of the heaviest row of each character."""
+        width = 4 * len(self.skeleton)
+        turns = rows[..., :width].reshape(*rows.shape[:2], -1, 4)
+        heaviest = factors.argmax(1)
+        reference = turns[np.arange(len(turns)), heaviest][:, None]
+        signs = np.where(np.einsum("cvji,cwji->cvj", turns, reference) < 0, -1.0, 1.0)
+        rows[..., :width] = (turns * signs[..., None]).reshape(*rows.shape[:2], width)
+
+
+def _twice_if_single(pose: Pose) -> Pose:
+    """Return poses with their only frame repeated, so that every row has one after it."""
+    return pose[np.array([0, 0])] if len(pose.rotations) == 1 else pose
+
+
+def _stacked(
+    arrays: Sequence[Array | None], counts: Numbers, shape: tuple[int, ...], default: float
+) -> Array:
+    """Return arrays (frames, …) one after the other, filled where there is none."""
+    return np.concatenate(
+        [
+            np.full((count, *shape), default) if array is None else array
+            for array, count in zip(arrays, counts, strict=True)
+        ]
+    )
+
+
+def _one_sided(turns: Array, counts: Numbers) -> tuple[Array, bool]:
+    """Return quaternions (rows, joints, 4) with each joint's on one side, where that is possible.
+
+    A joint that turns by more than half a turn over all clips cannot be brought to one side
+    without a jump of sign between two frames: then signs stay continuous within each clip.
+    """
+    mean = turns[0]
+    for _ in range(2):
+        aligned = rotations.align(turns, mean)
+        mean = rotations.normalize(aligned.mean(0))
+    same_clip = np.ones(len(turns) - 1, bool)
+    same_clip[np.cumsum(counts)[:-1] - 1] = False
+    dots = np.einsum("fji,fji->fj", aligned[1:], aligned[:-1])[same_clip]
+    apart = np.einsum("fji,ji->fj", aligned, mean)
+    agree = bool((dots > 0).all() and (apart > np.cos(np.pi / 4)).all())
+    return (aligned if agree else turns), agree
