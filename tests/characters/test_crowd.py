@@ -26,7 +26,8 @@ def test_a_crowd_of_one_voice_each_shows_what_its_clips_show(vleo):
         one = poses[crowd]
         assert np.abs((one.rotations * alone.rotations).sum(-1)) == pytest.approx(1.0, abs=1e-9)
         np.testing.assert_allclose(one.translations, alone.translations, atol=1e-6)
-        assert one.scales is not None and alone.scales is not None
+        assert one.scales is not None
+        assert alone.scales is not None
         np.testing.assert_allclose(one.scales, alone.scales, atol=1e-6)
 
 
