@@ -72,7 +72,7 @@ class Figures:
             character = self._skinned(actor.character)
             with np.errstate(invalid="ignore", over="ignore"):  # `pose` tells such numbers
                 joints = actor.posed.pose.globals(actor.character.skeleton)
-                enclosing = character.pose(joints, place)
+                enclosing = character.pose(joints, place, actor.posed.pose.morphs)
             if enclosing is None:
                 continue
             if len(casts) == len(self._shadows):

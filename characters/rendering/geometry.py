@@ -1,14 +1,15 @@
 """The meshes of a character, laid out one after the other for the graphics card."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.mesh import Material, Mesh
+from characters.mesh import Material, Mesh, Morph
+from characters.rendering.morphing import joined
 
 Array = NDArray[np.float64]
 
@@ -51,6 +52,12 @@ class Geometry:
     The palette is one after the other.
     """
 
+    morphs: tuple[Morph, ...] = ()
+    """Other shapes of its vertices, one a name, whichever meshes it moves."""
+
+    moved: int = 0
+    """How many vertices, the first ones, some morph moves."""
+
     @classmethod
     def of(cls, meshes: Sequence[Mesh]) -> Self:
         """Gather some meshes; a `CharacterError` where there is nothing to draw."""
@@ -64,7 +71,7 @@ class Geometry:
         meshes = sorted(meshes, key=lambda mesh: keys.index(_key(mesh.material)))
         starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)]).astype(np.uint32)
         binds, rows = _distinct_binds(meshes)
-        return cls(
+        geometry = cls(
             positions=np.concatenate([mesh.positions for mesh in meshes]).astype(np.float32),
             normals=np.concatenate([mesh.normals for mesh in meshes]).astype(np.float32),
             joints=np.concatenate(
@@ -84,15 +91,48 @@ class Geometry:
             ),
             materials=_runs(meshes),
             binds=binds,
+            morphs=joined(meshes, starts[:-1].tolist()),
+        )
+        return geometry._with_the_moved_first()
+
+    def _with_the_moved_first(self) -> Self:
+        """Return the same in another order: what morphs move is sent to the card in one piece."""
+        if not self.morphs:
+            return self
+        moved = np.unique(np.concatenate([morph.vertices for morph in self.morphs]))
+        stays = np.ones(len(self.positions), bool)
+        stays[moved] = False
+        order = np.concatenate([moved, np.flatnonzero(stays)])
+        place = np.empty(len(order), np.uint32)
+        place[order] = np.arange(len(order))
+        return replace(
+            self,
+            positions=self.positions[order],
+            normals=self.normals[order],
+            joints=self.joints[order],
+            weights=self.weights[order],
+            colors=self.colors[order],
+            uvs=self.uvs[order],
+            indices=place[self.indices],
+            morphs=tuple(replace(m, vertices=place[m.vertices]) for m in self.morphs),
+            moved=len(moved),
         )
 
     def palette(self, world_from_joint: Array) -> Array:
         """Return `world_from_bind` (rows, 4, 4) for joints (joints, 4, 4) of the skeleton."""
         return np.concatenate([world_from_joint @ bind for bind in self.binds])
 
-    def skinned(self, palette: Array, chosen: NDArray[np.intp] | slice) -> Array:
-        """Return some vertices under a palette, (n, 3), as `skin.vert` does on the card."""
-        positions = self.positions[chosen]
+    def skinned(
+        self,
+        palette: Array,
+        chosen: NDArray[np.intp] | slice,
+        positions: NDArray[np.float32] | None = None,
+    ) -> Array:
+        """Return some vertices under a palette, (n, 3), as `skin.vert` does on the card.
+
+        `positions` (n, 3) is where they are before, if not where they are without morphs.
+        """
+        positions = self.positions[chosen] if positions is None else positions
         points = np.concatenate([positions, np.ones((len(positions), 1))], axis=1)
         placed = np.zeros((len(points), 3))
         for joint, weight in zip(self.joints[chosen].T, self.weights[chosen].T, strict=True):
@@ -102,14 +142,24 @@ class Geometry:
     def outline(self) -> NDArray[np.intp]:
         """Return the numbers of vertices that stand out (n,).
 
-        Of each joint's own they are the furthest in 26 directions. The box around them is
-        that around all vertices in any pose, to within a few hundredths of its size.
+        Of each joint's own they are the furthest in 26 directions, at rest or where a morph takes
+        them. The box around them is that around all vertices in any pose, to within a few
+        hundredths of its size.
         """
-        along = self.positions @ WAYS.T
-        owner = self.joints[np.arange(len(along)), self.weights.argmax(axis=1)]
-        order = np.argsort(owner, kind="stable")
-        borders = np.flatnonzero(np.diff(owner[order])) + 1
-        return np.unique([run[along[run].argmax(axis=0)] for run in np.split(order, borders)])
+        owner = self._owners
+        still = _furthest(self.positions, owner)
+        if not self.morphs:
+            return still
+        taken = np.concatenate([morph.vertices for morph in self.morphs])
+        shifts = np.concatenate([morph.shifts for morph in self.morphs])
+        shifted = _furthest(self.positions[taken] + shifts, owner[taken])
+        return np.union1d(still, taken[shifted]).astype(np.intp)
+
+    @property
+    def _owners(self) -> NDArray[np.uint32]:
+        """The row of the palette that moves each vertex most, (vertices,)."""
+        strongest = self.weights.argmax(axis=1)
+        return np.asarray(self.joints[np.arange(len(strongest)), strongest], np.uint32)
 
     def coarse(self, cells: int) -> tuple[NDArray[np.uint32], tuple[tuple[int, int, bool], ...]]:
         """Return fewer triangles of the same vertices: those of one joint and one cell become one.
@@ -126,8 +176,8 @@ class Geometry:
         """
         low, high = self.positions.min(axis=0), self.positions.max(axis=0)
         cell = max(float((high - low).max()) / cells, 1e-9)
-        owner = self.joints[np.arange(len(self.joints)), self.weights.argmax(axis=1)]
-        places = np.column_stack([np.floor((self.positions - low) / cell).astype(np.int64), owner])
+        counted = np.floor((self.positions - low) / cell).astype(np.int64)
+        places = np.column_stack([counted, self._owners])
         _, first, cluster = np.unique(places, axis=0, return_index=True, return_inverse=True)
         corners = first[cluster.ravel()].astype(np.uint32)[self.indices].reshape(-1, 3)
         kept = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
@@ -141,12 +191,27 @@ class Geometry:
         return np.concatenate(groups).ravel(), tuple(run for run in runs if run[1])
 
     @property
-    def bind_records(self) -> bytes:
-        """Position, normal, joints and weights of each vertex, 56 bytes."""
-        record = np.empty((len(self.positions), 14), np.float32)
-        record[:, :3], record[:, 3:6], record[:, 10:] = self.positions, self.normals, self.weights
-        record[:, 6:10] = self.joints.view(np.float32)
-        return record.tobytes()
+    def shape_records(self) -> NDArray[np.float32]:
+        """Position and normal of each vertex without morphs, (vertices, 6)."""
+        return np.hstack([self.positions, self.normals])
+
+    @property
+    def bone_records(self) -> NDArray[np.float32]:
+        """Joints and weights of each vertex, (vertices, 8); the bits of the joints are uint32."""
+        return np.hstack([self.joints.view(np.float32), self.weights])
+
+    @property
+    def look_records(self) -> NDArray[np.float32]:
+        """Linear RGBA and texture coordinates of each vertex, (vertices, 6)."""
+        return np.hstack([self.colors, self.uvs])
+
+
+def _furthest(positions: NDArray[np.float32], owner: NDArray[np.uint32]) -> NDArray[np.intp]:
+    """Return the numbers of those that are, of one owner's, the furthest in some direction."""
+    along = positions @ WAYS.T
+    order = np.argsort(owner, kind="stable")
+    borders = np.flatnonzero(np.diff(owner[order])) + 1
+    return np.unique([run[along[run].argmax(axis=0)] for run in np.split(order, borders)])
 
 
 def _filled(
@@ -159,8 +224,9 @@ def _filled(
 
 def _key(material: Material) -> tuple[object, ...]:
     """Return what makes two materials look the same; textures are the same only if they are one."""
-    surface = (material.base_color, material.metallic, material.roughness, material.double_sided)
-    return (*surface, id(material.texture))
+    pictures = (material.texture, material.surface, material.bumps)
+    rest = replace(material, texture=None, surface=None, bumps=None)
+    return (rest, *(id(picture) for picture in pictures))
 
 
 def _runs(meshes: Sequence[Mesh]) -> tuple[tuple[Material, int], ...]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from characters.mesh import Material
 from characters.rendering.geometry import Geometry
+from characters.rendering.morphing import Morphing
 from characters.rendering.programs import Programs
 from characters.rendering.view import Drawable
 
@@ -60,7 +61,12 @@ class SkinnedCharacter:
         heights = geometry.skinned(rest, slice(None))[:, 1]
         self.height = float(max(heights.max() - min(heights.min(), 0.0), 1e-6))
         """Of the rest pose above the ground [m in the character frame]."""
-        bind = context.buffer(geometry.bind_records)
+        self._morphing = Morphing(
+            geometry.shape_records[: geometry.moved], geometry.morphs, character.morphs
+        )
+        self._outlining = geometry.positions[self._outline]
+        self._shapes = context.buffer(geometry.shape_records)
+        bones = context.buffer(geometry.bone_records)
         looks = context.buffer(np.hstack([geometry.colors[:, :3], geometry.uvs]))
         indices = context.buffer(geometry.indices)
         coarse, self.coarse_runs = geometry.coarse(CASTER_CELLS)
@@ -70,7 +76,11 @@ class SkinnedCharacter:
         self._palette = context.texture((3, len(rest)), 4, dtype="f4")
         self._palette.filter = (moderngl.NEAREST, moderngl.NEAREST)
         self._skin = context.vertex_array(
-            programs.skin, [(bind, "3f 3f 4u4 4f", "position", "normal", "joints", "weights")]
+            programs.skin,
+            [
+                (self._shapes, "3f 3f", "position", "normal"),
+                (bones, "4u4 4f", "joints", "weights"),
+            ],
         )
         placed = (self.skinned, "3f 3f", "position", "normal")
         self.plain = context.vertex_array(
@@ -90,9 +100,11 @@ class SkinnedCharacter:
         textures = [part.texture for part in self.parts if part.texture is not None]
         self._arrays = (self._skin, self.plain, self.textured, self.caster)
         self._textures = (self._palette, *textures)
-        self._buffers = (bind, looks, indices, coarse_indices, self.skinned)
+        self._buffers = (self._shapes, bones, looks, indices, coarse_indices, self.skinned)
 
-    def pose(self, character_from_joint: Array, table_from_character: Array) -> Array | None:
+    def pose(
+        self, character_from_joint: Array, table_from_character: Array, morphs: Array | None = None
+    ) -> Array | None:
         """Skin the vertices, and return points in the table frame that enclose them, (n, 3).
 
         Parameters
@@ -101,6 +113,8 @@ class SkinnedCharacter:
             Of every joint of the skeleton, (joints, 4, 4).
         table_from_character
             Where it stands, (4, 4).
+        morphs
+            How far each morph of the character is on, (morphs,), or None for not at all.
 
         Returns
         -------
@@ -110,10 +124,22 @@ class SkinnedCharacter:
         palette = self._geometry.palette(table_from_character @ character_from_joint)
         if not np.isfinite(palette).all():
             return None
+        if morphs is not None and not np.isfinite(morphs).all():
+            return None
+        self._shape(morphs)
         self._palette.write(np.ascontiguousarray(palette[:, :3], "f4"))
         self._palette.use(0)
         self._skin.transform(self.skinned, moderngl.POINTS, vertices=len(self._geometry.positions))
-        return self._geometry.skinned(palette, self._outline)
+        return self._geometry.skinned(palette, self._outline, self._outlining)
+
+    def _shape(self, morphs: Array | None) -> None:
+        """Send the vertices that morphs move, if another shape is asked for than last time."""
+        mixed = self._morphing.mix(morphs)
+        if mixed is None:
+            return
+        self._shapes.write(mixed)
+        moved = self._outline < len(mixed)
+        self._outlining[moved] = mixed[self._outline[moved], :3]
 
     def release(self) -> None:
         """Give the card's memory back; a second call does nothing."""

@@ -56,6 +56,10 @@ class Drawable(Protocol):
     def skeleton(self) -> Skeleton:
         """The joints that move them."""
 
+    @property
+    def morphs(self) -> Sequence[str]:
+        """Names of the morphs that `Pose.morphs` turns on, in its order."""
+
 
 @dataclass(frozen=True)
 class Actor:

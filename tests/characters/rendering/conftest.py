@@ -45,6 +45,7 @@ class Pawn:
 
     meshes: tuple[Mesh, ...]
     skeleton: Skeleton
+    morphs: tuple[str, ...] = ()
 
     def posed(
         self, bend: float = 0.0, at: tuple[float, float] = (0.0, 0.0), height: float = 0.12
