@@ -1,6 +1,7 @@
 """Characters in glTF 2.0 files: .glb with everything inside, or .gltf with files beside it."""
 
 import struct
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from characters.errors import CharacterError
 from characters.formats.gltf_clips import read_clips
 from characters.formats.gltf_file import open_gltf
 from characters.formats.gltf_meshes import read_meshes
+from characters.formats.gltf_morphs import read_morph_table
 from characters.formats.gltf_nodes import read_tree
 from characters.formats.gltf_writing import pack
 
@@ -30,8 +32,9 @@ def load(path: "str | Path") -> Character:
         )
     try:
         tree = read_tree(file.document)
-        meshes = read_meshes(file, tree)
-        clips = read_clips(file, tree)
+        morphs = read_morph_table(file, tree)
+        meshes = read_meshes(file, tree, morphs)
+        clips = read_clips(file, tree, morphs)
     except (LookupError, ValueError, TypeError, AttributeError, struct.error) as error:
         # Whatever contradicts itself in a file surfaces as one of these; the reader's own words
         # (DamagedFileError) say where.
@@ -40,7 +43,10 @@ def load(path: "str | Path") -> Character:
         raise CharacterError(f"{path}: a bind matrix is singular; export it again") from error
     if not meshes:
         raise CharacterError(f"{path}: its skeleton moves no mesh; export the model with its skin")
-    return Character(path.stem, tree.skeleton, clips, meshes)
+    skeleton = tree.skeleton
+    if morphs.rest is not None:
+        skeleton = replace(skeleton, rest=replace(skeleton.rest, morphs=morphs.rest))
+    return Character(path.stem, skeleton, clips, meshes, morphs.names)
 
 
 def save(character: Character, path: "str | Path") -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from characters import rotations
 from characters.clip import Clip
 from characters.formats.gltf_file import DamagedFileError, GltfFile
+from characters.formats.gltf_morphs import MorphTable
 from characters.formats.gltf_nodes import NodeTree
 from characters.pose import Pose, Skeleton
 
@@ -22,47 +23,61 @@ _PATHS = {"translation": 3, "rotation": 4, "scale": 3}
 
 @dataclass(frozen=True)
 class _Track:
-    """Keys of one property of one joint."""
+    """Keys of one property of one joint, or of the morphs of one mesh."""
 
-    joint: int
+    which: int | tuple[int, ...]
+    """The joint, or the columns of the morphs."""
+
     path: str
     times: Array
     values: Array
     interpolation: str
 
 
-def read_clips(file: GltfFile, tree: NodeTree) -> dict[str, Clip]:
+def read_clips(file: GltfFile, tree: NodeTree, morphs: MorphTable) -> dict[str, Clip]:
     """Return the animations that move the skeleton, by name."""
     clips: dict[str, Clip] = {}
     for number, animation in enumerate(file.document.animations):
         name = animation.name or f"animation{number}"
         while name in clips:
             name += "'"
-        tracks = _tracks(file, animation, tree)
+        tracks = _tracks(file, animation, tree, morphs)
         if tracks:
-            clips[name] = _clip(name, animation.extras or {}, tracks, tree.skeleton)
+            clips[name] = _clip(name, animation.extras or {}, tracks, tree.skeleton, morphs)
     return clips
 
 
-def _tracks(file: GltfFile, animation: pygltflib.Animation, tree: NodeTree) -> list[_Track]:
+def _tracks(
+    file: GltfFile, animation: pygltflib.Animation, tree: NodeTree, morphs: MorphTable
+) -> list[_Track]:
     tracks: list[_Track] = []
     for channel in animation.channels:
-        path = channel.target.path
-        joint = tree.joint_of_node.get(channel.target.node)
-        if joint is None or path not in _PATHS:
+        path, node = channel.target.path, channel.target.node
+        known = morphs.columns if path == "weights" else tree.joint_of_node
+        which = known.get(node)
+        width = len(morphs.columns.get(node, ())) if path == "weights" else _PATHS.get(path, 0)
+        if which is None or not width:
             continue
         sampler = animation.samplers[channel.sampler]
         times = file.accessor(sampler.input).astype(float)
         values = file.accessor(sampler.output).astype(float)
         interpolation = sampler.interpolation or "LINEAR"
         keys = 3 * len(times) if interpolation == "CUBICSPLINE" else len(times)
-        if not len(times) or values.shape != (keys, _PATHS[path]) or (np.diff(times) < 0).any():
+        if path == "weights" and values.shape == (keys * width,):
+            values = values.reshape(keys, width)
+        if not len(times) or values.shape != (keys, width) or (np.diff(times) < 0).any():
             raise DamagedFileError(f"animation {animation.name!r} has keys that do not fit")
-        tracks.append(_Track(joint, path, times, values, interpolation))
+        tracks.append(_Track(which, path, times, values, interpolation))
     return tracks
 
 
-def _clip(name: str, extras: dict[str, object], tracks: list[_Track], skeleton: Skeleton) -> Clip:
+def _clip(
+    name: str,
+    extras: dict[str, object],
+    tracks: list[_Track],
+    skeleton: Skeleton,
+    morphs: MorphTable,
+) -> Clip:
     """Return tracks resampled to one rate; joints without a track keep their rest pose."""
     keys = np.unique(np.concatenate([track.times for track in tracks]))
     start, length = keys[0], keys[-1] - keys[0]
@@ -77,12 +92,20 @@ def _clip(name: str, extras: dict[str, object], tracks: list[_Track], skeleton: 
         "translation": np.tile(rest.translations, (len(times), 1, 1)),
         "rotation": np.tile(rest.rotations, (len(times), 1, 1)),
         "scale": np.tile(still, (len(times), 1, 1)),
+        "weights": np.tile(
+            np.zeros(len(morphs.names)) if morphs.rest is None else morphs.rest, (len(times), 1)
+        ),
     }
     for track in tracks:
-        values[track.path][:, track.joint] = _resampled(track, times)
+        values[track.path][:, track.which] = _resampled(track, times)
     unscaled = rest.scales is None and np.allclose(values["scale"], 1.0, atol=1e-4)
     turns = rotations.continuous(rotations.normalize(values["rotation"]))
-    poses = Pose(values["translation"], turns, None if unscaled else values["scale"])
+    poses = Pose(
+        values["translation"],
+        turns,
+        None if unscaled else values["scale"],
+        values["weights"] if values["weights"].any() else None,
+    )
     loop = extras.get("loop")
     return Clip(
         name=name,

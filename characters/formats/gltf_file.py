@@ -5,6 +5,7 @@ import json
 import struct
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote
 
 import numpy as np
@@ -51,6 +52,9 @@ class GltfFile:
 
     document: pygltflib.GLTF2
     """The JSON part."""
+
+    plain: dict[str, Any]
+    """The same as it stands in the file."""
 
     buffers: tuple[bytes, ...]
     """Content of each buffer."""
@@ -160,11 +164,11 @@ def open_gltf(path: Path) -> GltfFile:
         raise CharacterError(
             f"{path}: needs the extension {', '.join(unknown)}; export it without compression"
         )
-    opened = GltfFile(path, document, ())
+    opened = GltfFile(path, document, plain, ())
     buffers = tuple(
         blob if buffer.uri is None else opened.resource(buffer.uri) for buffer in document.buffers
     )
-    return GltfFile(path, document, buffers)
+    return GltfFile(path, document, plain, buffers)
 
 
 def _unpack(path: Path, data: bytes) -> tuple[bytes, bytes]:

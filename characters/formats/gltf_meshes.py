@@ -8,14 +8,15 @@ import pygltflib
 from numpy.typing import NDArray
 
 from characters.formats.gltf_file import DamagedFileError, GltfFile
+from characters.formats.gltf_morphs import MorphTable, morph_moved, read_morphs
 from characters.formats.gltf_nodes import NodeTree
-from characters.mesh import Material, Mesh
+from characters.mesh import Material, Mesh, Morph
 
 Array = NDArray[np.float64]
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 
-def read_meshes(file: GltfFile, tree: NodeTree) -> tuple[Mesh, ...]:
+def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> tuple[Mesh, ...]:
     """Return every primitive that the skeleton moves, as a mesh of its own."""
     materials = [_material(file, material) for material in file.document.materials]
     rest = tree.skeleton.rest.globals(tree.skeleton)
@@ -24,7 +25,8 @@ def read_meshes(file: GltfFile, tree: NodeTree) -> tuple[Mesh, ...]:
         if node.mesh is None or (node.skin is None and number not in tree.joint_of_node):
             continue
         mesh = file.document.meshes[node.mesh]
-        for primitive in mesh.primitives:
+        names = [table.names[column] for column in table.columns[number]]
+        for part, primitive in enumerate(mesh.primitives):
             if primitive.mode not in (None, _TRIANGLES, _STRIP, _FAN):
                 continue  # points and lines are not skin
             material = Material() if primitive.material is None else materials[primitive.material]
@@ -33,7 +35,10 @@ def read_meshes(file: GltfFile, tree: NodeTree) -> tuple[Mesh, ...]:
                 skin = _rigid_skin(tree.joint_of_node[number], len(geometry.positions), rest)
             else:
                 skin = _skin(file, primitive, node.skin, tree)
-            meshes.append(_placed(mesh.name or node.name or "mesh", geometry, skin, material, rest))
+            plain = file.plain["meshes"][node.mesh]["primitives"][part]
+            morphs = read_morphs(file, plain, names, len(geometry.positions))
+            name = mesh.name or node.name or "mesh"
+            meshes.append(_placed(name, geometry, skin, material, rest, morphs))
     return tuple(meshes)
 
 
@@ -163,7 +168,14 @@ def _rigid_skin(joint: int, vertices: int, rest: Array) -> _Skin:
     return _Skin(joints, weights, inverse_bind)
 
 
-def _placed(name: str, geometry: _Geometry, skin: _Skin, material: Material, rest: Array) -> Mesh:
+def _placed(
+    name: str,
+    geometry: _Geometry,
+    skin: _Skin,
+    material: Material,
+    rest: Array,
+    morphs: tuple[Morph, ...],
+) -> Mesh:
     """Return the mesh in the character frame.
 
     A skin may leave its vertices in any frame. That of the first joint at rest is moved into the
@@ -175,6 +187,7 @@ def _placed(name: str, geometry: _Geometry, skin: _Skin, material: Material, res
     positions, normals = geometry.positions, geometry.normals
     if not np.allclose(character_from_mesh, np.eye(4), atol=1e-5):
         linear = character_from_mesh[:3, :3]
+        morphs = tuple(morph_moved(morph, normals, linear) for morph in morphs)
         positions = positions @ linear.T + character_from_mesh[:3, 3]
         normals = _unit(normals @ np.linalg.inv(linear))
         used = np.unique(joints)
@@ -192,6 +205,7 @@ def _placed(name: str, geometry: _Geometry, skin: _Skin, material: Material, res
         colors=None if colors is None else colors.astype(np.float32),
         uvs=None if uvs is None else uvs.astype(np.float32),
         material=material,
+        morphs=morphs,
     )
 
 

@@ -1,26 +1,18 @@
 """From a character to the bytes of a .glb."""
 
-import json
-import struct
-
 import cv2
 import numpy as np
 import pygltflib
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from characters.character import Character
 from characters.clip import Clip
 from characters.errors import CharacterError
-from characters.formats.gltf_file import COMPONENTS, WIDTHS
-from characters.mesh import Material, Mesh
+from characters.formats.gltf_buffer import ARRAY_BUFFER, ELEMENT_BUFFER, BufferWriter
+from characters.mesh import Material, Mesh, Morph
 from characters.pose import Array, Skeleton
 
-_TYPES = {1: "SCALAR", 3: "VEC3", 4: "VEC4", 2: "VEC2", 16: "MAT4"}
-_COMPONENT_OF = {np.dtype(dtype): code for code, dtype in COMPONENTS.items()}
 _STILL = 1e-7  # [m or part of a quaternion]: what changes less does not move
-_ARRAY_BUFFER, _ELEMENT_BUFFER = 34962, 34963
-
-assert all(WIDTHS[name] == width for width, name in _TYPES.items())
 
 
 def pack(character: Character) -> bytes:
@@ -36,26 +28,63 @@ def pack(character: Character) -> bytes:
 
 
 def _check(character: Character) -> None:
-    joints = len(character.skeleton)
+    joints, morphs = len(character.skeleton), len(character.morphs)
     for clip in character.clips.values():
         if clip.poses.rotations.shape[1] != joints:
             raise CharacterError(
                 f"clip {clip.name!r} moves {clip.poses.rotations.shape[1]} joints, "
                 f"the skeleton has {joints}"
             )
+        if clip.poses.morphs is not None and clip.poses.morphs.shape != (len(clip), morphs):
+            raise CharacterError(
+                f"clip {clip.name!r} has morphs of shape {clip.poses.morphs.shape}, "
+                f"not {(len(clip), morphs)}"
+            )
     for mesh in character.meshes:
-        count = len(mesh.positions)
-        fits = (
-            mesh.normals.shape == (count, 3)
-            and mesh.joints.shape == mesh.weights.shape == (count, 4)
-            and mesh.inverse_bind.shape == (joints, 4, 4)
-            and (not mesh.triangles.size or int(mesh.triangles.max()) < count)
-            and (not mesh.joints.size or int(mesh.joints.max()) < joints)
+        _check_mesh(mesh, joints)
+    _check_morphs(character)
+
+
+def _check_mesh(mesh: Mesh, joints: int) -> None:
+    count = len(mesh.positions)
+    fits = (
+        mesh.normals.shape == (count, 3)
+        and mesh.joints.shape == mesh.weights.shape == (count, 4)
+        and mesh.inverse_bind.shape == (joints, 4, 4)
+        and (not mesh.triangles.size or int(mesh.triangles.max()) < count)
+        and (not mesh.joints.size or int(mesh.joints.max()) < joints)
+    )
+    if not fits:
+        raise CharacterError(f"mesh {mesh.name!r}: its arrays do not fit together")
+    if count and np.abs(mesh.weights.sum(1) - 1).max() > 1e-3:
+        raise CharacterError(f"mesh {mesh.name!r}: its skin weights do not sum to one")
+    for morph in mesh.morphs:
+        shape = (len(morph.vertices), 3)
+        ascends = bool((np.diff(morph.vertices.astype(np.int64)) > 0).all())
+        inside = not len(morph.vertices) or int(morph.vertices[-1]) < count
+        whole = morph.normal_shifts is None or morph.normal_shifts.shape == shape
+        if not (ascends and inside and whole and morph.shifts.shape == shape):
+            raise CharacterError(
+                f"mesh {mesh.name!r}: the arrays of its morph {morph.name!r} do not fit together"
+            )
+
+
+def _check_morphs(character: Character) -> None:
+    """Refuse names that would not be found again when the file is read."""
+    for mesh in character.meshes:
+        names = [morph.name for morph in mesh.morphs]
+        if len(set(names)) < len(names) or not set(names) <= set(character.morphs):
+            raise CharacterError(
+                f"mesh {mesh.name!r}: each of its morphs needs a name of its own out of "
+                f"Character.morphs, which are {', '.join(character.morphs) or 'none'}"
+            )
+    used = {morph.name for mesh in character.meshes for morph in mesh.morphs}
+    idle = [name for name in character.morphs if name not in used]
+    if idle or len(set(character.morphs)) < len(character.morphs):
+        raise CharacterError(
+            f"Character.morphs {', '.join(idle or character.morphs)}: each must be named once, "
+            "and be a morph of some mesh"
         )
-        if not fits:
-            raise CharacterError(f"mesh {mesh.name!r}: its arrays do not fit together")
-        if count and np.abs(mesh.weights.sum(1) - 1).max() > 1e-3:
-            raise CharacterError(f"mesh {mesh.name!r}: its skin weights do not sum to one")
 
 
 class _Packer:
@@ -63,12 +92,12 @@ class _Packer:
 
     def __init__(self, character: Character) -> None:
         self.character = character
-        self.blob = bytearray()
         self.skins: dict[bytes, int] = {}
         self.times: dict[bytes, int] = {}
         self.document = pygltflib.GLTF2(
             asset=pygltflib.Asset(version="2.0", generator="cubeling"), scene=0
         )
+        self.buffer = BufferWriter(self.document)
 
     def pack(self) -> bytes:
         joints = len(self.character.skeleton)
@@ -79,9 +108,12 @@ class _Packer:
             self._animation(clip)
         roots = [j for j, parent in enumerate(self.character.skeleton.parents) if parent < 0]
         drawn = range(joints, len(self.document.nodes))
-        self.document.scenes = [pygltflib.Scene(name=self.character.name, nodes=[*roots, *drawn])]
-        self.document.buffers = [pygltflib.Buffer(byteLength=len(self.blob))]
-        return _container(self.document, bytes(self.blob))
+        # The order of morphs over all meshes is found nowhere else in a glTF.
+        extras = {"morphs": list(self.character.morphs)} if self.character.morphs else {}
+        self.document.scenes = [
+            pygltflib.Scene(name=self.character.name, nodes=[*roots, *drawn], extras=extras)
+        ]
+        return self.buffer.container()
 
     def _nodes(self, skeleton: Skeleton) -> None:
         rest = skeleton.rest
@@ -99,28 +131,50 @@ class _Packer:
     def _mesh(self, mesh: Mesh) -> None:
         small = len(self.character.skeleton) <= 256
         attributes = pygltflib.Attributes(
-            POSITION=self._accessor(mesh.positions, np.float32, _ARRAY_BUFFER, bounds=True),
-            NORMAL=self._accessor(mesh.normals, np.float32, _ARRAY_BUFFER),
-            JOINTS_0=self._accessor(mesh.joints, np.uint8 if small else np.uint16, _ARRAY_BUFFER),
-            WEIGHTS_0=self._accessor(
-                _levels(mesh.weights), np.uint16, _ARRAY_BUFFER, normalized=True
+            POSITION=self.buffer.accessor(mesh.positions, np.float32, ARRAY_BUFFER, bounds=True),
+            NORMAL=self.buffer.accessor(mesh.normals, np.float32, ARRAY_BUFFER),
+            JOINTS_0=self.buffer.accessor(
+                mesh.joints, np.uint8 if small else np.uint16, ARRAY_BUFFER
+            ),
+            WEIGHTS_0=self.buffer.accessor(
+                _levels(mesh.weights), np.uint16, ARRAY_BUFFER, normalized=True
             ),
         )
         if mesh.colors is not None:
             levels = np.round(np.clip(mesh.colors, 0.0, 1.0) * 65535)
-            attributes.COLOR_0 = self._accessor(levels, np.uint16, _ARRAY_BUFFER, normalized=True)
+            attributes.COLOR_0 = self.buffer.accessor(
+                levels, np.uint16, ARRAY_BUFFER, normalized=True
+            )
         if mesh.uvs is not None:
-            attributes.TEXCOORD_0 = self._accessor(mesh.uvs, np.float32, _ARRAY_BUFFER)
+            attributes.TEXCOORD_0 = self.buffer.accessor(mesh.uvs, np.float32, ARRAY_BUFFER)
         wide = np.uint16 if len(mesh.positions) < 65536 else np.uint32
         primitive = pygltflib.Primitive(
             attributes=attributes,
-            indices=self._accessor(mesh.triangles.reshape(-1), wide, _ELEMENT_BUFFER),
+            indices=self.buffer.accessor(mesh.triangles.reshape(-1), wide, ELEMENT_BUFFER),
             material=self._material(mesh.material, mesh.name),
         )
         number = len(self.document.meshes)
-        self.document.meshes.append(pygltflib.Mesh(name=mesh.name, primitives=[primitive]))
+        written = pygltflib.Mesh(name=mesh.name, primitives=[primitive])
+        if mesh.morphs:
+            primitive.targets = [self._target(len(mesh.positions), m) for m in mesh.morphs]
+            written.extras = {"targetNames": [morph.name for morph in mesh.morphs]}
+            rest = self.character.skeleton.rest.morphs
+            if rest is not None:
+                written.weights = rest[self._columns(mesh)].tolist()
+        self.document.meshes.append(written)
         skin = self._skin(mesh.inverse_bind)
         self.document.nodes.append(pygltflib.Node(name=mesh.name, mesh=number, skin=skin))
+
+    def _target(self, count: int, morph: Morph) -> pygltflib.Attributes:
+        target = pygltflib.Attributes()
+        target.POSITION = self.buffer.sparse(count, morph.vertices, morph.shifts)
+        if morph.normal_shifts is not None:
+            target.NORMAL = self.buffer.sparse(count, morph.vertices, morph.normal_shifts)
+        return target
+
+    def _columns(self, mesh: Mesh) -> list[int]:
+        """Return where in `Pose.morphs` the weights of a mesh's morphs stand."""
+        return [self.character.morphs.index(morph.name) for morph in mesh.morphs]
 
     def _skin(self, inverse_bind: NDArray[np.float64]) -> int:
         """Return the number of the skin with these bind matrices, which meshes may share."""
@@ -130,7 +184,7 @@ class _Packer:
             self.skins[key] = len(self.document.skins)
             self.document.skins.append(
                 pygltflib.Skin(
-                    inverseBindMatrices=self._accessor(columns.reshape(-1, 16), np.float32),
+                    inverseBindMatrices=self.buffer.accessor(columns.reshape(-1, 16), np.float32),
                     joints=list(range(len(self.character.skeleton))),
                 )
             )
@@ -158,7 +212,7 @@ class _Packer:
         _, png = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGBA2BGRA))
         number = len(self.document.images)
         self.document.images.append(
-            pygltflib.Image(bufferView=self._view(png.tobytes()), mimeType="image/png")
+            pygltflib.Image(bufferView=self.buffer.view(png.tobytes()), mimeType="image/png")
         )
         self.document.textures.append(pygltflib.Texture(source=number))
         return number
@@ -168,15 +222,16 @@ class _Packer:
         animation = pygltflib.Animation(
             name=clip.name, extras={"rate": float(clip.rate), "loop": clip.loop}
         )
-        for joint, path, values in self._tracks(clip):
+        for node, path, values in [*self._tracks(clip), *self._weight_tracks(clip)]:
             frames = np.arange(len(clip))
-            if np.ptp(values, axis=0).max() < _STILL:
+            if len(clip) > 2 and np.ptp(values, axis=0).max() < _STILL:
                 frames = frames[[0, -1]]
+            keys = values[frames].reshape(-1) if path == "weights" else values[frames]
             sampler = pygltflib.AnimationSampler(
                 input=self._times(frames / clip.rate),
-                output=self._accessor(values[frames], np.float32),
+                output=self.buffer.accessor(keys, np.float32),
             )
-            target = pygltflib.AnimationChannelTarget(node=joint, path=path)
+            target = pygltflib.AnimationChannelTarget(node=node, path=path)
             channel = pygltflib.AnimationChannel(sampler=len(animation.samplers), target=target)
             animation.samplers.append(sampler)
             animation.channels.append(channel)
@@ -200,44 +255,26 @@ class _Packer:
             or np.abs(values[:, joint] - resting[joint]).max() >= _STILL
         ]
 
+    def _weight_tracks(self, clip: Clip) -> list[tuple[int, str, Array]]:
+        """Return node, path and values (frames, targets) of the meshes whose morphs change."""
+        rest = self.character.skeleton.rest.morphs
+        if clip.poses.morphs is None:
+            return []
+        away = clip.poses.morphs - (0.0 if rest is None else rest)
+        moved = np.abs(away).max(axis=0, initial=0.0) >= _STILL
+        first = len(self.character.skeleton)
+        return [
+            (first + number, "weights", clip.poses.morphs[:, columns])
+            for number, columns in enumerate(map(self._columns, self.character.meshes))
+            if moved[columns].any()
+        ]
+
     def _times(self, times: Array) -> int:
         """Return the accessor of key times, which many tracks share."""
         key = times.tobytes()
         if key not in self.times:
-            self.times[key] = self._accessor(times, np.float32, bounds=True)
+            self.times[key] = self.buffer.accessor(times, np.float32, bounds=True)
         return self.times[key]
-
-    def _accessor(
-        self,
-        values: ArrayLike,
-        dtype: type[np.generic],
-        target: int | None = None,
-        *,
-        bounds: bool = False,
-        normalized: bool = False,
-    ) -> int:
-        """Append an array, (count, components) or (count,), and return its accessor's number."""
-        array = np.ascontiguousarray(values, np.dtype(dtype).newbyteorder("<"))
-        rows = array.reshape(len(array), -1)
-        accessor = pygltflib.Accessor(
-            bufferView=self._view(array.tobytes(), target),
-            componentType=_COMPONENT_OF[np.dtype(dtype)],
-            count=len(rows),
-            type=_TYPES[rows.shape[1]],
-            normalized=normalized,
-        )
-        if bounds:
-            accessor.min, accessor.max = rows.min(0).tolist(), rows.max(0).tolist()
-        self.document.accessors.append(accessor)
-        return len(self.document.accessors) - 1
-
-    def _view(self, data: bytes, target: int | None = None) -> int:
-        view = pygltflib.BufferView(
-            buffer=0, byteOffset=len(self.blob), byteLength=len(data), target=target
-        )
-        self.blob += data + bytes(-len(data) % 4)
-        self.document.bufferViews.append(view)
-        return len(self.document.bufferViews) - 1
 
 
 def _levels(weights: NDArray[np.float32]) -> Array:
@@ -246,13 +283,3 @@ def _levels(weights: NDArray[np.float32]) -> Array:
     rows = np.arange(len(levels))
     levels[rows, levels.argmax(1)] += 65535 - levels.sum(1)
     return levels
-
-
-def _container(document: pygltflib.GLTF2, blob: bytes) -> bytes:
-    """Return the header and the two chunks."""
-    plain = json.loads(document.to_json())
-    text = json.dumps(plain, separators=(",", ":"), sort_keys=True).encode()
-    text += b" " * (-len(text) % 4)
-    chunks = struct.pack("<I4s", len(text), b"JSON") + text
-    chunks += struct.pack("<I4s", len(blob), b"BIN\0") + blob
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks

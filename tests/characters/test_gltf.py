@@ -1,8 +1,6 @@
 import base64
 import json
-import struct
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -10,98 +8,15 @@ import pytest
 from characters import Character, CharacterError, Pose, rotations
 from characters.character import skin
 from characters.formats import gltf, load_clip
+from tests.characters.built_gltf import build_arm, glb
 
 # Characters of other makers, where they lie beside the checkout.
 SAMPLES = sorted((Path(__file__).parents[3] / "shared" / "data" / "gltf").glob("*.glb"))
 
 
-def glb(document, blob=b""):
-    text = document.encode() if isinstance(document, str) else json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    chunks = struct.pack("<I4s", len(text), b"JSON") + text
-    chunks += struct.pack("<I4s", len(blob), b"BIN\0") + blob
-    return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
-
-
-class Builder:
-    """The least that writes a glTF by hand, so that the reader is not tested by our writer."""
-
-    def __init__(self) -> None:
-        self.blob = b""
-        self.document: dict[str, Any] = {
-            "asset": {"version": "2.0"},
-            "accessors": [],
-            "bufferViews": [],
-            "nodes": [],
-            "meshes": [],
-            "skins": [],
-            "animations": [],
-        }
-
-    def add(self, array, kind, component, **extra):
-        view = {"buffer": 0, "byteOffset": len(self.blob), "byteLength": array.nbytes}
-        self.document["bufferViews"].append(view)
-        number = len(self.document["bufferViews"]) - 1
-        self.document["accessors"].append(
-            {
-                "bufferView": number,
-                "componentType": component,
-                "count": len(array),
-                "type": kind,
-                **extra,
-            }
-        )
-        self.blob += array.tobytes() + bytes(-array.nbytes % 4)
-        return number
-
-    def floats(self, values, kind):
-        return self.add(np.asarray(values, np.float32), kind, 5126)
-
-    def bytes(self):
-        self.document["buffers"] = [{"byteLength": len(self.blob)}]
-        return glb(self.document, self.blob)
-
-
 @pytest.fixture
 def arm():
-    """Two joints under an ancestor that turns z up into y up and millimetres into metres."""
-    build = Builder()
-    build.document["nodes"] = [
-        {"children": [1], "rotation": [-(0.5**0.5), 0, 0, 0.5**0.5], "scale": [1e-3] * 3},
-        {"name": "upper", "children": [2]},
-        {"name": "lower", "translation": [0, 0, 300]},
-        {"name": "sleeve", "mesh": 0, "skin": 0, "translation": [9, 9, 9]},
-    ]
-    inverse_bind = np.tile(np.eye(4), (2, 1, 1))
-    inverse_bind[1, :3, 3] = [0, 0, -300]
-    columns = np.swapaxes(inverse_bind, 1, 2).reshape(2, 16)
-    attributes = {
-        "POSITION": build.floats([[0, 0, 0], [10, 0, 0], [0, 0, 600]], "VEC3"),
-        "JOINTS_0": build.add(
-            np.array([[0, 0, 0, 0], [0, 0, 0, 0], [1, 0, 0, 0]], np.uint8), "VEC4", 5121
-        ),
-        "WEIGHTS_0": build.add(
-            np.array([[255, 0, 0, 0], [255, 0, 0, 0], [254, 0, 0, 0]], np.uint8),
-            "VEC4",
-            5121,
-            normalized=True,
-        ),
-    }
-    build.document["meshes"] = [{"primitives": [{"attributes": attributes}]}]
-    bind = build.floats(columns, "MAT4")
-    build.document["skins"] = [{"joints": [1, 2], "inverseBindMatrices": bind}]
-    return build
-
-
-def animate(build, interpolation, times, values, path="rotation"):
-    kind = "VEC4" if path == "rotation" else "VEC3"
-    sampler = {
-        "input": build.floats(times, "SCALAR"),
-        "output": build.floats(values, kind),
-        "interpolation": interpolation,
-    }
-    channel = {"sampler": 0, "target": {"node": 2, "path": path}}
-    build.document["animations"] = [{"name": "a", "samplers": [sampler], "channels": [channel]}]
+    return build_arm()
 
 
 def load(tmp_path, data, name="thing.glb"):
@@ -141,7 +56,7 @@ def test_a_matrix_is_as_good_as_its_parts(tmp_path, arm):
 
 
 def test_linear_keys_are_exact_and_turn_evenly_between(tmp_path, arm):
-    animate(arm, "LINEAR", [0.5, 1.0], rotations.about("x", [0.0, 1.0]))
+    arm.animate("LINEAR", [0.5, 1.0], rotations.about("x", [0.0, 1.0]))
     clip = load(tmp_path, arm.bytes()).clips["a"]
     assert clip.duration == pytest.approx(0.5)
     assert np.allclose(clip.poses.rotations[-1, 2], rotations.about("x", 1.0), atol=1e-6)
@@ -150,7 +65,7 @@ def test_linear_keys_are_exact_and_turn_evenly_between(tmp_path, arm):
 
 
 def test_steps_hold_until_the_next_key(tmp_path, arm):
-    animate(arm, "STEP", [0.0, 0.5, 1.0], [[0, 0, 0], [1, 0, 0], [2, 0, 0]], "translation")
+    arm.animate("STEP", [0.0, 0.5, 1.0], [[0, 0, 0], [1, 0, 0], [2, 0, 0]], "translation")
     clip = load(tmp_path, arm.bytes()).clips["a"]
     x = clip.poses.translations[:, 2, 0]
     assert sorted(set(x.tolist())) == [0.0, 1.0, 2.0]
@@ -161,7 +76,7 @@ def test_steps_hold_until_the_next_key(tmp_path, arm):
 def test_cubic_splines_follow_their_tangents(tmp_path, arm):
     # x = t³ on 0…2: values and slopes at the ends give back the cubic itself.
     keys = [[0, 0, 0], [0, 0, 0], [0, 0, 0], [12, 0, 0], [8, 0, 0], [12, 0, 0]]
-    animate(arm, "CUBICSPLINE", [0.0, 2.0], keys, "translation")
+    arm.animate("CUBICSPLINE", [0.0, 2.0], keys, "translation")
     clip = load(tmp_path, arm.bytes()).clips["a"]
     times = np.arange(len(clip)) / clip.rate
     assert np.allclose(clip.poses.translations[:, 2, 0], times**3, atol=1e-5)
@@ -169,7 +84,7 @@ def test_cubic_splines_follow_their_tangents(tmp_path, arm):
 
 def test_keys_at_odd_times_are_met_closely(tmp_path, arm):
     times = [0.0, 0.1234, 0.7071, 1.0]
-    animate(arm, "LINEAR", times, [[0, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0]], "translation")
+    arm.animate("LINEAR", times, [[0, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0]], "translation")
     clip = load(tmp_path, arm.bytes()).clips["a"]
     x = [clip.poses.translations[round(t * clip.rate), 2, 0] for t in times]
     assert np.allclose(x, [0, 1, 0, 1], atol=0.05)
@@ -294,7 +209,7 @@ def test_a_file_cut_anywhere_is_refused_in_one_line(tmp_path, arm):
 
 
 def test_a_file_with_any_number_changed_loads_or_is_refused(tmp_path, arm):
-    animate(arm, "LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
+    arm.animate("LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
     rng = np.random.default_rng(5)
     text = json.dumps({**arm.document, "buffers": [{"byteLength": len(arm.blob)}]})
     digits = [at for at, letter in enumerate(text) if letter.isdigit()]
@@ -337,7 +252,7 @@ def test_bundled_characters_load_and_say_who_they_are(name):
 
 
 def test_one_clip_is_loaded_by_its_name_or_alone(tmp_path, arm, walker):
-    animate(arm, "LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
+    arm.animate("LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
     (tmp_path / "arm.glb").write_bytes(arm.bytes())
     assert load_clip(tmp_path / "arm.glb").name == "a"
     walker.save(tmp_path / "walker.glb")

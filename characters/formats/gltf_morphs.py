@@ -1,0 +1,132 @@
+"""From the morph targets of a glTF file to morphs with one weight a name."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.formats.gltf_file import DamagedFileError, GltfFile
+from characters.formats.gltf_nodes import NodeTree
+from characters.mesh import Morph
+
+Array = NDArray[np.float64]
+
+_STILL = 1e-9  # [of the file's unit]: what shifts less is a zero that was rounded
+
+
+@dataclass(frozen=True)
+class MorphTable:
+    """Which weight turns which morph target on."""
+
+    names: tuple[str, ...]
+    """Names of all morphs; meshes whose targets have the same name share its weight."""
+
+    columns: dict[int, tuple[int, ...]]
+    """Number in `names` of each target, by the number of the node that carries the mesh."""
+
+    rest: Array | None
+    """Weights where nothing is animated, (morphs,), or None for all zero."""
+
+
+def read_morph_table(file: GltfFile, tree: NodeTree) -> MorphTable:
+    """Return the names of the morphs that the skeleton's meshes have, and their weights at rest."""
+    of_node: dict[int, tuple[str, ...]] = {}
+    defaults: dict[str, float] = {}
+    for number, node in enumerate(file.plain.get("nodes", [])):
+        if "mesh" not in node or ("skin" not in node and number not in tree.joint_of_node):
+            continue
+        mesh = file.plain["meshes"][node["mesh"]]
+        of_node[number] = names = target_names(mesh, node["mesh"])
+        weights = node.get("weights") or mesh.get("weights") or [0.0] * len(names)
+        if len(weights) != len(names):
+            raise DamagedFileError(f"mesh {mesh.get('name')!r} has weights for other morph targets")
+        for name, weight in zip(names, weights, strict=True):
+            defaults.setdefault(name, float(weight))
+    order = _order(file, tuple(defaults))
+    column = {name: number for number, name in enumerate(order)}
+    rest = np.array([defaults[name] for name in order])
+    return MorphTable(
+        order,
+        {node: tuple(column[name] for name in names) for node, names in of_node.items()},
+        rest if rest.any() else None,
+    )
+
+
+def target_names(mesh: dict[str, Any], number: int) -> tuple[str, ...]:
+    """Return the names of a mesh's morph targets; "MESH.0" where the file gives none."""
+    counts = {len(primitive.get("targets", [])) for primitive in mesh["primitives"]}
+    if len(counts) != 1:
+        raise DamagedFileError(f"mesh {mesh.get('name')!r} has primitives of unlike morph targets")
+    count = counts.pop()
+    stated = mesh.get("extras", {}).get("targetNames", [])
+    names: list[str] = []
+    for target in range(count):
+        name = stated[target] if target < len(stated) else ""
+        if not isinstance(name, str) or not name:
+            name = f"{mesh.get('name') or f'mesh{number}'}.{target}"
+        while name in names:
+            name += "'"
+        names.append(name)
+    return tuple(names)
+
+
+def read_morphs(
+    file: GltfFile, primitive: dict[str, Any], names: Sequence[str], vertices: int
+) -> tuple[Morph, ...]:
+    """Return the morph targets of a primitive, in the frame of its vertices."""
+    return tuple(
+        _morph(file, target, name, vertices)
+        for name, target in zip(names, primitive.get("targets", []), strict=True)
+    )
+
+
+def morph_moved(morph: Morph, normals: Array, linear: Array) -> Morph:
+    """Return a morph whose mesh, with these normals (vertices, 3), goes through a matrix (3, 3)."""
+    turned = morph.normal_shifts
+    if turned is not None:
+        inverse = np.linalg.inv(linear)
+        before = normals[morph.vertices]
+        turned = (_unit((before + turned) @ inverse) - _unit(before @ inverse)).astype(np.float32)
+    return Morph(morph.name, morph.vertices, (morph.shifts @ linear.T).astype(np.float32), turned)
+
+
+def _unit(vectors: Array) -> Array:
+    lengths: Array = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.maximum(lengths, 1e-12)
+
+
+def _morph(file: GltfFile, target: dict[str, int], name: str, vertices: int) -> Morph:
+    shifts = _shifts(file, target.get("POSITION"), name, vertices)
+    turns = _shifts(file, target["NORMAL"], name, vertices) if "NORMAL" in target else None
+    moved = np.abs(shifts).max(axis=1, initial=0.0) > _STILL
+    if turns is not None:
+        moved |= np.abs(turns).max(axis=1, initial=0.0) > _STILL
+    where = np.flatnonzero(moved)
+    return Morph(
+        name,
+        where.astype(np.uint32),
+        shifts[where].astype(np.float32),
+        None if turns is None else turns[where].astype(np.float32),
+    )
+
+
+def _shifts(file: GltfFile, accessor: int | None, name: str, vertices: int) -> Array:
+    if accessor is None:
+        return np.zeros((vertices, 3))
+    shifts = file.accessor(accessor).astype(float)
+    if shifts.shape != (vertices, 3):
+        raise DamagedFileError(
+            f"morph target {name!r} has {len(shifts)} shifts for {vertices} vertices"
+        )
+    return shifts
+
+
+def _order(file: GltfFile, found: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names in the order that our own writer notes in the scene, or as found."""
+    for scene in file.plain.get("scenes", []):
+        stated = scene.get("extras", {}).get("morphs")
+        if isinstance(stated, list) and sorted(map(str, stated)) == sorted(found):
+            return tuple(stated)
+    return found
