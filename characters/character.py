@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from characters.anatomy import Anatomy
 from characters.clip import Clip
 from characters.errors import CharacterError
 from characters.mesh import Mesh
@@ -92,6 +93,14 @@ class Character:
         placed = [skin(mesh, self.skeleton.rest.globals(self.skeleton)) for mesh in self.meshes]
         points = np.concatenate([p for p in placed if len(p)] or [np.zeros((1, 3))])
         return np.stack([points.min(0), points.max(0)])
+
+    @cached_property
+    def anatomy(self) -> Anatomy:
+        """Which joint is which part of a body: said by the file, else guessed."""
+        try:
+            return Anatomy.guess(self.skeleton, self.semantics)
+        except CharacterError as error:
+            raise CharacterError(f"{self.name}: {error}") from None
 
     @property
     def height(self) -> float:

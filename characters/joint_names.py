@@ -1,0 +1,174 @@
+"""What the name of a joint says: which side, which part of the body, which of several.
+
+Riggers write one thing in many ways: "mixamorig:LeftUpLeg", "thigh.L", "lfemur", "l_hip",
+"Bip01 L Thigh", "J_Bip_L_UpperLeg", "BackUpLeg.L". A name is cut into words; sides, prefixes and
+numbers are taken out; what is left is looked up.
+"""
+
+import re
+from dataclasses import dataclass
+from functools import cache
+
+
+def _words(line: str) -> frozenset[str]:
+    return frozenset(line.split())
+
+
+_WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
+_SIDES = {"left": "left", "l": "left", "right": "right", "r": "right"}
+_FILLERS = _words(
+    "mixamorig bip bip01 bone bones b j jnt joint jt armature skeleton def org c center centre m "
+    "valve valvebiped biped character rig sk humanoid bn cc base bend"
+)
+# Joints that only help others: ends, twists, targets of inverse kinematics, cloth, meshes.
+_AUXILIARY = _words(
+    "end nub site tip ik fk pole target twist roll helper socket prop weapon ctrl control "
+    "effector mch sec adj offset mesh geo hair skirt bust breast cloth top lid eyelid brow "
+    "eyebrow lash corner inhand vis tweak"
+)
+_FRONT, _HIND = frozenset({"front", "fore"}), frozenset({"back", "hind", "rear"})
+
+LEG_ROLES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
+"""Joints of a leg from the hip down."""
+
+ARM_ROLES = ("Shoulder", "UpperArm", "LowerArm", "Hand")
+"""Joints of an arm from the collarbone down."""
+
+_FINGERS = {
+    "thumb": "Thumb",
+    "index": "Index",
+    "pointer": "Index",
+    "middle": "Middle",
+    "mid": "Middle",
+    "ring": "Ring",
+    "pinky": "Little",
+    "little": "Little",
+    "pinkie": "Little",
+}
+
+# How well a word fits each role of a limb, 0…1. "Shoulder" is a collarbone to some and the joint
+# of the upper arm to others; what else the limb has decides.
+_LEG_WORDS: dict[str, dict[str, float]] = {
+    "upleg upperleg thigh femur upperthigh legupper legup": {"UpperLeg": 1.0},
+    "hip": {"UpperLeg": 0.7},
+    "lowerleg lowleg shin calf knee tibia leglower leglow crus": {"LowerLeg": 1.0},
+    "leg": {"UpperLeg": 0.5, "LowerLeg": 0.6, "Foot": 0.3, "Toes": 0.25},
+    "foot paw hoof": {"Foot": 1.0, "Toes": 0.2},
+    "ankle talocrural": {"Foot": 0.9},
+    "toe toes toebase ball football metatarsal midtarsal": {"Toes": 1.0},
+}
+_ARM_WORDS: dict[str, dict[str, float]] = {
+    "clavicle collar collarbone scapula sternoclavicular": {"Shoulder": 1.0},
+    "acromioclavicular": {"Shoulder": 0.9},
+    "shoulder shldr": {"Shoulder": 0.9, "UpperArm": 0.7},
+    "uparm upperarm humerus armupper armup bicep": {"UpperArm": 1.0},
+    "forearm lowerarm lowarm elbow radius ulna armlower armlow": {"LowerArm": 1.0},
+    "arm": {"Shoulder": 0.2, "UpperArm": 0.6, "LowerArm": 0.45, "Hand": 0.3},
+    "wrist radiocarpal": {"Hand": 0.6},
+    "hand palm": {"Hand": 1.0},
+}
+_TRUNK_WORDS: dict[str, str] = {
+    "hips hip pelvis": "hips",
+    "spine lowerback upperback waist abdomen abdomenlower abdomenupper stomach torso body": "spine",
+    "chest thorax ribcage rib chestlower": "chest",
+    "upperchest chestupper": "upperChest",
+    "neck lowerneck upperneck necklower neckupper": "neck",
+    "head skull skullbase": "head",
+    "jaw mandible": "jaw",
+    "eye eyeball": "Eye",
+    "tail": "tail",
+}
+
+
+def _by_word(table: dict[str, dict[str, float]]) -> dict[str, dict[str, float]]:
+    return {word: roles for words, roles in table.items() for word in words.split()}
+
+
+LEG_FIT = _by_word(_LEG_WORDS)
+"""How well a word fits each of `LEG_ROLES`, 0…1."""
+
+ARM_FIT = _by_word(_ARM_WORDS)
+"""How well a word fits each of `ARM_ROLES`, 0…1."""
+
+_TRUNK = {word: part for words, part in _TRUNK_WORDS.items() for word in words.split()}
+_KNOWN = frozenset({*LEG_FIT, *ARM_FIT, *_TRUNK, *_FINGERS, "hipjoint", "fingers"})
+
+
+@dataclass(frozen=True)
+class JointName:
+    """What a name says."""
+
+    word: str
+    """What is left of it in small letters: "upperleg"; "" if nothing."""
+
+    side: str = ""
+    """"left", "right", or "" where it does not say."""
+
+    front: bool = False
+    """Whether it says front leg."""
+
+    hind: bool = False
+    """Whether it says hind leg."""
+
+    auxiliary: bool = False
+    """Whether it is no joint of a body: an end, a twist, a target, a strand of hair."""
+
+    @property
+    def leg(self) -> dict[str, float]:
+        """How well it fits each role of a leg, 0…1; empty if not at all."""
+        return {} if self.auxiliary else LEG_FIT.get(self.word, {})
+
+    @property
+    def arm(self) -> dict[str, float]:
+        """How well it fits each role of an arm, 0…1; empty if not at all."""
+        return {} if self.auxiliary else ARM_FIT.get(self.word, {})
+
+    @property
+    def trunk(self) -> str:
+        """Which part of the trunk or the head it names, "" if none."""
+        return "" if self.auxiliary else _TRUNK.get(self.word, "")
+
+    @property
+    def finger(self) -> str:
+        """Which finger it is of, as in VRM, "" if of none."""
+        if self.auxiliary:
+            return ""
+        word = self.word.removeprefix("hand").removeprefix("finger").removesuffix("finger")
+        return _FINGERS.get(re.sub(r"(proximal|intermediate|distal|metacarpal)$", "", word), "")
+
+
+@cache
+def read_name(name: str) -> JointName:
+    """Return what the name of a joint says.
+
+    >>> read_name("mixamorig:LeftUpLeg").word, read_name("lfemur").side, read_name("FootR").side
+    ('upleg', 'left', 'right')
+    >>> read_name("BackUpLeg.L") == JointName("upleg", "left", hind=True)
+    True
+    """
+    own = re.split(r"[:|]", name)[-1]
+    words = [word.lower() for word in _WORD.findall(own) if not word.isdigit()]
+    words = [piece for word in words for piece in _unglued(word)]
+    sides = [_SIDES[word] for word in words if word in _SIDES]
+    auxiliary = not _AUXILIARY.isdisjoint(words)
+    rest = [word for word in words if word not in _SIDES and word not in _FILLERS]
+    front, hind = False, False
+    if len(rest) > 1 and "".join(rest) not in _KNOWN and "".join(rest[1:]) in _KNOWN:
+        # "BackLeg" is a hind leg, but "Back" alone and "ForeArm" are not.
+        front, hind = rest[0] in _FRONT, rest[0] in _HIND
+        rest = rest[1:] if front or hind else rest
+    return JointName("".join(rest), sides[0] if sides else "", front, hind, auxiliary)
+
+
+def _unglued(word: str) -> list[str]:
+    """Return a word cut where it is a side glued to a part: "lfemur", "leftfoot", "footr"."""
+    for side in ("left", "right", "l", "r"):
+        inner = word.removeprefix(side)
+        if inner == word:
+            inner = word.removesuffix(side)
+        if inner != word and inner in _KNOWN and word not in _KNOWN:
+            return [side, inner]
+    for place in ("front", "hind", "back"):
+        if word.startswith(place) and word[len(place) :] in _KNOWN:
+            return [place, word[len(place) :]]
+    return [word]
