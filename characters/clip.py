@@ -122,17 +122,4 @@ class Clip:
         if not self.loop or self.duration == 0:
             return within
         within = self._steps[0].inverse().then(within)
-        return _repeated(self.cycle, math.floor(time / self.duration)).then(within)
-
-
-def _repeated(step: Step, times: int) -> Step:
-    """Return a step taken a whole number of times, in closed form."""
-    if times == 0:
-        return STANDING
-    half = step.yaw / 2
-    # A chord of a polygon: the ratio of sines, by l'Hôpital where it is straight.
-    ratio = times * math.cos(times * half) / math.cos(half)
-    if abs(math.sin(half)) > 1e-9:
-        ratio = math.sin(times * half) / math.sin(half)
-    turned = Step(yaw=(times - 1) * half).then(Step(step.x * ratio, step.z * ratio))
-    return Step(turned.x, turned.z, times * step.yaw)
+        return self.cycle.repeated(math.floor(time / self.duration)).then(within)

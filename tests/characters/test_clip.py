@@ -6,7 +6,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters import CharacterError, Clip, Motion, Pose, rotations
-from characters.clip import _repeated
 from characters.motion import Step
 
 steps = st.builds(Step, st.floats(-2, 2), st.floats(-2, 2), st.floats(-7, 7))
@@ -27,7 +26,7 @@ def test_many_cycles_equal_one_after_the_other(step, times):
     walked = Step()
     for _ in range(times):
         walked = walked.then(step)
-    assert close(_repeated(step, times), walked)
+    assert close(step.repeated(times), walked)
 
 
 def test_a_clip_is_a_motion(walker):
