@@ -89,19 +89,23 @@ class Figures:
         context = self._context
         context.enable_only(moderngl.DEPTH_TEST)
         for cast in casts:
+            lit: set[int] = set()
             for part in cast.character.parts:
-                textured = part.texture is not None
-                program = self._programs.textured if textured else self._programs.plain
-                surface = cast.character.textured if textured else cast.character.plain
-                material = part.material
-                assign(program, clip_from_table=clip_from_table, eye=eye, to_light=TO_LIGHT)
-                assign(program, key=light.key, sky=light.sky, ground=light.ground)
-                assign(program, height=cast.height, base_color=material.base_color[:3])
+                program, material = part.array.program, part.material
+                if program.glo not in lit:
+                    lit.add(program.glo)
+                    assign(program, clip_from_table=clip_from_table, eye=eye, to_light=TO_LIGHT)
+                    assign(program, key=light.key, sky=light.sky, ground=light.ground)
+                    assign(program, height=cast.height)
+                assign(program, base_color=material.base_color[:3])
                 assign(program, metallic=material.metallic, roughness=material.roughness)
-                if part.texture is not None:
-                    part.texture.use(0)
+                if part.looks:
+                    assign(program, opacity=material.base_color[3], cutoff=material.cutoff or 0.0)
+                    assign(program, bump_scale=material.bump_scale, glow=material.glow)
+                for unit, texture in part.textures:
+                    texture.use(unit)
                 (context.disable if material.double_sided else context.enable)(moderngl.CULL_FACE)
-                surface.render(vertices=part.count, first=part.first)
+                part.array.render(vertices=part.count, first=part.first)
 
     def release(self) -> None:
         """Give the card's memory back; a second call does nothing."""

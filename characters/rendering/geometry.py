@@ -201,7 +201,7 @@ class Geometry:
         return np.hstack([self.joints.view(np.float32), self.weights])
 
     @property
-    def look_records(self) -> NDArray[np.float32]:
+    def paint_records(self) -> NDArray[np.float32]:
         """Linear RGBA and texture coordinates of each vertex, (vertices, 6)."""
         return np.hstack([self.colors, self.uvs])
 

@@ -12,6 +12,10 @@ Array = NDArray[np.float64]
 
 SHADERS = files("characters.rendering") / "shaders"
 
+LOOKS = ("TEXTURED", "SURFACE", "BUMPS", "GLOW", "CUTOFF")
+"""What a surface may have beyond one colour, one roughness and one metalness: a texture of the base
+colour, one of roughness and metalness, a normal map, light of its own, holes."""
+
 
 class Programs:
     """Every program of the picture.
@@ -44,19 +48,35 @@ class Programs:
         """Discs and dashes on the table."""
         self.shadow = build("shadow.vert", "shadow.frag")
         """What is left of the light onto the table."""
-        self.plain = build("character.vert", "character.frag")
-        """Vertices to colour, without a texture."""
-        self.textured = build("character.vert", "character.frag", "TEXTURED")
-        """Vertices to colour, with one. A program of its own: drivers on the processor take a
-        sample even where a condition says no."""
         self.over = build("screen.vert", "over.frag")
         """Figures onto the ground."""
         self.copy = build("copy.vert", "copy.frag")
         """A finished part of the picture into a window."""
+        self._build = build
+        self._figures: dict[frozenset[str], moderngl.Program] = {}
+
+    def figure(self, looks: frozenset[str]) -> moderngl.Program:
+        """Return vertices to colour for surfaces with some of `LOOKS`, built when first asked for.
+
+        Each set of looks is a program of its own: drivers on the processor take a sample even where
+        a condition says no, and a surface without looks is to cost nothing for those of others.
+        """
+        if looks not in self._figures:
+            mapped = {"MAPPED"} if looks & {"TEXTURED", "SURFACE", "BUMPS"} else set()
+            program = self._build("character.vert", "character.frag", *sorted(looks | mapped))
+            assign(program, base_texture=0, surface_map=1, bump_map=2)
+            self._figures[looks] = program
+        return self._figures[looks]
+
+    @property
+    def every(self) -> tuple[moderngl.Program, ...]:
+        """All that were built so far."""
+        programs = (owned for owned in vars(self).values() if isinstance(owned, moderngl.Program))
+        return (*programs, *self._figures.values())
 
     def release(self) -> None:
         """Give the programs back; a second call does nothing."""
-        for program in vars(self).values():
+        for program in self.every:
             program.release()
 
 

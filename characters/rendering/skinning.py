@@ -1,15 +1,13 @@
 """A character on the graphics card: sent there once, posed there in every picture."""
 
-from dataclasses import dataclass
-
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.mesh import Material
 from characters.rendering.geometry import Geometry
 from characters.rendering.morphing import Morphing
 from characters.rendering.programs import Programs
+from characters.rendering.surfaces import Part, Surfaces
 from characters.rendering.view import Drawable
 
 Array = NDArray[np.float64]
@@ -17,26 +15,6 @@ Array = NDArray[np.float64]
 CASTER_CELLS = 44
 """Cells along a character's height to which the caster of its shadow is simplified: the map of
 the shadow is not much finer."""
-
-SRGB8_ALPHA8 = 0x8C43
-"""OpenGL's name of the format that decodes sRGB when it is sampled."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """A run of triangles with one material."""
-
-    first: int
-    """Number of the first index."""
-
-    count: int
-    """How many indices."""
-
-    material: Material
-    """The surface."""
-
-    texture: moderngl.Texture | None
-    """Its base colour on the card, or None."""
 
 
 class SkinnedCharacter:
@@ -67,7 +45,7 @@ class SkinnedCharacter:
         self._outlining = geometry.positions[self._outline]
         self._shapes = context.buffer(geometry.shape_records)
         bones = context.buffer(geometry.bone_records)
-        looks = context.buffer(np.hstack([geometry.colors[:, :3], geometry.uvs]))
+        paint = context.buffer(geometry.paint_records)
         indices = context.buffer(geometry.indices)
         coarse, self.coarse_runs = geometry.coarse(CASTER_CELLS)
         coarse_indices = context.buffer(coarse)
@@ -82,25 +60,14 @@ class SkinnedCharacter:
                 (bones, "4u4 4f", "joints", "weights"),
             ],
         )
-        placed = (self.skinned, "3f 3f", "position", "normal")
-        self.plain = context.vertex_array(
-            programs.plain, [placed, (looks, "3f 8x", "color")], indices
-        )
-        """Draws the parts without a texture."""
-        self.textured = context.vertex_array(
-            programs.textured, [placed, (looks, "3f 2f", "color", "uv")], indices
-        )
-        """Draws the parts with a texture."""
         self.caster = context.vertex_array(
             programs.caster, [(self.skinned, "3f 12x", "position")], coarse_indices
         )
         """Draws its shadow, in runs of indices `coarse_runs`: (first, count, double-sided)."""
-        self.parts = _parts(context, geometry)
+        self._surfaces = Surfaces(context, programs, self.skinned, paint, indices)
+        self.parts: tuple[Part, ...] = self._surfaces.parts(geometry)
         """What to draw with which material."""
-        textures = [part.texture for part in self.parts if part.texture is not None]
-        self._arrays = (self._skin, self.plain, self.textured, self.caster)
-        self._textures = (self._palette, *textures)
-        self._buffers = (self._shapes, bones, looks, indices, coarse_indices, self.skinned)
+        self._buffers = (self._shapes, bones, paint, indices, coarse_indices, self.skinned)
 
     def pose(
         self, character_from_joint: Array, table_from_character: Array, morphs: Array | None = None
@@ -143,29 +110,9 @@ class SkinnedCharacter:
 
     def release(self) -> None:
         """Give the card's memory back; a second call does nothing."""
-        for array in self._arrays:
+        for array in (self._skin, self.caster):
             array.release()
-        for texture in self._textures:
-            texture.release()
+        self._palette.release()
+        self._surfaces.release()
         for buffer in self._buffers:
             buffer.release()
-
-
-def _parts(context: moderngl.Context, geometry: Geometry) -> tuple[Part, ...]:
-    parts: list[Part] = []
-    first = 0
-    for material, count in geometry.materials:
-        texture = None if material.texture is None else _texture(context, material.texture)
-        parts.append(Part(first, count, material, texture))
-        first += count
-    return tuple(parts)
-
-
-def _texture(context: moderngl.Context, image: NDArray[np.uint8]) -> moderngl.Texture:
-    height, width = image.shape[:2]
-    texture = context.texture(
-        (width, height), 4, np.ascontiguousarray(image), internal_format=SRGB8_ALPHA8
-    )
-    texture.build_mipmaps()
-    texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
-    return texture

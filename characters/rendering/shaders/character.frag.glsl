@@ -10,9 +10,27 @@ uniform vec3 ground;
 uniform vec3 base_color;
 uniform float metallic;
 uniform float roughness;
+#ifdef MAPPED
+in vec2 where;
+#endif
 #ifdef TEXTURED
 uniform sampler2D base_texture;
-in vec2 where;
+#endif
+#ifdef SURFACE
+uniform sampler2D surface_map;  // roughness in green, metalness in blue
+#endif
+#ifdef BUMPS
+uniform sampler2D bump_map;     // normals in tangent space
+uniform float bump_scale;
+in vec3 place;
+#endif
+#ifdef GLOW
+uniform vec3 glow;
+#endif
+#ifdef CUTOFF
+uniform float opacity;
+uniform float cutoff;
+in float covering;
 #endif
 
 in vec3 toward;
@@ -28,12 +46,55 @@ vec3 encoded(vec3 light) {
     return 0.82443678 * a + 0.30650353 * b - 0.05245525 * light - 0.07884886;
 }
 
+#ifdef BUMPS
+// Leans a normal as the normal map says. The tangents come from how place and texture coordinates change
+// from pixel to pixel, so the mesh needs none (C. Schüler, "Normal mapping without precomputed tangents",
+// ShaderX5, 2006); mirrored and stretched coordinates are right too. Green is up, which is along -v.
+vec3 bumped(vec3 n) {
+    vec3 across = dFdx(place), down = dFdy(place);
+    vec2 u = dFdx(where), v = dFdy(where);
+    float area = u.x * v.y - u.y * v.x;
+    if (abs(area) < 1e-13) return n;  // the texture is one point here
+    float turned = sign(area);
+    vec3 along_u = turned * (across * v.y - down * u.y);
+    vec3 along_v = turned * (down * u.x - across * v.x);
+    along_u -= n * dot(n, along_u);
+    along_v -= n * dot(n, along_v);
+    float size = inversesqrt(max(dot(along_u, along_u), dot(along_v, along_v)));
+    vec3 lean = texture(bump_map, where).xyz * 2.0 - 1.0;
+    lean.xy *= bump_scale * size;
+    return normalize(lean.x * along_u - lean.y * along_v + lean.z * n);
+}
+#endif
+
 void main() {
     vec3 albedo = base_color * tint;
 #ifdef TEXTURED
-    albedo *= texture(base_texture, where).rgb;
+    vec4 painted = texture(base_texture, where);
+    albedo *= painted.rgb;
 #endif
-    vec3 n = normalize(gl_FrontFacing ? facing : -facing);
+#ifdef CUTOFF
+    float alpha = opacity * covering;
+#ifdef TEXTURED
+    // Smaller mipmaps mix holes and hair, and hair would thin out with distance: its alpha grows with them.
+    vec2 a_column = dFdx(where) * vec2(textureSize(base_texture, 0));
+    vec2 a_row = dFdy(where) * vec2(textureSize(base_texture, 0));
+    float level = 0.5 * log2(max(max(dot(a_column, a_column), dot(a_row, a_row)), 1.0));
+    alpha *= painted.a * (1.0 + 0.25 * level);
+#endif
+    if (alpha < cutoff) discard;
+#endif
+    float metal = metallic, rough = roughness;
+#ifdef SURFACE
+    vec2 surface = texture(surface_map, where).gb;
+    rough *= surface.x;
+    metal *= surface.y;
+#endif
+    vec3 n = normalize(facing);
+#ifdef BUMPS
+    n = bumped(n);
+#endif
+    n = gl_FrontFacing ? n : -n;
     float nl = dot(n, to_light), nv = dot(n, toward);
     float vl = dot(toward, to_light);
 
@@ -48,18 +109,21 @@ void main() {
 
     // GGX with the visibility term of B. Karis, "Optimizing PBR for mobile", 2015. The half vector is
     // h = (v + l) / |v + l| and (v·h)² = |v + l|² / 4, which leaves one division and no root.
-    float a = max(roughness * roughness, 0.02), a2 = a * a;
+    float a = max(rough * rough, 0.02), a2 = a * a;
     float sum2 = max(2.0 + 2.0 * vl, 1e-3), nsum = max(nl + nv, 0.0);
     float lobe = nsum * nsum * (a2 - 1.0) + sum2;
-    float highlight = a2 * sum2 * sum2 / (lobe * lobe * max(sum2, 0.4) * (roughness + 0.5));
-    vec3 f0 = mix(vec3(0.04), albedo, metallic);
+    float highlight = a2 * sum2 * sum2 / (lobe * lobe * max(sum2, 0.4) * (rough + 0.5));
+    vec3 f0 = mix(vec3(0.04), albedo, metal);
     float grazing = 1.0 - clamp(nv, 0.0, 1.0);
     grazing *= grazing * grazing * grazing;
-    vec3 mirror = f0 + (1.0 - f0) * grazing * (0.8 - 0.6 * roughness);
+    vec3 mirror = f0 + (1.0 - f0) * grazing * (0.8 - 0.6 * rough);
 
-    vec3 light = albedo * (1.0 - metallic) * (key * wrapped + around)
+    vec3 light = albedo * (1.0 - metal) * (key * wrapped + around)
                + key * f0 * min(highlight, 6.0) * clamp(nl * 4.0, 0.0, 1.0)
                + mirror * around;
+#ifdef GLOW
+    light += glow;
+#endif
     // A shoulder instead of a cliff where the light is strong.
     light *= 1.06 / (1.0 + 0.12 * light);
     color = vec4(clamp(encoded(light), 0.0, 1.0).bgr, 1.0);

@@ -6,24 +6,36 @@ uniform float height;       // of the character [m]
 
 in vec3 position;
 in vec3 normal;
-in vec3 color;
+in vec4 color;
 in vec2 uv;
 
 out vec3 toward;            // the eye; triangles are small, so it stays a unit vector
 out float above;            // the ground, as a share of what is near it
 out vec3 facing;
 out vec3 tint;
-#ifdef TEXTURED
+#ifdef MAPPED
 out vec2 where;
+#endif
+#ifdef BUMPS
+out vec3 place;             // in the table frame
+#endif
+#ifdef CUTOFF
+out float covering;
 #endif
 
 void main() {
     toward = normalize(eye - position);
     above = position.y / (0.28 * height);
     facing = normal;
-    tint = color;
-#ifdef TEXTURED
+    tint = color.rgb;
+#ifdef MAPPED
     where = uv;
+#endif
+#ifdef BUMPS
+    place = position;
+#endif
+#ifdef CUTOFF
+    covering = color.a;
 #endif
     gl_Position = clip_from_table * vec4(position, 1.0);
 }

@@ -26,7 +26,7 @@ def jester(pawn):
     every = np.arange(len(mesh.positions), dtype=np.uint32)
     head = every[mesh.positions[:, 1] > 0.7]
     waves = np.sin(mesh.positions[head] @ np.array([[9.0, 2.0, 4.0], [3, 8, 1], [5, 1, 7]]))
-    grin = Morph("grin", head, *np.float32([0.1 * waves, 0.6 * waves[:, ::-1]]))
+    grin = Morph("grin", head, *np.array([0.1 * waves, 0.6 * waves[:, ::-1]], np.float32))
     tip = every[mesh.positions[:, 1] > 0.9]
     tall = Morph("tall", tip, np.tile([[0.0, 0.4, 0.0]], (len(tip), 1)).astype(np.float32))
     other = replace(mesh, material=Material(base_color=(0.1, 0.1, 0.8, 1.0)), morphs=(grin,))

@@ -1,0 +1,129 @@
+"""Maps of a material: each says the same as a factor or a normal that is the same everywhere."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from characters.mesh import Material, Mesh
+from characters.rendering import Actor
+from characters.rendering.geometry import Geometry
+from characters.rendering.surfaces import looks_of
+
+RED = Material(base_color=(0.6, 0.1, 0.08, 1.0), roughness=0.5)
+
+
+def even(*channels):
+    """Return a map of 8×8 texels of one value."""
+    return np.tile(np.array(channels, np.uint8), (8, 8, 1))
+
+
+@pytest.fixture(scope="module")
+def tile(pawn):
+    """Make a square that lies on the table, one metre wide, with the joints of the pawn."""
+
+    def make(material, normal=(0.0, 1.0, 0.0), uv_of_xz=((1.0, 0.0), (0.0, 1.0)), alpha=1.0):
+        corners = np.array([(-1, 1), (1, 1), (1, -1), (-1, -1)]) / 2
+        bind = pawn.meshes[0].inverse_bind
+        mesh = Mesh(
+            name="tile",
+            positions=np.insert(corners, 1, 0.02, axis=1).astype(np.float32),
+            normals=np.tile(normal, (4, 1)).astype(np.float32),
+            triangles=np.array([(0, 1, 2), (0, 2, 3)], np.uint32),
+            joints=np.zeros((4, 4), np.uint16),
+            weights=np.tile([1.0, 0.0, 0.0, 0.0], (4, 1)).astype(np.float32),
+            inverse_bind=bind,
+            colors=np.tile([1.0, 1.0, 1.0, alpha], (4, 1)).astype(np.float32),
+            uvs=(corners @ np.array(uv_of_xz).T + 0.5).astype(np.float32),
+            material=material,
+        )
+        return replace(pawn, meshes=(mesh,))
+
+    return make
+
+
+@pytest.fixture
+def shown(stage, view, pawn):
+    """Draw a character at a place of its own, as whole numbers with a sign."""
+
+    def draw(character):
+        return stage.draw(view, [Actor(character, pawn.posed().posed)]).astype(int)
+
+    return draw
+
+
+def test_a_plain_material_asks_for_nothing():
+    assert looks_of(RED) == frozenset()
+
+
+def test_maps_of_roughness_and_metalness_multiply_the_factors(shown, tile):
+    factors = shown(tile(replace(RED, metallic=0.4, roughness=0.3)))
+    mapped = replace(RED, metallic=0.8, roughness=0.6, surface=even(77, 128, 128))
+    assert np.abs(shown(tile(mapped)) - factors).max() <= 1
+    assert np.abs(shown(tile(RED)) - factors).max() > 10
+
+
+MAPPINGS = {
+    "straight": ((1.0, 0.0), (0.0, 1.0)),
+    "a quarter turn": ((0.0, -1.0), (1.0, 0.0)),
+    "mirrored": ((-1.0, 0.0), (0.0, 1.0)),
+    "stretched": ((3.0, 0.0), (0.0, 3.0)),
+}
+
+
+@pytest.mark.parametrize("mapping", MAPPINGS)
+@pytest.mark.parametrize("lean", [(0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (-0.3, -0.4)])
+def test_a_normal_map_leans_normals_along_the_texture(shown, tile, mapping, lean):
+    uv_of_xz = np.array(MAPPINGS[mapping])
+    right, up = lean
+    rise = float(np.sqrt(1.0 - right**2 - up**2))
+    coded = np.rint(127.5 * (np.array([right, up, rise]) + 1.0)).astype(int)
+    xz_of_uv = np.linalg.inv(uv_of_xz)
+    xz_of_uv /= np.linalg.norm(xz_of_uv, axis=0)
+    x, z = xz_of_uv @ [right, -up]  # up in a picture is against v
+    expected = shown(tile(RED, normal=(x, rise, z)))
+    mapped = tile(replace(RED, bumps=even(*coded)), uv_of_xz=uv_of_xz)
+    assert np.abs(shown(mapped) - expected).max() <= 3
+
+
+def test_the_scale_of_a_normal_map_leans_normals_more(shown, tile):
+    lean = replace(RED, bumps=even(178, 128, 238))
+    steep = np.array([2.0 * 0.4, np.sqrt(1.0 - 0.4**2), 0.0])
+    expected = shown(tile(RED, normal=steep / np.linalg.norm(steep)))
+    assert np.abs(shown(tile(replace(lean, bump_scale=2.0))) - expected).max() <= 3
+    assert np.array_equal(shown(tile(replace(lean, bump_scale=0.0))), shown(tile(RED)))
+
+
+def test_texture_coordinates_of_no_size_leave_the_normals(shown, tile):
+    mapped = tile(replace(RED, bumps=even(200, 128, 238)), uv_of_xz=np.zeros((2, 2)))
+    assert np.abs(shown(mapped) - shown(tile(RED))).max() <= 1
+
+
+def test_what_glows_is_seen_without_light(shown, tile, view):
+    black = replace(RED, base_color=(0.0, 0.0, 0.0, 1.0), roughness=1.0)
+    dark, bright = shown(tile(black)), shown(tile(replace(black, glow=(0.0, 0.5, 0.0))))
+    where = np.abs(dark - view.image).sum(axis=2) > 150
+    assert where.sum() > 500
+    assert (bright - dark)[where][:, 1].mean() > 80
+    assert np.abs((bright - dark)[where][:, [0, 2]]).max() <= 2
+
+
+def test_holes_show_what_is_behind(shown, tile, view):
+    solid = tile(replace(RED, texture=even(255, 255, 255, 40)))
+    holes = tile(replace(RED, texture=even(255, 255, 255, 40), cutoff=0.5))
+    shut = tile(replace(RED, texture=even(255, 255, 255, 140), cutoff=0.5))
+    assert np.array_equal(shown(shut), shown(solid))
+    red = shown(solid)[..., 2] - shown(solid)[..., 1] > 40
+    seen = shown(holes)
+    assert red.sum() > 1000
+    assert (seen[..., 2] - seen[..., 1]).max() < 20
+    faint = replace(RED, cutoff=0.5)
+    assert np.array_equal(shown(tile(faint, alpha=0.4)), seen)
+    assert np.array_equal(shown(tile(faint, alpha=0.6)), shown(solid))
+
+
+def test_materials_that_differ_in_a_map_are_drawn_apart(tile):
+    bumps = even(128, 128, 255)
+    one, other = replace(RED, bumps=bumps), replace(RED, bumps=bumps.copy())
+    meshes = [tile(material).meshes[0] for material in (one, other, one)]
+    assert len(Geometry.of(meshes).materials) == 2
