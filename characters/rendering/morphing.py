@@ -5,6 +5,8 @@ mix just those and send them costs less than to let the card look at every morph
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +15,25 @@ from characters.errors import CharacterError
 from characters.mesh import Mesh, Morph
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class _Run:
+    """A morph spread over all vertices from the first to the last that it moves.
+
+    To add rows that lie together is some ten times as fast as to pick them.
+    """
+
+    first: int
+    shifts: NDArray[np.float32]
+    """Of position and normal, (n, 6)."""
+
+    @classmethod
+    def of(cls, morph: Morph) -> Self:
+        first = int(morph.vertices[0])
+        shifts = np.zeros((int(morph.vertices[-1]) + 1 - first, 6), np.float32)
+        shifts[morph.vertices - first] = _both_shifts(morph)
+        return cls(first, shifts)
 
 
 class Morphing:
@@ -33,8 +54,8 @@ class Morphing:
     ) -> None:
         self._still = still
         self._mixed = still.copy()
-        known = {morph.name: morph for morph in morphs}
-        self._morphs = [known.get(name) for name in names]
+        known = {morph.name: _Run.of(morph) for morph in morphs}
+        self._runs = [known.get(name) for name in names]
         self._weights = np.zeros(len(names))
 
     def mix(self, weights: Array | None) -> NDArray[np.float32] | None:
@@ -62,20 +83,18 @@ class Morphing:
         if np.shape(weights) != self._weights.shape:
             raise CharacterError(
                 f"a pose with morphs of shape {np.shape(weights)} for a character that has "
-                f"{len(self._morphs)}: give one weight for each"
+                f"{len(self._runs)}: give one weight for each"
             )
         if np.array_equal(weights, self._weights):
             return None
         self._weights = np.array(weights, float)
         np.copyto(self._mixed, self._still)
         for number in np.flatnonzero(self._weights):
-            morph = self._morphs[number]
-            if morph is None:
-                continue  # no mesh that is drawn has it
-            weight = np.float32(self._weights[number])
-            self._mixed[morph.vertices, :3] += weight * morph.shifts
-            if morph.normal_shifts is not None:
-                self._mixed[morph.vertices, 3:] += weight * morph.normal_shifts
+            run = self._runs[number]
+            if run is not None:  # else no mesh that is drawn has it
+                self._mixed[run.first : run.first + len(run.shifts)] += (
+                    np.float32(self._weights[number]) * run.shifts
+                )
         return self._mixed
 
 

@@ -51,6 +51,7 @@ vec3 encoded(vec3 light) {
 // from pixel to pixel, so the mesh needs none (C. Schüler, "Normal mapping without precomputed tangents",
 // ShaderX5, 2006); mirrored and stretched coordinates are right too. Green is up, which is along -v.
 vec3 bumped(vec3 n) {
+    vec3 lean = texture(bump_map, where).xyz * 2.0 - 1.0;
     vec3 across = dFdx(place), down = dFdy(place);
     vec2 u = dFdx(where), v = dFdy(where);
     float area = u.x * v.y - u.y * v.x;
@@ -61,7 +62,6 @@ vec3 bumped(vec3 n) {
     along_u -= n * dot(n, along_u);
     along_v -= n * dot(n, along_v);
     float size = inversesqrt(max(dot(along_u, along_u), dot(along_v, along_v)));
-    vec3 lean = texture(bump_map, where).xyz * 2.0 - 1.0;
     lean.xy *= bump_scale * size;
     return normalize(lean.x * along_u - lean.y * along_v + lean.z * n);
 }

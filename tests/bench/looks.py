@@ -1,0 +1,118 @@
+"""What looks and morphs cost: `python -m tests.bench.looks [--frames N]`.
+
+One character, drawn in turns with each look, so that the ratios hold on a busy machine. The maps
+are noise; a face of `FACE` vertices has as many morphs as VRM has expressions.
+"""
+
+import argparse
+import statistics
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from characters.character import Character
+from characters.mesh import Material, Mesh, Morph
+from characters.rendering import Actor, Stage, create_context
+from tests.bench.picture import SIZE, scene
+
+FACE = 3000
+MORPHS = 18
+MOST = 1.1
+"""What a picture of a character that has morphs, all off, may cost against one without: about 1,
+with room for the noise of a busy machine."""
+
+
+def with_material(character: Character, **changes: Any) -> Character:
+    """Return a character whose every surface has some looks, and texture coordinates for them."""
+
+    def dressed(mesh: Mesh) -> Mesh:
+        uvs = mesh.positions[:, :2] if mesh.uvs is None else mesh.uvs
+        return replace(mesh, uvs=uvs, material=replace(mesh.material, **changes))
+
+    return replace(character, meshes=tuple(dressed(mesh) for mesh in character.meshes))
+
+
+def with_morphs(character: Character, rng: np.random.Generator) -> Character:
+    """Return a character whose highest vertices are a face."""
+    names = tuple(f"m{number}" for number in range(MORPHS))
+    share = FACE / sum(len(mesh.positions) for mesh in character.meshes)
+
+    def faced(mesh: Mesh) -> Mesh:
+        count = max(round(share * len(mesh.positions)), 1)
+        highest = np.sort(np.argsort(mesh.positions[:, 1])[-count:]).astype(np.uint32)
+        shifts = rng.normal(0, 1e-3, (MORPHS, 2, count, 3)).astype(np.float32)
+        morphs = (Morph(n, highest, *row) for n, row in zip(names, shifts, strict=True))
+        return replace(mesh, morphs=tuple(morphs))
+
+    return replace(character, meshes=tuple(map(faced, character.meshes)), morphs=names)
+
+
+def casts(character: Character, rng: np.random.Generator) -> dict[str, tuple[Character, int]]:
+    """Return each row of the table: who is drawn, and how many morphs are on."""
+    noise = rng.integers(0, 256, (1024, 1024, 4), dtype=np.uint8)
+    bumps = np.dstack([noise[..., :2] // 8 + 112, np.full((1024, 1024), 250)]).astype(np.uint8)
+    looks: dict[str, dict[str, Any]] = {
+        "plain": vars(Material()),
+        "texture": {"texture": noise},
+        "texture, roughness and metalness": {"texture": noise, "surface": noise},
+        "texture, normal map": {"texture": noise, "bumps": bumps},
+        "texture, holes": {"texture": noise, "cutoff": 0.1},
+    }
+    looks["all of it, glowing"] = {"glow": (0.1, 0.0, 0.0)}
+    for name in list(looks)[1:-1]:
+        looks["all of it, glowing"] |= looks[name]
+    rows = {name: (with_material(character, **changes), 0) for name, changes in looks.items()}
+    faced = with_morphs(rows["plain"][0], rng)
+    rows |= {f"plain, {on} of {MORPHS} morphs on": (faced, on) for on in (0, 1, 4, MORPHS)}
+    rows["plain, once more"] = rows["plain"]
+    return rows
+
+
+def main() -> None:
+    """Print the table; end with 1 if morphs that are off cost anything."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--frames", type=int, default=40)
+    parser.add_argument("--character", default="human")
+    options = parser.parse_args()
+    context = create_context()
+    rng = np.random.default_rng(5)
+    character = Character.load(options.character)
+    rows = casts(character, rng)
+    stages = {name: Stage(context, SIZE) for name in rows}
+    spent: dict[str, list[float]] = {name: [] for name in rows}
+    view, actor = scene(character)
+    for frame in range(options.frames + 3):
+        posed = actor(frame).posed
+        for name, (who, on) in rows.items():
+            weights = np.zeros(len(who.morphs))
+            weights[:on] = rng.uniform(0.1, 1.0, on)
+            morphs = weights if len(weights) else None
+            seen = Actor(who, replace(posed, pose=replace(posed.pose, morphs=morphs)))
+            start = time.perf_counter()
+            stages[name].draw(view, [seen])
+            spent[name].append(1e3 * (time.perf_counter() - start))
+    off = tell(options.character, {name: times[3:] for name, times in spent.items()})
+    raise SystemExit(off > MOST)
+
+
+def tell(name: str, spent: dict[str, Sequence[float]]) -> float:
+    """Print the table, and return the ratio of the row with all morphs off."""
+    table = Table(title=f"{name}, one picture of {SIZE[0]}×{SIZE[1]}")
+    for heading in ("looks", "median [ms]", "against plain"):
+        table.add_column(heading, justify="left" if heading == "looks" else "right")
+    ratios = {}
+    for row, times in spent.items():
+        each = (time / plain for time, plain in zip(times, spent["plain"], strict=True))
+        ratios[row] = statistics.median(each)
+        table.add_row(row, f"{statistics.median(times):.2f}", f"{ratios[row]:.3f}")
+    Console().print(table)
+    return ratios[f"plain, 0 of {MORPHS} morphs on"]
+
+
+if __name__ == "__main__":
+    main()
