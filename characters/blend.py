@@ -1,8 +1,11 @@
 """Mixing motions that are in step: blends, and spaces of parameters to take them from."""
 
+import itertools
+import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,9 +13,12 @@ from numpy.typing import ArrayLike
 from characters import rotations
 from characters.errors import CharacterError
 from characters.legs import Legs
-from characters.motion import STANDING, Step
-from characters.phase import Cyclic
+from characters.motion import STANDING, Motion, Step
+from characters.phase import Cyclic, Endless, in_step
 from characters.pose import Array, Pose
+from characters.travel import mean_step
+
+_PARTS = 2  # a cycle: long ways are taken in parts that turn by less than half a circle
 
 
 def mix(poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
@@ -53,28 +59,44 @@ class Blend:
     """Motions mixed in step; `Cyclic`, so blends can be blended.
 
     All members go through their cycles together. The shared pace is the weighted mean of theirs.
+    A motion without a phase starts its cycle at its start; one without an end, such as a state
+    machine, or a single pose has no say in the pace and plays by the clock.
     """
 
-    members: tuple[Cyclic, ...]
+    members: tuple[Motion, ...]
     """What is mixed."""
 
     weights: tuple[float, ...]
-    """How much of each; none negative, sum one."""
+    """How much of each; none negative, sum one: see `shares`."""
 
     legs: Legs | None = None
     """Whose feet are kept where the members' feet are, or None to mix joints alone."""
 
+    def __post_init__(self) -> None:
+        """Refuse weights that do not share out one."""
+        least, total = min(self.weights, default=math.nan), sum(self.weights)
+        # Written so that NaN is refused as well.
+        if len(self.weights) == len(self.members) and least >= 0.0 and abs(total - 1.0) < 1e-6:
+            return
+        raise CharacterError(
+            f"blend: {len(self.members)} motions with weights {self.weights}; give one for each, "
+            "none negative, sum one (`shares` makes them so)"
+        )
+
     @property
     def duration(self) -> float:
         """Length of one cycle [s]."""
-        paces = [w / m.duration for w, m in zip(self.weights, self.members, strict=True)]
-        return 1.0 / sum(paces)
+        if self._endless:
+            return math.inf
+        heard = [(w, m.duration) for m, w in self._heard if 0.0 < m.duration < math.inf]
+        if not heard:
+            return 0.0
+        return sum(w for w, _ in heard) / sum(w / duration for w, duration in heard)
 
     def at(self, phase: float) -> Pose:
-        """Return the mixed pose at a phase."""
-        heard = self._heard()
-        poses = [member.at(phase) for member, _ in heard]
-        weights = [weight for _, weight in heard]
+        """Return the mixed pose at a phase; of an endless blend, after so many seconds."""
+        poses = [member.at(phase * self._rate(member)) for member, _ in self._heard]
+        weights = [weight for _, weight in self._heard]
         mixed = mix(poses, weights)
         if self.legs is None or len(poses) == 1:
             return mixed
@@ -82,32 +104,70 @@ class Blend:
 
     def between(self, start: float, end: float) -> Step:
         """Return the mean of the members' ways over the ground between two phases."""
+        weights = [weight for _, weight in self._heard]
         total = STANDING
-        for member, weight in self._heard():
-            step = member.between(start, end).scaled(weight)
-            total = Step(total.x + step.x, total.z + step.z, total.yaw + step.yaw)
+        parts = max(math.ceil((end - start) * _PARTS), 1)
+        for part in range(parts):
+            low, high = (start + (end - start) * p / parts for p in (part, part + 1))
+            steps = [
+                member.between(low * self._rate(member), high * self._rate(member))
+                for member, _ in self._heard
+            ]
+            total = total.then(mean_step(steps, weights))
         return total
 
     def sample(self, time: float) -> Pose:
         """Return the mixed pose at a time [s] since phase 0."""
-        return self.at(time / self.duration)
+        return self.at(time / self._cycle)
 
     def travel(self, start: float, end: float) -> Step:
         """Return how the root moves over the ground between two times [s]."""
-        duration = self.duration
-        return self.between(start / duration, end / duration)
+        cycle = self._cycle
+        return self.between(start / cycle, end / cycle)
 
+    @property
+    def _cycle(self) -> float:
+        """What a unit of phase lasts [s]: one second, if nothing in it has a cycle."""
+        duration = self.duration
+        return duration if 0.0 < duration < math.inf else 1.0
+
+    def _rate(self, member: Cyclic) -> float:
+        """Return how far a member's own phase goes in a unit of phase."""
+        return self._cycle if isinstance(member, Endless) else 1.0
+
+    @cached_property
+    def _endless(self) -> bool:
+        return all(isinstance(member, Endless) for member, _ in self._heard)
+
+    @cached_property
     def _heard(self) -> list[tuple[Cyclic, float]]:
-        """Return what sounds, with blends inside this one taken apart."""
+        """What sounds, with blends inside this one taken apart."""
         heard: list[tuple[Cyclic, float]] = []
         for member, weight in zip(self.members, self.weights, strict=True):
             if weight <= 0:
                 continue
             if isinstance(member, Blend):
-                heard += [(inner, weight * share) for inner, share in member._heard()]
+                heard += [(inner, weight * share) for inner, share in member._heard]
             else:
-                heard.append((member, weight))
+                heard.append((in_step(member), weight))
         return heard
+
+
+def shares(weights: Sequence[float]) -> tuple[float, ...]:
+    """Return weights divided by their sum.
+
+    >>> shares([1.0, 3.0])
+    (0.25, 0.75)
+
+    Raises
+    ------
+    CharacterError
+        If one is negative or no number, or all are nought.
+    """
+    total = sum(weights)
+    if not all(weight >= 0.0 for weight in weights) or not 0.0 < total < math.inf:
+        raise CharacterError(f"weights {tuple(weights)}; give none below 0, and one above it")
+    return tuple(weight / total for weight in weights)
 
 
 @dataclass(frozen=True)
@@ -153,12 +213,12 @@ class BlendSpace1D:
     knots: tuple[float, ...]
     """Where each motion stands, ascending."""
 
-    motions: tuple[Cyclic, ...]
+    motions: tuple[Motion, ...]
     """One for each knot."""
 
     def __post_init__(self) -> None:
         """Refuse knots that do not ascend."""
-        ascending = all(a < b for a, b in zip(self.knots, self.knots[1:], strict=False))
+        ascending = all(a < b for a, b in itertools.pairwise(self.knots))
         if not self.knots or len(self.knots) != len(self.motions) or not ascending:
             raise CharacterError(
                 f"blend space: {len(self.motions)} motions at {self.knots}; "
@@ -171,6 +231,8 @@ class BlendSpace1D:
         >>> BlendSpace1D((0.0, 1.0, 3.0), (None,) * 3).weights(2.5)
         (0.0, 0.25, 0.75)
         """
+        if not math.isfinite(value):
+            raise CharacterError(f"blend space: a value of {value}; give a finite number")
         shares = [0.0] * len(self.knots)
         after = bisect_right(self.knots, value)
         if after == 0 or after == len(self.knots):
@@ -198,12 +260,14 @@ class BlendSpace2D:
     points: Array
     """Where each motion stands, (motions, 2); no two alike."""
 
-    motions: tuple[Cyclic, ...]
+    motions: tuple[Motion, ...]
     """One for each point."""
 
     def __post_init__(self) -> None:
         """Refuse points that cannot be told apart."""
         count = len(self.motions)
+        if not np.isfinite(self.points).all():
+            raise CharacterError(f"blend space: points {self.points.tolist()}; give finite numbers")
         if self.points.shape != (count, 2) or count != len(np.unique(self.points, axis=0)):
             raise CharacterError(
                 f"blend space: {count} motions at points of shape {self.points.shape}; "
@@ -217,6 +281,10 @@ class BlendSpace2D:
         >>> BlendSpace2D(corners, (None,) * 3).weights([0.5, 0.0])
         (0.5, 0.5, 0.0)
         """
+        if not np.isfinite(point).all() or np.shape(point) != (2,):
+            raise CharacterError(
+                f"blend space: a point of {np.asarray(point).tolist()}; give two finite numbers"
+            )
         towards = self.points[None] - self.points[:, None]  # from each to each other
         squared = np.einsum("ijk,ijk->ij", towards, towards)
         here = np.asarray(point, float) - self.points

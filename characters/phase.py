@@ -5,10 +5,11 @@ lengths of the clips.
 """
 
 import itertools
+import math
 import re
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -22,6 +23,7 @@ _RIGHT = re.compile(r"(?i:right|(?:^|[._\s])r(?:[._\s]|$))|[a-z]R(?:$|[^a-z])")
 _SHUFFLE = 0.1  # a foot that swings less than this part of the body's height takes no steps
 
 
+@runtime_checkable
 class Cyclic(Motion, Protocol):
     """A motion that repeats, addressed by its phase: one cycle, two steps, per unit."""
 
@@ -126,6 +128,51 @@ class Still:
     def travel(self, start: float, end: float) -> Step:
         """Return no motion."""
         return STANDING
+
+
+@dataclass(frozen=True)
+class Endless:
+    """A motion without an end, as if it had cycles of one second; `Cyclic`."""
+
+    motion: Motion
+    """What is played."""
+
+    @property
+    def duration(self) -> float:
+        """It has no end."""
+        return math.inf
+
+    def at(self, phase: float) -> Pose:
+        """Return the pose after so many seconds."""
+        return self.motion.sample(phase)
+
+    def between(self, start: float, end: float) -> Step:
+        """Return how the root moves over the ground between two times [s]."""
+        return self.motion.travel(start, end)
+
+    def sample(self, time: float) -> Pose:
+        """Return the pose at a time [s]."""
+        return self.motion.sample(time)
+
+    def travel(self, start: float, end: float) -> Step:
+        """Return how the root moves over the ground between two times [s]."""
+        return self.motion.travel(start, end)
+
+
+def in_step(motion: Motion) -> Cyclic:
+    """Return any motion as one with a phase; where it has none of its own, 0 is its start."""
+    if isinstance(motion, (Phased, Cyclic)):
+        return motion
+    return Phased(motion) if math.isfinite(motion.duration) else Endless(motion)
+
+
+def takes_steps(motion: Motion) -> bool:
+    """Return whether phase 0 of a motion is a left footfall and one half a right one."""
+    if isinstance(motion, Phased):
+        return bool(motion.marks)
+    inner: Motion | None = getattr(motion, "motion", None)
+    members: tuple[Motion, ...] = getattr(motion, "members", ())
+    return any(map(takes_steps, members if inner is None else (inner,)))
 
 
 def phased(clip: Clip, skeleton: Skeleton) -> Phased:
