@@ -1,6 +1,6 @@
 """The characters of a picture, with their shadows, on the graphics card."""
 
-from collections import OrderedDict
+from collections import Counter, OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -18,7 +18,8 @@ from characters.rendering.view import Actor, Drawable
 Array = NDArray[np.float64]
 
 KEPT = 8
-"""How many characters stay on the graphics card; the one not drawn for longest leaves first."""
+"""How many characters stay on the graphics card, those in the picture among them; the one not drawn
+for longest leaves first, but none that is in the picture."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,9 @@ class Figures:
         self._context = context
         self._programs = programs
         self._shadows: list[Shadow] = []
-        self._characters: OrderedDict[int, tuple[Drawable, SkinnedCharacter]] = OrderedDict()
+        # By which character, and which of its copies in the picture: each has vertices of its own.
+        self._characters: OrderedDict[tuple[int, int], tuple[Drawable, SkinnedCharacter]]
+        self._characters = OrderedDict()
 
     def pose(self, actors: Sequence[Actor], light: Light) -> tuple[list[Cast], Array, Array]:
         """Skin the actors that are visible and cast their shadows.
@@ -63,13 +66,15 @@ class Figures:
             Points of the table frame around them and around their shadows, (n, 3).
         """
         casts: list[Cast] = []
+        copies: Counter[int] = Counter()
         key_share = light.key * TO_LIGHT[1] / light.white
         bodies, shadows = [np.zeros((0, 3))], [np.zeros((0, 3))]
         for actor in actors:
             place = np.asarray(actor.posed.table_from_character, float)
             if not actor.posed.visible or not is_rigid(place):
                 continue
-            character = self._skinned(actor.character)
+            character = self._skinned(actor.character, copies[id(actor.character)])
+            copies[id(actor.character)] += 1
             with np.errstate(invalid="ignore", over="ignore"):  # `pose` tells such numbers
                 joints = actor.posed.pose.globals(actor.character.skeleton)
                 enclosing = character.pose(joints, place, actor.posed.pose.morphs)
@@ -82,6 +87,7 @@ class Figures:
             bodies.append(enclosing)
             shadows.append(shadow.cast(character, enclosing, height, key_share))
             casts.append(Cast(character, shadow, height))
+        self._forget(copies.total())
         return casts, np.concatenate(bodies), np.concatenate(shadows)
 
     def draw(self, casts: Sequence[Cast], clip_from_table: Array, eye: Array, light: Light) -> None:
@@ -114,13 +120,16 @@ class Figures:
         while self._shadows:
             self._shadows.pop().release()
 
-    def _skinned(self, character: Drawable) -> SkinnedCharacter:
-        """Return a character's buffers, made when it is first seen."""
-        key = id(character)
+    def _skinned(self, character: Drawable, copy: int) -> SkinnedCharacter:
+        """Return the buffers of one copy of a character, made when it is first seen."""
+        key = id(character), copy
         kept = self._characters.pop(key, None)
         if kept is None:
             kept = (character, SkinnedCharacter(self._context, self._programs, character))
         self._characters[key] = kept
-        if len(self._characters) > KEPT:
-            self._characters.popitem(last=False)[1][1].release()
         return kept[1]
+
+    def _forget(self, drawn: int) -> None:
+        """Give back what was not drawn for longest, but none of the last `drawn`."""
+        while len(self._characters) > max(KEPT, drawn):
+            self._characters.popitem(last=False)[1][1].release()

@@ -46,6 +46,19 @@ def test_without_actors_the_frame_passes_untouched(stage, view):
     assert np.array_equal(stage.draw(view, []), view.image)
 
 
+def test_copies_of_one_character_are_each_in_their_own_pose(ctx, view, pawn):
+    places = [(x, z) for z in (-0.06, 0.0, 0.06) for x in (-0.09, -0.03, 0.03, 0.09)]
+    together = [pawn.posed(bend=5 * x, at=(x, z), height=0.05) for x, z in places]
+    each = [replace(actor, character=replace(pawn)) for actor in together]
+    pictures = []
+    for actors in (together, each):
+        stage = Stage(ctx, (320, 180))
+        pictures.append(stage.draw(view, actors))
+        assert np.array_equal(stage.draw(view, actors), stage.draw(view, actors))
+        stage.release()
+    assert np.array_equal(pictures[0], pictures[1])
+
+
 def test_only_what_is_near_the_actor_changes(stage, view, pawn):
     changed = (stage.draw(view, [pawn.posed()]) != view.image).any(axis=2)
     rows, columns = np.nonzero(changed)
