@@ -46,6 +46,9 @@ class Wish:
     turns: float = 2.0
     """Full turns from the least to the greatest intensity in `companion`."""
 
+    look: str = "auto"
+    """What the character's eyes follow: one of `LOOKS`."""
+
     robot: str = "sim"
     """Who feels: see `RobotLine.open`."""
 
@@ -87,7 +90,9 @@ def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = No
         source = closing.enter_context(open_source(wish.source))
     intrinsics = fitting(calibration or source.intrinsics, source.size)
     screen, context = open_screen(wish, source, closing)
-    playground = Playground(scenario, intrinsics, cube=cube, character=character, context=context)
+    playground = Playground(
+        scenario, intrinsics, cube=cube, character=character, context=context, look=wish.look
+    )
     closing.callback(playground.close)
     return Plan(
         source,
@@ -148,6 +153,7 @@ def describe(wish: Wish, cube: CubeModel, source: FrameSource) -> dict[str, str]
         "character": wish.character or "",
         "speed_map": wish.speed_map,
         "turns": f"{wish.turns:g}",
+        "look": wish.look,
         "source": wish.source.split("://")[0] if "://" in wish.source else Path(wish.source).name,
         "rate": f"{source.rate:g}",
     }

@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from app.scenarios import EmotionTarget, Inputs, Outcome, Scenario, make_scenario
+from app.scenarios import Attention, EmotionTarget, Inputs, Outcome, Scenario, make_scenario
 from characters import Animator, Character, CharacterCommand, PosedCharacter
 from characters.rendering import Actor, Box, FloorPath, Stage, View
 from tracking import (
@@ -99,6 +99,8 @@ class Playground:
         Who plays; the scenario's own where it is None.
     context
         Where to draw; None to leave the pictures out.
+    look
+        What the character's eyes follow: one of `LOOKS`.
     """
 
     def __init__(
@@ -109,6 +111,7 @@ class Playground:
         cube: CubeModel | None = None,
         character: Character | None = None,
         context: moderngl.Context | None = None,
+        look: str = "auto",
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
@@ -121,6 +124,7 @@ class Playground:
         self._animator = Animator(self.character, place=scenario.start)
         self._stage = None if context is None else Stage(context, intrinsics.size)
         self._posed: PosedCharacter | None = None
+        self._attention = Attention(look, self.cube.edge)
 
     def step(self, frame: Frame, inputs: Inputs | None = None, given: Given | None = None) -> Step:
         """Walk one frame down the line.
@@ -137,7 +141,7 @@ class Playground:
         given = given or Given()
         state = given.state or self.track(frame)
         controls = given.controls or self.gesture(state)
-        outcome = self.decide(controls, inputs or Inputs())
+        outcome = self.attend(state, controls, self.decide(controls, inputs or Inputs()))
         if given.command is not None:
             outcome = replace(outcome, command=given.command)
         posed = given.posed or self.animate(outcome.command)
@@ -156,6 +160,11 @@ class Playground:
     def decide(self, controls: CubeControls, inputs: Inputs) -> Outcome:
         """Third arrow: ask the scenario."""
         return self.scenario.update(controls, self._posed, inputs)
+
+    def attend(self, state: CubeState, controls: CubeControls, outcome: Outcome) -> Outcome:
+        """Add to what a scenario wants where the character looks."""
+        gaze = self._attention.update(state, controls, outcome.command)
+        return replace(outcome, command=replace(outcome.command, gaze=gaze))
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:
         """Fourth arrow: move the character."""

@@ -9,6 +9,8 @@ from characters.actor import Actor
 from characters.character import Character
 from characters.command import CharacterCommand, PosedCharacter
 from characters.errors import CharacterError
+from characters.life import Life
+from characters.locomotion import TOP_SPEED
 from characters.motion import Step
 from characters.pose import Array, Pose
 from characters.walker import Walker
@@ -64,10 +66,19 @@ class Animator:
         another character 0.15 m.
     place
         Where it first stands on the table [m] and looks [rad].
+    seed
+        Of blinks and small movements: two of a kind with different seeds do not move together.
+    alive
+        Whether it looks, blinks, breathes and stirs; without, its clips are shown as they are.
     """
 
     def __init__(
-        self, character: Character, scale: float | None = None, place: Step | None = None
+        self,
+        character: Character,
+        scale: float | None = None,
+        place: Step | None = None,
+        seed: int = 0,
+        alive: bool = True,
     ) -> None:
         walks = Walker.suits(character)
         if scale is None:
@@ -77,6 +88,9 @@ class Animator:
         self._now: float | None = None
         kind: type[Walker] | type[Actor] = Walker if walks else Actor
         self._performer: Performer = kind(character, scale, place)
+        self._life: Life | None = None
+        if alive:
+            self._life = Life(character.skeleton, character.anatomy, character.morphs, seed)
 
     def update(self, command: CharacterCommand) -> PosedCharacter:
         """Advance to the command's time and return the character as it is to be drawn.
@@ -91,11 +105,21 @@ class Animator:
         _check(command)
         elapsed = 0.0 if self._now is None else command.timestamp - self._now
         self._now = command.timestamp
+        elapsed = min(max(elapsed, 0.0), LONGEST_STEP)
         performer = self._performer
-        pose = performer.update(command, min(max(elapsed, 0.0), LONGEST_STEP))
+        pose = performer.update(command, elapsed)
+        placed = _placed(performer.place, performer.height, self.scale)
+        if self._life is not None:
+            pose = self._life.update(
+                pose,
+                elapsed,
+                target=None if command.gaze is None else _seen_from(placed, command.gaze),
+                effort=performer.speed / TOP_SPEED,
+                busy=float(performer.state not in ("idle", "walk", "run")),
+            )
         return PosedCharacter(
             pose=pose,
-            table_from_character=_placed(performer.place, performer.height, self.scale),
+            table_from_character=placed,
             visible=command.visible,
             state=performer.state,
             speed=performer.speed,
@@ -108,14 +132,14 @@ class Animator:
 def _check(command: CharacterCommand) -> None:
     """Refuse numbers that would stay with the character for ever."""
     numbers = [command.timestamp, command.speed, command.weight]
-    for point in (command.target, command.look_at):
+    for point in (command.target, command.look_at, command.gaze):
         if point is not None:
             numbers += [float(value) for value in point]
     if not all(map(math.isfinite, numbers)):
         raise CharacterError(
             f"command at {command.timestamp} s has a number that is not finite: speed "
             f"{command.speed}, weight {command.weight}, target {command.target}, look_at "
-            f"{command.look_at}; leave out what is not known"
+            f"{command.look_at}, gaze {command.gaze}; leave out what is not known"
         )
 
 
@@ -130,3 +154,11 @@ def _placed(place: Step, height: float, scale: float) -> Array:
             [0.0, 0.0, 0.0, 1.0],
         ]
     )
+
+
+def _seen_from(placed: Array, point: Array) -> Array:
+    """Return a point of the table frame, (3,), in the frame of a character placed there."""
+    turn_and_scale = placed[:3, :3]
+    squared = float(placed[1, 1]) ** 2
+    seen: Array = (np.asarray(point, float) - placed[:3, 3]) @ turn_and_scale / squared
+    return seen

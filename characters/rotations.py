@@ -183,8 +183,12 @@ def from_rotation_vector(vector: ArrayLike) -> Array:
     """
     vector = np.asarray(vector, float)
     half = np.sqrt(np.einsum("...i,...i->...", vector, vector))[..., None] / 2
-    # np.sinc(x) is sin(pi x) / (pi x), which is exact where the angle vanishes.
-    return np.concatenate([vector * (np.sinc(half / np.pi) / 2), np.cos(half)], axis=-1)
+    # Next to zero the sine is its angle, to the last bit.
+    safe = np.maximum(half, 1e-9)
+    q = np.empty((*vector.shape[:-1], 4))
+    np.multiply(vector, np.sin(safe) / (2 * safe), out=q[..., :3])
+    np.cos(half, out=q[..., 3:])
+    return q
 
 
 def to_rotation_vector(q: ArrayLike) -> Array:

@@ -64,6 +64,9 @@ def play(
     turns: Annotated[
         float, typer.Option(help="Full turns from the least to the greatest intensity.")
     ] = 2.0,
+    look: Annotated[
+        str, typer.Option(help="What the character's eyes follow: auto, cube, hand, camera, none.")
+    ] = "auto",
     pictures: Pictures = True,
 ) -> None:
     """Play with the cube in front of a camera.
@@ -82,6 +85,7 @@ def play(
         intrinsics,
         speed_map,
         turns,
+        look,
         robot,
         record,
         codec,

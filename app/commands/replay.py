@@ -58,6 +58,7 @@ def replay(
         character=character or told.character or None,
         speed_map=told.speed_map,
         turns=told.turns,
+        look=told.look,
         robot=robot,
         record=record,
         codec=codec,

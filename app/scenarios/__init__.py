@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from app.errors import AppError
+from app.scenarios.attention import LOOKS, Attention
 from app.scenarios.base import EmotionTarget, Inputs, Outcome, Scenario
 from app.scenarios.companion import Companion
 from app.scenarios.follow import Follow
@@ -12,6 +13,8 @@ from tracking import CubeModel
 
 __all__ = [
     "CUBES",
+    "LOOKS",
+    "Attention",
     "Companion",
     "EmotionTarget",
     "Follow",

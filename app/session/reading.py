@@ -42,6 +42,9 @@ class About:
     turns: float
     """Full turns from the least to the greatest intensity."""
 
+    look: str
+    """What the character's eyes followed."""
+
     frames: int
     """Camera frames in the file."""
 
@@ -87,6 +90,7 @@ def _about(path: Path, frames: int, seconds: float) -> About:
         notes.get("character", ""),
         notes.get("speed_map", "corrected"),
         float(notes.get("turns", "2")),
+        notes.get("look", "auto"),
         frames,
         seconds,
     )
