@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters import rotations
+from characters.character import Character
 from characters.clip import Clip
 from characters.errors import CharacterError
 from characters.motion import Motion, Step
@@ -24,12 +25,15 @@ from characters.pose import Array, Pose, Skeleton
 
 _REFLECTION = np.array([-1.0, 1.0, 1.0])
 _PSEUDO = np.array([1.0, -1.0, -1.0, 1.0])  # what the reflection does to a rotation
-_CROOKED = 0.05  # of the body's size: how far from symmetric a rest pose may be
-_MISNAMED = 0.1  # of the body's size: how much farther a joint counts whose name does not fit
+_CROOKED = 0.25  # of the way from left to right: how far from symmetric most joints may be
+# Of the body's size: how much farther a joint counts whose name does not fit.
+_MISNAMED, _MISNUMBERED = 0.1, 0.01
 # "LeftFoot", "foot_l", "Foot.R.001", "FootL": words, and letters that stand alone or end a word.
 _SIDES = re.compile(
     r"[Ll]eft|LEFT|[Rr]ight|RIGHT|(?<![A-Za-z])[LRlr](?![A-Za-z])|(?<=[a-z])[LR](?![a-z])"
 )
+_OTHER = {"left": "right", "Left": "Right", "LEFT": "RIGHT", "l": "r", "L": "R"}
+_OTHER |= {right: left for left, right in _OTHER.items()}
 _NONE: Mapping[str, str] = MappingProxyType({})
 
 
@@ -51,34 +55,52 @@ class Mirror:
 
     @staticmethod
     def of(
-        skeleton: Skeleton, morphs: tuple[str, ...] = (), pairs: Mapping[str, str] = _NONE
+        skeleton: Skeleton,
+        morphs: tuple[str, ...] = (),
+        pairs: Mapping[str, str] = _NONE,
+        symmetric: Array | None = None,
     ) -> "Mirror":
         """Return the mirror of a skeleton, its pairs found by places and names.
 
         Parameters
         ----------
         skeleton
-            Its rest pose must be symmetric about the plane x = 0.
+            Its rest pose is taken as symmetric about the plane x = 0, if nothing else is given.
         morphs
             Names of the character's morphs; "blinkLeft" changes places with "blinkRight".
         pairs
             Joint to joint where they cannot be found; each counts both ways.
+        symmetric
+            `character_from_joint` of a symmetric pose, (joints, 4, 4), if the rest pose is none.
 
         Raises
         ------
         CharacterError
-            If the rest pose is not symmetric, or a joint has no partner.
+            If that pose is not symmetric, or a joint has no partner.
         """
-        partners = _partners(skeleton, pairs)
-        rest = skeleton.rest.globals(skeleton)
-        _check_symmetry(skeleton, rest[:, :3, 3], partners)
-        turns = rotations.from_matrix(_unscaled(rest[:, :3, :3]))
+        globals_ = skeleton.rest.globals(skeleton) if symmetric is None else symmetric
+        partners = _partners(skeleton, globals_[:, :3, 3], pairs)
+        _check_symmetry(skeleton, globals_[:, :3, 3], partners)
+        turns = rotations.from_matrix(_unscaled(globals_[:, :3, :3]))
         # F = M Q, and so Q = M G(p)ᵀ M G.
         theirs = rotations.conjugate(turns[partners] * _PSEUDO)
         inner = rotations.multiply(theirs, turns)
         parents = np.array(skeleton.parents)
         outer = np.where(parents[:, None] >= 0, inner[parents], rotations.IDENTITY)
         return Mirror(partners, inner, outer, _paired_names(morphs))
+
+    @staticmethod
+    def of_character(character: Character, pairs: Mapping[str, str] = _NONE) -> "Mirror":
+        """Return the mirror of a character, from the pose that its skin was bound in.
+
+        Files often rest in the first frame of a clip, but are bound as they were modelled.
+        """
+        skeleton = character.skeleton
+        bound = skeleton.rest.globals(skeleton)
+        for mesh in character.meshes:
+            used = np.unique(mesh.joints[mesh.weights > 0])
+            bound[used] = np.linalg.inv(mesh.inverse_bind[used])
+        return Mirror.of(skeleton, character.morphs, pairs, bound)
 
     def pose(self, pose: Pose) -> Pose:
         """Return poses (…) mirrored."""
@@ -149,9 +171,8 @@ class Mirrored:
         return 0.5 if takes_steps(self.motion) else 0.0
 
 
-def _partners(skeleton: Skeleton, pairs: Mapping[str, str]) -> NDArray[np.intp]:
+def _partners(skeleton: Skeleton, places: Array, pairs: Mapping[str, str]) -> NDArray[np.intp]:
     """Return the partner of each joint, from the roots down: children of partners are partners."""
-    places = skeleton.rest.globals(skeleton)[:, :3, 3]
     size = max(float(np.ptp(places, axis=0).max()), 1e-9)
     given = {skeleton.index(a): skeleton.index(b) for a, b in pairs.items()}
     given |= {b: a for a, b in given.items()}
@@ -164,7 +185,7 @@ def _partners(skeleton: Skeleton, pairs: Mapping[str, str]) -> NDArray[np.intp]:
         ours, theirs = children.get(parent, []), children.get(other, [])
         apart = {
             (a, b): float(np.linalg.norm(places[a] * _REFLECTION - places[b])) / size
-            + (0.0 if _swapped(skeleton.names[a]) == _plain(skeleton.names[b]) else _MISNAMED)
+            + _misfit(skeleton.names[a], skeleton.names[b])
             + (0.0 if given.get(a, b) == b and given.get(b, a) == a else np.inf)
             for a in ours
             for b in theirs
@@ -181,29 +202,34 @@ def _partners(skeleton: Skeleton, pairs: Mapping[str, str]) -> NDArray[np.intp]:
     return partners
 
 
-def _swapped(name: str) -> str:
-    """Return a joint's name on the other side, without its numbers.
+def _misfit(name: str, other: str) -> float:
+    """Return how badly names fit as a pair, as a part of the body's size.
 
-    >>> _swapped("LeftUpLeg_01"), _swapped("foot.L"), _swapped("ArmR"), _swapped("collar")
-    ('rightupleg', 'foot.r', 'arml', 'collar')
+    >>> _misfit("Palm2L", "Palm2R"), _misfit("LeftArm_06", "RightArm_09"), _misfit("ArmL", "LegR")
+    (0.0, 0.01, 0.1)
     """
-    other = {"left": "right", "right": "left", "l": "r", "r": "l"}
-    return _plain(_SIDES.sub(lambda side: other[side[0].lower()], name))
-
-
-def _plain(name: str) -> str:
-    return re.sub(r"[_\s\d]+", "", name).lower()
+    swapped = _SIDES.sub(_other_side, name)
+    if swapped == other:
+        return 0.0
+    plain, plain_other = (re.sub(r"[_\s\d]+", "", each).lower() for each in (swapped, other))
+    return _MISNUMBERED if plain == plain_other else _MISNAMED
 
 
 def _check_symmetry(skeleton: Skeleton, places: Array, partners: NDArray[np.intp]) -> None:
-    """Refuse a rest pose that is not symmetric."""
-    away = np.linalg.norm(places * _REFLECTION - places[partners], axis=-1)
-    worst, size = int(away.argmax()), float(np.ptp(places, axis=0).max())
-    if away[worst] > _CROOKED * size:
+    """Refuse a pose of which more than half is not symmetric: a body that looks elsewhere."""
+    paired = np.flatnonzero(partners != np.arange(len(partners)))
+    if not len(paired):
+        return
+    apart = places[paired] * _REFLECTION - places[partners[paired]]
+    apart -= np.median(apart, axis=0)  # the plane may lie beside the origin
+    away = np.linalg.norm(apart, axis=-1)
+    across = np.linalg.norm(places[paired] - places[partners[paired]], axis=-1)
+    if np.median(away / np.maximum(across, 1e-9)) > _CROOKED:
+        worst = paired[away.argmax()]
         raise CharacterError(
-            f"mirror: the rest pose is not symmetric about x = 0: {skeleton.names[worst]!r} is "
-            f"{away[worst]:.3f} m from the mirrored {skeleton.names[partners[worst]]!r}; "
-            "give the skeleton a symmetric rest pose, or name pairs"
+            f"mirror: the pose is not symmetric about x = 0: {skeleton.names[worst]!r} is "
+            f"{away.max():.3f} m from the mirrored {skeleton.names[partners[worst]]!r}; "
+            "give a symmetric one that looks along +z, or name pairs"
         )
 
 
@@ -220,8 +246,5 @@ def _paired_names(names: tuple[str, ...]) -> NDArray[np.intp]:
 
 
 def _other_side(match: re.Match[str]) -> str:
-    sides = ("left", "right"), ("Left", "Right"), ("l", "r"), ("L", "R"), ("LEFT", "RIGHT")
-    for left, right in sides:
-        if match[0] in (left, right):
-            return right if match[0] == left else left
-    return match[0]
+    """Return the other side, in the same letters."""
+    return _OTHER[match[0]]
