@@ -11,7 +11,7 @@ from characters.clip import Clip
 from characters.command import CharacterCommand, PosedCharacter
 from characters.crossfade import CrossFade
 from characters.curves import Adsr, Curve, FadeCurve, Keyed, Product
-from characters.errors import CharacterError
+from characters.errors import CharacterError, CharacterWarning
 from characters.layers import Added, Layered
 from characters.machine import StateMachine
 from characters.masks import Mask, mask_of
@@ -34,6 +34,7 @@ __all__ = [
     "Character",
     "CharacterCommand",
     "CharacterError",
+    "CharacterWarning",
     "Clip",
     "ClosedPath",
     "CrossFade",

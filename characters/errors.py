@@ -6,3 +6,7 @@ class CharacterError(Exception):
 
     It says what was wrong, where, and what to do.
     """
+
+
+class CharacterWarning(UserWarning):
+    """Bad input that was repaired: one line that says what was wrong, where, and what was done."""

@@ -1,15 +1,13 @@
 """Characters in glTF 2.0 files: .glb with everything inside, or .gltf with files beside it."""
 
-import struct
 from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
 
 from characters.character import Character
 from characters.errors import CharacterError
 from characters.formats.gltf_clips import read_clips
-from characters.formats.gltf_file import open_gltf
+from characters.formats.gltf_document import DamagedFileError
+from characters.formats.gltf_file import GltfFile, open_gltf
 from characters.formats.gltf_meshes import read_meshes
 from characters.formats.gltf_morphs import read_morph_table
 from characters.formats.gltf_nodes import read_tree
@@ -25,28 +23,32 @@ def load(path: "str | Path") -> Character:
         If the file is absent, damaged, not glTF 2.0, or has no skin.
     """
     path = Path(path)
-    file = open_gltf(path)
-    if not file.document.skins:
-        raise CharacterError(
-            f"{path}: has no skin, so nothing in it can move; export the model with its armature"
-        )
     try:
-        tree = read_tree(file.document)
-        morphs = read_morph_table(file, tree)
-        meshes = read_meshes(file, tree, morphs)
-        clips = read_clips(file, tree, morphs)
-    except (LookupError, ValueError, TypeError, AttributeError, struct.error) as error:
-        # Whatever contradicts itself in a file surfaces as one of these; the reader's own words
-        # (DamagedFileError) say where.
-        raise CharacterError(f"{path}: damaged glTF ({error}); export it again") from error
-    except np.linalg.LinAlgError as error:
-        raise CharacterError(f"{path}: a bind matrix is singular; export it again") from error
+        return _character(open_gltf(path))
+    except DamagedFileError as error:
+        # Names out of the file may hold anything; the message is one line.
+        reason = " ".join(str(error).split())
+        raise CharacterError(f"{path}: {reason}; repair it or export it again") from error
+
+
+def _character(file: GltfFile) -> Character:
+    if not any(skin["joints"] for skin in file.all("skins")):
+        raise CharacterError(
+            f"{file.path}: has no skin, so nothing in it can move; "
+            "export the model with its armature"
+        )
+    tree = read_tree(file)
+    morphs = read_morph_table(file, tree)
+    meshes = read_meshes(file, tree, morphs)
     if not meshes:
-        raise CharacterError(f"{path}: its skeleton moves no mesh; export the model with its skin")
+        raise CharacterError(
+            f"{file.path}: its skeleton moves no mesh; export the model with its skin"
+        )
+    clips = read_clips(file, tree, morphs)
     skeleton = tree.skeleton
     if morphs.rest is not None:
         skeleton = replace(skeleton, rest=replace(skeleton.rest, morphs=morphs.rest))
-    return Character(path.stem, skeleton, clips, meshes, morphs.names)
+    return Character(file.path.stem, skeleton, clips, meshes, morphs.names)
 
 
 def save(character: Character, path: "str | Path") -> None:

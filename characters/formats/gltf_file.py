@@ -1,20 +1,19 @@
 """The container of glTF 2.0: its JSON, its buffers and the arrays in them."""
 
 import base64
-import json
 import struct
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 from urllib.parse import unquote
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
+from characters.formats.gltf_document import DamagedFileError, Json, at, parse
 
-_MOST = 10_000_000  # values out of nothing: more are a damaged count that would eat the memory
+Array = NDArray[np.float64]
+
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 
 COMPONENTS: dict[int, type[np.generic]] = {
@@ -36,11 +35,33 @@ _UNDERSTOOD = {
     "KHR_materials_unlit",
     "KHR_texture_transform",
     "KHR_materials_emissive_strength",
+    "VRMC_vrm",
+    "VRMC_materials_mtoon",
+    "VRM",
 }
 
 
-class DamagedFileError(ValueError):
-    """Something in a glTF file that contradicts itself; the message lacks the file's name."""
+@dataclass
+class Budget:
+    """How much may still come out of a file: a few bytes can claim to be gigabytes."""
+
+    numbers: int = 150_000_000
+    """Numbers in arrays, over all that is read; 1.2 GB."""
+
+    pixels: int = 64_000_000
+    """Of all images together."""
+
+    def spend(self, numbers: int, what: str) -> None:
+        """Refuse what would not leave room for the rest."""
+        self.numbers -= numbers
+        if self.numbers < 0:
+            raise DamagedFileError(f"{what} claims more numbers than any character has")
+
+    def spend_pixels(self, pixels: int, what: str) -> None:
+        """Refuse a picture that would not leave room for the rest."""
+        self.pixels -= pixels
+        if self.pixels < 0:
+            raise DamagedFileError(f"{what} makes more than 64 million pixels; scale them down")
 
 
 @dataclass(frozen=True)
@@ -50,47 +71,62 @@ class GltfFile:
     path: Path
     """Where it came from."""
 
-    document: pygltflib.GLTF2
-    """The JSON part."""
-
-    plain: dict[str, Any]
-    """The same as it stands in the file."""
+    document: Json
+    """The JSON part, checked."""
 
     buffers: tuple[bytes, ...]
     """Content of each buffer."""
 
-    def accessor(self, index: int, *, scaled: bool = True) -> NDArray[np.generic]:
-        """Return an accessor's array, (count, components) or (count,) for scalars.
+    budget: Budget = field(default_factory=Budget)
+    """What may still be read."""
 
-        Integers marked as normalised become floats of 0…1 or −1…1, unless not `scaled`.
+    def all(self, kind: str) -> list[Json]:
+        """Return the members of a list at the top of the document, such as "nodes"."""
+        return list(self.document.get(kind, ()))
+
+    def floats(self, index: int, width: int) -> Array:
+        """Return an accessor's array, (count, width), or (count,) for scalars.
+
+        Integers marked as normalised become numbers of 0…1 or −1…1.
         """
-        if not 0 <= index < len(self.document.accessors):
-            raise DamagedFileError(f"accessor {index} does not exist")
-        accessor = self.document.accessors[index]
-        dtype = np.dtype(COMPONENTS[accessor.componentType]).newbyteorder("<")
-        width = WIDTHS[accessor.type]
-        if accessor.bufferView is not None:
-            offset = accessor.byteOffset or 0
-            values = self._strided(accessor.bufferView, offset, dtype, accessor.count, width)
-        elif accessor.count > _MOST:
-            raise DamagedFileError(f"accessor {index} claims {accessor.count} values")
+        values = self._accessor(index, width)
+        if values.dtype.kind == "f":
+            numbers = values.astype(np.float64)
+            if not np.isfinite(numbers).all():
+                row = int(np.flatnonzero(~np.isfinite(numbers).all(axis=1))[0])
+                raise DamagedFileError(f"accessor {index} holds {numbers[row]} in row {row}")
         else:
-            values = np.zeros((accessor.count, width), dtype)
-        if accessor.sparse is not None:
-            values = self._with_sparse(values, accessor.sparse, dtype)
-        if scaled and accessor.normalized and dtype.kind in "iu":
-            limit = np.iinfo(dtype).max
-            values = np.maximum(values.astype(np.float64) / limit, -1.0)
-        return values[:, 0] if width == 1 else values
+            numbers = values.astype(np.float64)
+            if self.document["accessors"][index].get("normalized"):
+                numbers = np.maximum(numbers / np.iinfo(values.dtype.name).max, -1.0)
+        return numbers[:, 0] if width == 1 else numbers
 
-    def view(self, index: int) -> bytes:
+    def integers(self, index: int, width: int) -> NDArray[np.int64]:
+        """Return an accessor's array of whole numbers, (count, width), or (count,) for scalars."""
+        values = self._accessor(index, width)
+        if values.dtype.kind != "u":
+            raise DamagedFileError(
+                f"accessor {index} has {values.dtype} where numbers of things go"
+            )
+        return values[:, 0].astype(np.int64) if width == 1 else values.astype(np.int64)
+
+    def width(self, index: int) -> int:
+        """Return the number of components of an accessor."""
+        kind = self.document["accessors"][index]["type"]
+        if kind not in WIDTHS:
+            raise DamagedFileError(f"accessor {index} is of type {kind!r:.20}")
+        return WIDTHS[kind]
+
+    def view(self, index: int) -> memoryview:
         """Return the bytes of a buffer view."""
-        view = self.document.bufferViews[index]
-        start = view.byteOffset or 0
-        data: bytes = self.buffers[view.buffer][start : start + view.byteLength]
-        if start < 0 or len(data) != view.byteLength:
-            raise DamagedFileError(f"buffer view {index} reaches beyond its buffer")
-        return data
+        view = self.document["bufferViews"][index]
+        buffer, start = self.buffers[view["buffer"]], view.get("byteOffset", 0)
+        if start + view["byteLength"] > len(buffer):
+            raise DamagedFileError(
+                f"buffer view {index} ends at byte {start + view['byteLength']} of a buffer "
+                f"of {len(buffer)}"
+            )
+        return memoryview(buffer)[start : start + view["byteLength"]]
 
     def resource(self, uri: str) -> bytes:
         """Return what a URI names: data inside it, or a file beside this one."""
@@ -99,43 +135,63 @@ class GltfFile:
         beside = self.path.parent / unquote(uri)
         try:
             return beside.read_bytes()
-        except OSError as error:
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or error
             raise CharacterError(
-                f"{self.path}: needs {unquote(uri)}, which cannot be read "
-                f"({error.strerror}); put it beside the file"
+                f"{self.path}: needs {unquote(uri)!r}, which cannot be read ({reason}); "
+                "put it beside the file"
             ) from None
+
+    def _accessor(self, index: int, width: int) -> NDArray[np.generic]:
+        accessor = self.document["accessors"][index]
+        with at(f"accessor {index}"):
+            dtype, count = _component(accessor), accessor["count"]
+            if self.width(index) != width:
+                raise DamagedFileError(f"is {accessor['type']}, {width} components are needed")
+            self.budget.spend(count * width, f"a count of {count}")
+            if "bufferView" in accessor:
+                offset = accessor.get("byteOffset", 0)
+                values = self._strided(accessor["bufferView"], offset, dtype, count, width)
+            else:
+                values = np.zeros((count, width), dtype)
+            if "sparse" in accessor:
+                values = self._with_sparse(values, accessor["sparse"])
+        return values
 
     def _strided(
         self, view: int, offset: int, dtype: "np.dtype[np.generic]", count: int, width: int
     ) -> NDArray[np.generic]:
-        data = self.view(view)
-        stride = self.document.bufferViews[view].byteStride or dtype.itemsize * width
-        needed = offset + (count - 1) * stride + dtype.itemsize * width if count else 0
-        if needed > len(data) or offset < 0 or stride < dtype.itemsize * width:
-            raise DamagedFileError(f"buffer view {view} is too short for its accessor")
-        raw = np.frombuffer(data, np.uint8)
-        windows = np.lib.stride_tricks.as_strided(
-            raw[offset:], (count, dtype.itemsize * width), (stride, 1), writeable=False
-        )
+        data, size = self.view(view), dtype.itemsize * width
+        stride = self.document["bufferViews"][view].get("byteStride") or size
+        needed = offset + (count - 1) * stride + size if count else 0
+        if needed > len(data) or stride < size:
+            raise DamagedFileError(
+                f"needs {needed} bytes in steps of {stride}, buffer view {view} has {len(data)}"
+            )
+        if stride == size:
+            return np.frombuffer(data, dtype, count * width, offset).reshape(count, width)
+        raw = np.frombuffer(data, np.uint8, offset=offset)
+        windows = np.lib.stride_tricks.as_strided(raw, (count, size), (stride, 1), writeable=False)
         return np.ascontiguousarray(windows).view(dtype).reshape(count, width)
 
-    def _with_sparse(
-        self, values: NDArray[np.generic], sparse: pygltflib.Sparse, dtype: "np.dtype[np.generic]"
-    ) -> NDArray[np.generic]:
-        where = np.dtype(COMPONENTS[sparse.indices.componentType]).newbyteorder("<")
-        rows = self._strided(
-            sparse.indices.bufferView, sparse.indices.byteOffset or 0, where, sparse.count, 1
-        )
-        replaced = self._strided(
-            sparse.values.bufferView,
-            sparse.values.byteOffset or 0,
-            dtype,
-            sparse.count,
+    def _with_sparse(self, values: NDArray[np.generic], sparse: Json) -> NDArray[np.generic]:
+        count, (indices, replacing) = sparse["count"], (sparse["indices"], sparse["values"])
+        if count > len(values):
+            raise DamagedFileError(f"replaces {count} of {len(values)} rows")
+        where = _component(indices)
+        rows = self._strided(indices["bufferView"], indices.get("byteOffset", 0), where, count, 1)
+        numbers = rows[:, 0].astype(np.int64)
+        if ((numbers < 0) | (numbers >= len(values))).any():
+            raise DamagedFileError(f"replaces a row beyond its {len(values)}")
+        changed = values.copy()
+        changed[numbers] = self._strided(
+            replacing["bufferView"],
+            replacing.get("byteOffset", 0),
+            values.dtype,
+            count,
             values.shape[1],
         )
-        values = values.copy()
-        values[rows[:, 0].astype(np.intp)] = replaced
-        return values
+        return changed
 
 
 def open_gltf(path: Path) -> GltfFile:
@@ -152,23 +208,38 @@ def open_gltf(path: Path) -> GltfFile:
         raise CharacterError(f"{path}: cannot be read ({error.strerror}); check the path") from None
     text, blob = _unpack(path, data)
     try:
-        plain = json.loads(text)
-        version = str(plain["asset"]["version"])
-        document = pygltflib.GLTF2.from_json(text.decode())
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        document = parse(text)
+    except DamagedFileError:
+        raise
+    except (ValueError, RecursionError):
         raise CharacterError(f"{path}: not a glTF file; export it as .glb again") from None
+    version = str(document["asset"].get("version"))
     if not version.startswith("2"):
-        raise CharacterError(f"{path}: glTF {version}; export it as glTF 2.0")
-    unknown = sorted(set(document.extensionsRequired or []) - _UNDERSTOOD)
+        raise CharacterError(f"{path}: glTF {version:.20}; export it as glTF 2.0")
+    unknown = sorted(set(document.get("extensionsRequired", ())) - _UNDERSTOOD)
     if unknown:
         raise CharacterError(
             f"{path}: needs the extension {', '.join(unknown)}; export it without compression"
         )
-    opened = GltfFile(path, document, plain, ())
-    buffers = tuple(
-        blob if buffer.uri is None else opened.resource(buffer.uri) for buffer in document.buffers
-    )
-    return GltfFile(path, document, plain, buffers)
+    opened = GltfFile(path, document, ())
+    contents = [
+        opened.resource(buffer["uri"]) if "uri" in buffer else blob
+        for buffer in opened.all("buffers")
+    ]
+    for number, (buffer, content) in enumerate(zip(opened.all("buffers"), contents, strict=True)):
+        if len(content) < buffer["byteLength"]:
+            raise DamagedFileError(
+                f"buffer {number} has {len(content)} bytes, not {buffer['byteLength']}"
+            )
+    return GltfFile(path, document, tuple(contents))
+
+
+def _component(holder: Json) -> "np.dtype[np.generic]":
+    """Return the type of an accessor's numbers, or of its sparse indices."""
+    code = holder["componentType"]
+    if code not in COMPONENTS:
+        raise DamagedFileError(f"component type {code!r:.20} does not exist")
+    return np.dtype(COMPONENTS[code]).newbyteorder("<")
 
 
 def _unpack(path: Path, data: bytes) -> tuple[bytes, bytes]:
@@ -178,9 +249,9 @@ def _unpack(path: Path, data: bytes) -> tuple[bytes, bytes]:
     if len(data) < 20 or struct.unpack_from("<I", data, 8)[0] > len(data):
         raise CharacterError(f"{path}: truncated .glb; copy or export it again")
     chunks: dict[int, bytes] = {}
-    at = 12
-    while at + 8 <= len(data):
-        length, kind = struct.unpack_from("<II", data, at)
-        chunks.setdefault(kind, data[at + 8 : at + 8 + length])
-        at += 8 + length
+    at_byte = 12
+    while at_byte + 8 <= len(data):
+        length, kind = struct.unpack_from("<II", data, at_byte)
+        chunks.setdefault(kind, data[at_byte + 8 : at_byte + 8 + length])
+        at_byte += 8 + length
     return chunks.get(_JSON, b""), chunks.get(_BIN, b"")

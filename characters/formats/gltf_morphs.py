@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.formats.gltf_file import DamagedFileError, GltfFile
+from characters.formats.gltf_document import DamagedFileError, Json, at, called
+from characters.formats.gltf_file import GltfFile
 from characters.formats.gltf_nodes import NodeTree
 from characters.mesh import Morph
 
@@ -29,21 +29,25 @@ class MorphTable:
     rest: Array | None
     """Weights where nothing is animated, (morphs,), or None for all zero."""
 
+    def of(self, node: int) -> tuple[str, ...]:
+        """Return the names of the targets of the mesh that a node carries."""
+        return tuple(self.names[column] for column in self.columns[node])
+
 
 def read_morph_table(file: GltfFile, tree: NodeTree) -> MorphTable:
     """Return the names of the morphs that the skeleton's meshes have, and their weights at rest."""
     of_node: dict[int, tuple[str, ...]] = {}
     defaults: dict[str, float] = {}
-    for number, node in enumerate(file.plain.get("nodes", [])):
-        if "mesh" not in node or ("skin" not in node and number not in tree.joint_of_node):
-            continue
-        mesh = file.plain["meshes"][node["mesh"]]
-        of_node[number] = names = target_names(mesh, node["mesh"])
-        weights = node.get("weights") or mesh.get("weights") or [0.0] * len(names)
-        if len(weights) != len(names):
-            raise DamagedFileError(f"mesh {mesh.get('name')!r} has weights for other morph targets")
-        for name, weight in zip(names, weights, strict=True):
-            defaults.setdefault(name, float(weight))
+    for number in tree.mesh_nodes:
+        node = file.document["nodes"][number]
+        mesh = file.document["meshes"][node["mesh"]]
+        with at(called("mesh", node["mesh"], mesh)):
+            of_node[number] = names = target_names(mesh, node["mesh"])
+            weights = node.get("weights") or mesh.get("weights") or [0.0] * len(names)
+            if len(weights) != len(names):
+                raise DamagedFileError(f"has {len(weights)} weights for {len(names)} morph targets")
+            for name, weight in zip(names, weights, strict=True):
+                defaults.setdefault(name, float(weight))
     order = _order(file, tuple(defaults))
     column = {name: number for number, name in enumerate(order)}
     rest = np.array([defaults[name] for name in order])
@@ -54,26 +58,27 @@ def read_morph_table(file: GltfFile, tree: NodeTree) -> MorphTable:
     )
 
 
-def target_names(mesh: dict[str, Any], number: int) -> tuple[str, ...]:
+def target_names(mesh: Json, number: int) -> tuple[str, ...]:
     """Return the names of a mesh's morph targets; "MESH.0" where the file gives none."""
-    counts = {len(primitive.get("targets", [])) for primitive in mesh["primitives"]}
-    if len(counts) != 1:
-        raise DamagedFileError(f"mesh {mesh.get('name')!r} has primitives of unlike morph targets")
-    count = counts.pop()
-    stated = mesh.get("extras", {}).get("targetNames", [])
-    names: list[str] = []
-    for target in range(count):
+    counts = {len(primitive.get("targets", ())) for primitive in mesh["primitives"]}
+    if len(counts) > 1:
+        raise DamagedFileError("has primitives with different numbers of morph targets")
+    extras = mesh.get("extras")
+    stated = extras.get("targetNames") if isinstance(extras, dict) else None
+    stated = stated if isinstance(stated, list) else []
+    names: dict[str, None] = {}
+    for target in range(counts.pop() if counts else 0):
         name = stated[target] if target < len(stated) else ""
         if not isinstance(name, str) or not name:
             name = f"{mesh.get('name') or f'mesh{number}'}.{target}"
         while name in names:
-            name += "'"
-        names.append(name)
+            name += f".{target}"
+        names[name] = None
     return tuple(names)
 
 
 def read_morphs(
-    file: GltfFile, primitive: dict[str, Any], names: Sequence[str], vertices: int
+    file: GltfFile, primitive: Json, names: Sequence[str], vertices: int
 ) -> tuple[Morph, ...]:
     """Return the morph targets of a primitive, in the frame of its vertices."""
     return tuple(
@@ -97,7 +102,7 @@ def _unit(vectors: Array) -> Array:
     return vectors / np.maximum(lengths, 1e-12)
 
 
-def _morph(file: GltfFile, target: dict[str, int], name: str, vertices: int) -> Morph:
+def _morph(file: GltfFile, target: Json, name: str, vertices: int) -> Morph:
     shifts = _shifts(file, target.get("POSITION"), name, vertices)
     turns = _shifts(file, target["NORMAL"], name, vertices) if "NORMAL" in target else None
     moved = np.abs(shifts).max(axis=1, initial=0.0) > _STILL
@@ -115,8 +120,8 @@ def _morph(file: GltfFile, target: dict[str, int], name: str, vertices: int) -> 
 def _shifts(file: GltfFile, accessor: int | None, name: str, vertices: int) -> Array:
     if accessor is None:
         return np.zeros((vertices, 3))
-    shifts = file.accessor(accessor).astype(float)
-    if shifts.shape != (vertices, 3):
+    shifts = file.floats(accessor, 3)
+    if len(shifts) != vertices:
         raise DamagedFileError(
             f"morph target {name!r} has {len(shifts)} shifts for {vertices} vertices"
         )
@@ -125,8 +130,9 @@ def _shifts(file: GltfFile, accessor: int | None, name: str, vertices: int) -> A
 
 def _order(file: GltfFile, found: tuple[str, ...]) -> tuple[str, ...]:
     """Return the names in the order that our own writer notes in the scene, or as found."""
-    for scene in file.plain.get("scenes", []):
-        stated = scene.get("extras", {}).get("morphs")
+    for scene in file.all("scenes"):
+        extras = scene.get("extras")
+        stated = extras.get("morphs") if isinstance(extras, dict) else None
         if isinstance(stated, list) and sorted(map(str, stated)) == sorted(found):
             return tuple(stated)
     return found

@@ -1,16 +1,21 @@
 """From the nodes of a glTF scene to a skeleton."""
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
-import pygltflib
 from numpy.typing import NDArray
 
 from characters import rotations
-from characters.formats.gltf_file import DamagedFileError
+from characters.errors import CharacterWarning
+from characters.formats.gltf_document import DamagedFileError, Json, at, called
+from characters.formats.gltf_file import GltfFile
 from characters.pose import Pose, Skeleton
 
 Array = NDArray[np.float64]
+
+_MOST_JOINTS = 4096
+_UNIT = 1e-2  # how far from one rounding, to bytes at worst, may take the length of a quaternion
 
 
 @dataclass(frozen=True)
@@ -23,75 +28,112 @@ class NodeTree:
     joint_of_node: dict[int, int]
     """Joint number by node number."""
 
+    mesh_nodes: tuple[int, ...]
+    """Numbers of the nodes that carry a mesh which the skeleton moves."""
 
-def read_tree(document: pygltflib.GLTF2) -> NodeTree:
+
+def read_tree(file: GltfFile) -> NodeTree:
     """Return the skeleton of a document.
 
     Ancestors of joints are joints too: exporters put the change of axes and units there, and
     sometimes animate it. Rigid meshes that hang on a joint ride along.
     """
-    parents = _parents(document)
+    nodes = file.all("nodes")
+    parents = _parents(nodes)
     wanted: set[int] = set()
-    for skin in document.skins:
-        for node in skin.joints:
-            wanted.update(_line(node, parents))
-    rigid = [n for n, node in enumerate(document.nodes) if _is_rigid_mesh(node)]
-    for node in rigid:
-        line = _line(node, parents)
-        if wanted.intersection(line):
-            wanted.update(line)
-    order: list[int] = []
-    for node in sorted(wanted):
-        order += [n for n in reversed(_line(node, parents)) if n not in order]
+    for skin in file.all("skins"):
+        for node in skin["joints"]:
+            _add_line(wanted, node, parents)
+    joints = set(wanted)
+    for number, node in enumerate(nodes):
+        if "mesh" in node and "skin" not in node and _hangs_on(joints, number, parents):
+            _add_line(wanted, number, parents)
+    order = _parents_first(wanted, nodes, parents)
+    if len(order) > _MOST_JOINTS:
+        raise DamagedFileError(f"has {len(order)} joints, of which {_MOST_JOINTS} are read")
     joint_of_node = {node: joint for joint, node in enumerate(order)}
-    nodes = [document.nodes[n] for n in order]
     skeleton = Skeleton(
-        names=_unique([node.name or f"node{n}" for n, node in zip(order, nodes, strict=True)]),
+        names=unique([nodes[n].get("name") or f"node{n}" for n in order]),
         parents=tuple(joint_of_node.get(parents[n], -1) for n in order),
-        rest=_rest(nodes),
+        rest=_rest(file, order),
     )
-    return NodeTree(skeleton, joint_of_node)
+    carriers = [
+        number
+        for number, node in enumerate(nodes)
+        if "mesh" in node and ("skin" in node or number in joint_of_node)
+    ]
+    return NodeTree(skeleton, joint_of_node, tuple(carriers))
 
 
-def _parents(document: pygltflib.GLTF2) -> list[int]:
-    """Return each node's parent, −1 for none; refuse two parents."""
-    parents = [-1] * len(document.nodes)
-    for number, node in enumerate(document.nodes):
-        for child in node.children or []:
-            if not 0 <= child < len(parents) or parents[child] != -1:
-                raise DamagedFileError(f"node {child} does not exist or has two parents")
+def _parents(nodes: list[Json]) -> list[int]:
+    """Return each node's parent, −1 for none; refuse two parents, and rings."""
+    parents = [-1] * len(nodes)
+    for number, node in enumerate(nodes):
+        for child in node.get("children", ()):
+            if parents[child] != -1:
+                raise DamagedFileError(f"{called('node', child, nodes[child])} has two parents")
             parents[child] = number
+    # Whoever is reached from no root is in a ring, or hangs on one.
+    reached = [n for n, parent in enumerate(parents) if parent == -1]
+    for number in reached:
+        reached += nodes[number].get("children", ())
+    if len(reached) < len(nodes):
+        lost = min(set(range(len(nodes))) - set(reached))
+        raise DamagedFileError(f"{called('node', lost, nodes[lost])} is its own ancestor")
     return parents
 
 
-def _line(node: int, parents: list[int]) -> list[int]:
-    """Return a node and its ancestors, from itself up."""
-    if not 0 <= node < len(parents):
-        raise DamagedFileError(f"joint {node} does not exist")
-    line = [node]
-    while parents[line[-1]] != -1:
-        line.append(parents[line[-1]])
-        if len(line) > len(parents):
-            raise DamagedFileError(f"node {node} is its own ancestor")
-    return line
+def _add_line(wanted: set[int], node: int, parents: list[int]) -> None:
+    """Add a node and its ancestors."""
+    while node != -1 and node not in wanted:
+        wanted.add(node)
+        node = parents[node]
 
 
-def _is_rigid_mesh(node: pygltflib.Node) -> bool:
-    return node.mesh is not None and node.skin is None
+def _hangs_on(joints: set[int], node: int, parents: list[int]) -> bool:
+    for _ in range(_MOST_JOINTS):
+        if node == -1 or node in joints:
+            return node != -1
+        node = parents[node]
+    return False
 
 
-def _unique(names: list[str]) -> tuple[str, ...]:
+def _parents_first(wanted: set[int], nodes: list[Json], parents: list[int]) -> list[int]:
+    """Return nodes as near to the order of the file as parents before children allows."""
+    order: list[int] = []
+    placed: set[int] = set()
+    for node in sorted(wanted):
+        line = []
+        while node != -1 and node not in placed:
+            line.append(node)
+            placed.add(node)
+            node = parents[node]
+        order += reversed(line)
+    return order
+
+
+def unique(names: list[str]) -> tuple[str, ...]:
     """Return the names, numbered where they repeat."""
+    taken = set(names)
     seen: dict[str, int] = {}
     unique: list[str] = []
     for name in names:
         seen[name] = seen.get(name, 0) + 1
-        unique.append(name if seen[name] == 1 else f"{name}.{seen[name]}")
+        new = name
+        while seen[name] > 1 and (new := f"{name}.{seen[name]}") in taken:
+            seen[name] += 1
+        taken.add(new)
+        unique.append(new)
     return tuple(unique)
 
 
-def _rest(nodes: list[pygltflib.Node]) -> Pose:
-    parts = [_placement(node) for node in nodes]
+def _rest(file: GltfFile, order: list[int]) -> Pose:
+    nodes = file.all("nodes")
+    parts = []
+    for number in order:
+        where = called("node", number, nodes[number])
+        with at(where):
+            parts.append(_placement(nodes[number], f"{file.path}: {where}"))
     scales = np.array([scale for _, _, scale in parts]).reshape(-1, 3)
     return Pose(
         np.array([translation for translation, _, _ in parts]).reshape(-1, 3),
@@ -100,17 +142,41 @@ def _rest(nodes: list[pygltflib.Node]) -> Pose:
     )
 
 
-def _placement(node: pygltflib.Node) -> tuple[Array, Array, Array]:
+def _placement(node: Json, where: str) -> tuple[Array, Array, Array]:
     """Return a node's translation, rotation and scale, taken from its matrix if it has one."""
-    if not node.matrix:
+    if "matrix" not in node:
+        rotation = np.array(node.get("rotation", (0.0, 0.0, 0.0, 1.0)), float)
         return (
-            np.array(node.translation or (0.0, 0.0, 0.0)),
-            np.array(node.rotation or (0.0, 0.0, 0.0, 1.0)),
-            np.array(node.scale or (1.0, 1.0, 1.0)),
+            np.array(node.get("translation", (0.0, 0.0, 0.0)), float),
+            unit_turns(rotation[None], where)[0],
+            np.array(node.get("scale", (1.0, 1.0, 1.0)), float),
         )
-    matrix = np.array(node.matrix, float).reshape(4, 4).T
+    matrix = np.array(node["matrix"], float).reshape(4, 4).T
     scale = np.linalg.norm(matrix[:3, :3], axis=0)
     if np.linalg.det(matrix[:3, :3]) < 0:
         scale[0] = -scale[0]
     safe = np.where(scale == 0, 1.0, scale)
     return matrix[:3, 3], rotations.from_matrix(matrix[:3, :3] / safe), scale
+
+
+def unit_turns(turns: Array, where: str) -> Array:
+    """Return quaternions (n, 4) made unit; warn where they are not, refuse those of length zero.
+
+    Parameters
+    ----------
+    turns
+        As in the file.
+    where
+        The file and the place, for the warning.
+    """
+    lengths: Array = np.linalg.norm(turns, axis=1, keepdims=True)
+    if (lengths < 1e-6).any():
+        raise DamagedFileError(f"rotation {turns[int(lengths.argmin())].tolist()} is none")
+    worst = int(np.abs(lengths - 1).argmax()) if len(turns) else 0
+    if len(turns) and abs(lengths[worst, 0] - 1) > _UNIT:
+        warnings.warn(
+            f"{where} has a rotation of length {lengths[worst, 0]:.3g}; made it a unit quaternion",
+            CharacterWarning,
+            stacklevel=2,
+        )
+    return turns / lengths

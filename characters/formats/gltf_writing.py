@@ -1,6 +1,5 @@
 """From a character to the bytes of a .glb."""
 
-import cv2
 import numpy as np
 import pygltflib
 from numpy.typing import NDArray
@@ -9,7 +8,8 @@ from characters.character import Character
 from characters.clip import Clip
 from characters.errors import CharacterError
 from characters.formats.gltf_buffer import ARRAY_BUFFER, ELEMENT_BUFFER, BufferWriter
-from characters.mesh import Material, Mesh, Morph
+from characters.formats.gltf_materials import MaterialWriter
+from characters.mesh import Mesh, Morph
 from characters.pose import Array, Skeleton
 
 _STILL = 1e-7  # [m or part of a quaternion]: what changes less does not move
@@ -98,6 +98,7 @@ class _Packer:
             asset=pygltflib.Asset(version="2.0", generator="cubeling"), scene=0
         )
         self.buffer = BufferWriter(self.document)
+        self.materials = MaterialWriter(self.document, self.buffer)
 
     def pack(self) -> bytes:
         joints = len(self.character.skeleton)
@@ -151,7 +152,7 @@ class _Packer:
         primitive = pygltflib.Primitive(
             attributes=attributes,
             indices=self.buffer.accessor(mesh.triangles.reshape(-1), wide, ELEMENT_BUFFER),
-            material=self._material(mesh.material, mesh.name),
+            material=self.materials.add(mesh.material, mesh.name),
         )
         number = len(self.document.meshes)
         written = pygltflib.Mesh(name=mesh.name, primitives=[primitive])
@@ -189,33 +190,6 @@ class _Packer:
                 )
             )
         return self.skins[key]
-
-    def _material(self, material: Material, name: str) -> int:
-        surface = pygltflib.PbrMetallicRoughness(
-            baseColorFactor=list(material.base_color),
-            metallicFactor=material.metallic,
-            roughnessFactor=material.roughness,
-        )
-        if material.texture is not None:
-            surface.baseColorTexture = pygltflib.TextureInfo(index=self._texture(material.texture))
-        self.document.materials.append(
-            pygltflib.Material(
-                name=name,
-                pbrMetallicRoughness=surface,
-                doubleSided=material.double_sided,
-                alphaCutoff=None,
-            )
-        )
-        return len(self.document.materials) - 1
-
-    def _texture(self, picture: NDArray[np.uint8]) -> int:
-        _, png = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGBA2BGRA))
-        number = len(self.document.images)
-        self.document.images.append(
-            pygltflib.Image(bufferView=self.buffer.view(png.tobytes()), mimeType="image/png")
-        )
-        self.document.textures.append(pygltflib.Texture(source=number))
-        return number
 
     def _animation(self, clip: Clip) -> None:
         """Write a clip; what stays as it rests is left out."""

@@ -1,0 +1,212 @@
+"""The JSON of a glTF: what its members must be, so that readers need not ask again."""
+
+import json
+import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+Json = dict[str, Any]
+"""An object of the file, checked against `SCHEMA`."""
+
+
+class DamagedFileError(ValueError):
+    """Something in a glTF file that contradicts itself; the message lacks the file's name."""
+
+
+TEXT, REAL, COUNT, FLAG = "text", "a number", "a count", "true or false"
+_REALS = {n: f"{n} numbers" for n in (2, 3, 4, 16)}
+_NUMBERS = "numbers"
+
+_TEXTURE = {
+    "index!": "textures",
+    "texCoord": COUNT,
+    "scale": REAL,
+    "extensions": {
+        "KHR_texture_transform": {
+            "offset": _REALS[2],
+            "rotation": REAL,
+            "scale": _REALS[2],
+            "texCoord": COUNT,
+        }
+    },
+}
+_SPARSE_PART = {"bufferView!": "bufferViews", "byteOffset": COUNT}
+
+SCHEMA: Json = {
+    "scenes": [{"nodes": ["nodes"]}],
+    "nodes": [
+        {
+            "name": TEXT,
+            "children": ["nodes"],
+            "mesh": "meshes",
+            "skin": "skins",
+            "translation": _REALS[3],
+            "rotation": _REALS[4],
+            "scale": _REALS[3],
+            "matrix": _REALS[16],
+            "weights": _NUMBERS,
+        }
+    ],
+    "skins": [{"joints!": ["nodes"], "inverseBindMatrices": "accessors"}],
+    "meshes": [
+        {
+            "name": TEXT,
+            "weights": _NUMBERS,
+            "primitives!": [
+                {
+                    "attributes!": {"*": "accessors"},
+                    "indices": "accessors",
+                    "material": "materials",
+                    "mode": COUNT,
+                    "targets": [{"*": "accessors"}],
+                }
+            ],
+        }
+    ],
+    "accessors": [
+        {
+            "bufferView": "bufferViews",
+            "byteOffset": COUNT,
+            "componentType!": COUNT,
+            "count!": COUNT,
+            "type!": TEXT,
+            "normalized": FLAG,
+            "sparse": {
+                "count!": COUNT,
+                "indices!": _SPARSE_PART | {"componentType!": COUNT},
+                "values!": _SPARSE_PART,
+            },
+        }
+    ],
+    "bufferViews": [
+        {"buffer!": "buffers", "byteOffset": COUNT, "byteLength!": COUNT, "byteStride": COUNT}
+    ],
+    "buffers": [{"uri": TEXT, "byteLength!": COUNT}],
+    "images": [{"uri": TEXT, "bufferView": "bufferViews", "name": TEXT}],
+    "textures": [{"source": "images"}],
+    "materials": [
+        {
+            "name": TEXT,
+            "pbrMetallicRoughness": {
+                "baseColorFactor": _REALS[4],
+                "baseColorTexture": _TEXTURE,
+                "metallicFactor": REAL,
+                "roughnessFactor": REAL,
+                "metallicRoughnessTexture": _TEXTURE,
+            },
+            "normalTexture": _TEXTURE,
+            "emissiveTexture": _TEXTURE,
+            "emissiveFactor": _REALS[3],
+            "alphaMode": TEXT,
+            "alphaCutoff": REAL,
+            "doubleSided": FLAG,
+            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": REAL}},
+        }
+    ],
+    "animations": [
+        {
+            "name": TEXT,
+            "samplers!": [{"input!": "accessors", "output!": "accessors", "interpolation": TEXT}],
+            "channels!": [{"sampler!": COUNT, "target!": {"node": "nodes", "path!": TEXT}}],
+        }
+    ],
+    "extensionsRequired": [TEXT],
+}
+"""The members that are read: an object, [a list], or what a value is; a name of the top level is a
+number of one of its members, "*" any other key, and "!" marks what may not be left out."""
+
+
+def parse(text: bytes) -> Json:
+    """Return the document in a JSON text.
+
+    Raises
+    ------
+    DamagedFileError
+        If a member is absent, is not what it must be, or refers to what does not exist.
+    ValueError, RecursionError
+        If it is no JSON object of a glTF at all.
+    """
+    document = json.loads(text, parse_constant=_no_constant)
+    if not isinstance(document, dict) or not isinstance(document.get("asset"), dict):
+        raise ValueError("no glTF")
+    sizes = {key: len(v) for key, v in document.items() if isinstance(v, list)}
+    for key, kind in SCHEMA.items():
+        if key in document:
+            _check(document[key], kind, key, sizes)
+    return document
+
+
+@contextmanager
+def at(place: str) -> Iterator[None]:
+    """Name the place in what goes wrong inside; a file's contradictions surface as any of these."""
+    try:
+        yield
+    except DamagedFileError as error:
+        raise DamagedFileError(f"{place}: {error}") from None
+    except (ArithmeticError, AttributeError, LookupError, TypeError, struct.error) as error:
+        raise DamagedFileError(f"{place}: {error}") from error
+    except np.linalg.LinAlgError:
+        raise DamagedFileError(f"{place}: a matrix is singular") from None
+    except ValueError as error:
+        raise DamagedFileError(f"{place}: {error}") from error
+
+
+def called(kind: str, number: int, item: Json) -> str:
+    """Return how to name an item of the document to a person: mesh 'Body', mesh 3."""
+    return f"{kind} {item['name']!r}" if item.get("name") else f"{kind} {number}"
+
+
+def _no_constant(name: str) -> None:
+    raise DamagedFileError(f"its JSON holds {name}")
+
+
+def _check(value: object, kind: Any, place: str, sizes: dict[str, int]) -> None:
+    if isinstance(kind, dict):
+        _check_object(value, kind, place, sizes)
+    elif isinstance(kind, list):
+        if not isinstance(value, list):
+            raise DamagedFileError(f"{place} is not a list")
+        for number, each in enumerate(value):
+            _check(each, kind[0], f"{place}[{number}]", sizes)
+    elif kind in SCHEMA:
+        count = sizes.get(kind, 0)
+        if type(value) is not int or not 0 <= value < count:
+            raise DamagedFileError(f"{place} is {value!r:.40}, but there are {count} {kind}")
+    elif not _fits(value, kind):
+        raise DamagedFileError(f"{place} is {value!r:.40}, not {kind}")
+
+
+def _check_object(value: object, kind: Json, place: str, sizes: dict[str, int]) -> None:
+    if not isinstance(value, dict):
+        raise DamagedFileError(f"{place} is not an object")
+    for name, inner in kind.items():
+        key = name.rstrip("!")
+        if key == "*":
+            for each in value:
+                _check(value[each], inner, f"{place}.{each}", sizes)
+        elif key in value:
+            _check(value[key], inner, f"{place}.{key}", sizes)
+        elif name != key:
+            raise DamagedFileError(f"{place} lacks {key!r}")
+
+
+def _fits(value: object, kind: str) -> bool:
+    if kind == TEXT:
+        return isinstance(value, str)
+    if kind == FLAG:
+        return isinstance(value, bool)
+    if kind == COUNT:
+        return type(value) is int and value >= 0
+    if kind == REAL:
+        return _is_real(value)
+    if not isinstance(value, list) or not all(map(_is_real, value)):
+        return False
+    return kind == _NUMBERS or len(value) == int(kind.split()[0])
+
+
+def _is_real(value: object) -> bool:
+    # Beyond single precision nothing was meant, and products of such numbers would overflow.
+    return isinstance(value, int | float) and type(value) is not bool and -1e30 < value < 1e30

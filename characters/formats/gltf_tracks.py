@@ -1,0 +1,126 @@
+"""The keys of a glTF animation, and what lies between them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters import rotations
+from characters.formats.gltf_document import DamagedFileError, Json
+from characters.formats.gltf_file import GltfFile
+from characters.formats.gltf_morphs import MorphTable
+from characters.formats.gltf_nodes import NodeTree, unit_turns
+
+Array = NDArray[np.float64]
+
+_WIDTHS = {"translation": 3, "rotation": 4, "scale": 3}
+
+
+@dataclass(frozen=True)
+class Track:
+    """Keys of one property of one joint, or of the morphs of one mesh."""
+
+    which: int | list[int]
+    """The joint, or the columns of the morphs."""
+
+    path: str
+    """"translation", "rotation", "scale" or "weights"."""
+
+    times: Array
+    """Ascending, (keys,) [s]."""
+
+    values: Array
+    """(keys, components); of a cubic spline, tangent in, value and tangent out of each key."""
+
+    interpolation: str
+    """"LINEAR", "STEP" or "CUBICSPLINE"."""
+
+
+def read_tracks(
+    file: GltfFile, animation: Json, tree: NodeTree, morphs: MorphTable, where: str
+) -> list[Track]:
+    """Return what an animation does to the skeleton and its morphs; `where` is for warnings."""
+    tracks: list[Track] = []
+    times_of: dict[int, Array] = {}
+    for number, channel in enumerate(animation["channels"]):
+        path, node = channel["target"]["path"], channel["target"].get("node")
+        which, width = _target(path, node, tree, morphs)
+        if which is None or channel["sampler"] >= len(animation["samplers"]):
+            if which is None:
+                continue
+            raise DamagedFileError(f"channel {number} has a sampler that does not exist")
+        sampler = animation["samplers"][channel["sampler"]]
+        source = sampler["input"]
+        if source not in times_of:
+            times_of[source] = _times(file, source)
+        kind = sampler.get("interpolation", "LINEAR")
+        if kind not in ("LINEAR", "STEP", "CUBICSPLINE"):
+            raise DamagedFileError(f"channel {number} has interpolation {kind!r:.20}")
+        values = _values(file, sampler["output"], path, width)
+        keys = len(times_of[source]) * (3 if kind == "CUBICSPLINE" else 1)
+        if len(values) != keys:
+            raise DamagedFileError(f"channel {number} has {len(values)} values for {keys} keys")
+        if path == "rotation":
+            own = slice(1, None, 3) if kind == "CUBICSPLINE" else slice(None)
+            values[own] = unit_turns(values[own], where)
+        tracks.append(Track(which, path, times_of[source], values, kind))
+    return tracks
+
+
+def _target(
+    path: str, node: int | None, tree: NodeTree, morphs: MorphTable
+) -> tuple[int | list[int] | None, int]:
+    """Return what a channel moves and in how many components; None if nothing that is read."""
+    if path == "weights":
+        columns = list(morphs.columns.get(-1 if node is None else node, ()))
+        return (columns or None), len(columns)
+    joint = tree.joint_of_node.get(-1 if node is None else node)
+    return (joint, _WIDTHS[path]) if path in _WIDTHS else (None, 0)
+
+
+def _times(file: GltfFile, accessor: int) -> Array:
+    times = file.floats(accessor, 1)
+    if not len(times) or (np.diff(times) < 0).any():
+        raise DamagedFileError(f"accessor {accessor} has key times that do not ascend, or none")
+    return times
+
+
+def _values(file: GltfFile, accessor: int, path: str, width: int) -> Array:
+    if path != "weights":
+        return file.floats(accessor, width)
+    values = file.floats(accessor, 1)
+    if len(values) % width:
+        raise DamagedFileError(f"accessor {accessor} has {len(values)} weights for {width} morphs")
+    return values.reshape(-1, width)
+
+
+def resampled(track: Track, times: Array) -> Array:
+    """Return a track's values at the given times, held beyond its ends.
+
+    Cubic splines as in the glTF 2.0 specification, appendix C.
+    """
+    keys, values = track.times, track.values
+    if track.interpolation == "CUBICSPLINE":
+        tangents_in, values, tangents_out = values[0::3], values[1::3], values[2::3]
+    if len(keys) == 1:
+        return np.repeat(values[:1], len(times), axis=0)
+    before = np.clip(np.searchsorted(keys, times, side="right") - 1, 0, len(keys) - 2)
+    span = keys[before + 1] - keys[before]
+    u = np.clip((times - keys[before]) / np.where(span > 0, span, 1.0), 0.0, 1.0)
+    # Frame times and keys were rounded apart: a frame at a key shows exactly that key.
+    u = np.where(np.abs(u - np.round(u)) < 1e-3, np.round(u), u)
+    a, b = values[before], values[before + 1]
+    if track.interpolation == "STEP":
+        return np.where(u[:, None] < 1, a, b)
+    if track.interpolation == "CUBICSPLINE":
+        u, span = u[:, None], span[:, None]
+        return (
+            (2 * u**3 - 3 * u**2 + 1) * a
+            + (u**3 - 2 * u**2 + u) * span * tangents_out[before]
+            + (3 * u**2 - 2 * u**3) * b
+            + (u**3 - u**2) * span * tangents_in[before + 1]
+        )
+    if track.path == "rotation":
+        return rotations.slerp(a, b, u)
+    mixed: Array = a + (b - a) * u[:, None]
+    return mixed
