@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from characters.authoring.rings import averaged_normals
 from characters.authoring.sculpt import bands, bound_mesh
 from characters.authoring.shapes import Array, Vector
 from characters.mesh import Mesh
@@ -44,7 +45,7 @@ def cord(
     triangles = bands(np.arange(len(points) - 1), sides)
     return bound_mesh(
         vertices,
-        _averaged_normals(vertices, triangles),
+        averaged_normals(vertices, triangles),
         triangles,
         np.repeat(weights, sides, axis=0),
         np.tile(np.array(color), (len(vertices), 1)),
@@ -90,13 +91,3 @@ def _circles(points: Array, sides: int) -> Array:
     other = np.cross(tangent, across)
     angle = np.linspace(0, 2 * np.pi, sides, endpoint=False)[:, None]
     return np.asarray(np.cos(angle) * across[:, None] + np.sin(angle) * other[:, None])
-
-
-def _averaged_normals(vertices: Array, triangles: NDArray[np.int64]) -> Array:
-    corners = vertices[triangles]
-    flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    _, same = np.unique(vertices.round(7), axis=0, return_inverse=True)  # a pole is one place
-    total = np.zeros((same.max() + 1, 3))
-    np.add.at(total, same[triangles.ravel()], np.repeat(flat, 3, axis=0))
-    normal = total[same]
-    return np.asarray(normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-15))

@@ -36,8 +36,6 @@ def idle(skeleton: Skeleton) -> Clip:
     _hold_trunk(puppet, weight, breath, look, nod)
     _hold_arms(puppet, weight, breath, time)
     _take_straps(puppet, _glance(time, 4.6, 7.3, 0.75))
-    for side, _ in SIDES:
-        puppet.turn(f"{side}Eyelid", turned(x=78 * _blinks(time)))
     return Clip("idle", RATE, puppet.pose, loop=True, root_motion=True)
 
 

@@ -6,7 +6,7 @@ Colours that stand out from wood and paper alike, the brightest at the hands' an
 import numpy as np
 
 from characters.authoring.cord import cord
-from characters.authoring.human_head import SKIN
+from characters.authoring.human_hands import hand
 from characters.authoring.human_rig import JOINTS
 from characters.authoring.sculpt import Part, lathe
 from characters.authoring.shapes import (
@@ -37,7 +37,7 @@ CORAL = rgb("#f75c43")
 def outfit_parts() -> list[Part]:
     """Return what is carved, of both sides."""
     parts = _torso_parts()
-    for side in (_arm_parts(), _leg_parts()):
+    for side in ([hand()], _leg_parts()):
         for part in side:
             parts += [part, Part(part.shape.mirrored(), part.cell, (), part.soft_skin)]
     return parts
@@ -49,7 +49,8 @@ def cords(skeleton: Skeleton) -> list[Mesh]:
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         flip = [sign, 1.0, 1.0]
         string = np.array(STRING) * flip
-        meshes.append(cord(string, STRING_RADII, CREAM, "chest", skeleton))
+        swings = ["chest", *[f"{side}String"] * 3]
+        meshes.append(cord(string, STRING_RADII, CREAM, swings, skeleton, 6, 8))
         strap = np.array(STRAP) * flip
         over = ["chest", f"{side}Shoulder", "chest", "chest", "spine2", "spine2", "spine2"]
         meshes.append(cord(strap, 0.02, LEATHER, over, skeleton, 6, 15))
@@ -94,21 +95,21 @@ def _across(start: Array, end: Array, beyond: float, radius: float, half: float)
 
 
 STRING: list[Vector] = [
-    (0.034, 1.185, 0.112),
-    (0.038, 1.13, 0.126),
-    (0.04, 1.085, 0.128),
-    (0.041, 1.07, 0.128),
+    (0.036, 1.145, 0.112),
+    (0.040, 1.10, 0.130),
+    (0.042, 1.055, 0.132),
+    (0.043, 1.035, 0.132),
 ]
-STRING_RADII = [0.0075, 0.0075, 0.0075, 0.0125]
+STRING_RADII = [0.008, 0.008, 0.008, 0.0135]
 
 STRAP: list[Vector] = [
-    (0.08, 1.19, -0.12),
-    (0.098, 1.245, -0.04),
-    (0.1, 1.215, 0.05),
-    (0.1, 1.12, 0.098),
-    (0.11, 1.02, 0.085),
-    (0.145, 0.965, 0.0),
-    (0.1, 0.965, -0.12),
+    (0.08, 1.155, -0.12),
+    (0.098, 1.208, -0.04),
+    (0.1, 1.18, 0.05),
+    (0.1, 1.09, 0.099),
+    (0.11, 1.0, 0.087),
+    (0.145, 0.945, 0.0),
+    (0.1, 0.945, -0.12),
 ]
 
 
@@ -119,11 +120,16 @@ def _both(shape: Shape) -> Union:
 def _torso_parts() -> list[Part]:
     spine = ("hips", "spine1", "spine2", "chest")
     trunk = Cone(
-        (0, 0.9, 0), (0, 1.105, -0.005), 0.165, 0.148, (1, 1, 0.78), bones=spine, color=TEAL
+        (0, 0.9, 0), (0, 1.075, -0.005), 0.165, 0.146, (1, 1, 0.78), bones=spine, color=TEAL
     )
     hem_line = HalfSpace((0, 0.825, 0), (0, 1, 0))
     yoke = Cone(
-        (0.06, 1.165, -0.01), (0.15, 1.17, -0.012), 0.075, 0.07, bones=("LeftShoulder",), color=TEAL
+        (0.06, 1.128, -0.01),
+        (0.148, 1.134, -0.012),
+        0.075,
+        0.07,
+        bones=("LeftShoulder",),
+        color=TEAL,
     )
     sleeve = chain(
         [JOINTS[f"Left{n}"][1] for n in ("Arm", "ForeArm", "Hand")],
@@ -147,10 +153,10 @@ def _torso_parts() -> list[Part]:
 def _hood() -> Shape:
     bones, color = ("chest",), TEAL
     back = Ellipsoid(
-        (0, 1.235, -0.085), (0.12, 0.07, 0.062), (0.35, 0, 0), bones=bones, color=color
+        (0, 1.195, -0.092), (0.13, 0.07, 0.062), (0.35, 0, 0), bones=bones, color=color
     )
     collar = chain(
-        [(0.0, 1.25, -0.1), (0.085, 1.25, -0.055), (0.092, 1.235, 0.015), (0.03, 1.185, 0.1)],
+        [(0.0, 1.205, -0.105), (0.09, 1.208, -0.06), (0.1, 1.196, 0.015), (0.032, 1.145, 0.102)],
         (0.045, 0.04, 0.034, 0.026),
         ("chest",) * 3,
         color,
@@ -160,53 +166,23 @@ def _hood() -> Shape:
 
 
 def _backpack() -> list[Part]:
-    bones = ("chest",)
-    bag = Ellipsoid((0, 1.045, -0.19), (0.118, 0.145, 0.075), power=3.2, bones=bones, color=MUSTARD)
+    bones = ("Backpack",)
+    bag = Ellipsoid((0, 1.015, -0.195), (0.126, 0.15, 0.08), power=3.2, bones=bones, color=MUSTARD)
     flap = Ellipsoid(
-        (0, 1.125, -0.195), (0.124, 0.075, 0.083), (-0.1, 0, 0), 3.2, bones=bones, color=LEATHER
+        (0, 1.098, -0.2), (0.132, 0.078, 0.088), (-0.1, 0, 0), 3.2, bones=bones, color=LEATHER
     )
-    purse = Ellipsoid((0, 0.985, -0.262), (0.07, 0.05, 0.03), power=3.2, bones=bones, color=LEATHER)
-    buckle = Ellipsoid((0, 1.07, -0.275), (0.02, 0.026, 0.014), power=3.0, bones=bones, color=CREAM)
+    purse = Ellipsoid(
+        (0, 0.953, -0.272), (0.075, 0.052, 0.032), power=3.2, bones=bones, color=LEATHER
+    )
+    buckle = Ellipsoid(
+        (0, 1.04, -0.285), (0.021, 0.027, 0.015), power=3.0, bones=bones, color=CREAM
+    )
     return [
         Part(bag, 0.036, soft_skin=0.0),
         Part(flap, 0.034, soft_skin=0.0),
         Part(purse, 0.024, soft_skin=0.0),
         Part(buckle, 0.012, soft_skin=0.0),
     ]
-
-
-def _arm_parts() -> list[Part]:
-    elbow, wrist = (np.array(JOINTS[f"Left{n}"][1]) for n in ("ForeArm", "Hand"))
-    along = (wrist - elbow) / np.linalg.norm(wrist - elbow)
-    return [Part(_hand(wrist, along), 0.0185, soft_skin=0.0)]
-
-
-def _hand(wrist: Array, along: Array) -> Shape:
-    """Return a hand with three fingers and a thumb, a little curled, palm to the thigh."""
-    bones, color = ("LeftHand",), SKIN
-    front = np.array([0.0, 0.0, 1.0])
-    palm_normal = np.cross(along, front)  # towards the body
-
-    def at(reach: float, forward: float, inward: float = 0.0) -> Vector:
-        return _vector(wrist + reach * along + forward * front + inward * palm_normal)
-
-    palm = Cone(at(0.0, 0.0), at(0.06, 0.004), 0.036, 0.044, bones=bones, color=color)
-    fingers = [
-        chain(
-            [at(0.075, z), at(0.11, 1.15 * z, 0.008), at(0.138, 1.15 * z, 0.028)],
-            (0.019, 0.018, 0.016),
-            bones * 2,
-            color,
-        )
-        for z in (-0.028, 0.002, 0.032)
-    ]
-    thumb = chain(
-        [at(0.02, 0.03), at(0.055, 0.064, 0.012), at(0.082, 0.07, 0.018)],
-        (0.02, 0.018, 0.016),
-        bones * 2,
-        color,
-    )
-    return Union((palm, *fingers, thumb), 0.012)
 
 
 def _leg_parts() -> list[Part]:

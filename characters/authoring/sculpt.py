@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from characters.authoring.shapes import Array, Shape, Solid, Vector
 from characters.authoring.surface import neighbour_mean, normals_of, polygonise
-from characters.mesh import Material, Mesh
+from characters.mesh import Material, Mesh, Morph
 from characters.pose import Skeleton
 
 
@@ -77,7 +77,34 @@ def join(name: str, meshes: Sequence[Mesh], material: Material | None = None) ->
         inverse_bind=meshes[0].inverse_bind,
         colors=np.concatenate(colors).astype(np.float32),
         material=material or meshes[0].material,
+        morphs=_joined_morphs(meshes, starts.tolist()),
     )
+
+
+def _joined_morphs(meshes: Sequence[Mesh], starts: Sequence[int]) -> tuple[Morph, ...]:
+    """Return the morphs of all meshes, those of one name as one, in order of appearance."""
+    names = dict.fromkeys(morph.name for mesh in meshes for morph in mesh.morphs)
+    joined = []
+    for name in names:
+        pieces = [
+            (morph.vertices + np.uint32(start), morph)
+            for mesh, start in zip(meshes, starts, strict=False)
+            for morph in mesh.morphs
+            if morph.name == name
+        ]
+        turns = [
+            np.zeros_like(morph.shifts) if morph.normal_shifts is None else morph.normal_shifts
+            for _, morph in pieces
+        ]
+        joined.append(
+            Morph(
+                name,
+                np.concatenate([vertices for vertices, _ in pieces]),
+                np.concatenate([morph.shifts for _, morph in pieces]),
+                np.concatenate(turns),
+            )
+        )
+    return tuple(joined)
 
 
 def lathe(
@@ -156,7 +183,7 @@ def _sculpt_part(part: Part, skeleton: Skeleton) -> Mesh:
     solids = list(part.shape.solids())
     distances = np.stack([solid.distance(points) for solid in solids], axis=1)
     weights = skin_weights(points, triangles, solids, distances, skeleton, part.soft_skin)
-    colors = _painted(points, solids, distances, part)
+    colors = coated(points, _painted(points, solids, distances, part), part.paints)
     normals = normals_of(field, points, part.cell)
     return bound_mesh(points, normals, triangles, weights, colors, skeleton)
 
@@ -218,8 +245,12 @@ def _painted(points: Array, solids: Sequence[Solid], distances: Array, part: Par
     far = distances - distances.min(axis=1, keepdims=True)
     share = np.exp(-far / max(part.soft_color, 1e-6))
     share /= share.sum(axis=1, keepdims=True)
-    colors = share @ np.array([solid.color for solid in solids])
-    for paint in part.paints:
+    return np.asarray(share @ np.array([solid.color for solid in solids]))
+
+
+def coated(points: Array, colors: Array, paints: Sequence[Paint]) -> Array:
+    """Return linear RGB (n, 3) of points (n, 3) under coats of paint."""
+    for paint in paints:
         depth = 0.5 - paint.shape.distance(points) / max(paint.soft, 1e-6)
         t = np.clip(depth, 0.0, 1.0)
         cover = paint.strength * (t * t * (3 - 2 * t))[:, None]

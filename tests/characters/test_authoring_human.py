@@ -37,6 +37,7 @@ def world_points(human: Character, clip: Clip, joint: str, offset: tuple[float, 
 def test_the_asset_is_what_the_code_makes(human: Character, made: Character) -> None:
     assert human.skeleton.names == made.skeleton.names
     assert human.skeleton.parents == made.skeleton.parents
+    assert human.morphs == made.morphs
     assert sorted(human.clips) == sorted(made.clips)
     for name, clip in made.clips.items():
         shipped = human.clips[name].poses
@@ -47,6 +48,10 @@ def test_the_asset_is_what_the_code_makes(human: Character, made: Character) -> 
         assert np.array_equal(shipped_mesh.triangles, mesh.triangles)
         assert np.allclose(shipped_mesh.positions, mesh.positions, atol=1e-5)
         assert np.allclose(shipped_mesh.weights, mesh.weights, atol=2e-3)
+        for shipped_morph, morph in zip(shipped_mesh.morphs, mesh.morphs, strict=True):
+            assert shipped_morph.name == morph.name
+            assert np.array_equal(shipped_morph.vertices, morph.vertices)
+            assert np.allclose(shipped_morph.shifts, morph.shifts, atol=1e-5)
 
 
 def test_knows_to_wait_and_the_twelve_gaits_and_more_turns(human: Character) -> None:
@@ -160,7 +165,7 @@ def test_skin_is_closed_faces_outward_and_is_fully_held(human: Character) -> Non
 
 
 def test_is_light_enough_for_a_small_machine(human: Character) -> None:
-    assert 8_000 < sum(len(mesh.triangles) for mesh in human.meshes) < 20_000
+    assert 8_000 < sum(len(mesh.triangles) for mesh in human.meshes) <= 22_000
 
 
 def _below_the_knee(mesh: Mesh) -> Mesh:

@@ -1,0 +1,56 @@
+"""The bundled explorer's head under hair and features: the surface on which the face is drawn."""
+
+from functools import cache
+
+import numpy as np
+
+from characters.authoring.sculpt import Paint
+from characters.authoring.shapes import Array, Cut, Ellipsoid, Shape, Union, rgb
+from characters.authoring.surface import normals_of
+
+SKIN = rgb("#f4b98c")
+BLUSH = rgb("#ea7560")
+MAROON = rgb("#5a1420")
+
+_BONES = ("head",)
+
+
+@cache
+def bare_skull() -> Shape:
+    """Return the face without nose, ears and hollows: what lids and lips lie on."""
+    skull = Ellipsoid((0, 1.482, -0.006), (0.207, 0.199, 0.197), bones=_BONES, color=SKIN)
+    jowls = Ellipsoid((0, 1.366, 0.037), (0.178, 0.122, 0.152), bones=_BONES, color=SKIN)
+    return Union((skull, jowls), 0.09)
+
+
+def head_shape() -> Shape:
+    """Return the head with nose and ears, hollow where eyes and mouth sit."""
+    nose = Ellipsoid((0, 1.386, 0.206), (0.024, 0.0195, 0.023), bones=_BONES, color=SKIN)
+    ear = Ellipsoid((0.209, 1.41, -0.012), (0.030, 0.052, 0.040), bones=_BONES, color=SKIN)
+    whole = Union((Union((bare_skull(), nose), 0.022), ear, ear.mirrored()), 0.017)
+    socket = Ellipsoid((0.085, 1.447, 0.185), (0.058, 0.070, 0.036), (0.0, 0.35, 0.0))
+    mouth = Ellipsoid((0, 1.303, 0.18), (0.07, 0.036, 0.06))
+    return Cut(whole, Union((socket, socket.mirrored(), mouth)), 0.008)
+
+
+def complexion() -> tuple[Paint, ...]:
+    """Return the red of the cheeks."""
+    blush = Ellipsoid((0.125, 1.362, 0.15), (0.045, 0.03, 0.062))
+    return (Paint(Union((blush, blush.mirrored())), BLUSH, 0.035, 0.55),)
+
+
+def on_face(x: Array, y: Array) -> Array:
+    """Return the points on the front of the bare face at x, y, (…, 3)."""
+    x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+    flat = np.stack([x.ravel(), y.ravel()], axis=-1)
+    low, high = np.zeros(len(flat)), np.full(len(flat), 0.4)
+    for _ in range(32):
+        middle = (low + high) / 2
+        inside = bare_skull().distance(np.column_stack([flat, middle])) < 0
+        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+    return np.asarray(np.column_stack([flat, low]).reshape(*x.shape, 3))
+
+
+def face_normals(points: Array) -> Array:
+    """Return the normals of the bare face at points (n, 3)."""
+    return normals_of(bare_skull().distance, points, 0.02)
