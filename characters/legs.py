@@ -7,6 +7,7 @@ that stands still over the ground in every clip then stands still in the mix.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,28 @@ class Legs:
     joints: NDArray[np.intp]
     """Pelvis, hip, knee, ankle and toes of each leg among them, (legs, 5)."""
 
+    @property
+    def count(self) -> int:
+        """Number of legs."""
+        return len(self.joints)
+
+    @property
+    def feet(self) -> tuple[tuple[int, ...], ...]:
+        """Ankle and toes of each leg, numbered as in the whole skeleton."""
+        return tuple(map(tuple, self.carriers[self.joints[:, 3:]].tolist()))
+
+    @cached_property
+    def lengths(self) -> Array:
+        """Thigh and shin together, (legs,) [m]."""
+        offsets = self.skeleton.rest.translations[self.joints[:, 2:4]]
+        long: Array = np.sqrt(np.einsum("lji,lji->lj", offsets, offsets)).sum(1)
+        return long
+
+    def globals(self, pose: Pose) -> Array:
+        """Return `character_from_joint` of the carriers, (…, n, 4, 4)."""
+        part = Pose(pose.translations[..., self.carriers, :], pose.rotations[..., self.carriers, :])
+        return part.globals(self.skeleton)
+
     def plant(self, mixed: Pose, poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
         """Return a mix of poses with its feet at the mean of theirs.
 
@@ -42,27 +65,50 @@ class Legs:
         poses, weights
             What was mixed, and how much of each; the weights sum to one.
         """
-        everyone = [mixed, *poses]
         stacked = Pose(
-            np.stack([pose.translations[self.carriers] for pose in everyone]),
-            np.stack([pose.rotations[self.carriers] for pose in everyone]),
+            np.stack([pose.translations for pose in poses]),
+            np.stack([pose.rotations for pose in poses]),
         )
-        globals_ = stacked.globals(self.skeleton)
-        place, facing = self._mean_feet(globals_[1:], np.asarray(weights, float))
-        pelvis, hip, knee, _, toes = self.joints.T
-        turn = globals_[0, :, :3, :3]
+        return self.reach(mixed, *self._mean_feet(self.globals(stacked), np.asarray(weights)))
+
+    def reach(self, pose: Pose, balls: Array, facings: Array) -> Pose:
+        """Return a pose with the balls of its feet at places (legs, 3), facing so (legs, 4).
+
+        Hips and knees bend, as far as the legs are long.
+        """
+        placed = self.globals(pose)
+        ankle, toes = self.joints[:, 3], self.joints[:, 4]
         # The ball of the foot is what it stands and rolls on.
-        ankle = place - rotations.rotate(facing, stacked.translations[0, toes])
-        upper, lower = self._reach(globals_[0, :, :3, 3], ankle)
-        hip_turn = upper @ turn[hip]
-        knee_turn = upper @ lower @ turn[knee]
-        frames = np.stack([turn[pelvis], hip_turn, knee_turn])
-        within = np.stack([hip_turn, knee_turn, rotations.to_matrix(facing)])
-        turns = mixed.rotations.copy()
-        turns[self.carriers[self.joints[:, 1:4].T]] = rotations.from_matrix(
-            np.swapaxes(frames, -1, -2) @ within
+        offsets = pose.translations[self.carriers[toes]]
+        turned = rotations.multiply(
+            facings, rotations.conjugate(rotations.from_matrix(placed[ankle, :3, :3]))
         )
-        return replace(mixed, rotations=turns)
+        return self.bend(pose, placed, balls - rotations.rotate(facings, offsets), turned)
+
+    def bend(self, pose: Pose, placed: Array, ankles: Array, turned: Array) -> Pose:
+        """Return a pose with its ankles moved and its feet turned.
+
+        Parameters
+        ----------
+        pose, placed
+            What is changed, and its `globals`.
+        ankles
+            Where the ankles are to be, (legs, 3) [m].
+        turned
+            How the feet turn from how they face, in the character's frame, (legs, 4).
+        """
+        pelvis, hip, knee = self.joints[:, :3].T
+        upper, lower = self._reach(placed[..., :3, 3], ankles)
+        # A turn T in the frame of the character is Gᵀ T G in that of a joint G: only the axis
+        # of a quaternion changes. What is above a joint has turned along.
+        foot = rotations.multiply(rotations.conjugate(rotations.multiply(upper, lower)), turned)
+        turns = np.stack([upper, lower, foot])
+        frames = placed[np.stack([pelvis, hip, knee]), :3, :3]
+        turns[..., :3] = (turns[..., None, :3] @ frames)[..., 0, :]
+        where = self.carriers[self.joints[:, 1:4].T]
+        bent = pose.rotations.copy()
+        bent[where] = rotations.multiply(turns, bent[where])
+        return replace(pose, rotations=bent)
 
     def _mean_feet(self, globals_: Array, share: Array) -> tuple[Array, Array]:
         """Return where the balls of the feet are, (legs, 3), and how the feet face, (legs, 4)."""
@@ -73,7 +119,7 @@ class Legs:
         return place, rotations.normalize(np.einsum("p,pli->li", share, facing))
 
     def _reach(self, at: Array, target: Array) -> tuple[Array, Array]:
-        """Return the turns of the whole leg and of the shin, (legs, 3, 3) each, in the character.
+        """Return the turns of the whole leg and of the shin, (legs, 4) each, in the character.
 
         The knee keeps its plane; the law of cosines says how far it bends.
         """
@@ -90,8 +136,7 @@ class Legs:
         goal = np.arccos(np.clip((long**2 + short**2 - wanted**2) / (2 * long * short), -1, 1))
         lower = rotations.about(axis, (goal - bend)[:, 0])
         reached = knee + rotations.rotate(lower, shin) - hip
-        upper = rotations.between(reached, target - hip)
-        return rotations.to_matrix(upper), rotations.to_matrix(lower)
+        return rotations.between(reached, target - hip), lower
 
 
 def find_legs(skeleton: Skeleton) -> Legs | None:

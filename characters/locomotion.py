@@ -5,15 +5,16 @@ each over Angular, −90…90°, joined over Speed, where 3 is the border betwee
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from characters.blend import Blend, BlendSpace1D, Paced
 from characters.clip import Clip
-from characters.legs import find_legs
-from characters.phase import Still, phased
+from characters.legs import Legs, find_legs
+from characters.phase import Phased, Still, phased
 from characters.pose import Pose, Skeleton
+from characters.strides import Strides, Tread
 
 IDLE_SPEED = 0.5
 """AvatAR's Speed up to which a character stands."""
@@ -72,7 +73,9 @@ class Gaits:
     def __init__(self, clips: Mapping[str, Clip], skeleton: Skeleton, standing: Pose) -> None:
         self._walk = _tree(clips, WALK_CLIPS, skeleton)
         self._run = _tree(clips, RUN_CLIPS, skeleton) if "Run" in clips else self._walk
-        self._legs = find_legs(skeleton)
+        self.legs = find_legs(skeleton)
+        """The legs that keep to the ground, or None where there are none to bend."""
+        self._treads = _treads((self._walk, self._run), skeleton, self.legs)
         self._still = Still(standing, self._walk.at(0.0).duration)
         straight = [tree.at(0.0) for tree in (self._walk, self._run)]
         self._lengths = [motion.between(0.0, 1.0).length for motion in straight]
@@ -94,7 +97,7 @@ class Gaits:
         cycle = self.at(speed, STEEPEST).between(0.0, 1.0)
         return math.hypot(cycle.x, cycle.z) / max(2 * math.sin(abs(cycle.yaw) / 2), 1e-6)
 
-    def at(self, speed: float, angular: float, stride: float = 1.0) -> Paced:
+    def at(self, speed: float, angular: float, stride: float = 1.0) -> "Strides | Paced":
         """Return the motion at a Speed and an Angular.
 
         Parameters
@@ -111,11 +114,16 @@ class Gaits:
         smaller = 1.0 - _SMALLER * (1.0 - stride)
         rate, share = self._effort(speed, running)
         share *= smaller
-        mixed = self._mixed(running, math.degrees(angular))
+        rate /= math.sqrt(smaller)
+        heard = self._heard(running, math.degrees(angular))
+        weights = tuple(weight for _, weight in heard)
+        if self.legs is not None:
+            treads = tuple(self._treads[id(motion)] for motion, _ in heard)
+            return Strides(treads, weights, self.legs, self._still.pose, share, stride, rate)
+        mixed = Blend(tuple(motion for motion, _ in heard), weights)
         if share < 1.0:
             mixed = Blend((mixed, self._still), (share, 1.0 - share))
-        planted = Blend(mixed.members, mixed.weights, self._legs)
-        return Paced(planted, rate / math.sqrt(smaller), stride)
+        return Paced(mixed, rate, stride)
 
     def _effort(self, speed: float, running: float) -> tuple[float, float]:
         """Return how fast the clips play and how far their steps reach, for the right pace."""
@@ -125,14 +133,31 @@ class Gaits:
         share = rate**_SHORTENING if rate < 1.0 and running == 0.0 else 1.0
         return rate / share, share
 
-    def _mixed(self, running: float, degrees: float) -> Blend:
-        """Return the clips' mix."""
-        if running == 0.0:
-            return self._walk.at(degrees)
-        if running == 1.0:
-            return self._run.at(degrees)
-        trees = (self._walk.at(degrees), self._run.at(degrees))
-        return Blend(trees, (1.0 - running, running))
+    def _heard(self, running: float, degrees: float) -> list[tuple[Phased, float]]:
+        """Return the clips that sound and how much of each."""
+        heard: list[tuple[Phased, float]] = []
+        for tree, part in ((self._walk, 1.0 - running), (self._run, running)):
+            weights = tree.weights(degrees) if part > 0.0 else ()
+            heard += [
+                (motion, part * weight)
+                for motion, weight in zip(tree.motions, weights, strict=False)
+                if weight > 0.0 and isinstance(motion, Phased)
+            ]
+        return heard
+
+
+def _treads(
+    trees: Iterable[BlendSpace1D], skeleton: Skeleton, legs: Legs | None
+) -> dict[int, Tread]:
+    """Return where the feet are in each motion of the trees, by its identity."""
+    if legs is None:
+        return {}
+    return {
+        id(motion): Tread.of(motion, skeleton, legs)
+        for tree in trees
+        for motion in tree.motions
+        if isinstance(motion, Phased)
+    }
 
 
 def _tree(

@@ -1,0 +1,201 @@
+"""Clips mixed in step whose feet keep to the ground, however long the steps are made.
+
+A mix of joint angles moves the feet on a path of no clip: they slide, and dip into the ground. Here
+the feet of a mix go where the mean of the clips' feet is, drawn together about the place where they
+stand, so that they stand still over the ground under a body that goes less far: a foot p that
+stands while the body goes its way u and turns, and the same foot r of a body that only turns, make
+s p + (1 − s) r stand while the body goes s u.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from characters import rotations
+from characters.blend import mix
+from characters.clip import Clip
+from characters.contacts import find_contacts
+from characters.legs import Legs
+from characters.motion import STANDING, Step
+from characters.phase import Phased
+from characters.pose import Array, Pose, Skeleton
+
+_PARTS = 16  # of a cycle, in each of which the mean of several ways is taken
+_LIFT = 0.6  # how high feet go rises with this power of how far they go
+
+
+@dataclass(frozen=True)
+class Tread:
+    """A looped clip and where its feet are, frame by frame."""
+
+    motion: Phased
+    """The clip by its phase."""
+
+    feet: Array
+    """Ball of the foot (3), facing of the foot (4), whether it stands (1): (frames, legs, 8)."""
+
+    @staticmethod
+    def of(motion: Phased, skeleton: Skeleton, legs: Legs) -> "Tread":
+        """Return the tread of a clip, with contacts that are found in it."""
+        clip = motion.motion
+        assert isinstance(clip, Clip)
+        feet = np.concatenate([_feet(clip.in_place, legs), np.zeros((len(clip), legs.count, 1))], 2)
+        feet[..., 7] = find_contacts(clip, skeleton, legs.feet)
+        return Tread(motion, feet)
+
+    def at(self, phase: float) -> Array:
+        """Return where its feet are at a phase, (legs, 8)."""
+        last = len(self.feet) - 1
+        at = self.motion.time(phase) / self.motion.motion.duration % 1.0 * last
+        frame = min(int(at), last - 1)
+        here = self.feet[frame]
+        between: Array = here + (self.feet[frame + 1] - here) * (at - frame)
+        return between
+
+    @cached_property
+    def home(self) -> Array:
+        """The middle of where a foot stands and how it faces there, (legs, 8)."""
+        weight = self.feet[..., 7:] + 1e-6
+        mean: Array = (self.feet * weight).sum(0) / weight.sum(0)
+        mean[:, 3:7] = rotations.normalize(mean[:, 3:7])
+        return mean
+
+
+@dataclass(frozen=True)
+class Strides:
+    """Clips mixed in step, with shorter steps and at another pace; `Cyclic`."""
+
+    treads: tuple[Tread, ...]
+    """What is mixed."""
+
+    weights: tuple[float, ...]
+    """How much of each; positive, sum one."""
+
+    legs: Legs
+    """Whose feet they are."""
+
+    still: Pose
+    """What shorter steps lean to."""
+
+    share: float = 1.0
+    """How long steps are and how far they turn, as a part of the clips'; the rest is `still`."""
+
+    stride: float = 1.0
+    """What is left of the way, but not of the turning, after that."""
+
+    rate: float = 1.0
+    """How much faster than the clips."""
+
+    @property
+    def duration(self) -> float:
+        """Length of one cycle [s]."""
+        paces = [
+            weight / tread.motion.duration
+            for tread, weight in zip(self.treads, self.weights, strict=True)
+        ]
+        return 1.0 / (sum(paces) * self.rate)
+
+    def at(self, phase: float) -> Pose:
+        """Return the mixed pose at a phase."""
+        poses = [tread.motion.at(phase) for tread in self.treads]
+        weights = list(self.weights)
+        if self.share < 1.0:
+            poses.append(self.still)
+            weights = [*(weight * self.share for weight in weights), 1.0 - self.share]
+        elif len(poses) == 1 and self.stride == 1.0:
+            return poses[0]
+        balls, facings = self._feet(phase)
+        return self.legs.reach(mix(poses, weights), balls, facings)
+
+    def contacts(self, phase: float) -> Array:
+        """Return how much of the mix has each foot on the ground, (legs,), 0…1."""
+        return self._mean([tread.at(phase)[:, 7] for tread in self.treads])
+
+    def between(self, start: float, end: float) -> Step:
+        """Return how the root moves over the ground between two phases."""
+        total = STANDING
+        parts = max(math.ceil((end - start) * _PARTS), 1)
+        each = (end - start) / parts
+        for low in (start + each * part for part in range(parts)):
+            x = z = yaw = 0.0
+            for tread, weight in zip(self.treads, self.weights, strict=True):
+                step = tread.motion.between(low, low + each)
+                x, z, yaw = x + weight * step.x, z + weight * step.z, yaw + weight * step.yaw
+            way = self.share * self.stride
+            total = total.then(Step(x * way, z * way, yaw * self.share))
+        return total
+
+    def sample(self, time: float) -> Pose:
+        """Return the mixed pose at a time [s] since phase 0."""
+        return self.at(time / self.duration)
+
+    def travel(self, start: float, end: float) -> Step:
+        """Return how the root moves over the ground between two times [s]."""
+        duration = self.duration
+        return self.between(start / duration, end / duration)
+
+    def _feet(self, phase: float) -> tuple[Array, Array]:
+        """Return where the balls of the feet are to be, (legs, 3), and how they face, (legs, 4)."""
+        feet = [tread.at(phase) for tread in self.treads]
+        homes = [tread.home for tread in self.treads]
+        facing = rotations.align(self._mean_facing(feet), self._still[:, 3:])
+        home_facing = rotations.align(self._mean_facing(homes), self._still[:, 3:])
+        ball, home = self._mean([f[:, :3] for f in feet]), self._mean([h[:, :3] for h in homes])
+        if self.share < 1.0:
+            share, still = self.share, self._still
+            middle = still[:, :3] + share * (home - still[:, :3])
+            higher = (ball[:, 1] - home[:, 1]) * share**_LIFT
+            ball, home = middle + share * (ball - home), middle
+            ball[:, 1] = middle[:, 1] + higher
+            facing = rotations.normalize(still[:, 3:] + share * (facing - still[:, 3:]))
+            home_facing = rotations.normalize(still[:, 3:] + share * (home_facing - still[:, 3:]))
+        if self.stride < 1.0:
+            ball = self._drawn(ball, home, _twist(facing, home_facing))
+        return ball, facing
+
+    def _drawn(self, ball: Array, home: Array, yaw: Array) -> Array:
+        """Return balls of feet (legs, 3) drawn to where they would be if the body only turned.
+
+        Such a foot goes round the root as far as it turns itself: `yaw` (legs,) [rad].
+        """
+        sine, cosine = np.sin(yaw), np.cos(yaw)
+        x, z = home[:, 0], home[:, 2]
+        drawn = ball.copy()
+        drawn[:, 0] += (1.0 - self.stride) * (cosine * x + sine * z - ball[:, 0])
+        drawn[:, 2] += (1.0 - self.stride) * (cosine * z - sine * x - ball[:, 2])
+        return drawn
+
+    def _mean(self, values: Sequence[Array]) -> Array:
+        total: Array = sum(w * v for w, v in zip(self.weights, values, strict=True))  # type: ignore[assignment]
+        return total
+
+    def _mean_facing(self, feet: Sequence[Array]) -> Array:
+        first = feet[0][:, 3:7]
+        return rotations.normalize(
+            self._mean([first, *(rotations.align(f[:, 3:7], first) for f in feet[1:])])
+        )
+
+    @cached_property
+    def _still(self) -> Array:
+        """Where the feet are in the pose that is leant to, (legs, 7)."""
+        return _feet(self.still, self.legs)
+
+
+def _feet(poses: Pose, legs: Legs) -> Array:
+    """Return the ball and the facing of each foot in poses (…), (…, legs, 7)."""
+    placed = legs.globals(poses)
+    ankle, toes = legs.joints[:, 3], legs.joints[:, 4]
+    facing = rotations.from_matrix(placed[..., :3, :3][..., ankle, :, :])
+    if facing.ndim == 3:
+        facing = rotations.continuous(facing)
+    return np.concatenate([placed[..., :3, 3][..., toes, :], facing], axis=-1)
+
+
+def _twist(turn: Array, reference: Array) -> Array:
+    """Return how far rotations (n, 4) are turned about +y from others [rad], (n,)."""
+    _, y, _, w = rotations.multiply(turn, rotations.conjugate(reference)).T
+    angle: Array = 2 * np.arctan2(y, w)
+    return np.asarray(np.remainder(angle + np.pi, 2 * np.pi) - np.pi)
