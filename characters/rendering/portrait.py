@@ -3,25 +3,38 @@
 import math
 from collections.abc import Sequence
 
+import cv2
 import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
+from characters import rotations
 from characters.character import Character
+from characters.clip import Clip
 from characters.command import PosedCharacter
 from characters.pose import Array, Pose
+from characters.rendering.framing import Extent, Framing, joints_of
 from characters.rendering.stage import Stage
 from characters.rendering.view import Actor, View
 
 Image = NDArray[np.uint8]
+Focus = str | tuple[Array, float] | None
 
-_FIELD = math.radians(24.0)  # of view: long lenses flatter
+PAPER = 236, 240, 242
+"""The backdrop, BGR."""
+
 _TALL = 0.17  # height on the table [m], which light and shadow are made for
-_PAPER = 236, 240, 242  # backdrop, BGR
+_FACE = "face"
+_FRINGE = 0.09  # share of the picture over which shadows fade to paper at its sides
+_LOOKS = 24  # poses of a clip that are looked at to see how far it reaches
+_STRAYS = 0.6  # of its height: a clip that goes further over the ground is followed
 
 
 class Studio:
     """Takes portraits of one character after the other.
+
+    The character turns and the camera stays, so that light and shadow fall the same way in every
+    picture. Pictures of one turntable or strip have one camera, which sees all of them whole.
 
     Parameters
     ----------
@@ -34,6 +47,8 @@ class Studio:
     def __init__(self, context: moderngl.Context, size: tuple[int, int] = (360, 420)) -> None:
         self.size = size
         self._stage = Stage(context, size)
+        self._fringe = _fringe(size)
+        self._extents: dict[int, tuple[Character, Extent]] = {}
 
     def portrait(
         self,
@@ -42,7 +57,8 @@ class Studio:
         *,
         around: float = 0.4,
         above: float = 0.16,
-        focus: "tuple[Array, float] | None" = None,
+        focus: Focus = None,
+        reach: Clip | None = None,
     ) -> Image:
         """Return a picture of a character, (height, width, 3) BGR.
 
@@ -53,73 +69,146 @@ class Studio:
         around, above
             Where the camera stands, to the character's left of straight in front and upwards [rad].
         focus
-            Centre (3,) and radius of what fills the picture, in the character frame [m]; the whole
-            character without.
-        """
-        scale = _TALL / max(character.height, 1e-6)
-        centre, radius = focus or whole(character)
-        distance = radius * scale / math.sin(_FIELD / 2)
-        view = _view(centre * scale, distance, around, above, self.size)
-        place = np.diag([scale, scale, scale, 1.0])
-        pose = character.skeleton.rest if pose is None else pose
-        posed = PosedCharacter(pose, place, True, "", 0.0, 0.0, 0.0, 0.0)
-        return self._stage.draw(view, [Actor(character, posed)])
+            What fills the picture: "face", a part of `Anatomy` such as "leftHand", or a centre (3,)
+            and a radius in the character frame [m]; the whole character without.
+        reach
+            A clip that fits into the picture as well, so that pictures of it can be compared.
 
-    def turntable(self, character: Character, pose: Pose | None = None, count: int = 8) -> Image:
-        """Return a character from `count` sides, side by side."""
-        turns = np.arange(count) * (2 * math.pi / count)
-        return side_by_side([self.portrait(character, pose, around=turn) for turn in turns])
+        Raises
+        ------
+        CharacterError
+            If the character has no such part.
+        """
+        pose = character.skeleton.rest if pose is None else pose
+        framed = [pose] if reach is None else [pose, *_some_of(reach)]
+        place = _place(character, around)
+        framing = self._framing(character, [(each, place) for each in framed], above, focus)
+        return self._taken(character, pose, place, framing)
+
+    def turntable(
+        self,
+        character: Character,
+        pose: Pose | None = None,
+        count: int = 8,
+        *,
+        above: float = 0.16,
+        focus: Focus = None,
+    ) -> Image:
+        """Return a character from `count` sides, side by side, from the front to its left."""
+        pose = character.skeleton.rest if pose is None else pose
+        places = [_place(character, math.tau * turn / count) for turn in range(count)]
+        framing = self._framing(character, [(pose, place) for place in places], above, focus)
+        return side_by_side([self._taken(character, pose, place, framing) for place in places])
 
     def strip(
-        self, character: Character, name: str, count: int = 8, *, around: float = 0.7
+        self,
+        character: Character,
+        clip: "str | Clip",
+        count: int = 8,
+        *,
+        around: float = 0.7,
+        above: float = 0.16,
+        focus: Focus = None,
     ) -> Image:
-        """Return `count` frames of one of the character's clips, side by side, root in place."""
-        clip = character.clips[name]
+        """Return `count` frames of a clip, by its name or itself, side by side.
+
+        A character that goes over the ground is followed.
+        """
+        clip = character.clips[clip] if isinstance(clip, str) else clip
         times = np.linspace(0.0, clip.duration, count, endpoint=not clip.loop)
-        poses = [clip.sample(float(time)) for time in times]
-        return side_by_side([self.portrait(character, pose, around=around) for pose in poses])
+        shown = _followed([clip.sample(float(time)) for time in times], character)
+        reach = _followed(_some_of(clip), character)
+        place = _place(character, around)
+        framed = [(pose, place @ back) for pose, back in (*shown, *reach)]
+        framing = self._framing(character, framed, above, focus)
+        return side_by_side(
+            [self._taken(character, pose, place @ back, framing) for pose, back in shown]
+        )
 
     def release(self) -> None:
         """Give the card's memory back; a second call does nothing."""
         self._stage.release()
+        self._extents.clear()
 
+    def _framing(
+        self,
+        character: Character,
+        poses: Sequence[tuple[Pose, Array]],
+        above: float,
+        focus: Focus,
+    ) -> Framing:
+        """Return one camera for a character in several poses and places (4, 4)."""
+        extent = self._extent(character)
+        seen = []
+        for pose, place in poses:
+            if isinstance(focus, tuple):
+                points = focus[0] + focus[1] * np.concatenate([np.eye(3), -np.eye(3)])
+            else:
+                points = _points(extent, character, pose, focus)
+            seen.append(points @ place[:3, :3].T + place[:3, 3])
+        return Framing.around(np.concatenate(seen), above, self.size)
 
-def whole(character: Character) -> tuple[Array, float]:
-    """Return the centre (3,) and the radius of a ball around the character at rest [m]."""
-    low, high = character.bounds
-    return (low + high) / 2, float(np.linalg.norm(high - low)) / 2 * 0.82
+    def _extent(self, character: Character) -> Extent:
+        if id(character) not in self._extents:
+            self._extents[id(character)] = character, Extent(character)
+        return self._extents[id(character)][1]
+
+    def _taken(self, character: Character, pose: Pose, place: Array, framing: Framing) -> Image:
+        width, height = self.size
+        paper = np.full((height, width, 3), PAPER, np.uint8)
+        view = View(paper, framing.matrix, np.zeros(0), framing.camera_from_table)
+        posed = PosedCharacter(pose, place, True, "", 0.0, 0.0, 0.0, 0.0)
+        picture = self._stage.draw(view, [Actor(character, posed)])
+        return np.asarray(
+            cv2.blendLinear(picture, paper, self._fringe, 1.0 - self._fringe), np.uint8
+        )
 
 
 def side_by_side(pictures: Sequence[Image], columns: int = 8) -> Image:
     """Return pictures of one size in rows of at most `columns`; empty places stay paper."""
-    blank = np.full_like(pictures[0], _PAPER)
+    blank = np.full_like(pictures[0], PAPER)
     rows = [list(pictures[at : at + columns]) for at in range(0, len(pictures), columns)]
     if len(rows) > 1:
         rows[-1] += [blank] * (columns - len(rows[-1]))
     return np.concatenate([np.concatenate(row, axis=1) for row in rows], axis=0)
 
 
-def _view(
-    centre: Array, distance: float, around: float, above: float, size: tuple[int, int]
-) -> View:
-    """Return the view of a camera that looks at a point from a direction."""
-    toward = np.array(
-        [
-            math.sin(around) * math.cos(above),
-            math.sin(above),
-            math.cos(around) * math.cos(above),
-        ]
-    )
-    eye = centre + distance * toward
-    right = np.cross([0.0, 1.0, 0.0], toward)
-    right /= np.linalg.norm(right)
-    turn = np.stack([right, np.cross(right, toward), -toward])
-    camera_from_table = np.eye(4)
-    camera_from_table[:3, :3], camera_from_table[:3, 3] = turn, -turn @ eye
-    width, height = size
-    focal = min(size) / 2 / math.tan(_FIELD / 2)
-    matrix = np.array(
-        [[focal, 0.0, (width - 1) / 2], [0.0, focal, (height - 1) / 2], [0.0, 0.0, 1.0]]
-    )
-    image = np.full((height, width, 3), _PAPER, np.uint8)
-    return View(image, matrix, np.zeros(0), camera_from_table)
+def _points(extent: Extent, character: Character, pose: Pose, focus: str | None) -> Array:
+    """Return what of a character fills the picture, (n, 3) in the character frame."""
+    if focus is None:
+        return extent.points(pose)
+    return extent.points(pose, joints_of(character, "head" if focus == _FACE else focus))
+
+
+def _place(character: Character, around: float) -> Array:
+    """Return where a character stands, turned so that the camera is `around` to its left."""
+    low, high = character.bounds
+    scale = _TALL / max(character.height, 0.5 * float((high - low).max()), 1e-6)
+    place = np.eye(4)
+    place[:3, :3] = scale * rotations.to_matrix(rotations.about("y", -around))
+    return place
+
+
+def _some_of(clip: Clip) -> list[Pose]:
+    """Return poses of a clip, evenly spread over it."""
+    count = min(_LOOKS, len(clip))
+    return [clip.sample(float(time)) for time in np.linspace(0.0, clip.duration, count)]
+
+
+def _followed(poses: Sequence[Pose], character: Character) -> list[tuple[Pose, Array]]:
+    """Return poses with the way back (4, 4) of each over the ground, where a body goes far."""
+    hips = character.anatomy.joint("hips") or 0
+    over = np.array([pose.globals(character.skeleton)[hips, [0, 2], 3] for pose in poses])
+    backs = np.tile(np.eye(4), (len(poses), 1, 1))
+    if np.ptp(over, axis=0).max() > _STRAYS * character.height:
+        backs[:, [0, 2], 3] = -over
+    return list(zip(poses, backs, strict=True))
+
+
+def _fringe(size: tuple[int, int]) -> NDArray[np.float32]:
+    """Return how much of a picture stays, 0…1 (height, width): paper at its sides and its foot."""
+    columns, rows = (np.arange(side) + 0.5 for side in size)
+    across = np.minimum(columns, columns[::-1]) / (_FRINGE * size[0])
+    up = rows[::-1] / (_FRINGE * size[1])
+    shares = np.clip(np.minimum(across[None], up[:, None]), 0.0, 1.0)
+    return np.asarray(shares**2 * (3.0 - 2.0 * shares), np.float32)

@@ -1,0 +1,127 @@
+"""Portraits: whoever it is and whatever it does, all of it is in the picture and fills it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from characters import Character, CharacterError, Clip, Pose
+from characters.rendering.framing import MARGIN, Framing
+from characters.rendering.portrait import PAPER, Studio
+
+SIZE = (90, 120)
+
+
+@pytest.fixture
+def studio(ctx):
+    studio = Studio(ctx, SIZE)
+    yield studio
+    studio.release()
+
+
+@pytest.fixture(scope="module")
+def knight(pawn):
+    """Return a pawn that knows how to bow where it stands, and how to slide five metres away."""
+    still = pawn.skeleton.rest
+
+    def clip(name, bend, way):
+        half = 0.5 * np.linspace(0.0, bend, 11)
+        turns = np.tile([0.0, 0.0, 0.0, 1.0], (11, 2, 1))
+        turns[:, 1, 0], turns[:, 1, 3] = np.sin(half), np.cos(half)
+        places = np.tile(still.translations, (11, 1, 1))
+        places[:, 0, 2] = np.linspace(0.0, way, 11)
+        return Clip(name, 10.0, Pose(places, turns), loop=False)
+
+    clips = {"bow": clip("bow", 1.4, 0.0), "slide": clip("slide", 0.0, 5.0)}
+    skeleton = replace(pawn.skeleton, names=("foot", "head"))
+    return Character("knight", skeleton, clips, pawn.meshes, semantics={"head": "head"})
+
+
+def drawn(picture):
+    """Return where there is red, which the knight is and shadows are not."""
+    return picture[..., 2].astype(int) - picture[..., 1] > 30
+
+
+def cells(strip):
+    return np.split(strip, strip.shape[1] // SIZE[0], axis=1)
+
+
+def holds_all_of_it(picture):
+    """Return whether nothing is cut off, and the picture is filled in height or in width."""
+    rows, columns = (np.flatnonzero(drawn(picture).any(axis=axis)) for axis in (1, 0))
+    free = min(*rows[[0]], *columns[[0]], SIZE[1] - 1 - rows[-1], SIZE[0] - 1 - columns[-1])
+    filled = max(np.ptp(rows) / SIZE[1], np.ptp(columns) / SIZE[0])
+    return free >= 3 and filled > 0.75
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    points=st.lists(st.tuples(*[st.floats(-0.5, 0.5)] * 3), min_size=2, max_size=9),
+    above=st.floats(-0.3, 1.2),
+    width=st.integers(40, 400),
+    height=st.integers(40, 400),
+)
+def test_a_camera_sees_all_points_and_stands_no_further_off_than_needed(
+    points, above, width, height
+):
+    framing = Framing.around(np.array(points), above, (width, height))
+    pose = framing.camera_from_table
+    assert np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3))
+    seen = np.array(points) @ pose[:3, :3].T + pose[:3, 3]
+    assert (seen[:, 2] > 0.03).all()
+    pixels = (seen / seen[:, 2:] @ framing.matrix.T)[:, :2] + 0.5
+    shares = np.abs(2.0 * pixels / (width, height) - 1.0).max()
+    assert shares <= 1.0 - 2.0 * MARGIN + 1e-6
+    if np.ptp(points, axis=0).max() > 0.1:
+        assert shares >= 1.0 - 2.0 * MARGIN - 1e-6
+
+
+@pytest.mark.parametrize("stretch", [(1.0, 1.0, 1.0), (1.0, 1.0, 6.0), (0.2, 5.0, 0.2)])
+def test_a_turntable_shows_all_of_any_character(studio, knight, stretch):
+    mesh = knight.meshes[0]
+    bind = mesh.inverse_bind.copy()
+    bind[:, :3] *= np.array(stretch)[None, :, None]
+    stretched = replace(knight, meshes=(replace(mesh, inverse_bind=bind),))
+    table = studio.turntable(stretched, count=4)
+    assert table.shape == (SIZE[1], 4 * SIZE[0], 3)
+    assert max(holds_all_of_it(cell) for cell in cells(table))
+    sides = table[:, [0, SIZE[0] - 1, SIZE[0]]].reshape(-1, 3)
+    assert np.abs(sides.astype(int) - PAPER).max() <= 2
+
+
+def test_a_strip_has_one_camera_and_room_for_the_whole_clip(studio, knight):
+    frames = cells(studio.strip(knight, "bow", 4, around=1.5))
+    feet = [np.flatnonzero(drawn(frame).any(axis=1))[-1] for frame in frames]
+    tops = [np.flatnonzero(drawn(frame).any(axis=1))[0] for frame in frames]
+    assert np.ptp(feet) <= 1
+    assert tops[-1] - tops[0] > 10
+    assert all((np.flatnonzero(drawn(f).any(axis=0))[[0, -1]] % 89).all() for f in frames)
+
+
+def test_who_goes_far_is_followed(studio, knight):
+    strip = studio.strip(knight, knight.clips["slide"], 4)
+    assert all(holds_all_of_it(frame) for frame in cells(strip))
+
+
+def test_a_picture_may_leave_room_for_a_clip(studio, knight):
+    tight = studio.portrait(knight, around=1.5)
+    roomy = studio.portrait(knight, around=1.5, reach=knight.clips["bow"])
+    assert drawn(roomy).sum() < drawn(tight).sum()
+
+
+def test_a_face_fills_the_picture(studio, knight):
+    face = studio.portrait(knight, focus="face")
+    assert np.array_equal(face, studio.portrait(knight, focus="head"))
+    assert drawn(face)[20:80].mean() > 0.4
+    with pytest.raises(CharacterError, match="leftHand"):
+        studio.portrait(knight, focus="leftHand")
+
+
+def test_a_character_is_seen_from_its_left(studio, knight):
+    """Who bows forward, bows to the left of the picture of one who stands on its left."""
+    bowed = knight.clips["bow"].sample(1.0)
+    columns = np.flatnonzero(drawn(studio.portrait(knight, bowed, around=np.pi / 2)).any(axis=0))
+    upright = studio.portrait(knight, bowed, around=np.pi / 2)[: SIZE[1] // 2]
+    assert np.flatnonzero(drawn(upright).any(axis=0)).mean() < columns.mean()
