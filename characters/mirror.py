@@ -1,10 +1,10 @@
 """Left and right exchanged: for poses, steps, clips and motions of any symmetric skeleton.
 
-The rest pose says how the frame of a joint and that of its partner belong together. With G the
-rotation of a joint k to the character in the rest pose, p(k) its partner and M the reflection
-x → −x, F(k) = Gᵀ(p(k)) M G(k) takes coordinates in the frame of k to those in its partner's. A
-joint's rotation L and translation t in its parent q then become F(q) L Fᵀ(k) and F(q) t, those of
-the partner. Every global position is so reflected exactly, whatever the joints' axes are.
+A symmetric pose, of rest or the one that the skin was bound in, says how the frame of a joint and
+that of its partner belong together. With B(k) the transform of a joint k to the character in that
+pose, p(k) its partner and M the reflection x → −x, F(k) = B⁻¹(p(k)) M B(k) takes coordinates in the
+frame of k to those in its partner's. The transform L of a joint in its parent q then becomes
+F(q) L F⁻¹(k), that of the partner: the skin is reflected exactly, whatever the joints' axes are.
 """
 
 import re
@@ -26,6 +26,7 @@ from characters.pose import Array, Pose, Skeleton
 _REFLECTION = np.array([-1.0, 1.0, 1.0])
 _PSEUDO = np.array([1.0, -1.0, -1.0, 1.0])  # what the reflection does to a rotation
 _CROOKED = 0.25  # of the way from left to right: how far from symmetric most joints may be
+_EXACT = 1e-5  # relative: what differs by less is meant to be the same
 # Of the body's size: how much farther a joint counts whose name does not fit.
 _MISNAMED, _MISNUMBERED = 0.1, 0.01
 # "LeftFoot", "foot_l", "Foot.R.001", "FootL": words, and letters that stand alone or end a word.
@@ -38,17 +39,34 @@ _NONE: Mapping[str, str] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
+class _Frames:
+    """Transforms M Q of joints' frames to their partners', with shifts and uniform scales."""
+
+    turns: Array
+    """Q, (joints, 4)."""
+
+    shifts: Array
+    """(joints, 3)."""
+
+    sizes: Array
+    """(joints, 1)."""
+
+    def __getitem__(self, joints: NDArray[np.intp]) -> "_Frames":
+        return _Frames(self.turns[joints], self.shifts[joints], self.sizes[joints])
+
+
+@dataclass(frozen=True)
 class Mirror:
     """Which joints and morphs of a skeleton change places, and how their frames do."""
 
     partners: NDArray[np.intp]
     """The joint on the other side, (joints,); of one in the middle, itself."""
 
-    inner: Array
-    """Rotation of F of each joint before the reflection, (joints, 4): see above."""
+    frames: "_Frames"
+    """F of each joint: see above."""
 
-    outer: Array
-    """The same of each joint's parent, (joints, 4)."""
+    parents: "_Frames"
+    """F of each joint's parent."""
 
     looks: NDArray[np.intp]
     """The morph of the other side, (morphs,); of one for both, itself."""
@@ -58,64 +76,89 @@ class Mirror:
         skeleton: Skeleton,
         morphs: tuple[str, ...] = (),
         pairs: Mapping[str, str] = _NONE,
-        symmetric: Array | None = None,
     ) -> "Mirror":
         """Return the mirror of a skeleton, its pairs found by places and names.
+
+        The places of all joints are reflected exactly. `of_character` is better where there is a
+        skin: it does so with that, though the skeleton be a little crooked.
 
         Parameters
         ----------
         skeleton
-            Its rest pose is taken as symmetric about the plane x = 0, if nothing else is given.
+            Its rest pose is symmetric about the plane x = 0.
         morphs
             Names of the character's morphs; "blinkLeft" changes places with "blinkRight".
         pairs
             Joint to joint where they cannot be found; each counts both ways.
-        symmetric
-            `character_from_joint` of a symmetric pose, (joints, 4, 4), if the rest pose is none.
+
+        Raises
+        ------
+        CharacterError
+            If the rest pose is not symmetric, or a joint has no partner.
+        """
+        rest = skeleton.rest.globals(skeleton)
+        return _mirror(skeleton, morphs, pairs, rest, np.zeros(len(skeleton), bool))
+
+    @staticmethod
+    def of_character(
+        character: Character, pairs: Mapping[str, str] = _NONE, symmetric: Pose | None = None
+    ) -> "Mirror":
+        """Return the mirror of a character, after a pose in which its skin is symmetric.
+
+        That is the pose given, such as one of its clips' "idle"; else the one that the skin was
+        bound in, since files often rest in the first frame of a clip.
 
         Raises
         ------
         CharacterError
             If that pose is not symmetric, or a joint has no partner.
         """
-        globals_ = skeleton.rest.globals(skeleton) if symmetric is None else symmetric
-        partners = _partners(skeleton, globals_[:, :3, 3], pairs)
-        _check_symmetry(skeleton, globals_[:, :3, 3], partners)
-        turns = rotations.from_matrix(_unscaled(globals_[:, :3, :3]))
-        # F = M Q, and so Q = M G(p)ᵀ M G.
-        theirs = rotations.conjugate(turns[partners] * _PSEUDO)
-        inner = rotations.multiply(theirs, turns)
-        parents = np.array(skeleton.parents)
-        outer = np.where(parents[:, None] >= 0, inner[parents], rotations.IDENTITY)
-        return Mirror(partners, inner, outer, _paired_names(morphs))
-
-    @staticmethod
-    def of_character(character: Character, pairs: Mapping[str, str] = _NONE) -> "Mirror":
-        """Return the mirror of a character, from the pose that its skin was bound in.
-
-        Files often rest in the first frame of a clip, but are bound as they were modelled.
-        """
         skeleton = character.skeleton
-        bound = skeleton.rest.globals(skeleton)
+        rest = skeleton.rest.globals(skeleton)
+        bound = rest.copy() if symmetric is None else symmetric.globals(skeleton)
+        skinned = np.zeros(len(skeleton), bool)
         for mesh in character.meshes:
             used = np.unique(mesh.joints[mesh.weights > 0])
-            bound[used] = np.linalg.inv(mesh.inverse_bind[used])
-        return Mirror.of(skeleton, character.morphs, pairs, bound)
+            skinned[used] = True
+            if symmetric is None:
+                # What hangs rigidly on a joint is bound in that joint's frame, wherever it rests.
+                used = used[np.abs(mesh.inverse_bind[used] - np.eye(4)).max((1, 2)) > _EXACT]
+                bound[used] = np.linalg.inv(mesh.inverse_bind[used])
+        if symmetric is None:
+            # Bound elsewhere than at rest means modelled for it, about a plane of its own.
+            far = np.linalg.norm(bound[:, :3, 3] - rest[:, :3, 3], axis=-1)
+            skinned &= far < 100 * _EXACT * np.ptp(rest[:, :3, 3], axis=0).max()
+        return _mirror(skeleton, character.morphs, pairs, bound, skinned)
 
     def pose(self, pose: Pose) -> Pose:
         """Return poses (…) mirrored."""
-        turns = rotations.multiply(self.outer, pose.rotations)
-        turns = rotations.multiply(turns, rotations.conjugate(self.inner)) * _PSEUDO
-        shifts = rotations.rotate(self.outer, pose.translations) * _REFLECTION
-        scales = pose.scales
+        frames, parents = self.frames, self.parents
+        turns = rotations.multiply(parents.turns, pose.rotations)
+        turns = rotations.multiply(turns, rotations.conjugate(frames.turns)) * _PSEUDO
+        # Where the origin of the partner's frame is, as seen from the joint.
+        origins = -rotations.rotate(
+            rotations.conjugate(frames.turns), frames.shifts * _REFLECTION / frames.sizes
+        )
+        scales, shifts = pose.scales, pose.translations
+        if frames.shifts.any():
+            spread = origins if scales is None else origins * scales
+            shifts = shifts + rotations.rotate(pose.rotations, spread)
+        shifts = rotations.rotate(parents.turns, shifts) * _REFLECTION * parents.sizes
+        sizes = parents.sizes / frames.sizes
         if scales is not None:
-            # F S Fᵀ along the partner's axes; frames of partners differ by quarter turns at most.
-            axes = rotations.to_matrix(self.inner) ** 2
-            scales = (axes @ scales[..., None])[..., 0][..., self.partners, :]
+            # F S F⁻¹ along the partner's axes; frames of partners differ by quarter turns at most.
+            scales = (rotations.to_matrix(frames.turns) ** 2 @ scales[..., None])[..., 0] * sizes
+        elif (sizes != 1.0).any():
+            scales = np.broadcast_to(sizes, shifts.shape)
         morphs = pose.morphs
         if morphs is not None and len(self.looks):
             morphs = morphs[..., self.looks]
-        return Pose(shifts[..., self.partners, :], turns[..., self.partners, :], scales, morphs)
+        return Pose(
+            (shifts + parents.shifts)[..., self.partners, :],
+            turns[..., self.partners, :],
+            None if scales is None else scales[..., self.partners, :],
+            morphs,
+        )
 
     @staticmethod
     def step(step: Step) -> Step:
@@ -169,6 +212,45 @@ class Mirrored:
         if isinstance(self.motion, Mirrored):
             return -self.motion.lead
         return 0.5 if takes_steps(self.motion) else 0.0
+
+
+def _mirror(
+    skeleton: Skeleton,
+    morphs: tuple[str, ...],
+    pairs: Mapping[str, str],
+    symmetric: Array,
+    skinned: NDArray[np.bool_],
+) -> Mirror:
+    """Return the mirror by a symmetric pose (joints, 4, 4).
+
+    Of joints that are not `skinned` the places are reflected, of others what hangs on them.
+    """
+    places = symmetric[:, :3, 3]
+    partners = _partners(skeleton, places, pairs)
+    _check_symmetry(skeleton, places, partners)
+    sizes = np.cbrt(np.abs(np.linalg.det(symmetric[:, :3, :3])))
+    turns = rotations.from_matrix(symmetric[:, :3, :3] / sizes[:, None, None])
+    # F = M Q, and so Q = M G(p)ᵀ M G, with G the rotations alone.
+    theirs = rotations.conjugate(turns[partners])
+    between = rotations.multiply(theirs * _PSEUDO, turns)
+    apart = places * _REFLECTION - places[partners]
+    crooked = np.linalg.norm(apart, axis=-1) > _EXACT * float(np.ptp(places, axis=0).max())
+    shifts = rotations.rotate(theirs, apart) / sizes[partners, None]
+    skinned = skinned & skinned[partners]
+    crooked |= crooked[partners]
+    shifts = np.where((skinned & crooked)[:, None], shifts, 0.0)
+    ratios = (sizes / sizes[partners])[:, None]
+    ratios = np.where(skinned[:, None] & (np.abs(ratios - 1.0) > _EXACT), ratios, 1.0)
+    # One frame more, of the world, for parent −1.
+    frames = _Frames(
+        np.vstack([between, rotations.IDENTITY]),
+        np.vstack([shifts, np.zeros(3)]),
+        np.vstack([ratios, np.ones(1)]),
+    )
+    joints = np.arange(len(skeleton))
+    return Mirror(
+        partners, frames[joints], frames[np.array(skeleton.parents)], _paired_names(morphs)
+    )
 
 
 def _partners(skeleton: Skeleton, places: Array, pairs: Mapping[str, str]) -> NDArray[np.intp]:
@@ -231,12 +313,6 @@ def _check_symmetry(skeleton: Skeleton, places: Array, partners: NDArray[np.intp
             f"{away.max():.3f} m from the mirrored {skeleton.names[partners[worst]]!r}; "
             "give a symmetric one that looks along +z, or name pairs"
         )
-
-
-def _unscaled(matrices: Array) -> Array:
-    """Return the rotations in matrices (…, 3, 3)."""
-    lengths: Array = np.linalg.norm(matrices, axis=-2, keepdims=True)
-    return matrices / np.maximum(lengths, 1e-12)
 
 
 def _paired_names(names: tuple[str, ...]) -> NDArray[np.intp]:
