@@ -85,18 +85,15 @@ class _Tree:
     turns: list[Turn] = field(default_factory=list)
     slides: list[Slide] = field(default_factory=list)
     numbers: int = 0
-    renamed: list[str] = field(default_factory=list)
-    taken: set[str] = field(default_factory=set)
+    namesakes: dict[str, int] = field(default_factory=dict)
 
     def add(self, name: str, parent: int, offset: Array) -> int:
         """Add a joint under a name that no other has; return its number."""
-        unique, count = name, 1
-        while unique in self.taken:
-            count += 1
-            unique = f"{name}_{count}"
-        if unique != name:
-            self.renamed.append(f"two joints are called {name}: one is now {unique}")
-        self.taken.add(unique)
+        unique = name
+        while (count := self.namesakes.get(unique, 0)) > 0:
+            self.namesakes[unique] = count + 1
+            unique = f"{unique}_{count + 1}"
+        self.namesakes[unique] = 1
         self.names.append(unique)
         self.parents.append(parent)
         self.offsets.append(offset)
@@ -127,7 +124,11 @@ def read_hierarchy(path: Path, lines: list[str]) -> Hierarchy:
     channels = Channels(
         np.array(tree.places), tuple(tree.turns), tuple(tree.slides), float(np.pi / 180)
     )
-    return Hierarchy(skeleton, channels, tree.numbers, words.line, tuple(tree.renamed))
+    shared = [name for name, count in tree.namesakes.items() if count > 1]
+    notes: tuple[str, ...] = ()
+    if shared:
+        notes = (f"{len(shared)} names, as {shared[0]}, are of several joints: now of one each",)
+    return Hierarchy(skeleton, channels, tree.numbers, words.line, notes)
 
 
 def _read_joint(words: _Words, tree: _Tree, kind: str) -> None:

@@ -1,7 +1,8 @@
 """Which way is up in a recording, and how long its unit is: files of motion capture do not say.
 
-Up is where the head is, seen from the feet, in most of the frames. The unit is the one that
-makes the performer most nearly as tall as a grown person.
+Up is where the body is, seen from the feet, in most of the frames; where the rest pose has it
+elsewhere, the one of the two that keeps the feet on one floor. The unit is the one that makes the
+performer most nearly as tall as a grown person.
 """
 
 import re
@@ -122,22 +123,36 @@ def _known_up(path: Path, up: str) -> tuple[str, tuple[str, ...]]:
 
 
 def _recognised_up(skeleton: Skeleton, places: Array) -> tuple[str, tuple[str, ...]]:
-    """Return the axis from feet to head in the frames, else in the rest pose, else +y."""
+    """Return the axis from feet to body in the frames, else in the rest pose, else +y."""
     names = skeleton.names
     heads = [j for j, name in enumerate(names) if _HEAD.search(name)]
-    heads = heads or [j for j, name in enumerate(names) if _NECK.search(name)]
+    heads = heads or [j for j, name in enumerate(names) if _NECK.search(name)] or [0]
     feet = [j for j, name in enumerate(names) if _FOOT.search(name)]
-    if not heads or not feet:
-        return "+y", ("no head and feet by name: +y is taken as up; give up= if it is not",)
-    rest = skeleton.rest.globals(skeleton)[..., :3, 3]
-    moving = _along(places[:, heads].mean(1) - places[:, feet].mean(1))
-    resting = _along((rest[heads].mean(0) - rest[feet].mean(0))[None])
+    if not feet:
+        return "+y", ("no foot by name: +y is taken as up; give up= if it is not",)
+
+    def upward(at: Array) -> str | None:
+        # Half-way from hips to head, for those on four legs, whose head is far ahead.
+        body = (at[:, heads].mean(1) + at[:, 0]) / 2
+        return _along(body - at[:, feet].mean(1))
+
+    moving = upward(places)
+    resting = upward(skeleton.rest.globals(skeleton)[None, :, :3, 3])
+    axis = moving or resting or "+y"
     if moving is None:
-        axis = resting or "+y"
         return axis, (f"feet to head point no one way: {axis} is taken as up; give up= if not",)
     if resting not in (None, moving):
-        return moving, (f"up is {moving} in the frames, {resting} at rest: give up= if it lies",)
-    return moving, () if moving == "+y" else (f"up was {moving}, from feet to head",)
+        # Somebody lies or crawls, or the rest pose is in other axes: the floor is where it was.
+        axis = min((moving, resting), key=lambda axis: _unrest(places, axis))
+        other = moving if axis == resting else resting
+        return axis, (f"{axis} is taken as up, though it might be {other}: give up= if it is",)
+    return axis, () if axis == "+y" else (f"up was {axis}, from feet to head",)
+
+
+def _unrest(places: Array, axis: str) -> float:
+    """Return how much the lowest point moves up and down if an axis is up."""
+    heights = places[..., "xyz".index(axis[1])] * (1 if axis[0] == "+" else -1)
+    return float(heights.min(axis=-1).std())
 
 
 def _along(directions: Array) -> str | None:
@@ -161,5 +176,5 @@ def _recognised_unit(tall: float, stated: float | None) -> tuple[float, tuple[st
         units["CMU's unit (0.0254 m / 0.45)"] = CMU_UNIT
     name = min(units, key=lambda unit: abs(np.log(tall * units[unit] / ADULT)))
     height = tall * units[name]
-    note = f"1 unit is taken as 1 {name}, which makes {height:.2f} m from feet to crown"
+    note = f"1 unit is taken as 1 {name}, so from the lowest joint to the highest {height:.2f} m"
     return units[name], (note + "; give scale= if it is not",)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from characters import CharacterError, rotations
 from characters.formats import Performance, load_clip, load_motion
+from characters.formats import amc as reader
 from characters.formats.motion_frame import CMU_UNIT
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
@@ -279,6 +280,23 @@ def test_frames_may_list_bones_in_any_order_and_hold_comments(tmp_path: Path) ->
     np.testing.assert_array_equal(
         places(load_motion(hopper(tmp_path, amc=amc.replace("\n", "\r\n")))), plain
     )
+
+
+def test_where_a_long_file_is_cut_for_reading_does_not_matter(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    head = AMC.partition("1\n")[0]
+    text = head + "".join(
+        f"{number}\nroot {number / 7} 16 0 0 0 0\nleg {number} 0 0\nfoot 1\n"
+        for number in range(1, 60)
+    )
+    whole = load_clip(hopper(tmp_path, amc=text)).poses
+    for block in (64, 97, 200):
+        monkeypatch.setattr(reader, "_BLOCK", block)
+        pieces = load_clip(tmp_path / "hopper.amc").poses
+        np.testing.assert_array_equal(pieces.rotations, whole.rotations)
+        np.testing.assert_array_equal(pieces.translations, whole.translations)
+    np.testing.assert_allclose(whole.translations[:, 0, 0], np.arange(1, 60) / 7 * CMU_UNIT)
 
 
 def test_what_an_amc_leaves_out_and_skips_is_noted(tmp_path: Path) -> None:

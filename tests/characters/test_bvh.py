@@ -143,7 +143,7 @@ def test_several_roots_spaces_in_names_and_names_used_twice(tmp_path: Path) -> N
     performance = load_motion(written(tmp_path, text))
     assert performance.skeleton.names == ("hips", "left foot", "left foot_end", "head", "hips_2")
     assert performance.skeleton.parents[-1] == -1
-    assert any("two joints are called hips" in note for note in performance.notes)
+    assert any("as hips, are of several joints" in note for note in performance.notes)
 
 
 def test_all_frames_are_read_where_there_are_more_than_stated(tmp_path: Path) -> None:
@@ -179,6 +179,45 @@ def test_the_way_up_and_the_unit_are_recognised(
     expected = np.array([[0, 0.9, 0], [0, 0, 0], [0, 0, 0], [0, 1.65, 0]])
     np.testing.assert_allclose(places(performance)[0], expected, atol=2e-3)
     assert (performance.skeleton.rest.rotations == rotations.IDENTITY).all()
+
+
+CRAWLER = """HIERARCHY
+ROOT Hips {{ OFFSET 0 0 0 CHANNELS 6 Xposition Yposition Zposition Xrotation Yrotation Zrotation
+JOINT LeftFoot {{ OFFSET 0 -0.9 0 End Site {{ OFFSET 0 0 0.15 }} }}
+JOINT Head {{ OFFSET 0 0.75 0 End Site {{ OFFSET 0 0.1 0 }} }} }}
+MOTION
+Frames: 3
+Frame Time: 0.5
+0 0.4 {0} 90 0 0
+0 0.4 {1} 90 0 0
+0 0.4 {2} 90 0 0
+"""
+
+
+def test_who_crawls_over_the_floor_is_not_stood_up(tmp_path: Path) -> None:
+    performance = load_motion(written(tmp_path, CRAWLER.format(0, 0.5, 1)))
+    assert any("+y is taken as up" in note for note in performance.notes)
+    np.testing.assert_allclose(places(performance)[:, 0], [[0, 0.4, 0], [0, 0.4, 0.5], [0, 0.4, 1]])
+
+
+def test_a_dog_stands_on_its_feet_though_its_head_is_ahead(tmp_path: Path) -> None:
+    paws = "".join(
+        f"JOINT {name} {{ OFFSET {x} -0.5 {z} End Site {{ OFFSET 0 0 0.05 }} }}\n"
+        for name, x, z in (
+            ("lfoot", 0.1, 0),
+            ("rfoot", -0.1, 0),
+            ("lpaw", 0.1, 1),
+            ("rpaw", -0.1, 1),
+        )
+    )
+    text = (
+        "HIERARCHY\nROOT pelvis { OFFSET 0 0 0 CHANNELS 3 Xposition Yposition Zposition\n"
+        f"JOINT head {{ OFFSET 0 0.1 1.3 }}\n{paws}}}\n"
+        "MOTION\nFrames: 1\nFrame Time: 0.5\n0 0.5 0\n"
+    )
+    performance = load_motion(written(tmp_path, text), scale=1.0)
+    assert performance.notes == ()
+    assert places(performance)[0, 0, 1] == 0.5
 
 
 def test_scale_and_up_can_be_told(tmp_path: Path) -> None:
