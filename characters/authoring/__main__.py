@@ -1,14 +1,19 @@
-"""Write the bundled characters: ``python -m characters.authoring [human|vleo|all]``."""
+"""Write the bundled characters: ``python -m characters.authoring [human|vleo|robot|all]``."""
 
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 from characters.authoring.human import build_human
+from characters.authoring.robot import build_robot
 from characters.authoring.vleo import build_vleo
 from characters.character import Character
 
-BUILDERS: dict[str, Callable[[], Character]] = {"human": build_human, "vleo": build_vleo}
+BUILDERS: dict[str, Callable[[], Character]] = {
+    "human": build_human,
+    "vleo": build_vleo,
+    "robot": build_robot,
+}
 ASSETS = Path(__file__).parent.parent / "assets"
 
 
