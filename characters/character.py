@@ -14,7 +14,7 @@ from characters.errors import CharacterError
 from characters.mesh import Mesh
 from characters.pose import Array, Skeleton
 
-_SUFFIXES = (".glb", ".gltf")
+_SUFFIXES = (".glb", ".gltf", ".vrm")
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Character:
 
     @staticmethod
     def load(name_or_path: "str | Path") -> "Character":
-        """Load a bundled character by its name, or a .glb or .gltf file.
+        """Load a bundled character by its name, or a .glb, .gltf or .vrm file.
 
         Raises
         ------
@@ -55,13 +55,13 @@ class Character:
             return gltf.load(path)
         if path.suffix or len(path.parts) > 1:
             raise CharacterError(
-                f"{name_or_path}: not a .glb or .gltf file; convert it, or name a bundled "
+                f"{name_or_path}: not a .glb, .gltf or .vrm file; convert it, or name a bundled "
                 f"character: {', '.join(Character.bundled())}"
             )
         if str(name_or_path) not in Character.bundled():
             raise CharacterError(
                 f"no bundled character {str(name_or_path)!r}; there are "
-                f"{', '.join(Character.bundled())}, or give a .glb or .gltf file"
+                f"{', '.join(Character.bundled())}, or give a .glb, .gltf or .vrm file"
             )
         asset = resources.files("characters") / "assets" / f"{name_or_path}.glb"
         with resources.as_file(asset) as bundled:

@@ -33,6 +33,8 @@ _TEXTURE = {
         }
     },
 }
+_BINDS = {"index!": COUNT, "weight!": REAL}
+_EXPRESSION = {"morphTargetBinds": [{"node!": "nodes"} | _BINDS]}
 _SPARSE_PART = {"bufferView!": "bufferViews", "byteOffset": COUNT}
 
 SCHEMA: Json = {
@@ -114,6 +116,21 @@ SCHEMA: Json = {
         }
     ],
     "extensionsRequired": [TEXT],
+    "extensions": {
+        "VRMC_vrm": {
+            "specVersion": TEXT,
+            "humanoid": {"humanBones": {"*": {"node!": "nodes"}}},
+            "expressions": {"preset": {"*": _EXPRESSION}, "custom": {"*": _EXPRESSION}},
+        },
+        "VRM": {
+            "humanoid": {"humanBones": [{"bone!": TEXT, "node!": "nodes"}]},
+            "blendShapeMaster": {
+                "blendShapeGroups": [
+                    {"name": TEXT, "presetName": TEXT, "binds": [{"mesh!": "meshes"} | _BINDS]}
+                ]
+            },
+        },
+    },
 }
 """The members that are read: an object, [a list], or what a value is; a name of the top level is a
 number of one of its members, "*" any other key, and "!" marks what may not be left out."""

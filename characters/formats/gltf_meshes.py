@@ -17,11 +17,14 @@ Array = NDArray[np.float64]
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
 
 
-def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> tuple[Mesh, ...]:
-    """Return every primitive that the skeleton moves, as a mesh of its own."""
+def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple[int, Mesh]]:
+    """Return every primitive that the skeleton moves, as a mesh of its own, and whose it is.
+
+    The number is that of the node which carries it.
+    """
     looks = read_materials(file)
     rest = tree.skeleton.rest.globals(tree.skeleton)
-    meshes: list[Mesh] = []
+    meshes: list[tuple[int, Mesh]] = []
     for number in tree.mesh_nodes:
         node = file.document["nodes"][number]
         mesh = file.document["meshes"][node["mesh"]]
@@ -36,8 +39,9 @@ def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> tuple[Mesh
                     continue
                 skin = _skin(file, primitive, number, tree, len(geometry.positions), rest)
                 morphs = read_morphs(file, primitive, table.of(number), len(geometry.positions))
-                meshes.append(_placed(name, geometry, skin, look.material, rest, morphs))
-    return tuple(meshes)
+                placed = _placed(name, geometry, skin, look.material, rest, morphs)
+                meshes.append((number, placed))
+    return meshes
 
 
 class _Geometry(NamedTuple):

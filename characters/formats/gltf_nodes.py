@@ -1,6 +1,7 @@
 """From the nodes of a glTF scene to a skeleton."""
 
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,18 +33,24 @@ class NodeTree:
     """Numbers of the nodes that carry a mesh which the skeleton moves."""
 
 
-def read_tree(file: GltfFile) -> NodeTree:
+def read_tree(file: GltfFile, also: Iterable[int] = ()) -> NodeTree:
     """Return the skeleton of a document.
 
     Ancestors of joints are joints too: exporters put the change of axes and units there, and
     sometimes animate it. Rigid meshes that hang on a joint ride along.
+
+    Parameters
+    ----------
+    file
+        Where they stand.
+    also
+        Numbers of nodes that are joints though no skin says so.
     """
     nodes = file.all("nodes")
     parents = _parents(nodes)
     wanted: set[int] = set()
-    for skin in file.all("skins"):
-        for node in skin["joints"]:
-            _add_line(wanted, node, parents)
+    for joint in (*also, *(node for skin in file.all("skins") for node in skin["joints"])):
+        _add_line(wanted, joint, parents)
     joints = set(wanted)
     for number, node in enumerate(nodes):
         if "mesh" in node and "skin" not in node and _hangs_on(joints, number, parents):

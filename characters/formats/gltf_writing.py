@@ -109,8 +109,12 @@ class _Packer:
             self._animation(clip)
         roots = [j for j, parent in enumerate(self.character.skeleton.parents) if parent < 0]
         drawn = range(joints, len(self.document.nodes))
-        # The order of morphs over all meshes is found nowhere else in a glTF.
-        extras = {"morphs": list(self.character.morphs)} if self.character.morphs else {}
+        # What a glTF has no place for: the order of morphs over all meshes, what joints are.
+        noted = {
+            "morphs": list(self.character.morphs),
+            "semantics": dict(sorted(self.character.semantics.items())),
+        }
+        extras = {key: value for key, value in noted.items() if value}
         self.document.scenes = [
             pygltflib.Scene(name=self.character.name, nodes=[*roots, *drawn], extras=extras)
         ]
