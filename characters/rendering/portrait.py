@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters import rotations
+from characters.anatomy import Anatomy
 from characters.character import Character
 from characters.clip import Clip
 from characters.command import PosedCharacter
@@ -28,6 +29,7 @@ _FACE = "face"
 _FRINGE = 0.09  # share of the picture over which shadows fade to paper at its sides
 _LOOKS = 24  # poses of a clip that are looked at to see how far it reaches
 _STRAYS = 0.6  # of its height: a clip that goes further over the ground is followed
+_TURNED = 0.5  # [rad]: a clip that looks so far elsewhere is turned to the front
 
 
 class Studio:
@@ -112,17 +114,19 @@ class Studio:
     ) -> Image:
         """Return `count` frames of a clip, by its name or itself, side by side.
 
-        A character that goes over the ground is followed.
+        A character that goes over the ground is followed, and one that mostly looks elsewhere is
+        turned to the front.
         """
         clip = character.clips[clip] if isinstance(clip, str) else clip
         times = np.linspace(0.0, clip.duration, count, endpoint=not clip.loop)
-        shown = _followed([clip.sample(float(time)) for time in times], character)
-        reach = _followed(_some_of(clip), character)
+        shown = [clip.sample(float(time)) for time in times]
         place = _place(character, around)
-        framed = [(pose, place @ back) for pose, back in (*shown, *reach)]
+        framed = [
+            (pose, place @ back) for pose, back in _followed([*shown, *_some_of(clip)], character)
+        ]
         framing = self._framing(character, framed, above, focus)
         return side_by_side(
-            [self._taken(character, pose, place @ back, framing) for pose, back in shown]
+            [self._taken(character, *each, framing) for each in framed[: len(shown)]]
         )
 
     def release(self) -> None:
@@ -196,13 +200,28 @@ def _some_of(clip: Clip) -> list[Pose]:
 
 
 def _followed(poses: Sequence[Pose], character: Character) -> list[tuple[Pose, Array]]:
-    """Return poses with the way back (4, 4) of each over the ground, where a body goes far."""
-    hips = character.anatomy.joint("hips") or 0
-    over = np.array([pose.globals(character.skeleton)[hips, [0, 2], 3] for pose in poses])
+    """Return poses with the way back (4, 4) of each, where a body goes far or looks elsewhere."""
+    joints = np.stack([pose.globals(character.skeleton) for pose in poses])[..., :3, 3]
+    back = rotations.to_matrix(rotations.about("y", -_mean_heading(joints, character.anatomy)))
+    over = joints[:, character.anatomy.joint("hips") or 0] * [1.0, 0.0, 1.0]
+    far = np.ptp(over, axis=0).max() > _STRAYS * character.height
     backs = np.tile(np.eye(4), (len(poses), 1, 1))
-    if np.ptp(over, axis=0).max() > _STRAYS * character.height:
-        backs[:, [0, 2], 3] = -over
+    backs[:, :3, :3] = back
+    backs[:, :3, 3] = -over @ back.T if far else 0.0
     return list(zip(poses, backs, strict=True))
+
+
+def _mean_heading(joints: Array, anatomy: Anatomy) -> float:
+    """Return where a body looks on average over places of its joints (n, joints, 3) [rad].
+
+    0 is forward, and is returned for small angles too: who sways is not turned back.
+    """
+    left, right = anatomy.joint("leftUpperLeg"), anatomy.joint("rightUpperLeg")
+    if left is None or right is None:
+        return 0.0
+    x, _, z = (joints[:, left] - joints[:, right]).mean(axis=0)
+    heading = math.atan2(-z, x)
+    return heading if abs(heading) > _TURNED else 0.0
 
 
 def _fringe(size: tuple[int, int]) -> NDArray[np.float32]:
