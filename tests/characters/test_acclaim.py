@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import CharacterError, rotations
-from characters.formats import Performance, load_clip, load_motion
-from characters.formats import amc as reader
+from characters.formats import Performance, amc_frames, load_clip, load_motion
 from characters.formats.motion_frame import CMU_UNIT
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
@@ -292,7 +291,7 @@ def test_where_a_long_file_is_cut_for_reading_does_not_matter(
     )
     whole = load_clip(hopper(tmp_path, amc=text)).poses
     for block in (64, 97, 200):
-        monkeypatch.setattr(reader, "_BLOCK", block)
+        monkeypatch.setattr(amc_frames, "_BLOCK", block)
         pieces = load_clip(tmp_path / "hopper.amc").poses
         np.testing.assert_array_equal(pieces.rotations, whole.rotations)
         np.testing.assert_array_equal(pieces.translations, whole.translations)
