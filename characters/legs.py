@@ -50,6 +50,11 @@ class Legs:
         long: Array = np.sqrt(np.einsum("lji,lji->lj", offsets, offsets)).sum(1)
         return long
 
+    @cached_property
+    def at_rest(self) -> Array:
+        """`character_from_joint` of the carriers at rest, (n, 4, 4)."""
+        return self.skeleton.rest.globals(self.skeleton)
+
     def globals(self, pose: Pose) -> Array:
         """Return `character_from_joint` of the carriers, (…, n, 4, 4)."""
         part = Pose(pose.translations[..., self.carriers, :], pose.rotations[..., self.carriers, :])

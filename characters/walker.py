@@ -7,6 +7,7 @@ import numpy as np
 from characters.character import Character
 from characters.command import CharacterCommand
 from characters.errors import CharacterError
+from characters.footlock import FootLock
 from characters.live import Live
 from characters.locomotion import IDLE_SPEED, RUN_SPEED, STEEPEST, TOP_SPEED, Gaits
 from characters.machine import StateMachine
@@ -15,6 +16,7 @@ from characters.phase import Cyclic
 from characters.pose import Pose, Skeleton
 from characters.smoothing import eased
 from characters.steering import STAY, Course, Pilot
+from characters.strides import Strides
 
 _SPEED_LAG = 0.15  # [s]
 _ANGULAR_LAG = 0.15  # [s]
@@ -41,10 +43,17 @@ class Walker:
         self._course_in_use = STAY
         self._turning = False
         self._pilot = Pilot(self.gaits, scale)
-        self._steps = Live(self.gaits.at(IDLE_SPEED, 0.0))
+        self._motion = self.gaits.at(IDLE_SPEED, 0.0)
+        self._steps = Live(self._motion)
         self._first = _likest(idle.sample(0.0), self.gaits.at(IDLE_SPEED, 0.0), skeleton)
         self._machine = StateMachine({"idle": idle, "move": self._steps}, "idle")
         self._time = 0.0
+        legs = self.gaits.legs
+        self._lock = FootLock(legs, character.height) if legs is not None else None
+
+    def release(self) -> None:
+        """Hold no feet from now on: they go where the motion has them."""
+        self._lock = None
 
     @staticmethod
     def suits(character: Character) -> bool:
@@ -58,14 +67,33 @@ class Walker:
             raise CharacterError(
                 f"the character does not know {command.action!r}; it knows idle, move"
             )
-        course = self._course(command)
+        return self.go(self._course(command), elapsed)
+
+    def go(self, course: Course, elapsed: float) -> Pose:
+        """Advance by a time [s] on a course and return the pose, with the root in place."""
         used = self._course_in_use = self._follow(course, elapsed)
         now, self._time = self._time, self._time + elapsed
         self._play(used, course.speed > 0.0, now)
         self._report(used, course.speed > 0.0 and not self._turning)
         step = self._machine.travel(now, self._time)
         self.place = self.place.then(Step(step.x * self._scale, step.z * self._scale, step.yaw))
-        return self._machine.sample(self._time)
+        pose = self._machine.sample(self._time)
+        if self._lock is None:
+            return pose
+        return self._lock.apply(
+            pose,
+            Step(self.place.x / self._scale, self.place.z / self._scale, self.place.yaw),
+            self._down(),
+            self._machine.state == "idle",
+            elapsed,
+        )
+
+    def _down(self) -> list[bool]:
+        """Return which feet the motion has on the ground; who stands, stands on all."""
+        if self._machine.state == "idle" or not isinstance(self._motion, Strides):
+            return [True] * len(self._lock.feet) if self._lock is not None else []
+        phase = self._steps.phase(self._time - self._machine.entered)
+        return [part > 0.5 for part in self._motion.contacts(phase).tolist()]
 
     def _course(self, command: CharacterCommand) -> Course:
         """Return where to go, or how to turn on the spot."""
@@ -104,7 +132,7 @@ class Walker:
 
     def _play(self, used: Course, moving: bool, now: float) -> None:
         """Keep the right state going with the parameters in use."""
-        motion = self.gaits.at(used.speed, used.angular, used.stride)
+        motion = self._motion = self.gaits.at(used.speed, used.angular, used.stride)
         if self._machine.state == "move":
             self._steps.change(motion, now - self._machine.entered)
         elif moving:

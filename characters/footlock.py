@@ -1,0 +1,291 @@
+"""Feet that hold: a foot that has landed stays where it is until it lifts.
+
+What a foot stands on, its heel or its ball, is held in the world, and so is the way it faces; where
+the motion would have it otherwise is the foot's offset. When the foot lifts, the offset dies away
+from the velocity that it had, like a critically damped spring, so nothing pops (Holden,
+"Spring-roll-call", 2021). A foot that would have to be held too far from where the motion wants it
+takes a quick step there instead.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters import rotations
+from characters.legs import Legs
+from characters.motion import Step
+from characters.pose import Array, Pose
+
+# Lengths are parts of the body's height.
+_LANDS = 0.014  # a foot lands only so near to the ground
+_FARTHEST, _TWISTED = 0.05, math.radians(40)  # a held foot is let go beyond this offset or turn
+_UNTIDY, _ASKEW = 0.025, math.radians(20)  # and one of somebody who stands already beyond these
+_STRETCH = 0.996  # part of a leg's length that a held foot may need
+_SINK = 0.02  # how much the pelvis may be lowered for it
+_STEP_TIME = 0.22  # [s]: what a quick step takes
+_STEP_HEIGHT, _STEP_SLOPE = 0.025, 0.35  # how high it goes: at most, and for its length
+_PEEL, _PEELED = 0.009, 0.02  # a foot that lifts is so high once it is so far from where it stood,
+_FREE, _CLEAR = 0.06, 0.14  # and that begins to matter less from here on, and ends there
+_RATE = 32.0  # [1/s]: of the springs; half of an offset is gone after 0.05 s
+_HASTE = 3.0  # [m/s of a body of 1 m, rad/s]: no offset starts to die away faster
+
+
+@dataclass(frozen=True)
+class Sole:
+    """What of a foot meets the ground, in the world, as the motion has it [m]."""
+
+    heel: tuple[float, float, float]
+    """Point under the heel."""
+
+    ball: tuple[float, float, float]
+    """Joint of the toes, as high above the ground as it is when it stands."""
+
+    @property
+    def heading(self) -> float:
+        """Where it points: the angle about +y from +z [rad]."""
+        return math.atan2(self.ball[0] - self.heel[0], self.ball[2] - self.heel[2])
+
+    @property
+    def on_heel(self) -> bool:
+        """Whether the heel is the lower."""
+        return self.heel[1] < self.ball[1]
+
+    @property
+    def low(self) -> float:
+        """How far the lower of both is above the ground."""
+        return min(self.heel[1], self.ball[1])
+
+
+@dataclass
+class Shift:
+    """How a foot is shown elsewhere than the motion has it: its ball moved, and turned about it."""
+
+    x: float = 0.0
+    """[m]."""
+
+    z: float = 0.0
+    """[m]."""
+
+    yaw: float = 0.0
+    """[rad]."""
+
+    y: float = 0.0
+    """[m]."""
+
+    def moved(self, sole: Sole, heel: bool) -> tuple[float, float]:
+        """Return x, z where the heel or the ball of a foot is shown."""
+        ball = sole.ball[0] + self.x, sole.ball[2] + self.z
+        if not heel:
+            return ball
+        x, z = _turned(sole.heel[0] - sole.ball[0], sole.heel[2] - sole.ball[2], self.yaw)
+        return ball[0] + x, ball[1] + z
+
+    @property
+    def length(self) -> float:
+        """How far over the ground [m]."""
+        return math.hypot(self.x, self.z)
+
+
+class HeldFoot:
+    """One foot: held, or on its way; advanced once a frame."""
+
+    def __init__(self, height: float) -> None:
+        self.held = False
+        self.shift = Shift()
+        """How it is shown elsewhere than the motion has it."""
+        self.stepping = 0.0
+        """What is left of a quick step [s]."""
+        self._height = height
+        self._heel = False
+        self._anchor = (0.0, 0.0, 0.0)  # x, z and heading of what is held
+        self._left = (0.0, 0.0)  # where it stood last
+        self._stride = 0.0  # of a quick step [m]
+        self._rest = [0.0] * 4  # what is added to the goal and dies away: x, z, yaw, y
+        self._speed = [0.0] * 4
+        self._shown = [0.0] * 4
+        self._pace = [0.0] * 4
+
+    def advance(self, sole: Sole, elapsed: float) -> None:
+        """Go on as before to where the motion has the foot now."""
+        self.stepping = max(self.stepping - elapsed, 0.0)
+        decay = math.exp(-_RATE * elapsed)
+        for axis in range(4):
+            push = self._speed[axis] + _RATE * self._rest[axis]
+            self._rest[axis] = decay * (self._rest[axis] + push * elapsed)
+            self._speed[axis] = decay * (self._speed[axis] - _RATE * push * elapsed)
+        before, goal = self._shown, self._goal(sole)
+        self._shown = [a + b for a, b in zip(goal, self._rest, strict=True)]
+        self.shift = Shift(*self._shown)
+        if elapsed > 0.0:
+            self._pace = [(a - b) / elapsed for a, b in zip(self._shown, before, strict=True)]
+
+    def strained(self, standing: bool) -> bool:
+        """Whether it is held too far from where the motion wants it."""
+        far, turned = (_UNTIDY, _ASKEW) if standing else (_FARTHEST, _TWISTED)
+        return self.shift.length > far * self._height or abs(self.shift.yaw) > turned
+
+    def hold(self, sole: Sole) -> None:
+        """Hold the foot where it is shown: it lands, or rolls from heel to ball."""
+        if self.held and self._heel == sole.on_heel:
+            return
+        self._heel = sole.on_heel
+        x, z = self.shift.moved(sole, self._heel)
+        self._anchor = x, z, sole.heading + self.shift.yaw
+        if not self.held:
+            self.held = True
+            self._rest = [0.0, 0.0, 0.0, self.shift.y + sole.low]
+            self._speed = [0.0] * 4
+
+    def release(self, sole: Sole, step: bool) -> None:
+        """Let the foot go, in a quick step of its own or with the motion."""
+        if not self.held:
+            return
+        self.held = False
+        fastest = [_HASTE * self._height, _HASTE * self._height, _HASTE, 0.0]
+        self._rest = list(self._shown)
+        self._speed = [
+            min(max(pace, -most), most) for pace, most in zip(self._pace, fastest, strict=True)
+        ]
+        self._left = self.shift.moved(sole, heel=False)
+        self._stride = self.shift.length
+        self.stepping = _STEP_TIME if step else 0.0
+
+    def lift(self, sole: Sole) -> None:
+        """Keep a foot that is on its way clear of the ground, and every foot out of it."""
+        least = -sole.low
+        if self.stepping > 0.0:
+            top = min(_STEP_HEIGHT * self._height, _STEP_SLOPE * self._stride + 1e-3)
+            least = top * math.sin(math.pi * self.stepping / _STEP_TIME) ** 2 - sole.low
+        elif not self.held:
+            x, z = self.shift.moved(sole, heel=False)
+            gone = math.hypot(x - self._left[0], z - self._left[1]) / self._height
+            fading = min(max((_CLEAR - gone) / (_CLEAR - _FREE), 0.0), 1.0)
+            least = _PEEL * self._height * min(gone / _PEELED, 1.0) * fading - sole.ball[1]
+        if self.shift.y < least:
+            self.shift.y = least
+
+    def _goal(self, sole: Sole) -> list[float]:
+        """Return the shift that holds the foot exactly, or none if it is not held."""
+        if not self.held:
+            return [0.0] * 4
+        x, z, heading = self._anchor
+        yaw = math.remainder(heading - sole.heading, math.tau)
+        if self._heel:
+            ahead = _turned(sole.ball[0] - sole.heel[0], sole.ball[2] - sole.heel[2], yaw)
+            x, z = x + ahead[0], z + ahead[1]
+        return [x - sole.ball[0], z - sole.ball[2], yaw, -sole.low]
+
+
+class FootLock:
+    """Holds the feet of one character; advanced once a frame.
+
+    Parameters
+    ----------
+    legs
+        What is bent.
+    height
+        Of the body [m].
+    """
+
+    def __init__(self, legs: Legs, height: float) -> None:
+        self.legs = legs
+        self.feet = tuple(HeldFoot(height) for _ in range(legs.count))
+        self._height = height
+        self._points, self._levels = _soles(legs)
+        self._sunk = 0.0
+
+    def apply(
+        self, pose: Pose, place: Step, down: list[bool], standing: bool, elapsed: float
+    ) -> Pose:
+        """Return a pose with its standing feet held.
+
+        Parameters
+        ----------
+        pose
+            The motion's, with the root in place.
+        place
+            Where the root stands, in metres of the character.
+        down
+            Which feet the motion has on the ground.
+        standing
+            Whether the character stands, so that feet that are off their place step back to it.
+        elapsed
+            Time since the last call [s].
+        """
+        placed = self.legs.globals(pose)
+        soles = self._soles(placed, place)
+        for foot, sole in zip(self.feet, soles, strict=True):
+            foot.advance(sole, elapsed)
+        for number, (foot, sole) in enumerate(zip(self.feet, soles, strict=True)):
+            self._decide(number, foot, sole, down[number], standing)
+            foot.lift(sole)
+        return self._shown(pose, placed, place, elapsed)
+
+    def _decide(self, number: int, foot: HeldFoot, sole: Sole, down: bool, standing: bool) -> None:
+        """Hold a foot or let it go."""
+        if not down:
+            foot.release(sole, step=False)
+        elif (foot.held and foot.strained(standing=False)) or (
+            foot.held and standing and foot.strained(standing=True) and self._others_stand(number)
+        ):
+            foot.release(sole, step=True)
+        elif foot.stepping == 0.0 and (
+            foot.held or sole.low + foot.shift.y < _LANDS * self._height
+        ):
+            foot.hold(sole)
+
+    def _others_stand(self, number: int) -> bool:
+        return all(foot.held for other, foot in enumerate(self.feet) if other != number)
+
+    def _soles(self, placed: Array, place: Step) -> list[Sole]:
+        """Return what of each foot meets the ground."""
+        ankle = placed[self.legs.joints[:, 3]]
+        seen = ankle[:, None, :3, 3] + self._points @ np.swapaxes(ankle[:, :3, :3], -1, -2)
+        sine, cosine = math.sin(place.yaw), math.cos(place.yaw)
+        soles = []
+        for points, levels in zip(seen.tolist(), self._levels, strict=True):
+            heel, ball = (
+                (
+                    place.x + cosine * x + sine * z,
+                    y - level,
+                    place.z - sine * x + cosine * z,
+                )
+                for (x, y, z), level in zip(points, levels, strict=True)
+            )
+            soles.append(Sole(heel, ball))
+        return soles
+
+    def _shown(self, pose: Pose, placed: Array, place: Step, elapsed: float) -> Pose:
+        """Return the pose with its feet shifted, and the pelvis lowered where they are far."""
+        shifts = [foot.shift for foot in self.feet]
+        if max(s.length + abs(s.y) + abs(s.yaw) * 0.1 for s in shifts) < 1e-5 * self._height:
+            return pose
+        ankles, balls = placed[self.legs.joints[:, 3], :3, 3], placed[self.legs.joints[:, 4], :3, 3]
+        sine, cosine = math.sin(place.yaw), math.cos(place.yaw)
+        moved = np.array(
+            [[cosine * s.x - sine * s.z, s.y, sine * s.x + cosine * s.z] for s in shifts]
+        )
+        turned = np.array([[0.0, math.sin(s.yaw / 2), 0.0, math.cos(s.yaw / 2)] for s in shifts])
+        ankles = balls + moved + rotations.rotate(turned, ankles - balls)
+        return self.legs.bend(pose, placed, ankles, turned)
+
+
+def _soles(legs: Legs) -> tuple[Array, list[tuple[float, float]]]:
+    """Return heel and ball in the frame of each ankle, (legs, 2, 3), and their heights at rest.
+
+    The heel is under the ankle and half as far behind it as the ball is before it.
+    """
+    rest = legs.at_rest
+    ankle, ball = rest[legs.joints[:, 3]], rest[legs.joints[:, 4], :3, 3]
+    heel = ankle[:, :3, 3] - 0.5 * (ball - ankle[:, :3, 3])
+    heel[:, 1] = 0.0
+    points = np.stack([heel, ball], axis=1)
+    seen = (points - ankle[:, None, :3, 3]) @ ankle[:, :3, :3]
+    return seen, [tuple(row) for row in points[..., 1].tolist()]
+
+
+def _turned(x: float, z: float, yaw: float) -> tuple[float, float]:
+    """Return x, z turned about +y."""
+    sine, cosine = math.sin(yaw), math.cos(yaw)
+    return cosine * x + sine * z, cosine * z - sine * x

@@ -1,0 +1,254 @@
+"""How far standing feet slide, everywhere a walker can go: `python -m tests.bench.feet`.
+
+Exits with 1 where the mean slide of a planted foot reaches 10 mm/s at any point of the locomotion
+space or in any script. Lengths are those of a person 1.7 m tall.
+
+What is planted is seen from outside, by height alone: the ball of a foot within 12 mm of the
+ground for at least 0.1 s. A foot that is just landing or leaving is that low as well and does move,
+in the best of clips: so the first and the last 33 ms of each stay count only in the column "strict".
+"skate" is the height-weighted speed of Zhang et al., "Mode-adaptive neural networks for quadruped
+motion control", SIGGRAPH 2018: v (2 − 2^(h/H)), H = 25 mm, over all frames.
+"""
+
+import math
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.table import Table
+
+from characters import Character, CharacterCommand, Pose, rotations
+from characters.contacts import feet_of, spans
+from characters.motion import Step
+from characters.steering import Course
+from characters.walker import Walker
+
+Array = NDArray[np.float64]
+
+RATE = 60
+TALL = 1.7
+LIMIT = 10.0
+"""Mean slide at which the benchmark fails [mm/s]."""
+
+_NEAR = 0.012  # [m]
+_SHORTEST, _EDGE = 6, 2  # frames: of a stay, and at either end of it
+_SKATE = 0.025  # [m]
+_SETTLED = 60  # frames that a point of the grid takes to get going
+
+Script = Callable[[int, Walker], Course | CharacterCommand]
+"""What is asked for in a frame."""
+
+
+@dataclass(frozen=True)
+class Take:
+    """A walker's feet, filmed."""
+
+    balls: Array
+    """In the world, (frames, feet, 3) [m of a person 1.7 m tall]."""
+
+    level: Array
+    """Heights of the balls at rest, (feet,) [m]."""
+
+    turns: Array
+    """Rotations of the legs' joints, (frames, joints, 4)."""
+
+    lowest: float
+    """How far the feet dip into the ground [m], not negative."""
+
+
+@dataclass(frozen=True)
+class Slide:
+    """How feet slide in a take."""
+
+    mean: float
+    """Of planted feet [mm/s]."""
+
+    strict: float
+    """The same with the frames of landing and leaving [mm/s]."""
+
+    skate: float
+    """Height-weighted, over all frames [mm/s]."""
+
+    planted: float
+    """Part of the time that a foot is planted."""
+
+    jerk: float
+    """99.9th percentile of the legs' angular acceleration [rad/s²]."""
+
+    dip: float
+    """How far a foot's ball gets below its height at rest [mm]."""
+
+
+def film(character: Character, script: Script, frames: int, hold: bool = True) -> Take:
+    """Play a script at 60 Hz and return where the feet were."""
+    walker = Walker(character, 1.0, None)
+    if not hold:
+        walker.release()
+    poses: list[Pose] = []
+    places: list[Step] = []
+    for number in range(frames):
+        wish = script(number, walker)
+        elapsed = 1.0 / RATE if number else 0.0
+        go = walker.go if isinstance(wish, Course) else walker.update
+        poses.append(go(wish, elapsed))  # type: ignore[operator]
+        places.append(walker.place)
+    feet = feet_of(character.skeleton)
+    joints = [foot[-1] for foot in feet]
+    legs = sorted({above for foot in feet for above in _upward(character, foot[-1])[:4]})
+    turns = np.stack([pose.rotations for pose in poses])
+    stacked = Pose(np.stack([pose.translations for pose in poses]), turns)
+    seen = stacked.globals(character.skeleton)[..., :3, 3][:, joints]
+    at = np.array([(step.x, 0.0, step.z) for step in places])
+    yaw = rotations.about("y", np.array([step.yaw for step in places]))
+    size = TALL / character.height
+    balls = (rotations.rotate(yaw[:, None], seen) + at[:, None]) * size
+    level = character.skeleton.rest.globals(character.skeleton)[..., 1, 3][joints] * size
+    return Take(balls, level, turns[:, legs], float(max((level - balls[..., 1]).max(), 0.0)))
+
+
+def measure(take: Take, start: int = 0) -> Slide:
+    """Return how feet slide from a frame on."""
+    steps = np.diff(take.balls[start:], axis=0)[..., [0, 2]]
+    speeds = np.linalg.norm(steps, axis=-1) * RATE  # of the intervals between frames
+    above = take.balls[start:, :, 1] - take.level
+    near = above < _NEAR
+    stays = near[1:] & near[:-1]
+    core, whole = np.zeros_like(stays), np.zeros_like(stays)
+    for foot in range(stays.shape[1]):
+        for first, length in spans(stays[:, foot], loop=False):
+            if length >= _SHORTEST:
+                whole[first : first + length, foot] = True
+                core[first + _EDGE : first + length - _EDGE, foot] = True
+    height = np.clip((above[1:] + above[:-1]) / 2, 0.0, _SKATE)
+    skate = speeds * (2 - 2 ** (height / _SKATE))
+    spins = rotations.to_rotation_vector(
+        rotations.multiply(take.turns[1:], rotations.conjugate(take.turns[:-1]))
+    )
+    bends = np.linalg.norm(np.diff(spins, axis=0), axis=-1) * RATE**2
+    return Slide(
+        mean=1e3 * float(speeds[core].mean()) if core.any() else 0.0,
+        strict=1e3 * float(speeds[whole].mean()) if whole.any() else 0.0,
+        skate=1e3 * float(skate.mean()),
+        planted=float(core.mean()),
+        jerk=float(np.quantile(bends[start:], 0.999)),
+        dip=1e3 * take.lowest,
+    )
+
+
+def points(
+    speeds: Iterable[float], degrees: Iterable[float], strides: Iterable[float]
+) -> dict[tuple[float, float, float], Course]:
+    """Return the courses of a grid over Speed, Angular [degrees] and stride."""
+    angles = list(degrees)
+    return {
+        (speed, angle, stride): Course(speed, math.radians(angle), stride)
+        for speed in speeds
+        for angle in angles
+        for stride in strides
+    }
+
+
+def at_point(character: Character, course: Course, seconds: float, hold: bool = True) -> Slide:
+    """Return how feet slide at one point of the locomotion space, once under way."""
+    frames = _SETTLED + round(seconds * RATE)
+    return measure(film(character, lambda _, __: course, frames, hold), _SETTLED)
+
+
+def _upward(character: Character, joint: int) -> list[int]:
+    """Return a joint and those above it, upward."""
+    line = [joint]
+    while character.skeleton.parents[line[-1]] >= 0:
+        line.append(character.skeleton.parents[line[-1]])
+    return line
+
+
+def _start_stop(number: int, _: Walker) -> CharacterCommand:
+    speed = (0.0, 2.0, 0.0, 4.5)[number // 75 % 4]
+    return CharacterCommand(number / RATE, "move", speed, np.array([0.0, 1e4]))
+
+
+def _speed_changes(number: int, _: Walker) -> CharacterCommand:
+    speed = 2.75 + 2.0 * math.sin(number / 40)
+    return CharacterCommand(number / RATE, "move", speed, np.array([0.0, 1e4]))
+
+
+def _turn_on_the_spot(number: int, _: Walker) -> CharacterCommand:
+    way = number // 180 * 2.2
+    look = np.array([math.sin(way), math.cos(way)]) * 1e3
+    return CharacterCommand(number / RATE, look_at=look)
+
+
+def _slalom(number: int, _: Walker) -> Course:
+    return Course(2.2, 1.3 * math.sin(number / 30), 1.0)
+
+
+def _jumps_of_course(number: int, _: Walker) -> Course:
+    speed = (1.0, 2.5, 4.0, 2.9, 0.6)[number // 60 % 5]
+    return Course(speed, (-1.5, 0.0, 1.5, 0.7)[number // 45 % 4], 1.0)
+
+
+def _follow(number: int, _: Walker) -> CharacterCommand:
+    angle = number / RATE / 2
+    target = np.array([3.0 * math.sin(angle), 3.0 * math.sin(2 * angle)])
+    return CharacterCommand(number / RATE, "move", 3.0, target)
+
+
+def _near_targets(number: int, _: Walker) -> CharacterCommand:
+    turn = number // 150 * 2.4
+    target = np.array([math.sin(turn), math.cos(turn)])
+    return CharacterCommand(number / RATE, "move", 2.0, target)
+
+
+SCRIPTS: dict[str, Script] = {
+    "start and stop": _start_stop,
+    "speed up and down": _speed_changes,
+    "turn on the spot": _turn_on_the_spot,
+    "slalom": _slalom,
+    "courses that jump": _jumps_of_course,
+    "follow a moving target": _follow,
+    "near targets, one by one": _near_targets,
+}
+"""Ways to go that are no point of the grid; a table metre is a metre here."""
+
+
+def main() -> None:
+    """Print the tables."""
+    console, human = Console(), Character.load("human")
+    worst = 0.0
+    table = Table("where", "lock", "slide mm/s", "strict", "skate", "planted", "bend rad/s²", "dip mm")
+    grid = points(np.arange(0.5, 5.01, 0.5), range(-90, 91, 15), (1.0,))
+    grid |= points((1.0, 1.2, 2.0), range(-90, 91, 30), (0.0, 0.3, 0.6))
+    for hold in (False, True):
+        found = {key: at_point(human, course, 3.0, hold) for key, course in grid.items()}
+        means = [slide.mean for slide in found.values()]
+        key = max(found, key=lambda point: found[point].mean)
+        middle = sorted(found.values(), key=lambda slide: slide.mean)[len(found) // 2]
+        _row(table, f"{len(grid)} points, median", hold, middle)
+        _row(table, f"worst: Speed {key[0]:g}, {key[1]:g}°, stride {key[2]:g}", hold, found[key])
+        worst = max(means)
+        for name, script in SCRIPTS.items():
+            slide = measure(film(human, script, 900, hold))
+            _row(table, name, hold, slide)
+            worst = max(worst, slide.mean)
+    console.print(table)
+    sys.exit(worst >= LIMIT)
+
+
+def _row(table: Table, where: str, hold: bool, slide: Slide) -> None:
+    table.add_row(
+        where,
+        "on" if hold else "off",
+        f"{slide.mean:.1f}",
+        f"{slide.strict:.1f}",
+        f"{slide.skate:.1f}",
+        f"{slide.planted:.2f}",
+        f"{slide.jerk:.0f}",
+        f"{slide.dip:.1f}",
+    )
+
+
+if __name__ == "__main__":
+    main()
