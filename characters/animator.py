@@ -13,6 +13,7 @@ from characters.life import Life
 from characters.locomotion import TOP_SPEED
 from characters.motion import Step
 from characters.pose import Array, Pose
+from characters.trees.performer import TreePlayer
 from characters.walker import Walker
 
 LONGEST_STEP = 0.25
@@ -54,8 +55,9 @@ class Performer(Protocol):
 class Animator:
     """Plays a character under commands.
 
-    A character with a clip "Walk" that moves its root walks and runs (`Walker`); any other acts
-    on the spot and hops (`Actor`).
+    A character is played as the file beside it says (`TreePlayer`). Without one, a character with
+    a clip "Walk" that moves its root walks and runs (`Walker`); any other acts on the spot and
+    hops (`Actor`).
 
     Parameters
     ----------
@@ -81,13 +83,14 @@ class Animator:
         alive: bool = True,
     ) -> None:
         walks = Walker.suits(character)
+        planned = TreePlayer.suits(character)
         if scale is None:
             scale = (WALKER_HEIGHT if walks else ACTOR_HEIGHT) / max(character.height, 1e-9)
         self.character = character
         self.scale = scale
         self._now: float | None = None
-        kind: type[Walker] | type[Actor] = Walker if walks else Actor
-        self._performer: Performer = kind(character, scale, place)
+        kind: type[Walker | Actor | TreePlayer] = Walker if walks else Actor
+        self._performer: Performer = (TreePlayer if planned else kind)(character, scale, place)
         self._life: Life | None = None
         if alive:
             self._life = Life(character.skeleton, character.anatomy, character.morphs, seed)

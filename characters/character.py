@@ -1,7 +1,7 @@
 """A body, its skeleton and what it knows how to do."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import resources
 from pathlib import Path
@@ -13,6 +13,8 @@ from characters.clip import Clip
 from characters.errors import CharacterError
 from characters.mesh import Mesh
 from characters.pose import Array, Skeleton
+from characters.sidecar import read_sidecar
+from characters.trees.plan import Plan
 
 _SUFFIXES = (".glb", ".gltf", ".vrm")
 
@@ -39,9 +41,15 @@ class Character:
     semantics: Mapping[str, str] = field(default_factory=dict)
     """What joints are, where the file says so: name in `Anatomy` to name in the skeleton."""
 
+    plan: Plan | None = None
+    """How its motions are put together, where the file beside it says so."""
+
     @staticmethod
     def load(name_or_path: "str | Path") -> "Character":
         """Load a bundled character by its name, or a .glb, .gltf or .vrm file.
+
+        What its file does not say may stand in a .toml of the same name beside it: see
+        `characters.sidecar`.
 
         Raises
         ------
@@ -52,7 +60,7 @@ class Character:
 
         path = Path(name_or_path)
         if path.suffix.lower() in _SUFFIXES:
-            return gltf.load(path)
+            return _with_sidecar(gltf.load(path), path)
         if path.suffix or len(path.parts) > 1:
             raise CharacterError(
                 f"{name_or_path}: not a .glb, .gltf or .vrm file; convert it, or name a bundled "
@@ -65,7 +73,7 @@ class Character:
             )
         asset = resources.files("characters") / "assets" / f"{name_or_path}.glb"
         with resources.as_file(asset) as bundled:
-            return gltf.load(bundled)
+            return _with_sidecar(gltf.load(bundled), bundled)
 
     @staticmethod
     def bundled() -> tuple[str, ...]:
@@ -106,6 +114,20 @@ class Character:
     def height(self) -> float:
         """Height of the rest pose above the ground [m]."""
         return float(self.bounds[1, 1] - min(self.bounds[0, 1], 0.0))
+
+
+def _with_sidecar(character: Character, path: Path) -> Character:
+    """Return a character with what the file beside its own says."""
+    beside = path.with_suffix(".toml")
+    said = read_sidecar(beside, character.clips)
+    for part, joint in said.semantics.items():
+        if joint and joint not in character.skeleton.names:
+            raise CharacterError(
+                f"{beside}: joints.{part}: no joint {joint!r}; there are "
+                f"{', '.join(character.skeleton.names)}"
+            )
+    semantics = {**character.semantics, **said.semantics}
+    return replace(character, semantics=semantics, plan=said.plan)
 
 
 def skin(mesh: Mesh, globals_: Array, morphs: Mapping[str, float] | None = None) -> Array:

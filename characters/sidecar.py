@@ -1,0 +1,69 @@
+"""The file beside a character that says what its own does not: `fox.toml` beside `fox.glb`."""
+
+import tomllib
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from characters.anatomy import PARTS
+from characters.errors import CharacterError
+from characters.trees.plan import Plan
+from characters.trees.reading import TABLES, read_plan
+
+_LARGEST = 1_000_000  # bytes: more was not written by hand
+
+
+@dataclass(frozen=True)
+class Sidecar:
+    """What such a file says."""
+
+    semantics: Mapping[str, str]
+    """Joint by part of the body, as in `Character.semantics`."""
+
+    plan: Plan | None
+    """How its motions are put together, or None where it does not say."""
+
+
+def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
+    """Read the file; one that does not exist says nothing.
+
+    Parameters
+    ----------
+    path
+        The .toml file.
+    clips
+        Names of the character's clips.
+
+    Raises
+    ------
+    CharacterError
+        If it cannot be read, is not TOML, or says something that cannot be.
+    """
+    document = _document(path)
+    for key in document:
+        if key not in ("joints", *TABLES):
+            raise CharacterError(
+                f"{path}: [{key}] means nothing here; there are joints, {', '.join(TABLES)}"
+            )
+    joints = document.get("joints", {})
+    if not isinstance(joints, dict) or not all(isinstance(j, str) for j in joints.values()):
+        raise CharacterError(f'{path}: joints: write part = "name of a joint"')
+    for part in joints:
+        if part not in PARTS:
+            raise CharacterError(f"{path}: joints.{part}: no part of a body is called that")
+    return Sidecar(joints, read_plan(document, str(path), clips))
+
+
+def _document(path: Path) -> dict[str, Any]:
+    try:
+        size = path.stat().st_size
+        if size > _LARGEST:
+            raise CharacterError(f"{path}: {size} bytes; a file of motions is under {_LARGEST}")
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return {}
+    except OSError as error:
+        raise CharacterError(f"{path}: cannot be read ({error.strerror})") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise CharacterError(f"{path}: not TOML ({error}); mend that line") from None

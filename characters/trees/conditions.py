@@ -1,0 +1,143 @@
+"""Conditions of state machines: comparisons of parameters, as a person writes them.
+
+`speed > 0.5 and action == "move"`, `done or not weight >= 0`. Read with Python's own grammar, of
+which only this much is let through; nothing is ever executed.
+"""
+
+import ast
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+Values = Mapping[str, "float | str | bool"]
+
+_COMPARED: dict[type[ast.cmpop], Callable[[float, float], bool]] = {
+    ast.Lt: lambda a, b: a < b,
+    ast.LtE: lambda a, b: a <= b,
+    ast.Gt: lambda a, b: a > b,
+    ast.GtE: lambda a, b: a >= b,
+    ast.Eq: lambda a, b: a == b,
+    ast.NotEq: lambda a, b: a != b,
+}
+_LONGEST = 500  # characters: a longer one is no condition that a person wrote
+
+
+class ConditionError(ValueError):
+    """A condition that cannot be read; the message lacks where it stands."""
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A condition over named values; see `Condition.read`."""
+
+    text: str
+    """As it was written."""
+
+    names: frozenset[str] = field(compare=False)
+    """Of the values that it looks at."""
+
+    _tree: ast.expr = field(compare=False, repr=False)
+
+    @staticmethod
+    def read(text: str, texts: frozenset[str], numbers: frozenset[str]) -> "Condition":
+        """Return the condition in a text.
+
+        Parameters
+        ----------
+        text
+            "speed > 0.5 and not done".
+        texts, numbers
+            Names of the values that there are; those in `numbers` may also stand alone, as yes/no.
+
+        Raises
+        ------
+        ConditionError
+            If it says something else, or names a value that does not exist.
+        """
+        if len(text) > _LONGEST:
+            raise ConditionError(f"is longer than {_LONGEST} characters")
+        try:
+            tree = ast.parse(text.strip(), mode="eval").body
+        except (SyntaxError, ValueError, MemoryError, RecursionError):
+            raise ConditionError(
+                f"{text!r} cannot be read; write for example speed > 0.5"
+            ) from None
+        names: set[str] = set()
+        _check(tree, text, texts, numbers, names)
+        return Condition(text, frozenset(names), tree)
+
+    def holds(self, values: Values) -> bool:
+        """Return whether it is true of some values.
+
+        >>> numbers, texts = frozenset({"speed", "done"}), frozenset({"action"})
+        >>> Condition.read('0 < speed <= 3 and action != "run"', texts, numbers).holds(
+        ...     {"speed": 2.0, "action": "move"}
+        ... )
+        True
+        """
+        return bool(_value(self._tree, values))
+
+
+def _check(
+    tree: ast.expr, text: str, texts: frozenset[str], numbers: frozenset[str], names: set[str]
+) -> None:
+    """Refuse what is no condition, and collect the names."""
+    match tree:
+        case ast.BoolOp(values=values):
+            for each in values:
+                _check(each, text, texts, numbers, names)
+        case ast.UnaryOp(op=ast.Not(), operand=operand):
+            _check(operand, text, texts, numbers, names)
+        case ast.Compare(left=left, ops=ops, comparators=others):
+            kinds = {_operand(each, text, texts, numbers, names) for each in (left, *others)}
+            ordered = any(not isinstance(op, (ast.Eq, ast.NotEq)) for op in ops)
+            if any(type(op) not in _COMPARED for op in ops):
+                raise ConditionError(f"{text!r} compares otherwise than by < <= > >= == !=")
+            if len(kinds) > 1 or (ordered and kinds == {str}):
+                raise ConditionError(f"{text!r} compares a text with a number, or which is greater")
+        case ast.Name(id=name) if name in numbers:
+            names.add(name)
+        case _:
+            known = ", ".join(sorted(numbers | texts))
+            raise ConditionError(f"{text!r} is more than comparisons of {known} with and, or, not")
+
+
+def _operand(
+    tree: ast.expr, text: str, texts: frozenset[str], numbers: frozenset[str], names: set[str]
+) -> type:
+    """Return whether one side of a comparison is a number or a text."""
+    match tree:
+        case ast.Constant(value=value) if isinstance(value, (int, float, str)):
+            return str if isinstance(value, str) else float
+        case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=value)) if isinstance(
+            value, (int, float)
+        ):
+            return float
+        case ast.Name(id=name) if name in numbers | texts:
+            names.add(name)
+            return str if name in texts else float
+        case ast.Name(id=name):
+            known = ", ".join(sorted(numbers | texts))
+            raise ConditionError(f"{text!r} names {name!r}; there are {known}")
+        case _:
+            raise ConditionError(f"{text!r} compares something that is no name, number or text")
+
+
+def _value(tree: ast.expr, values: Values) -> "float | str | bool":
+    """Return what a checked expression comes to."""
+    match tree:
+        case ast.BoolOp(op=op, values=parts):
+            together = all if isinstance(op, ast.And) else any
+            return together(_value(part, values) for part in parts)
+        case ast.UnaryOp(op=ast.Not(), operand=operand):
+            return not _value(operand, values)
+        case ast.UnaryOp(operand=operand):
+            return -float(_value(operand, values))
+        case ast.Compare(left=left, ops=ops, comparators=others):
+            sides = [_value(each, values) for each in (left, *others)]
+            pairs = zip(ops, sides, sides[1:], strict=False)
+            return all(_COMPARED[type(op)](a, b) for op, a, b in pairs)  # type: ignore[arg-type]
+        case ast.Name(id=name):
+            return values[name]
+        case ast.Constant(value=value):
+            return value  # type: ignore[return-value]
+    raise AssertionError("checked before")

@@ -1,0 +1,132 @@
+"""Plays a character as the file beside it says."""
+
+import math
+
+from characters.character import Character
+from characters.command import CharacterCommand
+from characters.machine import StateMachine
+from characters.mirror import Mirror
+from characters.motion import STANDING, Motion, Step
+from characters.pose import Pose
+from characters.smoothing import eased
+from characters.trees.building import Builder, Steering
+from characters.trees.plan import PARAMETERS, Change, Plan
+
+_ARRIVED, _LEFT_AGAIN = 0.05, 0.065  # [m on the table], as in `characters.steering`
+_BRAKING = 6.0  # Speed for each metre of the character that is left to go
+_SLOW_TURN = math.radians(60)  # a target farther round than this is approached at a walk
+_TURNING_SPEED = 1.5
+
+
+class TreePlayer:
+    """Plays a plan; a `Performer`.
+
+    The root moves as the motions say. A target is steered for by the parameters alone: it is the
+    plan that turns them into steps.
+
+    Parameters
+    ----------
+    character
+        With a plan.
+    scale
+        Table metres for each metre of the character.
+    place
+        Where it first stands on the table.
+    """
+
+    def __init__(self, character: Character, scale: float, place: Step | None) -> None:
+        if character.plan is None:
+            raise ValueError(f"{character.name} has no plan")
+        self._plan: Plan = character.plan
+        self.place = place or STANDING
+        self.state, self.speed, self.angular, self.weight, self.height = "idle", 0.0, 0.0, 0.0, 0.0
+        self._scale = scale
+        self._time = 0.0
+        self._arrived = True
+        self._values: dict[str, float] = dict.fromkeys(PARAMETERS, 0.0)
+        builder = Builder(
+            self._plan,
+            character.skeleton,
+            character.clips,
+            character.anatomy,
+            lambda: Mirror.of_character(character),
+        )
+        machine = self._plan.machine
+        nodes = {"": self._plan.root} if machine is None else machine.states
+        built = {n: builder.build(node, self._values) for n, node in nodes.items() if node}
+        self._motions: dict[str, Motion] = {name: motion for name, (motion, _) in built.items()}
+        self._steering: dict[str, Steering] = {name: steer for name, (_, steer) in built.items()}
+        self._machine = StateMachine(self._motions, "" if machine is None else machine.start)
+
+    @staticmethod
+    def suits(character: Character) -> bool:
+        """Whether a file says how a character is to be played."""
+        return character.plan is not None
+
+    def update(self, command: CharacterCommand, elapsed: float) -> Pose:
+        """Advance by a time [s] under a command and return the pose, with the root in place."""
+        self._read(command, elapsed)
+        now, self._time = self._time, self._time + elapsed
+        self._change(command, now)
+        state = self._machine.state
+        self._steering[state].steer(self._values, now - self._machine.entered)
+        self._report(command)
+        step = self._machine.travel(now, self._time)
+        self.place = self.place.then(Step(step.x * self._scale, step.z * self._scale, step.yaw))
+        return self._machine.sample(self._time)
+
+    def _read(self, command: CharacterCommand, elapsed: float) -> None:
+        """Take the parameters from a command."""
+        wish = dict.fromkeys(PARAMETERS, 0.0)
+        wish["weight"] = min(max(command.weight, -1.0), 1.0)
+        if command.look_at is not None:
+            wish["bearing"] = math.degrees(self.place.bearing(*map(float, command.look_at)))
+        if command.action == "move" and command.target is not None:
+            x, z = map(float, command.target)
+            away = math.hypot(x - self.place.x, z - self.place.z)
+            self._arrived = command.stop and away < (_LEFT_AGAIN if self._arrived else _ARRIVED)
+            if not self._arrived:
+                wish |= self._course(command, (x, z), away)
+        for name, value in wish.items():
+            lag = self._plan.lags.get(name, 0.0)
+            self._values[name] = eased(self._values[name], value, elapsed, lag) if lag else value
+
+    def _course(
+        self, command: CharacterCommand, target: tuple[float, float], away: float
+    ) -> dict[str, float]:
+        """Return the parameters that lead to a target."""
+        right = -self.place.bearing(*target)
+        speed = min(max(command.speed, 0.0), 5.0)
+        left = max(away - _ARRIVED, 0.0) / self._scale
+        if command.stop:
+            speed = min(speed, 0.6 + _BRAKING * left)
+        if abs(right) > _SLOW_TURN:
+            speed = min(speed, _TURNING_SPEED)
+        angular = min(max(2.0 * math.degrees(right), -90.0), 90.0)
+        return {"speed": speed, "angular": angular, "distance": away / self._scale}
+
+    def _change(self, command: CharacterCommand, now: float) -> None:
+        """Enter another state if a condition says so; one at a time."""
+        machine = self._plan.machine
+        if machine is None:
+            return
+        state = self._machine.state
+        spent = now - self._machine.entered
+        ended = spent >= self._motions[state].duration
+        values: dict[str, float | str | bool] = {**self._values, "time": spent, "done": ended}
+        values["action"] = command.action
+        for change in machine.changes:
+            if _leads_on(change, state) and change.when.holds(values):
+                self._steering[change.end].restart(self._values)
+                self._machine.length = change.seconds
+                self._machine.request(change.end, now)
+                return
+
+    def _report(self, command: CharacterCommand) -> None:
+        self.state = self._machine.state or command.action
+        self.speed, self.weight = self._values["speed"], self._values["weight"]
+        self.angular = math.radians(self._values["angular"])
+
+
+def _leads_on(change: Change, state: str) -> bool:
+    return change.end != state and change.start in (state, "*")
