@@ -1,5 +1,6 @@
 """The frames of an .amc file: which bone moves how, checked against the .asf."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import compress, cycle
@@ -14,6 +15,7 @@ from characters.pose import Array
 
 _RATE = 120.0  # [Hz] of the CMU database, where files do not say
 _BLOCK = 1 << 22  # characters to cut into words at once
+_FRAME_NUMBER = re.compile(r"\n[ \t]*\d{1,11}[ \t]*\n")
 
 
 @dataclass(frozen=True)
@@ -66,11 +68,52 @@ class _Frame:
     """Every bone's line and numbers."""
 
 
-def _frames(path: Path, text: str, header: Header) -> Iterator[_Frame]:
-    """Yield frames line by line, refusing what is not one."""
+def read_values(
+    path: Path, text: str, header: Header, body: Acclaim
+) -> tuple[Array, tuple[str, ...]]:
+    """Return the numbers of all frames, (frames, numbers of a frame), and notes.
+
+    Raises
+    ------
+    CharacterError
+        If a frame does not fit the skeleton, with the line that is at fault.
+    """
+    columns = body.columns
+    blocks = list(_blocks(text, header.characters))
+    first = next(_frames(path, text, blocks[0], header.lines))
+    _row(path, body, columns, first, first)
+    tables: list[Array] = []
+    for block in blocks:
+        table = _uniform(text[slice(*block)], columns, first)
+        if table is None:  # its frames differ in what they hold, or one is bad
+            line = text.count("\n", 0, block[0])
+            frames = _frames(path, text, block, line)
+            table = np.array([_row(path, body, columns, frame, first) for frame in frames])
+        tables.append(table)
+    table = np.concatenate(tables)
+    notes = [
+        f"{bone.name} does not move: the .amc does not mention it"
+        for bone in body.bones
+        if bone.dof and bone.name not in first.rows
+    ]
+    if (np.diff(table[:, 0]) != 1).any():
+        notes.append("the numbers of the frames have gaps; frames are taken as they follow")
+    return table[:, 1:], tuple(notes)
+
+
+def _blocks(text: str, start: int) -> Iterator[tuple[int, int]]:
+    """Yield where blocks of whole frames begin and end in a text."""
+    while start < len(text):
+        found = _FRAME_NUMBER.search(text, start + _BLOCK)
+        end = found.start() + 1 if found else len(text)
+        yield start, end
+        start = end
+
+
+def _frames(path: Path, text: str, block: tuple[int, int], lines: int) -> Iterator[_Frame]:
+    """Yield the frames of a block after so many lines, line by line, refusing what is none."""
     frame: _Frame | None = None
-    lines = text[header.characters :].split("\n")
-    for line, content in enumerate(lines, start=header.lines + 1):
+    for line, content in enumerate(text[slice(*block)].split("\n"), start=lines + 1):
         words = content.partition("#")[0].split()
         if not words:
             continue
@@ -98,81 +141,43 @@ def _frames(path: Path, text: str, header: Header) -> Iterator[_Frame]:
         yield frame
 
 
-def read_values(
-    path: Path, text: str, header: Header, body: Acclaim
-) -> tuple[Array, tuple[str, ...]]:
-    """Return the numbers of all frames, (frames, numbers of a frame), and notes."""
-    columns = body.columns
-    first = next(_frames(path, text[: header.characters + _BLOCK], header))
-    _row(path, body, columns, first, first)
-    table = _uniform(text[header.characters :], columns, first)
-    if table is None:  # frames differ in what they hold, or one is bad: look line by line
-        table = _differing(path, text, header, body, first)
-    counts, values = table
-    notes = [
-        f"{bone.name} does not move: the .amc does not mention it"
-        for bone in body.bones
-        if bone.dof and bone.name not in first.rows
-    ]
-    if (np.diff(counts) != 1).any():
-        notes.append("the numbers of the frames have gaps; frames are taken as they follow")
-    return values, tuple(notes)
+def _uniform(text: str, columns: dict[str, slice], first: _Frame) -> Array | None:
+    """Return a block's frames, which list the bones of the first in the same order.
 
-
-def _uniform(text: str, columns: dict[str, slice], first: _Frame) -> tuple[Array, Array] | None:
-    """Return frame numbers and values of frames that list the same bones in the same order.
-
-    They are cut into words a block at a time, and never into lines. None if they are not so.
+    A row is a frame's number and its values. The text is cut into words and never into lines,
+    which is what makes it fast. None if a frame is not so.
     """
     names = {}  # where in a frame which name stands
-    order = [0]  # where in the values, after the frame's number, each number goes
+    order = [0]  # where in a row each number goes
     mask = [True]  # which words of a frame are numbers
     for name, (_, words) in first.rows.items():
         names[len(mask)] = name
         mask += [False] + [True] * len(words)
         order += range(columns[name].start + 1, columns[name].stop + 1)
-    period, width = len(mask), 1 + max(part.stop for part in columns.values())
-    tables: list[Array] = []
-    carried: list[str] = []
-    start = 0
-    while start < len(text):
-        end = text.find("\n", start + _BLOCK)
-        end = len(text) if end < 0 else end
-        words = carried + text[start:end].split()
-        whole = len(words) - len(words) % period
-        frames, carried, start = whole // period, words[whole:], end
-        del words[whole:]
-        if any(words[at::period] != [name] * frames for at, name in names.items()):
-            return None
-        found = numbers(compress(words, cycle(mask)))
-        if found is None:
-            return None
-        table = np.zeros((frames, width))
-        table[:, order] = found.reshape(frames, len(order))
-        tables.append(table)
-    if carried:
+    tokens, period = text.split(), len(mask)
+    frames = len(tokens) // period
+    if frames * period != len(tokens):
         return None
-    whole_table = np.concatenate(tables)
-    return whole_table[:, 0], whole_table[:, 1:]
+    if any(tokens[at::period] != [name] * frames for at, name in names.items()):
+        return None
+    found = numbers(compress(tokens, cycle(mask)))
+    if found is None:
+        return None
+    table = np.zeros((frames, 1 + _width(columns)))
+    table[:, order] = found.reshape(frames, len(order))
+    return table
 
 
-def _differing(
-    path: Path, text: str, header: Header, body: Acclaim, first: _Frame
-) -> tuple[Array, Array]:
-    """Return frame numbers and values of frames that list bones in any order."""
-    columns = body.columns
-    counts, rows = [], []
-    for frame in _frames(path, text, header):
-        counts.append(float(frame.number))
-        rows.append(_row(path, body, columns, frame, first))
-    return np.array(counts), np.array(rows)
+def _width(columns: dict[str, slice]) -> int:
+    """Return how many numbers a frame has."""
+    return max(int(part.stop) for part in columns.values())
 
 
 def _row(
     path: Path, body: Acclaim, columns: dict[str, slice], frame: _Frame, first: _Frame
 ) -> Array:
-    """Return the numbers of one frame, in the order of the skeleton, or refuse it."""
-    row = np.zeros(max(part.stop for part in columns.values()))
+    """Return the number and the values of a frame, in the skeleton's order, or refuse it."""
+    row = np.zeros(_width(columns))
     for name, (line, words) in frame.rows.items():
         if name not in columns:
             raise refuse(
@@ -200,4 +205,4 @@ def _row(
             f"frame {frame.number} lacks {lacking}",
             "the file is cut off or edited: export it again",
         )
-    return row
+    return np.concatenate([[frame.number], row])
