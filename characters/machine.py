@@ -3,14 +3,17 @@
 import math
 from bisect import bisect_right
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from characters.blend import mix
+from characters.curves import ease
 from characters.errors import CharacterError
 from characters.motion import STANDING, Motion, Step
 from characters.pose import Array, Pose
 from characters.transition import Fade, Transition
+from characters.travel import accumulated, mean_step
 
 _PROBE = 1e-3  # [s]: velocities at a switch are differences over this time
 
@@ -25,12 +28,23 @@ class _Switch:
     drift: Fade | None
     """What the velocity over the ground (x, z, yaw) differed by."""
 
+    below: "_Switch | None" = None
+    """What goes on below while this one fades in, instead of a transition."""
+
+    fade: float = 0.0
+    """How long that takes [s]."""
+
+    def weight(self, time: float) -> float:
+        """Return how much of the new state is shown at a time [s], 0…1."""
+        return ease((time - self.time) / self.fade, "gonio") if self.below else 1.0
+
 
 class StateMachine:
     """Named motions and the record of when each was entered; a `Motion`.
 
     A state plays from its own time 0 when it is entered. All that a request changes is written
-    down as a fading offset, so any later pose follows from the time alone.
+    down as a fading offset, so any later pose follows from the time alone. One state is sampled for
+    a pose, in a transition, too; only a cross-fade goes on with the old one as well.
     """
 
     def __init__(self, states: Mapping[str, Motion], initial: str, length: float = 0.25) -> None:
@@ -55,8 +69,11 @@ class StateMachine:
         """It plays for ever."""
         return math.inf
 
-    def request(self, state: str, time: float) -> None:
+    def request(self, state: str, time: float, crossfade: float = 0.0) -> None:
         """Enter a state at a time [s], not before the last request; nothing if it is the state.
+
+        Its difference to what was shown fades (inertialisation), unless a time is given for which
+        the old state goes on and is mixed with the new one [s].
 
         Raises
         ------
@@ -71,21 +88,35 @@ class StateMachine:
                 f"state {state!r} was requested for {time:.3f} s, before the last request at "
                 f"{self.entered:.3f} s; requests come in order"
             )
-        motion, last = self.states[state], self._switches[-1]
+        if not 0.0 <= crossfade < math.inf:
+            raise CharacterError(
+                f"state {state!r} was requested with a cross-fade of {crossfade} s; give 0 or more"
+            )
+        last = self._switches[-1]
+        if last.below is not None and last.weight(time) >= 1.0:
+            last = replace(last, below=None)  # or a long session would drag all its states along
+        if crossfade > 0.0:
+            switch = _Switch(time, state, None, None, last, crossfade)
+        else:
+            switch = self._inertial(last, state, time)
+        # The last two states are enough to look back over one frame.
+        self._switches = [last, switch]
+
+    def _inertial(self, last: _Switch, state: str, time: float) -> _Switch:
+        """Return the switch to a state whose difference to what was shown fades."""
+        motion = self.states[state]
         # Forward differences: just before its start, a loop that does not quite close would jump.
         old = (self._shown(last, time), self._shown(last, time + _PROBE))
         new = (motion.sample(0.0), motion.sample(_PROBE))
         drift = _velocity(self._moved(last, time, time + _PROBE)) - _velocity(
             motion.travel(0.0, _PROBE)
         )
-        switch = _Switch(
+        return _Switch(
             time,
             state,
             Transition.begin(old, new, _PROBE, self.length),
             Fade(drift, np.zeros(3), self.length),
         )
-        # The last two states are enough to look back over one frame.
-        self._switches = [last, switch]
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
@@ -104,12 +135,28 @@ class StateMachine:
     def _shown(self, switch: _Switch, time: float) -> Pose:
         """Return the pose at a time [s] as if no later state had been entered."""
         pose = self.states[switch.state].sample(time - switch.time)
+        weight = switch.weight(time)
+        if switch.below is not None and weight < 1.0:
+            pose = mix([self._shown(switch.below, time), pose], [1.0 - weight, weight])
         if switch.transition is None:
             return pose
         return switch.transition.apply(pose, time - switch.time)
 
     def _moved(self, switch: _Switch, start: float, end: float) -> Step:
         """Return the way over the ground as if no later state had been entered."""
+        below, faded = switch.below, min(max(switch.time + switch.fade, start), end)
+        if below is not None and faded > start:
+
+            def mixed(low: float, high: float, moment: float) -> Step:
+                weight = switch.weight(moment)
+                steps = [self._moved(below, low, high), self._alone(switch, low, high)]
+                return mean_step(steps, [1.0 - weight, weight])
+
+            return accumulated(start, faded, mixed).then(self._alone(switch, faded, end))
+        return self._alone(switch, start, end)
+
+    def _alone(self, switch: _Switch, start: float, end: float) -> Step:
+        """Return the way of one state with what its velocity differed by."""
         start, end = start - switch.time, end - switch.time
         step = self.states[switch.state].travel(start, end)
         if switch.drift is None:

@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -140,6 +141,36 @@ def test_a_cross_fade_costs_two_and_only_while_it_lasts():
     assert same(fade.sample(0.5), old.sample(0.5))
     assert same(fade.sample(0.75), new.sample(0.25))
     assert fade.duration == 2.5
+
+
+@settings(max_examples=40)
+@given(st.lists(st.tuples(st.sampled_from("abc"), st.sampled_from([0.0, 0.2])), max_size=4))
+def test_a_machine_may_cross_fade_between_any_switches(requests):
+    states = {name: Swing(seed) for seed, name in enumerate("abc")}
+    machine = StateMachine(states, "a")
+    now = 0.0
+    for state, fade in requests:
+        now += 0.09
+        before = machine.sample(now)
+        machine.request(state, now, crossfade=fade)
+        _assert_near(before, machine.sample(now), 0.0)
+        parts = machine.travel(now - 0.01, now).then(machine.travel(now, now + 0.02))
+        assert parts.z == pytest.approx(machine.travel(now - 0.01, now + 0.02).z)
+    now += 0.5
+    for motion in states.values():
+        motion.asked = 0
+    machine.sample(now)
+    assert sum(motion.asked for motion in states.values()) == 1
+
+
+def test_a_cross_fading_machine_shows_what_a_cross_fade_shows():
+    machine = StateMachine({"a": Swing(0), "b": Swing(1)}, "a")
+    fade = CrossFade(Swing(0), Swing(1), 0.5, 0.25)
+    machine.request("b", 0.5, crossfade=0.25)
+    for time in (0.4, 0.55, 0.7, 0.9):
+        assert same(machine.sample(time), fade.sample(time))
+    a, b = machine.travel(0.3, 1.0), fade.travel(0.3, 1.0)
+    assert (a.x, a.z, a.yaw) == pytest.approx((b.x, b.z, b.yaw))
 
 
 def test_a_plane_of_any_motions_blends_what_has_no_phase():

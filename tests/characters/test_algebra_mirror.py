@@ -109,10 +109,10 @@ def test_a_motion_without_steps_is_mirrored_in_time():
 
 def test_morphs_of_the_sides_change_places(skeleton):
     mirror = Mirror.of(skeleton, ("happy", "blinkLeft", "blinkRight"))
-    pose = Pose(
-        skeleton.rest.translations, skeleton.rest.rotations, None, np.array([0.1, 0.2, 0.3])
-    )
-    assert mirror.pose(pose).morphs.tolist() == [0.1, 0.3, 0.2]
+    rest, looks = skeleton.rest, np.array([0.1, 0.2, 0.3])
+    mirrored = mirror.pose(Pose(rest.translations, rest.rotations, None, looks)).morphs
+    assert mirrored is not None
+    assert mirrored.tolist() == [0.1, 0.3, 0.2]
 
 
 def test_a_body_that_looks_aside_or_lacks_a_hand_is_refused():
