@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 
 _RATES = (24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0)
 _FALLBACK_RATE = 120.0  # keys at no common rate: finer than any that people animate at
+_STRAIGHT = 0.2  # [rad] from frame to frame; going straight there is 0.06 mm off, a metre away
 _FASTEST = 1000.0  # [Hz] that a file may state
 _LONGEST = 3600.0  # [s]; a longer one is a damaged file that would eat the memory
 
@@ -53,7 +54,7 @@ def _clip(
     if isinstance(stated, int | float) and 0 < stated <= _FASTEST:
         rate = float(stated)
     else:
-        rate = _rate(keys - start)
+        rate = _fine_enough(_rate(keys - start), tracks)
     frames = round(length * rate) + 1
     file.budget.spend(frames * (10 * len(skeleton) + len(morphs.names)), f"its {length:.0f} s")
     poses = _poses(tracks, start + np.arange(frames) / rate, skeleton, morphs)
@@ -89,13 +90,20 @@ def _poses(tracks: list[Track], times: Array, skeleton: Skeleton, morphs: MorphT
 
 
 def _rate(keys: Array) -> float:
-    """Return the lowest usual rate [Hz] that has a frame at every key."""
-    gaps = np.diff(keys)
-    own = (1.0 / gaps.min(),) if len(gaps) and gaps.min() > 1 / 240 else ()
-    for rate in (*_RATES, *own):
+    """Return the lowest usual rate [Hz], or that of the keys, which has a frame at every key."""
+    mean = (len(keys) - 1) / keys[-1] if len(keys) > 1 else 0.0
+    for rate in (*_RATES, *((mean,) if 0 < mean < 2 * _FALLBACK_RATE else ())):
         if np.abs(keys * rate - np.round(keys * rate)).max() < 0.01:
             return float(rate)
     return _FALLBACK_RATE
+
+
+def _fine_enough(rate: float, tracks: list[Track]) -> float:
+    """Return the rate times a power of two at which clips, straight between frames, err little."""
+    fastest = max(track.speed for track in tracks)
+    while fastest / rate > _STRAIGHT and rate <= _FALLBACK_RATE:
+        rate *= 2
+    return rate
 
 
 def _closes(poses: Pose, skeleton: Skeleton) -> bool:

@@ -35,6 +35,16 @@ class Track:
     interpolation: str
     """"LINEAR", "STEP" or "CUBICSPLINE"."""
 
+    @property
+    def speed(self) -> float:
+        """How fast it turns at most between keys [rad/s]; 0 where it does not turn but jumps."""
+        spans = np.diff(self.times)
+        if self.interpolation == "STEP" or self.path != "rotation" or not (spans > 0).any():
+            return 0.0
+        turns = self.values[1::3] if self.interpolation == "CUBICSPLINE" else self.values
+        cosines = np.abs((turns[1:] * turns[:-1]).sum(1)).clip(0.0, 1.0)
+        return float((2 * np.arccos(cosines)[spans > 0] / spans[spans > 0]).max())
+
 
 def read_tracks(
     file: GltfFile, animation: Json, tree: NodeTree, morphs: MorphTable, where: str

@@ -2,9 +2,13 @@
 
 import json
 import struct
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+SAMPLES = sorted((Path(__file__).parents[3] / "shared" / "data" / "gltf").glob("*.glb"))
+"""Characters of other makers, where they lie beside the checkout."""
 
 
 def glb(document, blob=b""):

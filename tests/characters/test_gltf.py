@@ -1,6 +1,5 @@
 import base64
 import json
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,10 +7,7 @@ import pytest
 from characters import Character, CharacterError, Pose, rotations
 from characters.character import skin
 from characters.formats import gltf, load_clip
-from tests.characters.built_gltf import build_arm, glb
-
-# Characters of other makers, where they lie beside the checkout.
-SAMPLES = sorted((Path(__file__).parents[3] / "shared" / "data" / "gltf").glob("*.glb"))
+from tests.characters.built_gltf import SAMPLES, build_arm, glb
 
 
 @pytest.fixture
@@ -215,7 +211,7 @@ def test_a_file_with_any_number_changed_loads_or_is_refused(tmp_path, arm):
     text = json.dumps({**arm.document, "buffers": [{"byteLength": len(arm.blob)}]})
     digits = [at for at, letter in enumerate(text) if letter.isdigit()]
     path = tmp_path / "odd.glb"
-    for at in rng.choice(digits, 150):
+    for at in rng.choice(digits, 60):
         changed = text[:at] + str(rng.integers(10)) + text[at + 1 :]
         path.write_bytes(glb(changed, arm.blob))
         assert "\n" not in complaint(path)

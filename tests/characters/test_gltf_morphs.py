@@ -136,7 +136,7 @@ def block(names, own):
 
 
 @given(meshes_of_morphs())
-@settings(max_examples=40)
+@settings(max_examples=25)
 def test_morphs_survive_saving_and_loading(drawn):
     character = block(*drawn)
     names, own = drawn
