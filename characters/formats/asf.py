@@ -63,7 +63,9 @@ class Acclaim:
             own: list[Turn] = []
             for column, dof in enumerate(bone.dof, start=start):
                 if dof == "l":
-                    slides += [Slide(child, bone.along, column) for child in children[joint]]
+                    slides += [
+                        Slide(child, bone.along, column) for child in children.get(joint, ())
+                    ]
                 elif dof[0] == "t":
                     slides.append(Slide(joint, frame[:, "xyz".index(dof[1])], column))
                 else:
@@ -88,10 +90,14 @@ def load(path: "str | Path") -> Acclaim:
     names = [bone.name for bone in bones]
     places: list[Array] = [bones[0].position]
     places += [bones[parent].along * bones[parent].length for parent in parents[1:]]
+    inner, taken = set(parents), set(names)
     for joint, bone in enumerate(bones):
-        if joint and joint not in parents:
+        if joint and joint not in inner:
             end = bone.name + "_end"
-            names.append(end if end not in names else end + "_2")
+            while end in taken:
+                end += "_end"
+            taken.add(end)
+            names.append(end)
             parents.append(joint)
             places.append(bone.along * bone.length)
     turns = np.tile(rotations.IDENTITY, (len(names), 1))

@@ -72,7 +72,8 @@ def read_bones(path: Path, sections: dict[str, list[Line]]) -> tuple[list[Bone],
         waiting += [(len(order), child) for child in reversed(children.get(name, []))]
         order.append(name)
         parents.append(parent)
-    lost = [name for name in bones if name not in set(order)]
+    hanging = set(order)
+    lost = [name for name in bones if name not in hanging]
     if lost:
         raise CharacterError(
             f"{path}: bone {shown(lost[0])} does not hang on the root; "
