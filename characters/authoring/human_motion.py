@@ -4,20 +4,22 @@ Amplitudes and phases after the descriptions in Perry & Burnfield, "Gait Analysi
 Williams, "The Animator's Survival Kit" (2001), freely exaggerated. Phase 0 is the left heel strike.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from characters import rotations
-from characters.authoring.gait import Foot, FootMotion, Path, Steps, foot_motion
+from characters.authoring.gait import FootMotion, Path, Steps, foot_motion
+from characters.authoring.human_acting import posed
+from characters.authoring.human_limbs import FOOT, SIDES, bent_elbow, curl, hang_arm, turned
+from characters.authoring.human_loose import drag
 from characters.authoring.rig import Puppet, mirrored
 from characters.authoring.shapes import Array
 from characters.clip import Clip
 from characters.pose import Pose, Skeleton
 
 RATE = 60.0
-FOOT = Foot(ankle=0.095, heel=-0.07, ball=(0.03, 0.115), toes=0.09)
-SIDES = (("Left", 1.0), ("Right", -1.0))
 
 
 @dataclass(frozen=True)
@@ -60,9 +62,18 @@ class Style:
     reach: float
     """Greatest length of a leg, as a part of a straight one."""
 
+    head: float
+    """How far the head nods and tilts after the chest."""
 
-WALK = Style(0.028, 0.06, 0.024, 9, 5, 4, 15, 30, 4, 24, 16, 0.994)
-RUN = Style(0.032, 0.15, 0.012, 12, 5, 13, 26, 44, 12, 86, 18, 0.985)
+    fist: float
+    """How far the fingers are bent."""
+
+    mood: Mapping[str, float]
+    """What the face says: morphs."""
+
+
+WALK = Style(0.028, 0.06, 0.024, 9, 5, 4, 15, 30, 4, 24, 16, 0.994, 2.0, 18, {"happy": 0.12})
+RUN = Style(0.032, 0.15, 0.012, 12, 5, 13, 26, 44, 12, 86, 18, 0.985, 3.6, 58, {"happy": 0.4})
 
 
 @dataclass(frozen=True)
@@ -128,20 +139,15 @@ def stride(skeleton: Skeleton, name: str, gait: Gait) -> Clip:
     for side, foot in feet.items():
         puppet.place_foot(side, foot.ankle, foot.facing, foot.toe)
     where, yaw = path.at(phase * steps.cycle)
+    drag(puppet, steps.cycle, path.speed * path.yaw_rate)
     puppet.shift("root", np.stack([where[:, 0], 0 * yaw, where[:, 1]], axis=-1))
     puppet.turn("root", rotations.about("y", yaw))
-    return Clip(name, RATE, puppet.pose, loop=True, root_motion=True)
+    return Clip(name, RATE, posed(puppet, style.mood), loop=True, root_motion=True)
 
 
 def _wave(phase: Array, peak: float, times: int = 1) -> Array:
     """Return a cosine that is 1 at phase `peak`, `times` times a cycle."""
     return np.asarray(np.cos(2 * np.pi * times * (phase - peak)))
-
-
-def turned(x: Array | float = 0, y: Array | float = 0, z: Array | float = 0) -> Array:
-    """Return the rotation about y, then x, then z of the body, in degrees."""
-    x, y, z = np.broadcast_arrays(x, y, z)
-    return rotations.from_euler("yxz", np.radians(np.stack([y, x, z], axis=-1)))
 
 
 def _carry_pelvis(puppet: Puppet, style: Style, phase: Array, bank: float) -> None:
@@ -176,9 +182,9 @@ def _carry_trunk(puppet: Puppet, style: Style, phase: Array, yaw_rate: float) ->
         roll = -style.pelvis_list * 0.55 * _wave(phase, 0.2 + lag)
         pitch = 0.22 * style.lean + 0.8 * _wave(phase, 0.12 + lag, 2)
         puppet.turn(name, turned(pitch, yaw, roll))
-    gaze = turned(
-        -5 + 1.2 * _wave(phase, 0.16, 2), 0.12 * into + 2 * _wave(phase, 0.1), -0.04 * into
-    )
+    # The head is heavy: it dips after each landing, and tilts and turns a little late.
+    dip, tilt = style.head * _wave(phase, 0.17, 2), 0.7 * style.head * _wave(phase, 0.32)
+    gaze = turned(-5 + dip, 0.12 * into + 2 * _wave(phase, 0.12), tilt - 0.04 * into)
     above = rotations.multiply(rotations.conjugate(puppet.facing("chest")), gaze)
     puppet.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.45))
     puppet.face("head", gaze)
@@ -197,23 +203,9 @@ def _swing_arms(puppet: Puppet, style: Style, phase: Array) -> None:
         bend = style.elbow + style.elbow_swing * _wave(phase, front + 0.07)
         inward = 0.16 * bend + 6 * _wave(phase, front)
         puppet.turn(f"{side}ForeArm", bent_elbow(puppet, side, sign, bend, inward))
-        puppet.turn(f"{side}Hand", turned(9 * _wave(phase, front + 0.17) - 6, 0, sign * -4))
-
-
-def hang_arm(puppet: Puppet, side: str, sign: float, swing: Array, lower: Array | float) -> None:
-    """Lower an arm from the A-pose towards the body and swing it forward [degrees]."""
-    lowered = turned(z=-sign * np.asarray(lower) + 0 * swing)
-    puppet.turn(f"{side}Arm", rotations.multiply(turned(x=-swing), lowered))
-
-
-def bent_elbow(puppet: Puppet, side: str, sign: float, bend: Array, inward: Array) -> Array:
-    """Return the bend of an elbow about the axis across the upper arm [degrees]."""
-    upper = puppet.rest(f"{side}ForeArm") - puppet.rest(f"{side}Arm")
-    hinge = np.cross(upper, [0.0, 0.0, 1.0])  # bends the forearm forward
-    hinge /= np.linalg.norm(hinge)
-    flex = rotations.about(hinge, np.radians(bend))
-    twist = rotations.about(upper / np.linalg.norm(upper), -sign * np.radians(inward) * 1.0)
-    return rotations.multiply(twist, flex)
+        late = _wave(phase, front + 0.17)
+        puppet.turn(f"{side}Hand", turned(14 * late - 6, 0, sign * -4))
+        curl(puppet, side, style.fist, 0.4 * style.fist)
 
 
 def mirrored_half_cycle(clip: Clip, skeleton: Skeleton, name: str) -> Clip:
@@ -221,12 +213,14 @@ def mirrored_half_cycle(clip: Clip, skeleton: Skeleton, name: str) -> Clip:
     image = mirrored(clip.in_place, skeleton)
     half = (len(clip) - 1) // 2
     order = (np.arange(len(clip)) + half) % (len(clip) - 1)
-    pose = Pose(image.translations[order], image.rotations[order])
+    pose, morphs = Pose(image.translations[order], image.rotations[order]), clip.poses.morphs
     x, z, yaw = (clip.track * [-1.0, 1.0, -1.0]).T  # an even arc looks the same from any frame
     translations, turns = pose.translations.copy(), pose.rotations.copy()
     translations[:, 0] += np.stack([x, 0 * x, z], axis=-1)
     turns[:, 0] = rotations.multiply(rotations.about("y", yaw), turns[:, 0])
-    return Clip(name, clip.rate, Pose(translations, turns), clip.loop, clip.root_motion)
+    return Clip(
+        name, clip.rate, Pose(translations, turns, None, morphs), clip.loop, clip.root_motion
+    )
 
 
 def locomotion(skeleton: Skeleton) -> dict[str, Clip]:

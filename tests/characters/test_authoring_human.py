@@ -5,7 +5,7 @@ import pytest
 
 from characters import rotations
 from characters.authoring.human import build_human
-from characters.authoring.human_motion import FOOT
+from characters.authoring.human_limbs import FOOT
 from characters.character import Character, skin
 from characters.clip import Clip
 from characters.mesh import Mesh
@@ -13,8 +13,10 @@ from characters.mesh import Mesh
 WALKS = [f"Walk{side}{size}" for side in ("Left", "Right") for size in ("Short", "Medium", "Wide")]
 RUNS = [f"Run{side}{size}" for side in ("Left", "Right") for size in ("Medium", "Wide")]
 GAITS = ["Walk", *WALKS, "Run", *RUNS]
-CLIPS = ["idle", *GAITS]
+ACTIONS = ["wave", "cheer", "jump", "nod", "shake"]
+CLIPS = ["idle", *GAITS, *ACTIONS]
 SPEEDS = {"Walk": (1.35, 0.0), "Run": (3.4, 0.0)}
+SHUTTING = ["blink", "blinkLeft", "blinkRight"]
 YAW_RATES = {"Wide": 45.0, "Medium": 90.0, "Short": 135.0}
 
 
@@ -54,8 +56,9 @@ def test_the_asset_is_what_the_code_makes(human: Character, made: Character) -> 
             assert np.allclose(shipped_morph.shifts, morph.shifts, atol=1e-5)
 
 
-def test_knows_to_wait_and_the_twelve_gaits_and_more_turns(human: Character) -> None:
+def test_knows_to_wait_the_twelve_gaits_and_five_actions(human: Character) -> None:
     assert sorted(human.clips) == sorted(CLIPS)
+    assert [name for name in CLIPS if not human.clips[name].loop] == ACTIONS
 
 
 def test_stands_a_person_tall_on_the_ground(human: Character) -> None:
@@ -64,11 +67,28 @@ def test_stands_a_person_tall_on_the_ground(human: Character) -> None:
 
 
 @pytest.mark.parametrize("name", CLIPS)
-def test_a_loop_closes(human: Character, name: str) -> None:
+def test_a_clip_ends_as_it_begins(human: Character, name: str) -> None:
     poses = human.clips[name].in_place
     assert np.allclose(poses.translations[0], poses.translations[-1], atol=1e-5)
     first = rotations.align(poses.rotations[0], poses.rotations[-1])
     assert np.allclose(first, poses.rotations[-1], atol=1e-5)
+    assert poses.morphs is not None
+    assert np.allclose(poses.morphs[0], poses.morphs[-1], atol=1e-5)
+
+
+@pytest.mark.parametrize("name", ACTIONS)
+def test_an_action_sets_off_from_waiting(human: Character, name: str) -> None:
+    waiting, first = (human.clips[n].in_place[0].globals(human.skeleton) for n in ("idle", name))
+    assert np.linalg.norm((first - waiting)[:, :3, 3], axis=1).max() < 0.03
+
+
+@pytest.mark.parametrize("name", CLIPS)
+def test_blinking_is_left_to_the_life_added_at_run_time(human: Character, name: str) -> None:
+    morphs = human.clips[name].poses.morphs
+    assert morphs is not None
+    assert not morphs[:, [human.morphs.index(n) for n in SHUTTING]].any()
+    assert morphs.min() >= 0.0
+    assert morphs.max() <= 1.0
 
 
 @pytest.mark.parametrize("name", GAITS)
@@ -100,7 +120,7 @@ def test_a_planted_foot_does_not_slide(human: Character, name: str, side: str) -
                 assert np.ptp(stance[:, [0, 2]], axis=0).max() < 0.002
 
 
-@pytest.mark.parametrize("name", ["idle", "Walk", "WalkLeftShort", "Run", "RunRightMedium"])
+@pytest.mark.parametrize("name", ["idle", "Walk", "WalkLeftShort", "Run", "RunRightMedium", "jump"])
 def test_no_foot_sinks_into_the_ground(human: Character, name: str) -> None:
     shoes = _below_the_knee(human.meshes[0])
     poses = human.clips[name].in_place.globals(human.skeleton)

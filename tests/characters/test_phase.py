@@ -69,7 +69,7 @@ def test_feet_are_found_by_the_names_that_people_give_them(names):
 def test_the_bundled_gaits_land_their_left_foot_at_phase_nought():
     human = Character.load("human")
     for name, clip in human.clips.items():
-        if name == "idle":
+        if name == "idle" or not clip.loop:
             continue
         motion = phased(clip, human.skeleton)
         assert np.allclose(np.array(motion.marks) / clip.duration, [0.0, 0.5], atol=0.03), name
