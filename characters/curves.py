@@ -8,7 +8,7 @@ import itertools
 import math
 from bisect import bisect_right
 from dataclasses import dataclass
-from typing import Literal, Protocol, TypeAlias, get_args, runtime_checkable
+from typing import Literal, Protocol, TypeAlias, get_args
 
 from characters.errors import CharacterError
 
@@ -16,7 +16,6 @@ Ease = Literal["linear", "cubic", "gonio"]
 """How a fade goes: in a straight line, along 3u² − 2u³, or along half a cosine."""
 
 
-@runtime_checkable
 class Curve(Protocol):
     """A weight or a scale that changes over time."""
 
@@ -34,7 +33,7 @@ Weight: TypeAlias = "float | Curve"
 
 def value(weight: Weight, time: float, duration: float) -> float:
     """Return a weight at a time [s] since the start of something that lasts `duration` [s]."""
-    return weight.at(time, duration) if isinstance(weight, Curve) else float(weight)
+    return float(weight) if isinstance(weight, (int, float)) else weight.at(time, duration)
 
 
 def ease(u: float, shape: Ease) -> float:

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from characters import rotations
-from characters.curves import Curve, Weight, value
+from characters.curves import Weight, value
 from characters.errors import CharacterError
 from characters.masks import Mask, check_mask
 from characters.motion import Motion, Step
@@ -57,9 +57,9 @@ class Layered:
 
         It is the base's as far as the mask leaves out joint 0.
         """
-        if isinstance(self.weight, Curve):
-            return accumulated(start, end, self._moved)
-        return self._moved(start, end, start)
+        if isinstance(self.weight, (int, float)):
+            return self._moved(start, end, start)
+        return accumulated(start, end, self._moved)
 
     def _moved(self, start: float, end: float, moment: float) -> Step:
         share = value(self.weight, moment, self.duration)
@@ -97,7 +97,7 @@ class Added:
     def __post_init__(self) -> None:
         """Refuse a mask that is none."""
         check_mask("added layer", self.mask)
-        if not isinstance(self.weight, Curve) and not np.isfinite(self.weight):
+        if isinstance(self.weight, (int, float)) and not np.isfinite(self.weight):
             raise CharacterError(f"added layer: weight {self.weight}; give a finite number")
 
     @property
@@ -196,5 +196,5 @@ def _check_joints(what: str, a: Pose, b: Pose) -> None:
 
 
 def _check_weight(what: str, weight: Weight) -> None:
-    if not isinstance(weight, Curve) and not 0.0 <= weight <= 1.0:
+    if isinstance(weight, (int, float)) and not 0.0 <= weight <= 1.0:
         raise CharacterError(f"{what}: weight {weight}; give 0 to 1")

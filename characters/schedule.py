@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from characters import rotations
-from characters.curves import Curve, Weight, ease, value
+from characters.curves import Weight, ease, value
 from characters.errors import CharacterError
 from characters.masks import Mask, check_mask
 from characters.motion import Motion, Step
@@ -62,7 +62,7 @@ class Action:
         what = f"action {self.name!r}"
         check_mask(what, self.mask)
         for weight in (self.weight, self.morphs):
-            if not isinstance(weight, Curve) and not 0.0 <= weight < math.inf:
+            if isinstance(weight, (int, float)) and not 0.0 <= weight < math.inf:
                 raise CharacterError(f"{what}: weight {weight}; give 0 or more")
         if not math.isfinite(self.start) or math.isnan(self.until) or not self.release >= 0.0:
             raise CharacterError(
