@@ -14,6 +14,7 @@ from characters.formats.gltf_document import DamagedFileError, Json, at, parse
 
 Array = NDArray[np.float64]
 
+_MOST_ZEROS = 2_000_000  # rows without bytes behind them
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 
 COMPONENTS: dict[int, type[np.generic]] = {
@@ -45,8 +46,8 @@ _UNDERSTOOD = {
 class Budget:
     """How much may still come out of a file: a few bytes can claim to be gigabytes."""
 
-    numbers: int = 150_000_000
-    """Numbers in arrays, over all that is read; 1.2 GB."""
+    numbers: int = 60_000_000
+    """Numbers in arrays, over all that is read; half a gigabyte."""
 
     pixels: int = 64_000_000
     """Of all images together."""
@@ -152,6 +153,8 @@ class GltfFile:
             if "bufferView" in accessor:
                 offset = accessor.get("byteOffset", 0)
                 values = self._strided(accessor["bufferView"], offset, dtype, count, width)
+            elif count > _MOST_ZEROS:
+                raise DamagedFileError(f"has a count of {count}, and no data")
             else:
                 values = np.zeros((count, width), dtype)
             if "sparse" in accessor:
