@@ -12,6 +12,9 @@ from characters.smoothing import eased
 from characters.trees.building import Builder, Steering
 from characters.trees.plan import PARAMETERS, Change, Plan
 
+LAGS = {"speed": 0.15, "angular": 0.15, "weight": 0.12}
+"""How slowly parameters follow where the file does not say [s]: a wish that jumps is no pop."""
+
 _ARRIVED, _LEFT_AGAIN = 0.05, 0.065  # [m on the table], as in `characters.steering`
 _BRAKING = 6.0  # Speed for each metre of the character that is left to go
 _SLOW_TURN = math.radians(60)  # a target farther round than this is approached at a walk
@@ -88,7 +91,7 @@ class TreePlayer:
             if not self._arrived:
                 wish |= self._course(command, (x, z), away)
         for name, value in wish.items():
-            lag = self._plan.lags.get(name, 0.0)
+            lag = self._plan.lags.get(name, LAGS.get(name, 0.0))
             self._values[name] = eased(self._values[name], value, elapsed, lag) if lag else value
 
     def _course(
@@ -119,7 +122,8 @@ class TreePlayer:
             if _leads_on(change, state) and change.when.holds(values):
                 self._steering[change.end].restart(self._values)
                 self._machine.length = change.seconds
-                self._machine.request(change.end, now)
+                crossfade = change.seconds if change.crossfade else 0.0
+                self._machine.request(change.end, now, crossfade)
                 return
 
     def _report(self, command: CharacterCommand) -> None:

@@ -162,7 +162,11 @@ class Change:
     """What must hold."""
 
     seconds: float
-    """How long what the two differ by fades [s]."""
+    """How long it takes [s]."""
+
+    crossfade: bool = False
+    """Whether both play meanwhile and are mixed; else the new state takes over at once and what
+    the two differ by fades (inertialisation)."""
 
 
 @dataclass(frozen=True)
@@ -210,7 +214,7 @@ class Plan:
     """By name."""
 
     lags: Mapping[str, float] = field(default_factory=dict)
-    """How slowly parameters follow [s]; others follow at once."""
+    """How slowly parameters follow [s]; of others `characters.trees.performer.LAGS` says so."""
 
     @property
     def roots(self) -> tuple[Node, ...]:

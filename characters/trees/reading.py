@@ -97,7 +97,7 @@ class _Reader:
 
     def _change(self, given: object, states: Mapping[str, Node], place: str) -> Change:
         table = self._table(given, place)
-        self._only(table, ("from", "to", "when", "seconds"), place)
+        self._only(table, ("from", "to", "when", "seconds", "crossfade"), place)
         for key in ("to", "when"):
             if key not in table:
                 self._refuse(place, f"lacks {key!r}")
@@ -114,7 +114,8 @@ class _Reader:
         seconds = self._number(table.get("seconds", 0.25), f"{place}.seconds")
         if not 0.0 < seconds <= 10.0:
             self._refuse(f"{place}.seconds", f"{seconds} s; give more than 0 and at most 10")
-        return Change(start, end, when, seconds)
+        crossfade = self._field(table.get("crossfade", False), "flag", f"{place}.crossfade")
+        return Change(start, end, when, seconds, bool(crossfade))
 
     def _lags(self) -> dict[str, float]:
         table = self._table(self._document.get("parameters", {}), "parameters")
