@@ -30,6 +30,9 @@ def mix(poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
     if len(poses) == 1:
         return poses[0]
     share = np.asarray(weights, float)
+    if any(pose.rotations.shape != poses[0].rotations.shape for pose in poses):
+        shapes = ", ".join(str(pose.rotations.shape) for pose in poses)
+        raise CharacterError(f"mix: poses of shapes {shapes}; retarget them to one skeleton")
     turns = np.stack([pose.rotations for pose in poses])
     turns = rotations.align(turns, turns[int(share.argmax())])
     scales = None

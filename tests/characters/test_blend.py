@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters import BlendSpace1D, BlendSpace2D, CharacterError, Motion, Pose, rotations
-from characters.blend import Blend, Paced, mix
+from characters.blend import Blend, Paced, mix, shares
 from characters.phase import Cyclic, Phased, Still, phased
 
 coordinates = st.floats(-2, 2)
@@ -51,6 +51,28 @@ def test_weights_in_the_plane_are_continuous(ps, at, direction):
     near = np.array(at) + 1e-6 * np.array(direction)
     # Each influence is Lipschitz with one over the least distance, here 1 / 0.05.
     assert np.allclose(plane(ps).weights(near), plane(ps).weights(at), atol=3e-4)
+
+
+@given(points, point, point)
+def test_weights_in_the_plane_change_no_faster_than_points_are_near(ps, a, b):
+    gaps = [np.hypot(p[0] - q[0], p[1] - q[1]) for i, p in enumerate(ps) for q in ps[:i]]
+    # An influence changes by 1 over a gap, and the nearest point's alone is one half or more.
+    steepest = 2 * (1 + len(ps)) / min(gaps, default=1.0)
+    change = np.subtract(plane(ps).weights(a), plane(ps).weights(b))
+    assert np.abs(change).max() <= steepest * np.hypot(a[0] - b[0], a[1] - b[1]) + 1e-9
+
+
+@given(st.lists(st.floats(0, 9), min_size=1, max_size=5).filter(lambda w: sum(w) > 1e-3))
+def test_shares_make_weights_that_a_blend_takes(weights):
+    assert Blend(tuple(still(0.1) for _ in weights), shares(weights)).duration == pytest.approx(1)
+    with pytest.raises(CharacterError, match="one above it"):
+        shares([0.0 for _ in weights])
+
+
+def test_poses_of_two_skeletons_are_not_mixed():
+    two = Pose(np.zeros((2, 3)), np.tile(rotations.IDENTITY, (2, 1)))
+    with pytest.raises(CharacterError, match="retarget"):
+        mix([still(0.0).pose, two], [0.5, 0.5])
 
 
 @given(st.floats(-150, 150))
