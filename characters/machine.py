@@ -2,7 +2,7 @@
 
 import math
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -38,6 +38,10 @@ class _Switch:
         """Return how much of the new state is shown at a time [s], 0…1."""
         return ease((time - self.time) / self.fade, "gonio") if self.below else 1.0
 
+    def plays(self, state: str) -> bool:
+        """Return whether it shows a state, or one below does."""
+        return self.state == state or (self.below is not None and self.below.plays(state))
+
 
 class StateMachine:
     """Named motions and the record of when each was entered; a `Motion`.
@@ -69,11 +73,21 @@ class StateMachine:
         """It plays for ever."""
         return math.inf
 
-    def request(self, state: str, time: float, crossfade: float = 0.0) -> None:
+    def request(
+        self,
+        state: str,
+        time: float,
+        crossfade: float = 0.0,
+        begin: Callable[[], None] | None = None,
+    ) -> None:
         """Enter a state at a time [s], not before the last request; nothing if it is the state.
 
         Its difference to what was shown fades (inertialisation), unless a time is given for which
-        the old state goes on and is mixed with the new one [s].
+        the old state goes on and is mixed with the new one [s]. A state that still fades out
+        cannot play twice: it is entered again by inertialisation.
+
+        `begin` starts the state's motion over, if that must be told; it is called once the old
+        motion has been looked at.
 
         Raises
         ------
@@ -95,22 +109,27 @@ class StateMachine:
         last = self._switches[-1]
         if last.below is not None and last.weight(time) >= 1.0:
             last = replace(last, below=None)  # or a long session would drag all its states along
-        if crossfade > 0.0:
+        if crossfade > 0.0 and not last.plays(state):
+            if begin is not None:
+                begin()
             switch = _Switch(time, state, None, None, last, crossfade)
         else:
-            switch = self._inertial(last, state, time)
+            switch = self._inertial(last, state, time, begin)
         # The last two states are enough to look back over one frame.
         self._switches = [last, switch]
 
-    def _inertial(self, last: _Switch, state: str, time: float) -> _Switch:
+    def _inertial(
+        self, last: _Switch, state: str, time: float, begin: Callable[[], None] | None
+    ) -> _Switch:
         """Return the switch to a state whose difference to what was shown fades."""
         motion = self.states[state]
         # Forward differences: just before its start, a loop that does not quite close would jump.
         old = (self._shown(last, time), self._shown(last, time + _PROBE))
+        went = self._moved(last, time, time + _PROBE)
+        if begin is not None:
+            begin()
         new = (motion.sample(0.0), motion.sample(_PROBE))
-        drift = _velocity(self._moved(last, time, time + _PROBE)) - _velocity(
-            motion.travel(0.0, _PROBE)
-        )
+        drift = _velocity(went) - _velocity(motion.travel(0.0, _PROBE))
         return _Switch(
             time,
             state,

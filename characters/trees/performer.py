@@ -120,11 +120,19 @@ class TreePlayer:
         values["action"] = command.action
         for change in machine.changes:
             if _leads_on(change, state) and change.when.holds(values):
-                self._steering[change.end].restart(self._values)
-                self._machine.length = change.seconds
-                crossfade = change.seconds if change.crossfade else 0.0
-                self._machine.request(change.end, now, crossfade)
+                self._enter(change, now)
                 return
+
+    def _enter(self, change: Change, now: float) -> None:
+        """Enter a state; its motion starts over once the old one has been looked at."""
+        steering = self._steering[change.end]
+        self._machine.length = change.seconds
+        self._machine.request(
+            change.end,
+            now,
+            change.seconds if change.crossfade else 0.0,
+            lambda: steering.restart(self._values),
+        )
 
     def _report(self, command: CharacterCommand) -> None:
         self.state = self._machine.state or command.action
