@@ -114,6 +114,8 @@ def resampled(track: Track, times: Array) -> Array:
         tangents_in, values, tangents_out = values[0::3], values[1::3], values[2::3]
     if len(keys) == 1:
         return np.repeat(values[:1], len(times), axis=0)
+    if len(keys) == len(times) and (np.abs(keys - times) <= 1e-3 * (keys[1] - keys[0])).all():
+        return values  # baked at this very rate, as most are
     before = np.clip(np.searchsorted(keys, times, side="right") - 1, 0, len(keys) - 2)
     span = keys[before + 1] - keys[before]
     u = np.clip((times - keys[before]) / np.where(span > 0, span, 1.0), 0.0, 1.0)
