@@ -35,7 +35,7 @@ WAIST = -0.014, 0.0045
 """Where the two shells meet, and half the gap between them [m]."""
 CHEST_LAMP = 0.0175
 """Radius of the lamp on the chest [m]."""
-CELL = 0.0102
+CELL = 0.0118
 """Edge of a triangle of the trunk [m]."""
 
 
@@ -79,15 +79,15 @@ def _cores(bound: Skeleton) -> list[Mesh]:
     neck += [at["head"] + [0, 0.015, 0.012]]
     tail = [at["tail1"] + [0, 0.006, 0.03], *(at[name] for name in TAIL), np.array(TAIL_TIP)]
     return [
-        cord(waist, [0.044, 0.0505, 0.0515, 0.0500, 0.042], RUBBER, spine, bound, 24),
-        cord(neck, 0.0245, RUBBER, ("chest", *NECK, "head", "head"), bound, 14),
+        cord(waist, [0.044, 0.0505, 0.0515, 0.0500, 0.042], RUBBER, spine, bound, 18),
+        cord(neck, 0.0245, RUBBER, ("chest", *NECK, "head", "head"), bound, 10),
         cord(
             tail,
             [0.026, 0.026, 0.0215, 0.017, 0.013, 0.0095, 0.008],
             RUBBER,
             ("hips", *TAIL, TAIL[-1]),
             bound,
-            12,
+            8,
         ),
     ]
 
@@ -113,7 +113,7 @@ def _tail(bound: Skeleton) -> list[Mesh]:
         color = PANEL if number % 2 else SHELL
         low, high = a + 0.05 * (b - a), a + 0.86 * (b - a)
         each = radii[number], 0.35 * radii[number] + 0.65 * radii[number + 1]
-        cups.append(cup(low, high, each, color, name, bound, 14))
+        cups.append(cup(low, high, each, color, name, bound, 13))
     return cups
 
 
@@ -141,7 +141,7 @@ def _legs(bound: Skeleton) -> list[Mesh]:
 def _ball(place: Array, radius: float, joint: str, bound: Skeleton) -> Mesh:
     angle = np.radians([180, 135, 90, 45, 0])
     rings = radius * np.stack([np.sin(angle), np.cos(angle)], axis=1)
-    return lathe(rings, [RUBBER] * 4, toward([1.0, 0, 0], place), joint, bound, 14)
+    return lathe(rings, [RUBBER] * 4, toward([1.0, 0, 0], place), joint, bound, 10)
 
 
 def _foot(place: Array, wide: float, joint: str, bound: Skeleton) -> list[Mesh]:
@@ -151,12 +151,12 @@ def _foot(place: Array, wide: float, joint: str, bound: Skeleton) -> list[Mesh]:
     )
     frame = toward([0.0, 1.0, 0.0], place)
     frame[:3, :3] = frame[:3, :3] @ np.diag([wide * 1.02, wide * 1.16, 0.0310])
-    pieces = [lathe(profile, [RUBBER] * 3 + [SHELL] * 3, frame, joint, bound, 16)]
+    pieces = [lathe(profile, [RUBBER] * 3 + [SHELL] * 3, frame, joint, bound, 14)]
     for across in (-0.5, 0.0, 0.5):
         way = np.array([np.sin(across), 0.0, np.cos(across)])
         toe = place + wide * way * [0.98, 0, 1.08] + [0, 0.0115, 0]
         dome = 0.0064 * np.array([[0, -1], [0.9, -0.6], [1, 0], [0.7, 0.7], [0, 1]])
-        pieces.append(lathe(dome, [TRIM] * 4, toward(way, toe), joint, bound, 7))
+        pieces.append(lathe(dome, [TRIM] * 4, toward(way, toe), joint, bound, 6))
     return pieces
 
 

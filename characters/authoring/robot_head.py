@@ -44,7 +44,7 @@ SNOUT = Ellipsoid(
 LAMP = 0.0195
 """Radius of the lamps at the temples [m]."""
 HEAD = Union((SKULL, SNOUT), 0.030)
-PUPIL, CELL = rgb("#0b0e16"), 0.0076
+PUPIL, CELL = rgb("#0b0e16"), 0.0088
 GAZE = np.array([0.16, 0.12, 1.0]) / np.linalg.norm([0.16, 0.12, 1.0])
 RADIUS = 0.0222
 """Of an eye [m]."""
@@ -193,7 +193,7 @@ def _sides(side: float, bound: Skeleton) -> list[Mesh]:
     ring = toward(gaze, center - 0.0050 * gaze)
     upper = _lid(LID_OPEN + np.pi / 2, 1.075, f"{name}UpperLid", center, bound)
     lower = _lid(-LOWER_LID_OPEN - np.pi / 2, 1.050, f"{name}LowerLid", center, bound)
-    bezel_mesh = lathe(bezel, [TRIM, TRIM, TRIM, RUBBER, RUBBER], ring, "head", bound, 24)
+    bezel_mesh = lathe(bezel, [TRIM, TRIM, TRIM, RUBBER, RUBBER], ring, "head", bound, 20)
     return [bezel_mesh, upper, lower, socket(temple(side), LAMP, "head", bound)]
 
 
@@ -205,7 +205,7 @@ def _lid(elevation: float, size: float, joint: str, center: Array, bound: Skelet
     yaw = LID_YAW * (1 if joint.startswith("Left") else -1)
     ahead = np.cos(elevation)
     pole = np.array([ahead * np.sin(yaw), np.sin(elevation), ahead * np.cos(yaw)])
-    return lathe(rings, [RUBBER, RUBBER, *[PANEL] * 4], toward(pole, center), joint, bound, 20)
+    return lathe(rings, [RUBBER, RUBBER, *[PANEL] * 4], toward(pole, center), joint, bound, 18)
 
 
 def eyes(bound: Skeleton) -> list[Mesh]:
@@ -216,7 +216,7 @@ def eyes(bound: Skeleton) -> list[Mesh]:
         angle = np.radians([180, 120, 90, 70, 66, 48, 24, 0])
         rings = RADIUS * np.stack([np.sin(angle), np.cos(angle)], axis=1)
         bands = [GLASS, GLASS, WHITE, RUBBER, GLASS, PUPIL, PUPIL]
-        pieces.append(lathe(rings, bands, toward(gaze, center), name, bound, 22))
+        pieces.append(lathe(rings, bands, toward(gaze, center), name, bound, 20))
         for across, up, radius in ((-0.30, 0.40, 0.0064), (0.26, -0.30, 0.0030)):
             shine = gaze + np.array([across, up, 0.0])  # on the same side in both: one sun
             wide = radius / RADIUS * np.array([0.0, 1.0, 0.5, 0.0])
@@ -239,5 +239,5 @@ def lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
     rings = size * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     for side, name in ((1.0, "LeftIris"), (-1.0, "RightIris")):
         place = toward(GAZE * [side, 1, 1], np.array(EYE) * [side, 1, 1])
-        pieces.append(lathe(rings, [color] * 5, place, f"{name}_{mood}", bound, 20))
+        pieces.append(lathe(rings, [color] * 5, place, f"{name}_{mood}", bound, 18))
     return pieces
