@@ -12,6 +12,8 @@ from app.recorded import recorded_arrows
 from app.runner import PATIENCE_S, Plan
 from app.scenarios import make_scenario, scenario_cube
 from app.session import cues
+from app.show.likeness import Likeness
+from app.show.overlay import likeness_side
 from app.show.screen import Nowhere, Screen, VideoFile
 from characters import Character
 from characters.rendering import create_context
@@ -119,7 +121,10 @@ def open_screen(
     if wish.output is not None:
         context = create_context()
         closing.callback(context.release)
-        return closing.enter_context(VideoFile(wish.output, source.size, source.rate)), context
+        likeness = Likeness(context, likeness_side(source.size[1]))
+        closing.callback(likeness.close)
+        video = VideoFile(wish.output, source.size, source.rate, likeness)
+        return closing.enter_context(video), context
     from app.show.window import Window  # needs a display's libraries, which a server lacks
 
     window = closing.enter_context(Window(source.size, f"Cubeling: {wish.scenario}"))

@@ -17,7 +17,8 @@ from app.opening import fitting
 from app.playground import Playground
 from app.show.coach import PERIOD, CoachView
 from app.show.coach_lines import write_coverage
-from app.show.overlay import RobotView, overlay
+from app.show.likeness import Likeness
+from app.show.overlay import RobotView, likeness_side, overlay
 from characters.rendering import create_context
 from tracking import CubeModel, open_source, write_sheet
 from tracking.calibration import CubeFinder
@@ -43,17 +44,21 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
         intrinsics = fitting(source.intrinsics, source.size)
         playground = Playground(scenario, intrinsics, context=context)
         closing.callback(playground.close)
+        likeness = Likeness(context, likeness_side(source.size[1]))
+        closing.callback(likeness.close)
         for frame in source:
             step = playground.step(frame)
             if not waiting or step.picture is None:
                 break
+            emotion = step.emotion
+            view = RobotView("ready", emotion.emotion.valence, emotion.label)
+            picture = overlay(
+                step.picture, step, view, likeness
+            )  # each time: the likeness is alive
             if frame.timestamp < waiting[0][0]:
                 continue
             _, name = waiting.pop(0)
-            emotion = step.emotion
-            view = RobotView("ready", emotion.emotion.valence, emotion.label)
             path = FOLDER / f"{scenario}-{name}.jpg"
-            picture = overlay(step.picture, step, view)
             cv2.imwrite(str(path), picture, (cv2.IMWRITE_JPEG_QUALITY, 88))
             Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")
 

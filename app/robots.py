@@ -23,6 +23,7 @@ class RobotLine:
         self._closing = ExitStack()
         self._robot: Robot | None = None
         self._target: EmotionTarget | None = None
+        self._real = False
 
     @classmethod
     def open(cls, url: str, clock: Clock, on_bytes: OnBytes | None = None) -> Self:
@@ -47,6 +48,7 @@ class RobotLine:
         if url == "none":
             return line
         try:
+            line._real = not url.startswith("sim")
             if url == "sim":
                 url = line._closing.enter_context(SimulatedPort(clock=clock)).url
             robot = connect(url, "cubeling", clock=clock, on_bytes=on_bytes)
@@ -78,7 +80,7 @@ class RobotLine:
         telemetry = self._robot.telemetry
         observed = telemetry.observed
         mood = 0.0 if observed is None else observed.valence
-        return RobotView(telemetry.state, mood, telemetry.label or "neutral")
+        return RobotView(telemetry.state, mood, telemetry.label or "neutral", self._real)
 
     def check(self) -> None:
         """Raise `RobotError` if the robot cannot be reached now."""

@@ -89,6 +89,18 @@ class Canvas:
         mask = cached_icon(name, round(size * self.scale))
         self._stamp(mask, round(x * self.scale), round(y * self.scale), color)
 
+    def picture(self, x: float, y: float, image: NDArray[np.uint8], radius: float) -> None:
+        """Lay a picture (height, width, 3) with round corners on the card, from (x, y) on."""
+        height, width = image.shape[:2]
+        left, top = round(x * self.scale), round(y * self.scale)
+        part = self.color[top : top + height, left : left + width]
+        rows, columns = part.shape[:2]
+        cover, gap = (
+            share[:rows, :columns]
+            for share in _shares(width, height, round(radius * self.scale), 255)
+        )
+        part[:] = cv2.blendLinear(image[:rows, :columns], part, cover, gap)
+
     def disc(self, x: float, y: float, radius: float, color: Color) -> None:
         """Fill a circle."""
         # OpenCV's own small circles have corners.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from app.playground import Step
 from app.show.canvas import Canvas, Card, text_width
+from app.show.likeness import Likeness
 from app.show.notice import Notice
 from app.show.palette import ACTION, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
 from app.show.robot_face import draw_face
@@ -22,6 +23,12 @@ LEFT, WIDE = 108.0, 160.0
 
 MOODS_LEFT, MOODS_WIDE = 116.0, 176.0
 """The same of the bar for the robot's mood."""
+
+SIDE, FRAME = 180.0, 8.0
+"""Side of the likeness on its card, and the card's rim about it."""
+
+BESIDE_LEFT = SIDE + 2 * FRAME + 12.0
+"""Where the words beside it begin."""
 
 LEVEL = 70.0
 """How far below a card's top edge its bar is."""
@@ -49,22 +56,41 @@ class RobotView:
     label: str
     """Its word for it: "angry", "neutral", "happy"."""
 
+    real: bool = False
+    """Whether it stands on the desk; one that is simulated, or absent, is drawn instead."""
 
-def cards(step: Step, robot: RobotView, size: tuple[int, int]) -> list[Card]:
-    """Draw all cards for one frame of `size` (width, height)."""
+
+def cards(
+    step: Step, robot: RobotView, size: tuple[int, int], likeness: Likeness | None = None
+) -> list[Card]:
+    """Draw all cards for one frame of `size` (width, height); see `overlay`."""
     scale = size[1] / HEIGHT
     width = size[0] / scale
-    shown = [_hint(step.outcome.hint, width, scale), _robot(robot, width, scale)]
+    shown = [_hint(step.outcome.hint, width, scale)]
+    if likeness is None or robot.real:
+        shown.append(_robot(robot, width, scale))
+    else:
+        shown.append(_absent_robot(robot, likeness.portrait(step.emotion), width, scale))
     if step.controls.camera_from_table is not None:
         shown.append(_action(step, scale))
     return shown
 
 
-def overlay(picture: NDArray[np.uint8], step: Step, robot: RobotView) -> NDArray[np.uint8]:
-    """Return the picture (H, W, 3) with all cards laid over it, in place."""
-    for card in cards(step, robot, (picture.shape[1], picture.shape[0])):
+def overlay(
+    picture: NDArray[np.uint8], step: Step, robot: RobotView, likeness: Likeness | None = None
+) -> NDArray[np.uint8]:
+    """Return the picture (H, W, 3) with all cards laid over it, in place.
+
+    Where no real robot shows what it feels, its likeness does; without one, a drawn face.
+    """
+    for card in cards(step, robot, (picture.shape[1], picture.shape[0]), likeness):
         card.over(picture)
     return picture
+
+
+def likeness_side(height: int) -> int:
+    """Return the side of the likeness in pictures of a height, both in pixels."""
+    return round(SIDE * height / HEIGHT)
 
 
 DIMMED = 0.45
@@ -151,10 +177,30 @@ def _robot(robot: RobotView, width: float, scale: float) -> Card:
     canvas = _robot_blank(words, scale).copy()
     mood = robot.mood if math.isfinite(robot.mood) else 0.0
     draw_face(canvas, 56, 54, 38, mood)
-    knob = MOODS_LEFT + MOODS_WIDE * (mood + 1) / 2
-    canvas.disc(knob, LEVEL, 12, PAPER)
-    canvas.disc(knob, LEVEL, 9.0, INK)
+    _mood_knob(canvas, MOODS_LEFT, LEVEL, mood)
     return canvas.card(width - 316 - 24, HEIGHT - 132)
+
+
+def _absent_robot(
+    robot: RobotView, portrait: NDArray[np.uint8], width: float, scale: float
+) -> Card:
+    """Draw the card on which the robot's likeness feels for it."""
+    caption = {"none": "no robot connected", "ready": "simulated robot"}.get(
+        robot.link, f"simulated robot {robot.link}"
+    )
+    words = f"robot is {robot.label}"
+    canvas = _absent_blank(words, caption, scale).copy()
+    canvas.picture(FRAME, FRAME, portrait, 12)
+    mood = robot.mood if math.isfinite(robot.mood) else 0.0
+    _mood_knob(canvas, BESIDE_LEFT + 4, 132, mood)
+    wide, high = BESIDE_LEFT + 4 + MOODS_WIDE + 24, SIDE + 2 * FRAME
+    return canvas.card(width - wide - 24, HEIGHT - high - 24)
+
+
+def _mood_knob(canvas: Canvas, left: float, level: float, mood: float) -> None:
+    knob = left + MOODS_WIDE * (mood + 1) / 2
+    canvas.disc(knob, level, 12, PAPER)
+    canvas.disc(knob, level, 9.0, INK)
 
 
 @lru_cache(maxsize=16)
@@ -162,12 +208,27 @@ def _robot_blank(words: str, scale: float) -> Canvas:
     """Draw what stays whatever the robot's mood is."""
     canvas = Canvas(316, 108, scale)
     canvas.text(112, 42, words, 25, INK)
+    _mood_scale(canvas, MOODS_LEFT, LEVEL)
+    return canvas
+
+
+@lru_cache(maxsize=16)
+def _absent_blank(words: str, caption: str, scale: float) -> Canvas:
+    """Draw what stays beside the likeness."""
+    canvas = Canvas(BESIDE_LEFT + 4 + MOODS_WIDE + 24, SIDE + 2 * FRAME, scale)
+    canvas.text(BESIDE_LEFT, 66, words, 25, INK)
+    canvas.text(BESIDE_LEFT, 91, caption, 15, QUIET)
+    _mood_scale(canvas, BESIDE_LEFT + 4, 132)
+    return canvas
+
+
+def _mood_scale(canvas: Canvas, left: float, level: float) -> None:
+    """Draw the bar from angry over neutral to happy, with its words under it."""
     for share in np.linspace(0.0, 1.0, 64):
-        canvas.disc(MOODS_LEFT + MOODS_WIDE * share, LEVEL, 5.0, mood_color(2 * share - 1))
+        canvas.disc(left + MOODS_WIDE * share, level, 5.0, mood_color(2 * share - 1))
     for name, share, align in (
         ("angry", 0.0, "left"),
         ("neutral", 0.5, "middle"),
         ("happy", 1.0, "right"),
     ):
-        canvas.text(MOODS_LEFT + MOODS_WIDE * share, 97, name, 14, QUIET, align)
-    return canvas
+        canvas.text(left + MOODS_WIDE * share, level + 27, name, 14, QUIET, align)

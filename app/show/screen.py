@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from app.errors import AppError
 from app.playground import Step
 from app.scenarios import Inputs
+from app.show.likeness import Likeness
 from app.show.notice import Notice
 from app.show.overlay import RobotView, overlay
 
@@ -70,14 +71,19 @@ class VideoFile:
         Width and height of the pictures [px].
     rate
         Pictures a second.
+    likeness
+        Stands in for a robot that is not there; None to draw its face. The caller closes it.
     """
 
     closed = False
 
-    def __init__(self, path: Path, size: tuple[int, int], rate: float) -> None:
+    def __init__(
+        self, path: Path, size: tuple[int, int], rate: float, likeness: Likeness | None = None
+    ) -> None:
         self._path = path
         self._partial = path.with_name(path.name + ".partial")
         self._rate = rate
+        self._likeness = likeness
         self._start: float | None = None
         self._last = -1
         try:
@@ -107,7 +113,7 @@ class VideoFile:
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Write a step's picture, with the cards over it."""
         if step.picture is not None:
-            self.write(overlay(step.picture, step, robot), step.frame.timestamp)
+            self.write(overlay(step.picture, step, robot, self._likeness), step.frame.timestamp)
         return Inputs()
 
     def wait(self, notice: Notice | None) -> None:

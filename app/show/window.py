@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from app.errors import AppError
 from app.playground import Step
 from app.scenarios import Inputs
+from app.show.likeness import Likeness
 from app.show.notice import Notice
-from app.show.overlay import RobotView, interrupted, overlay
+from app.show.overlay import RobotView, interrupted, likeness_side, overlay
 
 VERTEX = """
 #version 330
@@ -79,6 +80,7 @@ class Window:
         glfw.swap_interval(0)  # a camera's frame must not wait for the screen's
         self.context = moderngl.create_context()
         """Where a `Stage` for this window draws."""
+        self._likeness = Likeness(self.context, likeness_side(size[1]))
         self._start_panel()
         self._texture = self.context.texture(size, 3, alignment=1)
         self._program = self.context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
@@ -105,7 +107,7 @@ class Window:
         if self.closed:
             return Inputs()
         if step.picture is not None:
-            self._last = overlay(step.picture, step, robot)
+            self._last = overlay(step.picture, step, robot, self._likeness)
             self._paint(self._last)
         self._shown.append(time.perf_counter())
         self._draw_panel(step, robot)
@@ -131,6 +133,7 @@ class Window:
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
         imgui.destroy_context()
+        self._likeness.close()
         for thing in (self._quad, self._program, self._texture):
             thing.release()
         self.context.release()
