@@ -1,10 +1,9 @@
 """Feet that hold: a foot that has landed stays where it is until it lifts.
 
 What a foot stands on, its heel or its ball, is held in the world, and so is the way it faces; where
-the motion would have it otherwise is the foot's offset. When the foot lifts, the offset dies away
-from the velocity that it had, like a critically damped spring, so nothing pops (Holden,
-"Spring-roll-call", 2021). A foot that would have to be held too far from where the motion wants it
-takes a quick step there instead.
+the motion would have it otherwise is the foot's shift. When the foot lifts, the shift dies away
+from the velocity that it had, so nothing pops: inertialisation (Bollo, GDC 2018), for a foot. A
+foot that would have to be held too far from where the motion wants it takes a quick step there.
 """
 
 import math
@@ -21,13 +20,15 @@ from characters.pose import Array, Pose
 _LANDS = 0.014  # a foot lands only so near to the ground
 _FARTHEST, _TWISTED = 0.05, math.radians(40)  # a held foot is let go beyond this offset or turn
 _UNTIDY, _ASKEW = 0.025, math.radians(20)  # and one of somebody who stands already beyond these
+_ROLL = 0.001  # heel or ball take over when they are so much lower
 _STRETCH = 0.996  # part of a leg's length that a held foot may need
 _SINK = 0.02  # how much the pelvis may be lowered for it
 _STEP_TIME = 0.22  # [s]: what a quick step takes
 _STEP_HEIGHT, _STEP_SLOPE = 0.025, 0.35  # how high it goes: at most, and for its length
 _PEEL, _PEELED = 0.009, 0.02  # a foot that lifts is so high once it is so far from where it stood,
 _FREE, _CLEAR = 0.06, 0.14  # and that begins to matter less from here on, and ends there
-_RATE = 32.0  # [1/s]: of the springs; half of an offset is gone after 0.05 s
+_FADE_TIME = 0.2  # [s]: after that nothing is left of an old shift
+_TOUCH, _NEARLY = 0.35, 0.012  # part of a step before whose end it may land, if it is so near
 _HASTE = 3.0  # [m/s of a body of 1 m, rad/s]: no offset starts to die away faster
 
 
@@ -45,11 +46,6 @@ class Sole:
     def heading(self) -> float:
         """Where it points: the angle about +y from +z [rad]."""
         return math.atan2(self.ball[0] - self.heel[0], self.ball[2] - self.heel[2])
-
-    @property
-    def on_heel(self) -> bool:
-        """Whether the heel is the lower."""
-        return self.heel[1] < self.ball[1]
 
     @property
     def low(self) -> float:
@@ -98,24 +94,21 @@ class HeldFoot:
         """What is left of a quick step [s]."""
         self._height = height
         self._heel = False
-        self._anchor = (0.0, 0.0, 0.0)  # x, z and heading of what is held
+        self.anchor = (0.0, 0.0, 0.0)
+        """x, z [m] and heading [rad] of what is held, in the world."""
         self._left = (0.0, 0.0)  # where it stood last
         self._stride = 0.0  # of a quick step [m]
-        self._rest = [0.0] * 4  # what is added to the goal and dies away: x, z, yaw, y
-        self._speed = [0.0] * 4
-        self._shown = [0.0] * 4
+        self._shown = [0.0] * 4  # x, z, yaw, y
         self._pace = [0.0] * 4
+        self._old, self._drift = [0.0] * 4, [0.0] * 4  # what dies away, as it was, and its pace
+        self._age, self._fade_time = _FADE_TIME, _FADE_TIME
 
     def advance(self, sole: Sole, elapsed: float) -> None:
         """Go on as before to where the motion has the foot now."""
         self.stepping = max(self.stepping - elapsed, 0.0)
-        decay = math.exp(-_RATE * elapsed)
-        for axis in range(4):
-            push = self._speed[axis] + _RATE * self._rest[axis]
-            self._rest[axis] = decay * (self._rest[axis] + push * elapsed)
-            self._speed[axis] = decay * (self._speed[axis] - _RATE * push * elapsed)
-        before, goal = self._shown, self._goal(sole)
-        self._shown = [a + b for a, b in zip(goal, self._rest, strict=True)]
+        self._age += elapsed
+        rest, before = self._rest(), self._shown
+        self._shown = [a + b for a, b in zip(self._goal(sole), rest, strict=True)]
         self.shift = Shift(*self._shown)
         if elapsed > 0.0:
             self._pace = [(a - b) / elapsed for a, b in zip(self._shown, before, strict=True)]
@@ -127,26 +120,25 @@ class HeldFoot:
 
     def hold(self, sole: Sole) -> None:
         """Hold the foot where it is shown: it lands, or rolls from heel to ball."""
-        if self.held and self._heel == sole.on_heel:
+        heel = sole.heel[1] < sole.ball[1] + (_ROLL if self._heel else -_ROLL) * self._height
+        if self.held and self._heel == heel:
             return
-        self._heel = sole.on_heel
+        self._heel = heel
         x, z = self.shift.moved(sole, self._heel)
-        self._anchor = x, z, sole.heading + self.shift.yaw
+        self.anchor = x, z, sole.heading + self.shift.yaw
         if not self.held:
             self.held = True
-            self._rest = [0.0, 0.0, 0.0, self.shift.y + sole.low]
-            self._speed = [0.0] * 4
+            self._fade([0.0, 0.0, 0.0, self.shift.y + sole.low], [0.0] * 4, _FADE_TIME)
+            self.stepping = 0.0
 
     def release(self, sole: Sole, step: bool) -> None:
         """Let the foot go, in a quick step of its own or with the motion."""
         if not self.held:
             return
         self.held = False
-        fastest = [_HASTE * self._height, _HASTE * self._height, _HASTE, 0.0]
-        self._rest = list(self._shown)
-        self._speed = [
-            min(max(pace, -most), most) for pace, most in zip(self._pace, fastest, strict=True)
-        ]
+        fastest = [_HASTE * self._height, _HASTE * self._height, _HASTE, _HASTE * self._height]
+        pace = [min(max(v, -most), most) for v, most in zip(self._pace, fastest, strict=True)]
+        self._fade(self._shown, pace, _STEP_TIME if step else _FADE_TIME)
         self._left = self.shift.moved(sole, heel=False)
         self._stride = self.shift.length
         self.stepping = _STEP_TIME if step else 0.0
@@ -165,11 +157,32 @@ class HeldFoot:
         if self.shift.y < least:
             self.shift.y = least
 
+    def may_land(self, sole: Sole) -> bool:
+        """Whether a foot that is on its way is so near to the ground, and to the end of a step."""
+        near = sole.low + self.shift.y < _LANDS * self._height
+        if self.stepping == 0.0:
+            return near
+        late = self.stepping < _TOUCH * _STEP_TIME
+        return near and late and self.shift.length < _NEARLY * self._height
+
+    def _fade(self, old: list[float], drift: list[float], length: float) -> None:
+        """Let something die away from now on."""
+        self._old, self._drift, self._age, self._fade_time = list(old), drift, 0.0, length
+
+    def _rest(self) -> list[float]:
+        """Return what is left of the old shift, by the quintic of `transition.Fade`."""
+        if self._age >= self._fade_time:
+            return [0.0] * 4
+        u = self._age / self._fade_time
+        position = 1 - u**3 * (10 - 15 * u + 6 * u * u)
+        velocity = (u - u**3 * (6 - 8 * u + 3 * u * u)) * self._fade_time
+        return [a * position + v * velocity for a, v in zip(self._old, self._drift, strict=True)]
+
     def _goal(self, sole: Sole) -> list[float]:
         """Return the shift that holds the foot exactly, or none if it is not held."""
         if not self.held:
             return [0.0] * 4
-        x, z, heading = self._anchor
+        x, z, heading = self.anchor
         yaw = math.remainder(heading - sole.heading, math.tau)
         if self._heel:
             ahead = _turned(sole.ball[0] - sole.heel[0], sole.ball[2] - sole.heel[2], yaw)
@@ -194,6 +207,7 @@ class FootLock:
         self._height = height
         self._points, self._levels = _soles(legs)
         self._sunk = 0.0
+        self._fresh = True
 
     def apply(
         self, pose: Pose, place: Step, down: list[bool], standing: bool, elapsed: float
@@ -217,26 +231,24 @@ class FootLock:
         soles = self._soles(placed, place)
         for foot, sole in zip(self.feet, soles, strict=True):
             foot.advance(sole, elapsed)
-        for number, (foot, sole) in enumerate(zip(self.feet, soles, strict=True)):
-            self._decide(number, foot, sole, down[number], standing)
+        if self._fresh:  # it has stood there for ever
+            self._fresh = False
+            for foot, sole in zip(self.feet, soles, strict=True):
+                foot.hold(sole)
+        for foot, sole, on_ground in zip(self.feet, soles, down, strict=True):
+            self._decide(foot, sole, on_ground, standing)
             foot.lift(sole)
         return self._shown(pose, placed, place, elapsed)
 
-    def _decide(self, number: int, foot: HeldFoot, sole: Sole, down: bool, standing: bool) -> None:
+    def _decide(self, foot: HeldFoot, sole: Sole, down: bool, standing: bool) -> None:
         """Hold a foot or let it go."""
+        others = all(o.held for o in self.feet if o is not foot)
         if not down:
             foot.release(sole, step=False)
-        elif (foot.held and foot.strained(standing=False)) or (
-            foot.held and standing and foot.strained(standing=True) and self._others_stand(number)
-        ):
+        elif foot.held and (foot.strained(False) or (standing and others and foot.strained(True))):
             foot.release(sole, step=True)
-        elif foot.stepping == 0.0 and (
-            foot.held or sole.low + foot.shift.y < _LANDS * self._height
-        ):
+        elif foot.held or foot.may_land(sole):
             foot.hold(sole)
-
-    def _others_stand(self, number: int) -> bool:
-        return all(foot.held for other, foot in enumerate(self.feet) if other != number)
 
     def _soles(self, placed: Array, place: Step) -> list[Sole]:
         """Return what of each foot meets the ground."""

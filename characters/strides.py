@@ -24,7 +24,9 @@ from characters.phase import Phased
 from characters.pose import Array, Pose, Skeleton
 
 _PARTS = 16  # of a cycle, in each of which the mean of several ways is taken
-_LIFT = 0.6  # how high feet go rises with this power of how far they go
+_EARLY = 0.02  # [s]: how much sooner feet are let go than they are seen to be gone
+_LIFT = 0.3  # how high feet go rises with this power of how far they go, …
+_TURNING = 1.0  # … and on the spot by so much more than that, to clear the ground
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,10 @@ class Tread:
         clip = motion.motion
         assert isinstance(clip, Clip)
         feet = np.concatenate([_feet(clip.in_place, legs), np.zeros((len(clip), legs.count, 1))], 2)
-        feet[..., 7] = find_contacts(clip, skeleton, legs.feet)
+        down = find_contacts(clip, skeleton, legs.feet)
+        # A foot is known to have left by its speed, so a little after it has.
+        early = np.roll(down[:-1], -max(round(_EARLY * clip.rate), 1), axis=0)
+        feet[..., 7] = down & np.append(early, early[:1], axis=0)
         return Tread(motion, feet)
 
     def at(self, phase: float) -> Array:
@@ -57,9 +62,10 @@ class Tread:
 
     @cached_property
     def home(self) -> Array:
-        """The middle of where a foot stands and how it faces there, (legs, 8)."""
+        """The middle of where a foot stands, on the ground, and how it faces there, (legs, 8)."""
         weight = self.feet[..., 7:] + 1e-6
         mean: Array = (self.feet * weight).sum(0) / weight.sum(0)
+        mean[:, 1] = self.feet[..., 1].min(0)
         mean[:, 3:7] = rotations.normalize(mean[:, 3:7])
         return mean
 
@@ -153,6 +159,7 @@ class Strides:
             facing = rotations.normalize(still[:, 3:] + share * (facing - still[:, 3:]))
             home_facing = rotations.normalize(still[:, 3:] + share * (home_facing - still[:, 3:]))
         if self.stride < 1.0:
+            ball[:, 1] += (ball[:, 1] - home[:, 1]) * _TURNING * (1.0 - self.stride)
             ball = self._drawn(ball, home, _twist(facing, home_facing))
         return ball, facing
 

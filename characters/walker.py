@@ -49,11 +49,12 @@ class Walker:
         self._machine = StateMachine({"idle": idle, "move": self._steps}, "idle")
         self._time = 0.0
         legs = self.gaits.legs
-        self._lock = FootLock(legs, character.height) if legs is not None else None
+        self.lock = FootLock(legs, character.height) if legs is not None else None
+        """What holds its feet, or None where there are no legs to bend."""
 
     def release(self) -> None:
         """Hold no feet from now on: they go where the motion has them."""
-        self._lock = None
+        self.lock = None
 
     @staticmethod
     def suits(character: Character) -> bool:
@@ -78,9 +79,9 @@ class Walker:
         step = self._machine.travel(now, self._time)
         self.place = self.place.then(Step(step.x * self._scale, step.z * self._scale, step.yaw))
         pose = self._machine.sample(self._time)
-        if self._lock is None:
+        if self.lock is None:
             return pose
-        return self._lock.apply(
+        return self.lock.apply(
             pose,
             Step(self.place.x / self._scale, self.place.z / self._scale, self.place.yaw),
             self._down(),
@@ -91,7 +92,7 @@ class Walker:
     def _down(self) -> list[bool]:
         """Return which feet the motion has on the ground; who stands, stands on all."""
         if self._machine.state == "idle" or not isinstance(self._motion, Strides):
-            return [True] * len(self._lock.feet) if self._lock is not None else []
+            return [True] * len(self.lock.feet) if self.lock is not None else []
         phase = self._steps.phase(self._time - self._machine.entered)
         return [part > 0.5 for part in self._motion.contacts(phase).tolist()]
 

@@ -4,8 +4,8 @@ Exits with 1 where the mean slide of a planted foot reaches 10 mm/s at any point
 space or in any script. Lengths are those of a person 1.7 m tall.
 
 What is planted is seen from outside, by height alone: the ball of a foot within 12 mm of the
-ground for at least 0.1 s. A foot that is just landing or leaving is that low as well and does move,
-in the best of clips: so the first and the last 33 ms of each stay count only in the column "strict".
+ground for at least 0.1 s. A foot that is just landing or leaving is that low as well and does move
+in the best of clips: the first and the last 33 ms of each stay count only in the column "strict".
 "skate" is the height-weighted speed of Zhang et al., "Mode-adaptive neural networks for quadruped
 motion control", SIGGRAPH 2018: v (2 − 2^(h/H)), H = 25 mm, over all frames.
 """
@@ -92,8 +92,10 @@ def film(character: Character, script: Script, frames: int, hold: bool = True) -
     for number in range(frames):
         wish = script(number, walker)
         elapsed = 1.0 / RATE if number else 0.0
-        go = walker.go if isinstance(wish, Course) else walker.update
-        poses.append(go(wish, elapsed))  # type: ignore[operator]
+        if isinstance(wish, Course):
+            poses.append(walker.go(wish, elapsed))
+        else:
+            poses.append(walker.update(wish, elapsed))
         places.append(walker.place)
     feet = feet_of(character.skeleton)
     joints = [foot[-1] for foot in feet]
@@ -218,7 +220,9 @@ def main() -> None:
     """Print the tables."""
     console, human = Console(), Character.load("human")
     worst = 0.0
-    table = Table("where", "lock", "slide mm/s", "strict", "skate", "planted", "bend rad/s²", "dip mm")
+    table = Table(
+        "where", "lock", "slide mm/s", "strict", "skate", "planted", "bend rad/s²", "dip mm"
+    )
     grid = points(np.arange(0.5, 5.01, 0.5), range(-90, 91, 15), (1.0,))
     grid |= points((1.0, 1.2, 2.0), range(-90, 91, 30), (0.0, 0.3, 0.6))
     for hold in (False, True):
