@@ -11,7 +11,8 @@ from app.errors import AppError
 from characters import Character
 from characters.trees import Node, Plan
 from characters.trees.builtin import built_in
-from characters.trees.diagram import described, draw
+from characters.trees.diagram import draw
+from characters.trees.layout import described, plain
 
 
 def graph(
@@ -70,4 +71,4 @@ def _grow(tree: Tree, node: Node, label: str) -> None:
         _grow(branch, child, "" if key == "of" else key)
     for row in node.rows:
         at = row.said.get("value", row.said.get("start", row.said.get("weight", "")))
-        _grow(branch, row.motion, f"{at:g}" if isinstance(at, float) else str(at))
+        _grow(branch, row.motion, plain(at))

@@ -1,10 +1,9 @@
 """A plan as a picture: trees from left to right, states below each other with arrows between."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
-from characters.trees.plan import KINDS, Machine, Node, Plan
+from characters.trees.layout import HIGH, SMALL, Box, boxes_of, place
+from characters.trees.plan import Machine, Plan
 
 _INK, _FAINT, _PAPER = "#26323c", "#8794a0", "#ffffff"
 _FILLS = {
@@ -14,7 +13,6 @@ _FILLS = {
     "change": "#dbe9fb",
     "state": "#fde7c8",
 }
-_MIXES, _LAYERS = ("blend", "space", "plane", "crossfade", "schedule"), ("layer", "add")
 _LEGEND = {
     "state": "state",
     "mix": "mix of motions",
@@ -22,32 +20,7 @@ _LEGEND = {
     "change": "changed motion",
     "clip": "clip",
 }
-_ROW, _GAP, _HIGH, _MARGIN = 54.0, 96.0, 40.0, 28.0  # [px]
-_LETTER, _SMALL = 9.3, 6.5  # mean width of a letter at 14 px, bold, and at 11.5 px
-
-
-@dataclass
-class _Box:
-    """A node on the page."""
-
-    title: str
-    note: str
-    fill: str
-    label: str = ""
-    children: list["_Box"] = field(default_factory=list)
-    seen: bool = False
-    x: float = 0.0
-    y: float = 0.0
-
-    @property
-    def width(self) -> float:
-        return 24 + max(_LETTER * len(self.title), _SMALL * len(self.note), 40.0)
-
-    def everyone(self) -> Iterator["_Box"]:
-        """Yield this box and all below it."""
-        yield self
-        for child in self.children:
-            yield from child.everyone()
+_MARGIN = 28.0  # [px]
 
 
 def draw(plan: Plan, title: str = "") -> str:
@@ -62,14 +35,9 @@ def draw(plan: Plan, title: str = "") -> str:
     title
         Above it.
     """
-    drawn: set[int] = set()
-    machine = plan.machine
-    if machine is None:
-        roots = [_box(root, "", drawn) for root in plan.roots]
-    else:
-        roots = [_state(name, node, machine, drawn) for name, node in machine.states.items()]
+    machine, roots = plan.machine, boxes_of(plan)
     left = _MARGIN if machine is None else _MARGIN + _room_for_arrows(machine)
-    bottom = _placed(roots, left, _MARGIN + (44 if title else 0))
+    bottom = place(roots, left, _MARGIN + (44 if title else 0))
     boxes = [box for root in roots for box in root.everyone()]
     width = max([box.x + box.width for box in boxes] + [_MARGIN + 620]) + _MARGIN
     svg = ElementTree.Element(
@@ -89,7 +57,7 @@ def draw(plan: Plan, title: str = "") -> str:
     for box, child in links:
         _link(svg, box, child)
     for _, child in links:
-        _text(svg, child.x - 6, child.y + _HIGH / 2 - 5, child.label, 11.5, _INK, "end")
+        _text(svg, child.x - 6, child.y + HIGH / 2 - 5, child.label, 11.5, _INK, "end")
     if machine is not None:
         _arrows(svg, machine, dict(zip(machine.states, roots, strict=True)))
     for box in boxes:
@@ -98,90 +66,12 @@ def draw(plan: Plan, title: str = "") -> str:
     return ElementTree.tostring(svg, encoding="unicode")
 
 
-def described(node: Node) -> str:
-    """Return what a node does, in a few words."""
-    said = {key: value for key, value in node.said.items() if value not in ("", None)}
-    by = said.get("by")
-    if node.kind == "space":
-        return f"over {by}"
-    if node.kind == "plane":
-        return f"over {by[0]} and {by[1]}" if by else "plane"
-    if node.kind == "clip":
-        return "clip"
-    plain = KINDS[node.kind].optional
-    told = [
-        f"{key.removesuffix('_deg')} {_plain(value)}"
-        for key, value in said.items()
-        if key not in plain or plain[key] != value
-    ]
-    return " ".join([node.kind, *told])
-
-
-def _box(node: Node, label: str, drawn: set[int]) -> _Box:
-    seen = id(node) in drawn and bool(node.children)
-    drawn.add(id(node))
-    group = "mix" if node.kind in _MIXES else "layer" if node.kind in _LAYERS else "change"
-    box = _Box(
-        title=node.name or node.kind,
-        note=described(node),
-        fill=_FILLS["clip" if node.kind == "clip" else group],
-        label=label,
-        seen=seen,
-    )
-    if seen:
-        return box
-    for key, child in node.motions.items():
-        box.children.append(_box(child, "" if key == "of" else key, drawn))
-    for row in node.rows:
-        at = row.said.get("value", row.said.get("weight", ""))
-        text = f"{_plain(row.said['start'])} s" if "start" in row.said else _plain(at)
-        box.children.append(_box(row.motion, text, drawn))
-    return box
-
-
-def _state(name: str, node: Node, machine: Machine, drawn: set[int]) -> _Box:
-    note = "first state" if name == machine.start else "state"
-    return _Box(name, note, _FILLS["state"], children=[_box(node, "", drawn)])
-
-
-def _placed(roots: list[_Box], left: float, top: float) -> float:
-    """Give every box its place, one line for each leaf, and return where the lowest one ends."""
-    columns: dict[int, float] = {}
-
-    def measure(box: _Box, depth: int) -> None:
-        columns[depth] = max(columns.get(depth, 0.0), box.width)
-        for child in box.children:
-            measure(child, depth + 1)
-
-    for root in roots:
-        measure(root, 0)
-    starts = {0: left}
-    for depth in range(1, len(columns)):
-        starts[depth] = starts[depth - 1] + columns[depth - 1] + _GAP
-    line = top
-
-    def place(box: _Box, depth: int) -> None:
-        nonlocal line
-        box.x = starts[depth]
-        if not box.children:
-            box.y, line = line, line + _ROW
-            return
-        for child in box.children:
-            place(child, depth + 1)
-        box.y = (box.children[0].y + box.children[-1].y) / 2
-
-    for root in roots:
-        place(root, 0)
-        line += 12
-    return line
-
-
 def _room_for_arrows(machine: Machine) -> float:
     longest = max((len(change.when.text) for change in machine.changes), default=0)
-    return 40 + 22 * len(machine.changes) + min(_SMALL * longest, 220)
+    return 40 + 22 * len(machine.changes) + min(SMALL * longest, 220)
 
 
-def _arrows(svg: ElementTree.Element, machine: Machine, states: dict[str, _Box]) -> None:
+def _arrows(svg: ElementTree.Element, machine: Machine, states: dict[str, Box]) -> None:
     """Draw the changes as brackets to the left of the states, each with its condition."""
     marker = _shape(
         _shape(svg, "defs"),
@@ -203,7 +93,7 @@ def _arrows(svg: ElementTree.Element, machine: Machine, states: dict[str, _Box])
         ends[change.end] += 1
         y_end = end.y + 8 + 9 * (ends[change.end] % 4)
         for start in starts:
-            y = start.y + _HIGH - 8 if start is not end else y_end + 18
+            y = start.y + HIGH - 8 if start is not end else y_end + 18
             path = f"M{start.x:.0f} {y:.0f} H{away + 8:.0f} Q{away:.0f} {y:.0f} "
             bend = 8 if y_end > y else -8
             path += f"{away:.0f} {y + bend:.0f} V{y_end - bend:.0f} Q{away:.0f} {y_end:.0f} "
@@ -216,22 +106,22 @@ def _arrows(svg: ElementTree.Element, machine: Machine, states: dict[str, _Box])
                 stroke=_INK if change.start in states else _FAINT,
                 **{"stroke-width": "1.4", "marker-end": "url(#tip)"},
             )
-        middle = (starts[0].y + end.y + _HIGH) / 2 - 14 + 14 * (number % 3)
+        middle = (starts[0].y + end.y + HIGH) / 2 - 14 + 14 * (number % 3)
         prefix = "" if change.start in states else "from any: "
         labels.append((away - 5, middle, prefix + change.when.text))
     for x, y, text in labels:
         _text(svg, x, y, text, 11.5, _INK, "end")
 
 
-def _link(svg: ElementTree.Element, box: _Box, child: _Box) -> None:
-    x, y = box.x + box.width, box.y + _HIGH / 2
-    x2, y2 = child.x, child.y + _HIGH / 2
+def _link(svg: ElementTree.Element, box: Box, child: Box) -> None:
+    x, y = box.x + box.width, box.y + HIGH / 2
+    x2, y2 = child.x, child.y + HIGH / 2
     bend = (x2 - x) * 0.45
     path = f"M{x:.0f} {y:.0f} C{x + bend:.0f} {y:.0f} {x2 - bend:.0f} {y2:.0f} {x2:.0f} {y2:.0f}"
     _shape(svg, "path", d=path, fill="none", stroke=_FAINT, **{"stroke-width": "1.4"})
 
 
-def _draw_box(svg: ElementTree.Element, box: _Box) -> None:
+def _draw_box(svg: ElementTree.Element, box: Box) -> None:
     style = {"stroke-dasharray": "4 3"} if box.seen else {}
     _shape(
         svg,
@@ -239,9 +129,9 @@ def _draw_box(svg: ElementTree.Element, box: _Box) -> None:
         x=f"{box.x:.0f}",
         y=f"{box.y:.0f}",
         width=f"{box.width:.0f}",
-        height=f"{_HIGH:.0f}",
+        height=f"{HIGH:.0f}",
         rx="10",
-        fill=box.fill,
+        fill=_FILLS[box.group],
         stroke=_INK,
         **{"stroke-width": "1.2", **style},
     )
@@ -266,15 +156,7 @@ def _legend(svg: ElementTree.Element, y: float, states: bool) -> None:
             stroke=_INK,
         )
         _text(svg, x + 20, y + 2, text, 11.5, "#4f5d69")
-        x += 40 + _SMALL * len(text)
-
-
-def _plain(value: object) -> str:
-    if isinstance(value, float):
-        return f"{value:g}".replace("-", "−")
-    if isinstance(value, tuple):
-        return ", ".join(map(_plain, value))
-    return str(value)
+        x += 40 + SMALL * len(text)
 
 
 def _shape(parent: ElementTree.Element, tag: str, **attributes: str) -> ElementTree.Element:

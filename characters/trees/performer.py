@@ -9,8 +9,9 @@ from characters.mirror import Mirror
 from characters.motion import STANDING, Motion, Step
 from characters.pose import Pose
 from characters.smoothing import eased
-from characters.trees.building import Builder, Steering
+from characters.trees.building import Builder
 from characters.trees.plan import PARAMETERS, Change, Plan
+from characters.trees.steered import Steering
 
 LAGS = {"speed": 0.15, "angular": 0.15, "weight": 0.12}
 """How slowly parameters follow where the file does not say [s]: a wish that jumps is no pop."""

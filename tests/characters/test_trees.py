@@ -307,3 +307,10 @@ def test_a_diagram_draws_a_motion_that_is_used_twice_only_once():
     texts = [e.text for e in ElementTree.fromstring(draw(read)).iter() if e.text]
     assert texts.count("Walk") == 1
     assert texts.count("as above") == 1
+
+
+def test_a_diagram_says_what_was_set(human):
+    read, _ = builder(human, HUMAN_TOML)
+    texts = {e.text for e in ElementTree.fromstring(draw(read)).iter() if e.text}
+    assert {"rest", "move", "speed > 0.5", "over angular", "add mask upper weight weight"} <= texts
+    assert {"−60", "2.75", "base", "over"} <= texts
