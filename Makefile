@@ -8,7 +8,7 @@ endif
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := demo
-.PHONY: demo test check bench bench-tracking recordings assets pictures clean
+.PHONY: demo test check bench bench-tracking recordings assets pictures cast clean
 
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
@@ -25,7 +25,9 @@ bench: .venv/ready-dev  ## every figure that the documents name
 	$(BIN)/python -m tests.bench.line
 	$(BIN)/python -m tests.bench.accuracy
 	$(BIN)/python -m tests.bench.animation
+	$(BIN)/python -m tests.bench.feet
 	$(BIN)/python -m tests.bench.picture
+	$(BIN)/python -m tests.bench.looks
 	$(BIN)/python -m tests.bench.wire
 	$(BIN)/python -m tests.bench.several
 	$(BIN)/python -m tests.bench.camera
@@ -42,6 +44,9 @@ assets: .venv/ready-dev  ## author the bundled characters anew
 
 pictures: .venv/ready-dev  ## draw the pictures of the documents anew
 	$(BIN)/python -m app.pictures
+
+cast: .venv/ready  ## draw the bundled characters from all sides, and their clips, to look at
+	$(BIN)/python -m app.cast
 
 .venv/ready: pyproject.toml constraints.txt
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Cubeling needs Python 3.11 or newer; choose one with: make PYTHON=python3.12')"

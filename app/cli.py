@@ -7,7 +7,7 @@ import typer
 import typer.exceptions
 from rich.console import Console
 
-from app.commands import calibrate, cube, demo, doctor, play, replay, robot
+from app.commands import calibrate, character, cube, demo, doctor, play, replay, robot
 from app.errors import AppError
 from characters import CharacterError
 from robot import RobotError
@@ -30,6 +30,7 @@ app.command()(play.play)
 app.command()(replay.replay)
 app.command()(cube.cube)
 app.command()(calibrate.calibrate)
+app.add_typer(character.app, name="character")
 app.add_typer(robot.app, name="robot")
 app.command()(doctor.doctor)
 

@@ -1,0 +1,204 @@
+"""`cubeling character`."""
+
+import warnings
+from collections.abc import Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.tree import Tree
+
+from app.album import Album, save
+from app.errors import AppError
+from characters import Character, Skeleton
+from characters.errors import CharacterWarning
+from characters.formats import load_motion
+from characters.inspection import ClipFacts, Footing, Inspection, inspect
+from characters.rendering import create_context
+from characters.rendering.sticks import stick_figure
+
+app = typer.Typer(
+    help="Look at characters and motions.", no_args_is_help=True, rich_markup_mode="rich"
+)
+
+MOTIONS = (".bvh", ".amc", ".asf")
+"""Suffixes of files that hold a motion and no body."""
+
+FOLDED = 4
+"""Joints below one another of which none was recognised are shown as one line from so many on."""
+
+
+@app.callback()
+def group() -> None:
+    """Look at characters and motions."""
+
+
+@app.command("inspect")
+def look(
+    character: Annotated[
+        str,
+        typer.Argument(
+            help="A bundled character, a .glb, .gltf or .vrm file, or a motion: .bvh or .amc."
+        ),
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder of the pictures; NAME-pictures without."),
+    ] = None,
+    clips: Annotated[bool, typer.Option("--clips", help="Draw frames of every clip too.")] = False,
+    skeleton: Annotated[
+        Path | None, typer.Option(help="The .asf of an .amc, if it does not lie beside it.")
+    ] = None,
+) -> None:
+    """Show the skeleton, sizes, clips and problems of a character, and draw it from all sides.
+
+    What each joint was taken for stands beside it. A motion without a body is drawn as a stick
+    figure: left is blue, right is red.
+
+    Example: [cyan]cubeling character inspect fox.glb --clips -o fox[/]
+    """
+    console = Console()
+    folder = output or Path(f"{Path(character).stem}-pictures")
+    if folder.exists() and not folder.is_dir():
+        raise AppError(f"{folder} is a file: name another folder with --output")
+    found, has_body = _load(character, skeleton)
+    _tell(console, found)
+    for path in _draw(found.character, folder, clips or not has_body):
+        console.print(f"Drawn: [bold]{path}[/]", soft_wrap=True)
+
+
+def _load(name: str, asf: Path | None) -> tuple[Inspection, bool]:
+    """Return what there is to know of a character or motion, and whether it has a body."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        if Path(name).suffix.lower() in MOTIONS:
+            motion = load_motion(Path(name), skeleton=asf)
+            body = stick_figure(Path(name).stem, motion.skeleton, [motion.clip])
+            noted, has_body = list(motion.notes), False
+        else:
+            body, noted, has_body = Character.load(name), [], True
+    repaired = [str(each.message) for each in caught if each.category is CharacterWarning]
+    sentences = [f"{note[:1].upper()}{note[1:].rstrip('.')}." for note in (*repaired, *noted)]
+    return inspect(body, sentences, has_body), has_body
+
+
+def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
+    """Draw a character, and return where the pictures are."""
+    with ExitStack() as closing:
+        context = create_context()
+        closing.callback(context.release)
+        album = Album(context)
+        closing.callback(album.release)
+        pictures = {"turntable.png": album.turntable(character)}
+        if character.anatomy.joint("head") is not None and character.morphs:
+            pictures["faces.png"] = album.faces(character)
+        if clips and character.clips:
+            pictures["clips.png"] = album.clips(character, list(character.clips.values()))
+    for name, picture in pictures.items():
+        save(picture, folder / name)
+    return [folder / name for name in pictures]
+
+
+def _tell(console: Console, found: Inspection) -> None:
+    character, sizes = found.character, found.sizes
+    console.print(f"[bold]{character.name}[/], {character.anatomy.kind}", highlight=False)
+    console.print(
+        f"{sizes.height:.3g} m tall, {_count(sizes.joints, 'joint')}, "
+        f"{_count(sizes.meshes, 'mesh', 'meshes')}, {sizes.vertices:,} vertices, "
+        f"{sizes.triangles:,} triangles, {_count(sizes.materials, 'material')}, "
+        f"{_count(sizes.textures, 'texture')}",
+        highlight=False,
+    )
+    if sizes.morphs:
+        console.print(f"Morphs: {', '.join(sizes.morphs)}", highlight=False, markup=False)
+    console.print(_tree(character))
+    if found.clips:
+        console.print(_table(found.clips))
+    if not found.problems:
+        console.print("[green]No problems found.[/]")
+    for problem in found.problems:
+        console.print("[yellow]![/]", end=" ")
+        console.print(problem, markup=False, highlight=False, soft_wrap=True)
+
+
+def _count(number: int, one: str, many: str = "") -> str:
+    return f"{number:,} {one if number == 1 else many or one + 's'}"
+
+
+def _tree(character: Character) -> Tree:
+    """Return the skeleton as a tree; what each joint was taken for stands beside it."""
+    skeleton, parts = character.skeleton, character.anatomy.parts
+    children, sizes, known = _families(skeleton, set(parts))
+    tree = Tree("[bold]Skeleton[/]", guide_style="dim")
+    places = {-1: tree}
+    for joint, parent in enumerate(skeleton.parents):
+        if parent not in places:
+            continue  # folded away with a joint above it
+        folded = joint not in known and sizes[joint] >= FOLDED and bool(children[joint])
+        name = skeleton.names[joint].replace("[", "\\[")
+        told = f" [cyan]{parts[joint]}[/]" if joint in parts else ""
+        more = f" [dim]and {sizes[joint] - 1} joints below it[/]" if folded else ""
+        branch = places[parent].add(name + told + more, highlight=False)
+        if not folded:
+            places[joint] = branch
+    return tree
+
+
+def _families(
+    skeleton: Skeleton, recognised: set[int]
+) -> tuple[list[list[int]], list[int], set[int]]:
+    """Return each joint's children, how many joints it and those below it are, and which are known.
+
+    Known are those with a recognised one among them.
+    """
+    children: list[list[int]] = [[] for _ in skeleton.parents]
+    sizes = [1] * len(skeleton)
+    known = set(recognised)
+    for joint in reversed(range(len(skeleton))):
+        parent = skeleton.parents[joint]
+        if parent >= 0:
+            children[parent].append(joint)
+            sizes[parent] += sizes[joint]
+            if joint in known:
+                known.add(parent)
+    return children, sizes, known
+
+
+def _table(clips: Sequence[ClipFacts]) -> Table:
+    table = Table(title="Clips", title_justify="left", title_style="bold", box=SIMPLE_HEAD)
+    for heading in ("clip", "seconds", "Hz", "repeats", "speed [m/s]", "feet down"):
+        table.add_column(heading, justify="right" if heading in ("seconds", "Hz") else "left")
+    for facts in clips:
+        clip = facts.clip
+        table.add_row(
+            clip.name.replace("[", "\\["),
+            f"{clip.duration:.2f}",
+            f"{clip.rate:.4g}",
+            "loop" if clip.loop else "once",
+            _speed(facts),
+            _feet(facts.footing),
+        )
+    return table
+
+
+def _speed(facts: ClipFacts) -> str:
+    if facts.speed < 5e-3:
+        return "[dim]stays[/]"
+    way = " in place" if facts.in_place else "" if facts.clip.root_motion else " no root"
+    return f"{facts.speed:.2f}{way}"
+
+
+def _feet(footing: Sequence[Footing]) -> str:
+    """Return how long each foot is down; what all have in common is said once."""
+    if footing and all(foot.share == 1.0 for foot in footing):
+        return "[dim]always[/]"
+    each = []
+    for foot in footing:
+        name = foot.foot.replace("Foot", "").replace("Front", " front") or foot.foot
+        times = f" in {foot.times}" if foot.times > 1 else ""
+        each.append(f"{name} {100 * foot.share:.0f} %{times}")
+    return ", ".join(each)
