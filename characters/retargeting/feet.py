@@ -184,6 +184,8 @@ class _Foot:
         """Return where the end is while the foot stands: on its ball, first on its heel."""
         goal, to_end = self.goal[span], self.to_end[span]
         ball = self.ball[span]
+        if not ball.any():  # cut off, or too short to come down: on the heel
+            return np.asarray((goal - to_end).mean(0) + to_end)
         spot = goal[ball].mean(0)
         first = int(ball.argmax())
         at = np.tile(spot, (len(span), 1))

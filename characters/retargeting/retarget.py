@@ -60,7 +60,7 @@ def _retarget(clip: Clip, source: Body, target: Body, hold_feet: bool) -> Clip:
     root = root_way(clip, source, ratio) if rooted else None
     pose = posed(target, turned(clip, source, target, mapping), hips, root)
     if hold_feet:
-        pairs = _pairs(source, target)
+        pairs = leg_pairs(source, target)
         theirs, ours = [a for a, _ in pairs], [b for _, b in pairs]
         ends = None
         if target.anatomy.kind == "quadruped":
@@ -70,7 +70,7 @@ def _retarget(clip: Clip, source: Body, target: Body, hold_feet: bool) -> Clip:
     return Clip(clip.name, clip.rate, pose, clip.loop, rooted)
 
 
-def _pairs(source: Body, target: Body) -> list[tuple[Leg, Leg]]:
+def leg_pairs(source: Body, target: Body) -> list[tuple[Leg, Leg]]:
     """Return the legs that both bodies have."""
     by_part = {source.anatomy.parts[leg.foot]: leg for leg in source.legs}
     return [
@@ -86,7 +86,7 @@ def _paw_ways(clip: Clip, source: Body, target: Body, ratio: float) -> Array:
     Beasts' legs have their bones in other places, so angles say little about where paws are.
     """
     globals_ = clip.poses.globals(source.skeleton)
-    pairs = _pairs(source, target)
+    pairs = leg_pairs(source, target)
     theirs, ours = [a.end for a, _ in pairs], [b.end for _, b in pairs]
     at = rotations.rotate(source.upright, globals_[:, theirs][..., :3, 3])
     return target.rest_places[ours] + ratio * (at - source.rest_places[theirs])

@@ -1,0 +1,379 @@
+"""From a few recordings of walking and running to a character that goes where it is sent.
+
+Each recording is put on the character, cut to one cycle and laid on an arc of even speed; then
+every clip of the movement tree is bent from the recording that turns most like it.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from characters.anatomy import Anatomy
+from characters.character import Character
+from characters.clip import Clip
+from characters.errors import CharacterError
+from characters.locomotion import RUN_CLIPS, WALK_CLIPS
+from characters.mirror import Mirror
+from characters.motion import Step
+from characters.pose import Array, Pose, Skeleton
+from characters.retargeting.body import Body
+from characters.retargeting.course import Course
+from characters.retargeting.cycle import Cut, closed, find_cycle, find_pause, resampled
+from characters.retargeting.feet import Footing, find_footing
+from characters.retargeting.gait import Gait, held, slide
+from characters.retargeting.ground import way_of
+from characters.retargeting.retarget import leg_pairs, retarget
+from characters.retargeting.rooted import is_rooted, on_way, rooted_clip, with_root
+
+_RATE = 60.0  # [Hz] of what is made
+_TURN = 1.5  # degrees a second that the movement tree turns for each degree of Angular
+_STRAIGHT = 8.0  # degrees of Angular that are taken as none
+_SLOWEST = 0.1  # leg lengths a second: what is slower goes nowhere
+# Speed in a curve as a part of that straight on, by Angular: people slow down to turn.
+_SLOWER: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
+    "walk": ((0.0, 30.0, 60.0, 90.0), (1.0, 0.97, 0.86, 0.72)),
+    "run": ((0.0, 45.0, 90.0), (1.0, 0.94, 0.82)),
+}
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A motion, and what it is of."""
+
+    origin: str
+    """What to call it."""
+
+    clip: Clip
+    """The motion."""
+
+    skeleton: Skeleton
+    """What it moves."""
+
+    anatomy: Anatomy
+    """Which joint is which part."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """What was found in a recording, or made for the movement tree."""
+
+    name: str
+    """Of the file, or of the clip that was made."""
+
+    origin: str
+    """What it was made from, and how."""
+
+    duration: float
+    """Of one cycle [s]."""
+
+    speed: float
+    """Over the ground [m/s of the character]."""
+
+    angular: float
+    """How sharply it turns, positive to the right, as the movement tree counts [degrees]."""
+
+    seam: float
+    """How far joints were apart where the cycle was closed, root mean square [m]."""
+
+    slide: float
+    """Mean speed of standing feet over the ground [m/s]."""
+
+
+@dataclass(frozen=True)
+class Locomotion:
+    """A character that can walk, and how it came to."""
+
+    character: Character
+    """With the clips of the movement tree."""
+
+    recordings: tuple[Found, ...]
+    """What was found in the recordings."""
+
+    clips: tuple[Found, ...]
+    """What was made."""
+
+
+def make_locomotion(
+    character: Character,
+    walks: Sequence[Recording],
+    runs: Sequence[Recording] = (),
+    idle: Recording | None = None,
+) -> Locomotion:
+    """Return a character with the clips of the movement tree, made from recordings.
+
+    Parameters
+    ----------
+    character
+        Who is to walk; it gets a root joint on the ground if it has none.
+    walks, runs
+        Straight or curved; at least one walk.
+    idle
+        Standing; without, the character's own clip "idle" stays, or a stand is made.
+
+    Raises
+    ------
+    CharacterError
+        If a recording does not fit the character, or holds no cycle.
+    """
+    walker = with_root(character)
+    body = Body(walker.skeleton, walker.anatomy)
+    trees = (("walk", WALK_CLIPS, walks), ("run", RUN_CLIPS, runs))
+    clips, recordings, made = dict(walker.clips), [], []
+    mirror = _mirror(walker)
+    for kind, names, given in trees:
+        gaits = [gait_of(recording, character, walker) for recording in given]
+        recordings += [_found(gait.origin, gait.origin, gait) for gait in gaits]
+        for gait in gaits and _tree(kind, names, gaits, mirror):
+            clips[gait.clip.name] = gait.clip
+            made.append(_found(gait.clip.name, gait.origin, gait))
+    if idle is not None:
+        clips["idle"] = _pause(idle, character, walker)
+    elif "idle" not in clips:
+        clips["idle"] = _stand(clips["Walk"], body)
+    plan = walker.plan  # of other clips: it would hide the movement tree
+    walker = replace(walker, clips=clips, plan=plan)
+    return Locomotion(walker, tuple(recordings), tuple(made))
+
+
+def gait_of(recording: Recording, character: Character, walker: Character) -> Gait:
+    """Return the best cycle of a recording on a character, on an arc of even speed.
+
+    Parameters
+    ----------
+    recording
+        What to take it from.
+    character, walker
+        Whose it is to be, before and after it got a root.
+    """
+    body = Body(walker.skeleton, walker.anatomy)
+    clip, footing = _on_character(recording, character, walker)
+    clip = _carried(clip, body)
+    cut = Cut(0, len(clip) - 1, 0.0)
+    if not clip.loop:
+        cut = find_cycle(clip, body, (footing.heel | footing.ball)[:, :2])
+    step = Step(*clip.track[cut.start]).inverse().then(Step(*clip.track[cut.end]))
+    seconds = (cut.end - cut.start) / clip.rate
+    course = Course.of(step, seconds)
+    if course.speed < _SLOWEST * body.leg_length:
+        raise CharacterError(
+            f"{recording.origin}: goes nowhere, not even as on a treadmill "
+            f"({course.speed:.2f} m/s); give a clip that walks"
+        )
+    # The root looks along the arc: half of the turn is before the middle of its chord.
+    aside = math.atan2(step.x, step.z) - step.yaw / 2
+    loop = closed(_turned_root(clip, body, aside), cut)
+    footing = _cut_footing(footing, cut)
+    first = _first_landing(footing)
+    loop, footing = _rolled(loop, footing, first)
+    if clip.rate > _RATE:
+        loop, footing = _coarser(loop, footing)
+    course = Course(course.speed * seconds / loop.duration, step.yaw / loop.duration)
+    times = np.arange(len(loop)) / loop.rate
+    pose = _placed(loop.poses, course.at(times))
+    loop = replace(loop, poses=pose, root_motion=True)
+    seam = cut.seam * body.leg_length
+    return held(Gait(recording.origin, loop, body, footing, course, seam))
+
+
+def _on_character(
+    recording: Recording, character: Character, walker: Character
+) -> tuple[Clip, Footing]:
+    """Return a recording as a clip of the walker, and when its feet stand."""
+    theirs = Body(recording.skeleton, recording.anatomy)
+    ours = Body(walker.skeleton, walker.anatomy)
+    legs = [leg for leg, _ in leg_pairs(theirs, ours)]
+    try:
+        footing = find_footing(recording.clip, theirs, legs)
+    except CharacterError as error:
+        raise CharacterError(f"{recording.origin}: {error}") from None
+    if not _alike(recording.skeleton, character.skeleton):
+        args = (recording.skeleton, recording.anatomy, walker.skeleton, walker.anatomy)
+        clip = retarget(recording.clip, *args)
+    elif is_rooted(character.skeleton, character.anatomy):
+        clip = replace(recording.clip, root_motion=True)
+    else:
+        clip = rooted_clip(recording.clip, character.skeleton, character.anatomy)
+    return clip, footing
+
+
+def _alike(one: Skeleton, other: Skeleton) -> bool:
+    """Return whether a clip of one skeleton is a clip of the other."""
+    return (
+        one.names == other.names
+        and one.parents == other.parents
+        and np.allclose(one.rest.translations, other.rest.translations, atol=1e-4)
+        and np.allclose(one.rest.rotations, other.rest.rotations, atol=1e-4)
+    )
+
+
+def _carried(clip: Clip, body: Body) -> Clip:
+    """Return a clip that walks in place as one that gets on."""
+    way = way_of(replace(clip, loop=False), body, body.legs, 1.0).carried
+    if not way.any():
+        return clip
+    steps = [Step(*w).then(Step(*t)) for w, t in zip(way, clip.track, strict=True)]
+    track = np.array([[step.x, step.z, step.yaw] for step in steps])
+    return replace(clip, poses=_placed(clip.in_place, track))
+
+
+def _placed(pose: Pose, way: Array) -> Pose:
+    """Return poses in place with their root on a way (frames, 3)."""
+    still = np.zeros_like(way)
+    root = on_way(pose, np.zeros(0, np.intp), still)
+    moved = on_way(root, np.zeros(0, np.intp), way)
+    translations = pose.translations.copy()
+    translations[:, 0] = moved.translations[:, 0] + pose.translations[:, 0] * [0.0, 1.0, 0.0]
+    turns = pose.rotations.copy()
+    turns[:, 0] = moved.rotations[:, 0]
+    return replace(pose, translations=translations, rotations=turns)
+
+
+def _turned_root(clip: Clip, body: Body, aside: float) -> Clip:
+    """Return a clip whose root looks elsewhere by an angle [rad]; the body stays in the world."""
+    below = np.flatnonzero(np.array(body.skeleton.parents) == 0)
+    return replace(clip, poses=on_way(clip.poses, below, clip.track + [0.0, 0.0, aside]))
+
+
+def _cut_footing(footing: Footing, cut: Cut) -> Footing:
+    """Return when feet stand in a cycle; its last frame is its first."""
+
+    def part(down: "np.typing.NDArray[np.bool_]") -> "np.typing.NDArray[np.bool_]":
+        return np.concatenate([down[cut.start : cut.end], down[cut.start : cut.start + 1]])
+
+    return Footing(part(footing.heel), part(footing.ball))
+
+
+def _first_landing(footing: Footing) -> int:
+    """Return the frame of a loop at which the left foot lands, 0 if it never does."""
+    down = (footing.heel | footing.ball)[:-1, 0]
+    return int(np.argmax(down & ~np.roll(down, 1)))
+
+
+def _rolled(clip: Clip, footing: Footing, first: int) -> tuple[Clip, Footing]:
+    """Return a loop in place that starts at another frame."""
+    order = (np.arange(len(clip)) + first) % (len(clip) - 1)
+    return replace(clip, poses=clip.poses[order]), Footing(footing.heel[order], footing.ball[order])
+
+
+def _coarser(clip: Clip, footing: Footing) -> tuple[Clip, Footing]:
+    """Return a loop at the rate of what is made."""
+    coarse = resampled(clip, _RATE)
+    nearest = np.linspace(0, len(clip) - 1, len(coarse)).round().astype(int)
+    return coarse, Footing(footing.heel[nearest], footing.ball[nearest])
+
+
+def _angular(course: Course) -> float:
+    return -math.degrees(course.yaw_rate) / _TURN
+
+
+def _tree(
+    kind: str, names: Mapping[float, str], gaits: Sequence[Gait], mirror: Mirror | None
+) -> list[Gait]:
+    """Return the clips of a tree, each bent from the gait that turns most like it."""
+    angles, slower = _SLOWER[kind]
+    made: list[Gait] = []
+    for knot, name in names.items():
+        gait, mirrored = _nearest(knot, gaits, mirror)
+        sign = -1.0 if mirrored else 1.0
+        now = sign * _angular(gait.course)
+        share = np.interp(abs(knot), angles, slower) / np.interp(abs(now), angles, slower)
+        yaw_rate = -math.radians(_TURN * knot)
+        bent = gait.on(Course(gait.course.speed * float(share), sign * yaw_rate))
+        how = "" if abs(now - knot) < _STRAIGHT else ", bent"
+        clip = replace(bent.clip, name=name)
+        course = bent.course
+        if mirrored and mirror is not None:
+            clip = _mirrored(clip, mirror)
+            course = Course(course.speed, -course.yaw_rate)
+            how += ", mirrored"
+            # A body that is not quite symmetric steps a little elsewhere: its feet are held anew.
+            bent = held(replace(bent, clip=clip, course=course, footing=_swapped(bent.footing)))
+            clip = bent.clip
+        made.append(replace(bent, clip=clip, course=course, origin=gait.origin + how))
+    return made
+
+
+def _nearest(knot: float, gaits: Sequence[Gait], mirror: Mirror | None) -> tuple[Gait, bool]:
+    """Return the gait that turns most like a knot, and whether it is to be mirrored.
+
+    Only where that makes it turn to the right side; what is straight is bent to the left and
+    mirrored to the right, so that both sides are alike.
+    """
+    options: list[tuple[float, int, bool]] = []
+    for number, gait in enumerate(gaits):
+        angular = _angular(gait.course)
+        straight = abs(angular) < _STRAIGHT
+        options.append((abs(angular - knot), number, straight and knot > 0 and mirror is not None))
+        if mirror is not None and not straight:
+            options.append((abs(-angular - knot) + 1.0, number, True))
+    _, number, mirrored = min(options)
+    return gaits[number], mirrored
+
+
+def _mirror(character: Character) -> Mirror | None:
+    """Return the mirror of a character, or None if it is not symmetric."""
+    try:
+        return Mirror.of_character(character)
+    except CharacterError:
+        return None
+
+
+def _mirrored(clip: Clip, mirror: Mirror) -> Clip:
+    """Return a gait mirrored, half a cycle later: with the left foot first again."""
+    image = mirror.clip(clip)
+    # Bones keep their lengths where a body is not quite symmetric.
+    bones = np.flatnonzero(np.ptp(clip.in_place.translations, axis=0).max(-1) < 1e-9)
+    image.poses.translations[:, bones[bones > 0]] = clip.poses.translations[:, bones[bones > 0]]
+    count = len(image) - 1
+    order = (np.arange(len(image)) + count // 2) % count
+    poses = image.in_place[order]
+    return replace(image, poses=_placed(poses, image.track))
+
+
+def _swapped(footing: Footing) -> Footing:
+    """Return when feet stand in the mirror image, half a cycle later."""
+    count, legs = len(footing.ball) - 1, footing.ball.shape[1]
+    order = (np.arange(count + 1) + count // 2) % count
+    sides = [leg + 1 - 2 * (leg % 2) for leg in range(legs)]
+    return Footing(footing.heel[order][:, sides], footing.ball[order][:, sides])
+
+
+def _pause(recording: Recording, character: Character, walker: Character) -> Clip:
+    """Return a recording of standing as a loop in place."""
+    clip, _ = _on_character(recording, character, walker)
+    body = Body(walker.skeleton, walker.anatomy)
+    cut = Cut(0, len(clip) - 1, 0.0) if clip.loop else find_pause(clip, body)
+    loop = closed(clip, cut)
+    loop = resampled(loop, _RATE) if loop.rate > _RATE else loop
+    return replace(loop, name="idle", root_motion=True)
+
+
+def _stand(walk: Clip, body: Body) -> Clip:
+    """Return a stand: legs and trunk as at rest, arms as they hang on the mean in walking."""
+    rest = body.skeleton.rest
+    pose = walk.in_place
+    mean = pose.rotations.sum(0)
+    mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1e-9)
+    arms = [j for part, j in body.anatomy.joints.items() if part[4:].startswith("UpperArm")]
+    arms += [j for part, j in body.anatomy.joints.items() if part[5:].startswith("UpperArm")]
+    hang = [j for j in range(len(body.skeleton)) if set(body.line(j)) & set(arms)]
+    turns = rest.rotations.copy()
+    turns[hang] = mean[hang]
+    frames = 31
+    scales = None if rest.scales is None else np.tile(rest.scales, (frames, 1, 1))
+    still = Pose(np.tile(rest.translations, (frames, 1, 1)), np.tile(turns, (frames, 1, 1)), scales)
+    return Clip("idle", 30.0, still, True, True)
+
+
+def _found(name: str, origin: str, gait: Gait) -> Found:
+    return Found(
+        name,
+        origin,
+        gait.clip.duration,
+        gait.course.speed,
+        _angular(gait.course),
+        gait.seam,
+        slide(gait),
+    )
