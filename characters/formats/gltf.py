@@ -7,8 +7,9 @@ from characters.character import Character
 from characters.errors import CharacterError
 from characters.formats import vrm
 from characters.formats.gltf_clips import read_clips
+from characters.formats.gltf_container import open_gltf
 from characters.formats.gltf_document import DamagedFileError
-from characters.formats.gltf_file import GltfFile, open_gltf
+from characters.formats.gltf_file import GltfFile
 from characters.formats.gltf_meshes import read_meshes
 from characters.formats.gltf_morphs import read_morph_table
 from characters.formats.gltf_nodes import NodeTree, read_tree
@@ -34,7 +35,8 @@ def load(path: "str | Path") -> Character:
     except DamagedFileError as error:
         # Names out of the file may hold anything; the message is one line.
         reason = " ".join(str(error).split())
-        raise CharacterError(f"{path}: {reason}; repair it or export it again") from error
+        advice = "" if ";" in reason else "; repair it or export it again"
+        raise CharacterError(f"{path}: {reason}{advice}") from error
 
 
 def _character(file: GltfFile) -> Character:

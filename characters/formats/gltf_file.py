@@ -1,21 +1,19 @@
-"""The container of glTF 2.0: its JSON, its buffers and the arrays in them."""
+"""An opened glTF: the arrays in its buffers, and the files that it refers to."""
 
 import base64
-import struct
 from dataclasses import dataclass, field
+from errno import ENOENT
 from pathlib import Path
-from urllib.parse import unquote
+from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.errors import CharacterError
-from characters.formats.gltf_document import DamagedFileError, Json, at, parse
+from characters.formats.gltf_document import DamagedFileError, Json, at
 
 Array = NDArray[np.float64]
 
 _MOST_ZEROS = 2_000_000  # rows without bytes behind them
-_MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 
 COMPONENTS: dict[int, type[np.generic]] = {
     5120: np.int8,
@@ -29,17 +27,6 @@ COMPONENTS: dict[int, type[np.generic]] = {
 
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 """Number of components of an accessor's type."""
-
-# What changes how bytes are to be read; without it nothing would come out right.
-_UNDERSTOOD = {
-    "KHR_mesh_quantization",
-    "KHR_materials_unlit",
-    "KHR_texture_transform",
-    "KHR_materials_emissive_strength",
-    "VRMC_vrm",
-    "VRMC_materials_mtoon",
-    "VRM",
-}
 
 
 @dataclass
@@ -132,15 +119,20 @@ class GltfFile:
     def resource(self, uri: str) -> bytes:
         """Return what a URI names: data inside it, or a file beside this one."""
         if uri.startswith("data:"):
-            return base64.b64decode(uri.partition(",")[2])
-        beside = self.path.parent / unquote(uri)
+            kind, _, data = uri.partition(",")
+            return base64.b64decode(data) if kind.endswith(";base64") else unquote_to_bytes(data)
+        name = unquote(uri)
+        if urlsplit(uri).scheme or Path(name).is_absolute():
+            raise DamagedFileError(f"needs {name!r:.80}, which is not a file beside it")
+        beside = self.path.parent / name
         try:
+            if not beside.is_file():  # neither folders nor devices, some of which never end
+                raise FileNotFoundError(ENOENT, "no such file")
             return beside.read_bytes()
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
-            raise CharacterError(
-                f"{self.path}: needs {unquote(uri)!r}, which cannot be read ({reason}); "
-                "put it beside the file"
+            raise DamagedFileError(
+                f"needs {name!r:.80}, which cannot be read ({reason}); put it beside the file"
             ) from None
 
     def _accessor(self, index: int, width: int) -> NDArray[np.generic]:
@@ -197,64 +189,9 @@ class GltfFile:
         return changed
 
 
-def open_gltf(path: Path) -> GltfFile:
-    """Read a .glb or .gltf file with everything that it refers to.
-
-    Raises
-    ------
-    CharacterError
-        If it is absent, truncated, not glTF 2.0, or needs an extension that is not understood.
-    """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise CharacterError(f"{path}: cannot be read ({error.strerror}); check the path") from None
-    text, blob = _unpack(path, data)
-    try:
-        document = parse(text)
-    except DamagedFileError:
-        raise
-    except (ValueError, RecursionError):
-        raise CharacterError(f"{path}: not a glTF file; export it as .glb again") from None
-    version = str(document["asset"].get("version"))
-    if not version.startswith("2"):
-        raise CharacterError(f"{path}: glTF {version:.20}; export it as glTF 2.0")
-    unknown = sorted(set(document.get("extensionsRequired", ())) - _UNDERSTOOD)
-    if unknown:
-        raise CharacterError(
-            f"{path}: needs the extension {', '.join(unknown)}; export it without compression"
-        )
-    opened = GltfFile(path, document, ())
-    contents = [
-        opened.resource(buffer["uri"]) if "uri" in buffer else blob
-        for buffer in opened.all("buffers")
-    ]
-    for number, (buffer, content) in enumerate(zip(opened.all("buffers"), contents, strict=True)):
-        if len(content) < buffer["byteLength"]:
-            raise DamagedFileError(
-                f"buffer {number} has {len(content)} bytes, not {buffer['byteLength']}"
-            )
-    return GltfFile(path, document, tuple(contents))
-
-
 def _component(holder: Json) -> "np.dtype[np.generic]":
     """Return the type of an accessor's numbers, or of its sparse indices."""
     code = holder["componentType"]
     if code not in COMPONENTS:
         raise DamagedFileError(f"component type {code!r:.20} does not exist")
     return np.dtype(COMPONENTS[code]).newbyteorder("<")
-
-
-def _unpack(path: Path, data: bytes) -> tuple[bytes, bytes]:
-    """Return the JSON text and the binary chunk."""
-    if data[:4] != struct.pack("<I", _MAGIC):
-        return data, b""
-    if len(data) < 20 or struct.unpack_from("<I", data, 8)[0] > len(data):
-        raise CharacterError(f"{path}: truncated .glb; copy or export it again")
-    chunks: dict[int, bytes] = {}
-    at_byte = 12
-    while at_byte + 8 <= len(data):
-        length, kind = struct.unpack_from("<II", data, at_byte)
-        chunks.setdefault(kind, data[at_byte + 8 : at_byte + 8 + length])
-        at_byte += 8 + length
-    return chunks.get(_JSON, b""), chunks.get(_BIN, b"")

@@ -10,8 +10,9 @@ import pytest
 from PIL import Image
 
 from characters import Character, CharacterError, CharacterWarning, rotations
+from characters.formats.gltf_container import open_gltf
 from characters.formats.gltf_document import DamagedFileError
-from characters.formats.gltf_file import Budget, open_gltf
+from characters.formats.gltf_file import Budget
 from tests.characters.built_gltf import build_arm, glb
 
 
@@ -200,7 +201,15 @@ def test_a_buffer_view_beyond_its_buffer_is_named(tmp_path, arm):
 def test_a_buffer_that_is_cut_is_named(tmp_path, arm):
     arm.document["buffers"] = [{"byteLength": len(arm.blob)}]
     (tmp_path / "arm.glb").write_bytes(glb(arm.document, arm.blob[:-8]))
-    with pytest.raises(CharacterError, match=r"buffer 0 has \d+ bytes, not \d+"):
+    with pytest.raises(CharacterError, match=r"buffer 0: has \d+ bytes, not \d+"):
+        Character.load(tmp_path / "arm.glb")
+
+
+@pytest.mark.parametrize("uri", ["/dev/zero", "http://x.org/a.bin", "file:///etc/passwd"])
+def test_only_files_beside_are_opened(tmp_path, arm, uri):
+    arm.document["buffers"] = [{"byteLength": 9, "uri": uri}]
+    (tmp_path / "arm.glb").write_bytes(glb(arm.document))
+    with pytest.raises(CharacterError, match=r"buffer 0: needs .*, which is not a file beside it"):
         Character.load(tmp_path / "arm.glb")
 
 
