@@ -314,3 +314,12 @@ def test_a_diagram_says_what_was_set(human):
     texts = {e.text for e in ElementTree.fromstring(draw(read)).iter() if e.text}
     assert {"rest", "move", "speed > 0.5", "over angular", "add mask upper weight weight"} <= texts
     assert {"−60", "2.75", "base", "over"} <= texts
+
+
+def test_the_example_in_the_documents_is_sound():
+    page = (Path(__file__).parents[2] / "docs" / "motion-files.md").read_text(encoding="utf-8")
+    example = page.split("```toml")[1].split("```")[0]
+    read = plan(example, ["idle", "Walk", "WalkLeft", "Run", "Wave"])
+    assert read is not None
+    assert {kind for kind in KINDS if f"`{kind}`" in page} | {"clip"} == set(KINDS)
+    assert all(f"`{name}`" in page for name in PARAMETERS)
