@@ -252,8 +252,13 @@ def _mixed(voices: list[_Voice]) -> Pose:
     """Return the mean of poses with weights for each joint, which sum to one; without morphs."""
     share = np.stack([voice.weights for voice in voices])
     turns = np.stack([voice.pose.rotations for voice in voices])
-    heaviest = share.argmax(0)
-    turns = rotations.align(turns, turns[heaviest, np.arange(len(heaviest))])
+    heaviest = turns[share.argmax(0), np.arange(share.shape[1])]
+    if len(voices) > 2:
+        # The signs that agree best do not depend on the order, as those next to one of several
+        # equals would (Markley et al., "Averaging quaternions", 2007).
+        squares = np.einsum("kj,kja,kjb->jab", share, turns, turns)
+        heaviest = rotations.align(np.linalg.eigh(squares)[1][..., -1], heaviest)
+    turns = rotations.align(turns, heaviest)
     scales = None
     if any(voice.pose.scales is not None for voice in voices):
         scales = np.einsum("kj,kjc->jc", share, np.stack([_scales(v.pose) for v in voices]))

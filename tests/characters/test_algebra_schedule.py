@@ -90,6 +90,16 @@ def test_the_order_of_actions_does_not_matter(order):
     assert np.allclose(rotations.align(a.rotations, b.rotations), b.rotations)
 
 
+def test_of_many_equal_and_far_poses_the_order_does_not_matter_either():
+    rng = np.random.default_rng(1)
+    rest = Pose(np.zeros((200, 3)), np.tile(rotations.IDENTITY, (200, 1)))
+    for spread in (1.0, 3.0):
+        turns = rotations.from_rotation_vector(rng.uniform(-spread, spread, (4, 200, 3)))
+        actions = [Action(Still(Pose(rest.translations, turn), 1.0)) for turn in turns]
+        a, b = (Schedule(tuple(x), rest).sample(0.0).rotations for x in (actions, actions[::-1]))
+        assert np.abs(rotations.align(a, b) - b).max() < 1e-9
+
+
 weights = st.floats(0.01, 5.0)
 
 
