@@ -16,6 +16,13 @@ from robot.emotion import HAPPY_ABOVE
 LARGEST = 216
 """Side of the picture that is drawn at most [px]; software rendering takes longer for more."""
 
+PAUSE = 0.045
+"""Shortest time from one picture to the next where the processor draws [s]: every second frame of
+a usual camera, for the character on the table needs the processor too."""
+
+SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software")
+"""What drivers that draw on the processor call themselves."""
+
 FACING = -0.52
 """The robot is turned so far to its right of the camera, so that its tail is seen too [rad]."""
 
@@ -48,16 +55,31 @@ class Likeness:
         self._animator = Animator(self._character, place=Step(yaw=FACING))
         self._stage: Stage | None = Stage(context, (self._drawn, self._drawn))
         self._matrix, self._camera_from_table = _camera(self._drawn)
+        renderer = str(context.info["GL_RENDERER"]).lower()
+        self._pause = PAUSE if any(name in renderer for name in SOFTWARE) else 0.0
+        self._last: tuple[float, NDArray[np.uint8]] | None = None
         self._eye = np.asarray(np.linalg.inv(self._camera_from_table)[:3, 3], np.float64)
 
     def portrait(self, target: EmotionTarget) -> NDArray[np.uint8]:
         """Advance to an emotion and its time; return the picture, (side, side, 3) BGR.
+
+        The same picture is returned again where it is too early for another.
 
         Raises
         ------
         RuntimeError
             If the likeness is closed.
         """
+        if self._last is not None and 0.0 <= target.timestamp - self._last[0] < self._pause:
+            return self._last[1]
+        picture = self._drawing(target)
+        if self._drawn != self.side:
+            size = (self.side, self.side)
+            picture = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_CUBIC), np.uint8)
+        self._last = target.timestamp, picture
+        return picture
+
+    def _drawing(self, target: EmotionTarget) -> NDArray[np.uint8]:
         if self._stage is None:
             raise RuntimeError("the likeness is closed")
         command = CharacterCommand(
@@ -69,11 +91,7 @@ class Likeness:
         posed = self._animator.update(command)
         image = backdrop(self._drawn, target.emotion.valence)
         view = View(image, self._matrix, np.zeros(0), self._camera_from_table)
-        picture = self._stage.draw(view, [Actor(self._character, posed)])
-        if self._drawn == self.side:
-            return picture
-        whole = cv2.resize(picture, (self.side, self.side), interpolation=cv2.INTER_CUBIC)
-        return np.asarray(whole, np.uint8)
+        return self._stage.draw(view, [Actor(self._character, posed)])
 
     def close(self) -> None:
         """Give the card's memory back."""

@@ -9,7 +9,7 @@ import pytest
 
 from app.robots import RobotLine
 from app.scenarios import EmotionTarget
-from app.show.likeness import Likeness, backdrop, intensity
+from app.show.likeness import SOFTWARE, Likeness, backdrop, intensity
 from app.show.overlay import RobotView, likeness_side, overlay
 from app.show.palette import ANGRY, HAPPY
 from characters import CharacterError
@@ -73,6 +73,22 @@ def test_its_lamps_tell_the_mood_at_every_intensity(context, strength):
     angry = played(context, [(-strength, "angry")] * 8)[-1]
     assert lit(happy, HAPPY) > 12 > 4 * lit(angry, HAPPY)
     assert lit(angry, ANGRY) > 12 > lit(happy, ANGRY)
+
+
+def test_where_the_processor_draws_every_second_frame_brings_a_new_picture(context):
+    likeness = Likeness(context, SIDE)
+    pictures = [likeness.portrait(felt(0.9, "happy", 5.0 + n / 30)) for n in range(8)]
+    likeness.close()
+    fresh = sum(a is not b for a, b in itertools.pairwise(pictures))
+    software = any(name in context.info["GL_RENDERER"].lower() for name in SOFTWARE)
+    assert fresh == (3 if software else 7)
+
+
+def test_a_session_that_starts_over_in_time_is_followed(context):
+    likeness = Likeness(context, SIDE)
+    late, early = (likeness.portrait(felt(0.0, "neutral", time)) for time in (9.0, 0.0))
+    likeness.close()
+    assert late is not early
 
 
 def test_intensity_rises_with_the_mood_and_never_leaves_its_range():

@@ -17,7 +17,8 @@ from app.commands.replay import bundled
 from app.opening import fitting
 from app.playground import Playground, Step
 from app.scenarios import CUBES, Inputs
-from app.show.overlay import RobotView, overlay
+from app.show.likeness import Likeness
+from app.show.overlay import RobotView, likeness_side, overlay
 from characters.rendering import create_context
 from tracking import open_source
 
@@ -31,6 +32,7 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
     with open_source(str(bundled(name))) as source:
         playground = Playground(name, fitting(source.intrinsics, source.size), context=context)
         robot = RobotView("ready", 0.0, "neutral")
+        likeness = Likeness(context, likeness_side(source.size[1]))
         stream = iter(source)
         for _ in range(frames):
             marks = [time.perf_counter()]
@@ -48,7 +50,8 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
             picture = playground.draw(frame, state, controls, outcome, posed)
             assert picture is not None
             marks.append(time.perf_counter())
-            overlay(picture, Step(frame, state, controls, outcome, posed, picture), robot)
+            step = Step(frame, state, controls, outcome, posed, picture)
+            overlay(picture, step, robot, likeness)
             marks.append(time.perf_counter())
             names = (
                 "(decode)",
@@ -60,6 +63,7 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
             )
             for part, span in zip(names, np.diff(marks), strict=True):
                 parts[part].append(1000 * span)
+        likeness.close()
         playground.close()
     context.release()
     counted = [part for part in parts if not part.startswith("(")]
