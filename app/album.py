@@ -36,7 +36,7 @@ class Album:
 
     def __init__(self, context: moderngl.Context) -> None:
         self._large = Studio(context, (240, 280))
-        self._small = Studio(context, (150, 160))
+        self._small = Studio(context, (150, 200))
         self._faces = Studio(context, (230, 230))
 
     def turntable(self, character: Character) -> Image:
@@ -58,10 +58,12 @@ class Album:
         pose = standing(character)
         names = character.morphs
         shapes = np.concatenate([np.zeros((1, len(names))), np.eye(len(names))])
+        poses = [replace(pose, morphs=morphs if len(names) else None) for morphs in shapes]
         pictures = []
-        for name, morphs in zip(("at rest", *names), shapes, strict=True):
-            shown = replace(pose, morphs=morphs if len(names) else None)
-            face = self._faces.portrait(character, shown, around=0.3, above=0.05, focus="face")
+        for name, shown in zip(("at rest", *names), poses, strict=True):
+            face = self._faces.portrait(
+                character, shown, around=0.3, above=0.05, focus="face", reach=poses
+            )
             pictures.append(_captioned(face, name))
         return _sheet(character.name, "its face", [side_by_side(pictures, FACES)])
 

@@ -15,7 +15,7 @@ from characters.rendering import create_context
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures" / "cast"
 
-ROWS = 10
+ROWS = 8
 """Clips on a page."""
 
 MOST = 300_000

@@ -60,7 +60,7 @@ class Studio:
         around: float = 0.4,
         above: float = 0.16,
         focus: Focus = None,
-        reach: Clip | None = None,
+        reach: Clip | Sequence[Pose] = (),
     ) -> Image:
         """Return a picture of a character, (height, width, 3) BGR.
 
@@ -74,7 +74,8 @@ class Studio:
             What fills the picture: "face", a part of `Anatomy` such as "leftHand", or a centre (3,)
             and a radius in the character frame [m]; the whole character without.
         reach
-            A clip that fits into the picture as well, so that pictures of it can be compared.
+            A clip or poses that fit into the picture as well, so that pictures of them can be
+            compared.
 
         Raises
         ------
@@ -82,7 +83,7 @@ class Studio:
             If the character has no such part.
         """
         pose = character.skeleton.rest if pose is None else pose
-        framed = [pose] if reach is None else [pose, *_some_of(reach)]
+        framed = [pose, *(_some_of(reach) if isinstance(reach, Clip) else reach)]
         place = _place(character, around)
         framing = self._framing(character, [(each, place) for each in framed], above, focus)
         return self._taken(character, pose, place, framing)
