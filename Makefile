@@ -25,6 +25,7 @@ bench: .venv/ready-dev  ## every figure that the documents name
 	$(BIN)/python -m tests.bench.line
 	$(BIN)/python -m tests.bench.accuracy
 	$(BIN)/python -m tests.bench.animation
+	$(BIN)/python -m tests.bench.loading
 	$(BIN)/python -m tests.bench.feet
 	$(BIN)/python -m tests.bench.picture
 	$(BIN)/python -m tests.bench.looks
