@@ -1,7 +1,8 @@
 """`cubeling`: the command line."""
 
 import sys
-from typing import Annotated
+import warnings
+from typing import Annotated, TextIO
 
 import typer
 import typer.exceptions
@@ -10,6 +11,7 @@ from rich.console import Console
 from app.commands import calibrate, character, cube, demo, doctor, play, replay, robot
 from app.errors import AppError
 from characters import CharacterError
+from characters.errors import CharacterWarning
 from robot import RobotError
 from tracking import TrackingError
 
@@ -48,7 +50,10 @@ def main() -> None:
     """Run a command; bad input ends in one line and exit code 2."""
     debug = "--debug" in sys.argv
     try:
-        code = app(prog_name="cubeling", standalone_mode=False)
+        with warnings.catch_warnings():
+            warnings.simplefilter("default", CharacterWarning)
+            warnings.showwarning = mention
+            code = app(prog_name="cubeling", standalone_mode=False)
     except typer.exceptions.TyperException as error:
         told = usage(error)
         complain(told)
@@ -69,6 +74,19 @@ def usage(error: typer.exceptions.TyperException) -> str:
     where = context.command_path if context else "cubeling"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
     return f"{message.rstrip('.')} (see {where} --help)" if message else ""
+
+
+def mention(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """Print a warning as one line; one about input does not name the code that gave it."""
+    repaired = issubclass(category, CharacterWarning)
+    complain(str(message) if repaired else f"{filename}:{lineno}: {category.__name__}: {message}")
 
 
 def complain(line: str) -> None:

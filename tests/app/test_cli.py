@@ -1,17 +1,20 @@
 """The command line: help that reads well, and one line for everything a person can put right."""
 
+import warnings
 from pathlib import Path
 
 import pytest
 
 from app import doctor
 from characters import Character, CharacterError
+from characters.errors import CharacterWarning
 
 COMMANDS = [
     ["demo"],
     ["play"],
     ["replay"],
     ["cube"],
+    ["character", "inspect"],
     ["robot", "simulate"],
     ["robot", "list"],
     ["doctor"],
@@ -155,6 +158,16 @@ def test_the_doctor_names_a_missing_driver_and_its_remedy(cubeling, monkeypatch)
     assert code == 2
     assert "libEGL is missing" in out
     assert "apt-get install -y libegl1" in out
+
+
+def test_what_was_repaired_is_one_line(cubeling, monkeypatch):
+    def repaired():
+        warnings.warn("x.glb: weights\ndid not sum to one", CharacterWarning, stacklevel=1)
+        raise CharacterError("cannot draw")
+
+    monkeypatch.setattr(doctor, "create_context", repaired)
+    _, _, err = cubeling("doctor", "--no-cameras")
+    assert err == "cubeling: x.glb: weights did not sum to one\n"
 
 
 def test_a_cube_sheet_is_written(cubeling):
