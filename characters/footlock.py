@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters import rotations
 from characters.legs import Legs
 from characters.motion import Step
 from characters.pose import Array, Pose
@@ -273,13 +272,23 @@ class FootLock:
         shifts = [foot.shift for foot in self.feet]
         if max(s.length + abs(s.y) + abs(s.yaw) * 0.1 for s in shifts) < 1e-5 * self._height:
             return pose
-        ankles, balls = placed[self.legs.joints[:, 3], :3, 3], placed[self.legs.joints[:, 4], :3, 3]
         sine, cosine = math.sin(place.yaw), math.cos(place.yaw)
-        moved = np.array(
-            [[cosine * s.x - sine * s.z, s.y, sine * s.x + cosine * s.z] for s in shifts]
-        )
-        turned = np.array([[0.0, math.sin(s.yaw / 2), 0.0, math.cos(s.yaw / 2)] for s in shifts])
-        ankles = balls + moved + rotations.rotate(turned, ankles - balls)
+        ankles, turned = [], []
+        for shift, ankle, ball in zip(
+            shifts,
+            placed[self.legs.joints[:, 3], :3, 3].tolist(),
+            placed[self.legs.joints[:, 4], :3, 3].tolist(),
+            strict=True,
+        ):
+            x, z = _turned(ankle[0] - ball[0], ankle[2] - ball[2], shift.yaw)
+            ankles.append(
+                (
+                    ball[0] + x + cosine * shift.x - sine * shift.z,
+                    ankle[1] + shift.y,
+                    ball[2] + z + sine * shift.x + cosine * shift.z,
+                )
+            )
+            turned.append((0.0, math.sin(shift.yaw / 2), 0.0, math.cos(shift.yaw / 2)))
         return self.legs.bend(pose, placed, ankles, turned)
 
 

@@ -12,12 +12,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from characters import rotations
+from characters import rotations, two_bones
 from characters.phase import find_feet
 from characters.pose import Array, Pose, Skeleton
-
-_STRAIGHTEST = 0.999  # part of a leg's length that a target may need
-_KNEE_AXIS = np.array([-1.0, 0.0, 0.0])  # of a leg that is straight: it bends the shin backward
+from characters.two_bones import Quaternion, Vector
 
 
 @dataclass(frozen=True)
@@ -81,16 +79,24 @@ class Legs:
 
         Hips and knees bend, as far as the legs are long.
         """
-        placed = self.globals(pose)
-        ankle, toes = self.joints[:, 3], self.joints[:, 4]
+        placed, local = self.globals(pose), pose.rotations[self.carriers].tolist()
         # The ball of the foot is what it stands and rolls on.
-        offsets = pose.translations[self.carriers[toes]]
-        turned = rotations.multiply(
-            facings, rotations.conjugate(rotations.from_matrix(placed[ankle, :3, :3]))
-        )
-        return self.bend(pose, placed, balls - rotations.rotate(facings, offsets), turned)
+        offsets = pose.translations[self.carriers[self.joints[:, 4]]].tolist()
+        ankles, turned = [], []
+        for line, offset, ball, facing in zip(
+            self._lines, offsets, balls.tolist(), facings.tolist(), strict=True
+        ):
+            x, y, z = two_bones.turn(facing, offset)
+            ankles.append((ball[0] - x, ball[1] - y, ball[2] - z))
+            faced = local[line[0]]
+            for joint in line[1:]:
+                faced = two_bones.multiply(faced, local[joint])
+            turned.append(two_bones.multiply(facing, two_bones.conjugate(faced)))
+        return self.bend(pose, placed, ankles, turned)
 
-    def bend(self, pose: Pose, placed: Array, ankles: Array, turned: Array) -> Pose:
+    def bend(
+        self, pose: Pose, placed: Array, ankles: Sequence[Vector], turned: Sequence[Quaternion]
+    ) -> Pose:
         """Return a pose with its ankles moved and its feet turned.
 
         Parameters
@@ -98,22 +104,39 @@ class Legs:
         pose, placed
             What is changed, and its `globals`.
         ankles
-            Where the ankles are to be, (legs, 3) [m].
+            Where the ankles are to be [m].
         turned
-            How the feet turn from how they face, in the character's frame, (legs, 4).
+            How the feet turn from how they face, in the character's frame.
         """
-        pelvis, hip, knee = self.joints[:, :3].T
-        upper, lower = self._reach(placed[..., :3, 3], ankles)
-        # A turn T in the frame of the character is Gᵀ T G in that of a joint G: only the axis
-        # of a quaternion changes. What is above a joint has turned along.
-        foot = rotations.multiply(rotations.conjugate(rotations.multiply(upper, lower)), turned)
-        turns = np.stack([upper, lower, foot])
-        frames = placed[np.stack([pelvis, hip, knee]), :3, :3]
-        turns[..., :3] = (turns[..., None, :3] @ frames)[..., 0, :]
-        where = self.carriers[self.joints[:, 1:4].T]
+        turns: list[tuple[Quaternion, ...]] = []
+        for frames, target, foot in zip(
+            placed[self.joints[:, :4]].tolist(), ankles, turned, strict=True
+        ):
+            hip, knee, ankle = ((f[0][3], f[1][3], f[2][3]) for f in frames[1:])
+            upper, lower = two_bones.reach(hip, knee, ankle, target)
+            foot = two_bones.multiply(two_bones.conjugate(two_bones.multiply(upper, lower)), foot)
+            # What is above a joint has turned along.
+            turns.append(
+                tuple(
+                    two_bones.seen_from(frame[:3], turn)
+                    for frame, turn in zip(frames, (upper, lower, foot), strict=False)
+                )
+            )
+        where = self.carriers[self.joints[:, 1:4]]
         bent = pose.rotations.copy()
-        bent[where] = rotations.multiply(turns, bent[where])
+        bent[where] = rotations.multiply(np.array(turns), bent[where])
         return replace(pose, rotations=bent)
+
+    @cached_property
+    def _lines(self) -> list[list[int]]:
+        """The joints from the root to each ankle, numbered among the carriers."""
+        lines = []
+        for ankle in self.joints[:, 3].tolist():
+            line = [ankle]
+            while self.skeleton.parents[line[-1]] >= 0:
+                line.append(self.skeleton.parents[line[-1]])
+            lines.append(line[::-1])
+        return lines
 
     def _mean_feet(self, globals_: Array, share: Array) -> tuple[Array, Array]:
         """Return where the balls of the feet are, (legs, 3), and how the feet face, (legs, 4)."""
@@ -122,26 +145,6 @@ class Legs:
         facing = rotations.from_matrix(globals_[..., :3, :3][:, ankle])
         facing = rotations.align(facing, facing[int(share.argmax())])
         return place, rotations.normalize(np.einsum("p,pli->li", share, facing))
-
-    def _reach(self, at: Array, target: Array) -> tuple[Array, Array]:
-        """Return the turns of the whole leg and of the shin, (legs, 4) each, in the character.
-
-        The knee keeps its plane; the law of cosines says how far it bends.
-        """
-        hip, knee, ankle = (at[self.joints[:, column]] for column in (1, 2, 3))
-        thigh, shin = hip - knee, ankle - knee
-        long, short = _length(thigh), _length(shin)
-        wanted = np.clip(
-            _length(target - hip), np.abs(long - short) + 1e-6, _STRAIGHTEST * (long + short)
-        )
-        across = rotations.cross(thigh, shin)
-        size = _length(across)
-        axis = np.where(size > 1e-9, across / np.maximum(size, 1e-9), _KNEE_AXIS)
-        bend = np.arctan2(size, np.einsum("ij,ij->i", thigh, shin)[:, None])
-        goal = np.arccos(np.clip((long**2 + short**2 - wanted**2) / (2 * long * short), -1, 1))
-        lower = rotations.about(axis, (goal - bend)[:, 0])
-        reached = knee + rotations.rotate(lower, shin) - hip
-        return rotations.between(reached, target - hip), lower
 
 
 def find_legs(skeleton: Skeleton) -> Legs | None:
@@ -177,8 +180,3 @@ def _lines(feet: list[int], skeleton: Skeleton) -> list[list[int]]:
         if len(line) == 5 and line[1] in feet and line[2] not in feet:
             lines.append(line[::-1])
     return lines
-
-
-def _length(vectors: Array) -> Array:
-    length: Array = np.sqrt(np.einsum("ij,ij->i", vectors, vectors))[:, None]
-    return length
