@@ -74,8 +74,13 @@ class Album:
 
 
 def standing(character: Character) -> Pose:
-    """Return the first pose of the clip in which a character idles, or its rest pose."""
+    """Return the first pose of the clip in which a character idles, or its rest pose.
+
+    Motion capture may rest with its hips on the ground; then it is its first pose.
+    """
     idle = next((c for name, c in character.clips.items() if name.lower().endswith("idle")), None)
+    if idle is None and character.bounds[0, 1] < -0.2 * character.height:
+        idle = next(iter(character.clips.values()), None)
     return character.skeleton.rest if idle is None else idle.sample(0.0)
 
 

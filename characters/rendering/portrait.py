@@ -99,7 +99,8 @@ class Studio:
     ) -> Image:
         """Return a character from `count` sides, side by side, from the front to its left."""
         pose = character.skeleton.rest if pose is None else pose
-        places = [_place(character, math.tau * turn / count) for turn in range(count)]
+        ((_, back),) = _followed([pose], character)
+        places = [_place(character, math.tau * turn / count) @ back for turn in range(count)]
         framing = self._framing(character, [(pose, place) for place in places], above, focus)
         return side_by_side([self._taken(character, pose, place, framing) for place in places])
 
@@ -205,7 +206,7 @@ def _followed(poses: Sequence[Pose], character: Character) -> list[tuple[Pose, A
     joints = np.stack([pose.globals(character.skeleton) for pose in poses])[..., :3, 3]
     back = rotations.to_matrix(rotations.about("y", -_mean_heading(joints, character.anatomy)))
     over = joints[:, character.anatomy.joint("hips") or 0] * [1.0, 0.0, 1.0]
-    far = np.ptp(over, axis=0).max() > _STRAYS * character.height
+    far = np.abs(over).max() > _STRAYS * character.height
     backs = np.tile(np.eye(4), (len(poses), 1, 1))
     backs[:, :3, :3] = back
     backs[:, :3, 3] = -over @ back.T if far else 0.0
