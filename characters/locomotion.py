@@ -5,16 +5,16 @@ each over Angular, −90…90°, joined over Speed, where 3 is the border betwee
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
 from characters.blend import Blend, BlendSpace1D, Paced
 from characters.clip import Clip
-from characters.legs import Legs, find_legs
+from characters.legs import find_legs
 from characters.phase import Phased, Still, phased
 from characters.pose import Pose, Skeleton
-from characters.strides import Strides, Tread
+from characters.strides import Stance, Strides, Tread
 
 IDLE_SPEED = 0.5
 """AvatAR's Speed up to which a character stands."""
@@ -75,8 +75,13 @@ class Gaits:
         self._run = _tree(clips, RUN_CLIPS, skeleton) if "Run" in clips else self._walk
         self.legs = find_legs(skeleton)
         """The legs that keep to the ground, or None where there are none to bend."""
-        self._treads = _treads((self._walk, self._run), skeleton, self.legs)
         self._still = Still(standing, self._walk.at(0.0).duration)
+        self._treads: dict[int, Tread] = {}
+        if self.legs is not None:
+            self._stance = Stance.of(standing, self.legs)
+            for motion in (*self._walk.motions, *self._run.motions):
+                if isinstance(motion, Phased):
+                    self._treads[id(motion)] = Tread.of(motion, skeleton, self.legs, self._stance)
         straight = [tree.at(0.0) for tree in (self._walk, self._run)]
         self._lengths = [motion.between(0.0, 1.0).length for motion in straight]
         self._cadences = [1.0 / motion.duration for motion in straight]
@@ -119,7 +124,7 @@ class Gaits:
         weights = tuple(weight for _, weight in heard)
         if self.legs is not None:
             treads = tuple(self._treads[id(motion)] for motion, _ in heard)
-            return Strides(treads, weights, self.legs, self._still.pose, share, stride, rate)
+            return Strides(treads, weights, self.legs, self._stance, share, stride, rate)
         mixed = Blend(tuple(motion for motion, _ in heard), weights)
         if share < 1.0:
             mixed = Blend((mixed, self._still), (share, 1.0 - share))
@@ -144,20 +149,6 @@ class Gaits:
                 if weight > 0.0 and isinstance(motion, Phased)
             ]
         return heard
-
-
-def _treads(
-    trees: Iterable[BlendSpace1D], skeleton: Skeleton, legs: Legs | None
-) -> dict[int, Tread]:
-    """Return where the feet are in each motion of the trees, by its identity."""
-    if legs is None:
-        return {}
-    return {
-        id(motion): Tread.of(motion, skeleton, legs)
-        for tree in trees
-        for motion in tree.motions
-        if isinstance(motion, Phased)
-    }
 
 
 def _tree(

@@ -40,11 +40,15 @@ class Tread:
     """Ball of the foot (3), facing of the foot (4), whether it stands (1): (frames, legs, 8)."""
 
     @staticmethod
-    def of(motion: Phased, skeleton: Skeleton, legs: Legs) -> "Tread":
-        """Return the tread of a clip, with contacts that are found in it."""
+    def of(motion: Phased, skeleton: Skeleton, legs: Legs, still: "Stance") -> "Tread":
+        """Return the tread of a clip, with contacts that are found in it.
+
+        Its feet face on the side of quaternions on which those of a stance do.
+        """
         clip = motion.motion
         assert isinstance(clip, Clip)
         feet = np.concatenate([_feet(clip.in_place, legs), np.zeros((len(clip), legs.count, 1))], 2)
+        feet[..., 3:7] = rotations.align(feet[..., 3:7], still.feet[:, 3:])
         down = find_contacts(clip, skeleton, legs.feet)
         # A foot is known to have left by its speed, so a little after it has.
         early = np.roll(down[:-1], -max(round(_EARLY * clip.rate), 1), axis=0)
@@ -71,6 +75,22 @@ class Tread:
 
 
 @dataclass(frozen=True)
+class Stance:
+    """A pose that is stood in, and where its feet are."""
+
+    pose: Pose
+    """The pose."""
+
+    feet: Array
+    """Ball (3) and facing (4) of each foot, (legs, 7)."""
+
+    @staticmethod
+    def of(pose: Pose, legs: Legs) -> "Stance":
+        """Return the stance of a pose."""
+        return Stance(pose, _feet(pose, legs))
+
+
+@dataclass(frozen=True)
 class Strides:
     """Clips mixed in step, with shorter steps and at another pace; `Cyclic`."""
 
@@ -83,7 +103,7 @@ class Strides:
     legs: Legs
     """Whose feet they are."""
 
-    still: Pose
+    still: Stance
     """What shorter steps lean to."""
 
     share: float = 1.0
@@ -109,7 +129,7 @@ class Strides:
         poses = [tread.motion.at(phase) for tread in self.treads]
         weights = list(self.weights)
         if self.share < 1.0:
-            poses.append(self.still)
+            poses.append(self.still.pose)
             weights = [*(weight * self.share for weight in weights), 1.0 - self.share]
         elif len(poses) == 1 and self.stride == 1.0:
             return poses[0]
@@ -118,7 +138,8 @@ class Strides:
 
     def contacts(self, phase: float) -> Array:
         """Return how much of the mix has each foot on the ground, (legs,), 0…1."""
-        return self._mean([tread.at(phase)[:, 7] for tread in self.treads])
+        each = [tread.at(phase)[:, 7] for tread in self.treads]
+        return np.asarray(self.weights) @ np.stack(each)
 
     def between(self, start: float, end: float) -> Step:
         """Return how the root moves over the ground between two phases."""
@@ -145,50 +166,37 @@ class Strides:
 
     def _feet(self, phase: float) -> tuple[Array, Array]:
         """Return where the balls of the feet are to be, (legs, 3), and how they face, (legs, 4)."""
-        feet = [tread.at(phase) for tread in self.treads]
-        homes = [tread.home for tread in self.treads]
-        facing = rotations.align(self._mean_facing(feet), self._still[:, 3:])
-        home_facing = rotations.align(self._mean_facing(homes), self._still[:, 3:])
-        ball, home = self._mean([f[:, :3] for f in feet]), self._mean([h[:, :3] for h in homes])
+        still = self.still.feet
+        feet = self._mean([tread.at(phase) for tread in self.treads])
+        home = self._mean([tread.home for tread in self.treads])
         if self.share < 1.0:
-            share, still = self.share, self._still
-            middle = still[:, :3] + share * (home - still[:, :3])
-            higher = (ball[:, 1] - home[:, 1]) * share**_LIFT
-            ball, home = middle + share * (ball - home), middle
-            ball[:, 1] = middle[:, 1] + higher
-            facing = rotations.normalize(still[:, 3:] + share * (facing - still[:, 3:]))
-            home_facing = rotations.normalize(still[:, 3:] + share * (home_facing - still[:, 3:]))
+            drawn = still + self.share * (feet - still)
+            middle = still + self.share * (home - still)
+            drawn[:, 1] = middle[:, 1] + (feet[:, 1] - home[:, 1]) * self.share**_LIFT
+            feet, home = drawn, middle
+        facing = rotations.normalize(feet[:, 3:])
         if self.stride < 1.0:
-            ball[:, 1] += (ball[:, 1] - home[:, 1]) * _TURNING * (1.0 - self.stride)
-            ball = self._drawn(ball, home, _twist(facing, home_facing))
-        return ball, facing
+            feet[:, 1] += (feet[:, 1] - home[:, 1]) * _TURNING * (1.0 - self.stride)
+            self._draw(feet, home, _twist(facing, rotations.normalize(home[:, 3:])))
+        return feet[:, :3], facing
 
-    def _drawn(self, ball: Array, home: Array, yaw: Array) -> Array:
-        """Return balls of feet (legs, 3) drawn to where they would be if the body only turned.
+    def _draw(self, feet: Array, home: Array, yaw: Array) -> None:
+        """Draw feet (legs, 7) to where they would be if the body only turned.
 
         Such a foot goes round the root as far as it turns itself: `yaw` (legs,) [rad].
         """
         sine, cosine = np.sin(yaw), np.cos(yaw)
         x, z = home[:, 0], home[:, 2]
-        drawn = ball.copy()
-        drawn[:, 0] += (1.0 - self.stride) * (cosine * x + sine * z - ball[:, 0])
-        drawn[:, 2] += (1.0 - self.stride) * (cosine * z - sine * x - ball[:, 2])
-        return drawn
+        less = 1.0 - self.stride
+        feet[:, 0] += less * (cosine * x + sine * z - feet[:, 0])
+        feet[:, 2] += less * (cosine * z - sine * x - feet[:, 2])
 
-    def _mean(self, values: Sequence[Array]) -> Array:
-        total: Array = sum(w * v for w, v in zip(self.weights, values, strict=True))  # type: ignore[assignment]
+    def _mean(self, feet: Sequence[Array]) -> Array:
+        """Return the mean of feet, (legs, 7); facings lie on the same side as the stance's."""
+        total: Array = feet[0][:, :7] * self.weights[0]
+        for each, weight in zip(feet[1:], self.weights[1:], strict=True):
+            total = total + each[:, :7] * weight
         return total
-
-    def _mean_facing(self, feet: Sequence[Array]) -> Array:
-        first = feet[0][:, 3:7]
-        return rotations.normalize(
-            self._mean([first, *(rotations.align(f[:, 3:7], first) for f in feet[1:])])
-        )
-
-    @cached_property
-    def _still(self) -> Array:
-        """Where the feet are in the pose that is leant to, (legs, 7)."""
-        return _feet(self.still, self.legs)
 
 
 def _feet(poses: Pose, legs: Legs) -> Array:
@@ -196,8 +204,6 @@ def _feet(poses: Pose, legs: Legs) -> Array:
     placed = legs.globals(poses)
     ankle, toes = legs.joints[:, 3], legs.joints[:, 4]
     facing = rotations.from_matrix(placed[..., :3, :3][..., ankle, :, :])
-    if facing.ndim == 3:
-        facing = rotations.continuous(facing)
     return np.concatenate([placed[..., :3, 3][..., toes, :], facing], axis=-1)
 
 
