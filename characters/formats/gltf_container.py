@@ -6,7 +6,7 @@ from pathlib import Path
 
 from characters.errors import CharacterError
 from characters.formats.gltf_document import DamagedFileError, at, parse
-from characters.formats.gltf_file import GltfFile
+from characters.formats.gltf_file import Budget, GltfFile
 
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 
@@ -51,7 +51,7 @@ def open_gltf(path: Path) -> GltfFile:
         raise CharacterError(
             f"{path}: needs the extension {', '.join(unknown)}; export it without compression"
         )
-    opened = GltfFile(path, document, ())
+    opened = GltfFile(path, document, (), Budget(60_000_000 + 2 * len(data)))
     buffers: list[bytes] = []
     for number, buffer in enumerate(opened.all("buffers")):
         with at(f"buffer {number}"):

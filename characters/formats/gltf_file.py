@@ -34,7 +34,7 @@ class Budget:
     """How much may still come out of a file: a few bytes can claim to be gigabytes."""
 
     numbers: int = 60_000_000
-    """Numbers in arrays, over all that is read; half a gigabyte."""
+    """Numbers in arrays, over all that is read; half a gigabyte, and more for large files."""
 
     pixels: int = 64_000_000
     """Of all images together."""

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from characters.formats.gltf_document import DamagedFileError, Json, at, called
 from characters.formats.gltf_file import GltfFile
 from characters.formats.gltf_materials import Look, read_materials
-from characters.formats.gltf_morphs import MorphTable, morph_moved, read_morphs
+from characters.formats.gltf_morphs import MorphReader, MorphTable, morph_kept, morph_moved
 from characters.formats.gltf_nodes import NodeTree
 from characters.formats.gltf_skins import Skin, read_skin, rigid_skin
 from characters.mesh import Material, Mesh, Morph
@@ -29,6 +29,7 @@ def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple
         node = file.document["nodes"][number]
         mesh = file.document["meshes"][node["mesh"]]
         name = mesh.get("name") or node.get("name") or "mesh"
+        targets = MorphReader(file, table.of(number))
         for primitive in mesh["primitives"]:
             if primitive.get("mode", _TRIANGLES) not in (_TRIANGLES, _STRIP, _FAN):
                 continue  # points and lines are not skin
@@ -38,8 +39,9 @@ def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple
                 if not len(geometry.triangles):
                     continue
                 skin = _skin(file, primitive, number, tree, len(geometry.positions), rest)
-                morphs = read_morphs(file, primitive, table.of(number), len(geometry.positions))
-                placed = _placed(name, geometry, skin, look.material, rest, morphs)
+                morphs = targets.read(primitive, len(geometry.positions))
+                used = _used(geometry, skin, morphs)
+                placed = _placed(name, *used, look.material, rest)
                 meshes.append((number, placed))
     return meshes
 
@@ -145,13 +147,40 @@ def _uvs(file: GltfFile, attributes: Json, look: Look) -> Array | None:
     return uvs if look.place is None else uvs @ look.place[:, :2].T + look.place[:, 2]
 
 
+def _used(
+    geometry: _Geometry, skin: Skin, morphs: tuple[Morph, ...]
+) -> tuple[_Geometry, Skin, tuple[Morph, ...]]:
+    """Return the parts of a primitive without the vertices that no triangle has.
+
+    Primitives of one mesh often share all of its vertices and draw some each.
+    """
+    count = len(geometry.positions)
+    kept = np.flatnonzero(np.bincount(geometry.triangles.ravel(), minlength=count))
+    if len(kept) == count:
+        return geometry, skin, morphs
+    new_number = np.full(count, -1)
+    new_number[kept] = np.arange(len(kept))
+    positions, normals, triangles, colors, uvs = geometry
+    return (
+        _Geometry(
+            positions[kept],
+            normals[kept],
+            new_number[triangles],
+            None if colors is None else colors[kept],
+            None if uvs is None else uvs[kept],
+        ),
+        Skin(skin.joints[kept], skin.weights[kept], skin.inverse_bind),
+        tuple(morph_kept(morph, new_number) for morph in morphs),
+    )
+
+
 def _placed(
     name: str,
     geometry: _Geometry,
     skin: Skin,
+    morphs: tuple[Morph, ...],
     material: Material,
     rest: Array,
-    morphs: tuple[Morph, ...],
 ) -> Mesh:
     """Return the mesh in the character frame.
 

@@ -77,13 +77,57 @@ def target_names(mesh: Json, number: int) -> tuple[str, ...]:
     return tuple(names)
 
 
-def read_morphs(
-    file: GltfFile, primitive: Json, names: Sequence[str], vertices: int
-) -> tuple[Morph, ...]:
-    """Return the morph targets of a primitive, in the frame of its vertices."""
-    return tuple(
-        _morph(file, target, name, vertices)
-        for name, target in zip(names, primitive.get("targets", []), strict=True)
+class MorphReader:
+    """Reads the morph targets of one mesh, whose primitives often share their arrays."""
+
+    def __init__(self, file: GltfFile, names: Sequence[str]) -> None:
+        self._file, self._names = file, names
+        self._shared: dict[int, Array] = {}
+
+    def read(self, primitive: Json, vertices: int) -> tuple[Morph, ...]:
+        """Return the morph targets of a primitive, in the frame of its vertices."""
+        return tuple(
+            self._morph(target, name, vertices)
+            for name, target in zip(self._names, primitive.get("targets", ()), strict=True)
+        )
+
+    def _morph(self, target: Json, name: str, vertices: int) -> Morph:
+        shifts = self._shifts(target.get("POSITION"), name, vertices)
+        turns = self._shifts(target["NORMAL"], name, vertices) if "NORMAL" in target else None
+        moved = np.abs(shifts).max(axis=1, initial=0.0) > _STILL
+        if turns is not None:
+            moved |= np.abs(turns).max(axis=1, initial=0.0) > _STILL
+        where = np.flatnonzero(moved)
+        return Morph(
+            name,
+            where.astype(np.uint32),
+            shifts[where].astype(np.float32),
+            None if turns is None else turns[where].astype(np.float32),
+        )
+
+    def _shifts(self, accessor: int | None, name: str, vertices: int) -> Array:
+        if accessor is None:
+            return np.zeros((vertices, 3))
+        if accessor not in self._shared:
+            self._shared[accessor] = self._file.floats(accessor, 3)
+        shifts = self._shared[accessor]
+        if len(shifts) != vertices:
+            raise DamagedFileError(
+                f"morph target {name!r} has {len(shifts)} shifts for {vertices} vertices"
+            )
+        return shifts
+
+
+def morph_kept(morph: Morph, new_number: NDArray[np.int64]) -> Morph:
+    """Return a morph of a mesh that keeps some of its vertices; the new number of others is −1."""
+    numbers = new_number[morph.vertices]
+    kept = numbers >= 0
+    turns = morph.normal_shifts
+    return Morph(
+        morph.name,
+        numbers[kept].astype(np.uint32),
+        morph.shifts[kept],
+        None if turns is None else turns[kept],
     )
 
 
@@ -100,32 +144,6 @@ def morph_moved(morph: Morph, normals: Array, linear: Array) -> Morph:
 def _unit(vectors: Array) -> Array:
     lengths: Array = np.linalg.norm(vectors, axis=1, keepdims=True)
     return vectors / np.maximum(lengths, 1e-12)
-
-
-def _morph(file: GltfFile, target: Json, name: str, vertices: int) -> Morph:
-    shifts = _shifts(file, target.get("POSITION"), name, vertices)
-    turns = _shifts(file, target["NORMAL"], name, vertices) if "NORMAL" in target else None
-    moved = np.abs(shifts).max(axis=1, initial=0.0) > _STILL
-    if turns is not None:
-        moved |= np.abs(turns).max(axis=1, initial=0.0) > _STILL
-    where = np.flatnonzero(moved)
-    return Morph(
-        name,
-        where.astype(np.uint32),
-        shifts[where].astype(np.float32),
-        None if turns is None else turns[where].astype(np.float32),
-    )
-
-
-def _shifts(file: GltfFile, accessor: int | None, name: str, vertices: int) -> Array:
-    if accessor is None:
-        return np.zeros((vertices, 3))
-    shifts = file.floats(accessor, 3)
-    if len(shifts) != vertices:
-        raise DamagedFileError(
-            f"morph target {name!r} has {len(shifts)} shifts for {vertices} vertices"
-        )
-    return shifts
 
 
 def _order(file: GltfFile, found: tuple[str, ...]) -> tuple[str, ...]:

@@ -122,7 +122,7 @@ def block(names, own):
         name="block",
         positions=shape,
         normals=np.tile(np.array([0, 1, 0], np.float32), (8, 1)),
-        triangles=np.array([[0, 1, 2], [4, 5, 6]], np.uint32),
+        triangles=np.array([[0, 1, 2], [3, 4, 5], [6, 7, 0]], np.uint32),
         joints=np.zeros((8, 4), np.uint16),
         weights=np.tile(np.array([1, 0, 0, 0], np.float32), (8, 1)),
         inverse_bind=np.eye(4)[None],
@@ -175,3 +175,20 @@ def test_morphs_that_do_not_fit_are_not_written(tmp_path, walker):
     idle = replace(walker, morphs=("aa",))
     with pytest.raises(CharacterError, match=r"aa: each must be .* a morph of some mesh"):
         idle.save(tmp_path / "m.glb")
+
+
+def test_primitives_that_share_vertices_keep_their_own(tmp_path):
+    build = with_targets(lift(2, 100), lift(0, 50), names=["aa", "oh"])
+    mesh = build.document["meshes"][0]
+    rows = [[0, 1, 0], [1, 2, 1]]  # edges seen as triangles: who uses which vertex is what counts
+    mesh["primitives"] = [
+        mesh["primitives"][0] | {"indices": build.add(np.array(row, np.uint16), "SCALAR", 5123)}
+        for row in rows
+    ]
+    first, second = load(tmp_path, build).meshes
+    assert [len(first.positions), len(second.positions)] == [2, 2]
+    assert second.triangles.tolist() == [[0, 1, 0]]
+    assert np.allclose(second.positions[1], [0, 0.6, 0], atol=1e-6)
+    aa, oh = second.morphs
+    assert (aa.vertices.tolist(), oh.vertices.tolist()) == ([1], [])
+    assert first.morphs[1].vertices.tolist() == [0]
