@@ -113,7 +113,7 @@ def _tail(bound: Skeleton) -> list[Mesh]:
         color = PANEL if number % 2 else SHELL
         low, high = a + 0.05 * (b - a), a + 0.86 * (b - a)
         each = radii[number], 0.35 * radii[number] + 0.65 * radii[number + 1]
-        cups.append(cup(low, high, each, color, name, bound, 13))
+        cups.append(cup(low, high, each, color, name, bound, 14))
     return cups
 
 
@@ -151,7 +151,7 @@ def _foot(place: Array, wide: float, joint: str, bound: Skeleton) -> list[Mesh]:
     )
     frame = toward([0.0, 1.0, 0.0], place)
     frame[:3, :3] = frame[:3, :3] @ np.diag([wide * 1.02, wide * 1.16, 0.0310])
-    pieces = [lathe(profile, [RUBBER] * 3 + [SHELL] * 3, frame, joint, bound, 14)]
+    pieces = [lathe(profile, [RUBBER] * 3 + [SHELL] * 3, frame, joint, bound, 16)]
     for across in (-0.5, 0.0, 0.5):
         way = np.array([np.sin(across), 0.0, np.cos(across)])
         toe = place + wide * way * [0.98, 0, 1.08] + [0, 0.0115, 0]

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from characters.authoring.rig import joint_places
 from characters.authoring.robot_parts import (
     GLASS,
     MAROON,
@@ -78,11 +79,10 @@ def head(bound: Skeleton) -> list[Mesh]:
     upper = Cut(HEAD, BelowLips(-0.0006), 0.003)
     # The jaw is the part of the head that the upper half leaves, held by its own joint.
     lower = Cut(_held(HEAD, "jaw"), Outside(BelowLips(0.0006)), 0.003)
-    tongue = Ellipsoid((0.0, 0.2045, 0.1990), (0.0190, 0.0040, 0.0200), bones=("jaw",), color=ROSE)
     return [
         sculpt("", [Part(upper, CELL, soft_skin=0.0)], bound),
         sculpt("", [Part(lower, CELL, soft_skin=0.0)], bound),
-        sculpt("", [Part(tongue, CELL, soft_skin=0.0)], bound),
+        _tongue(bound),
         panel(HEAD, _along((0.0, 0.320, 0.150)), (0.021, 0.050), PANEL, "head", bound),
         _lip(bound),
         _lining("jaw", 0.0004, bound),
@@ -134,6 +134,13 @@ def _lining(joint: str, proud: float, bound: Skeleton) -> Mesh:
     return bound_mesh(points, normals, triangles[:, :: int(up)], bones, colors, bound)
 
 
+def _tongue(bound: Skeleton) -> Mesh:
+    profile = np.array([[0, -0.6], [0.86, -0.5], [1, 0], [0.86, 0.6], [0.5, 0.92], [0, 1]])
+    place = toward((0.0, 1.0, 0.10), joint_places(bound)["tongue"])
+    place[:3, :3] = place[:3, :3] @ np.diag([0.0185, 0.0225, 0.0044])
+    return lathe(profile, [ROSE] * 5, place, "tongue", bound, 18)
+
+
 def _around(turn: Array) -> Array:
     """Return where the line of the lips is on the snout, so far around it [rad], (n, 3)."""
     way = np.stack([np.sin(turn), 0 * turn, np.cos(turn)], axis=1) * [0.72, 1.0, 1.0]
@@ -182,7 +189,7 @@ def _along(near: Vector) -> Array:
 def _nostrils(bound: Skeleton) -> list[Mesh]:
     rings = np.array([[0, -2], [4.2, -1.5], [4.6, 0.3], [2.6, 0.9], [0, 0.7]]) * 1e-3
     places = [_on_head((side * 0.0150, 0.2400, 0.2260)) for side in (1.0, -1.0)]
-    return [lathe(rings, [RUBBER] * 4, place, "head", bound, 10) for place in places]
+    return [lathe(rings, [RUBBER] * 4, place, "head", bound, 12) for place in places]
 
 
 def _sides(side: float, bound: Skeleton) -> list[Mesh]:
@@ -193,7 +200,7 @@ def _sides(side: float, bound: Skeleton) -> list[Mesh]:
     ring = toward(gaze, center - 0.0050 * gaze)
     upper = _lid(LID_OPEN + np.pi / 2, 1.075, f"{name}UpperLid", center, bound)
     lower = _lid(-LOWER_LID_OPEN - np.pi / 2, 1.050, f"{name}LowerLid", center, bound)
-    bezel_mesh = lathe(bezel, [TRIM, TRIM, TRIM, RUBBER, RUBBER], ring, "head", bound, 20)
+    bezel_mesh = lathe(bezel, [TRIM, TRIM, TRIM, RUBBER, RUBBER], ring, "head", bound, 28)
     return [bezel_mesh, upper, lower, socket(temple(side), LAMP, "head", bound)]
 
 
@@ -205,7 +212,7 @@ def _lid(elevation: float, size: float, joint: str, center: Array, bound: Skelet
     yaw = LID_YAW * (1 if joint.startswith("Left") else -1)
     ahead = np.cos(elevation)
     pole = np.array([ahead * np.sin(yaw), np.sin(elevation), ahead * np.cos(yaw)])
-    return lathe(rings, [RUBBER, RUBBER, *[PANEL] * 4], toward(pole, center), joint, bound, 18)
+    return lathe(rings, [RUBBER, RUBBER, *[PANEL] * 4], toward(pole, center), joint, bound, 24)
 
 
 def eyes(bound: Skeleton) -> list[Mesh]:
@@ -216,13 +223,13 @@ def eyes(bound: Skeleton) -> list[Mesh]:
         angle = np.radians([180, 120, 90, 70, 66, 48, 24, 0])
         rings = RADIUS * np.stack([np.sin(angle), np.cos(angle)], axis=1)
         bands = [GLASS, GLASS, WHITE, RUBBER, GLASS, PUPIL, PUPIL]
-        pieces.append(lathe(rings, bands, toward(gaze, center), name, bound, 20))
+        pieces.append(lathe(rings, bands, toward(gaze, center), name, bound, 28))
         for across, up, radius in ((-0.30, 0.40, 0.0064), (0.26, -0.30, 0.0030)):
             shine = gaze + np.array([across, up, 0.0])  # on the same side in both: one sun
             wide = radius / RADIUS * np.array([0.0, 1.0, 0.5, 0.0])
             cap = RADIUS * 1.022 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
             cap[0, 1] *= 0.95
-            pieces.append(lathe(cap, [WHITE] * 3, toward(shine, center), "head", bound, 10))
+            pieces.append(lathe(cap, [WHITE] * 3, toward(shine, center), "head", bound, 14))
     return pieces
 
 
@@ -239,5 +246,5 @@ def lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
     rings = size * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     for side, name in ((1.0, "LeftIris"), (-1.0, "RightIris")):
         place = toward(GAZE * [side, 1, 1], np.array(EYE) * [side, 1, 1])
-        pieces.append(lathe(rings, [color] * 5, place, f"{name}_{mood}", bound, 18))
+        pieces.append(lathe(rings, [color] * 5, place, f"{name}_{mood}", bound, 28))
     return pieces

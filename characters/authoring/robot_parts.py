@@ -76,7 +76,7 @@ def cup(
     color: Vector,
     joint: str,
     bound: Skeleton,
-    segments: int = 14,
+    segments: int = 16,
     dome: bool = False,
 ) -> Mesh:
     """Return a rigid piece of a limb from a to b: one link of a chain.
@@ -143,7 +143,7 @@ def hub(place: Array, radius: float, joint: str, bound: Skeleton, face: Vector =
     """Return the cap of a servo: a dark ring about a plate with a screw in it, facing +z."""
     profile = np.array([[0, -8], [10, -8], [10, 2.2], [7.6, 2.6], [7.6, 2.2], [2.4, 2.2], [0, 1.2]])
     scaled = profile * [radius / 10, 1.0] * [1.0, 1e-3]
-    return lathe(scaled, [RUBBER, RUBBER, RUBBER, face, face, RUBBER], place, joint, bound, 14)
+    return lathe(scaled, [RUBBER, RUBBER, RUBBER, face, face, RUBBER], place, joint, bound, 16)
 
 
 def socket(place: Array, radius: float, joint: str, bound: Skeleton) -> Mesh:
@@ -151,13 +151,13 @@ def socket(place: Array, radius: float, joint: str, bound: Skeleton) -> Mesh:
     ring = [[0, -6], [12, -6], [12, 1.4], [10.6, 2.6], [9.2, 1.6]]
     glass = [[7.6, 2.0], [4.6, 2.8], [0, 3.2]]
     profile = np.array(ring + glass) * [radius / 12, 1.0] * [1.0, 1e-3]
-    return lathe(profile, [RUBBER] * 4 + [GLASS] * 3, place, joint, bound, 14)
+    return lathe(profile, [RUBBER] * 4 + [GLASS] * 3, place, joint, bound, 20)
 
 
 def lens(place: Array, radius: float, color: Vector, joint: str, bound: Skeleton) -> Mesh:
     """Return the domed glass of a lamp that is on, with a bright middle, facing +z."""
-    profile = np.array([[0, 0], [9.6, 0.4], [9.4, 2.2], [6.8, 4.0], [3.6, 5.0], [0, 5.3]])
+    profile = np.array([[0, 0], [9.5, 1.2], [6.6, 4.0], [3.6, 5.0], [0, 5.3]])
     scaled = profile * [radius / 12, 1.0] * [1.0, 1e-3]
     core = tuple(np.clip(0.16 + 0.95 * np.array(color), 0, 1).tolist())
     bright = (core[0], core[1], core[2])
-    return lathe(scaled, [color, color, color, bright, bright], place, joint, bound, 14)
+    return lathe(scaled, [color, color, bright, bright], place, joint, bound, 20)

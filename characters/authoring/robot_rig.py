@@ -43,6 +43,7 @@ _JOINTS: dict[str, tuple[str, Vector]] = {
     "neck3": ("neck2", (0.0, 0.191, 0.102)),
     "head": ("neck3", (0.0, 0.213, 0.120)),
     "jaw": ("head", (0.0, 0.2160, 0.152)),
+    "tongue": ("jaw", (0.0, 0.2110, 0.2000)),
     "lips": ("head", (0.0, 0.2120, 0.2300)),
     "tail1": ("hips", (0.0, 0.114, -0.098)),
     "tail2": ("tail1", (0.0, 0.106, -0.133)),
@@ -78,7 +79,9 @@ def skeleton(head_size: float = HEAD_SIZE) -> Skeleton:
     for name, side in (("Left", 1.0), ("Right", -1.0)):
         for lid in ("UpperLid", "LowerLid"):  # they roll about the axis of an eye that looks aside
             still[bound.index(name + lid)] = rotations.about("y", side * LID_YAW)
-    places[np.array(bound.parents) == bound.index("head")] *= head_size
+    head = bound.index("head")
+    in_head = [parent in (head, bound.index("jaw")) for parent in bound.parents]
+    places[in_head] *= head_size
     return replace(bound, rest=Pose(places, still))
 
 
@@ -147,11 +150,12 @@ def mouth(
     """Drop the jaw (0…1), raise (1) or drop (−1) the corners of the mouth, draw them in (0…1)."""
     up, down = np.maximum(grin, 0.0), np.maximum(-np.asarray(grin), 0.0)
     act.turn("jaw", up=-0.52 * np.asarray(open_))
-    act.move("lips", y=0.0056 * down - 0.0020 * up, z=0.0014 * down)
+    act.move("tongue", y=-0.0058 * down)  # a mouth that snarls hides its tongue
+    act.move("lips", y=0.0072 * down - 0.0032 * up, z=0.0014 * down)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         act.move(
             f"{side}MouthCorner",
-            x=sign * (0.0029 * up - 0.0034 * down - 0.007 * np.asarray(round_)),
-            y=0.0119 * up - 0.0047 * down,
+            x=sign * (0.0036 * up - 0.0040 * down - 0.007 * np.asarray(round_)),
+            y=0.0165 * up - 0.0058 * down,
             z=0.011 * np.asarray(round_) - 0.0023 * up,
         )

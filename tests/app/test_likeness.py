@@ -43,12 +43,11 @@ def played(context: moderngl.Context, moods: list[tuple[float, str]]) -> list[np
     return pictures
 
 
-def lit(picture: np.ndarray, color: tuple[int, int, int]) -> int:
-    """Return how many pixels glow in about a colour (BGR), brighter than the backdrop."""
-    vivid = picture.astype(int)
+def lit(picture: np.ndarray, color: tuple[int, int, int], by: int) -> int:
+    """Return how many pixels have more of a colour's (BGR) strongest part than of the others."""
     strongest = int(np.argmax(color))
-    others = np.delete(vivid, strongest, axis=2).max(axis=2)
-    return int((vivid[:, :, strongest] - others > 60).sum())
+    others = np.delete(picture.astype(int), strongest, axis=2).max(axis=2)
+    return int((picture[:, :, strongest] - others > by).sum())
 
 
 def test_the_same_session_gives_the_same_pictures(context):
@@ -71,8 +70,8 @@ def test_it_never_stands_still_and_stays_in_the_picture(context):
 def test_its_lamps_tell_the_mood_at_every_intensity(context, strength):
     happy = played(context, [(strength, "happy")] * 8)[-1]
     angry = played(context, [(-strength, "angry")] * 8)[-1]
-    assert lit(happy, HAPPY) > 12 > 4 * lit(angry, HAPPY)
-    assert lit(angry, ANGRY) > 12 > lit(happy, ANGRY)
+    assert lit(happy, HAPPY, 60) > 12 > 4 * lit(angry, HAPPY, 60)
+    assert lit(angry, ANGRY, 120) > 12 > 4 * lit(happy, ANGRY, 120)
 
 
 def test_where_the_processor_draws_every_second_frame_brings_a_new_picture(context):
