@@ -1,8 +1,9 @@
 """`cubeling character`."""
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -13,10 +14,11 @@ from rich.table import Table
 from rich.tree import Tree
 
 from app.album import Album, save
+from app.commands import character_graph
 from app.errors import AppError
 from characters import Character, Skeleton
 from characters.errors import CharacterWarning
-from characters.formats import load_motion
+from characters.formats import Performance, load_motion
 from characters.inspection import ClipFacts, Footing, Inspection, inspect
 from characters.rendering import create_context
 from characters.rendering.sticks import stick_figure
@@ -37,6 +39,9 @@ def group() -> None:
     """Look at characters and motions."""
 
 
+app.command()(character_graph.graph)
+
+
 @app.command("inspect")
 def look(
     character: Annotated[
@@ -53,6 +58,12 @@ def look(
     skeleton: Annotated[
         Path | None, typer.Option(help="The .asf of an .amc, if it does not lie beside it.")
     ] = None,
+    scale: Annotated[
+        float | None, typer.Option(help="Metres a unit of a motion, if it is not recognised.")
+    ] = None,
+    up: Annotated[
+        str | None, typer.Option(help="What points up in a motion: y, z, -y …, likewise.")
+    ] = None,
 ) -> None:
     """Show the skeleton, sizes, clips and problems of a character, and draw it from all sides.
 
@@ -65,18 +76,19 @@ def look(
     folder = output or Path(f"{Path(character).stem}-pictures")
     if folder.exists() and not folder.is_dir():
         raise AppError(f"{folder} is a file: name another folder with --output")
-    found, has_body = _load(character, skeleton)
+    motion = partial(load_motion, skeleton=skeleton, scale=scale, up=up)
+    found, has_body = _load(character, motion)
     _tell(console, found)
     for path in _draw(found.character, folder, clips or not has_body):
         console.print(f"Drawn: [bold]{path}[/]", soft_wrap=True)
 
 
-def _load(name: str, asf: Path | None) -> tuple[Inspection, bool]:
+def _load(name: str, read_motion: Callable[[Path], Performance]) -> tuple[Inspection, bool]:
     """Return what there is to know of a character or motion, and whether it has a body."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if Path(name).suffix.lower() in MOTIONS:
-            motion = load_motion(Path(name), skeleton=asf)
+            motion = read_motion(Path(name))
             body = stick_figure(Path(name).stem, motion.skeleton, [motion.clip])
             noted, has_body = list(motion.notes), False
         else:

@@ -83,6 +83,14 @@ def test_a_motion_without_a_body_is_drawn_as_sticks(cubeling):
     assert {path.name for path in Path("nod-pictures").iterdir()} == {"turntable.png", "clips.png"}
 
 
+def test_the_unit_of_a_motion_can_be_said(cubeling):
+    Path("nod.bvh").write_text(BVH)
+    for scale, tall in (("1", "1.64 m tall"), ("0.01", "0.0164 m tall")):
+        code, out, _ = cubeling("character", "inspect", "nod.bvh", "--scale", scale, "--up", "y")
+        assert code == 0
+        assert tall in out
+
+
 @pytest.mark.parametrize(
     ("file", "content", "named"),
     [
