@@ -20,11 +20,11 @@ INK = rgb("#1b1020")
 BROWN, AMBER = rgb("#5d2c0e"), rgb("#b5702a")
 FOLD = rgb("#d98f68")
 
-CURVATURE = 0.145
+CURVATURE = 0.138
 """Radius of the front of an eyeball, which turns about a point nearer than its centre: so it can
 be large and flat without the iris running away [m]."""
 
-SIGHT = np.array([0.33, 0.05, 1.0]) / np.linalg.norm([0.33, 0.05, 1.0])
+SIGHT = np.array([0.37, 0.055, 1.0]) / np.linalg.norm([0.37, 0.055, 1.0])
 """From the middle of that sphere to the middle of the left iris."""
 
 MIDDLE = np.array([0.087, 1.437])
@@ -39,10 +39,10 @@ SAG = 0.034
 COLUMNS = 36
 """Points around an eye."""
 
-LOFT = (0.0025, 0.0095)
+LOFT = (0.0040, 0.0095)
 """How far lower and upper lids are above the ball: they move on straight lines over it [m]."""
 
-_FRONT = 0.110  # from the joint to the front of the ball [m]
+_FRONT = 0.122  # from the joint to the front of the ball [m]
 
 
 def eyeballs(skeleton: Skeleton) -> list[Mesh]:
@@ -68,7 +68,7 @@ def _eyeball(sign: float, skeleton: Skeleton) -> list[Mesh]:
     joint = "LeftEye" if sign > 0 else "RightEye"
     sight = SIGHT * [sign, 1.0, 1.0]
     place = np.column_stack([_axes(sight), _centre(sign)])
-    tilt = np.array([1.0, 0.75, 0.5, 0.325, 0.305, 0.282, 0.21, 0.158, 0.15, 0.07, 0.0])
+    tilt = np.array([0.92, 0.72, 0.5, 0.325, 0.305, 0.282, 0.21, 0.158, 0.15, 0.07, 0.0])
     ball = np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
     rings = CURVATURE * np.vstack([[0.0, 0.5], ball])
     bands = [WHITE] * 4 + [INK] * 2 + [BROWN] * 2 + [INK] * 3
@@ -89,7 +89,7 @@ def _light(
     toward = axes @ [at[0], at[1], 1.0]
     place = np.column_stack([_axes(toward / np.linalg.norm(toward)), _centre(sign)])
     tilt = wide * np.array([0.0, 1.0, 0.55, 0.0])
-    rings = CURVATURE * 1.007 * np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
+    rings = CURVATURE * 1.003 * np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
     rings[:2, 1] -= 0.004
     return lathe(rings, [(1.0, 1.0, 1.0)] * 3, place, joint, skeleton, 12)
 
@@ -118,10 +118,10 @@ def _lids(face: Face, sign: float, skeleton: Skeleton) -> Mesh:
     loft = LOFT[0] + (LOFT[1] - LOFT[0]) * np.clip(np.sin(angle), 0, 1) ** 0.7
     flat = [edge, edge, lash, lash, *(lash + (outer - lash) * s for s in (0.28, 0.55, 0.8, 1.0))]
     lofts = [-0.004 + 0 * loft, loft, loft + 0.0025, loft + 0.0025, loft + 0.001, *[loft] * 3]
-    shares = [0, 0, 0, 0, 0.22, 0.55, 0.9, 1.0]
-    rows = [
-        _on_eye(xy, lift, share, face) for xy, lift, share in zip(flat, lofts, shares, strict=True)
-    ]
+    shares = [0.0, 0.0, 0.0, 0.0, 0.22, 0.55, 0.9, 1.0]
+    share = np.repeat(shares, COLUMNS)
+    rows = _on_eye(np.concatenate(flat), np.concatenate(lofts), share, face)
+    rows = rows.reshape(len(flat), COLUMNS, 3)
     under = rows[-1] - [0.0, 0.0, 0.006]
     ends = [np.tile([*MIDDLE, 0.14], (COLUMNS, 1)), np.tile([*MIDDLE, 0.10], (COLUMNS, 1))]
     rings = np.stack([ends[0], *rows, under, ends[1]])[::-1] * [sign, 1.0, 1.0]
@@ -139,13 +139,14 @@ def _edge(angle: Array, face: Face, sign: float) -> Array:
     bow = np.abs(height) ** 0.86  # a little boxier than an ellipse
     closed = -SAG * (1 - x * x) ** 0.8
     upper = np.clip(face.upper - face.upper_tilt * x * 0.5, 0.0, 1.4) * open_
+    upper -= 0.06 * (1 - open_)  # a little over the lower lid
     lower = face.lower * open_
     wide = np.where(height >= 0, OPENING[1] * bow, -OPENING[2] * bow)
     y = closed + (wide - closed) * np.where(height >= 0, upper, lower)
     return MIDDLE + np.stack([OPENING[0] * x, y], axis=-1)
 
 
-def _on_eye(flat: Array, loft: Array, share: float, face: Face) -> Array:
+def _on_eye(flat: Array, loft: Array, share: Array, face: Face) -> Array:
     """Return points over the eyeball, (n, 3), of which `share` lies on the face instead."""
     centre = _centre(1.0)
     apart = flat - centre[:2]
@@ -155,7 +156,7 @@ def _on_eye(flat: Array, loft: Array, share: float, face: Face) -> Array:
     height = np.where(loft > 0, np.maximum(height, skin[:, 2] + 0.002), height)
     ball = np.column_stack([flat, height])
     skin += carried(skin, face)
-    return np.asarray(ball + (skin - ball) * share)
+    return np.asarray(ball + (skin - ball) * share[:, None])
 
 
 def _lid_colors(rings: Array, up: NDArray[np.bool_]) -> Array:

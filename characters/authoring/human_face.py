@@ -77,7 +77,7 @@ EXPRESSIONS = {
     "blinkRight": Face(shut=(0.0, 1.0)),
     "happy": Face(
         upper=0.78, lower=-0.55, brow=0.012, brow_inner=0.006, brow_arch=0.008,
-        width=0.090, smile=0.052, rise=0.006, drop=0.046, square=0.8, teeth=0.016, jaw=0.016,
+        width=0.090, smile=0.052, rise=0.006, drop=0.040, square=0.8, teeth=0.016, jaw=0.014,
         cheeks=0.014,
     ),
     "angry": Face(
@@ -89,14 +89,14 @@ EXPRESSIONS = {
         knit=0.008, width=0.052, smile=-0.040, drop=0.003, pout=0.006,
     ),
     "surprised": Face(
-        upper=1.17, lower=1.12, brow=0.024, brow_inner=0.006, brow_arch=0.008,
+        upper=1.13, lower=1.08, brow=0.024, brow_inner=0.006, brow_arch=0.008,
         width=0.034, smile=0.0, rise=0.022, drop=0.050, jaw=0.026, pout=0.005,
     ),
     "relaxed": Face(
-        upper=0.2, lower=0.35, brow=0.006, brow_inner=0.012, brow_arch=0.006, width=0.074,
-        smile=0.044, cheeks=0.008,
+        upper=0.10, lower=0.30, brow=0.003, brow_inner=0.012, width=0.074, smile=0.046,
+        cheeks=0.010,
     ),
-    "aa": Face(width=0.060, smile=0.010, rise=0.012, drop=0.060, jaw=0.032, teeth=0.013),
+    "aa": Face(width=0.060, smile=0.010, rise=0.012, drop=0.052, jaw=0.028, teeth=0.013),
     "ih": Face(
         width=0.070, smile=0.018, rise=0.010, drop=0.020, square=0.6, teeth=0.016, jaw=0.006,
     ),

@@ -19,6 +19,7 @@ from characters.authoring.human_skull import (
     on_face,
 )
 from characters.authoring.morphs import morphed
+from characters.authoring.rings import averaged_normals
 from characters.authoring.sculpt import Paint, Part, sculpt
 from characters.authoring.shapes import Array, Cone, Ellipsoid
 from characters.mesh import Mesh
@@ -40,14 +41,17 @@ def head_pieces(skeleton: Skeleton) -> list[Mesh]:
         return replace(skull, positions=shifted.astype(np.float32))
 
     neck = Cone((0, 1.15, -0.014), (0, 1.29, 0.0), 0.062, 0.066, bones=("neck", "head"), color=SKIN)
-    parts = [Part(neck, 0.04, soft_skin=0.02), *hair()]
+    locks = sculpt("", hair(), skeleton)
+    # The field's slope jumps where locks meet; the mesh's own normals do not glint there.
+    even = averaged_normals(locks.positions.astype(float), locks.triangles.astype(np.int64))
     brows = [
         morphed(partial(_brow, sign=sign, skeleton=skeleton), NEUTRAL, EXPRESSIONS)
         for sign in (1.0, -1.0)
     ]
     return [
         morphed(moved, NEUTRAL, EXPRESSIONS),
-        sculpt("", parts, skeleton),
+        sculpt("", [Part(neck, 0.04, soft_skin=0.02)], skeleton),
+        replace(locks, normals=even.astype(np.float32)),
         *cowlick(skeleton),
         *eyelids(skeleton),
         mouth(skeleton),

@@ -3,11 +3,14 @@
 Colours that stand out from wood and paper alike, the brightest at the hands' and feet's ends.
 """
 
+from functools import cache
+
 import numpy as np
 
 from characters.authoring.cord import cord
 from characters.authoring.human_hands import hand
 from characters.authoring.human_rig import JOINTS
+from characters.authoring.human_shoes import CREAM, shoe
 from characters.authoring.sculpt import Part, lathe
 from characters.authoring.shapes import (
     Array,
@@ -21,17 +24,16 @@ from characters.authoring.shapes import (
     chain,
     rgb,
 )
+from characters.authoring.surface import project
 from characters.mesh import Mesh
 from characters.pose import Skeleton
 
 TEAL = rgb("#12b3b3")
 DEEP_TEAL = rgb("#0c8a93")
-CREAM = rgb("#fff3dc")
 MUSTARD = rgb("#fbb832")
 LEATHER = rgb("#b86a24")
 INDIGO = rgb("#3e4a8c")
 PALE_INDIGO = rgb("#8590d4")
-CORAL = rgb("#f75c43")
 
 
 def outfit_parts() -> list[Part]:
@@ -44,20 +46,16 @@ def outfit_parts() -> list[Part]:
 
 
 def cords(skeleton: Skeleton) -> list[Mesh]:
-    """Return laces, the strings of the hood and the straps of the backpack."""
+    """Return the strings of the hood and the straps of the backpack."""
     meshes = []
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         flip = [sign, 1.0, 1.0]
         string = np.array(STRING) * flip
         swings = ["chest", *[f"{side}String"] * 3]
         meshes.append(cord(string, STRING_RADII, CREAM, swings, skeleton, 6, 8))
-        strap = np.array(STRAP) * flip
+        strap = _on_hoodie(np.array(STRAP)) * flip
         over = ["chest", f"{side}Shoulder", "chest", "chest", "spine2", "spine2", "spine2"]
-        meshes.append(cord(strap, 0.02, LEATHER, over, skeleton, 6, 15))
-        for i in range(2):
-            y, z = 0.1 + 0.022 * i, 0.085 - 0.028 * i
-            lace = np.array([(0.087, y, z), (0.114, y + 0.008, z + 0.004), (0.141, y, z)])
-            meshes.append(cord(lace * flip, 0.0095, CREAM, f"{side}Foot", skeleton))
+        meshes.append(cord(strap, 0.019, LEATHER, over, skeleton, 6, 15))
     return meshes
 
 
@@ -70,7 +68,7 @@ def ribbing(skeleton: Skeleton) -> list[Mesh]:
             np.array(JOINTS[f"Left{name}"][1]) * [sign, 1.0, 1.0]
             for name in ("ForeArm", "Hand", "Leg", "Foot")
         )
-        cuff = _across(elbow, wrist, -0.018, 0.066, 0.032)
+        cuff = _across(elbow, wrist, 0.004, 0.062, 0.030)
         meshes.append(_ring(cuff, DEEP_TEAL, f"{side}ForeArm", skeleton, 13))
         turn_up = _across(knee, ankle, -0.073, 0.081, 0.034)
         meshes.append(_ring(turn_up, PALE_INDIGO, f"{side}Leg", skeleton, 13))
@@ -118,6 +116,21 @@ def _both(shape: Shape) -> Union:
 
 
 def _torso_parts() -> list[Part]:
+    hoodie = _hoodie()
+    pocket = Ellipsoid(
+        (0, 0.93, 0.1), (0.085, 0.05, 0.04), power=3.5, bones=("spine1", "hips"), color=DEEP_TEAL
+    )
+    return [
+        Part(hoodie, 0.0385, soft_skin=0.045),
+        Part(pocket, 0.027, soft_skin=0.03),
+        Part(_hood(), 0.031, soft_skin=0.02),
+        *_backpack(),
+    ]
+
+
+@cache
+def _hoodie() -> Shape:
+    """Return trunk and sleeves."""
     spine = ("hips", "spine1", "spine2", "chest")
     trunk = Cone(
         (0, 0.9, 0), (0, 1.075, -0.005), 0.165, 0.146, (1, 1, 0.78), bones=spine, color=TEAL
@@ -133,21 +146,18 @@ def _torso_parts() -> list[Part]:
     )
     sleeve = chain(
         [JOINTS[f"Left{n}"][1] for n in ("Arm", "ForeArm", "Hand")],
-        (0.072, 0.063, 0.057),
+        (0.072, 0.063, 0.050),
         ("LeftArm", "LeftForeArm"),
         TEAL,
         0.02,
     )
-    hoodie = Union((Cut(trunk, hem_line, 0.02), _both(yoke), _both(sleeve)), 0.05)
-    pocket = Ellipsoid(
-        (0, 0.93, 0.1), (0.085, 0.05, 0.04), power=3.5, bones=("spine1", "hips"), color=DEEP_TEAL
-    )
-    return [
-        Part(hoodie, 0.0385, soft_skin=0.045),
-        Part(pocket, 0.027, soft_skin=0.03),
-        Part(_hood(), 0.031, soft_skin=0.02),
-        *_backpack(),
-    ]
+    return Union((Cut(trunk, hem_line, 0.02), _both(yoke), _both(sleeve)), 0.05)
+
+
+def _on_hoodie(line: Array) -> Array:
+    """Return points of the left side, (n, 3), laid on the hoodie."""
+    laid = project(lambda points: _hoodie().distance(points) - 0.007, line.astype(float), 0.06, 5)
+    return np.asarray(laid)
 
 
 def _hood() -> Shape:
@@ -169,17 +179,17 @@ def _backpack() -> list[Part]:
     bones = ("Backpack",)
     bag = Ellipsoid((0, 1.015, -0.195), (0.126, 0.15, 0.08), power=3.2, bones=bones, color=MUSTARD)
     flap = Ellipsoid(
-        (0, 1.098, -0.2), (0.132, 0.078, 0.088), (-0.1, 0, 0), 3.2, bones=bones, color=LEATHER
+        (0, 1.10, -0.203), (0.139, 0.080, 0.097), (-0.08, 0, 0), 3.2, bones=bones, color=LEATHER
     )
     purse = Ellipsoid(
         (0, 0.953, -0.272), (0.075, 0.052, 0.032), power=3.2, bones=bones, color=LEATHER
     )
     buckle = Ellipsoid(
-        (0, 1.04, -0.285), (0.021, 0.027, 0.015), power=3.0, bones=bones, color=CREAM
+        (0, 1.035, -0.296), (0.022, 0.029, 0.016), power=3.0, bones=bones, color=CREAM
     )
     return [
         Part(bag, 0.036, soft_skin=0.0),
-        Part(flap, 0.034, soft_skin=0.0),
+        Part(flap, 0.030, soft_skin=0.0),
         Part(purse, 0.024, soft_skin=0.0),
         Part(buckle, 0.012, soft_skin=0.0),
     ]
@@ -193,36 +203,5 @@ def _leg_parts() -> list[Part]:
     leg = chain([hip, knee, shin_end], (0.086, 0.07, 0.07), ("LeftUpLeg", "LeftLeg"), INDIGO, 0.03)
     return [
         Part(Union((seat, leg), 0.03), 0.0385, soft_skin=0.045),
-        *_shoe(),
+        *shoe(),
     ]
-
-
-def _shoe() -> list[Part]:
-    bones = ("LeftToe", "LeftFoot")  # in this order: what lies ahead of the ball is the toe's
-    ground = HalfSpace((0, 0.001, 0), (0, 1, 0))  # what the bend at the ball may sink
-    sole = Ellipsoid(
-        (0.117, 0.012, 0.052), (0.062, 0.036, 0.148), power=3.0, bones=bones, color=CREAM
-    )
-    toe = Ellipsoid(
-        (0.118, 0.058, 0.095), (0.056, 0.05, 0.095), power=2.4, bones=bones, color=CORAL
-    )
-    heel = Ellipsoid(
-        (0.113, 0.068, -0.02), (0.05, 0.062, 0.068), power=2.4, bones=bones, color=CORAL
-    )
-    ankle = Cone(
-        (0.111, 0.1, -0.018), (0.11, 0.145, -0.016), 0.052, 0.055, bones=("LeftFoot",), color=CORAL
-    )
-    upper = Cut(Union((toe, heel, ankle), 0.035), HalfSpace((0, 0.025, 0), (0, 1, 0)), 0.01)
-    cap = Ellipsoid(
-        (0.119, 0.044, 0.148), (0.052, 0.04, 0.043), power=2.4, bones=("LeftToe",), color=CREAM
-    )
-    return [
-        Part(Cut(sole, ground, 0.008), 0.0175, soft_skin=0.025),
-        Part(upper, 0.026, soft_skin=0.025),
-        Part(Cut(cap, ground, 0.01), 0.024, soft_skin=0.0),
-    ]
-
-
-def _vector(point: Array) -> Vector:
-    x, y, z = np.asarray(point, float).tolist()
-    return x, y, z

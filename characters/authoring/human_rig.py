@@ -14,7 +14,7 @@ _BODY: dict[str, tuple[str, Vector]] = {
     "chest": ("spine2", (0.0, 1.07, -0.015)),
     "neck": ("chest", (0.0, 1.19, -0.01)),
     "head": ("neck", (0.0, 1.245, 0.0)),
-    "LeftEye": ("head", (0.0515, 1.432, 0.0835)),
+    "LeftEye": ("head", (0.0442, 1.4309, 0.0719)),
     "Cowlick": ("head", (0.01, 1.66, -0.03)),
     "Backpack": ("chest", (0.0, 1.13, -0.115)),
     "LeftString": ("chest", (0.036, 1.14, 0.112)),

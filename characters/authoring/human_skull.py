@@ -44,7 +44,7 @@ def on_face(x: Array, y: Array) -> Array:
     x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
     flat = np.stack([x.ravel(), y.ravel()], axis=-1)
     low, high = np.zeros(len(flat)), np.full(len(flat), 0.4)
-    for _ in range(32):
+    for _ in range(20):
         middle = (low + high) / 2
         inside = bare_skull().distance(np.column_stack([flat, middle])) < 0
         low, high = np.where(inside, middle, low), np.where(inside, high, middle)

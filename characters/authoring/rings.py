@@ -11,8 +11,8 @@ from characters.mesh import Mesh
 from characters.pose import Skeleton
 
 
-def ringed(rings: Array, colors: Array, joint: str, skeleton: Skeleton) -> Mesh:
-    """Return a rigid closed surface.
+def ringed(rings: Array, colors: Array, joint: "str | Array", skeleton: Skeleton) -> Mesh:
+    """Return a closed surface.
 
     Parameters
     ----------
@@ -20,14 +20,17 @@ def ringed(rings: Array, colors: Array, joint: str, skeleton: Skeleton) -> Mesh:
         ring are one [m]. Two rings at one place make a crisp border of colour. Going along the
         points, the next ring lies to the left, seen from outside.
     colors : linear RGB of each point, (rings, points, 3)
-    joint : what moves it
+    joint : what moves it, or the weight of every joint on every point, (rings, points, joints)
     """
     segments = rings.shape[1]
     points = np.asarray(rings, float).reshape(-1, 3)
     same = np.all(rings[1:] == rings[:-1], axis=(1, 2))
     triangles = bands(np.flatnonzero(~same), segments)
-    bones = np.zeros((len(points), len(skeleton.names)))
-    bones[:, skeleton.names.index(joint)] = 1.0
+    if isinstance(joint, str):
+        bones = np.zeros((len(points), len(skeleton.names)))
+        bones[:, skeleton.names.index(joint)] = 1.0
+    else:
+        bones = joint.reshape(len(points), -1)
     normals = averaged_normals(points, triangles)
     return bound_mesh(points, normals, triangles, bones, colors.reshape(-1, 3), skeleton)
 

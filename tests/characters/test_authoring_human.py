@@ -5,10 +5,12 @@ import pytest
 
 from characters import rotations
 from characters.authoring.human import build_human
-from characters.authoring.human_limbs import FOOT
+from characters.authoring.human_limbs import FOOT, turned
+from characters.authoring.human_rig import JOINTS
 from characters.character import Character, skin
 from characters.clip import Clip
 from characters.mesh import Mesh
+from characters.pose import Array, Pose, Skeleton
 
 WALKS = [f"Walk{side}{size}" for side in ("Left", "Right") for size in ("Short", "Medium", "Wide")]
 RUNS = [f"Run{side}{size}" for side in ("Left", "Right") for size in ("Medium", "Wide")]
@@ -17,6 +19,8 @@ ACTIONS = ["wave", "cheer", "jump", "nod", "shake"]
 CLIPS = ["idle", *GAITS, *ACTIONS]
 SPEEDS = {"Walk": (1.35, 0.0), "Run": (3.4, 0.0)}
 SHUTTING = ["blink", "blinkLeft", "blinkRight"]
+MOODS = ["happy", "angry", "sad", "surprised", "relaxed"]
+VISEMES = ["aa", "ih", "ou", "ee", "oh"]
 YAW_RATES = {"Wide": 45.0, "Medium": 90.0, "Short": 135.0}
 
 
@@ -186,6 +190,102 @@ def test_skin_is_closed_faces_outward_and_is_fully_held(human: Character) -> Non
 
 def test_is_light_enough_for_a_small_machine(human: Character) -> None:
     assert 8_000 < sum(len(mesh.triangles) for mesh in human.meshes) <= 22_000
+
+
+def test_the_face_shows_and_says_what_vrm_names(human: Character) -> None:
+    assert human.morphs == (*SHUTTING, *MOODS, *VISEMES)
+    for morph in human.meshes[0].morphs:
+        assert np.linalg.norm(morph.shifts, axis=1).max() > 0.012, morph.name
+        assert np.linalg.norm(morph.shifts, axis=1).max() < 0.12, morph.name
+
+
+@pytest.mark.parametrize(("yaw", "pitch"), [(0, 0), (20, 0), (-20, 0), (0, 12), (0, -12), (15, 9)])
+def test_closed_lids_hide_the_eyes_wherever_they_look(
+    human: Character, yaw: float, pitch: float
+) -> None:
+    skeleton = human.skeleton
+    turns = skeleton.rest.rotations.copy()
+    turns[[skeleton.index("LeftEye"), skeleton.index("RightEye")]] = turned(pitch, yaw)
+    looking = Pose(skeleton.rest.translations, turns).globals(skeleton)
+    face, balls = human.meshes
+    ball = skin(balls, looking)
+    ball = ball[(ball[:, 2] > 0.15) & (ball[:, 0] > 0)]
+    closed = skin(face, looking, {"blink": 1.0})[face.triangles]
+    near = np.abs(closed.mean(axis=1) - [0.09, 1.44, 0.18]).max(axis=1) < 0.12
+    assert (_front(closed[near & (closed[..., 2].min(axis=1) > 0.105)], ball) > ball[:, 2]).all()
+
+
+ELBOW = np.cross(np.subtract(JOINTS["LeftForeArm"][1], JOINTS["LeftArm"][1]), [0.0, 0.0, 1.0])
+ELBOW /= np.linalg.norm(ELBOW)
+BENDS = {
+    "LeftForeArm": (rotations.about(ELBOW, np.radians(120.0)), 0.0),
+    "LeftLeg": (turned(x=120.0), 0.0),
+    "LeftArm": (turned(z=90.0), 0.03),
+    "LeftUpLeg": (turned(x=-90.0), 0.03),
+}
+
+
+@pytest.mark.parametrize("joint", BENDS)
+def test_a_bent_joint_keeps_its_width(human: Character, joint: str) -> None:
+    skeleton, mesh = human.skeleton, human.meshes[0]
+    number = skeleton.index(joint)
+    turn, beyond = BENDS[joint]
+    turns = skeleton.rest.rotations.copy()
+    turns[number] = turn
+    bent = Pose(skeleton.rest.translations, turns)
+    before, after = (
+        _width(mesh, pose.globals(skeleton), skeleton, number, beyond)
+        for pose in (skeleton.rest, bent)
+    )
+    assert after > 0.85 * before
+
+
+@pytest.mark.parametrize("name", ["Walk", "Run", "cheer"])
+def test_what_is_loose_follows_late_and_never_into_the_body(human: Character, name: str) -> None:
+    turns = human.clips[name].in_place.rotations
+    angle = {
+        loose: np.degrees(2 * np.arcsin(turns[:, human.skeleton.index(loose), 0]))
+        for loose in ("Backpack", "LeftString", "Cowlick")
+    }
+    assert all(np.ptp(swing) > 1.5 for swing in angle.values())
+    assert angle["Backpack"].min() > -2.0
+    assert angle["LeftString"].max() < 4.0
+
+
+def _front(triangles: Array, points: Array) -> Array:
+    """Return how far forward (z) the foremost triangle over each point is, (points,)."""
+    start = triangles[:, 0]
+    one, other = triangles[:, 1] - start, triangles[:, 2] - start
+    area = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
+    start, one, other, area = (a[np.abs(area) > 1e-12] for a in (start, one, other, area))
+    apart = points[:, None] - start
+    u = (apart[..., 0] * other[:, 1] - apart[..., 1] * other[:, 0]) / area
+    v = (one[:, 0] * apart[..., 1] - one[:, 1] * apart[..., 0]) / area
+    height = start[:, 2] + u * one[:, 2] + v * other[:, 2]
+    over = (u > -1e-3) & (v > -1e-3) & (u + v < 1 + 1e-3)
+    return np.asarray(np.where(over, height, -np.inf).max(axis=1))
+
+
+def _width(mesh: Mesh, pose: Array, skeleton: Skeleton, joint: int, beyond: float) -> float:
+    """Return the smallest width of a limb cut at a joint, or so far beyond it."""
+    parent, child = skeleton.parents[joint], skeleton.parents.index(joint)
+    at = pose[:, :3, 3]
+    above, below = at[joint] - at[parent], at[child] - at[joint]
+    below /= np.linalg.norm(below)
+    normal = below if beyond else above / np.linalg.norm(above) + below
+    normal /= np.linalg.norm(normal)
+    own = np.isin(mesh.joints, [parent, joint]) * mesh.weights
+    limb = mesh.triangles[(own.sum(axis=1) > 0.5)[mesh.triangles].all(axis=1)]
+    points = skin(mesh, pose) - at[joint] - beyond * below
+    near = limb[np.linalg.norm(points[limb].mean(axis=1), axis=1) < 0.12]
+    ends = points[np.stack([near, np.roll(near, 1, axis=1)])]
+    start, end = (ends @ normal)[..., None]
+    crossed = (start < 0) != (end < 0)
+    cut = (ends[0] + (ends[1] - ends[0]) * start / (start - end + 1e-12))[crossed[..., 0]]
+    side = np.linalg.svd(normal[None])[2][1:]
+    angles = np.linspace(0, np.pi, 24, endpoint=False)
+    directions = np.cos(angles)[:, None] * side[0] + np.sin(angles)[:, None] * side[1]
+    return float(np.ptp(cut @ directions.T, axis=0).min())
 
 
 def _below_the_knee(mesh: Mesh) -> Mesh:
