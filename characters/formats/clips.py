@@ -83,11 +83,10 @@ def load_motion(
 
 
 def _from_gltf(path: Path, name: str | None) -> Performance:
-    character = gltf.load(path)
-    clips = character.clips
+    skeleton, clips = gltf.load_clips(path)
     if name is None and len(clips) == 1:
-        return Performance(character.skeleton, next(iter(clips.values())))
+        return Performance(skeleton, next(iter(clips.values())))
     if name in clips:
-        return Performance(character.skeleton, clips[name])
+        return Performance(skeleton, clips[name])
     there = ", ".join(clips) or "no clips at all"
     raise CharacterError(f"{path}: has {there}; say which one to load")

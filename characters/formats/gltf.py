@@ -1,9 +1,12 @@
 """Characters in glTF 2.0: .glb with everything inside, .gltf with files beside it, or .vrm."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 from characters.character import Character
+from characters.clip import Clip
 from characters.errors import CharacterError
 from characters.formats import vrm
 from characters.formats.gltf_clips import read_clips
@@ -19,19 +22,52 @@ from characters.pose import Array, Skeleton
 
 
 def load(path: "str | Path") -> Character:
-    """Read a skinned character.
+    """Read a character: skinned, or of rigid parts that are animated.
 
     Raises
     ------
     CharacterError
-        If the file is absent, damaged, not glTF 2.0, or has no skin.
+        If the file is absent, damaged, not glTF 2.0, or nothing in it can move.
     """
-    path = Path(path)
+    with _refusing(Path(path)) as file:
+        tree, humanoid = _jointed(file)
+        table = read_morph_table(file, tree)
+        parts = read_meshes(file, tree, table)
+        if not parts:
+            raise DamagedFileError("its skeleton moves no mesh; export the model with its skin")
+        character = Character(
+            name=file.path.stem,
+            skeleton=_at_rest(tree.skeleton, table.rest),
+            clips=read_clips(file, tree, table),
+            meshes=tuple(mesh for _, mesh in parts),
+            morphs=table.names,
+            semantics=_noted_semantics(file, tree.skeleton),
+        )
+        return character if humanoid is None else _human(character, humanoid, parts, tree)
+
+
+def load_clips(path: "str | Path") -> tuple[Skeleton, dict[str, Clip]]:
+    """Read the motions of a file and the skeleton they are of; it need not have a mesh.
+
+    Raises
+    ------
+    CharacterError
+        If the file is absent, damaged, not glTF 2.0, or nothing in it can move.
+    """
+    with _refusing(Path(path)) as file:
+        tree, _ = _jointed(file)
+        table = read_morph_table(file, tree)
+        return _at_rest(tree.skeleton, table.rest), read_clips(file, tree, table)
+
+
+@contextmanager
+def _refusing(path: Path) -> Iterator[GltfFile]:
+    """Open a file that faces +z, and refuse in one line whatever contradicts itself in it."""
     try:
         file = open_gltf(path)
         if path.suffix.lower() == ".vrm" and vrm.read_humanoid(file) is None:
-            raise CharacterError(f"{path}: holds no VRM; call it .glb if it is glTF")
-        return _character(file)
+            raise DamagedFileError("holds no VRM; call it .glb if it is glTF")
+        yield vrm.turned_around(file) if vrm.faces_backwards(file) else file
     except DamagedFileError as error:
         # Names out of the file may hold anything; the message is one line.
         reason = " ".join(str(error).split())
@@ -39,32 +75,24 @@ def load(path: "str | Path") -> Character:
         raise CharacterError(f"{path}: {reason}{advice}") from error
 
 
-def _character(file: GltfFile) -> Character:
-    if not any(skin["joints"] for skin in file.all("skins")):
-        raise CharacterError(
-            f"{file.path}: has no skin, so nothing in it can move; "
-            "export the model with its armature"
-        )
-    if vrm.faces_backwards(file):
-        file = vrm.turned_around(file)
+def _jointed(file: GltfFile) -> tuple[NodeTree, vrm.Humanoid | None]:
+    """Return the skeleton, and what VRM says of it."""
     humanoid = vrm.read_humanoid(file)
-    tree = read_tree(file, () if humanoid is None else humanoid.bones.values())
-    table = read_morph_table(file, tree)
-    parts = read_meshes(file, tree, table)
-    if not parts:
-        raise CharacterError(
-            f"{file.path}: its skeleton moves no mesh; export the model with its skin"
-        )
-    clips = read_clips(file, tree, table)
-    character = Character(
-        name=file.path.stem,
-        skeleton=_at_rest(tree.skeleton, table.rest),
-        clips=clips,
-        meshes=tuple(mesh for _, mesh in parts),
-        morphs=table.names,
-        semantics=_noted_semantics(file, tree.skeleton),
-    )
-    return character if humanoid is None else _human(character, humanoid, parts, tree)
+    joints = set(() if humanoid is None else humanoid.bones.values())
+    if not any(skin["joints"] for skin in file.all("skins")):
+        # Rigid parts, or motions exported without their model: what is animated is a joint.
+        joints |= {
+            channel["target"]["node"]
+            for animation in file.all("animations")
+            for channel in animation["channels"]
+            if "node" in channel["target"]
+        }
+        if not joints:
+            raise DamagedFileError(
+                "has no skin and no animation, so nothing in it can move; "
+                "export the model with its armature"
+            )
+    return read_tree(file, joints), humanoid
 
 
 def _at_rest(skeleton: Skeleton, morphs: Array | None) -> Skeleton:

@@ -7,6 +7,7 @@ import pytest
 from characters import Character, CharacterError, Pose, rotations
 from characters.character import skin
 from characters.formats import gltf, load_clip
+from characters.formats.clips import load_motion
 from tests.characters.built_gltf import SAMPLES, build_arm, glb
 
 
@@ -186,7 +187,7 @@ def test_what_is_no_character_is_refused_in_one_line(tmp_path, arm):
     path.write_bytes(glb({"asset": {"version": "1.0"}}))
     assert "export it as glTF 2.0" in refused(path)
     path.write_bytes(glb({"asset": {"version": "2.0"}, "nodes": [{"name": "lamp"}]}))
-    assert "has no skin" in refused(path)
+    assert "has no skin and no animation" in refused(path)
     path.write_bytes(
         glb({"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_draco_mesh_compression"]})
     )
@@ -258,3 +259,25 @@ def test_one_clip_is_loaded_by_its_name_or_alone(tmp_path, arm, walker):
         load_clip(tmp_path / "walker.glb")
     with pytest.raises(CharacterError, match="motions are read from"):
         load_clip(tmp_path / "walk.xyz")
+
+
+def test_motions_without_a_model_are_read(tmp_path, arm):
+    arm.animate("LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
+    for key in ("meshes", "skins"):
+        del arm.document[key]
+    arm.document["nodes"][3] = {"name": "lamp"}
+    (tmp_path / "arm.glb").write_bytes(arm.bytes())
+    performance = load_motion(tmp_path / "arm.glb")
+    assert performance.skeleton.names == ("node0", "upper", "lower")
+    assert performance.clip.duration == 1.0
+    assert "moves no mesh" in refused(tmp_path / "arm.glb")
+
+
+def test_rigid_parts_that_are_animated_make_a_character(tmp_path, arm):
+    arm.animate("LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]), node=2)
+    del arm.document["skins"]
+    arm.document["nodes"][2]["children"] = [3]
+    arm.document["nodes"][3] = {"name": "hand", "mesh": 0, "translation": [0, 0, 100]}
+    character = load(tmp_path, arm.bytes())
+    assert character.skeleton.names == ("node0", "upper", "lower", "hand")
+    assert np.allclose(character.meshes[0].positions[0], [0, 0.4, 0], atol=1e-6)
