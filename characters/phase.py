@@ -11,16 +11,16 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, cast
 
-import numpy as np
-
 from characters.clip import Clip
+from characters.contacts import Feet, feet_of, find_contacts, spans
 from characters.motion import STANDING, Motion, Step
-from characters.pose import Array, Pose, Skeleton
+from characters.pose import Pose, Skeleton
 
 # "LeftFoot", "foot_l", "Foot.L.001", "FootL" and their like.
 _LEFT = re.compile(r"(?i:left|(?:^|[._\s])l(?:[._\s]|$))|[a-z]L(?:$|[^a-z])")
 _RIGHT = re.compile(r"(?i:right|(?:^|[._\s])r(?:[._\s]|$))|[a-z]R(?:$|[^a-z])")
-_SHUFFLE = 0.1  # a foot that swings less than this part of the body's height takes no steps
+_TOGETHER = 0.2  # of a cycle: feet that land so soon after each other land together
+_FEWEST = 5  # frames of a loop that can hold steps
 
 
 class Cyclic(Motion, Protocol):
@@ -75,6 +75,7 @@ class Phased:
         Monotone cubic interpolation (Fritsch and Butland, 1984): where steps are even it is a
         straight line.
 
+        >>> import numpy as np
         >>> clip = Clip("c", 10.0, Pose(np.zeros((11, 1, 3)), np.zeros((11, 1, 4))))
         >>> Phased(clip, (0.2, 0.6)).time(0.5), Phased(clip, (0.2, 0.6)).time(-1.0)
         (0.6, -0.8)
@@ -176,8 +177,14 @@ def takes_steps(motion: Motion) -> bool:
 
 
 def phased(clip: Clip, skeleton: Skeleton) -> Phased:
-    """Return a clip with its footfalls as marks, or with none if it takes no regular steps."""
-    left, right = (footfalls(clip, feet, skeleton) for feet in find_feet(skeleton))
+    """Return a clip with its footfalls as marks, or with none if it takes no regular steps.
+
+    On four legs the hind pair tells the phase. Feet that land nearly together, as in a gallop or a
+    hop, make one mark for both; the other half of the cycle is then marked in its middle.
+    """
+    feet = feet_of(skeleton)
+    pair = [_hindmost(skeleton, [f for f in feet if set(f) & set(s)]) for s in find_feet(skeleton)]
+    left, right = footfalls(clip, skeleton, pair) if all(pair) else ([], [])
     if not left or len(left) != len(right):
         return Phased(clip)
     start = left[0]
@@ -185,7 +192,32 @@ def phased(clip: Clip, skeleton: Skeleton) -> Phased:
     order = sorted(range(len(marks)), key=marks.__getitem__)
     if any((number < len(left)) != (place % 2 == 0) for place, number in enumerate(order)):
         return Phased(clip)  # two steps of one foot in a row: no walk
-    return Phased(clip, tuple(sorted(marks)))
+    marks.sort()
+    gaps = [b - a for a, b in itertools.pairwise([*marks, marks[0] + clip.duration])]
+    if min(gaps) < _TOGETHER * clip.duration / len(left):
+        lefts = [*marks[::2], marks[0] + clip.duration]
+        halves = [(a + b) / 2 for a, b in itertools.pairwise(lefts)]
+        marks = [time for both in zip(marks[::2], halves, strict=True) for time in both]
+    return Phased(clip, tuple(marks))
+
+
+def footfalls(clip: Clip, skeleton: Skeleton, feet: Feet) -> list[list[float]]:
+    """Return the times [s] in a looped clip at which each foot lands, by contacts found in it."""
+    if not clip.loop or len(clip) < _FEWEST:
+        return [[] for _ in feet]
+    contacts = find_contacts(clip, skeleton, feet)
+    landings = []
+    for down in contacts.T:
+        # A foot that never lifts does not land.
+        found = [] if down.all() else spans(down, loop=True)
+        landings.append([first / clip.rate for first, _ in found])
+    return landings
+
+
+def _hindmost(skeleton: Skeleton, feet: list[tuple[int, ...]]) -> tuple[int, ...]:
+    """Return the foot that is farthest back at rest; nothing if there is none."""
+    places = skeleton.rest.globals(skeleton)[:, 2, 3]
+    return min(feet, key=lambda foot: float(places[list(foot)].mean()), default=())
 
 
 def find_feet(skeleton: Skeleton) -> tuple[list[int], list[int]]:
@@ -198,62 +230,3 @@ def find_feet(skeleton: Skeleton) -> tuple[list[int], list[int]]:
     left = [joint for joint in feet if _LEFT.search(skeleton.names[joint])]
     right = [joint for joint in feet if _RIGHT.search(skeleton.names[joint])]
     return left, right
-
-
-def footfalls(clip: Clip, feet: list[int], skeleton: Skeleton) -> list[float]:
-    """Return the times [s] in a looped clip at which a foot lands.
-
-    A foot lands just after it was farthest forward of the body (Zeni, Richards and Higginson, "Two
-    simple methods for determining gait events", Gait & Posture 2008); that needs no floor, and
-    works for clips that walk in place. Where the root moves, it lands when its speed over the
-    ground has fallen well below the body's.
-    """
-    if not feet or not clip.loop or len(clip) < 5:
-        return []
-    placed = clip.in_place.globals(skeleton)[:-1, :, :3, 3]  # the last frame is the first
-    forward = placed[:, feet, 2].mean(1)
-    tall = (placed[..., 1].max(1) - placed[:, feet, 1].min(1)).mean()
-    middle, swing = (forward.max() + forward.min()) / 2, np.ptp(forward)
-    if swing < _SHUFFLE * tall:
-        return []
-    crests = _crests(forward - middle, swing / 4)
-    if clip.cycle.length < swing:
-        return [_peak(forward, frame) / clip.rate for frame in crests]
-    world = clip.poses.globals(skeleton)[..., :3, 3][:, feet].mean(1)
-    speed = np.linalg.norm(np.diff(world[:, [0, 2]], axis=0), axis=1) * clip.rate
-    slow = 0.3 * clip.cycle.length / clip.duration
-    return [_falls_below(speed, slow, frame) / clip.rate for frame in crests]
-
-
-def _falls_below(speed: Array, threshold: float, frame: int) -> float:
-    """Return when the speeds of the intervals after a frame fall below a threshold [frames]."""
-    count = len(speed)
-    for later in range(frame, frame + count):
-        fast, slow = speed[later % count], speed[(later + 1) % count]
-        if fast >= threshold > slow:
-            # An interval's speed is that of its middle.
-            return float(later + 0.5 + (fast - threshold) / (fast - slow)) % count
-    return float(frame)
-
-
-def _crests(wave: Array, margin: float) -> list[int]:
-    """Return the highest frame of each stretch above +margin, which −margin ends; periodic."""
-    start = int(wave.argmin())
-    crests: list[int] = []
-    best = -1
-    for offset in range(len(wave) + 1):
-        frame = (start + offset) % len(wave)
-        if wave[frame] > margin and (best < 0 or wave[frame] > wave[best]):
-            best = frame
-        elif wave[frame] < -margin and best >= 0:
-            crests.append(best)
-            best = -1
-    return sorted(crests)
-
-
-def _peak(wave: Array, frame: int) -> float:
-    """Return where the parabola through a crest and its neighbours is highest [frames]."""
-    count = len(wave)
-    before, top, after = wave[(frame - 1) % count], wave[frame], wave[(frame + 1) % count]
-    bend = before - 2 * top + after
-    return float(frame + (0.5 * (before - after) / bend if bend < 0 else 0.0)) % count

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from characters import Character, Clip, Pose
 from characters.authoring.gait import Path as Arc
 from characters.authoring.gait import foot_motion
-from characters.authoring.human_motion import FOOT, GAITS
+from characters.authoring.human_limbs import FOOT
+from characters.authoring.human_motion import GAITS
 from characters.contacts import feet_of, find_contacts, spans
 from characters.ground import find_ground, track
 

@@ -23,7 +23,7 @@ def test_planted_feet_hold_everywhere_in_the_locomotion_space(human, point):
     slide = at_point(human, GRID[point], 1.3)
     assert slide.planted > 0.1
     assert slide.mean < LIMIT
-    assert slide.strict < 80.0  # with the frames of landing and leaving: see the benchmark
+    assert slide.strict < 120.0  # with the frames of landing and leaving: see the benchmark
     assert slide.dip < 1.0  # [mm]
 
 

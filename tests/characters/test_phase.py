@@ -73,3 +73,14 @@ def test_the_bundled_gaits_land_their_left_foot_at_phase_nought():
             continue
         motion = phased(clip, human.skeleton)
         assert np.allclose(np.array(motion.marks) / clip.duration, [0.0, 0.5], atol=0.03), name
+
+
+def test_feet_that_land_together_make_one_mark(gait, skeleton):
+    clip = gait("hop", 1.3, 0.0, 1.0)
+    translations = clip.poses.translations.copy()
+    left = translations[:-1, 3]  # the right foot does what the left does, five frames later
+    late = np.roll(left, 5, axis=0) * [-1, 1, 1]
+    translations[:, 4] = np.concatenate([late, late[:1]])
+    hop = Clip("hop", clip.rate, Pose(translations, clip.poses.rotations), True, True)
+    marks = np.array(phased(hop, skeleton).marks)
+    assert np.diff(marks) == pytest.approx([clip.duration / 2])
