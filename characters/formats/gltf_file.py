@@ -136,10 +136,10 @@ class GltfFile:
             ) from None
 
     def _accessor(self, index: int, width: int) -> NDArray[np.generic]:
-        accessor = self.document["accessors"][index]
+        accessor, own_width = self.document["accessors"][index], self.width(index)
         with at(f"accessor {index}"):
             dtype, count = _component(accessor), accessor["count"]
-            if self.width(index) != width:
+            if own_width != width:
                 raise DamagedFileError(f"is {accessor['type']}, {width} components are needed")
             self.budget.spend(count * width, f"a count of {count}")
             if "bufferView" in accessor:
