@@ -27,8 +27,11 @@ MOODS_LEFT, MOODS_WIDE = 116.0, 176.0
 SIDE, FRAME = 180.0, 8.0
 """Side of the likeness on its card, and the card's rim about it."""
 
-BESIDE_LEFT = SIDE + 2 * FRAME + 12.0
-"""Where the words beside it begin."""
+NARROW = 156.0
+"""Length of the bar under the likeness."""
+
+UNDER = SIDE + FRAME + 4.0
+"""Where the words under it begin."""
 
 LEVEL = 70.0
 """How far below a card's top edge its bar is."""
@@ -177,7 +180,7 @@ def _robot(robot: RobotView, width: float, scale: float) -> Card:
     canvas = _robot_blank(words, scale).copy()
     mood = robot.mood if math.isfinite(robot.mood) else 0.0
     draw_face(canvas, 56, 54, 38, mood)
-    _mood_knob(canvas, MOODS_LEFT, LEVEL, mood)
+    _mood_knob(canvas, MOODS_LEFT, LEVEL, MOODS_WIDE, mood)
     return canvas.card(width - 316 - 24, HEIGHT - 132)
 
 
@@ -192,13 +195,12 @@ def _absent_robot(
     canvas = _absent_blank(words, caption, scale).copy()
     canvas.picture(FRAME, FRAME, portrait, 12)
     mood = robot.mood if math.isfinite(robot.mood) else 0.0
-    _mood_knob(canvas, BESIDE_LEFT + 4, 132, mood)
-    wide, high = BESIDE_LEFT + 4 + MOODS_WIDE + 24, SIDE + 2 * FRAME
-    return canvas.card(width - wide - 24, HEIGHT - high - 24)
+    _mood_knob(canvas, FRAME + (SIDE - NARROW) / 2, UNDER + 65, NARROW, mood)
+    return canvas.card(width - SIDE - 2 * FRAME - 24, HEIGHT - UNDER - 106 - 24)
 
 
-def _mood_knob(canvas: Canvas, left: float, level: float, mood: float) -> None:
-    knob = left + MOODS_WIDE * (mood + 1) / 2
+def _mood_knob(canvas: Canvas, left: float, level: float, wide: float, mood: float) -> None:
+    knob = left + wide * (mood + 1) / 2
     canvas.disc(knob, level, 12, PAPER)
     canvas.disc(knob, level, 9.0, INK)
 
@@ -208,27 +210,27 @@ def _robot_blank(words: str, scale: float) -> Canvas:
     """Draw what stays whatever the robot's mood is."""
     canvas = Canvas(316, 108, scale)
     canvas.text(112, 42, words, 25, INK)
-    _mood_scale(canvas, MOODS_LEFT, LEVEL)
+    _mood_scale(canvas, MOODS_LEFT, LEVEL, MOODS_WIDE)
     return canvas
 
 
 @lru_cache(maxsize=16)
 def _absent_blank(words: str, caption: str, scale: float) -> Canvas:
-    """Draw what stays beside the likeness."""
-    canvas = Canvas(BESIDE_LEFT + 4 + MOODS_WIDE + 24, SIDE + 2 * FRAME, scale)
-    canvas.text(BESIDE_LEFT, 66, words, 25, INK)
-    canvas.text(BESIDE_LEFT, 91, caption, 15, QUIET)
-    _mood_scale(canvas, BESIDE_LEFT + 4, 132)
+    """Draw what stays under the likeness."""
+    canvas = Canvas(SIDE + 2 * FRAME, UNDER + 106, scale)
+    canvas.text(FRAME + SIDE / 2, UNDER + 24, words, 23, INK, "middle")
+    canvas.text(FRAME + SIDE / 2, UNDER + 44, caption, 14, QUIET, "middle")
+    _mood_scale(canvas, FRAME + (SIDE - NARROW) / 2, UNDER + 65, NARROW)
     return canvas
 
 
-def _mood_scale(canvas: Canvas, left: float, level: float) -> None:
+def _mood_scale(canvas: Canvas, left: float, level: float, wide: float) -> None:
     """Draw the bar from angry over neutral to happy, with its words under it."""
     for share in np.linspace(0.0, 1.0, 64):
-        canvas.disc(left + MOODS_WIDE * share, level, 5.0, mood_color(2 * share - 1))
+        canvas.disc(left + wide * share, level, 5.0, mood_color(2 * share - 1))
     for name, share, align in (
         ("angry", 0.0, "left"),
         ("neutral", 0.5, "middle"),
         ("happy", 1.0, "right"),
     ):
-        canvas.text(left + MOODS_WIDE * share, level + 27, name, 14, QUIET, align)
+        canvas.text(left + wide * share, level + 27, name, 14, QUIET, align)
