@@ -56,7 +56,8 @@ def _clip(
     else:
         rate = _fine_enough(_rate(keys - start), tracks)
     frames = round(length * rate) + 1
-    file.budget.spend(frames * (10 * len(skeleton) + len(morphs.names)), f"its {length:.0f} s")
+    width = 10 * len(skeleton) + len(morphs.names) + 4 * len(tracks)
+    file.budget.spend(frames * width, f"its {length:.0f} s")
     poses = _poses(tracks, start + np.arange(frames) / rate, skeleton, morphs)
     loop = extras.get("loop")
     return Clip(

@@ -51,9 +51,12 @@ def read_tree(file: GltfFile, also: Iterable[int] = ()) -> NodeTree:
     wanted: set[int] = set()
     for joint in (*also, *(node for skin in file.all("skins") for node in skin["joints"])):
         _add_line(wanted, joint, parents)
-    joints = set(wanted)
-    for number, node in enumerate(nodes):
-        if "mesh" in node and "skin" not in node and _hangs_on(joints, number, parents):
+    hanging: set[int] = set()
+    for number in _top_down(nodes, parents):
+        if number in wanted or parents[number] in hanging:
+            hanging.add(number)
+    for number in hanging:
+        if "mesh" in nodes[number] and "skin" not in nodes[number]:
             _add_line(wanted, number, parents)
     order = _parents_first(wanted, nodes, parents)
     if len(order) > _MOST_JOINTS:
@@ -73,13 +76,18 @@ def read_tree(file: GltfFile, also: Iterable[int] = ()) -> NodeTree:
 
 
 def _parents(nodes: list[Json]) -> list[int]:
-    """Return each node's parent, −1 for none; refuse two parents, and rings."""
+    """Return each node's parent, −1 for none; refuse two parents."""
     parents = [-1] * len(nodes)
     for number, node in enumerate(nodes):
         for child in node.get("children", ()):
             if parents[child] != -1:
                 raise DamagedFileError(f"{called('node', child, nodes[child])} has two parents")
             parents[child] = number
+    return parents
+
+
+def _top_down(nodes: list[Json], parents: list[int]) -> list[int]:
+    """Return all nodes, parents before children; refuse rings."""
     # Whoever is reached from no root is in a ring, or hangs on one.
     reached = [n for n, parent in enumerate(parents) if parent == -1]
     for number in reached:
@@ -87,7 +95,7 @@ def _parents(nodes: list[Json]) -> list[int]:
     if len(reached) < len(nodes):
         lost = min(set(range(len(nodes))) - set(reached))
         raise DamagedFileError(f"{called('node', lost, nodes[lost])} is its own ancestor")
-    return parents
+    return reached
 
 
 def _add_line(wanted: set[int], node: int, parents: list[int]) -> None:
@@ -95,14 +103,6 @@ def _add_line(wanted: set[int], node: int, parents: list[int]) -> None:
     while node != -1 and node not in wanted:
         wanted.add(node)
         node = parents[node]
-
-
-def _hangs_on(joints: set[int], node: int, parents: list[int]) -> bool:
-    for _ in range(_MOST_JOINTS):
-        if node == -1 or node in joints:
-            return node != -1
-        node = parents[node]
-    return False
 
 
 def _parents_first(wanted: set[int], nodes: list[Json], parents: list[int]) -> list[int]:
