@@ -13,9 +13,25 @@ from characters.rendering.morphing import joined
 
 Array = NDArray[np.float64]
 
-WAYS = np.array([way for way in np.ndindex(3, 3, 3) if way != (1, 1, 1)]) - 1.0
-WAYS /= np.linalg.norm(WAYS, axis=1, keepdims=True)
-"""The faces, edges and corners of a cube, as directions (26, 3)."""
+
+def _surface(side: int) -> Array:
+    """Return the directions (n, 3) of a grid on the surface of a cube, `side` points an edge.
+
+    >>> _surface(3).shape, _surface(5).shape
+    ((26, 3), (98, 3))
+    """
+    grid = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, side)] * 3), axis=-1).reshape(-1, 3)
+    shell = grid[np.abs(grid).max(axis=1) == 1.0]
+    return np.asarray(shell / np.linalg.norm(shell, axis=1, keepdims=True))
+
+
+WAYS, FINE_WAYS = _surface(3), _surface(5)
+"""Directions in which the vertices that stand out are looked for: of most joints, and of those
+that move much of the character. A ball goes past what is known of it by 10 % or by 3 % of its
+radius."""
+
+MUCH = 0.3
+"""Share of the character's size from which on what one joint moves is much of it."""
 
 
 @dataclass(frozen=True)
@@ -142,8 +158,8 @@ class Geometry:
     def outline(self) -> NDArray[np.intp]:
         """Return the numbers of vertices that stand out (n,).
 
-        Of each joint's own they are the furthest in 26 directions, at rest or where a morph takes
-        them. The box around them is that around all vertices in any pose, to within a few
+        Of each joint's own they are the furthest in 26 or 98 directions, at rest or where a morph
+        takes them. The box around them is that around all vertices in any pose, to within a few
         hundredths of its size.
         """
         owner = self._owners
@@ -208,10 +224,15 @@ class Geometry:
 
 def _furthest(positions: NDArray[np.float32], owner: NDArray[np.uint32]) -> NDArray[np.intp]:
     """Return the numbers of those that are, of one owner's, the furthest in some direction."""
-    along = positions @ WAYS.T
     order = np.argsort(owner, kind="stable")
     borders = np.flatnonzero(np.diff(owner[order])) + 1
-    return np.unique([run[along[run].argmax(axis=0)] for run in np.split(order, borders)])
+    much = MUCH * np.ptp(positions, axis=0).max()
+    found = []
+    for run in np.split(order, borders):
+        own = positions[run]
+        ways = FINE_WAYS if np.ptp(own, axis=0).max() > much else WAYS
+        found.append(run[(own @ ways.T).argmax(axis=0)])
+    return np.unique(np.concatenate(found))
 
 
 def _filled(

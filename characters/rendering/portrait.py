@@ -26,7 +26,9 @@ PAPER = 236, 240, 242
 
 _TALL = 0.17  # height on the table [m], which light and shadow are made for
 _FACE = "face"
-_FRINGE = 0.09  # share of the picture over which shadows fade to paper at its sides
+_FRINGE = (
+    0.06  # share of the picture over which shadows fade to paper at its sides; within its margin
+)
 _LOOKS = 24  # poses of a clip that are looked at to see how far it reaches
 _STRAYS = 0.6  # of its height: a clip that goes further over the ground is followed
 _TURNED = 0.5  # [rad]: a clip that looks so far elsewhere is turned to the front

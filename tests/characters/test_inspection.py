@@ -1,6 +1,7 @@
 """What an inspection finds, and that it finds nothing wrong with the bundled characters."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +19,19 @@ def sound(walker, gait):
 
 def problems(character, **changes):
     return "\n".join(inspect(replace(character, **changes)).problems)
+
+
+DATA = Path(__file__).parents[3] / "shared" / "data"
+
+
+@pytest.mark.skipif(not DATA.is_dir(), reason="the real data is not here")
+def test_a_fox_of_79_metres_that_walks_in_place_is_told():
+    found = inspect(Character.load(DATA / "gltf" / "Fox.glb"))
+    assert found.character.anatomy.kind == "quadruped"
+    assert [facts.in_place for facts in found.clips] == [False, True, True]
+    assert "79 m tall" in found.problems[0]
+    assert "'Walk', 'Run' are in place" in found.problems[1]
+    assert len(found.problems) == 2
 
 
 @pytest.mark.parametrize("name", Character.bundled())

@@ -115,6 +115,27 @@ def test_the_outline_encloses_all_vertices(pawn, bend, turn):
     assert np.abs(outline.max(axis=0) - every.max(axis=0)).max() < 0.03
 
 
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10_000))
+def test_the_outline_of_a_ball_encloses_it_from_any_side(pawn, seed):
+    rng = np.random.default_rng(seed)
+    around = rng.standard_normal((4000, 3))
+    around /= np.linalg.norm(around, axis=1, keepdims=True)
+    mesh = pawn.meshes[0]
+    ball = replace(
+        mesh,
+        positions=around.astype(np.float32),
+        normals=around.astype(np.float32),
+        joints=np.zeros((4000, 4), np.uint16),
+        weights=np.tile([1.0, 0.0, 0.0, 0.0], (4000, 1)).astype(np.float32),
+        triangles=mesh.triangles[:1],
+    )
+    outline = ball.positions[Geometry.of([ball]).outline()]
+    assert len(outline) <= 98
+    side = rng.standard_normal(3)
+    assert (outline @ side).max() > 0.96 * (ball.positions @ side).max()
+
+
 def test_the_coarse_caster_has_fewer_triangles_and_the_same_size(pawn):
     geometry = Geometry.of(pawn.meshes)
     coarse, runs = geometry.coarse(16)
