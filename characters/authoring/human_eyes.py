@@ -7,7 +7,14 @@ from numpy.typing import NDArray
 
 from characters.authoring.human_face import EXPRESSIONS, NEUTRAL, Face, carried
 from characters.authoring.human_rig import JOINTS
-from characters.authoring.human_skull import MAROON, SKIN, complexion, face_normals, on_face
+from characters.authoring.human_skull import (
+    EYE_WHITE,
+    MAROON,
+    SKIN,
+    complexion,
+    face_normals,
+    on_face,
+)
 from characters.authoring.morphs import morphed
 from characters.authoring.rings import ringed, with_normals
 from characters.authoring.sculpt import coated, lathe
@@ -15,7 +22,6 @@ from characters.authoring.shapes import Array, rgb
 from characters.mesh import Mesh
 from characters.pose import Skeleton
 
-WHITE = rgb("#f6f4f2")
 INK = rgb("#1b1020")
 BROWN, AMBER = rgb("#5d2c0e"), rgb("#b5702a")
 FOLD = rgb("#d98f68")
@@ -71,7 +77,7 @@ def _eyeball(sign: float, skeleton: Skeleton) -> list[Mesh]:
     tilt = np.array([0.92, 0.72, 0.5, 0.325, 0.305, 0.282, 0.21, 0.158, 0.15, 0.07, 0.0])
     ball = np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
     rings = CURVATURE * np.vstack([[0.0, 0.5], ball])
-    bands = [WHITE] * 4 + [INK] * 2 + [BROWN] * 2 + [INK] * 3
+    bands = [EYE_WHITE] * 4 + [INK] * 2 + [BROWN] * 2 + [INK] * 3
     whole = lathe(rings, bands, place, joint, skeleton, 26)
     iris = (np.asarray(whole.colors)[:, :3] - np.array(BROWN, np.float32)) ** 2
     lit = iris.sum(axis=1) < 1e-6
@@ -151,7 +157,8 @@ def _on_eye(flat: Array, loft: Array, share: Array, face: Face) -> Array:
     centre = _centre(1.0)
     apart = flat - centre[:2]
     skin = on_face(flat[:, 0], flat[:, 1])
-    skin += 0.001 * face_normals(skin)
+    # The rim dips under the face, so that one surface runs into the other without a step.
+    skin += np.where(share < 1, 0.001, -0.0015)[:, None] * face_normals(skin)
     height = centre[2] + np.sqrt((CURVATURE + loft) ** 2 - np.sum(apart**2, axis=1))
     height = np.where(loft > 0, np.maximum(height, skin[:, 2] + 0.002), height)
     ball = np.column_stack([flat, height])

@@ -11,17 +11,17 @@ from characters.authoring.human_face import EXPRESSIONS, NEUTRAL, Face, carried
 from characters.authoring.human_hair import HAIR, cowlick, hair
 from characters.authoring.human_mouth import mouth
 from characters.authoring.human_skull import (
-    MAROON,
     SKIN,
     complexion,
     face_normals,
     head_shape,
+    lining,
     on_face,
 )
 from characters.authoring.morphs import morphed
 from characters.authoring.rings import averaged_normals
-from characters.authoring.sculpt import Paint, Part, sculpt
-from characters.authoring.shapes import Array, Cone, Ellipsoid
+from characters.authoring.sculpt import Part, sculpt
+from characters.authoring.shapes import Array, Cone
 from characters.mesh import Mesh
 from characters.pose import Skeleton
 
@@ -33,7 +33,9 @@ BROW_RADII = (0.0105, 0.0145, 0.013, 0.006)
 
 def head_pieces(skeleton: Skeleton) -> list[Mesh]:
     """Return the whole head but for the eyeballs, with all that its face can express."""
-    skull = sculpt("", [Part(head_shape(), 0.024, _paints(), soft_skin=0.0)], skeleton)
+    skull = sculpt(
+        "", [Part(head_shape(), 0.024, (*complexion(), *lining()), soft_skin=0.0)], skeleton
+    )
     rest = skull.positions.astype(float)
 
     def moved(face: Face) -> Mesh:
@@ -57,11 +59,6 @@ def head_pieces(skeleton: Skeleton) -> list[Mesh]:
         mouth(skeleton),
         *brows,
     ]
-
-
-def _paints() -> tuple[Paint, ...]:
-    hollow = Ellipsoid((0, 1.303, 0.175), (0.06, 0.03, 0.05))
-    return (*complexion(), Paint(hollow, MAROON, 0.01))
 
 
 def _brow(face: Face, sign: float, skeleton: Skeleton) -> Mesh:

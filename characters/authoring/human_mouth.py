@@ -46,7 +46,7 @@ def _mouth(face: Face, skeleton: Skeleton) -> Mesh:
     skin.append(_on_skin(lips, line, 0.0015 + 0.005 * full + face.pout, face, 0.0))
     for s in (0.25, 0.5, 0.75, 1.0):
         flat, rest = lips + (outer - lips) * s, line + (outer - line) * s
-        lift = 0.0015 + face.pout * (1 - s) ** 2 + 0 * full
+        lift = (0.0015 if s < 1 else -0.0015) + face.pout * (1 - s) ** 2 + 0 * full
         skin.append(_on_skin(flat, rest, lift, face, s))
     under = skin[-1] - [0.0, 0.0, 0.006]
     behind = np.tile([0.0, MOUTH[1], 0.05], (COLUMNS, 1))
@@ -80,7 +80,7 @@ def _on_skin(flat: Array, rest: Array, lift: Array, face: Face, share: float) ->
 def _cavity(edge: Array, angle: Array, face: Face) -> list[Array]:
     """Return the rings behind the lips: teeth or tongue, the throat, and the end."""
     up = np.sin(angle) >= 0
-    bow = np.abs(np.sin(angle)) ** 0.5
+    bow = np.abs(np.sin(angle)) ** 0.8
     middle = np.array([0.0, edge[:, 1].mean(), 0.0])
     opening = face.rise + face.drop
     teeth = np.minimum(face.teeth, 0.8 * opening) * bow

@@ -11,6 +11,13 @@ from characters.authoring.surface import normals_of
 SKIN = rgb("#f4b98c")
 BLUSH = rgb("#ea7560")
 MAROON = rgb("#5a1420")
+EYE_WHITE = rgb("#f6f4f2")
+
+SOCKET = Ellipsoid((0.085, 1.447, 0.185), (0.058, 0.076, 0.040), (0.0, 0.35, 0.0))
+"""Where the left eye sits."""
+
+HOLLOW = Ellipsoid((0, 1.303, 0.18), (0.07, 0.036, 0.06))
+"""Where the mouth sits."""
 
 _BONES = ("head",)
 
@@ -28,15 +35,19 @@ def head_shape() -> Shape:
     nose = Ellipsoid((0, 1.386, 0.206), (0.024, 0.0195, 0.023), bones=_BONES, color=SKIN)
     ear = Ellipsoid((0.209, 1.41, -0.012), (0.030, 0.052, 0.040), bones=_BONES, color=SKIN)
     whole = Union((Union((bare_skull(), nose), 0.022), ear, ear.mirrored()), 0.017)
-    socket = Ellipsoid((0.085, 1.447, 0.185), (0.058, 0.070, 0.036), (0.0, 0.35, 0.0))
-    mouth = Ellipsoid((0, 1.303, 0.18), (0.07, 0.036, 0.06))
-    return Cut(whole, Union((socket, socket.mirrored(), mouth)), 0.008)
+    return Cut(whole, Union((SOCKET, SOCKET.mirrored(), HOLLOW)), 0.008)
 
 
 def complexion() -> tuple[Paint, ...]:
     """Return the red of the cheeks."""
     blush = Ellipsoid((0.125, 1.362, 0.15), (0.045, 0.03, 0.062))
     return (Paint(Union((blush, blush.mirrored())), BLUSH, 0.035, 0.55),)
+
+
+def lining() -> tuple[Paint, ...]:
+    """Return the colours of the hollows behind the eyes and the lips, should they be seen."""
+    eyes = Union((SOCKET, SOCKET.mirrored()))
+    return (Paint(eyes, EYE_WHITE, 0.008), Paint(HOLLOW, MAROON, 0.008))
 
 
 def on_face(x: Array, y: Array) -> Array:
