@@ -28,7 +28,7 @@ def neutral(level: int, seconds: float = 4.8) -> Performance:
     act.turn("head", up=nod, left=0.55 * follow(aside, seconds, 1.6, 0.7))
     act.turn("head", tilt=degrees(n, (0.12, 0), (0.22, 7), (0.38, 7), (0.50, 0), (0.9, 0)))
     look(act, 0.8 * (aside - turned))
-    lids(act, blink(n, 0.06, 0.43, 0.80, 0.86), 0.12)
+    lids(act, blink(n, 0.43), 0.12)
     mouth(act, keys(n, (0.1, 0.0), (0.2, 0.05), (0.4, 0.0)), 0.22)
     if level >= 1:
         shift = keys(n, (0.05, 1), (0.38, 1), (0.55, -1), (0.88, -1)) * 0.0055
