@@ -111,7 +111,7 @@ def _video() -> Finding:
 
 def _cast() -> Finding:
     try:
-        cast = [Character.load(name) for name in ("human", "vleo")]
+        cast = [Character.load(name) for name in ("human", "vleo", "robot")]
     except CharacterError as error:
         return Finding("characters", "bad", str(error))
     return Finding(
