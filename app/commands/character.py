@@ -14,7 +14,7 @@ from rich.table import Table
 from rich.tree import Tree
 
 from app.album import Album, save
-from app.commands import character_graph
+from app.commands import character_graph, character_locomotion
 from app.errors import AppError
 from characters import Character, Skeleton
 from characters.errors import CharacterWarning
@@ -40,6 +40,7 @@ def group() -> None:
 
 
 app.command()(character_graph.graph)
+app.command()(character_locomotion.locomotion)
 
 
 @app.command("inspect")

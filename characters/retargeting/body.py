@@ -121,12 +121,18 @@ class Body:
 
     @cached_property
     def leg_length(self) -> float:
-        """From hip to ankle along the bones, mean over the legs [m]."""
-        lengths = [
-            np.linalg.norm(self.rest_places[leg.lower] - self.rest_places[leg.upper])
-            + np.linalg.norm(self.rest_places[leg.foot] - self.rest_places[leg.lower])
-            for leg in self.legs
-        ]
+        """How long its legs are, mean [m]: a person's along the bones, from hip to ankle.
+
+        Beasts stand on legs that are bent, on toes or on soles: what counts is how high they
+        carry the body.
+        """
+        if self.anatomy.kind == "quadruped":
+            lengths = [
+                float(self.rest_places[leg.upper, 1] - self.rest_places[leg.end, 1])
+                for leg in self.legs
+            ]
+        else:
+            lengths = [sum(self.bones(leg)) for leg in self.legs]
         if not lengths or not min(lengths) > 0:
             raise CharacterError(
                 "retargeting needs legs, but of thigh, shin and foot "
@@ -134,6 +140,11 @@ class Body:
                 "say which joints they are in a [joints] table"
             )
         return float(np.mean(lengths))
+
+    def bones(self, leg: Leg) -> tuple[float, float]:
+        """Return how long thigh and shin of a leg are [m]."""
+        hip, knee, ankle = self.rest_places[[leg.upper, leg.lower, leg.foot]]
+        return float(np.linalg.norm(knee - hip)), float(np.linalg.norm(ankle - knee))
 
     @cached_property
     def stands(self) -> bool:

@@ -29,6 +29,7 @@ _HEEL = 0.35  # how far the heel is behind the ankle, for how far the ball is ah
 _SETTLE = 0.12  # [s] that a foot takes to leave, or come to, the speed of a place that it holds
 _STRETCH = 0.997  # part of a leg's length that it may reach
 _SINK = 0.06  # [s]: standard deviation of how the hips come down
+_FARTHEST = 0.3  # leg lengths: see `_Foot.farthest`
 _DEEPEST = 0.2  # leg lengths that they come down at most
 
 
@@ -101,6 +102,7 @@ def hold(
             way.again(footing.heel[:, number]),
             way.again(footing.ball[:, number]),
             floor,
+            _FARTHEST * body.leg_length,
             way.rate,
         )
         ankles.append(way.rolled(foot.held()) - to_end)
@@ -158,6 +160,9 @@ class _Foot:
     floor: float | None
     """How high the end is when it stands [m]; None for as it comes."""
 
+    farthest: float
+    """A stand that the foot is farther from than this was none: it is let go [m]."""
+
     rate: float
     """Frames a second [Hz]."""
 
@@ -165,10 +170,13 @@ class _Foot:
         """Return where its end goes, (frames, 3) [m]: still where it stands."""
         down = self.heel | self.ball
         shift = np.zeros_like(self.goal)
-        stands = spans(down, loop=False)
-        for first, length in stands:
+        stands: list[tuple[int, int]] = []
+        for first, length in spans(down, loop=False):
             span = np.arange(first, first + length)
-            shift[span] = self._stood(span) - self.goal[span]
+            wanted = self._stood(span) - self.goal[span]
+            if np.abs(wanted).max() < self.farthest:
+                shift[span] = wanted
+                stands.append((first, length))
         self._fade(shift, stands)
         held: Array = self.goal + shift
         held[:, 1] = np.maximum(held[:, 1], self._lowest())
@@ -234,13 +242,9 @@ def _sinking(
     """Return how far the hips must come down for the legs to reach, smooth, (frames,) [m]."""
     needed = np.zeros(len(globals_))
     for leg, target in zip(legs, ankles, strict=True):
-        bones = (leg.upper, leg.lower, leg.foot)
-        upper, lower = (
-            np.linalg.norm(body.rest_places[b] - body.rest_places[a]) for a, b in pairwise(bones)
-        )
         hip = rotations.rotate(body.upright, globals_[:, leg.upper, :3, 3])
         aside = np.linalg.norm((hip - target)[:, [0, 2]], axis=-1)
-        most = np.sqrt(np.maximum((_STRETCH * (upper + lower)) ** 2 - aside**2, 0.0))
+        most = np.sqrt(np.maximum((_STRETCH * sum(body.bones(leg))) ** 2 - aside**2, 0.0))
         needed = np.maximum(needed, hip[:, 1] - target[:, 1] - most)
     needed = np.clip(needed, 0.0, _DEEPEST * body.leg_length)
     if not needed.any():

@@ -13,10 +13,13 @@ from numpy.typing import NDArray
 
 from characters import rotations
 from characters.clip import Clip
-from characters.ground import STEADY, find_ground, track
+from characters.ground import find_ground, track
 from characters.pose import Array
 from characters.retargeting.body import Body, Leg
 from characters.retargeting.transfer import upright_clip
+
+# [rad/s]: feet that step unevenly seem to turn a treadmill by less; few walk in place in curves.
+_TURNTABLE = 1.2
 
 _T = TypeVar("_T", bound=np.generic)
 
@@ -69,9 +72,15 @@ def way_of(clip: Clip, body: Body, legs: Sequence[Leg], ratio: float) -> Way:
     """Return the way of a clip, its lengths multiplied by a ratio."""
     clip = upright_clip(clip, body)
     joints = np.array([leg.end for leg in legs])
-    ground = find_ground(clip, track(clip, body.skeleton), joints) if len(joints) else STEADY
+    if not len(joints):
+        return Way(np.zeros((len(clip), 3)), None, clip.rate)
+    ground = find_ground(clip, track(clip, body.skeleton), joints)
     times = np.arange(len(clip)) / clip.rate
-    carried = arc(-ratio * ground.velocity, -ground.yaw_rate, times)
+    velocity, yaw_rate = ground.velocity, ground.yaw_rate
+    if abs(yaw_rate) < _TURNTABLE:
+        places = clip.poses.globals(body.skeleton)[:, joints][..., :3, 3].mean((0, 1))
+        velocity, yaw_rate = ground.under(places)[[0, 2]], 0.0
+    carried = arc(-ratio * velocity, -yaw_rate, times)
     if not clip.loop or len(clip) < 2:
         return Way(carried, None, clip.rate)
     cycle = carried[-1]

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from characters.anatomy import Anatomy
 from characters.character import Character
 from characters.clip import Clip
 from characters.errors import CharacterError
@@ -19,11 +18,13 @@ from characters.mirror import Mirror
 from characters.motion import Step
 from characters.pose import Array, Pose, Skeleton
 from characters.retargeting.body import Body
+from characters.retargeting.bound import bound_skeleton
 from characters.retargeting.course import Course
 from characters.retargeting.cycle import Cut, closed, find_cycle, find_pause, resampled
 from characters.retargeting.feet import Footing, find_footing
 from characters.retargeting.gait import Gait, held, slide
 from characters.retargeting.ground import way_of
+from characters.retargeting.recording import Recording
 from characters.retargeting.retarget import leg_pairs, retarget
 from characters.retargeting.rooted import is_rooted, on_way, rooted_clip, with_root
 
@@ -36,23 +37,6 @@ _SLOWER: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
     "walk": ((0.0, 30.0, 60.0, 90.0), (1.0, 0.97, 0.86, 0.72)),
     "run": ((0.0, 45.0, 90.0), (1.0, 0.94, 0.82)),
 }
-
-
-@dataclass(frozen=True)
-class Recording:
-    """A motion, and what it is of."""
-
-    origin: str
-    """What to call it."""
-
-    clip: Clip
-    """The motion."""
-
-    skeleton: Skeleton
-    """What it moves."""
-
-    anatomy: Anatomy
-    """Which joint is which part."""
 
 
 @dataclass(frozen=True)
@@ -117,6 +101,8 @@ def make_locomotion(
     CharacterError
         If a recording does not fit the character, or holds no cycle.
     """
+    as_given = character
+    character = replace(character, skeleton=bound_skeleton(character))
     walker = with_root(character)
     body = Body(walker.skeleton, walker.anatomy)
     trees = (("walk", WALK_CLIPS, walks), ("run", RUN_CLIPS, runs))
@@ -132,9 +118,8 @@ def make_locomotion(
         clips["idle"] = _pause(idle, character, walker)
     elif "idle" not in clips:
         clips["idle"] = _stand(clips["Walk"], body)
-    plan = walker.plan  # of other clips: it would hide the movement tree
-    walker = replace(walker, clips=clips, plan=plan)
-    return Locomotion(walker, tuple(recordings), tuple(made))
+    rooted = replace(with_root(as_given), clips=clips)
+    return Locomotion(rooted, tuple(recordings), tuple(made))
 
 
 def gait_of(recording: Recording, character: Character, walker: Character) -> Gait:
@@ -305,7 +290,8 @@ def _nearest(knot: float, gaits: Sequence[Gait], mirror: Mirror | None) -> tuple
     for number, gait in enumerate(gaits):
         angular = _angular(gait.course)
         straight = abs(angular) < _STRAIGHT
-        options.append((abs(angular - knot), number, straight and knot > 0 and mirror is not None))
+        apart = max(abs(angular - knot), _STRAIGHT)  # of those alike the first given is taken
+        options.append((apart, number, straight and knot > 0 and mirror is not None))
         if mirror is not None and not straight:
             options.append((abs(-angular - knot) + 1.0, number, True))
     _, number, mirrored = min(options)

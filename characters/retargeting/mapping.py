@@ -77,12 +77,29 @@ def _require_same_kind(source: Body, target: Body) -> None:
 
 
 def _shared(source: Body, target: Body) -> list[tuple[int, int]]:
-    """Return pairs of joints that are the same part."""
-    return [
+    """Return pairs of joints that are the same part, or nothing but have the same name."""
+    parts = (source.anatomy.parts, target.anatomy.parts)
+    names = {name: joint for joint, name in enumerate(source.skeleton.names)}
+    strands = [
+        (joint, names[name])
+        for joint, name in enumerate(target.skeleton.names)
+        if name in names
+        and joint not in parts[1]
+        and names[name] not in parts[0]
+        and target.skeleton.parents[joint] >= 0
+        and _carried(target, joint)
+        and _carried(source, names[name])
+    ]
+    return strands + [
         (joint, source.anatomy.joints[part])
         for part, joint in target.anatomy.joints.items()
         if part in source.anatomy.joints and part not in _TRUNK and not part.startswith("tail")
     ]
+
+
+def _carried(body: Body, joint: int) -> bool:
+    """Return whether a joint hangs on the hips; what is above them places the body."""
+    return body.anatomy.joints["hips"] in body.line(joint)[:-1]
 
 
 def _chains(source: Body, target: Body) -> dict[int, tuple[int, int, float]]:

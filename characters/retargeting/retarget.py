@@ -1,5 +1,7 @@
 """Retargeting: the whole line from one clip to another."""
 
+import numpy as np
+
 from characters import rotations
 from characters.anatomy import Anatomy
 from characters.clip import Clip
@@ -11,6 +13,8 @@ from characters.retargeting.ground import way_of
 from characters.retargeting.mapping import map_joints
 from characters.retargeting.root import root_way
 from characters.retargeting.transfer import ankle_heights, hips_way, posed, turned
+
+_STRETCH, _LOWER = 0.99, 0.06  # parts of a leg's length: how far it reaches, and hips may come down
 
 
 def retarget(
@@ -54,19 +58,21 @@ def retarget(
 def _retarget(clip: Clip, source: Body, target: Body, hold_feet: bool) -> Clip:
     mapping = map_joints(source, target)
     ratio = target.leg_length / source.leg_length
-    hips = hips_way(clip, source, target, ankle_heights(clip, source, target))
+    share = stride_share(clip, source, target)
+    heights = ankle_heights(clip, source, target)
+    hips = hips_way(clip, source, target, heights) * [share, 1.0, share]
     hips_joint = target.anatomy.joints["hips"]
     rooted = target.skeleton.has_root_motion and hips_joint != 0
-    root = root_way(clip, source, ratio) if rooted else None
+    root = root_way(clip, source, ratio * share) if rooted else None
     pose = posed(target, turned(clip, source, target, mapping), hips, root)
     if hold_feet:
         pairs = leg_pairs(source, target)
         theirs, ours = [a for a, _ in pairs], [b for _, b in pairs]
         ends = None
         if target.anatomy.kind == "quadruped":
-            ends = _paw_ways(clip, source, target, ratio)
+            ends = _paw_ways(clip, source, target, ratio * np.array([share, 1.0, share]))
         footing = find_footing(clip, source, theirs)
-        pose = hold(pose, target, ours, footing, way_of(clip, source, theirs, ratio), ends)
+        pose = hold(pose, target, ours, footing, way_of(clip, source, theirs, ratio * share), ends)
     return Clip(clip.name, clip.rate, pose, clip.loop, rooted)
 
 
@@ -80,7 +86,29 @@ def leg_pairs(source: Body, target: Body) -> list[tuple[Leg, Leg]]:
     ]
 
 
-def _paw_ways(clip: Clip, source: Body, target: Body, ratio: float) -> Array:
+def stride_share(clip: Clip, source: Body, target: Body) -> float:
+    """Return how long steps may be, as a part of what is in proportion to the legs, 0…1.
+
+    A beast that stands on straight legs cannot step as far as one on bent legs.
+    """
+    if target.anatomy.kind != "quadruped":
+        return 1.0
+    ratio = target.leg_length / source.leg_length
+    globals_ = clip.poses.globals(source.skeleton)
+    share = 1.0
+    for theirs, ours in leg_pairs(source, target):
+        at = rotations.rotate(source.upright, globals_[:, [theirs.upper, theirs.end]][..., :3, 3])
+        rest = source.rest_places[theirs.end] - source.rest_places[theirs.upper]
+        away = np.linalg.norm((at[:, 1] - at[:, 0] - rest)[:, [0, 2]], axis=-1).max() * ratio
+        limb = target.rest_places[ours.upper] - target.rest_places[ours.foot]
+        length = _STRETCH * sum(target.bones(ours))
+        reach = np.sqrt(max(length**2 - (limb[1] - _LOWER * length) ** 2, 0.0))
+        reach -= np.hypot(limb[0], limb[2])
+        share = min(share, max(reach, 0.2 * length) / max(away, 1e-9))
+    return float(share)
+
+
+def _paw_ways(clip: Clip, source: Body, target: Body, ratio: Array) -> Array:
     """Return where the paws go, (frames, legs, 3) [m]: away from where they rest, in proportion.
 
     Beasts' legs have their bones in other places, so angles say little about where paws are.
