@@ -127,6 +127,26 @@ class Legs:
         bent[where] = rotations.multiply(np.array(turns), bent[where])
         return replace(pose, rotations=bent)
 
+    def lowered(self, pose: Pose, placed: Array, sink: float) -> tuple[Pose, Array]:
+        """Return a pose and its `globals` with the first leg's pelvis `sink` lower [m]."""
+        pelvis = int(self.joints[0, 0])
+        parent = self.skeleton.parents[pelvis]
+        down = np.array([0.0, -sink, 0.0])
+        moved = pose.translations.copy()
+        moved[self.carriers[pelvis]] += down if parent < 0 else down @ placed[parent, :3, :3]
+        lower = placed.copy()
+        lower[self._carried, 1, 3] -= sink
+        return replace(pose, translations=moved), lower
+
+    @cached_property
+    def _carried(self) -> NDArray[np.intp]:
+        """The pelvis of the first leg and what it carries, numbered among the carriers."""
+        carried = {int(self.joints[0, 0])}
+        for joint, parent in enumerate(self.skeleton.parents):
+            if parent in carried:
+                carried.add(joint)
+        return np.array(sorted(carried))
+
     @cached_property
     def _lines(self) -> list[list[int]]:
         """The joints from the root to each ankle, numbered among the carriers."""
