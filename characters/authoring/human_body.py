@@ -6,17 +6,16 @@ on the table.
 
 from characters.authoring.human_eyes import eyeballs
 from characters.authoring.human_head import head_pieces
-from characters.authoring.human_outfit import cords, outfit_parts, ribbing
+from characters.authoring.human_outfit import cords, outfit, ribbing
 from characters.authoring.human_shoes import soles_and_laces
-from characters.authoring.sculpt import join, sculpt
+from characters.authoring.sculpt import join
 from characters.mesh import Material, Mesh
 from characters.pose import Skeleton
 
 
 def build_human_meshes(skeleton: Skeleton) -> tuple[Mesh, ...]:
     """Return the body, matt, and the eyes, glossy."""
-    outfit = sculpt("", outfit_parts(), skeleton)
-    pieces = [outfit, *head_pieces(skeleton), *cords(skeleton), *ribbing(skeleton)]
+    pieces = [*outfit(skeleton), *head_pieces(skeleton), *cords(skeleton), *ribbing(skeleton)]
     pieces += soles_and_laces(skeleton)
     body = join("explorer", pieces, Material(roughness=0.75))
     return body, join("eyes", eyeballs(skeleton), Material(roughness=0.15))

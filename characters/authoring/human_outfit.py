@@ -11,7 +11,8 @@ from characters.authoring.cord import cord
 from characters.authoring.human_hands import hand
 from characters.authoring.human_rig import JOINTS
 from characters.authoring.human_shoes import CREAM, shoe
-from characters.authoring.sculpt import Part, lathe
+from characters.authoring.reflect import reflected
+from characters.authoring.sculpt import Part, lathe, sculpt
 from characters.authoring.shapes import (
     Array,
     Cone,
@@ -36,13 +37,10 @@ INDIGO = rgb("#3e4a8c")
 PALE_INDIGO = rgb("#8590d4")
 
 
-def outfit_parts() -> list[Part]:
+def outfit(skeleton: Skeleton) -> list[Mesh]:
     """Return what is carved, of both sides."""
-    parts = _torso_parts()
-    for side in ([hand()], _leg_parts()):
-        for part in side:
-            parts += [part, Part(part.shape.mirrored(), part.cell, (), part.soft_skin)]
-    return parts
+    sided = sculpt("", [hand(), *_leg_parts()], skeleton)
+    return [sculpt("", _torso_parts(), skeleton), sided, reflected(sided, skeleton)]
 
 
 def cords(skeleton: Skeleton) -> list[Mesh]:

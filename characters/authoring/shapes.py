@@ -6,6 +6,7 @@ surface elsewhere, which suffices: the polygoniser projects every vertex onto th
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Protocol
 
 import numpy as np
@@ -144,7 +145,7 @@ class Ellipsoid(Solid):
 
     def distance(self, points: Array) -> Array:
         """Return the distance to first order: the implicit value over its slope, (n,) [m]."""
-        local = (points - self.center) @ euler(self.turn)  # transposed twice: into its own axes
+        local = (points - self.center) @ _axes(self.turn)  # transposed twice: into its own axes
         scaled = np.abs(local) / self.radii
         level = np.sum(scaled**self.power, axis=1) ** (1 / self.power)
         slope = scaled ** (self.power - 1) / self.radii
@@ -275,6 +276,14 @@ def euler(turn: Vector) -> Array:
         step = np.eye(3)
         step[i, i], step[j, j], step[i, j], step[j, i] = c, c, -s, s
         matrix = step @ matrix
+    return matrix
+
+
+@cache
+def _axes(turn: Vector) -> Array:
+    """Return what `euler` does, computed once: a shape is asked for distances again and again."""
+    matrix = euler(turn)
+    matrix.setflags(write=False)
     return matrix
 
 
