@@ -18,12 +18,17 @@ _RATES = (24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0)
 _FALLBACK_RATE = 120.0  # keys at no common rate: finer than any that people animate at
 _STRAIGHT = 0.2  # [rad] from frame to frame; going straight there is 0.06 mm off, a metre away
 _FASTEST = 1000.0  # [Hz] that a file may state
+_MOST_CLIPS = 4096
 _LONGEST = 3600.0  # [s]; a longer one is a damaged file that would eat the memory
 
 
 def read_clips(file: GltfFile, tree: NodeTree, morphs: MorphTable) -> dict[str, Clip]:
     """Return the animations that move the skeleton, by name."""
     animations = file.all("animations")
+    if len(animations) > _MOST_CLIPS:
+        raise DamagedFileError(
+            f"has {len(animations)} animations, of which {_MOST_CLIPS} are read; take some out"
+        )
     names = unique([each.get("name") or f"animation{n}" for n, each in enumerate(animations)])
     clips: dict[str, Clip] = {}
     for number, (name, animation) in enumerate(zip(names, animations, strict=True)):

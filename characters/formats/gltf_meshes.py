@@ -15,6 +15,7 @@ from characters.mesh import Material, Mesh, Morph
 
 Array = NDArray[np.float64]
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_MOST_PARTS = 4096  # that a character is drawn of; small ones cost time, not bytes
 
 
 def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple[int, Mesh]]:
@@ -22,6 +23,10 @@ def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple
 
     The number is that of the node which carries it.
     """
+    carried = [file.document["nodes"][number]["mesh"] for number in tree.mesh_nodes]
+    parts = sum(len(file.document["meshes"][mesh]["primitives"]) for mesh in carried)
+    if parts > _MOST_PARTS:
+        raise DamagedFileError(f"has {parts} parts, of which {_MOST_PARTS} are read; join them")
     looks = read_materials(file)
     rest = tree.skeleton.rest.globals(tree.skeleton)
     meshes: list[tuple[int, Mesh]] = []

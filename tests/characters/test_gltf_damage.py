@@ -85,6 +85,14 @@ def test_too_many_joints_are_refused(tmp_path, arm):
     refused(tmp_path, arm, "has 5003 joints, of which 4096 are read")
 
 
+def test_more_parts_and_clips_than_any_character_has_are_refused(tmp_path, arm):
+    arm.animate("LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
+    arm.document["animations"] *= 5000
+    refused(tmp_path, arm, "has 5000 animations, of which 4096 are read")
+    arm.document["meshes"][0]["primitives"] *= 5000
+    refused(tmp_path, arm, "has 5000 parts, of which 4096 are read")
+
+
 # Rotations
 
 
