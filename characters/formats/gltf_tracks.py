@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters import rotations
-from characters.formats.gltf_document import DamagedFileError, Json
+from characters.formats.gltf_document import DamagedFileError, Json, at
 from characters.formats.gltf_file import GltfFile
 from characters.formats.gltf_morphs import MorphTable
 from characters.formats.gltf_nodes import NodeTree, unit_turns
@@ -51,29 +51,25 @@ def read_tracks(
 ) -> list[Track]:
     """Return what an animation does to the skeleton and its morphs; `where` is for warnings."""
     tracks: list[Track] = []
-    times_of: dict[int, Array] = {}
+    times_of: dict[int, Array] = {}  # which most channels share
     for number, channel in enumerate(animation["channels"]):
-        path, node = channel["target"]["path"], channel["target"].get("node")
-        which, width = _target(path, node, tree, morphs)
-        if which is None or channel["sampler"] >= len(animation["samplers"]):
-            if which is None:
-                continue
-            raise DamagedFileError(f"channel {number} has a sampler that does not exist")
-        sampler = animation["samplers"][channel["sampler"]]
-        source = sampler["input"]
-        if source not in times_of:
-            times_of[source] = _times(file, source)
-        kind = sampler.get("interpolation", "LINEAR")
-        if kind not in ("LINEAR", "STEP", "CUBICSPLINE"):
-            raise DamagedFileError(f"channel {number} has interpolation {kind!r:.20}")
-        values = _values(file, sampler["output"], path, width)
-        keys = len(times_of[source]) * (3 if kind == "CUBICSPLINE" else 1)
-        if len(values) != keys:
-            raise DamagedFileError(f"channel {number} has {len(values)} values for {keys} keys")
-        if path == "rotation":
-            own = slice(1, None, 3) if kind == "CUBICSPLINE" else slice(None)
-            values[own] = unit_turns(values[own], where)
-        tracks.append(Track(which, path, times_of[source], values, kind))
+        target = channel["target"]
+        which, width = _target(target["path"], target.get("node"), tree, morphs)
+        if which is None:
+            continue
+        with at(f"channel {number}"):
+            if channel["sampler"] >= len(animation["samplers"]):
+                raise DamagedFileError(f"sampler {channel['sampler']} does not exist")
+            sampler = animation["samplers"][channel["sampler"]]
+            if sampler["input"] not in times_of:
+                times_of[sampler["input"]] = _times(file, sampler["input"])
+            times = times_of[sampler["input"]]
+            kind = sampler.get("interpolation", "LINEAR")
+            values = _values(file, sampler, target["path"], width, len(times))
+            if target["path"] == "rotation":
+                own = slice(1, None, 3) if kind == "CUBICSPLINE" else slice(None)
+                values[own] = unit_turns(values[own], where)
+        tracks.append(Track(which, target["path"], times, values, kind))
     return tracks
 
 
@@ -95,12 +91,16 @@ def _times(file: GltfFile, accessor: int) -> Array:
     return times
 
 
-def _values(file: GltfFile, accessor: int, path: str, width: int) -> Array:
-    if path != "weights":
-        return file.floats(accessor, width)
-    values = file.floats(accessor, 1)
-    if len(values) % width:
-        raise DamagedFileError(f"accessor {accessor} has {len(values)} weights for {width} morphs")
+def _values(file: GltfFile, sampler: Json, path: str, width: int, keys: int) -> Array:
+    """Return (keys, width), three times as many rows for a cubic spline."""
+    rows = {"LINEAR": keys, "STEP": keys, "CUBICSPLINE": 3 * keys}
+    kind = sampler.get("interpolation", "LINEAR")
+    if kind not in rows:
+        raise DamagedFileError(f"has interpolation {kind!r:.20}")
+    values = file.floats(sampler["output"], 1 if path == "weights" else width)
+    needed = rows[kind] * width if path == "weights" else rows[kind]
+    if len(values) != needed:
+        raise DamagedFileError(f"has {len(values)} values for {keys} keys, not {needed}")
     return values.reshape(-1, width)
 
 

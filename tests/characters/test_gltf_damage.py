@@ -126,12 +126,20 @@ def test_a_clip_of_one_key_is_a_still(tmp_path, arm):
 
 def test_keys_that_do_not_ascend_are_refused(tmp_path, arm):
     arm.animate("LINEAR", [0.0, 1.0, 0.5], rotations.about("x", [0.0, 1.0, 0.5]))
-    refused(tmp_path, arm, "animation 'a': accessor 4 has key times that do not ascend")
+    refused(tmp_path, arm, "animation 'a': channel 0: accessor 4 has key times that do not ascend")
 
 
 def test_keys_without_values_are_refused(tmp_path, arm):
     arm.animate("LINEAR", [0.0, 1.0, 2.0], rotations.about("x", [0.0, 1.0]))
-    refused(tmp_path, arm, "animation 'a': channel 0 has 2 values for 3 keys")
+    refused(tmp_path, arm, "animation 'a': channel 0: has 2 values for 3 keys, not 3")
+
+
+def test_samplers_that_do_not_exist_are_refused(tmp_path, arm):
+    arm.animate("LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
+    arm.document["animations"][0]["channels"][0]["sampler"] = 3
+    refused(tmp_path, arm, "animation 'a': channel 0: sampler 3 does not exist")
+    arm.animate("BEZIER", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
+    refused(tmp_path, arm, "animation 'a': channel 0: has interpolation 'BEZIER'")
 
 
 def test_a_clip_of_days_is_refused(tmp_path, arm):
