@@ -24,11 +24,11 @@ Feet = Sequence[Sequence[int]]
 
 _LOW = (NEAR, 0.05)  # body heights above a joint's lowest: to begin and to end a contact
 _SLOW = (0.10, 0.15)  # body heights a second, plus …
-_SHARE = (0.22, 0.33)  # … parts of the body's own speed: likewise
+_SHARE = (0.16, 0.24)  # … parts of the body's own speed: likewise
 _EASED = (0.6, 0.8)  # the same on a treadmill: animators let its speed rise and fall
 _HASTE = 0.15  # what counts of being faster than a treadmill, which no swinging foot is
 _ALOFT = 0.08  # body heights: a foot that stays so much above the lowest one is never down
-_SHORTEST = 0.05  # [s]: shorter contacts and shorter gaps are flickers
+_SHORTEST = 0.06  # [s]: shorter contacts and shorter gaps are flickers
 _BREADTH = 0.4  # [s]: over which the body's speed is averaged, about half a cycle
 
 _EXTREMITY = re.compile(r"(?i:foot|toe|paw|hoof|hand)")

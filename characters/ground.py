@@ -17,6 +17,7 @@ NEAR = 0.03
 """How far above its lowest a joint of a foot is taken to be near the ground [body heights]."""
 
 _STILL = 0.06  # body heights a second: a treadmill that is slower stands still
+_AWAY = 0.5  # body heights: who gets so far walks over ground that is at rest
 _MARGIN = (0.15, 0.5)  # what standing feet differ by: body heights a second, parts of the speed
 
 
@@ -83,7 +84,8 @@ def find_ground(clip: Clip, track: Track, joints: NDArray[np.intp]) -> Ground:
     Most joints that are low belong to standing feet; a rigid motion is fitted to those that move
     about as most do, and again to what that fits, so that curves in place are understood too.
     """
-    if clip.root_motion and clip.cycle.length > _STILL * track.tall * clip.duration:
+    way = clip.track[:, :2] if clip.root_motion else track.places.mean(1)[:, [0, 2]]
+    if np.ptp(way, axis=0).max() > _AWAY * track.tall:
         return STEADY
     heights = track.places[:, joints, 1]
     low = above_lowest(heights) < NEAR * track.tall

@@ -13,6 +13,7 @@ from characters.authoring.gait import foot_motion
 from characters.authoring.human_limbs import FOOT
 from characters.authoring.human_motion import GAITS
 from characters.contacts import feet_of, find_contacts, spans
+from characters.formats.clips import load_motion
 from characters.ground import find_ground, track
 
 DATA = Path(__file__).parents[3] / "shared" / "data"
@@ -127,3 +128,20 @@ def test_each_foot_of_a_strangers_cycle_lands_once(name, clip, steps):
     assert [len(spans(found[:, foot], True)) for foot in range(len(feet))] == steps
     assert (found.mean(0) > 0.1).all()
     assert (found.mean(0) < 0.75).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "share"), [("16_15", (0.55, 0.7)), ("16_21", (0.5, 0.65)), ("16_35", (0.25, 0.5))]
+)
+def test_people_stand_as_much_of_the_time_as_they_do(name, share):
+    path = DATA / "cmu-mocap" / "16" / f"{name}.amc"  # a slow and a long walk, and a jog
+    if not path.exists():
+        pytest.skip("no shared data")
+    person = load_motion(path)
+    feet = feet_of(person.skeleton)
+    found = find_contacts(person.clip, person.skeleton, feet)
+    assert len(feet) == 2
+    assert share[0] < found.mean() < share[1]
+    toes = np.array([foot[1] for foot in feet])
+    speeds = np.linalg.norm(track(person.clip, person.skeleton).speeds[:, toes], axis=-1)
+    assert np.median(speeds[found]) < 0.1 * np.median(speeds[~found])
