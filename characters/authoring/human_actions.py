@@ -48,7 +48,7 @@ def wave(skeleton: Skeleton) -> Clip:
     raised = np.clip(up, 0.0, 1.0)
     still, one = 0 * to, 1 + 0 * to
     hand = Reach(
-        wrist=np.stack([0.375 + 0.055 * to, 1.385 - 0.012 * to * to, 0.10 * one], axis=-1),
+        wrist=np.stack([0.405 + 0.05 * to, 1.375 - 0.012 * to * to, 0.12 * one], axis=-1),
         fingers=np.stack([0.10 + 0.42 * late, one, 0.08 + still], axis=-1),
         thumb=np.stack([-one, 0.2 * one, 0.25 * one], axis=-1),
         elbow=np.array([0.55, -0.75, -0.35]),

@@ -10,7 +10,7 @@ from characters.pose import Skeleton
 
 DURATION = 9.0
 BREATHS = 3
-STRAP = np.array([0.165, 0.995, 0.145])
+STRAP = np.array([0.212, 1.0, 0.138])
 """Where the left wrist is when the hand holds its strap, in the rest pose [m]."""
 
 
