@@ -2,7 +2,8 @@
 
 A file of five megabytes is made of the bundled human, which gets meshes and clips that differ from
 its own by seeded noise; it stands for what people bring. Files of other makers are timed where
-they lie beside the checkout. The bar is half a second for the five megabytes.
+they lie beside the checkout. The bar is half a second of the processor for the five megabytes:
+the clock on the wall also counts what else a machine has to do.
 """
 
 import time
@@ -55,31 +56,36 @@ def _dented(mesh: Mesh, copy: int, rng: np.random.Generator) -> Mesh:
     )
 
 
-def seconds(path: Path) -> float:
-    """Return the fastest of several loads [s]."""
-    times = []
+def seconds(path: Path) -> tuple[float, float]:
+    """Return the fastest of several loads, on the wall and of the processor [s]."""
+    walls, processor = [], []
     for _ in range(ROUNDS):
-        start = time.perf_counter()
+        start, work = time.perf_counter(), time.process_time()
         Character.load(path)
-        times.append(time.perf_counter() - start)
-    return min(times)
+        walls.append(time.perf_counter() - start)
+        processor.append(time.process_time() - work)
+    return min(walls), min(processor)
 
 
 def main() -> None:
     """Print the table; fail where the bar is missed."""
-    table = Table("file", "MB", "joints", "vertices", "clips", "seconds")
+    table = Table(
+        "file", "MB", "joints", "vertices", "clips", "s on the wall", "s of the processor"
+    )
     with TemporaryDirectory() as folder:
         whole = large(Path(folder))
         took = {path: seconds(path) for path in (whole, *sorted(SAMPLES.glob("*.glb")))}
-        for path, spent in took.items():
+        for path, (wall, work) in took.items():
             character = Character.load(path)
             vertices = sum(len(mesh.positions) for mesh in character.meshes)
             megabytes = path.stat().st_size / 1e6
             numbers = len(character.skeleton), vertices, len(character.clips)
-            table.add_row(path.name, f"{megabytes:.2f}", *map(str, numbers), f"{spent:.3f}")
+            table.add_row(
+                path.name, f"{megabytes:.2f}", *map(str, numbers), f"{wall:.3f}", f"{work:.3f}"
+            )
     Console().print(table)
-    if took[whole] > BAR:
-        raise SystemExit(f"5 MB take {took[whole]:.2f} s, more than {BAR} s")
+    if took[whole][1] > BAR:
+        raise SystemExit(f"5 MB take {took[whole][1]:.2f} s, more than {BAR} s")
 
 
 if __name__ == "__main__":
