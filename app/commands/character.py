@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 from rich.tree import Tree
 
@@ -37,10 +38,6 @@ FOLDED = 4
 @app.callback()
 def group() -> None:
     """Look at characters and motions."""
-
-
-app.command()(character_graph.graph)
-app.command()(character_locomotion.locomotion)
 
 
 @app.command("inspect")
@@ -81,7 +78,7 @@ def look(
     found, has_body = _load(character, motion)
     _tell(console, found)
     for path in _draw(found.character, folder, clips or not has_body):
-        console.print(f"Drawn: [bold]{path}[/]", soft_wrap=True)
+        console.print(f"Drawn: [bold]{escape(str(path))}[/]", soft_wrap=True)
 
 
 def _load(name: str, read_motion: Callable[[Path], Performance]) -> tuple[Inspection, bool]:
@@ -118,7 +115,7 @@ def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
 
 def _tell(console: Console, found: Inspection) -> None:
     character, sizes = found.character, found.sizes
-    console.print(f"[bold]{character.name}[/], {character.anatomy.kind}", highlight=False)
+    console.print(f"[bold]{escape(character.name)}[/], {character.anatomy.kind}", highlight=False)
     console.print(
         f"{sizes.height:.3g} m tall, {_count(sizes.joints, 'joint')}, "
         f"{_count(sizes.meshes, 'mesh', 'meshes')}, {sizes.vertices:,} vertices, "
@@ -152,7 +149,7 @@ def _tree(character: Character) -> Tree:
         if parent not in places:
             continue  # folded away with a joint above it
         folded = joint not in known and sizes[joint] >= FOLDED and bool(children[joint])
-        name = skeleton.names[joint].replace("[", "\\[")
+        name = escape(skeleton.names[joint])
         told = f" [cyan]{parts[joint]}[/]" if joint in parts else ""
         more = f" [dim]and {sizes[joint] - 1} joints below it[/]" if folded else ""
         branch = places[parent].add(name + told + more, highlight=False)
@@ -188,7 +185,7 @@ def _table(clips: Sequence[ClipFacts]) -> Table:
     for facts in clips:
         clip = facts.clip
         table.add_row(
-            clip.name.replace("[", "\\["),
+            escape(clip.name),
             f"{clip.duration:.2f}",
             f"{clip.rate:.4g}",
             "loop" if clip.loop else "once",
@@ -211,7 +208,11 @@ def _feet(footing: Sequence[Footing]) -> str:
         return "[dim]always[/]"
     each = []
     for foot in footing:
-        name = foot.foot.replace("Foot", "").replace("Front", " front") or foot.foot
+        name = escape(foot.foot).replace("Foot", "").replace("Front", " front") or foot.foot
         times = f" in {foot.times}" if foot.times > 1 else ""
         each.append(f"{name} {100 * foot.share:.0f} %{times}")
     return ", ".join(each)
+
+
+app.command()(character_graph.graph)
+app.command()(character_locomotion.locomotion)

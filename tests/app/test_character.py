@@ -123,10 +123,11 @@ def test_a_file_where_the_folder_should_be_is_one_line(cubeling):
 
 def test_names_that_look_like_markup_are_told_as_they_are(cubeling, tmp_path):
     Path("[b]old[.bvh").write_text(BVH.replace("Spine", "[red]Spine"))
-    code, out, _ = cubeling("character", "inspect", "[b]old[.bvh", "-o", "seen")
+    code, out, _ = cubeling("character", "inspect", "[b]old[.bvh")
     assert code == 0
     assert "[red]Spine" in out
-    assert "[b]old[" in out
+    assert out.startswith("[b]old[, ")
+    assert "[b]old[-pictures/turntable.png" in out
 
 
 def test_rows_of_a_sheet_are_clips_one_below_the_other(album):
