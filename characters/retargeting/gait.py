@@ -61,7 +61,7 @@ class Gait:
             beside[:, 0] *= share
             ends[:, number] = course.places(beside)
         way = Way(np.zeros((len(times), 3)), course.at(times[-1:])[0], self.clip.rate)
-        pose = hold(pose, self.body, self.legs, self.footing, way, ends)
+        pose = _sealed(hold(pose, self.body, self.legs, self.footing, way, ends))
         return replace(self, clip=replace(self.clip, poses=pose), course=course)
 
     def _end(self, leg: Leg) -> Array:
@@ -98,8 +98,16 @@ def held(gait: Gait) -> Gait:
     """Return a gait whose feet stand still on its own course."""
     times = np.arange(len(gait.clip)) / gait.clip.rate
     way = Way(np.zeros((len(times), 3)), gait.course.at(times[-1:])[0], gait.clip.rate)
-    pose = hold(gait.clip.poses, gait.body, gait.legs, gait.footing, way)
+    pose = _sealed(hold(gait.clip.poses, gait.body, gait.legs, gait.footing, way))
     return replace(gait, clip=replace(gait.clip, poses=pose))
+
+
+def _sealed(pose: Pose) -> Pose:
+    """Return a cycle whose last pose is its first, to the last bit, but for the root."""
+    translations, turns = pose.translations.copy(), pose.rotations.copy()
+    translations[-1, 1:] = translations[0, 1:]
+    turns[-1, 1:] = rotations.align(turns[0, 1:], turns[-1, 1:])
+    return replace(pose, translations=translations, rotations=turns)
 
 
 def slide(gait: Gait) -> float:

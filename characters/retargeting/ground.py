@@ -13,13 +13,11 @@ from numpy.typing import NDArray
 
 from characters import rotations
 from characters.clip import Clip
-from characters.ground import find_ground, track
 from characters.pose import Array
 from characters.retargeting.body import Body, Leg
 from characters.retargeting.transfer import upright_clip
 
-# [rad/s]: feet that step unevenly seem to turn a treadmill by less; few walk in place in curves.
-_TURNTABLE = 1.2
+_TREADMILL = 0.3  # leg lengths a second: standing feet that go faster stand on one
 
 _T = TypeVar("_T", bound=np.generic)
 
@@ -68,19 +66,24 @@ class Way:
         return moved(_inverse(self.carried), self.middle(places))
 
 
-def way_of(clip: Clip, body: Body, legs: Sequence[Leg], ratio: float) -> Way:
-    """Return the way of a clip, its lengths multiplied by a ratio."""
+def way_of(
+    clip: Clip, body: Body, legs: Sequence[Leg], down: NDArray[np.bool_], ratio: float
+) -> Way:
+    """Return the way of a clip over the ground, its lengths multiplied by a ratio.
+
+    Parameters
+    ----------
+    clip, body, legs
+        What moves.
+    down
+        When the end of each leg stands, (frames, legs): standing feet tell how the ground moves.
+    ratio
+        To the measures of another body.
+    """
     clip = upright_clip(clip, body)
-    joints = np.array([leg.end for leg in legs])
-    if not len(joints):
-        return Way(np.zeros((len(clip), 3)), None, clip.rate)
-    ground = find_ground(clip, track(clip, body.skeleton), joints)
     times = np.arange(len(clip)) / clip.rate
-    velocity, yaw_rate = ground.velocity, ground.yaw_rate
-    if abs(yaw_rate) < _TURNTABLE:
-        places = clip.poses.globals(body.skeleton)[:, joints][..., :3, 3].mean((0, 1))
-        velocity, yaw_rate = ground.under(places)[[0, 2]], 0.0
-    carried = arc(-ratio * velocity, -yaw_rate, times)
+    velocity = -_treadmill(clip, body, legs, down)
+    carried = arc(ratio * velocity, 0.0, times)
     if not clip.loop or len(clip) < 2:
         return Way(carried, None, clip.rate)
     cycle = carried[-1]
@@ -89,6 +92,17 @@ def way_of(clip: Clip, body: Body, legs: Sequence[Leg], ratio: float) -> Way:
         # The treadmill, if any, goes by under where the root stands.
         cycle = _after(cycle, _after(last, _inverse(first)))
     return Way(carried, cycle, clip.rate)
+
+
+def _treadmill(clip: Clip, body: Body, legs: Sequence[Leg], down: NDArray[np.bool_]) -> Array:
+    """Return the velocity (2,) [m/s] of ground that runs under a clip; nought if it stands."""
+    ends = clip.poses.globals(body.skeleton)[:, [leg.end for leg in legs]][..., [0, 2], 3]
+    stands = down[1:] & down[:-1]
+    if not stands.any():
+        return np.zeros(2)
+    velocity = np.median(np.diff(ends, axis=0)[stands] * clip.rate, axis=0)
+    moves = np.hypot(*velocity) > _TREADMILL * body.leg_length
+    return np.asarray(velocity if moves else np.zeros(2), float)
 
 
 def arc(velocity: Array, yaw_rate: float, times: Array) -> Array:

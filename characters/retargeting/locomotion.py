@@ -134,7 +134,7 @@ def gait_of(recording: Recording, character: Character, walker: Character) -> Ga
     """
     body = Body(walker.skeleton, walker.anatomy)
     clip, footing = _on_character(recording, character, walker)
-    clip = _carried(clip, body)
+    clip = _carried(clip, body, footing)
     cut = Cut(0, len(clip) - 1, 0.0)
     if not clip.loop:
         cut = find_cycle(clip, body, (footing.heel | footing.ball)[:, :2])
@@ -193,9 +193,10 @@ def _alike(one: Skeleton, other: Skeleton) -> bool:
     )
 
 
-def _carried(clip: Clip, body: Body) -> Clip:
+def _carried(clip: Clip, body: Body, footing: Footing) -> Clip:
     """Return a clip that walks in place as one that gets on."""
-    way = way_of(replace(clip, loop=False), body, body.legs, 1.0).carried
+    legs = body.legs[: footing.ball.shape[1]]
+    way = way_of(replace(clip, loop=False), body, legs, footing.ball, 1.0).carried
     if not way.any():
         return clip
     steps = [Step(*w).then(Step(*t)) for w, t in zip(way, clip.track, strict=True)]

@@ -72,7 +72,8 @@ def _retarget(clip: Clip, source: Body, target: Body, hold_feet: bool) -> Clip:
         if target.anatomy.kind == "quadruped":
             ends = _paw_ways(clip, source, target, ratio * np.array([share, 1.0, share]))
         footing = find_footing(clip, source, theirs)
-        pose = hold(pose, target, ours, footing, way_of(clip, source, theirs, ratio * share), ends)
+        way = way_of(clip, source, theirs, footing.ball, ratio * share)
+        pose = hold(pose, target, ours, footing, way, ends)
     return Clip(clip.name, clip.rate, pose, clip.loop, rooted)
 
 
