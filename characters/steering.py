@@ -15,7 +15,8 @@ _LEFT_AGAIN = 0.065  # [m]: a target that was reached is left again only beyond 
 _BRAKING = 3.0  # [m/s² of the character]: how hard it slows down before a target
 _EAGERNESS = 2.0  # Angular for each radian between where it looks and where it wants to go
 _ROOM = 1.4  # how much larger than needed the turning circle is kept away from the target
-_LADDER = np.linspace(1.0, TOP_SPEED, 17)  # Speeds whose turning circles are measured
+_LADDER = np.linspace(1.0, TOP_SPEED, 17)  # Speeds whose turning circles are measured,
+_SPEEDS = np.array([IDLE_SPEED, *_LADDER])  # and that at which it stops
 _BEHIND = math.radians(150)  # a target farther behind is turned to the way round already begun
 
 
@@ -51,8 +52,8 @@ class Pilot:
     def __init__(self, gaits: Gaits, scale: float) -> None:
         self._gaits = gaits
         self._scale = scale
-        radii = [gaits.radius(speed) * scale for speed in _LADDER]
-        self._radii = np.maximum.accumulate(radii)
+        self._circles = [gaits.radius(speed) * scale for speed in _SPEEDS]
+        self._radii = np.maximum.accumulate(self._circles[1:])
         self._arrived = False
         self._side = 1.0
 
@@ -86,7 +87,8 @@ class Pilot:
         if stop:
             speed = min(speed, self._fastest_before(distance - ARRIVED))
         speed = max(speed, IDLE_SPEED)
-        stride = min(1.0, needed / (_ROOM * self._gaits.radius(speed) * self._scale))
+        circle = float(np.interp(speed, _SPEEDS, self._circles))
+        stride = min(1.0, needed / (_ROOM * circle))
         angular = min(max(_EAGERNESS * error, -STEEPEST), STEEPEST)
         return Course(speed, angular, stride)
 
