@@ -1,4 +1,4 @@
-"""What hangs loosely on the bundled explorer and follows late: backpack, strings, cowlick.
+"""What hangs loosely on the bundled explorer and follows late: backpack, hood, strings, cowlick.
 
 Each is a damped spring on an accelerated mount, whose response over a repeating motion has a
 closed form (`loops.follow`); so loops stay loops.
@@ -25,6 +25,8 @@ def drag(puppet: Puppet, seconds: float, aside: float = 0.0) -> None:
     """
     back = _pull(puppet, "chest", (0.0, 1.03, -0.2), seconds, aside)
     _swing_backpack(puppet, back, seconds)
+    flop = _bounded(-0.9 * follow(back[:, 1] - 0.5 * back[:, 2], seconds, 2.6, 0.35), 14)
+    puppet.turn("Hood", turned(x=_closed(-_off(flop, 4.0))))
     front = _pull(puppet, "chest", (0.0, 1.09, 0.13), seconds, aside)
     _swing_strings(puppet, front, seconds)
     crown = _pull(puppet, "head", (0.0, 1.74, -0.04), seconds, aside)

@@ -16,6 +16,7 @@ _BODY: dict[str, tuple[str, Vector]] = {
     "head": ("neck", (0.0, 1.245, 0.0)),
     "LeftEye": ("head", (0.0442, 1.4309, 0.0719)),
     "Cowlick": ("head", (0.01, 1.66, -0.03)),
+    "Hood": ("chest", (0.0, 1.205, -0.065)),
     "Backpack": ("chest", (0.0, 1.13, -0.115)),
     "LeftString": ("chest", (0.036, 1.14, 0.112)),
     "LeftShoulder": ("chest", (0.045, 1.15, -0.01)),
