@@ -1,5 +1,6 @@
 """The bundled explorer's eyes: balls that turn, and lids that close over them."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -79,12 +80,18 @@ def _eyeball(sign: float, skeleton: Skeleton) -> list[Mesh]:
     rings = CURVATURE * np.vstack([[0.0, 0.5], ball])
     bands = [EYE_WHITE] * 4 + [INK] * 2 + [BROWN] * 2 + [INK] * 3
     whole = lathe(rings, bands, place, joint, skeleton, 26)
-    iris = (np.asarray(whole.colors)[:, :3] - np.array(BROWN, np.float32)) ** 2
-    lit = iris.sum(axis=1) < 1e-6
-    below = np.clip(0.5 - (whole.positions[:, 1] - _centre(sign)[1] - 7e-3) / 0.06, 0, 1)
-    whole.colors[lit, :3] += (np.array(AMBER) - BROWN)[None] * below[lit, None]  # type: ignore[index]
+    whole = replace(whole, colors=_lit_from_below(whole, _centre(sign)[1]))
     lights = [((-0.10, 0.13), 0.112), ((0.11, -0.13), 0.05)]  # on one side: there is one sun
     return [whole, *(_light(sign, at, wide, joint, skeleton) for at, wide in lights)]
+
+
+def _lit_from_below(ball: Mesh, middle: float) -> NDArray[np.float32]:
+    """Return the colours of an eyeball with its iris lighter towards the bottom, (n, 4)."""
+    colors = np.array(ball.colors)
+    iris = np.abs(colors[:, :3] - BROWN).max(axis=1) < 1e-4
+    below = np.clip(0.5 - (ball.positions[iris, 1] - middle - 0.007) / 0.06, 0.0, 1.0)
+    colors[iris, :3] += below[:, None] * np.subtract(AMBER, BROWN)
+    return colors.astype(np.float32)
 
 
 def _light(
@@ -108,34 +115,34 @@ def _axes(toward: Array) -> Array:
 
 
 def _lids(face: Face, sign: float, skeleton: Skeleton) -> Mesh:
-    """Return the ring of skin around an eye, from inside the ball out into the face.
-
-    It is built for the left eye and mirrored.
-    """
+    """Return the ring of skin around an eye, from behind the face to inside the ball."""
     angle = np.linspace(0, 2 * np.pi, COLUMNS, endpoint=False)
+    rings = _lid_rings(angle, face, sign)
     up = np.sin(angle) >= 0
+    if sign < 0:  # built for the left eye, and mirrored
+        rings, up = rings[:, ::-1] * [-1.0, 1.0, 1.0], up[::-1]
+    mesh = ringed(rings, _lid_colors(rings, up), "head", skeleton)
+    of_the_face = np.repeat(np.array([0, 0, 1.0, 0.75, 0.3, *[0] * 6]), COLUMNS)
+    return with_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
+
+
+def _lid_rings(angle: Array, face: Face, sign: float) -> Array:
+    """Return pole, rim under the skin, skin, lashes twice, edge, edge in the ball, pole."""
+    height = np.sin(angle)
     edge = _edge(angle, face, sign)
-    ring = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    reach = np.where(up, OPENING[1] + 0.032, OPENING[2] + 0.026)
-    outer = MIDDLE + ring * np.stack([np.full(COLUMNS, OPENING[0] + 0.026), reach], axis=-1)
-    thick = np.where(up, 0.0085 + 0.003 * np.cos(angle), 0.0025)[:, None]
+    reach = np.where(height >= 0, OPENING[1] + 0.032, OPENING[2] + 0.026)
+    outer = MIDDLE + np.stack([(OPENING[0] + 0.026) * np.cos(angle), reach * height], axis=-1)
     away = outer - edge
-    lash = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * thick
-    loft = LOFT[0] + (LOFT[1] - LOFT[0]) * np.clip(np.sin(angle), 0, 1) ** 0.7
-    flat = [edge, edge, lash, lash, *(lash + (outer - lash) * s for s in (0.28, 0.55, 0.8, 1.0))]
-    lofts = [-0.004 + 0 * loft, loft, loft + 0.0025, loft + 0.0025, loft + 0.001, *[loft] * 3]
-    shares = [0.0, 0.0, 0.0, 0.0, 0.22, 0.55, 0.9, 1.0]
-    share = np.repeat(shares, COLUMNS)
+    thick = np.where(height >= 0, 0.0085 + 0.003 * np.cos(angle), 0.0025)  # more at the temple
+    lash = edge + away * (thick / np.linalg.norm(away, axis=1))[:, None]
+    loft = LOFT[0] + (LOFT[1] - LOFT[0]) * np.clip(height, 0, 1) ** 0.7
+    flat = [*(lash + (outer - lash) * s for s in (1.0, 0.8, 0.55, 0.28)), lash, lash, edge, edge]
+    lofts = [loft, loft, loft, loft + 0.001, loft + 0.0025, loft + 0.0025, loft, 0 * loft - 0.004]
+    share = np.repeat([1.0, 0.9, 0.55, 0.22, 0.0, 0.0, 0.0, 0.0], COLUMNS)
     rows = _on_eye(np.concatenate(flat), np.concatenate(lofts), share, face)
     rows = rows.reshape(len(flat), COLUMNS, 3)
-    under = rows[-1] - [0.0, 0.0, 0.006]
-    ends = [np.tile([*MIDDLE, 0.14], (COLUMNS, 1)), np.tile([*MIDDLE, 0.10], (COLUMNS, 1))]
-    rings = np.stack([ends[0], *rows, under, ends[1]])[::-1] * [sign, 1.0, 1.0]
-    rings = rings[:, ::-1] if sign < 0 else rings
-    colors = _lid_colors(rings, up if sign > 0 else up[::-1])
-    mesh = ringed(rings, colors, "head", skeleton)
-    share = np.repeat(np.array([0, 0, 1.0, 0.75, 0.3, *[0] * 6]), COLUMNS)
-    return with_normals(mesh, face_normals(mesh.positions.astype(float)), share)
+    behind, inside = (np.tile([*MIDDLE, z], (COLUMNS, 1)) for z in (0.10, 0.14))
+    return np.stack([behind, rows[0] - [0.0, 0.0, 0.006], *rows, inside])
 
 
 def _edge(angle: Array, face: Face, sign: float) -> Array:

@@ -34,28 +34,33 @@ def mouth(skeleton: Skeleton) -> Mesh:
 def _mouth(face: Face, skeleton: Skeleton) -> Mesh:
     """Return a bag in the face: from a pole in the head over the skin and the lips to its end."""
     angle = np.linspace(0, 2 * np.pi, COLUMNS, endpoint=False)
-    up = np.sin(angle) >= 0
-    line, edge = _lip_lines(angle, face)
-    outer = MOUTH + np.stack(
-        [REACH[0] * np.cos(angle), np.where(up, REACH[1], REACH[2]) * np.sin(angle)], axis=-1
-    )
-    away = outer - edge
-    lips = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * _LIPS
-    full = np.abs(np.sin(angle)) ** 0.5
-    skin = [_on_skin(edge, line, 0.002 + 0.002 * full + face.pout, face, 0.0)]
-    skin.append(_on_skin(lips, line, 0.0015 + 0.005 * full + face.pout, face, 0.0))
-    for s in (0.25, 0.5, 0.75, 1.0):
-        flat, rest = lips + (outer - lips) * s, line + (outer - line) * s
-        lift = (0.0015 if s < 1 else -0.0015) + face.pout * (1 - s) ** 2 + 0 * full
-        skin.append(_on_skin(flat, rest, lift, face, s))
+    edge, lips, *skin = _skin_rings(angle, face)
     under = skin[-1] - [0.0, 0.0, 0.006]
     behind = np.tile([0.0, MOUTH[1], 0.05], (COLUMNS, 1))
-    edge_3d, lips_3d = skin[:2]
-    cavity = _cavity(edge_3d, angle, face)
-    rings = np.stack([behind, under, *skin[:1:-1], lips_3d, lips_3d, edge_3d, *cavity])
-    mesh = ringed(rings, _colors(rings, up), "head", skeleton)
-    share = np.repeat([0, 0, 1.0, 0.9, 0.5, 0.15, *[0] * (len(rings) - 6)], COLUMNS)
-    return with_normals(mesh, face_normals(mesh.positions.astype(float)), share)
+    rings = np.stack([behind, under, *skin[::-1], lips, lips, edge, *_cavity(edge, angle, face)])
+    mesh = ringed(rings, _colors(rings, np.sin(angle) >= 0), "head", skeleton)
+    of_the_face = np.repeat([0, 0, 1.0, 0.9, 0.5, 0.15, *[0] * (len(rings) - 6)], COLUMNS)
+    return with_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
+
+
+def _skin_rings(angle: Array, face: Face) -> list[Array]:
+    """Return the edge of the lips, their border, and the skin around out to the rim."""
+    height = np.sin(angle)
+    line, edge = _lip_lines(angle, face)
+    reach = np.where(height >= 0, REACH[1], REACH[2])
+    outer = MOUTH + np.stack([REACH[0] * np.cos(angle), reach * height], axis=-1)
+    away = outer - edge
+    lips = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * _LIPS
+    full = np.abs(height) ** 0.5
+    rings = [
+        _on_skin(edge, line, 0.002 + 0.002 * full + face.pout, face, 0.0),
+        _on_skin(lips, line, 0.0015 + 0.005 * full + face.pout, face, 0.0),
+    ]
+    for s in (0.25, 0.5, 0.75, 1.0):  # the rim dips under the face: no step is seen
+        flat, rest = lips + (outer - lips) * s, line + (outer - line) * s
+        lift = (0.0015 if s < 1 else -0.0015) + face.pout * (1 - s) ** 2 + 0 * full
+        rings.append(_on_skin(flat, rest, lift, face, s))
+    return rings
 
 
 def _lip_lines(angle: Array, face: Face) -> tuple[Array, Array]:

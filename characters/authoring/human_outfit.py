@@ -159,15 +159,14 @@ def _on_hoodie(line: Array) -> Array:
 
 
 def _hood() -> Shape:
-    bones, color = ("chest",), TEAL
     back = Ellipsoid(
-        (0, 1.195, -0.092), (0.13, 0.07, 0.062), (0.35, 0, 0), bones=("Hood",), color=color
+        (0, 1.195, -0.092), (0.13, 0.07, 0.062), (0.35, 0, 0), bones=("Hood",), color=TEAL
     )
     collar = chain(
         [(0.0, 1.205, -0.105), (0.09, 1.208, -0.06), (0.1, 1.196, 0.015), (0.032, 1.145, 0.102)],
         (0.045, 0.04, 0.034, 0.026),
         ("chest",) * 3,
-        color,
+        TEAL,
         0.02,
     )
     return Union((back, _both(collar)), 0.02)
