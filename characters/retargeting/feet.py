@@ -25,6 +25,7 @@ from characters.retargeting.root import smoothed
 from characters.retargeting.transfer import ankle, place, upright_clip
 
 _LIFTED = 0.02  # leg lengths that the ball of a standing foot is above its lowest
+_ROLL = 0.25  # [s] that a foot takes at most from its heel onto its ball
 _HEEL = 0.35  # how far the heel is behind the ankle, for how far the ball is ahead of it
 _SETTLE = 0.12  # [s] that a foot takes to leave, or come to, the speed of a place that it holds
 _STRETCH = 0.997  # part of a leg's length that it may reach
@@ -58,7 +59,8 @@ def find_footing(clip: Clip, body: Body, legs: Sequence[Leg]) -> Footing:
             low = heights[frames, leg] < heights[frames, leg].min() + _LIFTED * body.leg_length
             down, up = int(low.argmax()), length - int(low[::-1].argmax())
             # Once the ball of the foot has risen, the foot leaves, however slowly.
-            heel[frames[:down], leg], ball[frames[down:up], leg] = True, True
+            struck = max(down - round(_ROLL * clip.rate), 0)
+            heel[frames[struck:down], leg], ball[frames[down:up], leg] = True, True
     if clip.loop:
         heel[-1], ball[-1] = heel[0], ball[0]
     return Footing(heel, ball)

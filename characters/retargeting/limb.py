@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from characters import rotations
 from characters.pose import Array, Pose
@@ -46,14 +47,28 @@ def _turns(body: Body, hip: Array, knee: Array, at: Array, target: Array) -> tup
     far = np.clip(far, np.abs(long - short) * 1.0005 + 1e-9, _STRAIGHTEST * (long + short))
     across = np.cross(thigh, shin)
     size = np.linalg.norm(across, axis=-1, keepdims=True)
-    # A leg that is straight bends its shin backward.
-    straight = rotations.rotate(rotations.conjugate(body.upright), [-1.0, 0.0, 0.0])
-    axis = np.where(size > 1e-6 * (long * short)[:, None], across, straight)
+    axis = _hinge(across, size[:, 0] > 1e-4 * long * short, thigh, body)
     bent = np.arctan2(size[:, 0], np.einsum("ij,ij->i", thigh, shin))
     goal = np.arccos(np.clip((long**2 + short**2 - far**2) / (2 * long * short), -1.0, 1.0))
     shin_turn = rotations.about(axis, goal - bent)
     reached = knee + rotations.rotate(shin_turn, shin) - hip
     return shin_turn, rotations.between(reached, reach)
+
+
+def _hinge(across: Array, bends: NDArray[np.bool_], thigh: Array, body: Body) -> Array:
+    """Return about which axis the knee bends, (frames, 3): while straight, as when it last bent."""
+    if not bends.any():  # the shin goes backward
+        backward = rotations.rotate(rotations.conjugate(body.upright), [-1.0, 0.0, 0.0])
+        axis = np.broadcast_to(backward, across.shape)
+    else:
+        known = np.flatnonzero(bends)
+        frames = np.arange(len(across))
+        later = known[np.minimum(np.searchsorted(known, frames), len(known) - 1)]
+        earlier = known[np.maximum(np.searchsorted(known, frames, side="right") - 1, 0)]
+        nearest = np.where(np.abs(later - frames) < np.abs(earlier - frames), later, earlier)
+        axis = across[nearest]
+    along = np.einsum("ij,ij->i", axis, thigh) / np.einsum("ij,ij->i", thigh, thigh)
+    return np.asarray(axis - along[:, None] * thigh)
 
 
 def _global(turns: Array, joint: int) -> Array:
