@@ -13,7 +13,10 @@ from dataclasses import dataclass
 _LANDS = 0.014  # a foot lands only so near to the ground
 _FARTHEST, _TWISTED = 0.05, math.radians(40)  # a held foot is let go beyond this offset or turn
 _UNTIDY, _ASKEW = 0.025, math.radians(20)  # and one of somebody who stands already beyond these
-_ROLL = 0.001  # heel or ball take over when they are so much lower
+_ON_BALL, _ON_HEEL = (
+    0.003,
+    0.006,
+)  # it stands on the heel if that is so much lower: still, and newly
 _STEP_TIME = 0.22  # [s]: what a quick step takes
 _STEP_HEIGHT, _STEP_SLOPE = 0.025, 0.35  # how high it goes: at most, and for its length
 _PEEL, _PEELED = 0.009, 0.02  # a foot that lifts is so high once it is so far from where it stood,
@@ -114,7 +117,8 @@ class HeldFoot:
 
     def hold(self, sole: Sole) -> None:
         """Hold the foot where it is shown: it lands, or rolls from heel to ball."""
-        heel = sole.heel[1] < sole.ball[1] + (_ROLL if self._heel else -_ROLL) * self._height
+        least = _ON_BALL if self._heel else _ON_HEEL
+        heel = sole.heel[1] + least * self._height < sole.ball[1]
         if self.held and self._heel == heel:
             return
         self._heel = heel

@@ -24,7 +24,7 @@ from characters.phase import Phased
 from characters.pose import Array, Pose, Skeleton
 
 _PARTS = 16  # of a cycle, in each of which the mean of several ways is taken
-_EARLY = 0.02  # [s]: how much sooner feet are let go than they are seen to be gone
+_LEAVING = 0.45  # how much the last frame of a contact counts: too little to be held
 _LIFT = 0.3  # how high feet go rises with this power of how far they go, …
 _TURNING = 1.0  # … and on the spot by so much more than that, to clear the ground
 
@@ -51,8 +51,9 @@ class Tread:
         feet[..., 3:7] = rotations.align(feet[..., 3:7], still.feet[:, 3:])
         down = find_contacts(clip, skeleton, legs.feet)
         # A foot is known to have left by its speed, so a little after it has.
-        early = np.roll(down[:-1], -max(round(_EARLY * clip.rate), 1), axis=0)
-        feet[..., 7] = down & np.append(early, early[:1], axis=0)
+        after = np.roll(down[:-1], -1, axis=0)
+        leaving = down & ~np.append(after, after[:1], axis=0)
+        feet[..., 7] = np.where(leaving, _LEAVING, down)
         return Tread(motion, feet)
 
     def at(self, phase: float) -> Array:

@@ -210,8 +210,8 @@ SCRIPTS: dict[str, Script] = {
     "turn on the spot": _turn_on_the_spot,
     "slalom": _slalom,
     "courses that jump": _jumps_of_course,
-    "follow a moving target": _follow,
-    "near targets, one by one": _near_targets,
+    "moving target": _follow,
+    "near targets": _near_targets,
 }
 """Ways to go that are no point of the grid; a table metre is a metre here."""
 
@@ -232,7 +232,7 @@ def main() -> None:
         key = max(found, key=lambda point: found[point].mean)
         middle = sorted(found.values(), key=lambda slide: slide.mean)[len(found) // 2]
         _row(table, f"{len(grid)} points, median", hold, middle)
-        _row(table, f"worst: Speed {key[0]:g}, {key[1]:g}°, stride {key[2]:g}", hold, found[key])
+        _row(table, f"worst: {key[0]:g}, {key[1]:g}°, {key[2]:g}", hold, found[key])
         worst = max(means)
         for name, script in SCRIPTS.items():
             slide = measure(film(human, script, 600, hold))
