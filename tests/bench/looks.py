@@ -88,7 +88,8 @@ def main() -> None:
     view, actor = scene(character)
     for frame in range(options.frames + 3):
         posed = actor(frame).posed
-        for name, (who, on) in rows.items():
+        for name in rng.permutation(list(rows)):  # each finds the caches that another left
+            who, on = rows[name]
             weights = np.zeros(len(who.morphs))
             weights[:on] = rng.uniform(0.1, 1.0, on)
             morphs = weights if len(weights) else None
