@@ -1,0 +1,35 @@
+"""`cubeling character locomotion`: what it makes, tells and refuses."""
+
+import pytest
+
+from characters import Character
+from characters.locomotion import WALK_CLIPS
+
+
+def test_one_command_makes_a_character_that_walks(cubeling, tmp_path):
+    target = tmp_path / "mine.glb"
+    code, out, _ = cubeling(
+        "character", "locomotion", "human", "--walk", "human#Walk", "-o", target
+    )
+    assert not code
+    assert "1.35 m/s" in out
+    assert "WalkLeftShort" in out
+    assert set(WALK_CLIPS.values()) <= set(Character.load(target).clips)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["human"], "give at least one recording with --walk"),
+        (["human", "--walk", "human#Walk", "-o", "mine.fbx"], "not as 'mine.fbx'"),
+        (["human", "--walk", "human#Stroll"], "which clip? write human#CLIP"),
+        (["human", "--walk", "nowhere.bvh"], "nowhere.bvh"),
+        (["vleo", "--walk", "human#Walk"], "take a motion of its kind"),
+        (["human", "--walk", "human#idle"], "goes nowhere"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line(cubeling, arguments, told):
+    code, _, err = cubeling("character", "locomotion", *arguments)
+    assert code == 2
+    assert told in err
+    assert err.count("\n") == 1
