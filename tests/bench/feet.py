@@ -221,8 +221,11 @@ def main() -> None:
     console, human = Console(), Character.load("human")
     worst = 0.0
     table = Table(
-        "where", "lock", "slide mm/s", "strict", "skate", "planted", "bend rad/s²", "dip mm"
+        title="slides [mm/s], bends [rad/s²], dips [mm]",
+        caption="worst: Speed, Angular, stride",
     )
+    for column in ("where", "lock", "slide", "strict", "skate", "planted", "bend", "dip"):
+        table.add_column(column, no_wrap=True)
     grid = points(np.arange(0.5, 5.01, 0.5), range(-90, 91, 30), (1.0,))
     grid |= points((2.8, 2.9, 3.1, 3.2), (-75, 0, 45), (1.0,))
     grid |= points((1.0, 1.2, 2.0, 4.0), (-90, 0, 60), (0.0, 0.3, 0.6))
