@@ -19,8 +19,9 @@ from app.commands import character_graph, character_locomotion
 from app.errors import AppError
 from characters import Character, Skeleton
 from characters.errors import CharacterWarning
+from characters.facts import ClipFacts, Footing
 from characters.formats import Performance, load_motion
-from characters.inspection import ClipFacts, Footing, Inspection, inspect
+from characters.inspection import Inspection, inspect
 from characters.rendering import create_context
 from characters.rendering.sticks import stick_figure
 

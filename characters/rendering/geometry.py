@@ -10,28 +10,9 @@ from numpy.typing import NDArray
 from characters.errors import CharacterError
 from characters.mesh import Material, Mesh, Morph
 from characters.rendering.morphing import joined
+from characters.rendering.outline import furthest
 
 Array = NDArray[np.float64]
-
-
-def _surface(side: int) -> NDArray[np.float32]:
-    """Return the directions (n, 3) of a grid on the surface of a cube, `side` points an edge.
-
-    >>> _surface(3).shape, _surface(5).shape
-    ((26, 3), (98, 3))
-    """
-    grid = np.stack(np.meshgrid(*[np.linspace(-1.0, 1.0, side)] * 3), axis=-1).reshape(-1, 3)
-    shell = grid[np.abs(grid).max(axis=1) == 1.0]
-    return np.asarray(shell / np.linalg.norm(shell, axis=1, keepdims=True), np.float32)
-
-
-WAYS, FINE_WAYS = _surface(3), _surface(5)
-"""Directions in which the vertices that stand out are looked for: of most joints, and of those
-that move much of the character. A ball goes past what is known of it by 10 % or by 3 % of its
-radius."""
-
-MUCH = 0.3
-"""Share of the character's size from which on what one joint moves is much of it."""
 
 
 @dataclass(frozen=True)
@@ -163,12 +144,12 @@ class Geometry:
         hundredths of its size.
         """
         owner = self._owners
-        still = _furthest(self.positions, owner)
+        still = furthest(self.positions, owner)
         if not self.morphs:
             return still
         taken = np.concatenate([morph.vertices for morph in self.morphs])
         shifts = np.concatenate([morph.shifts for morph in self.morphs])
-        shifted = _furthest(self.positions[taken] + shifts, owner[taken])
+        shifted = furthest(self.positions[taken] + shifts, owner[taken])
         return np.union1d(still, taken[shifted]).astype(np.intp)
 
     @property
@@ -224,20 +205,6 @@ class Geometry:
     def paint_records(self) -> NDArray[np.float32]:
         """Linear RGBA and texture coordinates of each vertex, (vertices, 6)."""
         return np.hstack([self.colors, self.uvs])
-
-
-def _furthest(positions: NDArray[np.float32], owner: NDArray[np.uint32]) -> NDArray[np.intp]:
-    """Return the numbers of those that are, of one owner's, the furthest in some direction."""
-    order = np.argsort(owner, kind="stable")
-    borders = np.flatnonzero(np.diff(owner[order])) + 1
-    lying = np.ascontiguousarray(positions[order].T)  # a coordinate a row, read in one go
-    much = MUCH * np.ptp(lying, axis=1).max()
-    found = []
-    for run, own in zip(np.split(order, borders), np.split(lying, borders, axis=1), strict=True):
-        ways = FINE_WAYS if np.ptp(own, axis=1).max() > much else WAYS
-        # Not a matrix product: its threads would wait for each other on a busy machine.
-        found.append(run[np.einsum("wk,kv->wv", ways, own).argmax(axis=1)])
-    return np.unique(np.concatenate(found))
 
 
 def _filled(
