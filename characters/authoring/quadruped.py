@@ -34,6 +34,9 @@ class Performance:
     scales: dict[str, Array] = field(default_factory=dict)
     """Joint to its scale, (frames,) or (frames, 3); others keep that of the rest pose."""
 
+    morphs: dict[str, Array] = field(default_factory=dict)
+    """Morph to how far it is on, (frames,); others are off."""
+
     feet: dict[str, Array] = field(default_factory=dict)
     """Foot to (frames, 4): offset from rest x, y, z [m] and toes up [rad]; else it is planted."""
 
@@ -53,6 +56,10 @@ class Performance:
     ) -> None:
         """Add an offset to a joint; each argument is (frames,) or a number [m]."""
         self.moves[joint] = self.moves.get(joint, 0.0) + self._columns(x, y, z)
+
+    def show(self, morph: str, on: Array | float) -> None:
+        """Turn a morph further on; `on` is (frames,) or a number."""
+        self.morphs[morph] = self.morphs.get(morph, 0.0) + self._columns(on)[:, 0]
 
     def step(
         self,
@@ -129,10 +136,24 @@ def _place_leg(ankle: int, offset: Array, body: Array, local: Array, bound: Skel
     return np.asarray(stretch)
 
 
-def clip(name: str, performance: Performance, bound: Skeleton, feet: Sequence[str]) -> Clip:
-    """Return a performance as a loop: its last frame is its first."""
+def clip(
+    name: str,
+    performance: Performance,
+    bound: Skeleton,
+    feet: Sequence[str],
+    morphs: Sequence[str] = (),
+) -> Clip:
+    """Return a performance as a loop: its last frame is its first.
+
+    Parameters
+    ----------
+    morphs : names of the character's morphs, if the clip is to set them
+    """
     pose = poses(performance, bound, feet)
     again = np.append(np.arange(performance.frames), 0)
     scales = None if pose.scales is None else pose.scales[again]
     turns = rotations.continuous(pose.rotations[again])
-    return Clip(name, RATE, Pose(pose.translations[again], turns, scales))
+    off = np.zeros(performance.frames)
+    shown = [performance.morphs.get(morph, off)[again] for morph in morphs]
+    face = np.stack(shown, axis=1) if morphs else None
+    return Clip(name, RATE, Pose(pose.translations[again], turns, scales, face))
