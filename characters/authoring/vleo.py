@@ -3,11 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.authoring.sculpt import join
 from characters.authoring.vleo_clips import clip
 from characters.authoring.vleo_effects import effects
-from characters.authoring.vleo_face import face
+from characters.authoring.vleo_expressions import EXPRESSIONS
+from characters.authoring.vleo_face import face, with_expressions
 from characters.authoring.vleo_idle import idle
 from characters.authoring.vleo_kiss import kiss
 from characters.authoring.vleo_marks import marks
@@ -17,7 +19,7 @@ from characters.authoring.vleo_shout import shout
 from characters.authoring.vleo_skin import body
 from characters.character import Character
 from characters.clip import Clip
-from characters.mesh import Material, Mesh
+from characters.mesh import Material, Mesh, Morph
 from characters.pose import Skeleton
 
 LEVELS = ("head", "legs", "tail")
@@ -27,7 +29,8 @@ LEVELS = ("head", "legs", "tail")
 def build_vleo() -> Character:
     """Return Vleo, 0.45 m from nose to tail, as it is shipped."""
     bound = skeleton()
-    return Character("vleo", resting(bound), clips(bound), (mesh(bound),))
+    rest = resting(bound)
+    return Character("vleo", rest, clips(rest), (mesh(bound),), morphs=tuple(EXPRESSIONS))
 
 
 def clips(bound: Skeleton) -> dict[str, Clip]:
@@ -42,14 +45,19 @@ def clips(bound: Skeleton) -> dict[str, Clip]:
 def mesh(bound: Skeleton) -> Mesh:
     """Return Vleo's one mesh, bound to the skeleton's pose."""
     skin = body(bound)
-    pieces = [skin_mesh(skin, bound), *face(skin, bound), *marks(skin, bound), *effects(bound)]
+    outside = [with_expressions(m, bound) for m in (skin_mesh(skin, bound), *marks(skin, bound))]
+    pieces = [*outside, *face(bound), *effects(bound)]
     return _welded(join("Vleo", pieces, Material(roughness=0.55)))
 
 
 def _welded(mesh: Mesh) -> Mesh:
     """Return the mesh with equal vertices merged and triangles without area left out."""
     colors = np.ones((len(mesh.positions), 4)) if mesh.colors is None else mesh.colors
-    columns = (mesh.positions, mesh.normals, mesh.joints, mesh.weights, colors)
+    shifts = np.zeros((len(mesh.morphs), len(mesh.positions), 3))
+    for row, morph in zip(shifts, mesh.morphs, strict=True):
+        row[morph.vertices] = morph.shifts
+    moved = shifts.swapaxes(0, 1).reshape(len(mesh.positions), -1)
+    columns = (mesh.positions, mesh.normals, mesh.joints, mesh.weights, colors, moved)
     rows = np.hstack([np.asarray(column, np.float64) for column in columns])
     _, first, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     order = np.sort(first)  # as they came
@@ -64,4 +72,17 @@ def _welded(mesh: Mesh) -> Mesh:
         joints=mesh.joints[order],
         weights=mesh.weights[order],
         colors=colors[order].astype(np.float32),
+        morphs=tuple(_kept(morph, order) for morph in mesh.morphs),
+    )
+
+
+def _kept(morph: Morph, order: NDArray[np.intp]) -> Morph:
+    """Return a morph of the vertices that remain, in their order."""
+    there = np.isin(morph.vertices, order)
+    turned = morph.normal_shifts
+    return replace(
+        morph,
+        vertices=np.searchsorted(order, morph.vertices[there]).astype(np.uint32),
+        shifts=morph.shifts[there],
+        normal_shifts=None if turned is None else turned[there],
     )

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from characters.authoring.shapes import (
     Array,
@@ -19,14 +18,23 @@ from characters.authoring.shapes import (
     Vector,
     chain,
     rgb,
-    smooth_minimum,
 )
-from characters.authoring.vleo_rig import BACK, NECK, TAIL
+from characters.authoring.vleo_rig import BACK, EYE, NECK, TAIL
 
 TEAL, BACK_TEAL, SPOT = rgb("#3fc4a4"), rgb("#27a893"), rgb("#14706f")
 LASH = rgb("#0d3f42")
 CREAM, CLAW, ORANGE, PINK = rgb("#f5efc6"), rgb("#fff3d6"), rgb("#ffad45"), rgb("#ff8a94")
 MAROON, ROSE = rgb("#7a1428"), rgb("#f2667c")
+
+EYE_RADIUS = 0.0255
+"""Of an eyeball [m]."""
+SIGHT = np.array([0.28, 0.09, 1.0]) / np.linalg.norm([0.28, 0.09, 1.0])
+"""Where the left eye looks at rest."""
+_LEFT = np.cross([0.0, 1.0, 0.0], SIGHT) / np.linalg.norm(np.cross([0.0, 1.0, 0.0], SIGHT))
+EYE_AXES = np.stack([_LEFT, np.cross(SIGHT, _LEFT), SIGHT], axis=1)
+"""Of the left eye: to its left, up and along its sight, as columns."""
+OPENING = np.radians([46.0, 42.0, 38.0])
+"""Of the lids, seen from the middle of the ball: half the width, up and down [rad]."""
 
 SPINE = np.array(  # height, forward and radius from the tip of the tail to the nape [m]
     [
@@ -40,10 +48,10 @@ SPINE = np.array(  # height, forward and radius from the tip of the tail to the 
         [0.107, -0.028, 0.0580],
         [0.111, 0.010, 0.0560],
         [0.121, 0.044, 0.0470],
-        [0.142, 0.066, 0.0368],
-        [0.168, 0.078, 0.0303],
-        [0.194, 0.085, 0.0278],
-        [0.225, 0.092, 0.0268],
+        [0.142, 0.066, 0.0352],
+        [0.168, 0.078, 0.0284],
+        [0.194, 0.085, 0.0258],
+        [0.225, 0.092, 0.0256],
     ]
 )
 
@@ -70,36 +78,68 @@ class Mirrored(Solid):
 
 
 @dataclass(frozen=True)
-class Smile(Solid):
-    """The cavity of the mouth: a wedge between the lips that rises to its corners."""
-
-    corner: float = 0.1480
-    """How far forward its corners are [m]."""
+class Hollow(Solid):
+    """The room behind the mouth; its rim lies hidden under the skin about the lips."""
 
     def distance(self, points: Array) -> Array:
         """Return the signed distance, about, (n,) [m]."""
-        height = points[:, 1] - lip_line(points)
-        room = lip_gap(points, height > 0) - np.abs(height)
-        slot = -smooth_minimum(room, points[:, 2] - self.corner, 0.004)
-        hollow = Ellipsoid((0.0, 0.2180, 0.152), (0.026, 0.0085, 0.022)).distance(points)
-        return smooth_minimum(slot, hollow, 0.006)
+        side = around(points)
+        height = points[:, 1] - lip_line(side)
+        ahead = 1 - np.clip(np.abs(side) / 0.55, 0, 1) ** 2
+        room = np.where(height > 0, 0.0042 + 0.0053 * ahead, 0.0090)
+        up = room * (1 - np.clip(np.abs(side) / 0.86, 0, 1) ** 4)
+        slot = np.maximum(np.abs(height) - up, 0.132 - points[:, 2])
+        return np.asarray(slot)
 
-    def mirrored(self) -> "Smile":
+    def mirrored(self) -> "Hollow":
         """Return itself."""
         return self
 
 
-def lip_line(points: Array) -> Array:
-    """Return the height between the lips above points (n, 3), (n,) [m]."""
-    side, forward = points[:, 0], points[:, 2]
-    return 0.2190 + 6.5 * side * side + 0.10 * np.maximum(0.0, 0.178 - forward)
+@dataclass(frozen=True)
+class Socket(Solid):
+    """What the left eyeball takes the place of: a cone from its middle, but for what is deep."""
+
+    def distance(self, points: Array) -> Array:
+        """Return the signed distance, about, (n,) [m]."""
+        off = points - EYE
+        away = np.maximum(np.linalg.norm(off, axis=1), 1e-6)
+        wide = np.linalg.norm(eye_angles(off) / (1.16 * OPENING[:2]), axis=1)
+        shell = np.maximum(0.94 * EYE_RADIUS - away, away - 1.15 * EYE_RADIUS)
+        return np.asarray(np.maximum((wide - 1) * 0.8 * away, shell))
+
+    def mirrored(self) -> "Socket":
+        """Return itself: it is never drawn."""
+        return self
 
 
-def lip_gap(points: Array, upper: bool | NDArray[np.bool_]) -> Array:
-    """Return how far the upper or the lower lip is from the line between them, (n,) [m]."""
-    forward = np.clip((points[:, 2] - 0.134) / 0.055, 0, 1)
-    middle = 1 - np.clip(np.abs(points[:, 0]) / 0.040, 0, 1) ** 2
-    return np.asarray((0.0026 + 0.0056 * forward * middle) * np.where(upper, 0.45, 1.0))
+def eye_angles(off: Array) -> Array:
+    """Return how far to the left and up of its sight points (n, 3) from the left eye are [rad]."""
+    x, y, z = (off @ EYE_AXES).T
+    angle = np.arctan2(np.hypot(x, y), z)
+    flat = np.maximum(np.hypot(x, y), 1e-9)
+    return np.stack([x / flat * angle, y / flat * angle], axis=-1)
+
+
+MIDDLE = 0.118
+"""How far forward the upright through the head is from which its front is seen [m]."""
+
+
+def around(points: Array) -> Array:
+    """Return how far to the left of straight ahead points (n, 3) of the head are, (n,) [rad]."""
+    return np.asarray(np.arctan2(points[:, 0], points[:, 2] - MIDDLE))
+
+
+def lip_line(side: Array, smile: float = 0.0105, width: float = 0.70) -> Array:
+    """Return the height between the closed lips, so far to the side [rad], (n,) [m].
+
+    Parameters
+    ----------
+    smile : height of the corners above the middle [m]
+    width : where the corners are [rad]
+    """
+    bent = np.minimum((side / width) ** 2, 1.0) + 0.8 * np.clip(np.abs(side) / width - 1, 0, 1)
+    return np.asarray(0.2150 + smile * bent)
 
 
 def spine_line(count: int) -> Array:
@@ -129,10 +169,6 @@ def _spline(knots: Array, values: Array, at: Array) -> Array:
     return curve
 
 
-TONGUE = Ellipsoid((0.0, 0.2088, 0.159), (0.0135, 0.0042, 0.0190), bones=("jaw",))
-"""Lies in the mouth."""
-
-
 @cache
 def whole() -> Shape:
     """Return the body with its mouth shut: trunk, neck, tail, legs and head."""
@@ -143,7 +179,7 @@ def whole() -> Shape:
     paunch = Ellipsoid((0.0, 0.094, -0.012), (0.058, 0.048, 0.066), bones=("belly",))
     body = Union((Union(tuple(cones)), paunch), 0.02)
     legs = Cut(Union((_leg("Front"), _leg("Hind"))), HalfSpace((0, 0.0005, 0), (0, 1, 0)), 0.006)
-    return Union((body, Mirrored(legs), _head()), 0.024)
+    return Union((body, Mirrored(legs), head()), 0.024)
 
 
 def _leg(which: str) -> Shape:
@@ -151,31 +187,34 @@ def _leg(which: str) -> Shape:
     bones = (f"Left{which}UpperLeg", f"Left{which}LowerLeg")
     if which == "Front":
         line, radii = (
-            [(0.036, 0.090, 0.052), (0.041, 0.050, 0.050), (0.043, 0.02, 0.055)],
-            (27, 23.5, 21.5),
+            [(0.036, 0.090, 0.052), (0.042, 0.053, 0.045), (0.043, 0.022, 0.055)],
+            (28.5, 22.0, 19.0),
         )
         sole: Vector = (0.043, 0.012, 0.060)
     else:
         line, radii = (
-            [(0.036, 0.090, -0.050), (0.043, 0.052, -0.044), (0.045, 0.02, -0.054)],
-            (34, 26.5, 22.5),
+            [(0.037, 0.089, -0.050), (0.044, 0.053, -0.040), (0.045, 0.022, -0.055)],
+            (36.0, 24.5, 19.5),
         )
         sole = (0.045, 0.012, -0.048)
     pillar = chain(np.array(line), tuple(r / 1000 for r in radii), bones, TEAL)
-    foot = Ellipsoid(sole, (0.026, 0.0175, 0.0295), bones=(f"Left{which}Foot",))
-    return Union((pillar, foot), 0.012)
+    foot = Ellipsoid(sole, (0.0275, 0.0170, 0.0305), bones=(f"Left{which}Foot",))
+    return Union((pillar, foot), 0.009)
 
 
-def _head() -> Shape:
+@cache
+def head() -> Shape:
     """Return the head: a big skull, a soft snout, cheeks and two nostrils."""
-    skull = Ellipsoid((0.0, 0.248, 0.112), (0.0590, 0.0525, 0.0540), bones=("head",))
-    snout = Ellipsoid((0.0, 0.2265, 0.151), (0.0420, 0.0310, 0.0400), bones=("head",))
-    cheek = Ellipsoid((0.030, 0.221, 0.142), (0.0225, 0.0225, 0.0225), bones=("head",))
-    nostril = Ellipsoid((0.0125, 0.2445, 0.1840), (0.0075, 0.0075, 0.0075), bones=("head",))
-    return Union((Union((skull, snout), 0.030), Mirrored(cheek), Mirrored(nostril)), 0.015)
+    skull = Ellipsoid((0.0, 0.2530, 0.110), (0.0600, 0.0535, 0.0545), bones=("head",))
+    snout = Ellipsoid((0.0, 0.2225, 0.149), (0.0400, 0.0275, 0.0395), bones=("head",))
+    cheek = Ellipsoid((0.030, 0.2190, 0.138), (0.0225, 0.0215, 0.0225), bones=("head",))
+    nostril = Ellipsoid((0.0125, 0.2385, 0.1800), (0.0075, 0.0065, 0.0075), bones=("head",))
+    mound = Ellipsoid((EYE[0], EYE[1], EYE[2]), (1.01 * EYE_RADIUS,) * 3, bones=("head",))
+    front = Union((Union((skull, snout), 0.018), Mirrored(cheek), Mirrored(nostril)), 0.014)
+    return Union((front, Mirrored(mound)), 0.012)
 
 
 @cache
 def skin() -> Shape:
-    """Return the body with its mouth open, and a tongue in it."""
-    return Union((Cut(whole(), Smile(), 0.004), TONGUE), 0.004)
+    """Return the body with room where eyes and mouth are put in."""
+    return Cut(Cut(whole(), Hollow(), 0.002), Mirrored(Socket()), 0.001)

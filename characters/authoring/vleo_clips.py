@@ -5,65 +5,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters import rotations
-from characters.authoring.loops import Array, follow, keys, later, phases
-from characters.authoring.vleo_rig import HIDDEN, TAIL, Performance, poses
+from characters.authoring.loops import Array, follow, phases
+from characters.authoring.quadruped import RATE, Performance, poses
+from characters.authoring.quadruped import clip as looped
+from characters.authoring.vleo_expressions import EXPRESSIONS
+from characters.authoring.vleo_rig import FEET, HIDDEN, TAIL
 from characters.clip import Clip
-from characters.pose import Pose, Skeleton
-
-DEGREE = np.pi / 180
-RATE = 30.0
-"""Frames a second [Hz]."""
-SHUT, LOWER_SHUT = 1.36, 1.20
-"""How far an upper and a lower lid roll to meet [rad]."""
-MOUTH_SHUT = 0.13
-"""Turn of the jaw that closes the mouth, which rests in an open smile [rad]."""
+from characters.pose import Skeleton
 
 
 def clip(name: str, performance: Performance, bound: Skeleton) -> Clip:
     """Return a performance as a loop: its last frame is its first."""
-    pose = poses(performance, bound)
-    again = np.append(np.arange(performance.frames), 0)
-    turns = rotations.continuous(pose.rotations[again])
-    scales = None if pose.scales is None else pose.scales[again]
-    return Clip(name, RATE, Pose(pose.translations[again], turns, scales))
-
-
-def blink(frames: int, *starts: float, seconds: float = 0.24) -> Array:
-    """Return how shut the eyes are, 0…1, with blinks at phases: quick down, slower up."""
-    length = seconds * RATE / frames
-    shut = np.zeros(frames)
-    for start in starts:
-        lid = keys(frames, (0, 0), (0.4 * length, 1), (0.55 * length, 1), (length, 0), (0.99, 0))
-        shut = np.maximum(shut, later(lid, start))
-    return shut
-
-
-def lids(act: Performance, shut: Array | float, smile: Array | float, anger: Array | float) -> None:
-    """Close the eyes (0…1), push the lower lids up in a smile (0…1), slant them in anger (0…1)."""
-    upper = np.minimum(1.0, shut + 0.50 * np.asarray(anger) * (1 - np.asarray(shut)))
-    lower = np.maximum(shut, 0.44 * np.asarray(smile) + 0.18 * np.asarray(anger))
-    for side, sign in (("Left", 1.0), ("Right", -1.0)):
-        slant = 0.42 * np.asarray(anger) - 0.28 * np.asarray(shut)  # inward is fierce, outward kind
-        act.turn(f"{side}UpperLid", up=-SHUT * upper, tilt=sign * slant)
-        level = -0.28 * sign * np.asarray(shut)
-        act.turn(f"{side}LowerLid", up=LOWER_SHUT * lower, tilt=level)
-        deep = 0.014 * (1 - np.clip(anger, 0, 1))  # out of sight in the head unless angry
-        act.move(f"{side}Brow", y=-0.4 * deep, z=-deep)
-        grown = np.clip(anger, HIDDEN, 1.2) + np.zeros(act.frames)
-        act.scales[f"{side}Brow"] = grown
-
-
-def corners(act: Performance, grin: Array | float, pucker: Array | float) -> None:
-    """Raise (1) or drop (−1) the corners of the mouth, or draw them together (0…1)."""
-    for side, sign in (("Left", 1.0), ("Right", -1.0)):
-        up = 0.004 * np.maximum(grin, 0) - 0.021 * np.maximum(-np.asarray(grin), 0)
-        act.move(
-            f"{side}MouthCorner",
-            x=-0.012 * sign * np.asarray(pucker),
-            y=up - 0.006 * np.asarray(pucker),
-            z=0.010 * np.asarray(pucker),
-        )
+    return looped(name, performance, bound, FEET, tuple(EXPRESSIONS))
 
 
 def tail(act: Performance, up: Array, left: Array, tip: float = 1.6, drag: float = 1.0) -> None:
@@ -122,7 +75,7 @@ def fly(
     act: Performance, joints: Sequence[str], flights: Sequence[Flight], bound: Skeleton
 ) -> None:
     """Send effects out of the mouth as it is when each leaves."""
-    pose = poses(act, bound)
+    pose = poses(act, bound, FEET)
     mouth = pose.globals(bound)[:, bound.index("lips"), :3, 3]
     home = bound.rest.translations
     for joint, flight in zip(joints, flights, strict=True):
@@ -132,7 +85,7 @@ def fly(
         age = np.minimum(age, 1.0)
         out = 1 - (1 - age) ** 2
         sideways = flight.swirl * np.sin(2 * np.pi * age)
-        rise = np.stack([out, age, out], axis=1) * np.array(flight.way)
+        rise = np.stack([out, age**1.3, out], axis=1) * np.array(flight.way)
         offset = leaves - home[bound.index(joint)] + rise + sideways[:, None] * np.array([1, 0, 0])
         act.moves[joint] = np.where(alive[:, None], offset, leaves - home[bound.index(joint)])
         act.scales[joint] = np.where(alive, np.maximum(flight.size * _pop(age), HIDDEN), HIDDEN)

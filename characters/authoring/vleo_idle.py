@@ -1,15 +1,8 @@
 """Vleo waits: it breathes, sways, blinks, looks around, and wonders about something."""
 
 from characters.authoring.loops import follow, keys, wave
-from characters.authoring.vleo_clips import (
-    DEGREE,
-    RATE,
-    blink,
-    breathe,
-    lids,
-    tail,
-)
-from characters.authoring.vleo_rig import Performance
+from characters.authoring.quadruped import DEGREE, RATE, Performance
+from characters.authoring.vleo_clips import breathe, tail
 
 SECONDS = 7.0
 
@@ -34,7 +27,7 @@ def idle() -> Performance:
     act.turn("head", tilt=17 * DEGREE * follow(wonder, seconds, 1.6, 0.45))
     for eye in ("LeftEye", "RightEye"):
         act.turn(eye, left=0.9 * (look - neck), up=4 * DEGREE * wonder)
-    lids(act, blink(n, 0.085, 0.315, 0.56, 0.60, 0.90), 0.25 + 0.2 * wonder, 0.0)
-    act.turn("jaw", up=keys(n, (0, 0.03), (0.2, 0.05), (0.4, 0.02), (0.62, 0.09), (0.84, -0.03)))
+    act.show("happy", keys(n, (0, 0.2), (0.2, 0.1), (0.4, 0.25), (0.62, 0.0), (0.84, 0.35)))
+    act.show("surprised", 0.2 * wonder)
     tail(act, 3 * DEGREE * wave(n, 4, 0.1) + 4 * DEGREE, 6.5 * DEGREE * wave(n, 3), 1.5)
     return act

@@ -6,18 +6,14 @@ The three intensities share every accent, so that they blend at equal phase.
 import numpy as np
 
 from characters.authoring.loops import Array, follow, keys, later, wave
+from characters.authoring.quadruped import DEGREE, RATE, Performance
 from characters.authoring.vleo_clips import (
-    DEGREE,
-    MOUTH_SHUT,
-    RATE,
     Flight,
     breathe,
-    corners,
     fly,
-    lids,
     tail,
 )
-from characters.authoring.vleo_rig import FEET, HEARTS, HIDDEN, Performance
+from characters.authoring.vleo_rig import FEET, HEARTS
 from characters.pose import Skeleton
 
 SECONDS = 2.4
@@ -52,30 +48,28 @@ def kiss(level: int, bound: Skeleton) -> Performance:
 def _throw(act: Performance, big: float) -> Array:
     """Draw the head back, thrust it forward with the chin up; return the turn of the neck."""
     n = act.frames
-    back, thrust = [(0.10, 0), (0.31, 22)], [(0.44, -28), (0.51, -20), (0.60, -19)]
-    throw = big * DEGREE * keys(n, *back, *thrust, (0.80, 2), (0.90, 0))
+    back, thrust = [(0.05, 0), (0.29, 23), (0.345, 26)], [(0.44, -32), (0.51, -25), (0.59, -26)]
+    throw = big * DEGREE * keys(n, *back, *thrust, (0.74, 5), (0.84, -2), (0.93, 0))
     act.turn("neck1", up=throw)
-    act.turn("neck2", up=0.6 * later(throw, 0.012))
-    act.turn("neck3", up=0.2 * later(throw, 0.024))
-    chin = keys(n, (0.10, 10), (0.31, -14), (0.45, 52), (0.53, 43), (0.61, 40), (0.82, 8))
-    lean = keys(n, (0.08, 0), (0.30, -9), (0.45, 18), (0.60, 15), (0.80, 0)) * DEGREE
+    act.turn("neck2", up=0.6 * later(throw, 0.014))
+    act.turn("neck3", up=0.3 * later(throw, 0.028))
+    drawn, out = [(0.05, 8), (0.29, -15), (0.345, -18)], [(0.455, 60), (0.53, 46), (0.60, 45)]
+    chin = keys(n, *drawn, *out, (0.76, 4), (0.86, 13), (0.95, 8))
+    lean = keys(n, (0.06, 0), (0.30, -10), (0.45, 19), (0.61, 16), (0.78, -7), (0.90, 0)) * DEGREE
     act.turn("head", up=big * DEGREE * chin, tilt=lean)
     act.turn("neck2", tilt=0.4 * later(lean, 0.03))
     return throw
 
 
 def _pucker(act: Performance) -> None:
-    """Shut the eyes and mouth, push the lips out, and open up into a smile."""
+    """Shut the eyes, push the lips out for a smack, and open up into a smile."""
     n = act.frames
-    shut = keys(n, (0.29, 0), (0.37, 1), (0.60, 1), (0.68, 0))
-    glad = keys(n, (0.0, 0.5), (0.30, 0.5), (0.62, 1), (0.85, 0.6))
-    lids(act, shut, glad, 0.0)
-    jaw = keys(n, (0.08, 0.02), (0.22, 1), (0.49, 1), (0.56, -0.7), (0.70, -0.5), (0.90, 0.0))
-    act.turn("jaw", up=MOUTH_SHUT * jaw)
-    corners(act, 0.5 + 0.5 * glad, keys(n, (0.10, 0), (0.27, 1), (0.48, 1), (0.56, 0), (0.97, 0)))
-    lips = keys(n, (0.14, 0), (0.27, 0.85), (0.36, 0.9), (0.44, 1.25), (0.50, 0.9), (0.56, 0))
-    act.scales["lips"] = np.maximum(lips, HIDDEN)
-    act.move("lips", z=keys(n, (0.14, -0.012), (0.30, 0.010), (0.44, 0.016), (0.56, -0.012)))
+    act.show("blink", keys(n, (0.30, 0), (0.36, 1), (0.61, 1), (0.68, 0)))
+    lips = [(0.08, 0), (0.25, 0.85), (0.38, 1.0), (0.45, 1.4), (0.50, 1.15), (0.545, 1.2)]
+    act.show("ou", np.maximum(keys(n, *lips, (0.60, 0), (0.98, 0)), 0))
+    act.show(
+        "happy", keys(n, (0.0, 0.3), (0.08, 0.3), (0.22, 0), (0.55, 0), (0.63, 1), (0.80, 0.9))
+    )
 
 
 def _crouch(act: Performance, rear: float) -> None:
@@ -127,12 +121,12 @@ def _wag(act: Performance) -> None:
 
 def _hearts(act: Performance, level: int, bound: Skeleton) -> None:
     """Send two small hearts, three, or three large ones, each facing where it flies."""
-    size, spread = (0.62, 0.92, 1.25)[level], (0.6, 1.0, 1.45)[level]
+    size, spread = (0.80, 1.0, 1.25)[level], (0.75, 1.0, 1.4)[level]
     third = 0.9 * size if level else 0.0
     up, side, ahead = spread * np.array([0.100, 0.072, 0.060])
-    flights = [
-        Flight(0.45, 0.44, (0.35 * side, 1.35 * up, 1.4 * ahead), size, 0.012, 0.0, 0.8),
-        Flight(0.51, 0.42, (side, 0.85 * up, ahead), 0.8 * size, -0.010, 0.9, -0.7),
-        Flight(0.57, 0.40, (-side, up, ahead), third, 0.010, -0.9, 0.7),
+    flights = [  # past the face, not over it: it is to be seen
+        Flight(0.45, 0.46, (1.05 * side, 1.20 * up, 1.3 * ahead), size, 0.010, 0.15, 0.5),
+        Flight(0.51, 0.42, (-1.1 * side, 0.90 * up, 1.1 * ahead), 0.8 * size, -0.008, -0.2, -0.5),
+        Flight(0.57, 0.40, (1.5 * side, 0.35 * up, 0.8 * ahead), third, 0.008, 0.3, 0.5),
     ]
     fly(act, HEARTS, flights, bound)

@@ -16,8 +16,10 @@ SPOTS = (  # half a back: side, height, forward, radius [mm]; those at 0 have no
     (33, 158, -38, 9), (53, 118, -32, 8), (40, 128, -62, 9), (22, 138, -72, 7),
     (26, 112, -94, 7), (17, 104, -124, 6), (13, 96, -156, 5), (10, 96, -188, 4),
 )  # fmt: skip
-SPINES = 12
-"""How many spines there are along the back."""
+SPINES = 13
+"""How many plates there are along the back."""
+PLATE = np.array([0.62, 1.22, 1.15])
+"""How thick, long and high they are, of what a cone would be."""
 
 
 def marks(body: Body, bound: Skeleton) -> list[Mesh]:
@@ -27,8 +29,8 @@ def marks(body: Body, bound: Skeleton) -> list[Mesh]:
 
 def _round(body: Body) -> list[Mesh]:
     """Return the round patches of colour: cheeks, nostrils and the spots on the back."""
-    cheek = (60.0, 236.5, 146.0, 10.0)
-    nostril = (13.0, 247.0, 193.0, 3.4)
+    cheek = (62.0, 233.0, 133.0, 9.5)
+    nostril = (13.0, 242.0, 193.0, 3.3)
     rows = [(cheek, PINK), (nostril, LASH), *((spot, SPOT) for spot in SPOTS)]
     both = [
         ((side * x, *rest), color)
@@ -41,7 +43,7 @@ def _round(body: Body) -> list[Mesh]:
 
 
 def _spines(body: Body, bound: Skeleton) -> list[Mesh]:
-    """Return a row of soft orange spines from the neck to the tail."""
+    """Return a row of soft orange plates from the neck to the tail."""
     line = spine_line(200)
     along = np.gradient(line[:, :3], axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -51,11 +53,12 @@ def _spines(body: Body, bound: Skeleton) -> list[Mesh]:
         up = np.array([0.0, along[i, 2], -along[i, 1]])
         size = 0.0045 + 0.0085 * np.sin(np.pi * share) ** 0.8
         profile = size * np.array(
-            [[0, -0.5], [1, -0.45], [0.86, 0.35], [0.5, 1.0], [0.2, 1.38], [0, 1.5]]
+            [[0, -0.5], [1, -0.45], [0.95, 0.30], [0.66, 0.92], [0.28, 1.32], [0, 1.44]]
         )
         lean = up - 0.35 * along[i]
         place = facing(lean / np.linalg.norm(lean), line[i, :3] + up * (line[i, 3] - 0.001))
-        cone = lathe(profile, [ORANGE] * 5, place, "hips", bound, 9)
+        place[:3, :3] = place[:3, :3] @ np.diag(PLATE)
+        cone = lathe(profile, [ORANGE] * 5, place, "hips", bound, 10)
         base = np.tile(line[i, :3] + up * line[i, 3], (len(cone.positions), 1))
         spines.append(carried(cone, base, body))
     return spines

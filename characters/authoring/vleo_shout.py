@@ -6,16 +6,13 @@ The three intensities share every accent, so that they blend at equal phase.
 import numpy as np
 
 from characters.authoring.loops import Array, keys, later, wave
+from characters.authoring.quadruped import DEGREE, RATE, Performance
 from characters.authoring.vleo_clips import (
-    DEGREE,
-    RATE,
     Flight,
-    corners,
     fly,
-    lids,
     tail,
 )
-from characters.authoring.vleo_rig import BURSTS, Performance
+from characters.authoring.vleo_rig import BURSTS
 from characters.pose import Skeleton
 
 SECONDS = 2.0
@@ -69,10 +66,9 @@ def _rage(act: Performance, raging: Array) -> None:
     shake = raging * wave(n, 8, 0.30)
     act.turn("head", left=10 * DEGREE * shake, tilt=6 * DEGREE * raging * wave(n, 8, 0.33))
     act.turn("neck2", left=-5 * DEGREE * later(shake, 0.01))
-    snarl, roar = [(0.0, -0.10), (0.21, 0.12)], [(0.30, -0.80), (0.37, -0.68), (0.71, -0.74)]
-    act.turn("jaw", up=keys(n, *snarl, *roar, (0.84, -0.08)) + 0.05 * raging * wave(n, 16))
-    corners(act, keys(n, (0.0, -1), (0.22, -1), (0.30, -0.3), (0.71, -0.3), (0.83, -1)), 0.0)
-    lids(act, 0.0, 0.35, keys(n, (0.0, 0.9), (0.22, 1.1), (0.34, 1.0), (0.80, 0.9)))
+    roar = [(0.0, 0.0), (0.21, 0.0), (0.30, 1.1), (0.37, 0.92), (0.71, 1.0), (0.82, 0.0)]
+    act.show("aa", keys(n, *roar) + 0.07 * raging * wave(n, 16))
+    act.show("angry", keys(n, (0.0, 0.8), (0.22, 1.0), (0.34, 1.0), (0.80, 0.8)))
 
 
 def _lunge(act: Performance, rear: bool) -> None:

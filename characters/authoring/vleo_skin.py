@@ -12,10 +12,9 @@ from characters.authoring.vleo_body import (
     BACK_TEAL,
     CREAM,
     MAROON,
-    ROSE,
     TEAL,
-    TONGUE,
-    Smile,
+    Hollow,
+    around,
     lip_line,
     skin,
     spine_line,
@@ -27,8 +26,6 @@ TRUNK_CELL, FACE_CELL = (0.0086, 0.0106, 0.0108), (0.0056, 0.0044, 0.0047)
 """Edges of a grid cell far from the mouth and about it, along x, y, z [m]."""
 MOUTH_BOX = ((-0.044, 0.044), (0.192, 0.246), (0.134, 0.300))
 """Where the cells are small, along x, y, z [m]."""
-CORNER_REACH = 0.018
-"""How far a corner of the mouth pulls the skin about it [m]."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +56,9 @@ def body(bound: Skeleton) -> Body:
     weights = skin_weights(points, triangles, solids, distances, bound, 0.022)
     weights = _with_face(points, _with_firm_feet(points, weights, bound), bound)
     normals = normals_of(skin().distance, points, 0.003)
-    return Body(points, normals, triangles, weights, _painted(points, normals))
+    outside = whole().distance(points) > -0.0012  # their light knows nothing of hidden rims
+    normals[outside] = normals_of(whole().distance, points[outside], 0.003)
+    return Body(points, normals, triangles, weights, painted(points, normals))
 
 
 def _surface() -> tuple[Array, NDArray[np.int64]]:
@@ -69,7 +68,7 @@ def _surface() -> tuple[Array, NDArray[np.int64]]:
     for axis, (low, high) in spans.items():
         line = np.linspace(low, high, 2000)
         near_low, near_high = MOUTH_BOX[axis]
-        small = _ease((line - near_low) / 0.02 + 1) * _ease((near_high - line) / 0.02 + 1)
+        small = eased((line - near_low) / 0.02 + 1) * eased((near_high - line) / 0.02 + 1)
         edge = TRUNK_CELL[axis] + (FACE_CELL[axis] - TRUNK_CELL[axis]) * small
         lines.append((line, np.concatenate([[0.0], np.cumsum(np.diff(line) / edge[1:])])))
 
@@ -86,7 +85,7 @@ def _surface() -> tuple[Array, NDArray[np.int64]]:
 
 def _with_firm_feet(points: Array, weights: Array, bound: Skeleton) -> Array:
     """Return the weights with soles that belong to their feet alone, so that they do not slide."""
-    sole = _ease((0.034 - points[:, 1]) / 0.020)[:, None]
+    sole = eased((0.034 - points[:, 1]) / 0.020)[:, None]
     own = np.zeros_like(weights)
     front, left = points[:, 2] > 0.0, points[:, 0] > 0
     for which, is_front in (("Front", True), ("Hind", False)):
@@ -98,47 +97,35 @@ def _with_firm_feet(points: Array, weights: Array, bound: Skeleton) -> Array:
 
 def jaw_share(points: Array) -> Array:
     """Return how much of the head's hold on points (n, 3) is the jaw's, (n,), 0…1."""
-    below = lip_line(points) - points[:, 1]
-    soft = 0.0012 + 0.7 * np.maximum(0.0, 0.1535 - points[:, 2])
-    ahead = (points[:, 2] - 0.100 + 0.35 * (points[:, 1] - 0.2235)) / 0.035
-    return _ease(0.5 + 0.5 * below / soft) * _ease(ahead)
-
-
-def face_weights(points: Array, bound: Skeleton) -> Array:
-    """Return how head, jaw and corners of the mouth share points of the face, (n, joints)."""
-    weights, jaw = np.zeros((len(points), len(bound))), jaw_share(points)
-    weights[:, bound.index("head")], weights[:, bound.index("jaw")] = 1 - jaw, jaw
-    for name in ("LeftMouthCorner", "RightMouthCorner"):
-        joint = bound.index(name)
-        away = points - bound.rest.globals(bound)[joint, :3, 3]
-        hold = 0.9 * np.exp(-np.sum(away * away, axis=1) / CORNER_REACH**2)
-        weights *= 1 - hold[:, None]
-        weights[:, joint] += hold
-    return weights
+    side = around(points)
+    below = lip_line(side) - points[:, 1]
+    soft = 0.0022 + 0.016 * np.clip((np.abs(side) - 0.68) / 0.45, 0, 1)
+    ahead = (points[:, 2] - 0.096 + 0.35 * (points[:, 1] - 0.2235)) / 0.036
+    return eased(0.5 + 0.5 * below / soft) * eased(ahead)
 
 
 def _with_face(points: Array, weights: Array, bound: Skeleton) -> Array:
-    """Return the weights with the head's share divided among the joints of the face."""
-    face = weights[:, bound.index("head")] + weights[:, bound.index("jaw")]
+    """Return the weights with the head's share divided between head and jaw."""
+    head, jaw = bound.index("head"), bound.index("jaw")
+    both, share = weights[:, head] + weights[:, jaw], jaw_share(points)
     weights = weights.copy()
-    weights[:, [bound.index("head"), bound.index("jaw")]] = 0.0
-    return weights + face[:, None] * face_weights(points, bound)
+    weights[:, head], weights[:, jaw] = both * (1 - share), both * share
+    return weights
 
 
-def _painted(points: Array, normals: Array) -> Array:
-    """Return the colours: teal, darker above, cream below, and a red mouth."""
+def painted(points: Array, normals: Array) -> Array:
+    """Return the colours of the skin, (n, 3): teal, darker above, cream below, and a red mouth."""
     colors = np.tile(TEAL, (len(points), 1))
-    colors = _coat(colors, BACK_TEAL, 0.7 * _ease((normals[:, 1] - 0.1) / 0.8))
+    colors = _coat(colors, BACK_TEAL, 0.7 * eased((normals[:, 1] - 0.1) / 0.8))
     legs = whole().solids()
     leg = np.min([s.distance(points) for s in legs if s.bones[0][-3:] in ("Leg", "oot")], axis=0)
-    under = _ease((_underside(points) - 0.34) / 0.14) * _ease((0.208 - points[:, 1]) / 0.012)
-    colors = _coat(colors, CREAM, under * _ease((leg - 0.001) / 0.009))
+    under = eased((_underside(points) - 0.26) / 0.30) * eased((0.208 - points[:, 1]) / 0.012)
+    colors = _coat(colors, CREAM, under * eased((leg + 0.001) / 0.014))
     chin = Ellipsoid((0.0, 0.200, 0.150), (0.052, 0.030, 0.046)).distance(points)
-    lower = _ease((lip_line(points) - 0.003 - points[:, 1]) / 0.004)
-    colors = _coat(colors, CREAM, lower * _ease(0.5 - chin / 0.012))
-    inside = -np.maximum(whole().distance(points) + 0.0004, Smile().distance(points) - 0.0018)
-    colors = _coat(colors, MAROON, _ease(0.5 + inside / 0.0012))
-    return _coat(colors, ROSE, _ease(1 - TONGUE.distance(points) / 0.0012))
+    lower = eased((lip_line(around(points)) - 0.0035 - points[:, 1]) / 0.005)
+    colors = _coat(colors, CREAM, lower * eased(0.5 - chin / 0.012))
+    inside = -np.maximum(whole().distance(points) + 0.0007, Hollow().distance(points) - 0.0020)
+    return _coat(colors, MAROON, eased(0.5 + inside / 0.0010))
 
 
 def _underside(points: Array) -> Array:
@@ -156,7 +143,7 @@ def _coat(colors: Array, color: Vector, cover: Array) -> Array:
     return colors + (np.array(color) - colors) * cover[:, None]
 
 
-def _ease(u: Array) -> Array:
+def eased(u: Array | float) -> Array:
     """Return a smooth step of u from 0 to 1."""
-    u = np.clip(u, 0.0, 1.0)
-    return u * u * (3 - 2 * u)
+    u = np.clip(np.asarray(u, float), 0.0, 1.0)
+    return np.asarray(u * u * (3 - 2 * u))
