@@ -31,6 +31,9 @@ from characters.pose import Pose, Skeleton
 
 RATE = 30.0
 TOE_OUT = 0.14
+UPWARD = -9.0
+"""Pitch of the level gaze [degrees]: who looks on does so from above the table."""
+
 STANCE = 0.118
 """From the middle to a foot [m]."""
 
@@ -161,7 +164,7 @@ def _hold_trunk(puppet: Puppet, score: Score, still: Array, seconds: float) -> N
     )  # fmt: skip
     tilt = _eased(score.tilt + still, seconds, 2.0, 0.6) + 2.2 * weight - 0.10 * look
     own = [curve + still for curve in score.head]
-    gaze = turned(-6 + nod + own[1] + 0.5 * breath, look + own[0], tilt)
+    gaze = turned(UPWARD + nod + own[1] + 0.5 * breath, look + own[0], tilt)
     above = rotations.multiply(rotations.conjugate(puppet.facing("chest")), gaze)
     puppet.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.4))
     puppet.face("head", gaze)

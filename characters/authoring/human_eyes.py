@@ -130,8 +130,8 @@ def _lid_rings(angle: Array, face: Face, sign: float) -> Array:
     """Return pole, rim under the skin, skin, lashes twice, edge, edge in the ball, pole."""
     height = np.sin(angle)
     edge = _edge(angle, face, sign)
-    reach = np.where(height >= 0, OPENING[1] + 0.032, OPENING[2] + 0.026)
-    outer = MIDDLE + np.stack([(OPENING[0] + 0.026) * np.cos(angle), reach * height], axis=-1)
+    reach = np.where(height >= 0, OPENING[1] + 0.038, OPENING[2] + 0.022)
+    outer = MIDDLE + np.stack([(OPENING[0] + 0.028) * np.cos(angle), reach * height], axis=-1)
     away = outer - edge
     thick = np.where(height >= 0, 0.0085 + 0.003 * np.cos(angle), 0.0025)  # more at the temple
     lash = edge + away * (thick / np.linalg.norm(away, axis=1))[:, None]

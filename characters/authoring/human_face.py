@@ -82,7 +82,7 @@ EXPRESSIONS = {
     ),
     "angry": Face(
         upper=0.66, upper_tilt=-0.62, lower=0.45, brow=-0.014, brow_inner=-0.036, knit=0.016,
-        width=0.060, smile=-0.036, rise=0.011, drop=0.011, square=0.5, teeth=0.022,
+        width=0.062, smile=-0.032, rise=0.010, drop=0.013, square=0.5, teeth=0.022,
     ),
     "sad": Face(
         upper=0.62, upper_tilt=0.36, lower=0.8, brow=-0.002, brow_inner=0.034, brow_arch=-0.01,
@@ -108,7 +108,7 @@ EXPRESSIONS = {
 }  # fmt: skip
 """By VRM's names."""
 
-MOUTH = np.array([0.0, 1.326])
+MOUTH = np.array([0.0, 1.327])
 """x and y of the middle of the closed mouth [m]."""
 
 

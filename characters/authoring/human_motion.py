@@ -11,7 +11,7 @@ import numpy as np
 
 from characters import rotations
 from characters.authoring.gait import FootMotion, Path, Steps, foot_motion
-from characters.authoring.human_acting import posed
+from characters.authoring.human_acting import UPWARD, posed
 from characters.authoring.human_limbs import FOOT, SIDES, bent_elbow, curl, hang_arm, turned
 from characters.authoring.human_loose import drag
 from characters.authoring.rig import Puppet, mirrored
@@ -184,7 +184,7 @@ def _carry_trunk(puppet: Puppet, style: Style, phase: Array, yaw_rate: float) ->
         puppet.turn(name, turned(pitch, yaw, roll))
     # The head is heavy: it dips after each landing, and tilts and turns a little late.
     dip, tilt = style.head * _wave(phase, 0.17, 2), 0.7 * style.head * _wave(phase, 0.32)
-    gaze = turned(-5 + dip, 0.12 * into + 2 * _wave(phase, 0.12), tilt - 0.04 * into)
+    gaze = turned(UPWARD + dip, 0.12 * into + 2 * _wave(phase, 0.12), tilt - 0.04 * into)
     above = rotations.multiply(rotations.conjugate(puppet.facing("chest")), gaze)
     puppet.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.45))
     puppet.face("head", gaze)

@@ -20,7 +20,7 @@ TEETH = rgb("#fbf7ee")
 COLUMNS = 40
 """Points around the mouth."""
 
-REACH = (0.115, 0.036, 0.054)
+REACH = (0.112, 0.038, 0.054)
 """Of the skin around the mouth: half its width, and how far it reaches up and down [m]."""
 
 _LIPS = 0.0085  # how broad they are [m]

@@ -13,10 +13,10 @@ BLUSH = rgb("#ea7560")
 MAROON = rgb("#5a1420")
 EYE_WHITE = rgb("#f6f4f2")
 
-SOCKET = Ellipsoid((0.085, 1.447, 0.185), (0.058, 0.076, 0.040), (0.0, 0.35, 0.0))
+SOCKET = Ellipsoid((0.085, 1.452, 0.185), (0.060, 0.077, 0.046), (0.0, 0.35, 0.0))
 """Where the left eye sits."""
 
-HOLLOW = Ellipsoid((0, 1.303, 0.18), (0.07, 0.036, 0.06))
+HOLLOW = Ellipsoid((0, 1.304, 0.18), (0.07, 0.036, 0.06))
 """Where the mouth sits."""
 
 _BONES = ("head",)
@@ -32,7 +32,7 @@ def bare_skull() -> Shape:
 
 def head_shape() -> Shape:
     """Return the head with nose and ears, hollow where eyes and mouth sit."""
-    nose = Ellipsoid((0, 1.386, 0.206), (0.024, 0.0195, 0.023), bones=_BONES, color=SKIN)
+    nose = Ellipsoid((0, 1.391, 0.206), (0.024, 0.0195, 0.023), bones=_BONES, color=SKIN)
     ear = Ellipsoid((0.209, 1.41, -0.012), (0.030, 0.052, 0.040), bones=_BONES, color=SKIN)
     whole = Union((Union((bare_skull(), nose), 0.022), ear, ear.mirrored()), 0.017)
     return Cut(whole, Union((SOCKET, SOCKET.mirrored(), HOLLOW)), 0.008)
