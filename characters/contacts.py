@@ -15,6 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.anatomy import Anatomy
 from characters.clip import Clip
 from characters.ground import NEAR, STEADY, above_lowest, find_ground, track
 from characters.pose import Array, Skeleton
@@ -77,12 +78,16 @@ def feet_of(skeleton: Skeleton) -> tuple[tuple[int, ...], ...]:
     """Return the joints of each foot and paw, each from its ankle on, in the skeleton's order.
 
     They are known by their names; hands are paws where they are as near to the ground as feet.
+    Where names are silent, the shape of the skeleton tells.
     """
     named = [
         joint
         for joint, name in enumerate(skeleton.names)
         if _EXTREMITY.search(name) and not _FINGER.search(name)
     ]
+    if not named:
+        parts = Anatomy.guess(skeleton).joints
+        named = sorted(joint for part, joint in parts.items() if _EXTREMITY.search(part))
     feet: dict[int, list[int]] = {}
     for joint in named:
         above = skeleton.parents[joint]

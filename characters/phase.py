@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, cast
 
+from characters.anatomy import Anatomy
 from characters.clip import Clip
 from characters.contacts import Feet, feet_of, find_contacts, spans
 from characters.motion import STANDING, Motion, Step
@@ -221,7 +222,7 @@ def _hindmost(skeleton: Skeleton, feet: list[tuple[int, ...]]) -> tuple[int, ...
 
 
 def find_feet(skeleton: Skeleton) -> tuple[list[int], list[int]]:
-    """Return the joints of the left and the right foot, found by their names."""
+    """Return the joints of the left and the right foot: by their names, else by their place."""
     feet = [
         joint
         for joint, name in enumerate(skeleton.names)
@@ -229,4 +230,11 @@ def find_feet(skeleton: Skeleton) -> tuple[list[int], list[int]]:
     ]
     left = [joint for joint in feet if _LEFT.search(skeleton.names[joint])]
     right = [joint for joint in feet if _RIGHT.search(skeleton.names[joint])]
+    if feet:
+        return left, right
+    parts = Anatomy.guess(skeleton).joints
+    left, right = (
+        [parts[side + part] for part in ("Foot", "Toes") if side + part in parts]
+        for side in ("left", "right")
+    )
     return left, right
