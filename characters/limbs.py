@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from characters.joint_names import ARM_ROLES, LEG_ROLES, JointName, read_name
+from characters.limb_lines import assign, children_of, line_of, lines_of, longest
 from characters.pose import Array, Skeleton
 
-_ESSENTIAL = 0.5  # a limb needs its long bones more than its collarbone or its toes
 _OFF_CENTRE = 0.02  # of the body's size: what is farther from the middle has a side
 _NEAR_GROUND = 0.2  # of the body's height: limbs that end below are legs
 _LEVEL = 1.0  # a trunk that rises less than this for each unit it runs forward lies level
@@ -33,7 +33,7 @@ class _Search:
         self.known = dict(known)
         self.places: Array = skeleton.rest.globals(skeleton)[:, :3, 3]
         self.names = [read_name(name) for name in skeleton.names]
-        self.lines = _lines(skeleton.parents)
+        self.lines = lines_of(skeleton.parents)
         low, high = self.places.min(0), self.places.max(0)
         self.size = float(np.linalg.norm(high - low)) or 1.0
         self.ground, self.height = float(low[1]), float(high[1] - low[1]) or 1.0
@@ -90,7 +90,7 @@ class _Search:
         best: tuple[float, dict[str, int]] = (0.0, {})
         for end in joints:
             line = [joint for joint in self.lines[end] if joint in joints]
-            scored = _assign(line, roles, essential, [fit(self.names[j]) for j in line])
+            scored = assign(line, roles, essential, [fit(self.names[j]) for j in line])
             best = max(best, scored, key=lambda option: option[0])
         found = {side + role: joint for role, joint in best[1].items()}
         if found:  # the foot of a rig with inverse kinematics may hang elsewhere
@@ -104,7 +104,7 @@ class _Search:
     def _by_shape(self) -> dict[str, int]:
         """Return the limbs of a body whose names are silent: mirrored lines of joints."""
         found: dict[str, int] = {}
-        pairs = [pair for pair in self._mirrored_lines() if len(pair[0]) >= 3]
+        pairs = [pair for pair in self._mirroredlines() if len(pair[0]) >= 3]
         low = self.ground + _NEAR_GROUND * self.height
         legs = [p for p in pairs if min(self.places[j, 1] for j in p[0]) < low]
         legs.sort(key=lambda pair: float(self.places[pair[0][0], 2]))
@@ -120,9 +120,9 @@ class _Search:
             found |= _named(arms[-1], roles)
         return found
 
-    def _mirrored_lines(self) -> list[tuple[list[int], list[int]]]:
+    def _mirroredlines(self) -> list[tuple[list[int], list[int]]]:
         """Return pairs of lines, left and right, that start at one joint and mirror each other."""
-        children = _children(self.skeleton.parents)
+        children = children_of(self.skeleton.parents)
         near = 3 * _OFF_CENTRE * self.size
         pairs: list[tuple[list[int], list[int]]] = []
         for siblings in children.values():
@@ -132,7 +132,7 @@ class _Search:
                     apart = float(np.linalg.norm(self.places[left] - image))
                     both = self.places[left, 0] > near / 3 > 0 > self.places[right, 0]
                     if both and apart < near:
-                        pairs.append((_longest(left, children)[:4], _longest(right, children)[:4]))
+                        pairs.append((longest(left, children)[:4], longest(right, children)[:4]))
         return pairs
 
     def _trunk(self, found: Mapping[str, int]) -> dict[str, int]:
@@ -154,7 +154,7 @@ class _Search:
             trunk |= self._spine(hips, head, junction, named)
         jaws = [j for j in named["jaw"] if head is not None and head in self.lines[j]]
         trunk |= {"jaw": jaws[0]} if jaws else {}
-        tail = _line_of(named["tail"], self.lines)
+        tail = line_of(named["tail"], self.lines)
         return trunk | {f"tail{number}": joint for number, joint in enumerate(tail[:32], 1)}
 
     def _hips(self, found: Mapping[str, int], named: Sequence[int], head: int | None) -> int | None:
@@ -240,7 +240,7 @@ class _Search:
         found: dict[str, int] = {}
         joints = [j for j, name in enumerate(self.names) if name.finger and self._side(j) == side]
         for finger in ("Thumb", "Index", "Middle", "Ring", "Little"):
-            line = _line_of([j for j in joints if self.names[j].finger == finger], self.lines)
+            line = line_of([j for j in joints if self.names[j].finger == finger], self.lines)
             parts = _FINGER_PARTS
             if finger == "Thumb":  # the bone in the palm is seldom rigged
                 parts = _THUMB_PARTS if len(line) > 2 else _THUMB_PARTS[1:]
@@ -260,32 +260,6 @@ def _front_fit(name: JointName) -> Mapping[str, float]:
     arm = {f"Front{role}": fit for role, fit in name.arm.items() if role == "Shoulder"}
     fit = {"FrontShoulder": 0.2} | arm if name.leg or arm else {}
     return fit | {f"Front{role}": value for role, value in name.leg.items()}
-
-
-def _assign(
-    line: Sequence[int],
-    roles: Sequence[str],
-    essential: Sequence[str],
-    fits: Sequence[Mapping[str, float]],
-) -> tuple[float, dict[str, int]]:
-    """Return the assignment of joints of a line to roles, both in order, that fits best.
-
-    Longest common subsequence with weights, by dynamic programming; of two joints that fit alike
-    the lower one is taken, as a connector is above what it connects.
-    """
-    best: list[tuple[float, dict[str, int]]] = [(0.0, {})] * (len(roles) + 1)
-    for joint, fit in zip(line, fits, strict=True):
-        before = list(best)
-        for number, role in enumerate(roles):
-            if role in fit:
-                score, taken = before[number]
-                score += fit[role] + (_ESSENTIAL if role in essential else 0.0)
-                if score >= best[number + 1][0]:
-                    best[number + 1] = (score, taken | {role: joint})
-        for number in range(len(roles)):
-            if best[number][0] > best[number + 1][0]:
-                best[number + 1] = best[number]
-    return best[-1]
 
 
 def _named(pair: tuple[Sequence[int], Sequence[int]], roles: Sequence[str]) -> dict[str, int]:
@@ -311,30 +285,3 @@ def _as_front(part: str) -> str:
         if part.removeprefix(side) in _FRONT_OF_ARM and part.startswith(side):
             return side + _FRONT_OF_ARM[part.removeprefix(side)]
     return part
-
-
-def _lines(parents: Sequence[int]) -> list[list[int]]:
-    """Return for each joint the line from its root down to itself."""
-    lines: list[list[int]] = []
-    for joint, parent in enumerate(parents):
-        lines.append([*(lines[parent] if parent >= 0 else ()), joint])
-    return lines
-
-
-def _children(parents: Sequence[int]) -> dict[int, list[int]]:
-    children: dict[int, list[int]] = {}
-    for joint, parent in enumerate(parents):
-        children.setdefault(parent, []).append(joint)
-    return children
-
-
-def _longest(joint: int, children: Mapping[int, Sequence[int]]) -> list[int]:
-    """Return the longest line from a joint down."""
-    below = [_longest(child, children) for child in children.get(joint, ())]
-    return [joint, *max(below, key=len, default=[])]
-
-
-def _line_of(joints: Sequence[int], lines: Sequence[Sequence[int]]) -> list[int]:
-    """Return the longest line that some joints make, from the top down."""
-    among = [[above for above in lines[joint] if above in joints] for joint in joints]
-    return max(among, key=len, default=[])
