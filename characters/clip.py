@@ -43,7 +43,7 @@ class Clip:
         """Return the number of frames."""
         return len(self.poses.rotations)
 
-    @property
+    @cached_property
     def duration(self) -> float:
         """Time from the first frame to the last [s]."""
         return (len(self) - 1) / self.rate
@@ -55,7 +55,7 @@ class Clip:
         >>> clip.position(0.65)[0], round(clip.position(0.65)[1], 6)
         (2, 0.5)
         """
-        last = len(self) - 1
+        last = self._last
         if last == 0:
             return 0, 0.0
         at = time * self.rate
@@ -66,7 +66,7 @@ class Clip:
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]; the root stands at the origin if it has root motion."""
         frame, u = self.position(time)
-        after = min(frame + 1, len(self) - 1)
+        after = min(frame + 1, self._last)
         poses = self.in_place
         t, r, s, m = poses.translations, poses.rotations, poses.scales, poses.morphs
         # The signs were made continuous, so a straight mix goes the shorter way.
@@ -81,7 +81,15 @@ class Clip:
         """Return how the root moves over the ground between two times [s], over any loops."""
         if not self.root_motion:
             return STANDING
-        return self._placed(start).inverse().then(self._placed(end))
+        if self.loop and self._last > 0:
+            # Whole rounds before both are left out.
+            rounds = math.floor(start / self.duration)
+            later = math.floor(end / self.duration) - rounds
+            there = self._within(end)
+            return self._within(start).to(
+                self.cycle.repeated(later).then(there) if later else there
+            )
+        return self._within(start).to(self._within(end))
 
     @cached_property
     def in_place(self) -> Pose:
@@ -107,19 +115,21 @@ class Clip:
     @cached_property
     def cycle(self) -> Step:
         """How the root moves over the ground from the first frame to the last."""
-        return self._steps[0].inverse().then(self._steps[-1])
+        return self._steps[-1]
 
     @cached_property
     def _steps(self) -> list[Step]:
-        """The track as plain numbers, which beat arrays of three."""
-        return [Step(*row) for row in self.track.tolist()]
+        """The track from where it starts, as plain numbers, which beat arrays of three."""
+        first, *_ = steps = [Step(*row) for row in self.track.tolist()]
+        return [first.to(step) for step in steps]
 
-    def _placed(self, time: float) -> Step:
-        """Return where the root is at a time, cumulative over loops."""
+    @cached_property
+    def _last(self) -> int:
+        """Number of the last frame."""
+        return len(self) - 1
+
+    def _within(self, time: float) -> Step:
+        """Return where the root is at a time, in the round that it is in."""
         frame, u = self.position(time)
-        a, b = self._steps[frame], self._steps[min(frame + 1, len(self) - 1)]
-        within = Step(a.x + (b.x - a.x) * u, a.z + (b.z - a.z) * u, a.yaw + (b.yaw - a.yaw) * u)
-        if not self.loop or self.duration == 0:
-            return within
-        within = self._steps[0].inverse().then(within)
-        return self.cycle.repeated(math.floor(time / self.duration)).then(within)
+        a, b = self._steps[frame], self._steps[min(frame + 1, self._last)]
+        return Step(a.x + (b.x - a.x) * u, a.z + (b.z - a.z) * u, a.yaw + (b.yaw - a.yaw) * u)

@@ -47,6 +47,18 @@ class Step:
         sine, cosine = math.sin(self.yaw), math.cos(self.yaw)
         return Step(-cosine * self.x + sine * self.z, -sine * self.x - cosine * self.z, -self.yaw)
 
+    def to(self, other: "Step") -> "Step":
+        """Return the step from this place to another, both seen from one frame.
+
+        >>> here, there = Step(1.0, 2.0, 0.5), Step(4.0, 3.0, -0.4)
+        >>> again = here.then(here.to(there))
+        >>> round(again.x, 9), round(again.z, 9), round(again.yaw, 9)
+        (4.0, 3.0, -0.4)
+        """
+        sine, cosine = math.sin(self.yaw), math.cos(self.yaw)
+        x, z = other.x - self.x, other.z - self.z
+        return Step(cosine * x - sine * z, sine * x + cosine * z, other.yaw - self.yaw)
+
     def scaled(self, factor: float) -> "Step":
         """Return the step with every component multiplied."""
         return Step(self.x * factor, self.z * factor, self.yaw * factor)
