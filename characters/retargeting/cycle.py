@@ -121,20 +121,23 @@ def closed(clip: Clip, cut: Cut) -> Clip:
 def resampled(clip: Clip, rate: float) -> Clip:
     """Return a loop at another rate; its duration is rounded to whole frames."""
     frames = max(round(clip.duration * rate), 2)
-    at = np.linspace(0.0, clip.duration, frames + 1)
-    samples = [replace(clip, loop=False).sample(float(time)) for time in at]
-    poses = Pose(
-        np.stack([pose.translations for pose in samples]),
-        np.stack([pose.rotations for pose in samples]),
-        None if clip.poses.scales is None else np.stack([_there(p.scales) for p in samples]),
-        None if clip.poses.morphs is None else np.stack([_there(p.morphs) for p in samples]),
+    at = np.linspace(0.0, len(clip) - 1, frames + 1)
+    before = np.minimum(at.astype(int), len(clip) - 2)
+    part = (at - before)[:, None, None]
+    poses = clip.poses
+    turns = rotations.continuous(poses.rotations)
+
+    def mixed(values: Array) -> Array:
+        weight = part if values.ndim == 3 else part[..., 0]
+        return np.asarray(values[before] * (1 - weight) + values[before + 1] * weight)
+
+    fine = Pose(
+        mixed(poses.translations),
+        rotations.normalize(mixed(turns)),
+        None if poses.scales is None else mixed(poses.scales),
+        None if poses.morphs is None else mixed(poses.morphs),
     )
-    return replace(clip, rate=rate, poses=poses)
-
-
-def _there(values: Array | None) -> Array:
-    assert values is not None
-    return values
+    return replace(clip, rate=rate, poses=fine)
 
 
 def _features(clip: Clip, body: Body) -> Array:
