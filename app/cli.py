@@ -63,6 +63,11 @@ def main() -> None:
             raise
         complain(str(error))
         code = BAD_INPUT
+    except (OSError, MemoryError) as error:  # a full disk, a file too large: no fault of the code
+        if debug:
+            raise
+        complain(trouble(error))
+        code = BAD_INPUT
     except (KeyboardInterrupt, typer.Abort):
         code = 130
     sys.exit(code if isinstance(code, int) else 0)
@@ -74,6 +79,14 @@ def usage(error: typer.exceptions.TyperException) -> str:
     where = context.command_path if context else "cubeling"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
     return f"{message.rstrip('.')} (see {where} --help)" if message else ""
+
+
+def trouble(error: OSError | MemoryError) -> str:
+    """Return what the system refused, and of which file."""
+    if isinstance(error, MemoryError):
+        return "there is not enough memory for this; close other programs or take a smaller file"
+    where = f"{error.filename}: " if error.filename else ""
+    return f"{where}{error.strerror or error}"
 
 
 def mention(

@@ -8,6 +8,7 @@ from typing import Any
 
 from characters.anatomy import PARTS
 from characters.errors import CharacterError
+from characters.files import read_file
 from characters.trees.plan import Plan
 from characters.trees.reading import TABLES, read_plan
 
@@ -57,13 +58,8 @@ def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
 
 def _document(path: Path) -> dict[str, Any]:
     try:
-        size = path.stat().st_size
-        if size > _LARGEST:
-            raise CharacterError(f"{path}: {size} bytes; a file of motions is under {_LARGEST}")
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return tomllib.loads(read_file(path, _LARGEST).decode("utf-8-sig"))
     except FileNotFoundError:
         return {}
-    except OSError as error:
-        raise CharacterError(f"{path}: cannot be read ({error.strerror})") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise CharacterError(f"{path}: not TOML ({error}); mend that line") from None

@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from characters.errors import CharacterError
+from characters.files import read_given
 from characters.formats.gltf_document import DamagedFileError, at, parse
 from characters.formats.gltf_file import Budget, GltfFile
 
@@ -32,10 +33,7 @@ def open_gltf(path: Path) -> GltfFile:
     DamagedFileError
         If its JSON or its buffers contradict themselves.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise CharacterError(f"{path}: cannot be read ({error.strerror}); check the path") from None
+    data = read_given(path)
     text, blob = _unpack(path, data)
     try:
         document = parse(text)

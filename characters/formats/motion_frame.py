@@ -92,8 +92,8 @@ def settle(
     axis, why_up = _known_up(path, up) if up is not None else _recognised_up(skeleton, places)
     tall = float(np.percentile(np.ptp(places[..., "xyz".index(axis[1])], axis=-1), 90))
     if scale is not None:
-        if not 0 < scale < np.inf:
-            raise CharacterError(f"{path}: scale {scale} is no length; give metres a unit")
+        if not 1e-6 <= scale <= 1e6:  # between a micrometre and what keeps positions finite
+            raise CharacterError(f"{path}: scale {scale:g} is no length; give metres a unit")
         why_scale: tuple[str, ...] = ()
     else:
         scale, why_scale = _recognised_unit(tall, stated)

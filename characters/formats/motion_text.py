@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from characters.errors import CharacterError
+from characters.files import read_given
 from characters.pose import Array
 
-LARGEST_FILE = 1 << 30  # [bytes]; two hours of 120 Hz take 0.6 GB
 LARGEST_NUMBER = 1e9  # in no unit does a person reach further, and sums of such stay finite
 MOST_POSES = 30_000_000  # joints × frames; two hours of 120 Hz on 35 joints
 
@@ -21,12 +21,7 @@ def refuse(path: Path, line: int, wrong: str, advice: str) -> CharacterError:
 
 def read_text(path: Path) -> str:
     r"""Return the text of a file, its lines ended by ``\n`` alone."""
-    try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise CharacterError(f"{path}: larger than 1 GiB; cut the recording into pieces")
-        data = path.read_bytes()
-    except OSError as error:
-        raise CharacterError(f"{path}: cannot be read ({error.strerror}); check the path") from None
+    data = read_given(path)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -170,6 +170,18 @@ def test_what_was_repaired_is_one_line(cubeling, monkeypatch):
     assert err == "cubeling: x.glb: weights did not sum to one\n"
 
 
+@pytest.mark.parametrize("wrong", [OSError(28, "No space left on device", "x.png"), MemoryError()])
+def test_what_the_system_refuses_is_one_line(cubeling, monkeypatch, wrong):
+    def load(name):
+        raise wrong
+
+    monkeypatch.setattr(Character, "load", load)
+    code, _, err = cubeling("character", "graph", "human")
+    assert code == 2
+    assert err.count("\n") == 1
+    assert "x.png: No space left on device" in err or "memory" in err
+
+
 def test_a_cube_sheet_is_written(cubeling):
     code, out, _ = cubeling("cube", "companion")
     assert code == 0

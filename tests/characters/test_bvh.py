@@ -225,7 +225,13 @@ def test_scale_and_up_can_be_told(tmp_path: Path) -> None:
     performance = load_motion(path, scale=0.02, up="-z")
     assert performance.notes == ()
     np.testing.assert_allclose(performance.skeleton.rest.translations[3], [0, 0, 1.4])
-    for wrong in ({"scale": 0.0}, {"scale": float("nan")}, {"up": "w"}, {"up": ""}):
+    for wrong in (
+        {"scale": 0.0},
+        {"scale": 1e300},
+        {"scale": float("nan")},
+        {"up": "w"},
+        {"up": ""},
+    ):
         with pytest.raises(CharacterError, match=r"leg\.bvh: (scale|up)"):
             load_motion(path, **wrong)
 
