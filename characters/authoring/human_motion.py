@@ -199,9 +199,9 @@ def _swing_arms(puppet: Puppet, style: Style, phase: Array) -> None:
             f"{side}Shoulder",
             turned(0, -sign * 5 * _wave(phase, front - 0.03), sign * 1.5 * _wave(phase, 0.2, 2)),
         )
-        hang_arm(puppet, side, sign, swing, 27 - 3 * _wave(phase, front))
+        hang_arm(puppet, side, sign, swing, 20 - 3 * _wave(phase, front))
         bend = style.elbow + style.elbow_swing * _wave(phase, front + 0.07)
-        inward = 0.16 * bend + 6 * _wave(phase, front)
+        inward = 0.06 * bend + 3 * _wave(phase, front)
         puppet.turn(f"{side}ForeArm", bent_elbow(puppet, side, sign, bend, inward))
         late = _wave(phase, front + 0.17)
         puppet.turn(f"{side}Hand", turned(14 * late - 6, 0, sign * -4))
