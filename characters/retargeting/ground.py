@@ -17,7 +17,8 @@ from characters.pose import Array
 from characters.retargeting.body import Body, Leg
 from characters.retargeting.transfer import upright_clip
 
-_TREADMILL = 0.3  # leg lengths a second: standing feet that go faster stand on one
+_TREADMILL = 0.1  # leg lengths a second: standing feet that go faster stand on one,
+_AWAY = 1.0  # leg lengths: unless the body itself goes so far
 
 _T = TypeVar("_T", bound=np.generic)
 
@@ -99,6 +100,9 @@ def _treadmill(clip: Clip, body: Body, legs: Sequence[Leg], down: NDArray[np.boo
     ends = clip.poses.globals(body.skeleton)[:, [leg.end for leg in legs]][..., [0, 2], 3]
     stands = down[1:] & down[:-1]
     if not stands.any():
+        return np.zeros(2)
+    hips = clip.poses.globals(body.skeleton)[:, body.anatomy.joints["hips"], [0, 2], 3]
+    if np.ptp(hips, axis=0).max() > _AWAY * body.leg_length:
         return np.zeros(2)
     velocity = np.median(np.diff(ends, axis=0)[stands] * clip.rate, axis=0)
     moves = np.hypot(*velocity) > _TREADMILL * body.leg_length
