@@ -48,8 +48,8 @@ def gait_of(recording: Recording, character: Character, walker: Character) -> Ga
     course = Course.of(step, seconds)
     if course.speed < _SLOWEST * body.leg_length:
         raise CharacterError(
-            f"{recording.origin}: goes nowhere, not even as on a treadmill "
-            f"({course.speed:.2f} m/s); give a clip that walks"
+            f"{recording.origin}: goes nowhere ({course.speed:.2f} m/s), and its "
+            "feet do not stand as on an even treadmill; give a clip that walks"
         )
     # The root looks along the arc: half of the turn is before the middle of its chord.
     aside = math.atan2(step.x, step.z) - step.yaw / 2
