@@ -11,6 +11,7 @@ is: in a mix of motions that differ much, a joint may lie a thousandth of a turn
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -62,8 +63,16 @@ class Bank:
     """Whether all quaternions of a joint lie in one half of their sphere, so that any may be mixed
     as they are."""
 
+    beside: int = 0
+    """How many columns at the end hold other numbers."""
+
     @staticmethod
-    def of(skeleton: Skeleton, clips: Sequence[Clip], dtype: DTypeLike = np.float32) -> "Bank":
+    def of(
+        skeleton: Skeleton,
+        clips: Sequence[Clip],
+        dtype: DTypeLike = np.float32,
+        beside: Sequence[Array] | None = None,
+    ) -> "Bank":
         """Pack clips; roots with root motion stay in place, as in `Clip.sample`.
 
         Parameters
@@ -74,6 +83,8 @@ class Bank:
             What to pack; they are then called by their number.
         dtype
             Of the table. Single precision is good for 0.1 µm at arm's length.
+        beside
+            Other numbers for each frame of each clip, (frames, columns), that are mixed alike.
         """
         joints = len(skeleton)
         if not clips or any(clip.poses.rotations.shape[1] != joints for clip in clips):
@@ -92,6 +103,8 @@ class Bank:
         scaled = np.flatnonzero((np.ptp(scales, axis=0) > _STILL).any(-1))
         unscaled = not scaled.size and np.allclose(scales[0], 1.0, atol=_STILL)
         parts = [turns, shifts[:, moved], scales[:, scaled], morphs]
+        if beside is not None:
+            parts.append(np.concatenate([_twice(each) for each in beside]))
         table = np.concatenate([part.reshape(len(turns), -1) for part in parts], axis=1)
         return Bank(
             skeleton=skeleton,
@@ -109,6 +122,7 @@ class Bank:
             moved=moved,
             scaled=scaled,
             signs_agree=agree,
+            beside=0 if beside is None else beside[0].shape[1],
         )
 
     def __len__(self) -> int:
@@ -152,6 +166,62 @@ class Bank:
         total: Floats = (factors[:, None] @ looked_up)[:, 0]
         return total
 
+    def blended(self, voices: Sequence[tuple[int, float, float]]) -> tuple[Pose, Floats]:
+        """Return one character's mixed pose, and what is mixed beside it, (columns,).
+
+        It is what `mixed` and `pose` do, for one character in fewer steps.
+
+        Parameters
+        ----------
+        voices
+            Number of a clip, time since its start [s], and how much of it.
+        """
+        rows: list[int] = []
+        factors: list[float] = []
+        for clip, time, weight in voices:
+            row, u = self._row(clip, time)
+            rows += (row, row + 1)
+            factors += (weight * (1.0 - u), weight * u)
+        share = np.array(factors, self.table.dtype)
+        looked_up = self.table.take(rows, axis=0)
+        if not self.signs_agree:
+            self._bring_to_one_side(looked_up[None], share[None])
+        mixed = share @ looked_up
+        turned, shifted, sized, morphed = self._edges
+        turns = mixed[:turned].reshape(-1, 4)
+        turns = turns / np.sqrt(np.einsum("ji,ji->j", turns, turns))[:, None]
+        places, sizes = self.still.translations.copy(), self.still.scales
+        places[self.moved] = mixed[turned:shifted].reshape(-1, 3)
+        if sizes is not None:
+            sizes = sizes.copy()
+            sizes[self.scaled] = mixed[shifted:sized].reshape(-1, 3)
+        morphs = mixed[sized:morphed] if morphed > sized else None
+        return Pose(places, turns, sizes, morphs), mixed[morphed:]
+
+    def _row(self, clip: int, time: float) -> tuple[int, float]:
+        """Return what `rows` does, for one time."""
+        start, last, rate, loop = self._clips[clip]
+        if last == 0.0:
+            return start, 0.0
+        at = time * rate
+        at = at % last if loop else min(max(at, 0.0), last)
+        frame = min(int(at), int(last) - 1)
+        return start + frame, at - frame
+
+    @cached_property
+    def _clips(self) -> list[tuple[int, float, float, bool]]:
+        """First row, last frame, rate and loop of each clip, as plain numbers."""
+        columns = (self.starts, self.lasts, self.rates, self.loops)
+        return list(zip(*(column.tolist() for column in columns), strict=True))
+
+    @cached_property
+    def _edges(self) -> tuple[int, int, int, int]:
+        """Where quaternions, translations, scales and morphs end in a row."""
+        turned = 4 * len(self.skeleton)
+        shifted = turned + 3 * self.moved.size
+        sized = shifted + 3 * self.scaled.size
+        return turned, shifted, sized, self.table.shape[1] - self.beside
+
     def sample(self, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Pose:
         """Return mixed poses, (characters, joints, …); see `mixed` for the arguments."""
         return self.pose(self.mixed(clips, times, weights))
@@ -159,8 +229,7 @@ class Bank:
     def pose(self, rows: Floats) -> Pose:
         """Return rows (characters, columns) as poses, with quaternions at unit length."""
         count, joints = len(rows), len(self.skeleton)
-        edges = np.cumsum([4 * joints, 3 * self.moved.size, 3 * self.scaled.size])
-        turns, shifts, scales, morphs = np.split(rows, edges, axis=1)
+        turns, shifts, scales, morphs, _ = np.split(rows, self._edges, axis=1)
         turns = turns.reshape(count, joints, 4)
         turns = turns / np.sqrt(np.einsum("cji,cji->cj", turns, turns))[..., None]
         places = np.tile(self.still.translations, (count, 1, 1))
@@ -184,6 +253,11 @@ class Bank:
 def _twice_if_single(pose: Pose) -> Pose:
     """Return poses with their only frame repeated, so that every row has one after it."""
     return pose[np.array([0, 0])] if len(pose.rotations) == 1 else pose
+
+
+def _twice(rows: Array) -> Array:
+    """Return numbers beside such poses, likewise."""
+    return rows[[0, 0]] if len(rows) == 1 else rows
 
 
 def _stacked(

@@ -14,7 +14,8 @@ from characters.clip import Clip
 from characters.legs import find_legs
 from characters.phase import Phased, Still, phased
 from characters.pose import Pose, Skeleton
-from characters.strides import Stance, Strides, Tread
+from characters.strides import Strides
+from characters.treads import Treads
 
 IDLE_SPEED = 0.5
 """AvatAR's Speed up to which a character stands."""
@@ -76,12 +77,12 @@ class Gaits:
         self.legs = find_legs(skeleton)
         """The legs that keep to the ground, or None where there are none to bend."""
         self._still = Still(standing, self._walk.at(0.0).duration)
-        self._treads: dict[int, Tread] = {}
+        self._treads: Treads | None = None
         if self.legs is not None:
-            self._stance = Stance.of(standing, self.legs)
-            for motion in (*self._walk.motions, *self._run.motions):
-                if isinstance(motion, Phased):
-                    self._treads[id(motion)] = Tread.of(motion, skeleton, self.legs, self._stance)
+            motions = [*self._walk.motions, *(() if self._run is self._walk else self._run.motions)]
+            both = [motion for motion in motions if isinstance(motion, Phased)]
+            self._treads = Treads.of(both, skeleton, self.legs, standing)
+            self._numbers = {id(motion): number for number, motion in enumerate(both)}
         straight = [tree.at(0.0) for tree in (self._walk, self._run)]
         self._lengths = [motion.between(0.0, 1.0).length for motion in straight]
         self._cadences = [1.0 / motion.duration for motion in straight]
@@ -121,11 +122,10 @@ class Gaits:
         share *= smaller
         rate /= math.sqrt(smaller)
         heard = self._heard(running, math.degrees(angular))
-        weights = tuple(weight for _, weight in heard)
-        if self.legs is not None:
-            treads = tuple(self._treads[id(motion)] for motion, _ in heard)
-            return Strides(treads, weights, self.legs, self._stance, share, stride, rate)
-        mixed = Blend(tuple(motion for motion, _ in heard), weights)
+        if self._treads is not None:
+            voices = [(self._numbers[id(motion)], weight) for motion, weight in heard]
+            return Strides(self._treads, voices, share, stride, rate)
+        mixed = Blend(tuple(motion for motion, _ in heard), tuple(weight for _, weight in heard))
         if share < 1.0:
             mixed = Blend((mixed, self._still), (share, 1.0 - share))
         return Paced(mixed, rate, stride)

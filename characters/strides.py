@@ -10,105 +10,31 @@ s p + (1 − s) r stand while the body goes s u.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from characters import rotations
-from characters.blend import mix
-from characters.clip import Clip
-from characters.contacts import find_contacts
-from characters.legs import Legs
 from characters.motion import STANDING, Step
-from characters.phase import Phased
-from characters.pose import Array, Pose, Skeleton
+from characters.pose import Array, Pose
+from characters.treads import Treads
 
 _PARTS = 16  # of a cycle, in each of which the mean of several ways is taken
-_LEAVING = 0.45  # how much the last frame of a contact counts: too little to be held
 _LIFT = 0.3  # how high feet go rises with this power of how far they go, …
 _TURNING = 1.0  # … and on the spot by so much more than that, to clear the ground
-
-
-@dataclass(frozen=True)
-class Tread:
-    """A looped clip and where its feet are, frame by frame."""
-
-    motion: Phased
-    """The clip by its phase."""
-
-    feet: Array
-    """Ball of the foot (3), facing of the foot (4), whether it stands (1): (frames, legs, 8)."""
-
-    @staticmethod
-    def of(motion: Phased, skeleton: Skeleton, legs: Legs, still: "Stance") -> "Tread":
-        """Return the tread of a clip, with contacts that are found in it.
-
-        Its feet face on the side of quaternions on which those of a stance do.
-        """
-        clip = motion.motion
-        assert isinstance(clip, Clip)
-        feet = np.concatenate([_feet(clip.in_place, legs), np.zeros((len(clip), legs.count, 1))], 2)
-        feet[..., 3:7] = rotations.align(feet[..., 3:7], still.feet[:, 3:])
-        down = find_contacts(clip, skeleton, legs.feet)
-        # A foot is known to have left by its speed, so a little after it has.
-        after = np.roll(down[:-1], -1, axis=0)
-        leaving = down & ~np.append(after, after[:1], axis=0)
-        feet[..., 7] = np.where(leaving, _LEAVING, down)
-        return Tread(motion, feet)
-
-    def at(self, phase: float) -> Array:
-        """Return where its feet are at a phase, (legs, 8)."""
-        last = len(self.feet) - 1
-        at = self.motion.time(phase) / self.motion.motion.duration % 1.0 * last
-        frame = min(int(at), last - 1)
-        here = self.feet[frame]
-        between: Array = here + (self.feet[frame + 1] - here) * (at - frame)
-        return between
-
-    @cached_property
-    def home(self) -> Array:
-        """The middle of where a foot stands, on the ground, and how it faces there, (legs, 8)."""
-        weight = self.feet[..., 7:] + 1e-6
-        mean: Array = (self.feet * weight).sum(0) / weight.sum(0)
-        mean[:, 1] = self.feet[..., 1].min(0)
-        mean[:, 3:7] = rotations.normalize(mean[:, 3:7])
-        return mean
-
-
-@dataclass(frozen=True)
-class Stance:
-    """A pose that is stood in, and where its feet are."""
-
-    pose: Pose
-    """The pose."""
-
-    feet: Array
-    """Ball (3) and facing (4) of each foot, (legs, 7)."""
-
-    @staticmethod
-    def of(pose: Pose, legs: Legs) -> "Stance":
-        """Return the stance of a pose."""
-        return Stance(pose, _feet(pose, legs))
 
 
 @dataclass(frozen=True)
 class Strides:
     """Clips mixed in step, with shorter steps and at another pace; `Cyclic`."""
 
-    treads: tuple[Tread, ...]
-    """What is mixed."""
+    treads: Treads
+    """What there is to mix."""
 
-    weights: tuple[float, ...]
-    """How much of each; positive, sum one."""
-
-    legs: Legs
-    """Whose feet they are."""
-
-    still: Stance
-    """What shorter steps lean to."""
+    voices: Sequence[tuple[int, float]]
+    """Number of each clip that is mixed and its weight; positive, sum one."""
 
     share: float = 1.0
-    """How long steps are and how far they turn, as a part of the clips'; the rest is `still`."""
+    """How long steps are and how far they turn, as a part of the clips'; the rest is the stance."""
 
     stride: float = 1.0
     """What is left of the way, but not of the turning, after that."""
@@ -119,28 +45,19 @@ class Strides:
     @property
     def duration(self) -> float:
         """Length of one cycle [s]."""
-        paces = [
-            weight / tread.motion.duration
-            for tread, weight in zip(self.treads, self.weights, strict=True)
-        ]
-        return 1.0 / (sum(paces) * self.rate)
+        motions = self.treads.motions
+        return 1.0 / (sum(w / motions[n].duration for n, w in self.voices) * self.rate)
 
     def at(self, phase: float) -> Pose:
         """Return the mixed pose at a phase."""
-        poses = [tread.motion.at(phase) for tread in self.treads]
-        weights = list(self.weights)
-        if self.share < 1.0:
-            poses.append(self.still.pose)
-            weights = [*(weight * self.share for weight in weights), 1.0 - self.share]
-        elif len(poses) == 1 and self.stride == 1.0:
-            return poses[0]
-        balls, facings = self._feet(phase)
-        return self.legs.reach(mix(poses, weights), balls, facings)
+        pose, feet = self.treads.mixed(self.voices, phase, self.share)
+        if len(self.voices) == 1 and self.share == self.stride == 1.0:
+            return pose
+        return self.treads.legs.reach(pose, *self._feet(feet))
 
-    def contacts(self, phase: float) -> Array:
-        """Return how much of the mix has each foot on the ground, (legs,), 0…1."""
-        each = [tread.at(phase)[:, 7] for tread in self.treads]
-        return np.asarray(self.weights) @ np.stack(each)
+    def contacts(self, phase: float) -> list[float]:
+        """Return how much of the mix has each foot on the ground, 0…1."""
+        return self.treads.contacts(self.voices, phase)
 
     def between(self, start: float, end: float) -> Step:
         """Return how the root moves over the ground between two phases."""
@@ -149,8 +66,8 @@ class Strides:
         each = (end - start) / parts
         for low in (start + each * part for part in range(parts)):
             x = z = yaw = 0.0
-            for tread, weight in zip(self.treads, self.weights, strict=True):
-                step = tread.motion.between(low, low + each)
+            for number, weight in self.voices:
+                step = self.treads.motions[number].between(low, low + each)
                 x, z, yaw = x + weight * step.x, z + weight * step.z, yaw + weight * step.yaw
             way = self.share * self.stride
             total = total.then(Step(x * way, z * way, yaw * self.share))
@@ -165,11 +82,13 @@ class Strides:
         duration = self.duration
         return self.between(start / duration, end / duration)
 
-    def _feet(self, phase: float) -> tuple[Array, Array]:
-        """Return where the balls of the feet are to be, (legs, 3), and how they face, (legs, 4)."""
-        still = self.still.feet
-        feet = self._mean([tread.at(phase) for tread in self.treads])
-        home = self._mean([tread.home for tread in self.treads])
+    def _feet(self, feet: Array) -> tuple[Array, Array]:
+        """Return where the balls of the feet are to be, (legs, 3), and how they face, (legs, 4).
+
+        `feet` (legs, 8) are the mean of the clips' feet.
+        """
+        still, feet = self.treads.stance.feet, feet[:, :7]
+        home = sum(weight * self.treads.homes[number] for number, weight in self.voices)
         if self.share < 1.0:
             drawn = still + self.share * (feet - still)
             middle = still + self.share * (home - still)
@@ -191,21 +110,6 @@ class Strides:
         less = 1.0 - self.stride
         feet[:, 0] += less * (cosine * x + sine * z - feet[:, 0])
         feet[:, 2] += less * (cosine * z - sine * x - feet[:, 2])
-
-    def _mean(self, feet: Sequence[Array]) -> Array:
-        """Return the mean of feet, (legs, 7); facings lie on the same side as the stance's."""
-        total: Array = feet[0][:, :7] * self.weights[0]
-        for each, weight in zip(feet[1:], self.weights[1:], strict=True):
-            total = total + each[:, :7] * weight
-        return total
-
-
-def _feet(poses: Pose, legs: Legs) -> Array:
-    """Return the ball and the facing of each foot in poses (…), (…, legs, 7)."""
-    placed = legs.globals(poses)
-    ankle, toes = legs.joints[:, 3], legs.joints[:, 4]
-    facing = rotations.from_matrix(placed[..., :3, :3][..., ankle, :, :])
-    return np.concatenate([placed[..., :3, 3][..., toes, :], facing], axis=-1)
 
 
 def _twist(turn: Array, reference: Array) -> Array:

@@ -94,7 +94,7 @@ class Walker:
         if self._machine.state == "idle" or not isinstance(self._motion, Strides):
             return [True] * len(self.lock.feet) if self.lock is not None else []
         phase = self._steps.phase(self._time - self._machine.entered)
-        return [part > 0.5 for part in self._motion.contacts(phase).tolist()]
+        return [part > 0.5 for part in self._motion.contacts(phase)]
 
     def _course(self, command: CharacterCommand) -> Course:
         """Return where to go, or how to turn on the spot."""

@@ -75,6 +75,26 @@ def test_joints_that_turn_all_the_way_round_are_mixed_the_shorter_way():
     assert abs(float(poses.rotations[0, 0] @ turned)) == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("name", ["vleo", "human"])
+def test_one_character_is_blended_as_a_crowd_is(name):
+    character = Character.load(name)
+    clips = list(character.clips.values())
+    beside = [np.arange(float(len(clip)))[:, None] for clip in clips]
+    bank = Bank.of(character.skeleton, clips, np.float64, beside)
+    rng = np.random.default_rng(6)
+    numbers, times = rng.integers(0, len(clips), 3), rng.uniform(-1.0, 5.0, 3)
+    weights = rng.dirichlet(np.ones(3))
+    rows = bank.mixed([numbers], [times], [weights])
+    crowd = bank.pose(rows)[0]
+    alone, other = bank.blended(list(zip(numbers.tolist(), times.tolist(), weights, strict=True)))
+    np.testing.assert_allclose(alone.rotations, crowd.rotations, atol=1e-12)
+    np.testing.assert_allclose(alone.translations, crowd.translations, atol=1e-12)
+    for mine, theirs in ((alone.scales, crowd.scales), (alone.morphs, crowd.morphs)):
+        assert (mine is None) == (theirs is None)
+        assert mine is None or np.allclose(mine, theirs, atol=1e-12)  # type: ignore[arg-type]
+    assert other == pytest.approx(rows[0, -1:])
+
+
 def test_clips_of_another_skeleton_are_refused(vleo):
     human = Character.load("human")
     with pytest.raises(CharacterError, match=f"{len(vleo.skeleton)} joints"):
