@@ -10,6 +10,7 @@ from characters.authoring.vleo_clips import clip
 from characters.authoring.vleo_effects import effects
 from characters.authoring.vleo_expressions import EXPRESSIONS
 from characters.authoring.vleo_face import face, with_expressions
+from characters.authoring.vleo_gestures import gestures
 from characters.authoring.vleo_idle import idle
 from characters.authoring.vleo_kiss import kiss
 from characters.authoring.vleo_marks import marks
@@ -39,6 +40,7 @@ def clips(bound: Skeleton) -> dict[str, Clip]:
     for level, name in enumerate(LEVELS):
         made.append(clip(f"kiss_{name}", kiss(level, bound), bound))
         made.append(clip(f"shout_{name}", shout(level, bound), bound))
+    made += gestures(bound)
     return {each.name: each for each in made}
 
 

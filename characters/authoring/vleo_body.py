@@ -78,6 +78,40 @@ class Mirrored(Solid):
 
 
 @dataclass(frozen=True)
+class Near(Solid):
+    """A shape that is looked at closely only near the box that holds it: many times faster."""
+
+    shape: Shape
+    """What is in the box."""
+
+    low: Vector
+    """Its corner at the least of every coordinate [m]."""
+
+    high: Vector
+    """The opposite corner [m]."""
+
+    margin: float = 0.03
+    """How near is near; more than any fillet that the shape takes part in [m]."""
+
+    def distance(self, points: Array) -> Array:
+        """Return the distance to the shape, or to the box where that is far, (n,) [m]."""
+        outside = np.maximum(np.maximum(self.low - points, points - self.high), 0.0)
+        result: Array = np.sqrt(np.sum(outside * outside, axis=1))
+        close = result < self.margin
+        result[close] = self.shape.distance(points[close])
+        return result
+
+    def solids(self) -> Iterator[Solid]:
+        """Yield what is in the box."""
+        yield from self.shape.solids()
+
+    def mirrored(self) -> "Near":
+        """Return its image in the plane x = 0."""
+        low, high = (-self.high[0], *self.low[1:]), (-self.low[0], *self.high[1:])
+        return replace(self, shape=self.shape.mirrored(), low=low, high=high)
+
+
+@dataclass(frozen=True)
 class Hollow(Solid):
     """The room behind the mouth; its rim lies hidden under the skin about the lips."""
 
@@ -175,11 +209,26 @@ def whole() -> Shape:
     line = spine_line(25)
     bones = (*TAIL, *BACK, *NECK)
     trunk = chain(line[:, :3], tuple(line[:, 3]), ("",) * 24, TEAL)
-    cones = (replace(cone, bones=bones) for cone in trunk.shapes if isinstance(cone, Cone))
+    cones = [replace(cone, bones=bones) for cone in trunk.shapes if isinstance(cone, Cone)]
+    pieces = tuple(_near(cones[first : first + 4]) for first in range(0, len(cones), 4))
     paunch = Ellipsoid((0.0, 0.094, -0.012), (0.058, 0.048, 0.066), bones=("belly",))
-    body = Union((Union(tuple(cones)), paunch), 0.02)
-    legs = Cut(Union((_leg("Front"), _leg("Hind"))), HalfSpace((0, 0.0005, 0), (0, 1, 0)), 0.006)
-    return Union((body, Mirrored(legs), head()), 0.024)
+    body = Union((Union(pieces), paunch), 0.02)
+    ground = HalfSpace((0, 0.0005, 0), (0, 1, 0))
+    legs = Near(
+        Cut(Union((_leg("Front"), _leg("Hind"))), ground, 0.006),
+        (0.0, 0.0, -0.09),
+        (0.08, 0.13, 0.10),
+    )
+    face = Near(head(), (-0.065, 0.19, 0.05), (0.065, 0.31, 0.195))
+    return Union((body, Mirrored(legs), face), 0.024)
+
+
+def _near(cones: list[Cone]) -> Near:
+    """Return cones in the box that holds them."""
+    ends = np.array([[cone.a, cone.b] for cone in cones]).reshape(-1, 3)
+    reach = max(max(cone.ra, cone.rb) for cone in cones)
+    low, high = (ends.min(axis=0) - reach).tolist(), (ends.max(axis=0) + reach).tolist()
+    return Near(Union(tuple(cones)), (low[0], low[1], low[2]), (high[0], high[1], high[2]))
 
 
 def _leg(which: str) -> Shape:

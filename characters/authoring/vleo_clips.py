@@ -83,7 +83,7 @@ def fly(
         age = ((phases(act.frames) - flight.start) % 1.0) / flight.life
         alive = age < 1
         age = np.minimum(age, 1.0)
-        out = 1 - (1 - age) ** 2
+        out = 1 - (1 - age) ** 3
         sideways = flight.swirl * np.sin(2 * np.pi * age)
         rise = np.stack([out, age**1.3, out], axis=1) * np.array(flight.way)
         offset = leaves - home[bound.index(joint)] + rise + sideways[:, None] * np.array([1, 0, 0])
@@ -100,4 +100,4 @@ def _pop(age: Array) -> Array:
     """Return the size over a life: quickly past full size, then full, then gone."""
     grown = 1.18 * np.sin(np.pi / 2 * np.clip(age / 0.22, 0, 1))
     settle = 0.18 * np.clip((age - 0.22) / 0.2, 0, 1)
-    return np.asarray((grown - settle) * np.clip((1 - age) / 0.3, 0, 1) ** 0.8)
+    return np.asarray((grown - settle) * np.clip((1 - age) / 0.25, 0, 1) ** 0.5)

@@ -87,7 +87,7 @@ EXPRESSIONS = {
     "aa": Face(width=0.74, smile=0.0085, rise=0.0030, drop=0.0060, square=0.7, jaw=0.72),
     "ih": Face(width=0.72, smile=0.0090, rise=0.0012, drop=0.0050, square=0.6, jaw=0.10),
     "ou": Face(
-        width=0.115, smile=-0.0005, rise=0.0050, drop=0.0056, lips=0.0062, pout=0.0165,
+        width=0.125, smile=-0.0005, rise=0.0054, drop=0.0060, lips=0.0074, pout=0.0190,
     ),
     "ee": Face(width=0.92, smile=0.0125, rise=0.0016, drop=0.0056, square=0.5, jaw=0.04),
     "oh": Face(

@@ -20,9 +20,9 @@ from characters.pose import Skeleton
 
 WHITE, RIM = rgb("#fdfdf8"), rgb("#2e150c")
 IRIS, PUPIL, BROW = rgb("#8a4a22"), rgb("#140d10"), rgb("#14706f")
-CLOSED, SAG = np.radians(-9.0), np.radians(9.0)
+CLOSED, SAG = np.radians(-6.0), np.radians(8.5)
 """Where the corners of the closed eye are, and how far its middle hangs below them [rad]."""
-LOFT = (0.075, 0.125)
+LOFT = (0.075, 0.130)
 """How far lower and upper lids are above the ball, in radii: they move along chords of it."""
 COLUMNS = 32
 """Points around an eye."""
@@ -67,7 +67,7 @@ def _lids(face: Face, side: float, bound: Skeleton) -> Mesh:
     away = outer - edge
     lash = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * (0.03 + 0.065 * up)[:, None]
     loft = LOFT[0] + (LOFT[1] - LOFT[0]) * up
-    rows = [_over(edge, 0.99 + 0 * loft), _over(edge, 1 + 0.85 * loft), _over(lash, 1 + loft)]
+    rows = [_over(edge, 0.99 + 0 * loft), _over(edge, 1 + 0.94 * loft), _over(lash, 1 + loft)]
     skin = _skin_radius(outer)
     for s in (0.16, 0.36, 0.6, 0.82, 1.0):
         flat, sunk = lash + (outer - lash) * s, eased((s - 0.15) / 0.85)

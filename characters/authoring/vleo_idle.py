@@ -28,6 +28,7 @@ def idle() -> Performance:
     for eye in ("LeftEye", "RightEye"):
         act.turn(eye, left=0.9 * (look - neck), up=4 * DEGREE * wonder)
     act.show("happy", keys(n, (0, 0.2), (0.2, 0.1), (0.4, 0.25), (0.62, 0.0), (0.84, 0.35)))
-    act.show("surprised", 0.2 * wonder)
+    act.show("surprised", 0.12 * wonder)
+    act.show("ou", 0.3 * wonder)
     tail(act, 3 * DEGREE * wave(n, 4, 0.1) + 4 * DEGREE, 6.5 * DEGREE * wave(n, 3), 1.5)
     return act

@@ -48,12 +48,12 @@ def kiss(level: int, bound: Skeleton) -> Performance:
 def _throw(act: Performance, big: float) -> Array:
     """Draw the head back, thrust it forward with the chin up; return the turn of the neck."""
     n = act.frames
-    back, thrust = [(0.05, 0), (0.29, 23), (0.345, 26)], [(0.44, -32), (0.51, -25), (0.59, -26)]
+    back, thrust = [(0.05, 0), (0.29, 23), (0.345, 26)], [(0.44, -26), (0.51, -19), (0.59, -20)]
     throw = big * DEGREE * keys(n, *back, *thrust, (0.74, 5), (0.84, -2), (0.93, 0))
     act.turn("neck1", up=throw)
     act.turn("neck2", up=0.6 * later(throw, 0.014))
     act.turn("neck3", up=0.3 * later(throw, 0.028))
-    drawn, out = [(0.05, 8), (0.29, -15), (0.345, -18)], [(0.455, 60), (0.53, 46), (0.60, 45)]
+    drawn, out = [(0.05, 8), (0.29, -15), (0.345, -18)], [(0.455, 56), (0.53, 43), (0.60, 42)]
     chin = keys(n, *drawn, *out, (0.76, 4), (0.86, 13), (0.95, 8))
     lean = keys(n, (0.06, 0), (0.30, -10), (0.45, 19), (0.61, 16), (0.78, -7), (0.90, 0)) * DEGREE
     act.turn("head", up=big * DEGREE * chin, tilt=lean)
@@ -64,7 +64,7 @@ def _throw(act: Performance, big: float) -> Array:
 def _pucker(act: Performance) -> None:
     """Shut the eyes, push the lips out for a smack, and open up into a smile."""
     n = act.frames
-    act.show("blink", keys(n, (0.30, 0), (0.36, 1), (0.61, 1), (0.68, 0)))
+    act.show("blink", keys(n, (0.30, 0), (0.355, 1), (0.60, 1), (0.65, 0)))
     lips = [(0.08, 0), (0.25, 0.85), (0.38, 1.0), (0.45, 1.4), (0.50, 1.15), (0.545, 1.2)]
     act.show("ou", np.maximum(keys(n, *lips, (0.60, 0), (0.98, 0)), 0))
     act.show(
@@ -125,8 +125,8 @@ def _hearts(act: Performance, level: int, bound: Skeleton) -> None:
     third = 0.9 * size if level else 0.0
     up, side, ahead = spread * np.array([0.100, 0.072, 0.060])
     flights = [  # past the face, not over it: it is to be seen
-        Flight(0.45, 0.46, (1.05 * side, 1.20 * up, 1.3 * ahead), size, 0.010, 0.15, 0.5),
-        Flight(0.51, 0.42, (-1.1 * side, 0.90 * up, 1.1 * ahead), 0.8 * size, -0.008, -0.2, -0.5),
-        Flight(0.57, 0.40, (1.5 * side, 0.35 * up, 0.8 * ahead), third, 0.008, 0.3, 0.5),
+        Flight(0.45, 0.46, (1.55 * side, 1.20 * up, 0.9 * ahead), size, 0.010, 0.15, 0.5),
+        Flight(0.51, 0.42, (-1.35 * side, 0.90 * up, 0.9 * ahead), 0.8 * size, -0.008, -0.2, -0.5),
+        Flight(0.57, 0.40, (1.75 * side, 0.15 * up, 0.8 * ahead), third, 0.008, 0.3, 0.5),
     ]
     fly(act, HEARTS, flights, bound)

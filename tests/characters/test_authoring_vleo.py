@@ -6,16 +6,25 @@ import pytest
 from characters import rotations
 from characters.authoring.loops import follow, keys, later, wave
 from characters.authoring.vleo import build_vleo
-from characters.authoring.vleo_rig import BURSTS, FEET, HEARTS
+from characters.authoring.vleo_body import EYE_RADIUS, SIGHT
+from characters.authoring.vleo_rig import BURSTS, EYE, FEET, HEARTS
 from characters.blend import mix
 from characters.character import Character, skin
+from characters.pose import Pose
 
 KISSES = ("kiss_head", "kiss_legs", "kiss_tail")
 SHOUTS = ("shout_head", "shout_legs", "shout_tail")
-CLIPS = ("idle", *KISSES, *SHOUTS)
+GESTURES = ("nod", "shake")
+CLIPS = ("idle", *KISSES, *SHOUTS, *GESTURES)
+EXPRESSIONS = (
+    *("blink", "blinkLeft", "blinkRight", "happy", "angry", "sad", "surprised", "relaxed"),
+    *("aa", "ih", "ou", "ee", "oh"),
+)
 HIND = tuple(foot for foot in FEET if "Hind" in foot)
 PLANTED = {
     "idle": FEET,
+    "nod": FEET,
+    "shake": FEET,
     "kiss_head": FEET,
     "kiss_legs": (*HIND, "RightFrontFoot"),
     "shout_head": FEET,
@@ -94,7 +103,7 @@ def test_knows_to_idle_and_two_actions_at_three_intensities(vleo: Character) -> 
 def test_loops_close_without_a_jump(vleo: Character, name: str) -> None:
     clip = vleo.clips[name]
     poses = clip.poses
-    assert clip.loop
+    assert clip.loop == (name not in GESTURES)
     assert np.allclose(poses.translations[0], poses.translations[-1], atol=1e-6)
     assert np.allclose(rotations.align(poses.rotations[-1], poses.rotations[0]), poses.rotations[0])
     spine = poses.globals(vleo.skeleton)[:, vleo.skeleton.index("head"), :3, 3]
@@ -199,6 +208,111 @@ def test_clips_leave_blinking_to_life_but_for_the_kiss(vleo: Character) -> None:
         closed = clip.poses.morphs[:, vleo.morphs.index("blink")]
         assert closed.max() <= 1.0
         assert (closed.max() > 0.0) == (name in KISSES), name
+
+
+def faced(vleo: Character, eyes: tuple[float, float] = (0.0, 0.0), **on: float) -> np.ndarray:
+    """Return the skin with morphs on and the eyes turned left and up [rad], (vertices, 3)."""
+    rest = vleo.skeleton.rest
+    turned = rest.rotations.copy()
+    for eye in ("LeftEye", "RightEye"):
+        turn = rotations.multiply(rotations.about("y", eyes[0]), rotations.about("x", -eyes[1]))
+        turned[vleo.skeleton.index(eye)] = turn
+    pose = Pose(rest.translations, turned, rest.scales)
+    return skin(vleo.meshes[0], pose.globals(vleo.skeleton), on)
+
+
+def held_by(vleo: Character, joint: str) -> np.ndarray:
+    """Return which vertices a joint holds wholly, (vertices,)."""
+    mesh = vleo.meshes[0]
+    held = mesh.weights * (mesh.joints == vleo.skeleton.index(joint))
+    return np.asarray(held.sum(axis=1) > 0.99)
+
+
+def test_expressions_are_those_of_vrm_and_reach_far_enough_to_be_seen(vleo: Character) -> None:
+    assert vleo.morphs == EXPRESSIONS
+    reach = {morph.name: np.abs(morph.shifts).max() for morph in vleo.meshes[0].morphs}
+    assert min(reach.values()) > 0.004  # 2 px on the table
+    mouth = vleo.skeleton.rest.globals(vleo.skeleton)[vleo.skeleton.index("lips"), :3, 3]
+    rest = faced(vleo)
+    lips = (np.linalg.norm(rest - mouth, axis=1) < 0.03) & np.isin(
+        vleo.meshes[0].joints[:, 0], [vleo.skeleton.index(joint) for joint in ("head", "jaw")]
+    )
+    assert np.ptp(faced(vleo, aa=1.0)[lips, 1]) > np.ptp(rest[lips, 1]) + 0.015
+    assert faced(vleo, ou=1.0)[lips, 2].max() > rest[lips, 2].max() + 0.015
+    assert np.abs(faced(vleo, happy=1.0) - faced(vleo, sad=1.0)).max() > 0.01
+
+
+@pytest.mark.parametrize("eyes", [(0.0, 0.0), (0.49, 0.0), (-0.49, 0.38), (0.3, -0.38)])
+def test_closed_lids_hide_the_eyes_wherever_they_look(
+    vleo: Character, eyes: tuple[float, float]
+) -> None:
+    points, triangles = faced(vleo, eyes, blink=1.0), vleo.meshes[0].triangles
+    ball = held_by(vleo, "LeftEye")[triangles].all(axis=1)
+    near = np.abs(points[triangles[:, 0]] - EYE).max(axis=1) < 0.06
+    ways = SIGHT + np.array([[a, b, 0.0] for a in np.arange(-6, 7) for b in np.arange(-6, 7)]) / 9
+    for way in ways / np.linalg.norm(ways, axis=1, keepdims=True):
+        lid, eye = (_farthest(points[triangles[near & which]], way) for which in (~ball, ball))
+        assert lid > eye
+
+
+def _farthest(corners: np.ndarray, way: np.ndarray) -> float:
+    """Return how far from the middle of the eye a ray leaves triangles (n, 3, 3) last [m]."""
+    a, b, c = (corners[:, i] - EYE for i in range(3))
+    with np.errstate(divide="ignore", invalid="ignore"):  # Möller and Trumbore (1997)
+        across = np.cross(way, c - a)
+        scale = 1 / np.sum((b - a) * across, axis=1)
+        u = -np.sum(a * across, axis=1) * scale
+        q = np.cross(-a, b - a)
+        v, t = q @ way * scale, np.sum((c - a) * q, axis=1) * scale
+    return float(np.max(t, where=(u >= 0) & (v >= 0) & (u + v <= 1) & (t > 0), initial=0.0))
+
+
+@pytest.mark.parametrize("on", [0.25, 0.5, 0.75, 1.0])
+def test_lids_slide_over_the_eyes_and_never_through_them(vleo: Character, on: float) -> None:
+    lid = ~held_by(vleo, "LeftEye") & held_by(vleo, "head")
+    ahead = (faced(vleo) - EYE) @ SIGHT
+    away = np.linalg.norm(faced(vleo) - EYE, axis=1)
+    lid &= (away > 1.02 * EYE_RADIUS) & (away < 1.3 * EYE_RADIUS) & (ahead > 0.4 * EYE_RADIUS)
+    assert lid.sum() > 50
+    over = np.linalg.norm(faced(vleo, blink=on)[lid] - EYE, axis=1)
+    assert over.min() > 1.005 * EYE_RADIUS
+
+
+BENDS = {
+    "neck2": {"neck1": ("x", 20), "neck2": ("x", 20), "neck3": ("x", 20)},
+    "neck3": {"neck1": ("z", -20), "neck2": ("z", -20), "neck3": ("z", -20)},
+    "neck1": {"neck1": ("x", -30), "neck2": ("x", -30)},
+    "tail3": {f"tail{number}": ("y", 25) for number in range(1, 6)},
+    "tail2": {f"tail{number}": ("x", 25) for number in range(1, 6)},
+    "LeftFrontLowerLeg": {"LeftFrontUpperLeg": ("x", -45), "LeftFrontLowerLeg": ("x", 60)},
+    "LeftHindLowerLeg": {"LeftHindUpperLeg": ("x", 40), "LeftHindLowerLeg": ("x", -60)},
+}
+"""Where the skin is measured, and how joints are bent for it [degrees]."""
+
+
+@pytest.mark.parametrize("joint", BENDS)
+def test_skin_does_not_collapse_where_it_bends(vleo: Character, joint: str) -> None:
+    skeleton, rest = vleo.skeleton, vleo.skeleton.rest
+    turned = rest.rotations.copy()
+    for name, (axis, degrees) in BENDS[joint].items():
+        turned[skeleton.index(name)] = rotations.about(axis, np.radians(degrees))
+    globals_ = (
+        rest.globals(skeleton),
+        Pose(rest.translations, turned, rest.scales).globals(skeleton),
+    )
+    at = skeleton.index(joint)
+    child = skeleton.parents.index(at)
+    straight, bent = (skin(vleo.meshes[0], each) for each in globals_)
+    place, end = (globals_[0][number, :3, 3] for number in (at, child))
+    along = (end - place) / np.linalg.norm(end - place)
+    off = straight - place
+    ring = (np.abs(off @ along) < 0.008) & (np.linalg.norm(off, axis=1) < 0.06)
+    ring &= vleo.meshes[0].weights[:, 0] < 1.0
+    widths = []
+    for points in (straight[ring], bent[ring]):
+        apart = points - points.mean(axis=0)
+        widths.append(np.sqrt(np.linalg.eigvalsh(apart.T @ apart / len(apart))[1:]))
+    assert (widths[1] > 0.7 * widths[0]).all()
 
 
 def test_keys_are_met_and_never_overshot() -> None:
