@@ -11,8 +11,8 @@ import numpy as np
 from characters.held_foot import HeldFoot, Sole, turned
 from characters.legs import Legs
 from characters.motion import Step
+from characters.plain_rotations import Quaternion, Vector
 from characters.pose import Array, Pose
-from characters.two_bones import Quaternion, Vector
 
 _STRETCH = 0.997  # part of a leg's length that a held foot may need
 _SINK = 0.02  # body heights: how far the pelvis may be lowered for it

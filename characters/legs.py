@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from characters import rotations, two_bones
 from characters.phase import find_feet
+from characters.plain_rotations import Quaternion, Vector, conjugate, multiply, turn
 from characters.pose import Array, Pose, Skeleton
-from characters.two_bones import Quaternion, Vector
 
 
 @dataclass(frozen=True)
@@ -86,12 +86,12 @@ class Legs:
         for line, offset, ball, facing in zip(
             self._lines, offsets, balls.tolist(), facings.tolist(), strict=True
         ):
-            x, y, z = two_bones.turn(facing, offset)
+            x, y, z = turn(facing, offset)
             ankles.append((ball[0] - x, ball[1] - y, ball[2] - z))
             faced = local[line[0]]
             for joint in line[1:]:
-                faced = two_bones.multiply(faced, local[joint])
-            turned.append(two_bones.multiply(facing, two_bones.conjugate(faced)))
+                faced = multiply(faced, local[joint])
+            turned.append(multiply(facing, conjugate(faced)))
         return self.bend(pose, placed, ankles, turned)
 
     def bend(
@@ -114,12 +114,12 @@ class Legs:
         ):
             hip, knee, ankle = ((f[0][3], f[1][3], f[2][3]) for f in frames[1:])
             upper, lower = two_bones.reach(hip, knee, ankle, target)
-            foot = two_bones.multiply(two_bones.conjugate(two_bones.multiply(upper, lower)), foot)
+            foot = multiply(conjugate(multiply(upper, lower)), foot)
             # What is above a joint has turned along.
             turns.append(
                 tuple(
-                    two_bones.seen_from(frame[:3], turn)
-                    for frame, turn in zip(frames, (upper, lower, foot), strict=False)
+                    two_bones.seen_from(frame[:3], own)
+                    for frame, own in zip(frames, (upper, lower, foot), strict=False)
                 )
             )
         where = self.carriers[self.joints[:, 1:4]]

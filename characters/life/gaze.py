@@ -6,16 +6,25 @@ associated with horizontal saccades", 1999; Guitton and Volle, "Gaze control in 
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from characters import rotations
 from characters.anatomy import Anatomy
-from characters.part import Part
+from characters.plain_rotations import (
+    STILL,
+    Quaternion,
+    Vector,
+    conjugate,
+    from_vector,
+    less,
+    multiply,
+    to_vector,
+    turn,
+)
 from characters.pose import Array, Pose, Skeleton
-from characters.smoothing import eased, sprung
+from characters.rotations import from_matrix
+from characters.smoothing import sprung
 
 
 @dataclass(frozen=True)
@@ -31,10 +40,10 @@ class Limits:
     head_down: float = math.radians(48)
     """Of the head downwards [rad]."""
 
-    eye_yaw: float = math.radians(28)
+    eye_yaw: float = math.radians(24)
     """Of the eyes to either side in the head [rad]."""
 
-    eye_pitch: float = math.radians(22)
+    eye_pitch: float = math.radians(15)
     """Of the eyes up and down in the head [rad]."""
 
     given_up: float = math.radians(130)
@@ -42,28 +51,41 @@ class Limits:
 
 
 HUMAN = Limits()
-"""Ranges of motion of a healthy adult, a little within (Youdas et al., 1992)."""
+"""Ranges of motion of a healthy adult's neck, a little within (Youdas et al., 1992); of the eyes,
+what is used without effort, since drawn lids hide no more."""
 
 _EYES_ALONE = math.radians(9)  # the head leaves turns up to this to the eyes
 _HEAD_SHARE = 0.92  # of what is beyond it, the head takes this part
-_HEAD_LAG, _EYE_LAG, _FADE = 0.34, 0.035, 0.3  # [s]
+_HEAD_LAG, _EYE_LAG = 0.34, 0.035  # [s]
+_AHEAD: Vector = (0.0, 0.0, 1.0)
 
 
-@dataclass(frozen=True)
-class _Places:
-    """Where joints are in the part of the skeleton that carries head and eyes; −1: nowhere."""
+@dataclass
+class _Joint:
+    """A joint on the way from the root to the head or an eye."""
 
-    base: int
-    """What carries the neck."""
+    number: int
+    """In the skeleton."""
 
-    line: NDArray[np.intp]
-    """From the neck to the head."""
+    parent: int
+    """Place of its parent among such joints; −1 for none."""
 
-    parents: NDArray[np.intp]
-    """Their parents."""
+    rest: Quaternion
+    """Its rotation at rest, in the character."""
 
-    eyes: NDArray[np.intp]
-    """The eyes, two or none."""
+    turn: Quaternion = STILL
+    """Its rotation now, in the character."""
+
+    place: Vector = (0.0, 0.0, 0.0)
+    """Where it is now."""
+
+    scale: Vector = (1.0, 1.0, 1.0)
+    """How its children's shifts are stretched now."""
+
+    @property
+    def facing(self) -> Quaternion:
+        """How the body's axes lie as this joint carries them."""
+        return multiply(self.turn, conjugate(self.rest))
 
 
 class Gaze:
@@ -82,7 +104,7 @@ class Gaze:
         self.able = head is not None
         """Whether there is a head to turn."""
         self._limits = limits
-        self._yaw = self._pitch = self._yaw_speed = self._pitch_speed = self._heed = 0.0
+        self._yaw = self._pitch = self._yaw_speed = self._pitch_speed = 0.0
         self.jumped = 0.0
         """How far the eyes' aim went in the last update [rad]."""
         self._aim: tuple[float, float] | None = None
@@ -90,21 +112,12 @@ class Gaze:
             return
         line = _line(head, anatomy.joint("neck"), skeleton)
         eyes = [j for side in ("left", "right") if (j := anatomy.joint(f"{side}Eye")) is not None]
-        self._eyes = np.array(eyes, np.intp)
-        self._line = np.array(line, np.intp)
-        base = skeleton.parents[line[0]]
-        part = self._part = Part.of(skeleton, [*line, *eyes])
-        self._at = _Places(
-            base=part.number(base),
-            line=np.array([part.number(joint) for joint in line]),
-            parents=np.array([part.number(skeleton.parents[joint]) for joint in line]),
-            eyes=np.array([part.number(joint) for joint in eyes], np.intp),
-        )
-        rest = skeleton.rest.globals(skeleton)[:, :3, :3]
-        self._base_rest = _upright(rest[base]) if base >= 0 else np.eye(3)
-        self._head_rest = _upright(rest[head])
-        self._eye_rest = np.array([_upright(rest[j]) for j in eyes]).reshape(-1, 3, 3)
-        self._eye_turn = np.zeros((len(eyes), 2))
+        self._joints = _carriers(skeleton, [*line, *eyes])
+        places = {joint.number: place for place, joint in enumerate(self._joints)}
+        self._numbers = np.array([joint.number for joint in self._joints], np.intp)
+        self._line = [self._joints[places[joint]] for joint in line]
+        self._eyes = [self._joints[places[joint]] for joint in eyes]
+        self._eye_turns = [(0.0, 0.0)] * len(eyes)
 
     def update(
         self, pose: Pose, target: Array | None, elapsed: float, head_share: float = 1.0
@@ -124,47 +137,64 @@ class Gaze:
         """
         if not self.able:
             return pose
-        globals_ = self._part.globals(pose)
-        turns, places = globals_[:, :3, :3], globals_[:, :3, 3]
-        body = self._body(turns)
-        head = turns[self._at.line[-1]]
-        facing = body.T @ (head @ self._head_rest.T)[:, 2]
-        yaw, pitch = _angles(facing)
-        wish, heed = (0.0, 0.0), 0.0
+        self._place(pose)
+        body, head = self._body(), self._line[-1]
+        held = _angles(turn(conjugate(body), turn(head.facing, _AHEAD)))
+        point: Vector | None = None
         if target is not None:
-            seen = self._origin(places)
-            to = body.T @ (target - seen)
-            if np.linalg.norm(to) > 1e-6:
-                aim = _angles(to)
-                heed = float(abs(aim[0]) < self._limits.given_up)
-                wish = self._head_wish(aim, (yaw, pitch), head_share) if heed else wish
-                self._note(aim if heed else None)
-        self._heed = eased(self._heed, heed, elapsed, _FADE)
+            x, y, z = target.tolist()
+            point = (x, y, z)
+        aim = self._aimed(body, point)
+        self.jumped = 0.0 if aim is None or self._aim is None else math.dist(aim, self._aim)
+        self._aim = aim
+        wish = (0.0, 0.0) if aim is None else self._head_wish(aim, held, head_share)
         self._yaw, self._yaw_speed = sprung(self._yaw, self._yaw_speed, wish[0], elapsed, _HEAD_LAG)
         self._pitch, self._pitch_speed = sprung(
             self._pitch, self._pitch_speed, wish[1], elapsed, _HEAD_LAG
         )
-        turn = body @ _turn_between((yaw, pitch), (yaw + self._yaw, pitch + self._pitch))
+        turned = turn(body, _turn_between(held, (held[0] + self._yaw, held[1] + self._pitch)))
         local = pose.rotations.copy()
-        self._turn_line(local, turns, turn)
-        if self._eyes.size:
-            self._turn_eyes(local, turns, places, turn, target if heed else None, elapsed)
-        return Pose(pose.translations, local, pose.scales, pose.morphs)
+        self._turn_line(local, turned)
+        if self._eyes:
+            self._turn_eyes(local, turned, point if aim is not None else None, elapsed)
+        return replace(pose, rotations=local)
 
-    def _body(self, turns: Array) -> Array:
-        """Return which way the chest faces: its left, up and forward as columns, (3, 3)."""
-        if self._at.base < 0:
-            return np.eye(3)
-        body: Array = turns[self._at.base] @ self._base_rest.T
-        return body
+    def _place(self, pose: Pose) -> None:
+        """Work out where the joints are in a pose."""
+        turns = pose.rotations[self._numbers].tolist()
+        shifts = pose.translations[self._numbers].tolist()
+        scales = None if pose.scales is None else pose.scales[self._numbers].tolist()
+        for number, (joint, own, shift) in enumerate(zip(self._joints, turns, shifts, strict=True)):
+            joint.turn, joint.place = own, shift
+            if joint.parent >= 0:
+                above = self._joints[joint.parent]
+                if scales is not None:
+                    shift = [a * b for a, b in zip(shift, above.scale, strict=True)]
+                x, y, z = turn(above.turn, shift)
+                px, py, pz = above.place
+                joint.turn, joint.place = multiply(above.turn, own), (x + px, y + py, z + pz)
+            if scales is not None:
+                # Bodies are stretched along their joints' axes or evenly: shear is left out.
+                before = self._joints[joint.parent].scale if joint.parent >= 0 else (1.0, 1.0, 1.0)
+                sx, sy, sz = scales[number]
+                joint.scale = (before[0] * sx, before[1] * sy, before[2] * sz)
 
-    def _origin(self, places: Array) -> Array:
-        """Return the point from which it looks, (3,)."""
-        if self._at.eyes.size:
-            between: Array = places[self._at.eyes].mean(0)
-            return between
-        point: Array = places[self._at.line[-1]]
-        return point
+    def _body(self) -> Quaternion:
+        """Return which way the chest faces."""
+        base = self._line[0].parent
+        return self._joints[base].facing if base >= 0 else STILL
+
+    def _aimed(self, body: Quaternion, point: Vector | None) -> tuple[float, float] | None:
+        """Return yaw and pitch of a point from where the chest faces; None if it is not seen."""
+        if point is None:
+            return None
+        eyes = self._eyes or self._line[-1:]
+        middle = [sum(eye.place[axis] for eye in eyes) / len(eyes) for axis in range(3)]
+        way = less(point, (middle[0], middle[1], middle[2]))
+        if max(map(abs, way)) < 1e-6:
+            return None
+        aim = _angles(turn(conjugate(body), way))
+        return aim if abs(aim[0]) < self._limits.given_up else None
 
     def _head_wish(
         self, aim: tuple[float, float], held: tuple[float, float], share: float
@@ -179,87 +209,83 @@ class Gaze:
             wished.append((at - now) * share)
         return wished[0], wished[1]
 
-    def _note(self, aim: tuple[float, float] | None) -> None:
-        """Remember the aim and how far it went since the last time."""
-        before, self._aim = self._aim, aim
-        self.jumped = 0.0
-        if before is not None and aim is not None:
-            self.jumped = math.dist(before, aim)
-
-    def _turn_line(self, local: Array, turns: Array, turn: Array) -> None:
+    def _turn_line(self, local: Array, turned: Vector) -> None:
         """Turn neck and head: each joint of the line by an equal part, so that they bend alike.
 
         Powers of one rotation commute: each joint's parent has made its part already, so the part
         of each is the same vector, seen from the parent as it was.
         """
-        parts = np.broadcast_to(turn / len(self._line), (len(self._line), 3)).copy()
-        carried = self._at.parents >= 0
-        parents = turns[self._at.parents[carried]]
-        parts[carried] = (parts[carried, None] @ parents)[:, 0]
-        local[self._line] = rotations.multiply(
-            rotations.from_rotation_vector(parts), local[self._line]
-        )
+        x, y, z = (value / len(self._line) for value in turned)
+        for joint in self._line:
+            part = (x, y, z)
+            if joint.parent >= 0:
+                part = turn(conjugate(self._joints[joint.parent].turn), part)
+            local[joint.number] = multiply(from_vector(part), local[joint.number].tolist())
 
     def _turn_eyes(
-        self,
-        local: Array,
-        turns: Array,
-        places: Array,
-        turn: Array,
-        target: Array | None,
-        elapsed: float,
+        self, local: Array, turned: Vector, point: Vector | None, elapsed: float
     ) -> None:
-        """Turn the eyes in the head that has turned, each to the target by itself."""
-        wish = np.zeros_like(self._eye_turn)
-        if target is not None:
-            centre = places[self._at.line[-1]]
-            turned = rotations.to_matrix(rotations.from_rotation_vector(turn))
-            head = turned @ turns[self._at.line[-1]]
-            eyes = centre + (places[self._at.eyes] - centre) @ turned.T
-            seen = (target - eyes) @ (head @ self._head_rest.T)
-            wish[:, 0] = np.arctan2(seen[:, 0], seen[:, 2])
-            wish[:, 1] = np.arctan2(seen[:, 1], np.hypot(seen[:, 0], seen[:, 2]))
-            most = (self._limits.eye_yaw, self._limits.eye_pitch)
-            wish = np.clip(wish, np.negative(most), most)
-        self._eye_turn = wish + (self._eye_turn - wish) * math.exp(-elapsed / _EYE_LAG)
-        yaw, pitch = self._eye_turn[:, :1], self._eye_turn[:, 1:]
-        # About the body's up, and about its left downwards, in the frames of the eyes.
-        vectors = yaw * self._eye_rest[:, 1] - pitch * self._eye_rest[:, 0]
-        local[self._eyes] = rotations.multiply(
-            local[self._eyes], rotations.from_rotation_vector(vectors)
-        )
+        """Turn the eyes in the head that has turned, each to the point by itself."""
+        head, whole = self._line[-1], from_vector(turned)
+        back = conjugate(multiply(whole, head.facing))
+        kept = math.exp(-elapsed / _EYE_LAG)
+        for number, eye in enumerate(self._eyes):
+            wish = (0.0, 0.0)
+            if point is not None:
+                x, y, z = turn(whole, less(eye.place, head.place))
+                place = (x + head.place[0], y + head.place[1], z + head.place[2])
+                yaw, pitch = _angles(turn(back, less(point, place)))
+                yaw_most, pitch_most = self._limits.eye_yaw, self._limits.eye_pitch
+                wish = (
+                    min(max(yaw, -yaw_most), yaw_most),
+                    min(max(pitch, -pitch_most), pitch_most),
+                )
+            before = self._eye_turns[number]
+            yaw, pitch = (w + (b - w) * kept for w, b in zip(wish, before, strict=True))
+            self._eye_turns[number] = yaw, pitch
+            # About the body's up, and about its left downwards, in the frame of the eye.
+            own = turn(conjugate(eye.rest), (-pitch, yaw, 0.0))
+            local[eye.number] = multiply(local[eye.number].tolist(), from_vector(own))
+
+
+def _carriers(skeleton: Skeleton, joints: list[int]) -> list[_Joint]:
+    """Return some joints with all that carry them, parents first."""
+    wanted = set(joints)
+    for joint in reversed(range(len(skeleton))):
+        if joint in wanted and skeleton.parents[joint] >= 0:
+            wanted.add(skeleton.parents[joint])
+    order = sorted(wanted)
+    place = {joint: number for number, joint in enumerate(order)} | {-1: -1}
+    matrices = skeleton.rest.globals(skeleton)[order, :3, :3]
+    sizes = np.linalg.norm(matrices, axis=1, keepdims=True)
+    rest = from_matrix(matrices / np.where(sizes > 0, sizes, 1.0)).tolist()
+    return [
+        _Joint(joint, place[skeleton.parents[joint]], tuple(turned))
+        for joint, turned in zip(order, rest, strict=True)
+    ]
 
 
 def _line(head: int, neck: int | None, skeleton: Skeleton) -> list[int]:
-    """Return the joints from the neck down to the head; the head alone where there is no neck."""
+    """Return the joints from the neck to the head; the head alone where there is no neck."""
     line = [head]
     while neck is not None and line[-1] not in (neck, -1):
         line.append(skeleton.parents[line[-1]])
     return line[::-1] if line[-1] == neck else [head]
 
 
-def _upright(turns: Array) -> Array:
-    """Return a matrix (3, 3) without its scale."""
-    unit: Array = turns / np.maximum(np.linalg.norm(turns, axis=0), 1e-12)
-    return unit
-
-
-def _angles(direction: Array) -> tuple[float, float]:
-    """Return yaw to the left and pitch upwards [rad] of a direction (3,): left, up, forward."""
-    x, y, z = direction.tolist()
+def _angles(direction: Vector) -> tuple[float, float]:
+    """Return yaw to the left and pitch upwards [rad] of a direction: left, up, forward."""
+    x, y, z = direction
     return math.atan2(x, z), math.atan2(y, math.hypot(x, z))
 
 
-def _turn_between(start: tuple[float, float], end: tuple[float, float]) -> Array:
-    """Return what turns one direction to another, level to level, as a rotation vector (3,) [rad].
+def _turn_between(start: tuple[float, float], end: tuple[float, float]) -> Vector:
+    """Return what turns one direction to another, level to level, as a rotation vector [rad].
 
     The directions are yaws to the left and pitches upwards: first back to straight ahead by
     the yaw of one, then by the difference of the pitches, then by the yaw of the other.
     """
     half = (end[0] / 2, (start[1] - end[1]) / 2, -start[0] / 2)
     (sa, sb, sc), (ca, cb, cc) = map(math.sin, half), map(math.cos, half)
-    x, y, z, w = ca * sb, sa * cb, -sa * sb, ca * cb
-    x, y, z, w = x * cc - z * sc, w * sc + y * cc, z * cc + x * sc, w * cc - y * sc
-    sine = math.sqrt(x * x + y * y + z * z)
-    scale = 2.0 if sine < 1e-9 else 2.0 * math.atan2(sine, w) / sine
-    return np.array([x * scale, y * scale, z * scale])
+    first = (ca * sb, sa * cb, -sa * sb, ca * cb)
+    return to_vector(multiply(first, (0.0, sc, 0.0, cc)))

@@ -43,6 +43,7 @@ class Life:
         self._stirring = Stirring(skeleton, anatomy, seed)
         self._morphs = len(morphs)
         self._blink = morphs.index("blink") if "blink" in morphs else None
+        self._wide = morphs.index("surprised") if "surprised" in morphs else None
         self._breath = morphs.index("breath") if "breath" in morphs else None
         self._calm = 1.0
 
@@ -93,6 +94,9 @@ class Life:
         if self._blink is not None:
             # A lid that the clip has closed already does not close twice.
             morphs[self._blink] = max(float(morphs[self._blink]), closed)
+        if self._wide is not None:
+            # Morphs add up: eyes that are torn open would not close all the way.
+            morphs[self._wide] *= 1.0 - closed
         if self._breath is not None:
             morphs[self._breath] += self._stirring.breath
         return Pose(pose.translations, pose.rotations, pose.scales, morphs)

@@ -46,7 +46,7 @@ def angle(a, b):
 
 
 @settings(max_examples=30, deadline=None)
-@given(st.integers(0, 9), st.floats(-1.4, 1.4), st.floats(-0.7, 0.7), st.floats(0.3, 5.0))
+@given(st.integers(0, 9), st.floats(-1.3, 1.3), st.floats(-0.5, 0.5), st.floats(0.6, 5.0))
 def test_eyes_end_on_what_they_look_at(seed, yaw, pitch, distance):
     skeleton, anatomy = bust(seed)
     gaze = Gaze(skeleton, anatomy)
