@@ -38,8 +38,8 @@ OPENING = np.radians([46.0, 42.0, 38.0])
 
 SPINE = np.array(  # height, forward and radius from the tip of the tail to the nape [m]
     [
-        [0.122, -0.262, 0.0070],
-        [0.100, -0.243, 0.0108],
+        [0.124, -0.262, 0.0082],
+        [0.101, -0.244, 0.0112],
         [0.083, -0.212, 0.0148],
         [0.077, -0.176, 0.0202],
         [0.081, -0.140, 0.0272],
@@ -120,7 +120,7 @@ class Hollow(Solid):
         side = around(points)
         height = points[:, 1] - lip_line(side)
         ahead = 1 - np.clip(np.abs(side) / 0.55, 0, 1) ** 2
-        room = np.where(height > 0, 0.0042 + 0.0053 * ahead, 0.0090)
+        room = np.where(height > 0, 0.0042 + 0.0034 * ahead, 0.0086)
         up = room * (1 - np.clip(np.abs(side) / 0.86, 0, 1) ** 4)
         slot = np.maximum(np.abs(height) - up, 0.132 - points[:, 2])
         return np.asarray(slot)

@@ -33,14 +33,17 @@ def _burst(joint: str, bound: Skeleton) -> Mesh:
     """Return a spiky star that looks like one from every side, 60 mm wide."""
     ways = np.array(list(np.ndindex(3, 3, 3))) - 1.0
     corners = np.count_nonzero(ways, axis=1)
-    rays = []
+    angle = np.linspace(np.pi, 0, 7)
+    ball = 0.0150 * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    place = facing(np.array([0.0, 0.0, 1.0]), np.array(MOUTH))
+    rays = [lathe(ball, [YELLOW] * 6, place, joint, bound, 10)]
     for way in ways[corners != 2]:  # a cube's six faces and eight corners
         if not way.any():
             continue
         size = 1.0 if np.count_nonzero(way) == 1 else 0.8
-        rings = size * np.array([[0, 0], [10.5, 7], [5, 20], [0, 34]]) / 1000
+        rings = size * np.array([[0, 0], [9.5, 10], [5, 20], [0, 35]]) / 1000
         place = facing(way, np.array(MOUTH))
-        rays.append(lathe(rings, [YELLOW, FLAME, EMBER], place, joint, bound, 5))
+        rays.append(lathe(rings, [FLAME, FLAME, EMBER], place, joint, bound, 5))
     return join("", rays)
 
 

@@ -73,14 +73,14 @@ EXPRESSIONS = {
     ),
     "angry": Face(
         upper=0.70, upper_tilt=-0.80, lower=0.62, brow=-0.13, brow_inner=-0.30,
-        width=0.62, smile=-0.0085, rise=0.0005, drop=0.0012, lips=0.0024,
+        width=0.60, smile=-0.0062, rise=0.0005, drop=0.0012, lips=0.0024,
     ),
     "sad": Face(
         upper=0.74, upper_tilt=0.46, lower=0.88, brow=-0.02, brow_inner=0.36,
         width=0.50, smile=-0.0070, drop=0.0010, pout=0.0015, lips=0.0028,
     ),
     "surprised": Face(
-        upper=1.20, lower=1.12, brow=0.30, width=0.36, smile=0.0, rise=0.0090, drop=0.0070,
+        upper=1.20, lower=1.12, brow=0.30, width=0.36, smile=0.0, rise=0.0080, drop=0.0070,
         jaw=0.26, pout=0.0020,
     ),
     "relaxed": Face(upper=0.42, lower=0.72, brow=0.05, width=0.74, smile=0.0130, drop=0.0016),
@@ -91,7 +91,7 @@ EXPRESSIONS = {
     ),
     "ee": Face(width=0.92, smile=0.0125, rise=0.0016, drop=0.0056, square=0.5, jaw=0.04),
     "oh": Face(
-        width=0.31, smile=0.0, rise=0.0105, drop=0.0085, lips=0.0036, pout=0.0065, jaw=0.26,
+        width=0.31, smile=0.0, rise=0.0085, drop=0.0085, lips=0.0036, pout=0.0065, jaw=0.26,
     ),
 }  # fmt: skip
 """By VRM's names."""

@@ -51,9 +51,9 @@ def _ball(side: float, bound: Skeleton) -> list[Mesh]:
     for across, up, radius in ((-0.24, 0.30, 0.0052), (0.20, -0.27, 0.0024)):
         toward = frame @ [across, up, 1.0]  # on the same side in both: one sun
         wide = radius / RADIUS * np.array([0.0, 1.0, 0.55, 0.0])
-        rings = RADIUS * 1.012 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
-        rings[:2, 1] *= 0.97
-        pieces.append(lathe(rings, [WHITE] * 3, facing(toward, center), joint, bound, 12))
+        rings = RADIUS * 1.024 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
+        rings[:2, 1] *= 0.96
+        pieces.append(lathe(rings, [WHITE] * 3, facing(toward, center), joint, bound, 16))
     return pieces
 
 
@@ -81,7 +81,7 @@ def _lids(face: Face, side: float, bound: Skeleton) -> Mesh:
     rings = rings if side > 0 else rings[:, ::-1]
     mesh = ringed(rings, _lid_colors(rings), "head", bound)
     fixed = normals_of(head().distance, mesh.positions.astype(float), 0.006)
-    share = np.repeat([0, 0, 1.0, 0.7, 0.25, *[0.0] * (len(rings) - 5)], COLUMNS)
+    share = np.repeat([0, 0, 1.0, 1.0, 0.85, 0.6, 0.3, *[0.0] * (len(rings) - 7)], COLUMNS)
     return with_normals(mesh, fixed, share)
 
 

@@ -15,7 +15,7 @@ from characters.pose import Skeleton
 LIP = rgb("#ff7d8c")
 COLUMNS = 40
 """Points around the mouth."""
-REACH = (1.10, 0.0125, 0.0130)
+REACH = (1.10, 0.0140, 0.0155)
 """Of the skin about the mouth: half its width [rad], and how far it reaches up and down [m]."""
 _SHARES = (0.0, 0.16, 0.40, 0.70, 1.0)
 """From the lips to where the skin about them ends."""
@@ -125,7 +125,7 @@ def _tongue(face: Face, bound: Skeleton) -> Mesh:
     polar = np.linspace(0, np.pi, 9)[:, None]
     x, z = np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn)
     ball = np.stack([x, np.cos(polar) + 0 * x, z], axis=-1)[::-1, ::-1]
-    points = ball * [0.0200, 0.0060, 0.0195] + [0.0, 0.2082, 0.1560]
+    points = ball * [0.0180, 0.0060, 0.0195] + [0.0, 0.2082, 0.1560]
     groove = np.clip(ball[..., 1], 0, 1) * np.exp(-((points[..., 0] / 0.004) ** 2))
     points[..., 1] -= 0.0014 * groove
     flat = points.reshape(-1, 3)

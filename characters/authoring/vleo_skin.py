@@ -11,6 +11,7 @@ from characters.authoring.surface import normals_of, polygonise
 from characters.authoring.vleo_body import (
     BACK_TEAL,
     CREAM,
+    EYE_RADIUS,
     MAROON,
     TEAL,
     Hollow,
@@ -20,10 +21,13 @@ from characters.authoring.vleo_body import (
     spine_line,
     whole,
 )
+from characters.authoring.vleo_rig import EYE
 from characters.pose import Skeleton
 
-TRUNK_CELL, FACE_CELL = (0.0086, 0.0106, 0.0108), (0.0056, 0.0044, 0.0047)
+TRUNK_CELL, FACE_CELL = (0.0084, 0.0101, 0.0100), (0.0056, 0.0044, 0.0047)
 """Edges of a grid cell far from the mouth and about it, along x, y, z [m]."""
+FORWARD, TAIL_END = 2, -0.19
+"""The axis along which the tail points back, and where it is so thin that cells are short [m]."""
 MOUTH_BOX = ((-0.044, 0.044), (0.192, 0.246), (0.134, 0.300))
 """Where the cells are small, along x, y, z [m]."""
 
@@ -56,7 +60,9 @@ def body(bound: Skeleton) -> Body:
     weights = skin_weights(points, triangles, solids, distances, bound, 0.022)
     weights = _with_face(points, _with_firm_feet(points, weights, bound), bound)
     normals = normals_of(skin().distance, points, 0.003)
-    outside = whole().distance(points) > -0.0012  # their light knows nothing of hidden rims
+    eye = np.linalg.norm(np.abs(points) * [1, 0, 0] + points * [0, 1, 1] - EYE, axis=1)
+    # The light knows nothing of rims that are hidden under lids and lips.
+    outside = (whole().distance(points) > -0.0012) | (eye < 1.5 * EYE_RADIUS)
     normals[outside] = normals_of(whole().distance, points[outside], 0.003)
     return Body(points, normals, triangles, weights, painted(points, normals))
 
@@ -70,6 +76,8 @@ def _surface() -> tuple[Array, NDArray[np.int64]]:
         near_low, near_high = MOUTH_BOX[axis]
         small = eased((line - near_low) / 0.02 + 1) * eased((near_high - line) / 0.02 + 1)
         edge = TRUNK_CELL[axis] + (FACE_CELL[axis] - TRUNK_CELL[axis]) * small
+        if axis == FORWARD:
+            edge = edge * (1 - 0.42 * eased((TAIL_END - line) / 0.03))
         lines.append((line, np.concatenate([[0.0], np.cumsum(np.diff(line) / edge[1:])])))
 
     def unstretched(cells: Array) -> Array:
@@ -120,9 +128,11 @@ def painted(points: Array, normals: Array) -> Array:
     legs = whole().solids()
     leg = np.min([s.distance(points) for s in legs if s.bones[0][-3:] in ("Leg", "oot")], axis=0)
     under = eased((_underside(points) - 0.26) / 0.30) * eased((0.208 - points[:, 1]) / 0.012)
+    under = under * eased((points[:, 2] + 0.215) / 0.08)  # the tip of the tail is teal all round
     colors = _coat(colors, CREAM, under * eased((leg + 0.001) / 0.014))
     chin = Ellipsoid((0.0, 0.200, 0.150), (0.052, 0.030, 0.046)).distance(points)
     lower = eased((lip_line(around(points)) - 0.0035 - points[:, 1]) / 0.005)
+    lower = lower * eased((0.85 - np.abs(around(points))) / 0.35)  # not about its corners
     colors = _coat(colors, CREAM, lower * eased(0.5 - chin / 0.012))
     inside = -np.maximum(whole().distance(points) + 0.0007, Hollow().distance(points) - 0.0020)
     return _coat(colors, MAROON, eased(0.5 + inside / 0.0010))
@@ -130,12 +140,12 @@ def painted(points: Array, normals: Array) -> Array:
 
 def _underside(points: Array) -> Array:
     """Return the cosine between the direction from the spine and straight under it, (n,)."""
-    line = spine_line(60)[:, :3]
+    line = spine_line(160)[:, :3]
     along = np.gradient(line, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     nearest = np.argmin(np.linalg.norm(points[:, None] - line, axis=2), axis=1)
     out = points - line[nearest]
-    down = np.stack([np.zeros(60), -along[:, 2], along[:, 1]], axis=1)[nearest]
+    down = np.stack([np.zeros(160), -along[:, 2], along[:, 1]], axis=1)[nearest]
     return np.asarray(np.sum(out * down, axis=1) / np.linalg.norm(out, axis=1))
 
 
