@@ -64,7 +64,7 @@ def _throw(act: Performance, big: float) -> Array:
 def _pucker(act: Performance) -> None:
     """Shut the eyes, push the lips out for a smack, and open up into a smile."""
     n = act.frames
-    act.show("blink", keys(n, (0.30, 0), (0.355, 1), (0.60, 1), (0.65, 0)))
+    act.show("blink", keys(n, (0.30, 0), (0.355, 1), (0.595, 1), (0.63, 0)))
     lips = [(0.08, 0), (0.25, 0.85), (0.38, 1.0), (0.45, 1.4), (0.50, 1.15), (0.545, 1.2)]
     act.show("ou", np.maximum(keys(n, *lips, (0.60, 0), (0.98, 0)), 0))
     act.show(
