@@ -9,9 +9,10 @@ from characters.authoring.rings import ringed, with_normals
 from characters.authoring.sculpt import lathe
 from characters.authoring.shapes import Array, rgb
 from characters.authoring.surface import normals_of
-from characters.authoring.vleo_body import BACK_TEAL, EYE_AXES, LASH, OPENING, SIGHT, head
-from characters.authoring.vleo_body import EYE_RADIUS as RADIUS
+from characters.authoring.vleo_body import BACK_TEAL, LASH
 from characters.authoring.vleo_expressions import EXPRESSIONS, NEUTRAL, Face
+from characters.authoring.vleo_head import EYE_AXES, OPENING, SIGHT, head
+from characters.authoring.vleo_head import EYE_RADIUS as RADIUS
 from characters.authoring.vleo_pieces import facing
 from characters.authoring.vleo_rig import EYE
 from characters.authoring.vleo_skin import eased, painted

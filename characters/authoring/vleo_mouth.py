@@ -6,8 +6,9 @@ from characters.authoring.morphs import morphed
 from characters.authoring.rings import ringed, with_normals
 from characters.authoring.shapes import Array, rgb
 from characters.authoring.surface import normals_of
-from characters.authoring.vleo_body import MAROON, MIDDLE, ROSE, head, lip_line
+from characters.authoring.vleo_body import MAROON, ROSE
 from characters.authoring.vleo_expressions import EXPRESSIONS, HINGE, NEUTRAL, Face, cheeks, dropped
+from characters.authoring.vleo_head import MIDDLE, head, lip_line
 from characters.authoring.vleo_skin import jaw_share, painted
 from characters.mesh import Mesh
 from characters.pose import Skeleton

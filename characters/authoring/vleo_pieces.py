@@ -1,4 +1,4 @@
-"""Pieces of geometry that ride on Vleo's skin: patches, tubes, and whatever is stuck to it."""
+"""Pieces of geometry that ride on Vleo's skin: patches, and whatever is stuck to it."""
 
 from dataclasses import replace
 
@@ -52,25 +52,6 @@ def _disc() -> tuple[Array, NDArray[np.int64], Array]:
     rim = np.stack([i, sides + i, sides + j, i, sides + j, j], axis=1)
     lift = np.where(np.arange(1 + 2 * sides) <= sides, 0.0007, 0.0003)
     return points, np.vstack([fan, rim.reshape(-1, 3)]), lift
-
-
-def tube(line: Array, radius: float, weights: Array, color: Vector, body: Body) -> Mesh:
-    """Return a tube around points (n, 3), pointed at its ends, with one row of weights each."""
-    along = np.gradient(line, axis=0)
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
-    out = normals_of(whole().distance, line, 0.006)
-    across = np.cross(along, out)
-    sides = 6
-    angle = np.linspace(0, 2 * np.pi, sides, endpoint=False)[None, :, None]
-    ring = np.cos(angle) * out[:, None] + np.sin(angle) * across[:, None]
-    thick = radius * np.minimum(1.0, np.sin(np.linspace(0, np.pi, len(line))) * 4)
-    points = (line[:, None] + thick[:, None, None] * ring).reshape(-1, 3)
-    i, k = np.meshgrid(np.arange(len(line) - 1), np.arange(sides), indexing="ij")
-    k2 = (k + 1) % sides
-    a, b, c, d = i * sides + k, i * sides + k2, (i + 1) * sides + k2, (i + 1) * sides + k
-    triangles = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
-    mesh = _mesh(points, ring.reshape(-1, 3), triangles, color, body)
-    return _skinned(mesh, np.repeat(weights, sides, axis=0))
 
 
 def carried(mesh: Mesh, points: Array, body: Body) -> Mesh:

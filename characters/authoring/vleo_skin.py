@@ -8,19 +8,8 @@ from numpy.typing import NDArray
 from characters.authoring.sculpt import skin_weights
 from characters.authoring.shapes import Array, Ellipsoid, Vector
 from characters.authoring.surface import normals_of, polygonise
-from characters.authoring.vleo_body import (
-    BACK_TEAL,
-    CREAM,
-    EYE_RADIUS,
-    MAROON,
-    TEAL,
-    Hollow,
-    around,
-    lip_line,
-    skin,
-    spine_line,
-    whole,
-)
+from characters.authoring.vleo_body import BACK_TEAL, CREAM, MAROON, TEAL, skin, spine_line, whole
+from characters.authoring.vleo_head import EYE_RADIUS, Hollow, around, lip_line
 from characters.authoring.vleo_rig import EYE
 from characters.pose import Skeleton
 

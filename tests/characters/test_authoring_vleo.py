@@ -6,7 +6,7 @@ import pytest
 from characters import rotations
 from characters.authoring.loops import follow, keys, later, wave
 from characters.authoring.vleo import build_vleo
-from characters.authoring.vleo_body import EYE_RADIUS, SIGHT
+from characters.authoring.vleo_head import EYE_RADIUS, SIGHT
 from characters.authoring.vleo_rig import BURSTS, EYE, FEET, HEARTS
 from characters.blend import mix
 from characters.character import Character, skin
