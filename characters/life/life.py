@@ -6,6 +6,7 @@ from characters import rotations
 from characters.anatomy import Anatomy
 from characters.life.blink import Blinking
 from characters.life.gaze import HUMAN, Gaze, Limits
+from characters.life.lids import Lids
 from characters.life.stirring import Stirring
 from characters.pose import Array, Pose, Skeleton
 from characters.smoothing import eased
@@ -23,7 +24,7 @@ class Life:
     skeleton, anatomy
         Whose joints turn.
     morphs
-        Names of the character's morphs; "blink" and "breath" are used.
+        Names of the character's morphs; those that close the eyes (`Lids`) and "breath" are used.
     seed
         Of blinks and drift.
     limits
@@ -42,7 +43,7 @@ class Life:
         self._blinking = Blinking(seed)
         self._stirring = Stirring(skeleton, anatomy, seed)
         self._morphs = len(morphs)
-        self._blink = morphs.index("blink") if "blink" in morphs else None
+        self._lids = Lids.of(morphs)
         self._wide = morphs.index("surprised") if "surprised" in morphs else None
         self._breath = morphs.index("breath") if "breath" in morphs else None
         self._calm = 1.0
@@ -88,12 +89,10 @@ class Life:
     def _with_face(self, pose: Pose, elapsed: float) -> Pose:
         """Return the pose with lids and breath in its morphs."""
         closed = self._blinking.update(elapsed, self._gaze.jumped)
-        if self._blink is None and self._breath is None:
+        if not self._lids and self._breath is None:
             return pose
         morphs = np.zeros(self._morphs) if pose.morphs is None else pose.morphs.copy()
-        if self._blink is not None:
-            # A lid that the clip has closed already does not close twice.
-            morphs[self._blink] = max(float(morphs[self._blink]), closed)
+        self._lids.close(morphs, closed)
         if self._wide is not None:
             # Morphs add up: eyes that are torn open would not close all the way.
             morphs[self._wide] *= 1.0 - closed

@@ -9,6 +9,7 @@ from characters import Animator, Character, CharacterCommand, Pose, Skeleton, ro
 from characters.anatomy import Anatomy
 from characters.life import HUMAN, Blinking, Gaze, Life
 from characters.life.blink import closed
+from characters.life.lids import Lids
 
 STEP = 1 / 60
 NAMES = ("hips", "spine", "chest", "neck", "head", "LeftEye", "RightEye", "LeftFoot")
@@ -131,6 +132,43 @@ def test_a_great_turn_of_the_gaze_brings_a_blink():
 @given(st.floats(-1, 1))
 def test_lids_move_smoothly(time):
     assert abs(closed(time + 1e-4) - closed(time)) < 3e-3
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ["blink"],
+        ["Blink"],
+        ["eyesClosed", "eyeBlinkLeft", "eyeBlinkRight"],
+        ["eyeBlinkLeft", "eyeBlinkRight"],
+        ["eyeBlink_R", "eyeBlink_L"],
+        ["Facial_Blends.Blink_Left", "Facial_Blends.Blink_Right"],
+        ["Fcl_EYE_Close_R", "Fcl_EYE_Close_L", "Fcl_EYE_Close"],
+        ["vrc.blink"],
+        ["Eye Blink.L", "Eye Blink.R"],
+        ["まばたき"],
+    ],
+)
+def test_eyes_blink_whatever_their_morphs_are_called(names):
+    morphs = ("jawOpen", *names, "eyeSquintLeft")
+    skeleton, anatomy = bust(0)
+    life = Life(skeleton, anatomy, morphs)
+    weights = np.array([life.update(skeleton.rest, STEP).morphs for _ in range(900)])
+    shut = weights[:, 1:-1].max(axis=1) > 0.99
+    assert shut.any()
+    assert not weights[:, [0, -1]].any()
+    assert weights[:, 1:-1].sum(axis=1).max() <= (2.0 if len(names) == 2 else 1.0)
+
+
+def test_a_single_lid_of_a_pair_does_not_blink_alone():
+    assert not Lids.of(["eyeBlinkLeft", "smile"])
+
+
+def test_an_eye_that_winks_is_not_closed_twice():
+    lids = Lids.of(["blink", "blinkLeft", "blinkRight"])
+    weights = np.array([0.0, 0.7, 0.0])
+    lids.close(weights, 1.0)
+    assert weights == pytest.approx([0.3, 0.7, 0.0])
 
 
 @pytest.fixture(scope="module", params=["human", "vleo"])
