@@ -159,7 +159,8 @@ class Playground:
 
     def decide(self, controls: CubeControls, inputs: Inputs) -> Outcome:
         """Third arrow: ask the scenario."""
-        return self.scenario.update(controls, self._posed, inputs)
+        known = replace(inputs, actions=self._animator.actions)
+        return self.scenario.update(controls, self._posed, known)
 
     def attend(self, state: CubeState, controls: CubeControls, outcome: Outcome) -> Outcome:
         """Add to what a scenario wants where the character looks."""

@@ -3,20 +3,16 @@
 import math
 from dataclasses import dataclass
 
-from characters.blend import BlendSpace1D
+from characters.acts import acts_of, proceed
 from characters.character import Character
 from characters.command import CharacterCommand
 from characters.errors import CharacterError
-from characters.live import Live
 from characters.machine import StateMachine
 from characters.motion import STANDING, Motion, Step
-from characters.phase import Phased, Still
+from characters.phase import Still
 from characters.pose import Pose
 from characters.rotations import wrap
 from characters.smoothing import eased, sprung
-
-INTENSITIES = (("head", -1.0), ("legs", 0.0), ("tail", 1.0))
-"""Endings of an action's clips and the weights that they stand for (thesis, section 5.3)."""
 
 _WEIGHT_LAG = 0.12  # [s]
 _GAZE_LAG = 0.9  # [s]: how slowly it turns on the spot where it need not hop
@@ -51,21 +47,26 @@ class _Hop:
 class Actor:
     """Plays a character with "idle" and actions at three intensities; a `Performer`.
 
-    An action X is the clips X_head, X_legs and X_tail, for weights −1, 0 and 1, which start
-    together. A clip without such an ending is an action of one intensity.
+    For what an action is, see `characters.acts`. One that ends is followed by idle, until another
+    is asked for.
     """
 
     def __init__(self, character: Character, scale: float, place: Step | None) -> None:
         self.place = place or STANDING
         self.state, self.speed, self.angular, self.weight, self.height = "idle", 0.0, 0.0, 0.0, 0.0
-        self._spaces = _actions(character)
-        self._played = {name: Live(space.at(0.0)) for name, space in self._spaces.items()}
-        states: dict[str, Motion] = {"idle": _idle(character), **self._played}
+        self._acts = acts_of(character)
+        states: dict[str, Motion] = {"idle": _idle(character), **self._acts}
         self._machine = StateMachine(states, "idle")
         self._time = 0.0
         self._placed = place is not None
         self._hop: _Hop | None = None
         self._turn_speed = 0.0
+        self._done = ""  # what was asked for, and has ended
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """What it can be asked to do beside standing."""
+        return tuple(self._acts)
 
     def update(self, command: CharacterCommand, elapsed: float) -> Pose:
         """Advance by a time [s] under a command and return the pose, with the root in place."""
@@ -77,21 +78,20 @@ class Actor:
     def _act(self, command: CharacterCommand, elapsed: float, now: float) -> None:
         wish = min(max(command.weight, -1.0), 1.0)
         action = "idle" if command.action == "move" else command.action
-        if action != "idle" and action not in self._spaces:
+        if action != "idle" and action not in self._acts:
             raise CharacterError(
                 f"the character does not know {action!r}; it knows "
-                f"{', '.join(['idle', *self._spaces])}"
+                f"{', '.join(['idle', *self._acts])}"
             )
         self.weight = eased(self.weight, wish, elapsed, _WEIGHT_LAG)
+        action, self._done = proceed(self._machine, self._acts, action, self._done, now)
         if action != self._machine.state and action != "idle":
             self.weight = wish
-            self._played[action].restart(self._spaces[action].at(wish), 0.0)
+            self._acts[action].begin(wish)
         self._machine.request(action, now)
         self.state = action
         if action != "idle":
-            self._played[action].change(
-                self._spaces[action].at(self.weight), now - self._machine.entered
-            )
+            self._acts[action].change(self.weight, now - self._machine.entered)
 
     def _move(self, command: CharacterCommand, elapsed: float) -> None:
         """Hop to the target and turn to what is to be looked at."""
@@ -151,21 +151,3 @@ def _idle(character: Character) -> Motion:
     if character.clips:
         return next(iter(character.clips.values()))
     return Still(character.skeleton.rest, 1.0)
-
-
-def _actions(character: Character) -> dict[str, BlendSpace1D]:
-    """Return the blend space over the weight of each action."""
-    spaces: dict[str, BlendSpace1D] = {}
-    for name in character.clips:
-        action, _, ending = name.rpartition("_")
-        if not action or ending not in dict(INTENSITIES):
-            action = name
-        if action in spaces or action == "idle":
-            continue
-        clips = [(w, character.clips.get(f"{action}_{e}")) for e, w in INTENSITIES]
-        there = [(weight, clip) for weight, clip in clips if clip is not None]
-        there = there or [(0.0, character.clips[name])]
-        spaces[action] = BlendSpace1D(
-            tuple(weight for weight, _ in there), tuple(Phased(clip) for _, clip in there)
-        )
-    return spaces

@@ -47,6 +47,11 @@ class Performer(Protocol):
     height: float
     """How high it is over the table [m]."""
 
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """What it can be asked to do beside standing, walking and running."""
+        ...
+
     def update(self, command: CharacterCommand, elapsed: float) -> Pose:
         """Advance by a time [s] under a command and return the pose, with the root in place."""
         ...
@@ -94,6 +99,11 @@ class Animator:
         self._life: Life | None = None
         if alive:
             self._life = Life(character.skeleton, character.anatomy, character.morphs, seed)
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """What the character can be asked to do beside standing, walking and running."""
+        return self._performer.actions
 
     def update(self, command: CharacterCommand) -> PosedCharacter:
         """Advance to the command's time and return the character as it is to be drawn.

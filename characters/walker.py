@@ -4,12 +4,21 @@ import math
 
 import numpy as np
 
+from characters.acts import Act, Footing, acts_of, proceed
 from characters.character import Character
 from characters.command import CharacterCommand
 from characters.errors import CharacterError
 from characters.footlock import FootLock
 from characters.live import Live
-from characters.locomotion import IDLE_SPEED, RUN_SPEED, STEEPEST, TOP_SPEED, Gaits
+from characters.locomotion import (
+    IDLE_SPEED,
+    RUN_CLIPS,
+    RUN_SPEED,
+    STEEPEST,
+    TOP_SPEED,
+    WALK_CLIPS,
+    Gaits,
+)
 from characters.machine import StateMachine
 from characters.motion import STANDING, Motion, Step
 from characters.phase import Cyclic
@@ -21,6 +30,7 @@ from characters.strides import Strides
 _SPEED_LAG = 0.15  # [s]
 _ANGULAR_LAG = 0.15  # [s]
 _STRIDE_LAG = 0.08  # [s]
+_WEIGHT_LAG = 0.12  # [s]
 _TURN_FROM, _TURN_UNTIL = math.radians(25), math.radians(4)  # turning on the spot, with steps
 _TURN_SPEED = 1.2  # Speed of those steps
 
@@ -29,7 +39,8 @@ class Walker:
     """Plays a character with the movement tree of AvatAR; a `Performer`.
 
     Two states, as there: it stands, or it walks and runs. Standing, it turns to what it is to
-    look at in small steps on the spot.
+    look at in small steps on the spot. Its other clips are actions, which it stands for: see
+    `characters.acts`.
     """
 
     def __init__(self, character: Character, scale: float, place: Step | None) -> None:
@@ -46,11 +57,22 @@ class Walker:
         self._motion = self.gaits.at(IDLE_SPEED, 0.0)
         self._steps = Live(self._motion)
         self._first = _likest(idle.sample(0.0), self.gaits.at(IDLE_SPEED, 0.0), skeleton)
-        self._machine = StateMachine({"idle": idle, "move": self._steps}, "idle")
+        self._acts = acts_of(character, (*WALK_CLIPS.values(), *RUN_CLIPS.values(), "move"))
+        self._done = ""  # what was asked for, and has ended
+        self._machine = StateMachine({"idle": idle, "move": self._steps, **self._acts}, "idle")
         self._time = 0.0
         legs = self.gaits.legs
         self.lock = FootLock(legs, character.height) if legs is not None else None
         """What holds its feet, or None where there are no legs to bend."""
+        self._footing = {
+            name: Footing.of(act.clip, skeleton, legs.feet if legs is not None else ())
+            for name, act in self._acts.items()
+        }
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """What it can be asked to do beside standing, walking and running."""
+        return tuple(self._acts)
 
     def release(self) -> None:
         """Hold no feet from now on: they go where the motion has them."""
@@ -64,17 +86,25 @@ class Walker:
 
     def update(self, command: CharacterCommand, elapsed: float) -> Pose:
         """Advance by a time [s] under a command and return the pose, with the root in place."""
-        if command.action not in ("idle", "move"):
+        wish = "idle" if command.action == "move" else command.action
+        if wish != "idle" and wish not in self._acts:
             raise CharacterError(
-                f"the character does not know {command.action!r}; it knows idle, move"
+                f"the character does not know {command.action!r}; it knows "
+                f"{', '.join(['idle', 'move', *self._acts])}"
             )
+        act, self._done = proceed(self._machine, self._acts, wish, self._done, self._time)
+        if act != "idle":
+            return self.go(STAY, elapsed, act, min(max(command.weight, -1.0), 1.0))
         return self.go(self._course(command), elapsed)
 
-    def go(self, course: Course, elapsed: float) -> Pose:
-        """Advance by a time [s] on a course and return the pose, with the root in place."""
+    def go(self, course: Course, elapsed: float, act: str = "idle", weight: float = 0.0) -> Pose:
+        """Advance by a time [s] on a course and return the pose, with the root in place.
+
+        Standing, it plays an action at an intensity −1…1.
+        """
         used = self._course_in_use = self._follow(course, elapsed)
         now, self._time = self._time, self._time + elapsed
-        self._play(used, course.speed > 0.0, now)
+        self._play(used, "move" if course.speed > 0.0 else act, weight, now)
         self._report(used, course.speed > 0.0 and not self._turning)
         step = self._machine.travel(now, self._time)
         self.place = self.place.then(Step(step.x * self._scale, step.z * self._scale, step.yaw))
@@ -91,8 +121,13 @@ class Walker:
 
     def _down(self) -> list[bool]:
         """Return which feet the motion has on the ground; who stands, stands on all."""
-        if self._machine.state == "idle" or not isinstance(self._motion, Strides):
-            return [True] * len(self.lock.feet) if self.lock is not None else []
+        state, count = self._machine.state, len(self.lock.feet) if self.lock is not None else 0
+        if state in self._acts:
+            return self._footing[state].at(
+                self._acts[state].phase(self._time - self._machine.entered)
+            )
+        if state == "idle" or not isinstance(self._motion, Strides):
+            return [True] * count
         phase = self._steps.phase(self._time - self._machine.entered)
         return [part > 0.5 for part in self._motion.contacts(phase)]
 
@@ -122,7 +157,7 @@ class Walker:
     def _follow(self, course: Course, elapsed: float) -> Course:
         """Let Speed, Angular and stride go after a course and return them."""
         used = self._course_in_use
-        if self._machine.state == "idle":
+        if self._machine.state != "move":
             # From standing it sets off in the right way at once; the transition is the easing.
             used = Course(0.0, course.angular, course.stride)
         return Course(
@@ -131,18 +166,34 @@ class Walker:
             eased(used.stride, course.stride, elapsed, _STRIDE_LAG),
         )
 
-    def _play(self, used: Course, moving: bool, now: float) -> None:
+    def _play(self, used: Course, state: str, weight: float, now: float) -> None:
         """Keep the right state going with the parameters in use."""
         motion = self._motion = self.gaits.at(used.speed, used.angular, used.stride)
         if self._machine.state == "move":
             self._steps.change(motion, now - self._machine.entered)
-        elif moving:
+        elif state == "move":
             self._steps.restart(motion, self._first)
-        self._machine.request("move" if moving else "idle", now)
+        if state in self._acts:
+            self._perform(self._acts[state], weight, now if self._machine.state == state else None)
+        self._machine.request(state, now)
+
+    def _perform(self, act: Act, weight: float, now: float | None) -> None:
+        """Let an action go on, or begin where there is no time [s] yet."""
+        if now is None:
+            self.weight = weight
+            act.begin(weight)
+            return
+        self.weight = eased(self.weight, weight, self._time - now, _WEIGHT_LAG)
+        act.change(self.weight, now - self._machine.entered)
 
     def _report(self, used: Course, going: bool) -> None:
         """Say what it is doing; to turn on the spot is to stand."""
+        state = self._machine.state
         self.state, self.speed, self.angular = "idle", 0.0, 0.0
+        if state in self._acts:
+            self.state = state
+        else:
+            self.weight = 0.0
         if going:
             self.state = "run" if used.speed > RUN_SPEED else "walk"
             self.speed, self.angular = used.speed, used.angular

@@ -16,6 +16,9 @@ class Inputs:
     clear: bool = False
     """Whether the player asked to start over: forget the path, the mood …"""
 
+    actions: tuple[str, ...] = ()
+    """What the character on the table can be asked to do beside walking."""
+
 
 @dataclass(frozen=True)
 class EmotionTarget:

@@ -21,12 +21,18 @@ RUN_ABOVE = 3.0
 ELBOW_ROOM = 0.04
 """How far from the cube's centre the character aims, so that both have room [m]."""
 
+TREATS = ("jump", "wave", "cheer")
+"""What a character that knows it does when the cube is shaken, in turn."""
+
 CAMERA = np.array([0.0, 2.0])
 """A point on the table far towards the camera, (x, z) [m]: where the player sits."""
 
 
 class Follow:
-    """The character chases the cube; the turn of the cube sets how fast (M10)."""
+    """The character chases the cube; the turn of the cube sets how fast (M10).
+
+    Shaking the cube is not in the thesis: the character then jumps, waves or cheers, if it can.
+    """
 
     name = "follow"
     cube = "locomotion"
@@ -36,15 +42,18 @@ class Follow:
     def __init__(self, speed_map: str = "corrected") -> None:
         self._dial = SpeedDial(speed_map)
         self._presence = Presence()
+        self._treats = 0
+        self._treat: tuple[str, bool] | None = None  # what it does, and whether it has begun
 
     def update(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
     ) -> Outcome:
         """Decide on one frame; see `Scenario.update`."""
         speed = self._dial.update(controls.camera_angle, controls.timestamp)
+        treat = self._shaken(controls, character, inputs)
         command = CharacterCommand(
             timestamp=controls.timestamp,
-            action="move" if speed > IDLE_BELOW else "idle",
+            action=treat or ("move" if speed > IDLE_BELOW else "idle"),
             speed=speed,
             target=_beside(controls.position, character),
             look_at=CAMERA,
@@ -53,6 +62,21 @@ class Follow:
         return Outcome(
             command, excitement(speed, controls.timestamp), _hint(controls, speed), gait(speed)
         )
+
+    def _shaken(
+        self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
+    ) -> str:
+        """Return what it does because the cube was shaken, one thing after the other, or ""."""
+        known = [treat for treat in TREATS if treat in inputs.actions]
+        if controls.shaken and known and self._treat is None:
+            self._treat = known[self._treats % len(known)], False
+            self._treats += 1
+        if self._treat is None:
+            return ""
+        name, begun = self._treat
+        doing = character is not None and character.state == name
+        self._treat = None if begun and not doing else (name, begun or doing)
+        return name if self._treat else ""
 
 
 def _beside(cube: Point | None, character: PosedCharacter | None) -> Point | None:

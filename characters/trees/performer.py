@@ -62,6 +62,11 @@ class TreePlayer:
         self._steering: dict[str, Steering] = {name: steer for name, (_, steer) in built.items()}
         self._machine = StateMachine(self._motions, "" if machine is None else machine.start)
 
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """Names of its states: what each answers to, its conditions say."""
+        return () if self._plan.machine is None else tuple(self._plan.machine.states)
+
     @staticmethod
     def suits(character: Character) -> bool:
         """Whether a file says how a character is to be played."""

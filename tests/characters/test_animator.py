@@ -309,3 +309,27 @@ def test_numbers_that_are_none_are_refused_and_leave_no_trace(anyone, bad):
 
 def test_a_walker_can_also_be_asked_to_hide(anyone):
     assert not Animator(anyone).update(CharacterCommand(0.0, visible=False)).visible
+
+
+def test_a_walker_does_what_its_other_clips_are_once(human):
+    animator = Animator(human)
+    assert set(animator.actions) == {"wave", "cheer", "jump", "nod", "shake"}
+    frames = play(animator, 6.0, action="jump")
+    states = [frame.state for frame in frames]
+    ended = states.index("jump") + states.count("jump")
+    assert states.count("jump") / RATE == pytest.approx(human.clips["jump"].duration, abs=0.1)
+    assert set(states[ended:]) == {"idle"}
+    toes = human.skeleton.index("LeftToe")
+    heights = [frame.pose.globals(human.skeleton)[toes, 1, 3] for frame in frames]
+    assert max(heights) > min(heights) + 0.1
+    again = play(animator, 0.5, start=7.0, action="idle") + play(animator, 1.0, 8.0, action="jump")
+    assert again[-1].state == "jump"
+
+
+def test_a_walker_that_is_called_away_from_an_action_goes_without_a_jump(human):
+    animator = Animator(human, alive=False)
+    frames = play(animator, 0.9, rate=60, action="cheer")
+    frames += play(animator, 1.0, 0.9, 60, action="move", speed=2.0, target=np.array([9.0, 0.0]))
+    assert frames[-1].state == "walk"
+    assert np.abs(velocities(frames, 60)).max() < 40
+    assert np.ptp([place(frame) for frame in frames[:54]], axis=0).max() < 1e-9
