@@ -9,10 +9,10 @@ import math
 import numpy as np
 
 from characters.held_foot import HeldFoot, Sole, turned
-from characters.legs import Legs
+from characters.legs import Legs, Placed
 from characters.motion import Step
-from characters.plain_rotations import Quaternion, Vector
-from characters.pose import Array, Pose
+from characters.plain_rotations import Quaternion, Vector, turn
+from characters.pose import Pose
 
 _STRETCH = 0.997  # part of a leg's length that a held foot may need
 _SINK = 0.02  # body heights: how far the pelvis may be lowered for it
@@ -35,6 +35,8 @@ class FootLock:
         self.feet = tuple(HeldFoot(height) for _ in range(legs.count))
         self._height = height
         self._points, self._levels = _soles(legs)
+        self._hip, self._ankle, self._toes = legs.joints[:, [1, 3, 4]].T.tolist()
+        self._lengths: list[float] = legs.lengths.tolist()
         self._sunk = 0.0
         self._fresh = True
 
@@ -56,7 +58,7 @@ class FootLock:
         elapsed
             Time since the last call [s].
         """
-        placed = self.legs.globals(pose)
+        placed = self.legs.placed(pose)
         soles = self._soles(placed, place)
         for foot, sole in zip(self.feet, soles, strict=True):
             foot.advance(sole, elapsed)
@@ -79,25 +81,24 @@ class FootLock:
         elif foot.held or foot.may_land(sole):
             foot.hold(sole)
 
-    def _soles(self, placed: Array, place: Step) -> list[Sole]:
+    def _soles(self, placed: Placed, place: Step) -> list[Sole]:
         """Return what of each foot meets the ground."""
-        ankle = placed[self.legs.joints[:, 3]]
-        seen = ankle[:, None, :3, 3] + self._points @ np.swapaxes(ankle[:, :3, :3], -1, -2)
         sine, cosine = math.sin(place.yaw), math.cos(place.yaw)
         soles = []
-        for points, levels in zip(seen.tolist(), self._levels, strict=True):
+        for ankle, points, levels in zip(self._ankle, self._points, self._levels, strict=True):
+            facing, (ax, ay, az) = placed.turns[ankle], placed.places[ankle]
             heel, ball = (
                 (
-                    place.x + cosine * x + sine * z,
-                    y - level,
-                    place.z - sine * x + cosine * z,
+                    place.x + cosine * (ax + x) + sine * (az + z),
+                    ay + y - level,
+                    place.z - sine * (ax + x) + cosine * (az + z),
                 )
-                for (x, y, z), level in zip(points, levels, strict=True)
+                for (x, y, z), level in zip((turn(facing, p) for p in points), levels, strict=True)
             )
             soles.append(Sole(heel, ball))
         return soles
 
-    def _shown(self, pose: Pose, placed: Array, place: Step, elapsed: float) -> Pose:
+    def _shown(self, pose: Pose, placed: Placed, place: Step, elapsed: float) -> Pose:
         """Return the pose with its feet shifted, and the pelvis lowered where they are far."""
         shifts = [foot.shift for foot in self.feet]
         if max(s.length + abs(s.y) + abs(s.yaw) * 0.1 for s in shifts) < 1e-5 * self._height:
@@ -109,14 +110,13 @@ class FootLock:
             pose, placed = self.legs.lowered(pose, placed, self._sunk)
         return self.legs.bend(pose, placed, ankles, turns)
 
-    def _ankles(self, placed: Array, place: Step) -> tuple[list[Vector], list[Quaternion]]:
+    def _ankles(self, placed: Placed, place: Step) -> tuple[list[Vector], list[Quaternion]]:
         """Return where the ankles are shown, and how the feet are turned, in the character."""
         sine, cosine = math.sin(place.yaw), math.cos(place.yaw)
         ankles: list[Vector] = []
         turns: list[Quaternion] = []
-        at = placed[self.legs.joints[:, 3:], :3, 3].tolist()
-        for foot, (ankle, ball) in zip(self.feet, at, strict=True):
-            shift = foot.shift
+        for foot, number, toes in zip(self.feet, self._ankle, self._toes, strict=True):
+            shift, ankle, ball = foot.shift, placed.places[number], placed.places[toes]
             x, z = turned(ankle[0] - ball[0], ankle[2] - ball[2], shift.yaw)
             x += ball[0] + cosine * shift.x - sine * shift.z
             z += ball[2] + sine * shift.x + cosine * shift.z
@@ -124,14 +124,15 @@ class FootLock:
             turns.append((0.0, math.sin(shift.yaw / 2), 0.0, math.cos(shift.yaw / 2)))
         return ankles, turns
 
-    def _needed(self, placed: Array, ankles: list[Vector]) -> float:
+    def _needed(self, placed: Placed, ankles: list[Vector]) -> float:
         """Return how far the pelvis is to go down for the held feet [m], and tell the too far."""
         most, needed = _SINK * self._height, 0.0
-        hips = placed[self.legs.joints[:, 1], :3, 3].tolist()
-        lengths = self.legs.lengths.tolist()
-        for foot, (x, y, z), ankle, length in zip(self.feet, hips, ankles, lengths, strict=True):
+        for foot, hip, ankle, length in zip(
+            self.feet, self._hip, ankles, self._lengths, strict=True
+        ):
             if not foot.held:
                 continue
+            x, y, z = placed.places[hip]
             reach = (_STRETCH * length) ** 2 - (x - ankle[0]) ** 2 - (z - ankle[2]) ** 2
             down = y - ankle[1] - math.sqrt(max(reach, 0.0))
             foot.too_far = reach < 0.0 or down > most
@@ -139,8 +140,8 @@ class FootLock:
         return needed
 
 
-def _soles(legs: Legs) -> tuple[Array, list[tuple[float, float]]]:
-    """Return heel and ball in the frame of each ankle, (legs, 2, 3), and their heights at rest.
+def _soles(legs: Legs) -> tuple[list[list[Vector]], list[tuple[float, float]]]:
+    """Return heel and ball in the frame of each ankle, and their heights at rest [m].
 
     The heel is under the ankle and half as far behind it as the ball is before it.
     """
@@ -150,4 +151,4 @@ def _soles(legs: Legs) -> tuple[Array, list[tuple[float, float]]]:
     heel[:, 1] = 0.0
     points = np.stack([heel, ball], axis=1)
     seen = (points - ankle[:, None, :3, 3]) @ ankle[:, :3, :3]
-    return seen, [tuple(row) for row in points[..., 1].tolist()]
+    return seen.tolist(), [tuple(row) for row in points[..., 1].tolist()]

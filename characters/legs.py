@@ -14,8 +14,19 @@ from numpy.typing import NDArray
 
 from characters import rotations, two_bones
 from characters.phase import find_feet
-from characters.plain_rotations import Quaternion, Vector, conjugate, multiply, turn
+from characters.plain_rotations import Quaternion, Vector, conjugate, less, multiply, turn
 from characters.pose import Array, Pose, Skeleton
+
+
+@dataclass(frozen=True)
+class Placed:
+    """Where the carriers of legs are in a pose, in the character."""
+
+    turns: list[Quaternion]
+    """How each is turned."""
+
+    places: list[Vector]
+    """Where each is [m]."""
 
 
 @dataclass(frozen=True)
@@ -72,91 +83,112 @@ class Legs:
             np.stack([pose.translations for pose in poses]),
             np.stack([pose.rotations for pose in poses]),
         )
-        return self.reach(mixed, *self._mean_feet(self.globals(stacked), np.asarray(weights)))
+        balls, facings = self._mean_feet(self.globals(stacked), np.asarray(weights))
+        return self.reach(mixed, balls.tolist(), facings.tolist())
 
-    def reach(self, pose: Pose, balls: Array, facings: Array) -> Pose:
-        """Return a pose with the balls of its feet at places (legs, 3), facing so (legs, 4).
+    def placed(self, pose: Pose) -> "Placed":
+        """Return where the carriers are in one pose, in plain numbers."""
+        turns: list[Quaternion] = pose.rotations[self.carriers].tolist()
+        places: list[Vector] = pose.translations[self.carriers].tolist()
+        for joint, parent in enumerate(self.skeleton.parents):
+            if parent >= 0:
+                above, (x, y, z) = turns[parent], places[parent]
+                turns[joint] = multiply(above, turns[joint])
+                dx, dy, dz = turn(above, places[joint])
+                places[joint] = (x + dx, y + dy, z + dz)
+        return Placed(turns, places)
+
+    def reach(
+        self, pose: Pose, balls: Sequence[Vector], facings: Sequence[Sequence[float]]
+    ) -> Pose:
+        """Return a pose with the balls of its feet at places, facing so.
 
         Hips and knees bend, as far as the legs are long.
         """
-        placed, local = self.globals(pose), pose.rotations[self.carriers].tolist()
+        placed = self.placed(pose)
         # The ball of the foot is what it stands and rolls on.
-        offsets = pose.translations[self.carriers[self.joints[:, 4]]].tolist()
+        offsets = pose.translations[self._toes].tolist()
         ankles, turned = [], []
-        for line, offset, ball, facing in zip(
-            self._lines, offsets, balls.tolist(), facings.tolist(), strict=True
+        for (*_, ankle, _), offset, ball, facing in zip(
+            self._joints, offsets, balls, facings, strict=True
         ):
-            x, y, z = turn(facing, offset)
-            ankles.append((ball[0] - x, ball[1] - y, ball[2] - z))
-            faced = local[line[0]]
-            for joint in line[1:]:
-                faced = multiply(faced, local[joint])
-            turned.append(multiply(facing, conjugate(faced)))
+            ankles.append(less(ball, turn(facing, offset)))
+            turned.append(multiply(facing, conjugate(placed.turns[ankle])))
         return self.bend(pose, placed, ankles, turned)
 
     def bend(
-        self, pose: Pose, placed: Array, ankles: Sequence[Vector], turned: Sequence[Quaternion]
+        self,
+        pose: Pose,
+        placed: "Placed",
+        ankles: Sequence[Vector],
+        turned: Sequence[Sequence[float]],
     ) -> Pose:
         """Return a pose with its ankles moved and its feet turned.
 
         Parameters
         ----------
         pose, placed
-            What is changed, and its `globals`.
+            What is changed, and where its joints are.
         ankles
             Where the ankles are to be [m].
         turned
             How the feet turn from how they face, in the character's frame.
         """
-        turns: list[tuple[Quaternion, ...]] = []
-        for frames, target, foot in zip(
-            placed[self.joints[:, :4]].tolist(), ankles, turned, strict=True
+        rows: list[Quaternion] = []
+        for (pelvis, hip, knee, ankle, _), target, foot in zip(
+            self._joints, ankles, turned, strict=True
         ):
-            hip, knee, ankle = ((f[0][3], f[1][3], f[2][3]) for f in frames[1:])
-            upper, lower = two_bones.reach(hip, knee, ankle, target)
-            foot = multiply(conjugate(multiply(upper, lower)), foot)
-            # What is above a joint has turned along.
-            turns.append(
-                tuple(
-                    two_bones.seen_from(frame[:3], own)
-                    for frame, own in zip(frames, (upper, lower, foot), strict=False)
-                )
+            upper, lower = two_bones.reach(
+                placed.places[hip], placed.places[knee], placed.places[ankle], target
             )
-        where = self.carriers[self.joints[:, 1:4]]
+            thigh = multiply(upper, placed.turns[hip])
+            shin = multiply(multiply(upper, lower), placed.turns[knee])
+            rows.append(multiply(conjugate(placed.turns[pelvis]), thigh))
+            rows.append(multiply(conjugate(thigh), shin))
+            rows.append(multiply(conjugate(shin), multiply(foot, placed.turns[ankle])))
         bent = pose.rotations.copy()
-        bent[where] = rotations.multiply(np.array(turns), bent[where])
+        bent[self._bent] = rows
         return replace(pose, rotations=bent)
 
-    def lowered(self, pose: Pose, placed: Array, sink: float) -> tuple[Pose, Array]:
-        """Return a pose and its `globals` with the first leg's pelvis `sink` lower [m]."""
+    def lowered(self, pose: Pose, placed: "Placed", sink: float) -> tuple[Pose, "Placed"]:
+        """Return a pose, and where it is, with the first leg's pelvis `sink` lower [m]."""
         pelvis = int(self.joints[0, 0])
         parent = self.skeleton.parents[pelvis]
-        down = np.array([0.0, -sink, 0.0])
+        down: Vector = (0.0, -sink, 0.0)
+        if parent >= 0:
+            down = turn(conjugate(placed.turns[parent]), down)
         moved = pose.translations.copy()
-        moved[self.carriers[pelvis]] += down if parent < 0 else down @ placed[parent, :3, :3]
-        lower = placed.copy()
-        lower[self._carried, 1, 3] -= sink
-        return replace(pose, translations=moved), lower
+        moved[self.carriers[pelvis]] += down
+        places = list(placed.places)
+        for joint in self._carried:
+            x, y, z = places[joint]
+            places[joint] = (x, y - sink, z)
+        return replace(pose, translations=moved), Placed(placed.turns, places)
 
     @cached_property
-    def _carried(self) -> NDArray[np.intp]:
+    def _joints(self) -> list[list[int]]:
+        """`joints` in plain numbers."""
+        joints: list[list[int]] = self.joints.tolist()
+        return joints
+
+    @cached_property
+    def _toes(self) -> NDArray[np.intp]:
+        """The toes, numbered as in the whole skeleton."""
+        return self.carriers[self.joints[:, 4]]
+
+    @cached_property
+    def _bent(self) -> NDArray[np.intp]:
+        """Hip, knee and ankle of one leg after the other, numbered as in the whole skeleton."""
+        return self.carriers[self.joints[:, 1:4]].ravel()
+
+    @cached_property
+    def _carried(self) -> list[int]:
         """The pelvis of the first leg and what it carries, numbered among the carriers."""
         carried = {int(self.joints[0, 0])}
         for joint, parent in enumerate(self.skeleton.parents):
             if parent in carried:
                 carried.add(joint)
-        return np.array(sorted(carried))
-
-    @cached_property
-    def _lines(self) -> list[list[int]]:
-        """The joints from the root to each ankle, numbered among the carriers."""
-        lines = []
-        for ankle in self.joints[:, 3].tolist():
-            line = [ankle]
-            while self.skeleton.parents[line[-1]] >= 0:
-                line.append(self.skeleton.parents[line[-1]])
-            lines.append(line[::-1])
-        return lines
+        return sorted(carried)
 
     def _mean_feet(self, globals_: Array, share: Array) -> tuple[Array, Array]:
         """Return where the balls of the feet are, (legs, 3), and how the feet face, (legs, 4)."""

@@ -5,7 +5,6 @@ on arrays of two legs take. Vectors are x, y, z and quaternions x, y, z, w, as e
 """
 
 import math
-from collections.abc import Sequence
 
 from characters.plain_rotations import (
     Quaternion,
@@ -53,15 +52,3 @@ def reach(
     lower = (axis[0] * sine, axis[1] * sine, axis[2] * sine, math.cos(half))
     x, y, z = turn(lower, shin)
     return between((x - thigh[0], y - thigh[1], z - thigh[2]), way), lower
-
-
-def seen_from(frame: Sequence[Sequence[float]], q: Quaternion) -> Quaternion:
-    """Return the turn Fᵀ q F: q as it is in a frame F whose rows, (3, 3 or more), are given."""
-    x, y, z, w = q
-    a, b, c = frame
-    return (
-        a[0] * x + b[0] * y + c[0] * z,
-        a[1] * x + b[1] * y + c[1] * z,
-        a[2] * x + b[2] * y + c[2] * z,
-        w,
-    )
