@@ -1,5 +1,6 @@
 """The file beside a character that says what its own does not: `fox.toml` beside `fox.glb`."""
 
+import difflib
 import tomllib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -52,7 +53,9 @@ def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
         raise CharacterError(f'{path}: joints: write part = "name of a joint"')
     for part in joints:
         if part not in PARTS:
-            raise CharacterError(f"{path}: joints.{part}: no part of a body is called that")
+            near = difflib.get_close_matches(part, PARTS, 1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise CharacterError(f"{path}: joints.{part}: no part of a body is called that{hint}")
     return Sidecar(joints, read_plan(document, str(path), clips))
 
 
@@ -61,5 +64,5 @@ def _document(path: Path) -> dict[str, Any]:
         return tomllib.loads(read_file(path, _LARGEST).decode("utf-8-sig"))
     except FileNotFoundError:
         return {}
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:  # no TOML, no UTF-8, a number without an end
         raise CharacterError(f"{path}: not TOML ({error}); mend that line") from None

@@ -5,14 +5,16 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.tree import Tree
 
 from app.errors import AppError
-from characters import Character
+from characters import Animator, Character
 from characters.trees import Node, Plan
 from characters.trees.builtin import built_in
 from characters.trees.diagram import draw
 from characters.trees.layout import described, plain
+from characters.trees.plan import Change
 
 
 def graph(
@@ -34,6 +36,8 @@ def graph(
         raise AppError(f"a graph is drawn as an .svg file, not as '{output}'")
     loaded = Character.load(character)
     plan = loaded.plan or built_in(loaded)
+    if loaded.plan is not None:
+        Animator(loaded)  # what cannot be played is told before it is played
     Console().print(outline(plan, loaded.name))
     if output is None:
         return
@@ -41,32 +45,36 @@ def graph(
         output.write_text(draw(plan, loaded.name), encoding="utf-8")
     except OSError as error:
         raise AppError(f"cannot write '{output}' ({error.strerror}): check the folder") from None
-    Console().print(f"[bold]{output}[/] is drawn; a web browser shows it.")
+    Console().print(f"[bold]{escape(str(output))}[/] is drawn; a web browser shows it.")
 
 
 def outline(plan: Plan, name: str) -> Tree:
     """Return a plan as an indented list."""
-    tree = Tree(f"[bold]{name}[/]  [dim]from {plan.source}[/]")
+    tree = Tree(f"[bold]{escape(name)}[/]  [dim]from {escape(plan.source)}[/]")
     if plan.machine is None:
         for root in plan.roots:
             _grow(tree, root, "")
         return tree
     for state, node in plan.machine.states.items():
         first = "first state" if state == plan.machine.start else "state"
-        branch = tree.add(f"[bold yellow]{state}[/]  [dim]{first}[/]")
+        branch = tree.add(f"[bold yellow]{escape(state)}[/]  [dim]{first}[/]")
         _grow(branch, node, "")
         for change in plan.machine.changes:
             if change.start == state:
-                branch.add(f"[yellow]→ {change.end}[/] when {change.when.text}", highlight=True)
+                branch.add(f"[yellow]→ {_told(change)}", highlight=True)
     for change in plan.machine.changes:
         if change.start == "*":
-            tree.add(f"[yellow]any → {change.end}[/] when {change.when.text}", highlight=True)
+            tree.add(f"[yellow]any → {_told(change)}", highlight=True)
     return tree
 
 
+def _told(change: Change) -> str:
+    return f"{escape(change.end)}[/] when {escape(change.when.text)}"
+
+
 def _grow(tree: Tree, node: Node, label: str) -> None:
-    at = f"[cyan]{label}[/] " if label else ""
-    branch = tree.add(f"{at}{node.name or node.kind}  [dim]{described(node)}[/]")
+    at = f"[cyan]{escape(label)}[/] " if label else ""
+    branch = tree.add(f"{at}{escape(node.name or node.kind)}  [dim]{escape(described(node))}[/]")
     for key, child in node.motions.items():
         _grow(branch, child, "" if key == "of" else key)
     for row in node.rows:

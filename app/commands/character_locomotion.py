@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from app.errors import AppError
@@ -58,7 +59,8 @@ def locomotion(
     console.print(table("Found in the recordings", made.recordings, seams=True))
     console.print(table("Made for the movement tree", made.clips))
     _say_joints(console, made.character, target)
-    console.print(f"[bold]{target}[/] walks: [cyan]cubeling play follow --character {target}[/]")
+    name = escape(str(target))
+    console.print(f"[bold]{name}[/] walks: [cyan]cubeling play follow --character {name}[/]")
 
 
 def table(title: str, found: Sequence[Found], seams: bool = False) -> Table:
@@ -94,12 +96,13 @@ def _say_joints(console: Console, character: Character, target: Path) -> None:
     if not character.semantics:
         return
     beside = target.with_suffix(".toml")
+    name = escape(str(beside))
     if beside.exists():
-        console.print(f"[yellow]![/] {beside} is there already: see that its joints are right.")
+        console.print(f"[yellow]![/] {name} is there already: see that its joints are right.")
         return
     lines = [f"{part} = {_quoted(joint)}" for part, joint in character.semantics.items()]
     beside.write_text("[joints]\n" + "\n".join(lines) + "\n", encoding="utf-8")
-    console.print(f"[bold]{beside}[/] keeps which joint is which part.")
+    console.print(f"[bold]{name}[/] keeps which joint is which part.")
 
 
 def _quoted(text: str) -> str:

@@ -6,6 +6,7 @@ checked, and diagrams drawn.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal
 
 from characters.trees.conditions import Condition
@@ -140,6 +141,11 @@ class Node:
     def children(self) -> tuple["Node", ...]:
         """What it is made of."""
         return (*self.motions.values(), *(row.motion for row in self.rows))
+
+    @cached_property
+    def size(self) -> int:
+        """How many motions it is, itself and each in it counted as often as it is used."""
+        return 1 + sum(child.size for child in self.children)
 
     @property
     def steered(self) -> bool:

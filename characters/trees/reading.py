@@ -3,6 +3,7 @@
 import difflib
 import math
 from collections.abc import Collection, Mapping
+from contextlib import suppress
 from typing import Any, NoReturn, get_args
 
 from characters.curves import Ease
@@ -23,6 +24,10 @@ from characters.trees.plan import (
 
 STATE_VALUES = {"time": "since the state was entered [s]", "done": "whether its motion has ended"}
 """What conditions may look at beside the parameters and the action."""
+
+MOST_MOTIONS, DEEPEST = 1000, 30
+"""Motions that one may be made of, counted as often as they are used, and how deep they nest:
+a few lines that use each other twice would be more than fit in memory."""
 
 TABLES = ("masks", "parameters", "motions", "machine", "play")
 """What a plan consists of in a file."""
@@ -61,6 +66,7 @@ class _Reader:
         self._masks = self._table(document.get("masks", {}), "masks")
         self._open: list[str] = []  # motions that are being read, to find circles
         self._known: dict[str, Node] = {}
+        self._depth = 0  # of the motion that is being read in others
 
     def plan(self) -> Plan:
         """Return the plan."""
@@ -145,12 +151,18 @@ class _Reader:
 
     def _motion(self, given: object, place: str) -> Node:
         """Return the motion that a name or a table stands for."""
-        if isinstance(given, str):
-            if given in self._motions:
-                return self._named(given, place)
+        if self._depth >= DEEPEST:
+            self._refuse(place, f"motions nest more than {DEEPEST} deep; use fewer")
+        self._depth += 1
+        if not isinstance(given, str):
+            node = self._node(self._table(given, place), place, "")
+        elif given in self._motions:
+            node = self._named(given, place)
+        else:
             self._one_of(given, [*self._clips, *self._motions], place, "motion or clip")
-            return Node("clip", place, given, {"clip": given})
-        return self._node(self._table(given, place), place, "")
+            node = Node("clip", place, given, {"clip": given})
+        self._depth -= 1
+        return node
 
     def _named(self, name: str, place: str) -> Node:
         """Return one of the named motions; it may not be made of itself."""
@@ -178,7 +190,10 @@ class _Reader:
         self._only(table, ("kind", *kind.fields, *([kind.rows] if kind.rows else [])), place)
         said, motions = self._fields(table, kind.fields, kind.optional, place)
         rows = self._rows(table, kind, place) if kind.rows else ()
-        return Node(kind_name, place, name, said, motions, rows)
+        node = Node(kind_name, place, name, said, motions, rows)
+        if node.size > MOST_MOTIONS:
+            self._refuse(place, f"made of more than {MOST_MOTIONS} motions; use fewer")
+        return node
 
     def _rows(self, table: Mapping[str, Any], kind: Kind, place: str) -> tuple[Row, ...]:
         given = table.get(kind.rows)
@@ -242,14 +257,15 @@ class _Reader:
         return given
 
     def _number(self, given: object, place: str) -> float:
-        sound = isinstance(given, (int, float)) and not isinstance(given, bool)
-        if not sound or not math.isfinite(float(given)):  # type: ignore[arg-type]
-            self._refuse(place, f"{given!r} is not a finite number")
-        return float(given)  # type: ignore[arg-type]
+        if isinstance(given, (int, float)) and not isinstance(given, bool):
+            with suppress(OverflowError):  # whole numbers in TOML may have any number of digits
+                if math.isfinite(number := float(given)):
+                    return number
+        self._refuse(place, f"{_shown(given)} is not a finite number")
 
     def _table(self, given: object, place: str) -> Mapping[str, Any]:
         if not isinstance(given, dict):
-            self._refuse(place, f"{given!r} is not a table")
+            self._refuse(place, f"{_shown(given)} is not a table")
         return given
 
     def _only(self, table: Mapping[str, Any], keys: Collection[str], place: str) -> None:
@@ -266,3 +282,9 @@ class _Reader:
 
     def _refuse(self, place: str, what: str) -> NoReturn:
         raise CharacterError(f"{self._source}: {place}: {what}")
+
+
+def _shown(given: object) -> str:
+    """Return what a file says as it may stand in a message of one line."""
+    text = repr(given)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -171,3 +171,29 @@ def test_the_cast_is_drawn_in_small_files(tmp_path):
     files = list(draw_cast([character], tmp_path / "cast"))
     assert [path.name for path in files] == ["nod.jpg", "nod-clips-1.jpg"]
     assert all(1_000 < path.stat().st_size < 300_000 for path in files)
+
+
+def a_character_beside(text):
+    """Write a character, and beside it a file of motions."""
+    human = Character.load("human")
+    replace(human, clips={"idle": human.clips["idle"]}).save("one.glb")
+    Path("one.toml").write_text(text, encoding="utf-8")
+
+
+def test_a_graph_shows_names_as_they_are(cubeling):
+    name = "[/red] & <b>"
+    a_character_beside(f"play = 'x'\n[motions]\n\"{name}\" = {{kind = 'loop', of = 'idle'}}\n"
+                       f"x = {{kind = 'loop', of = \"{name}\"}}\n")  # fmt: skip
+    code, out, err = cubeling("character", "graph", "one.glb", "-o", "[x] one.svg")
+    assert (code, err) == (0, "")
+    assert name in out
+    assert "[x] one.svg is drawn" in out
+    assert "&lt;b&gt;" in Path("[x] one.svg").read_text(encoding="utf-8")
+
+
+def test_a_graph_tells_what_cannot_be_played(cubeling):
+    a_character_beside("play = {kind = 'stretch', of = 'idle', seconds = -1}")
+    code, _, err = cubeling("character", "graph", "one.glb", "-o", "one.svg")
+    assert code == 2
+    assert err == "cubeling: one.toml: play: stretch to -1.0 s; give a positive duration\n"
+    assert not Path("one.svg").exists()

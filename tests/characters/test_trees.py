@@ -187,6 +187,13 @@ MISTAKES = {
         "seconds: 0.0 s; give more than 0"
     ),
     "play = 'Walk'\n[parameters]\nspeed = {lag = -1}": "parameters.speed.lag: -1.0 s",
+    f"play = {{kind = 'stretch', of = 'Walk', seconds = 1{400 * '0'}}}": "not a finite number",
+    "play = 'm0'\n[motions]\nm40 = 'Walk'\n"
+    + "\n".join(f"m{n} = 'm{n + 1}'" for n in range(40)): "nest more than 30 deep",
+    "play = 'm0'\n[motions]\nm20 = 'Walk'\n"
+    + "\n".join(
+        f"m{n} = {{kind = 'add', base = 'm{n + 1}', over = 'm{n + 1}'}}" for n in range(20)
+    ): "made of more than 1000 motions",
 }
 
 
