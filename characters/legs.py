@@ -148,7 +148,7 @@ class Legs:
             rows.append(multiply(conjugate(shin), multiply(foot, placed.turns[ankle])))
         bent = pose.rotations.copy()
         bent[self._bent] = rows
-        return replace(pose, rotations=bent)
+        return Pose(pose.translations, bent, pose.scales, pose.morphs)
 
     def lowered(self, pose: Pose, placed: "Placed", sink: float) -> tuple[Pose, "Placed"]:
         """Return a pose, and where it is, with the first leg's pelvis `sink` lower [m]."""

@@ -178,7 +178,7 @@ class StateMachine:
         """Return the way of one state with what its velocity differed by."""
         start, end = start - switch.time, end - switch.time
         step = self.states[switch.state].travel(start, end)
-        if switch.drift is None:
+        if switch.drift is None or start >= switch.drift.length:
             return step
         x, z, yaw = switch.drift.integral(start, end).tolist()
         return Step(step.x + x, step.z + z, step.yaw + yaw)

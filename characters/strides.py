@@ -68,7 +68,7 @@ class Strides:
         for low in (start + each * part for part in range(parts)):
             x = z = yaw = 0.0
             for number, weight in self.voices:
-                step = self.treads.motions[number].between(low, low + each)
+                step = self.treads.travel(number, low, low + each)
                 x, z, yaw = x + weight * step.x, z + weight * step.z, yaw + weight * step.yaw
             way = self.share * self.stride
             total = total.then(Step(x * way, z * way, yaw * self.share))

@@ -1,7 +1,7 @@
 """Looped clips and where their feet are, packed to be mixed at one phase."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 
@@ -12,9 +12,11 @@ from characters.bank import Bank
 from characters.clip import Clip
 from characters.contacts import find_contacts
 from characters.legs import Legs
+from characters.motion import Step
 from characters.phase import Phased
 from characters.pose import Array, Pose, Skeleton
 
+_REMEMBERED = 64  # times
 _LEAVING = 0.45  # how much the last frame of a contact counts: too little to be held
 
 
@@ -55,6 +57,9 @@ class Treads:
     stance: Stance
     """What shorter steps lean to."""
 
+    _times: dict[tuple[int, float], float] = field(default_factory=dict, repr=False, compare=False)
+    """Times that were worked out lately: a phase is asked for three times in a frame."""
+
     @staticmethod
     def of(motions: Sequence[Phased], skeleton: Skeleton, legs: Legs, standing: Pose) -> "Treads":
         """Return the treads of looped clips, with contacts that are found in them.
@@ -84,13 +89,26 @@ class Treads:
         share
             How much of their mean, 0…1; the rest of the pose, not of the feet, is the stance's.
         """
-        heard = [
-            (number, self.motions[number].time(phase), weight * share) for number, weight in voices
-        ]
+        heard = [(number, self.time(number, phase), weight * share) for number, weight in voices]
         if share < 1.0:
             heard.append((len(self.motions), 0.0, 1.0 - share))
         pose, feet = self.bank.blended(heard)
         return pose, feet.reshape(-1, 8) / share
+
+    def time(self, number: int, phase: float) -> float:
+        """Return the time [s] in a clip at a phase."""
+        key = number, phase
+        time = self._times.get(key)
+        if time is None:
+            if len(self._times) >= _REMEMBERED:
+                self._times.clear()
+            time = self._times[key] = self.motions[number].time(phase)
+        return time
+
+    def travel(self, number: int, start: float, end: float) -> Step:
+        """Return how the root of a clip moves over the ground between two phases."""
+        motion = self.motions[number].motion
+        return motion.travel(self.time(number, start), self.time(number, end))
 
     def contacts(self, voices: Sequence[tuple[int, float]], phase: float) -> list[float]:
         """Return how much of a mix has each foot on the ground, 0…1."""
@@ -98,7 +116,7 @@ class Treads:
         for number, weight in voices:
             motion, down = self.motions[number], self._down[number]
             last = len(down) - 1
-            at = motion.time(phase) / motion.motion.duration % 1.0 * last
+            at = self.time(number, phase) / motion.motion.duration % 1.0 * last
             frame = min(int(at), last - 1)
             u = at - frame
             for foot, (before, after) in enumerate(zip(down[frame], down[frame + 1], strict=True)):

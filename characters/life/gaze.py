@@ -6,7 +6,7 @@ associated with horizontal saccades", 1999; Guitton and Volle, "Gaze control in 
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -157,7 +157,7 @@ class Gaze:
         self._turn_line(local, turned)
         if self._eyes:
             self._turn_eyes(local, turned, point if aim is not None else None, elapsed)
-        return replace(pose, rotations=local)
+        return Pose(pose.translations, local, pose.scales, pose.morphs)
 
     def _place(self, pose: Pose) -> None:
         """Work out where the joints are in a pose."""

@@ -106,8 +106,10 @@ class Stirring:
         self._phase = (self._phase + elapsed * rate) % 1.0
         self.breath = lungs(self._phase)
         depth = (self.breath - 0.5) * (1.0 + (DEEPER - 1.0) * self._effort)
-        waves = np.sin(self._rates * self._time + self._phases).sum(0) * (calm / math.sqrt(_WAVES))
-        turned = self._breath * depth + np.einsum("ja,jak->jk", waves, self._drift)
+        turned = self._breath * depth
+        if calm > 1e-3:
+            waves = np.sin(self._rates * self._time + self._phases).sum(0)
+            turned += np.einsum("ja,jak->jk", waves * (calm / math.sqrt(_WAVES)), self._drift)
         return rotations.from_rotation_vector(turned)
 
 
