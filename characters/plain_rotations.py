@@ -32,6 +32,17 @@ def conjugate(q: Sequence[float]) -> Quaternion:
     return -q[0], -q[1], -q[2], q[3]
 
 
+def normalize(q: Sequence[float]) -> Quaternion:
+    """Return a quaternion at unit length.
+
+    >>> normalize((0.0, 0.0, 3.0, 4.0))
+    (0.0, 0.0, 0.6, 0.8)
+    """
+    x, y, z, w = q
+    size = math.sqrt(x * x + y * y + z * z + w * w)
+    return x / size, y / size, z / size, w / size
+
+
 def turn(q: Sequence[float], vector: Sequence[float]) -> Vector:
     """Return a vector turned.
 

@@ -11,11 +11,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from characters import rotations
 from characters.motion import STANDING, Step
-from characters.pose import Array, Pose
+from characters.plain_rotations import Quaternion, Vector, conjugate, multiply, normalize
+from characters.pose import Pose
 from characters.treads import Treads
 
 _PARTS = 16  # of a cycle, in each of which the mean of several ways is taken
@@ -53,8 +51,7 @@ class Strides:
         pose, feet = self.treads.mixed(self.voices, phase, self.share)
         if len(self.voices) == 1 and self.share == self.stride == 1.0:
             return pose
-        balls, facings = self._feet(feet)
-        return self.treads.legs.reach(pose, balls.tolist(), facings.tolist())
+        return self.treads.legs.reach(pose, *self._feet(feet.tolist()))
 
     def contacts(self, phase: float) -> list[float]:
         """Return how much of the mix has each foot on the ground, 0…1."""
@@ -83,38 +80,52 @@ class Strides:
         duration = self.duration
         return self.between(start / duration, end / duration)
 
-    def _feet(self, feet: Array) -> tuple[Array, Array]:
-        """Return where the balls of the feet are to be, (legs, 3), and how they face, (legs, 4).
+    def _feet(self, feet: Sequence[Sequence[float]]) -> tuple[list[Vector], list[Quaternion]]:
+        """Return where the balls of the feet are to be and how they face.
 
-        `feet` (legs, 8) are the mean of the clips' feet.
+        `feet` are ball, facing and contact of each, the mean of the clips'.
         """
-        still, feet = self.treads.stance.feet, feet[:, :7]
-        home = sum(weight * self.treads.homes[number] for number, weight in self.voices)
-        if self.share < 1.0:
-            drawn = still + self.share * (feet - still)
-            middle = still + self.share * (home - still)
-            drawn[:, 1] = middle[:, 1] + (feet[:, 1] - home[:, 1]) * self.share**_LIFT
-            feet, home = drawn, middle
-        facing = rotations.normalize(feet[:, 3:])
-        if self.stride < 1.0:
-            feet[:, 1] += (feet[:, 1] - home[:, 1]) * _TURNING * (1.0 - self.stride)
-            self._draw(feet, home, _twist(facing, rotations.normalize(home[:, 3:])))
-        return feet[:, :3], facing
+        balls: list[Vector] = []
+        facings: list[Quaternion] = []
+        for leg, (foot, still) in enumerate(zip(feet, self.treads.stance.plain, strict=True)):
+            homes = [
+                (self.treads.plain_homes[number][leg], weight) for number, weight in self.voices
+            ]
+            home = [sum(h[k] * weight for h, weight in homes) for k in range(7)]
+            x, y, z, *facing = foot[:7]
+            if self.share < 1.0:
+                higher = (y - home[1]) * self.share**_LIFT
+                x, _, z, *facing = _drawn(still, foot, self.share)
+                home = _drawn(still, home, self.share)
+                y = home[1] + higher
+            faced = normalize(facing)
+            if self.stride < 1.0:
+                y += (y - home[1]) * _TURNING * (1.0 - self.stride)
+                x, z = self._under_a_turn(x, z, home, _twist(faced, normalize(home[3:])))
+            balls.append((x, y, z))
+            facings.append(faced)
+        return balls, facings
 
-    def _draw(self, feet: Array, home: Array, yaw: Array) -> None:
-        """Draw feet (legs, 7) to where they would be if the body only turned.
+    def _under_a_turn(
+        self, x: float, z: float, home: Sequence[float], yaw: float
+    ) -> tuple[float, float]:
+        """Return x, z of a foot drawn to where it would be if the body only turned.
 
-        Such a foot goes round the root as far as it turns itself: `yaw` (legs,) [rad].
+        Such a foot goes round the root as far as it turns itself: `yaw` [rad].
         """
-        sine, cosine = np.sin(yaw), np.cos(yaw)
-        x, z = home[:, 0], home[:, 2]
-        less = 1.0 - self.stride
-        feet[:, 0] += less * (cosine * x + sine * z - feet[:, 0])
-        feet[:, 2] += less * (cosine * z - sine * x - feet[:, 2])
+        sine, cosine, less = math.sin(yaw), math.cos(yaw), 1.0 - self.stride
+        return (
+            x + less * (cosine * home[0] + sine * home[2] - x),
+            z + less * (cosine * home[2] - sine * home[0] - z),
+        )
 
 
-def _twist(turn: Array, reference: Array) -> Array:
-    """Return how far rotations (n, 4) are turned about +y from others [rad], (n,)."""
-    _, y, _, w = rotations.multiply(turn, rotations.conjugate(reference)).T
-    angle: Array = 2 * np.arctan2(y, w)
-    return np.asarray(np.remainder(angle + np.pi, 2 * np.pi) - np.pi)
+def _drawn(still: Sequence[float], foot: Sequence[float], share: float) -> list[float]:
+    """Return numbers of a foot, drawn to those of one that stands."""
+    return [a + share * (b - a) for a, b in zip(still, foot, strict=False)]
+
+
+def _twist(facing: Quaternion, reference: Quaternion) -> float:
+    """Return how far a rotation is turned about +y from another [rad]."""
+    _, y, _, w = multiply(facing, conjugate(reference))
+    return math.remainder(2 * math.atan2(y, w), math.tau)

@@ -35,6 +35,12 @@ class Stance:
         """Return the stance of a pose."""
         return Stance(pose, _feet(pose, legs))
 
+    @cached_property
+    def plain(self) -> list[list[float]]:
+        """`feet` in plain numbers."""
+        plain: list[list[float]] = self.feet.tolist()
+        return plain
+
 
 @dataclass(frozen=True)
 class Treads:
@@ -122,6 +128,12 @@ class Treads:
             for foot, (before, after) in enumerate(zip(down[frame], down[frame + 1], strict=True)):
                 total[foot] += weight * (before + (after - before) * u)
         return total
+
+    @cached_property
+    def plain_homes(self) -> list[list[list[float]]]:
+        """`homes` in plain numbers."""
+        plain: list[list[list[float]]] = self.homes.tolist()
+        return plain
 
     @cached_property
     def _down(self) -> list[list[list[float]]]:
