@@ -3,7 +3,6 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from characters import rotations
 from characters.pose import Array, Pose
@@ -11,6 +10,8 @@ from characters.retargeting.body import Body, Leg, turns_of
 from characters.retargeting.transfer import ankle, place
 
 _STRAIGHTEST = 0.9995  # part of a leg's length that it may reach: beyond, the knee would snap
+_BENDS = 1e-3  # sine of the angle from which on a leg is known to bend
+_USUAL = 0.15  # likewise: what bends less, bends rather to the side to which it usually does
 
 
 def bend(pose: Pose, body: Body, leg: Leg, target: Array) -> Pose:
@@ -23,7 +24,8 @@ def bend(pose: Pose, body: Body, leg: Leg, target: Array) -> Pose:
     globals_ = pose.globals(skeleton)
     turns = turns_of(globals_)
     hip, knee = globals_[:, leg.upper, :3, 3], globals_[:, leg.lower, :3, 3]
-    shin_turn, thigh_turn = _turns(body, hip, knee, ankle(globals_, body, leg), target)
+    joints = hip, knee, ankle(globals_, body, leg)
+    shin_turn, thigh_turn = _turns(leg, body, turns, joints, target)
     whole = rotations.multiply(thigh_turn, shin_turn)
     own = pose.rotations.copy()
     parents = skeleton.parents
@@ -40,35 +42,38 @@ def bend(pose: Pose, body: Body, leg: Leg, target: Array) -> Pose:
     return bent
 
 
-def _turns(body: Body, hip: Array, knee: Array, at: Array, target: Array) -> tuple[Array, Array]:
+def _turns(
+    leg: Leg, body: Body, turns: Array, joints: tuple[Array, Array, Array], target: Array
+) -> tuple[Array, Array]:
     """Return how the shin turns against the thigh, and then both, (frames, 4) each."""
+    hip, knee, at = joints
     thigh, shin, reach = hip - knee, at - knee, target - hip
     long, short, far = (np.linalg.norm(v, axis=-1) for v in (thigh, shin, reach))
     far = np.clip(far, np.abs(long - short) * 1.0005 + 1e-9, _STRAIGHTEST * (long + short))
-    across = np.cross(thigh, shin)
-    size = np.linalg.norm(across, axis=-1, keepdims=True)
-    axis = _hinge(across, size[:, 0] > 1e-4 * long * short, thigh, body)
-    bent = np.arctan2(size[:, 0], np.einsum("ij,ij->i", thigh, shin))
-    goal = np.arccos(np.clip((long**2 + short**2 - far**2) / (2 * long * short), -1.0, 1.0))
-    shin_turn = rotations.about(axis, goal - bent)
-    reached = knee + rotations.rotate(shin_turn, shin) - hip
-    return shin_turn, rotations.between(reached, reach)
+    up = thigh / long[:, None]
+    side = _side(up, shin / short[:, None], turns[:, leg.upper], body)
+    cosine = np.clip((long**2 + short**2 - far**2) / (2 * long * short), -1.0, 1.0)[:, None]
+    bent = short[:, None] * (cosine * up + np.sqrt(1.0 - cosine**2) * side)
+    return rotations.between(shin, bent), rotations.between(knee + bent - hip, reach)
 
 
-def _hinge(across: Array, bends: NDArray[np.bool_], thigh: Array, body: Body) -> Array:
-    """Return about which axis the knee bends, (frames, 3): while straight, as when it last bent."""
-    if not bends.any():  # the shin goes backward
-        backward = rotations.rotate(rotations.conjugate(body.upright), [-1.0, 0.0, 0.0])
-        axis = np.broadcast_to(backward, across.shape)
-    else:
-        known = np.flatnonzero(bends)
-        frames = np.arange(len(across))
-        later = known[np.minimum(np.searchsorted(known, frames), len(known) - 1)]
-        earlier = known[np.maximum(np.searchsorted(known, frames, side="right") - 1, 0)]
-        nearest = np.where(np.abs(later - frames) < np.abs(earlier - frames), later, earlier)
-        axis = across[nearest]
-    along = np.einsum("ij,ij->i", axis, thigh) / np.einsum("ij,ij->i", thigh, thigh)
-    return np.asarray(axis - along[:, None] * thigh)
+def _side(up: Array, shin: Array, turns: Array, body: Body) -> Array:
+    """Return to which side of the thigh the shin bends, (frames, 3).
+
+    Where the leg is straight, and where it is stretched a little beyond, it is the side to which
+    it bends in the other frames, seen from the thigh: else the knee would snap over and back.
+    """
+    away = shin - np.einsum("ij,ij->i", shin, up)[:, None] * up
+    usual = rotations.rotate(rotations.conjugate(turns), away).mean(0)
+    size = float(np.linalg.norm(usual))
+    if size > _BENDS:
+        known = rotations.rotate(turns, usual / size)
+    else:  # the shin goes backward
+        backward = rotations.rotate(rotations.conjugate(body.upright), [0.0, 0.0, -1.0])
+        known = np.broadcast_to(backward, away.shape)
+    away = np.where(np.einsum("ij,ij->i", away, known)[:, None] < 0, -away, away) + _USUAL * known
+    away -= np.einsum("ij,ij->i", away, up)[:, None] * up
+    return np.asarray(away / np.maximum(np.linalg.norm(away, axis=-1, keepdims=True), 1e-12))
 
 
 def _global(turns: Array, joint: int) -> Array:

@@ -10,6 +10,7 @@ from characters.formats import load_motion
 from characters.retargeting import retarget
 from characters.retargeting.body import Body
 from characters.retargeting.feet import find_footing
+from characters.retargeting.limb import bend
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 LIMBS = [
@@ -208,6 +209,27 @@ def test_a_recorded_walk_moves_the_limbs_as_they_moved(human):
     walk = retarget(clip, source, anatomy, human.skeleton, human.anatomy, hold_feet=False)
     mine = directions(walk, human.skeleton, human.anatomy)
     assert np.abs(mine - directions(clip, source, anatomy)).max() < 1e-6
+
+
+def test_a_leg_that_is_stretched_too_far_bends_to_the_side_to_which_it_usually_does(human):
+    body = Body(human.skeleton, human.anatomy)
+    leg = body.legs[0]
+    rest = human.skeleton.rest
+    angles = np.radians(np.linspace(40.0, -20.0, 61))  # the knee goes beyond straight
+    turns = np.tile(rest.rotations, (len(angles), 1, 1))
+    turns[:, leg.lower] = rotations.multiply(
+        rest.rotations[leg.lower], rotations.about("x", angles)
+    )
+    pose = Pose(np.tile(rest.translations, (len(angles), 1, 1)), turns)
+    globals_ = pose.globals(human.skeleton)
+    hip, at = globals_[:, leg.upper, :3, 3], globals_[:, leg.foot, :3, 3]
+    target = at + 0.06 * (hip - at)  # nearer to the hip, so that the knee has to bend
+    bent = bend(pose, body, leg, target)
+    world = bent.globals(human.skeleton)[:, :, :3, 3]
+    assert np.abs(world[:, leg.foot] - target).max() < 1e-9
+    ahead = world[:, leg.lower, 2] - (world[:, leg.upper, 2] + world[:, leg.foot, 2]) / 2
+    assert ahead.min() > 0.05
+    assert np.abs(np.diff(world[:, leg.lower], axis=0)).max() < 0.03
 
 
 def test_a_fox_lends_its_walk_to_a_dinosaur():
