@@ -10,6 +10,7 @@ from characters.retargeting.body import Body, Leg, turns_of
 from characters.retargeting.transfer import ankle, place
 
 _STRAIGHTEST = 0.9995  # part of a leg's length that it may reach: beyond, the knee would snap
+_FOLDED = 0.35  # likewise: the least, unless the clip folds it more
 _BENDS = 1e-3  # sine of the angle from which on a leg is known to bend
 _USUAL = 0.15  # likewise: what bends less, bends rather to the side to which it usually does
 
@@ -47,14 +48,30 @@ def _turns(
 ) -> tuple[Array, Array]:
     """Return how the shin turns against the thigh, and then both, (frames, 4) each."""
     hip, knee, at = joints
-    thigh, shin, reach = hip - knee, at - knee, target - hip
-    long, short, far = (np.linalg.norm(v, axis=-1) for v in (thigh, shin, reach))
+    thigh, shin = hip - knee, at - knee
+    long, short = (np.linalg.norm(v, axis=-1) for v in (thigh, shin))
+    reach = _away(target - hip, at - hip, _FOLDED * (long + short))
+    far = np.linalg.norm(reach, axis=-1)
     far = np.clip(far, np.abs(long - short) * 1.0005 + 1e-9, _STRAIGHTEST * (long + short))
     up = thigh / long[:, None]
     side = _side(up, shin / short[:, None], turns[:, leg.upper], body)
     cosine = np.clip((long**2 + short**2 - far**2) / (2 * long * short), -1.0, 1.0)[:, None]
     bent = short[:, None] * (cosine * up + np.sqrt(1.0 - cosine**2) * side)
     return rotations.between(shin, bent), rotations.between(knee + bent - hip, reach)
+
+
+def _away(reach: Array, own: Array, least: Array) -> Array:
+    """Return where an ankle is to be, seen from the hip, (frames, 3): not too near to the hip.
+
+    What is goes toward where the ankle is in the clip, up to that far from the hip: near to the
+    hip the direction of the leg is any, and it would spin.
+    """
+    step = own - reach
+    a = np.maximum(np.einsum("ij,ij->i", step, step), 1e-12)
+    b = np.einsum("ij,ij->i", reach, step)
+    c = np.einsum("ij,ij->i", reach, reach) - least**2
+    part = (np.sqrt(np.maximum(b * b - a * c, 0.0)) - b) / a
+    return np.asarray(reach + np.where(c < 0, np.clip(part, 0.0, 1.0), 0.0)[:, None] * step)
 
 
 def _side(up: Array, shin: Array, turns: Array, body: Body) -> Array:

@@ -232,6 +232,22 @@ def test_a_leg_that_is_stretched_too_far_bends_to_the_side_to_which_it_usually_d
     assert np.abs(np.diff(world[:, leg.lower], axis=0)).max() < 0.03
 
 
+def test_a_leg_whose_foot_is_sent_through_its_hip_does_not_spin(human):
+    body = Body(human.skeleton, human.anatomy)
+    leg = body.legs[0]
+    still = human.clips["idle"].sample(0.0)
+    pose = Pose(np.tile(still.translations, (41, 1, 1)), np.tile(still.rotations, (41, 1, 1)))
+    globals_ = pose.globals(human.skeleton)
+    hip, at = globals_[:, leg.upper, :3, 3], globals_[:, leg.foot, :3, 3]
+    past = np.array([0.01, 0.0, 0.2]) * np.linspace(-1.0, 1.0, 41)[:, None]
+    bent = bend(pose, body, leg, hip + past + [0.01, 0.0, 0.0])
+    turned = np.abs(np.einsum("fji,fji->fj", bent.rotations[1:], bent.rotations[:-1]))
+    assert 2 * np.arccos(np.minimum(turned.min(), 1.0)) < np.radians(25)
+    assert np.linalg.norm(bent.globals(human.skeleton)[:, leg.foot, :3, 3] - hip, axis=1).min() > (
+        0.3 * np.linalg.norm(at - hip, axis=1).min()
+    )
+
+
 def test_a_fox_lends_its_walk_to_a_dinosaur():
     if not (SHARED / "gltf" / "Fox.glb").exists():
         pytest.skip("no shared data")
