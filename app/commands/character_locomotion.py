@@ -1,5 +1,6 @@
 """`cubeling character locomotion`."""
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -48,6 +49,9 @@ def locomotion(
     target = output or Path(f"{Path(character).stem}-walks.glb")
     if target.suffix.lower() != ".glb":
         raise AppError(f"a character is written as a .glb file, not as '{target}'")
+    for given in (character, *walk, *(run or ()), idle or ""):
+        if _same(target, Path(given.partition("#")[0])):
+            raise AppError(f"'{target}' would be written over what it is made of: name another -o")
     body = Character.load(character)
     walks, runs = (
         [load_recording(name, skeleton) for name in names or ()] for names in (walk, run)
@@ -58,9 +62,19 @@ def locomotion(
     console = Console()
     console.print(table("Found in the recordings", made.recordings, seams=True))
     console.print(table("Made for the movement tree", made.clips))
+    speeds = {each.name: each.speed for each in made.clips}
+    if speeds.get("Run", math.inf) < speeds["Walk"]:
+        console.print("[yellow]![/] It runs slower than it walks: were the two exchanged?")
     _say_joints(console, made.character, target)
     name = escape(str(target))
     console.print(f"[bold]{name}[/] walks: [cyan]cubeling play follow --character {name}[/]")
+
+
+def _same(one: Path, other: Path) -> bool:
+    try:
+        return one.samefile(other)
+    except (OSError, ValueError):  # one of them does not exist
+        return False
 
 
 def table(title: str, found: Sequence[Found], seams: bool = False) -> Table:

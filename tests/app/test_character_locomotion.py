@@ -33,3 +33,22 @@ def test_what_cannot_be_is_refused_in_one_line(cubeling, arguments, told):
     assert code == 2
     assert told in err
     assert err.count("\n") == 1
+
+
+def test_what_it_is_made_of_is_not_written_over(cubeling, tmp_path):
+    mine = tmp_path / "mine.glb"
+    Character.load("human").save(mine)
+    before = mine.read_bytes()
+    for arguments in ([mine, "--walk", "human#Walk"], ["human", "--walk", f"{mine}#Walk"]):
+        code, _, err = cubeling("character", "locomotion", *arguments, "-o", "mine.glb")
+        assert code == 2
+        assert "written over" in err
+    assert mine.read_bytes() == before
+
+
+def test_a_run_that_is_slower_than_the_walk_is_told(cubeling):
+    code, out, _ = cubeling(
+        "character", "locomotion", "human", "--walk", "human#Run", "--run", "human#Walk"
+    )
+    assert code == 0
+    assert "slower than it walks" in out
