@@ -1,17 +1,22 @@
 """Draws the bundled characters, to look at and to judge: `python -m app.cast`.
 
-Each is drawn from all sides, with the faces that it makes, and its clips frame by frame.
+Each is drawn from all sides, with the faces that it makes, and its clips frame by frame; and all
+of them together, as they are on a table.
 """
 
 from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
+import moderngl
+import numpy as np
 from rich.console import Console
 
 from app.album import Album, Image, save
-from characters import Character
-from characters.rendering import create_context
+from characters import Animator, Character, CharacterCommand, PosedCharacter, Step
+from characters.rendering import Actor, Stage, View, create_context
+from characters.rendering.framing import Extent, Framing
+from characters.rendering.portrait import PAPER
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures" / "cast"
 
@@ -36,6 +41,45 @@ def draw_cast(cast: Iterable[Character], folder: Path = FOLDER) -> Iterator[Path
                 yield path
 
 
+GROUP: tuple[tuple[str, str, float, Step], ...] = (
+    ("vleo", "kiss", 1.7, Step(-0.15, 0.0, 0.55)),
+    ("human", "wave", 1.25, Step(0.0, 0.02, 0.1)),
+    ("robot", "happy", 0.5, Step(0.15, 0.0, -0.55)),
+)
+"""Who is in the picture of all: what they do, how long they have done it [s], where they stand."""
+
+
+def draw_group(context: moderngl.Context, size: tuple[int, int] = (1100, 520)) -> Image:
+    """Return a picture of the whole cast on one table, (height, width, 3) BGR."""
+    actors, points = [], []
+    for name, action, seconds, place in GROUP:
+        character = Character.load(name)
+        posed = _after(Animator(character, place=place), action, seconds)
+        reach = Extent(character).points(posed.pose)
+        matrix = posed.table_from_character
+        points.append(reach @ matrix[:3, :3].T + matrix[:3, 3])
+        actors.append(Actor(character, posed))
+    framing = Framing.around(np.concatenate(points), 0.2, size, 0.05)
+    paper = np.full((size[1], size[0], 3), PAPER, np.uint8)
+    stage = Stage(context, size)
+    try:
+        view = View(paper, framing.matrix, np.zeros(0), framing.camera_from_table)
+        return stage.draw(view, actors)
+    finally:
+        stage.release()
+
+
+def _after(animator: Animator, action: str, seconds: float) -> PosedCharacter:
+    """Return a character that has acted for a while, and looks at the camera."""
+    gaze = np.array([0.0, 0.2, 1.0])
+    commands = (
+        CharacterCommand(number / 60, action, weight=1.0, gaze=gaze)
+        for number in range(round(seconds * 60) + 1)
+    )
+    *_, posed = (animator.update(command) for command in commands)
+    return posed
+
+
 def _pages(album: Album, character: Character) -> Iterator[tuple[str, Image]]:
     yield "", album.turntable(character)
     if character.morphs and character.anatomy.joint("head") is not None:
@@ -46,5 +90,8 @@ def _pages(album: Album, character: Character) -> Iterator[tuple[str, Image]]:
 
 
 if __name__ == "__main__":
+    context = create_context()
+    save(draw_group(context), FOLDER.parent / "cast.jpg", MOST)
+    context.release()
     for path in draw_cast(map(Character.load, Character.bundled())):
         Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")
