@@ -52,7 +52,7 @@ def main() -> None:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", CharacterWarning)
-            warnings.showwarning = mention
+            warnings.showwarning = Mentions()
             code = app(prog_name="cubeling", standalone_mode=False)
     except typer.exceptions.TyperException as error:
         told = usage(error)
@@ -89,17 +89,30 @@ def trouble(error: OSError | MemoryError) -> str:
     return f"{where}{error.strerror or error}"
 
 
-def mention(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    file: TextIO | None = None,
-    line: str | None = None,
-) -> None:
-    """Print a warning as one line; one about input does not name the code that gave it."""
-    repaired = issubclass(category, CharacterWarning)
-    complain(str(message) if repaired else f"{filename}:{lineno}: {category.__name__}: {message}")
+class Mentions:
+    """Prints warnings as one line each, once; one about input does not name the code that gave it.
+
+    A file that is read twice is repaired twice, and Python would tell of it again.
+    """
+
+    def __init__(self) -> None:
+        self._told: set[str] = set()
+
+    def __call__(
+        self,
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
+        """Take the place of `warnings.showwarning`."""
+        repaired = issubclass(category, CharacterWarning)
+        told = str(message) if repaired else f"{filename}:{lineno}: {category.__name__}: {message}"
+        if told not in self._told:
+            complain(told)
+        self._told.add(told)
 
 
 def complain(line: str) -> None:

@@ -93,8 +93,18 @@ def _load(name: str, read_motion: Callable[[Path], Performance]) -> tuple[Inspec
         else:
             body, noted, has_body = Character.load(name), [], True
     repaired = [str(each.message) for each in caught if each.category is CharacterWarning]
-    sentences = [f"{note[:1].upper()}{note[1:].rstrip('.')}." for note in (*repaired, *noted)]
+    sentences = [sentence(note, name) for note in (*repaired, *noted)]
     return inspect(body, sentences, has_body), has_body
+
+
+def sentence(note: str, name: str) -> str:
+    """Return a note as a sentence; it does not say again which file it is of.
+
+    >>> sentence("x.glb: node 'a' is odd; left it", "x.glb")
+    "Node 'a' is odd; left it."
+    """
+    note = note.removeprefix(f"{name}: ").rstrip(".")
+    return f"{note[:1].upper()}{note[1:]}."
 
 
 def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
