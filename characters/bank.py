@@ -9,6 +9,7 @@ is: in a mix of motions that differ much, a joint may lie a thousandth of a turn
 `blend.mix` puts it. Single motions are the same.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -59,9 +60,9 @@ class Bank:
     scaled: Numbers
     """Joints that some clip scales, (n,); three columns each after these."""
 
-    signs_agree: bool
-    """Whether all quaternions of a joint lie in one half of their sphere, so that any may be mixed
-    as they are."""
+    astray: Numbers
+    """Joints that turn so far that not all their quaternions lie in one half of their sphere, (n,);
+    their signs are brought to agree whenever they are mixed, those of all others never."""
 
     beside: int = 0
     """How many columns at the end hold other numbers."""
@@ -94,7 +95,7 @@ class Bank:
         poses = [_twice_if_single(clip.in_place) for clip in clips]
         counts = np.array([len(pose.rotations) for pose in poses])
         turns = np.concatenate([pose.rotations for pose in poses])
-        turns, agree = _one_sided(turns, counts)
+        turns, astray = _one_sided(turns, counts)
         shifts = np.concatenate([pose.translations for pose in poses])
         scales = _stacked([pose.scales for pose in poses], counts, shifts.shape[1:], 1.0)
         width = max(0 if p.morphs is None else p.morphs.shape[-1] for p in poses)
@@ -121,7 +122,7 @@ class Bank:
             ),
             moved=moved,
             scaled=scaled,
-            signs_agree=agree,
+            astray=astray,
             beside=0 if beside is None else beside[0].shape[1],
         )
 
@@ -161,7 +162,7 @@ class Bank:
         share = np.asarray(weights, float)
         factors = np.concatenate([share * (1.0 - u), share * u], axis=-1).astype(self.table.dtype)
         looked_up = self.table[np.concatenate([row, row + 1], axis=-1)]
-        if not self.signs_agree:
+        if self.astray.size:
             self._bring_to_one_side(looked_up, factors)
         total: Floats = (factors[:, None] @ looked_up)[:, 0]
         return total
@@ -184,7 +185,7 @@ class Bank:
             factors += (weight * (1.0 - u), weight * u)
         share = np.array(factors, self.table.dtype)
         looked_up = self.table.take(rows, axis=0)
-        if not self.signs_agree:
+        if self.astray.size:
             self._bring_to_one_side(looked_up[None], share[None])
         mixed = share @ looked_up
         turned, shifted, sized, morphed = self._edges
@@ -242,12 +243,16 @@ class Bank:
 
     def _bring_to_one_side(self, rows: Floats, factors: Floats) -> None:
         """Turn the signs of quaternions to those of the heaviest row of each character."""
-        width = 4 * len(self.skeleton)
-        turns = rows[..., :width].reshape(*rows.shape[:2], -1, 4)
+        turns = rows[..., self._astray_columns]
         heaviest = factors.argmax(1)
         reference = turns[np.arange(len(turns)), heaviest][:, None]
         signs = np.where(np.einsum("cvji,cwji->cvj", turns, reference) < 0, -1.0, 1.0)
-        rows[..., :width] = (turns * signs[..., None]).reshape(*rows.shape[:2], width)
+        rows[..., self._astray_columns] = turns * signs[..., None]
+
+    @cached_property
+    def _astray_columns(self) -> Numbers:
+        """Columns of the quaternions that may disagree, (n, 4)."""
+        return 4 * self.astray[:, None] + np.arange(4)
 
 
 def _twice_if_single(pose: Pose) -> Pose:
@@ -272,19 +277,19 @@ def _stacked(
     )
 
 
-def _one_sided(turns: Array, counts: Numbers) -> tuple[Array, bool]:
-    """Return quaternions (rows, joints, 4) with each joint's on one side, where that is possible.
+def _one_sided(turns: Array, counts: Numbers) -> tuple[Array, Numbers]:
+    """Return quaternions (rows, joints, 4) with each joint's on one side, and where they are not.
 
     A joint that turns by more than half a turn over all clips cannot be brought to one side
-    without a jump of sign between two frames: then signs stay continuous within each clip.
+    without a jump of sign between two frames: its signs stay continuous within each clip.
     """
     mean = turns[0]
-    for _ in range(2):
+    for _ in range(3):
         aligned = rotations.align(turns, mean)
         mean = rotations.normalize(aligned.mean(0))
     same_clip = np.ones(len(turns) - 1, bool)
     same_clip[np.cumsum(counts)[:-1] - 1] = False
-    dots = np.einsum("fji,fji->fj", aligned[1:], aligned[:-1])[same_clip]
-    apart = np.einsum("fji,ji->fj", aligned, mean)
-    agree = bool((dots > 0).all() and (apart > np.cos(np.pi / 4)).all())
-    return (aligned if agree else turns), agree
+    jumps = np.einsum("fji,fji->fj", aligned[1:], aligned[:-1])[same_clip] <= 0.0
+    far = np.einsum("fji,ji->fj", aligned, mean) <= math.cos(math.pi / 4)
+    astray = jumps.any(0) | far.any(0)
+    return np.where(astray[:, None], turns, aligned), np.flatnonzero(astray)
