@@ -182,6 +182,8 @@ class Geometry:
         )
         corners = first[cluster].astype(np.uint32)[self.indices].reshape(-1, 3)
         kept = (corners != np.roll(corners, 1, axis=1)).all(axis=1)
+        if not kept.any():  # a body of specks, each in a cell of its own
+            corners, kept = self.indices.reshape(-1, 3), np.ones_like(kept)
         sides = np.repeat(
             [material.double_sided for material, _ in self.materials],
             [count // 3 for _, count in self.materials],

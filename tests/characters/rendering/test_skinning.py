@@ -145,6 +145,25 @@ def test_the_coarse_caster_has_fewer_triangles_and_the_same_size(pawn):
     assert np.abs(np.ptp(kept, axis=0) - np.ptp(geometry.positions, axis=0)).max() < 0.1
 
 
+def test_a_body_of_specks_casts_a_shadow_too(ctx, programs, pawn):
+    mesh = pawn.meshes[0]
+    # One small triangle, and far away a point that makes the cells large.
+    positions = np.array([[0, 0, 0], [1e-4, 0, 0], [0, 1e-4, 0], [5, 5, 5]], np.float32)
+    specks = replace(
+        mesh,
+        positions=positions,
+        normals=np.tile([0, 1, 0], (4, 1)).astype(np.float32),
+        joints=np.zeros((4, 4), np.uint16),
+        weights=np.tile([1.0, 0, 0, 0], (4, 1)).astype(np.float32),
+        triangles=np.array([[0, 1, 2]], np.uint32),
+        colors=None,
+        uvs=None,
+    )
+    on_card = SkinnedCharacter(ctx, programs, replace(pawn, meshes=(specks,)))
+    assert on_card.coarse_runs[0][1] == 3
+    on_card.release()
+
+
 def test_every_program_is_released(ctx):
     programs = Programs(ctx)
     programs.figure(frozenset({"TEXTURED", "GLOW"}))
