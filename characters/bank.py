@@ -161,10 +161,9 @@ class Bank:
         row, u = self.rows(clips, times)
         share = np.asarray(weights, float)
         factors = np.concatenate([share * (1.0 - u), share * u], axis=-1).astype(self.table.dtype)
-        looked_up = self.table[np.concatenate([row, row + 1], axis=-1)]
-        if self.astray.size:
-            self._bring_to_one_side(looked_up, factors)
+        looked_up = self.table.take(np.concatenate([row, row + 1], axis=-1), axis=0)
         total: Floats = (factors[:, None] @ looked_up)[:, 0]
+        self._mix_astray(looked_up, factors, total)
         return total
 
     def blended(self, voices: Sequence[tuple[int, float, float]]) -> tuple[Pose, Floats]:
@@ -185,10 +184,9 @@ class Bank:
             factors += (weight * (1.0 - u), weight * u)
         share = np.array(factors, self.table.dtype)
         looked_up = self.table.take(rows, axis=0)
-        if self.astray.size:
-            self._bring_to_one_side(looked_up[None], share[None])
         mixed = share @ looked_up
-        turned, shifted, sized, morphed = self._edges
+        self._mix_astray(looked_up[None], share[None], mixed[None])
+        turned, shifted, sized, morphed = self.edges
         turns = mixed[:turned].reshape(-1, 4)
         turns = turns / np.sqrt(np.einsum("ji,ji->j", turns, turns))[:, None]
         places, sizes = self.still.translations.copy(), self.still.scales
@@ -216,7 +214,7 @@ class Bank:
         return list(zip(*(column.tolist() for column in columns), strict=True))
 
     @cached_property
-    def _edges(self) -> tuple[int, int, int, int]:
+    def edges(self) -> tuple[int, int, int, int]:
         """Where quaternions, translations, scales and morphs end in a row."""
         turned = 4 * len(self.skeleton)
         shifted = turned + 3 * self.moved.size
@@ -230,7 +228,7 @@ class Bank:
     def pose(self, rows: Floats) -> Pose:
         """Return rows (characters, columns) as poses, with quaternions at unit length."""
         count, joints = len(rows), len(self.skeleton)
-        turns, shifts, scales, morphs, _ = np.split(rows, self._edges, axis=1)
+        turns, shifts, scales, morphs, _ = np.split(rows, self.edges, axis=1)
         turns = turns.reshape(count, joints, 4)
         turns = turns / np.sqrt(np.einsum("cji,cji->cj", turns, turns))[..., None]
         places = np.tile(self.still.translations, (count, 1, 1))
@@ -241,18 +239,21 @@ class Bank:
             sizes[:, self.scaled] = scales.reshape(count, -1, 3)
         return Pose(places, turns, sizes, morphs if morphs.shape[1] else None)
 
-    def _bring_to_one_side(self, rows: Floats, factors: Floats) -> None:
-        """Turn the signs of quaternions to those of the heaviest row of each character."""
-        turns = rows[..., self._astray_columns]
-        heaviest = factors.argmax(1)
-        reference = turns[np.arange(len(turns)), heaviest][:, None]
-        signs = np.where(np.einsum("cvji,cwji->cvj", turns, reference) < 0, -1.0, 1.0)
-        rows[..., self._astray_columns] = turns * signs[..., None]
+    def _mix_astray(self, rows: Floats, factors: Floats, total: Floats) -> None:
+        """Mix the joints anew that turn far, with the signs of each character's heaviest row.
 
-    @cached_property
-    def _astray_columns(self) -> Numbers:
-        """Columns of the quaternions that may disagree, (n, 4)."""
-        return 4 * self.astray[:, None] + np.arange(4)
+        `rows` (characters, rows, columns) are mixed by `factors` (characters, rows) to `total`
+        (characters, columns).
+        """
+        if not self.astray.size:
+            return
+        heaviest = np.arange(len(rows)), factors.argmax(1)
+        for joint in self.astray.tolist():
+            turns = [np.ascontiguousarray(rows[..., 4 * joint + k]) for k in range(4)]
+            dots = sum(part * part[heaviest][:, None] for part in turns)
+            signed = np.where(dots < 0, -factors, factors)
+            for k, part in enumerate(turns):
+                total[:, 4 * joint + k] = np.einsum("cv,cv->c", part, signed)
 
 
 def _twice_if_single(pose: Pose) -> Pose:

@@ -1,8 +1,8 @@
-"""Global matrices of many poses at once.
+"""Where the joints of many characters are, all at once.
 
-The walk down the skeleton goes by depth: all joints of one depth, of all poses, in a few products.
-Arrays lie component by component, with the poses innermost, so that each product runs over memory
-in a straight line.
+The walk down the skeleton goes by depth: all joints of one depth, of all characters, in a few
+products. Characters lie innermost in memory meanwhile, so that each product runs over it in a
+straight line.
 """
 
 from dataclasses import dataclass
@@ -10,9 +10,11 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
+import cv2
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from characters.bank import Bank
 from characters.pose import Pose, Skeleton
 
 Floats = NDArray[Any]
@@ -44,6 +46,38 @@ class _Order:
     """Below the roots, from the top down."""
 
 
+def crowd_globals(bank: Bank, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Floats:
+    """Return `character_from_joint` of many characters that each mix some clips.
+
+    The same as `globals_of_many` of `Bank.sample`, in less time.
+
+    Parameters
+    ----------
+    bank
+        The clips.
+    clips, times
+        What each character plays and when [s], (characters, voices).
+    weights
+        How much of each, (characters, voices); each row sums to one.
+
+    Returns
+    -------
+    ndarray
+        (characters, joints, 3, 4); the last row of each matrix, (0, 0, 0, 1), is left out.
+    """
+    rows = bank.mixed(clips, times, weights)
+    columns = _innermost(rows)
+    joints = len(bank.skeleton)
+    turned, shifted, sized, _ = bank.edges
+    turns = columns[:turned].reshape(joints, 4, -1)
+    turns = turns / np.sqrt(np.einsum("jkn,jkn->jn", turns, turns))[:, None]
+    shifts = _filled(bank.still.translations, bank.moved, columns[turned:shifted])
+    scales = None
+    if bank.still.scales is not None:
+        scales = _filled(bank.still.scales, bank.scaled, columns[shifted:sized])
+    return _globals(turns, shifts, scales, bank.skeleton)
+
+
 def globals_of_many(pose: Pose, skeleton: Skeleton) -> Floats:
     """Return `character_from_joint` of every joint of many poses, (poses, joints, 3, 4).
 
@@ -56,40 +90,66 @@ def globals_of_many(pose: Pose, skeleton: Skeleton) -> Floats:
     skeleton
         Of all of them.
     """
-    order = _order(skeleton.parents)
     count, joints = pose.rotations.shape[:2]
-    matrices = np.empty((3, 4, joints, count), pose.rotations.dtype)
-    _rotate(np.ascontiguousarray(pose.rotations.transpose(2, 1, 0)[:, order.joints]), matrices)
+    turns, shifts = (
+        _innermost(part.reshape(count, -1)).reshape(joints, -1, count)
+        for part in (pose.rotations, pose.translations)
+    )
+    scales = None
     if pose.scales is not None:
-        matrices[:, :3] *= pose.scales.transpose(2, 1, 0)[:, order.joints]
-    matrices[:, 3] = pose.translations.transpose(2, 1, 0)[:, order.joints]
+        scales = _innermost(pose.scales.reshape(count, -1)).reshape(joints, 3, count)
+    return _globals(turns, shifts, scales, skeleton)
+
+
+def _globals(turns: Floats, shifts: Floats, scales: Floats | None, skeleton: Skeleton) -> Floats:
+    """Return matrices (characters, joints, 3, 4) of locals (joints, 4 or 3, characters)."""
+    order = _order(skeleton.parents)
+    joints, _, count = turns.shape
+    matrices = np.empty((joints, 3, 4, count), turns.dtype)
+    _rotate(turns[order.joints], matrices)
+    if scales is not None:
+        matrices[:, :, :3] *= scales[order.joints][:, None]
+    matrices[:, :, 3] = shifts[order.joints]
     for level in order.levels:
-        above = matrices[:, :, level.parents]
-        here = matrices[:, :, level.place]
-        below = above[:, 0, None] * here[0]
-        below += above[:, 1, None] * here[1]
-        below += above[:, 2, None] * here[2]
-        below[:, 3] += above[:, 3]
-        matrices[:, :, level.place] = below
-    return matrices[:, :, order.places].transpose(3, 2, 0, 1)
+        above, here = matrices[level.parents], matrices[level.place]
+        below = above[:, :, 0, None] * here[:, None, 0]
+        part = above[:, :, 1, None] * here[:, None, 1]
+        below += part
+        np.multiply(above[:, :, 2, None], here[:, None, 2], out=part)
+        below += part
+        below[:, :, 3] += above[:, :, 3]
+        matrices[level.place] = below
+    return _innermost(matrices[order.places].reshape(-1, count)).reshape(count, joints, 3, 4)
 
 
 def _rotate(q: Floats, matrices: Floats) -> None:
-    """Write rotation matrices of quaternions (4, joints, poses) into (3, 4, joints, poses)."""
-    _, y, z, w = q
-    double = q[:3] * 2
-    xx, yy, zz = double * q[:3]
-    xy, xz, yz = double[0] * y, double[0] * z, double[1] * z
-    wx, wy, wz = double * w
-    matrices[0, 0] = 1 - (yy + zz)
-    matrices[1, 1] = 1 - (xx + zz)
-    matrices[2, 2] = 1 - (xx + yy)
-    np.subtract(xy, wz, out=matrices[0, 1])
-    np.add(xy, wz, out=matrices[1, 0])
-    np.add(xz, wy, out=matrices[0, 2])
-    np.subtract(xz, wy, out=matrices[2, 0])
-    np.subtract(yz, wx, out=matrices[1, 2])
-    np.add(yz, wx, out=matrices[2, 1])
+    """Write rotation matrices of quaternions (joints, 4, characters) into (joints, 3, 4, …)."""
+    double = q[:, :3] * 2
+    squared, (x, y, z) = double * q[:, :3], np.moveaxis(double, 1, 0)
+    xx, yy, zz = np.moveaxis(squared, 1, 0)
+    xy, xz, yz = x * q[:, 1], x * q[:, 2], y * q[:, 2]
+    wx, wy, wz = x * q[:, 3], y * q[:, 3], z * q[:, 3]
+    matrices[:, 0, 0] = 1 - (yy + zz)
+    matrices[:, 1, 1] = 1 - (xx + zz)
+    matrices[:, 2, 2] = 1 - (xx + yy)
+    np.subtract(xy, wz, out=matrices[:, 0, 1])
+    np.add(xy, wz, out=matrices[:, 1, 0])
+    np.add(xz, wy, out=matrices[:, 0, 2])
+    np.subtract(xz, wy, out=matrices[:, 2, 0])
+    np.subtract(yz, wx, out=matrices[:, 1, 2])
+    np.add(yz, wx, out=matrices[:, 2, 1])
+
+
+def _filled(still: Floats, moved: Numbers, columns: Floats) -> Floats:
+    """Return numbers (joints, 3) for all characters, (joints, 3, n), some of them moved."""
+    everyone = np.repeat(still[..., None], columns.shape[1], axis=2)
+    everyone[moved] = columns.reshape(len(moved), 3, -1)
+    return everyone
+
+
+def _innermost(rows: Floats) -> Floats:
+    """Return a matrix transposed, in its own memory; OpenCV does it block by block."""
+    return np.asarray(cv2.transpose(rows)) if rows.size else np.zeros(rows.shape[::-1], rows.dtype)
 
 
 @lru_cache(maxsize=64)

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from characters import Character, CharacterError, Clip, Pose, Skeleton
 from characters.bank import Bank
 from characters.blend import mix
-from characters.crowd import globals_of_many
+from characters.crowd import crowd_globals, globals_of_many
 from characters.rotations import about, normalize
 
 
@@ -61,6 +61,19 @@ def test_matrices_of_many_are_those_of_each(seed):
     skeleton = Skeleton(tuple(map(str, range(joints))), parents, pose[0])
     each = pose.globals(skeleton)
     np.testing.assert_allclose(globals_of_many(pose, skeleton), each[:, :, :3], atol=1e-9)
+
+
+@pytest.mark.parametrize("name", Character.bundled())
+def test_a_crowd_stands_where_its_poses_do(name):
+    character = Character.load(name)
+    clips = list(character.clips.values())
+    bank = Bank.of(character.skeleton, clips, np.float64)
+    rng = np.random.default_rng(2)
+    played = rng.integers(0, len(clips), (9, 2)), rng.uniform(-1.0, 5.0, (9, 2))
+    weights = rng.dirichlet(np.ones(2), 9)
+    poses = bank.sample(*played, weights)
+    each = np.stack([poses[n].globals(character.skeleton)[:, :3] for n in range(9)])
+    np.testing.assert_allclose(crowd_globals(bank, *played, weights), each, atol=1e-9)
 
 
 def test_joints_that_turn_all_the_way_round_are_mixed_the_shorter_way():
