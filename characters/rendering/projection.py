@@ -114,7 +114,10 @@ def is_rigid(transform: Array | None) -> bool:
     """Whether a transform is there, finite, and not flattened: scaled at most, never singular."""
     if transform is None or np.shape(transform) != (4, 4) or not np.isfinite(transform).all():
         return False
-    return bool(abs(np.linalg.det(transform[:3, :3])) > 1e-12)
+    axes = np.asarray(transform, float)[:3, :3]
+    # Against their lengths: what was made in millimetres comes to the table at a ten-thousandth.
+    space = float(np.prod(np.linalg.norm(axes, axis=0)))
+    return bool(abs(np.linalg.det(axes)) > 1e-6 * space)
 
 
 def is_pinhole(matrix: Array) -> bool:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from characters.mesh import Material
 from characters.rendering import Actor, Stage
-from characters.rendering.projection import clip_from_camera, merged, part_that_shows
+from characters.rendering.projection import clip_from_camera, is_rigid, merged, part_that_shows
 from characters.rendering.view import Rectangle
 
 MATRIX = np.array([[310.0, 0.7, 158.2], [0.0, 305.0, 92.4], [0.0, 0.0, 1.0]])
@@ -84,3 +84,13 @@ def test_merged_parts_hold_all_that_they_were_made_of(parts):
     assert len(fewer) <= len(parts)
     for part in parts:
         assert any(other.joined(part) == other for other in fewer)
+
+
+@pytest.mark.parametrize("scale", [1e-7, 1e-4, 1.0, 1e5])
+def test_what_is_small_is_not_flat(scale):
+    """A body of 1700 units, as one in millimetres is, comes to the table at a ten-thousandth."""
+    assert is_rigid(np.diag([scale, scale, scale, 1.0]))
+    assert not is_rigid(np.diag([scale, 0.0, scale, 1.0]))
+    flat = np.eye(4)
+    flat[:3, :3] = scale * np.array([[1, 0, 1], [0, 1, 1], [1, 1, 2]])
+    assert not is_rigid(flat)
