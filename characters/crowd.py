@@ -105,39 +105,40 @@ def _globals(turns: Floats, shifts: Floats, scales: Floats | None, skeleton: Ske
     """Return matrices (characters, joints, 3, 4) of locals (joints, 4 or 3, characters)."""
     order = _order(skeleton.parents)
     joints, _, count = turns.shape
-    matrices = np.empty((joints, 3, 4, count), turns.dtype)
-    _rotate(turns[order.joints], matrices)
+    # Joints of a depth lie side by side, under each component: one long line for each product.
+    matrices = np.empty((3, 4, joints, count), turns.dtype)
+    _rotate(turns.swapaxes(0, 1)[:, order.joints], matrices)
     if scales is not None:
-        matrices[:, :, :3] *= scales[order.joints][:, None]
-    matrices[:, :, 3] = shifts[order.joints]
+        matrices[:, :3] *= scales.swapaxes(0, 1)[:, order.joints]
+    matrices[:, 3] = shifts.swapaxes(0, 1)[:, order.joints]
     for level in order.levels:
-        above, here = matrices[level.parents], matrices[level.place]
-        below = above[:, :, 0, None] * here[:, None, 0]
-        part = above[:, :, 1, None] * here[:, None, 1]
+        above, here = matrices[:, :, level.parents], matrices[:, :, level.place]
+        below = above[:, 0, None] * here[0]
+        part = above[:, 1, None] * here[1]
         below += part
-        np.multiply(above[:, :, 2, None], here[:, None, 2], out=part)
+        np.multiply(above[:, 2, None], here[2], out=part)
         below += part
-        below[:, :, 3] += above[:, :, 3]
-        matrices[level.place] = below
-    return _innermost(matrices[order.places].reshape(-1, count)).reshape(count, joints, 3, 4)
+        below[:, 3] += above[:, 3]
+        matrices[:, :, level.place] = below
+    sorted_back = matrices.transpose(2, 0, 1, 3)[order.places]
+    return _innermost(sorted_back.reshape(-1, count)).reshape(count, joints, 3, 4)
 
 
 def _rotate(q: Floats, matrices: Floats) -> None:
-    """Write rotation matrices of quaternions (joints, 4, characters) into (joints, 3, 4, …)."""
-    double = q[:, :3] * 2
-    squared, (x, y, z) = double * q[:, :3], np.moveaxis(double, 1, 0)
-    xx, yy, zz = np.moveaxis(squared, 1, 0)
-    xy, xz, yz = x * q[:, 1], x * q[:, 2], y * q[:, 2]
-    wx, wy, wz = x * q[:, 3], y * q[:, 3], z * q[:, 3]
-    matrices[:, 0, 0] = 1 - (yy + zz)
-    matrices[:, 1, 1] = 1 - (xx + zz)
-    matrices[:, 2, 2] = 1 - (xx + yy)
-    np.subtract(xy, wz, out=matrices[:, 0, 1])
-    np.add(xy, wz, out=matrices[:, 1, 0])
-    np.add(xz, wy, out=matrices[:, 0, 2])
-    np.subtract(xz, wy, out=matrices[:, 2, 0])
-    np.subtract(yz, wx, out=matrices[:, 1, 2])
-    np.add(yz, wx, out=matrices[:, 2, 1])
+    """Write rotation matrices of quaternions (4, joints, n) into (3, 4, joints, n)."""
+    _, y, z, w = q
+    double = q[:3] * 2
+    xx, yy, zz = double * q[:3]
+    xy, xz, yz = double[0] * y, double[0] * z, double[1] * z
+    wx, wy, wz = double * w
+    for row, (a, b) in enumerate(((yy, zz), (xx, zz), (xx, yy))):
+        np.subtract(1.0, a + b, out=matrices[row, row])
+    np.subtract(xy, wz, out=matrices[0, 1])
+    np.add(xy, wz, out=matrices[1, 0])
+    np.add(xz, wy, out=matrices[0, 2])
+    np.subtract(xz, wy, out=matrices[2, 0])
+    np.subtract(yz, wx, out=matrices[1, 2])
+    np.add(yz, wx, out=matrices[2, 1])
 
 
 def _filled(still: Floats, moved: Numbers, columns: Floats) -> Floats:
