@@ -88,7 +88,8 @@ class Gaits:
         self._cadences = [1.0 / motion.duration for motion in straight]
         walk, run = (x * y for x, y in zip(self._lengths, self._cadences, strict=True))
         self._speeds = [IDLE_SPEED, *_BAND, TOP_SPEED]
-        self._paces = [_STROLL * walk, _BRISK * walk, max(_JOG * run, _BRISK * walk), _SPRINT * run]
+        paces = [_STROLL * walk, _BRISK * walk, _JOG * run, _SPRINT * run]
+        self._paces = [max(paces[: count + 1]) for count in range(len(paces))]
 
     def pace(self, speed: float) -> float:
         """Return how fast the ground goes by at a Speed, going straight [m/s]; rises with it."""

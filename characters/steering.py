@@ -12,7 +12,8 @@ ARRIVED = 0.05
 """Distance at which a target counts as reached [m on the table]."""
 
 _LEFT_AGAIN = 0.065  # [m]: a target that was reached is left again only beyond this distance
-_BRAKING = 3.0  # [m/s² of the character]: how hard it slows down before a target
+_BRAKING = 1.4  # [s]: how long it would take to stop from its fastest run, by the brakes it uses;
+# a time, for characters are of any size, and in any unit
 _EAGERNESS = 2.0  # Angular for each radian between where it looks and where it wants to go
 _ROOM = 1.4  # how much larger than needed the turning circle is kept away from the target
 _LADDER = np.linspace(1.0, TOP_SPEED, 17)  # Speeds whose turning circles are measured,
@@ -100,5 +101,6 @@ class Pilot:
         """Return the Speed from which it can slow down to a stroll over a distance."""
         ahead = max(distance, 0.0) / self._scale
         stroll = self._gaits.pace(IDLE_SPEED)
-        pace = math.sqrt(stroll**2 + 2 * _BRAKING * ahead)
+        brakes = self._gaits.pace(TOP_SPEED) / _BRAKING
+        pace = math.sqrt(stroll**2 + 2 * brakes * ahead)
         return self._gaits.speed(pace)

@@ -17,7 +17,7 @@ LAGS = {"speed": 0.15, "angular": 0.15, "weight": 0.12}
 """How slowly parameters follow where the file does not say [s]: a wish that jumps is no pop."""
 
 _ARRIVED, _LEFT_AGAIN = 0.05, 0.065  # [m on the table], as in `characters.steering`
-_BRAKING = 6.0  # Speed for each metre of the character that is left to go
+_BRAKING = 63.0  # Speed for each metre on the table that is left to go
 _SLOW_TURN = math.radians(60)  # a target farther round than this is approached at a walk
 _TURNING_SPEED = 1.5
 
@@ -106,9 +106,8 @@ class TreePlayer:
         """Return the parameters that lead to a target."""
         right = -self.place.bearing(*target)
         speed = min(max(command.speed, 0.0), 5.0)
-        left = max(away - _ARRIVED, 0.0) / self._scale
         if command.stop:
-            speed = min(speed, 0.6 + _BRAKING * left)
+            speed = min(speed, 0.6 + _BRAKING * max(away - _ARRIVED, 0.0))
         if abs(right) > _SLOW_TURN:
             speed = min(speed, _TURNING_SPEED)
         angular = min(max(2.0 * math.degrees(right), -90.0), 90.0)

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import Animator, Character, CharacterCommand, CharacterError, rotations
+from characters.locomotion import Gaits
 from characters.motion import Step
 from characters.steering import ARRIVED
 
@@ -333,3 +335,46 @@ def test_a_walker_that_is_called_away_from_an_action_goes_without_a_jump(human):
     assert frames[-1].state == "walk"
     assert np.abs(velocities(frames, 60)).max() < 40
     assert np.ptp([place(frame) for frame in frames[:54]], axis=0).max() < 1e-9
+
+
+def in_other_units(character, factor):
+    """Return the same body, written in a unit of which a metre has so many."""
+    rest, clips = character.skeleton.rest, {}
+    for name, clip in character.clips.items():
+        poses = replace(clip.poses, translations=clip.poses.translations * factor, morphs=None)
+        clips[name] = replace(clip, poses=poses)
+    binds = np.diag([factor, factor, factor, 1.0])
+    meshes = [
+        replace(
+            mesh,
+            positions=(mesh.positions * factor).astype(np.float32),
+            inverse_bind=binds @ mesh.inverse_bind @ np.linalg.inv(binds),
+            morphs=(),
+        )
+        for mesh in character.meshes
+    ]
+    skeleton = replace(
+        character.skeleton, rest=replace(rest, translations=rest.translations * factor)
+    )
+    return replace(character, skeleton=skeleton, clips=clips, meshes=tuple(meshes), morphs=())
+
+
+@pytest.mark.parametrize("factor", [0.01, 100.0, 1000.0])
+def test_it_does_not_matter_in_which_unit_a_body_is(walker, factor):
+    def ways(character):
+        animator, target = Animator(character), np.array([0.3, 0.4])
+        told = [("idle", 0.0), ("move", 2.0), ("move", 5.0), ("idle", 0.0)]
+        return [
+            place(animator.update(CharacterCommand(frame / 15, *told[frame // 15], target)))
+            for frame in range(60)
+        ]
+
+    # To 2 mm: of two phases that are as good, roundings choose.
+    assert np.allclose(ways(in_other_units(walker, factor)), ways(walker), atol=2e-3)
+
+
+def test_a_run_that_is_slower_than_the_walk_does_not_slow_it_down(walker):
+    clips = {**walker.clips, "Run": replace(walker.clips["Walk"], name="Run", rate=20.0)}
+    gaits = Gaits(clips, walker.skeleton, walker.skeleton.rest)
+    paces = [gaits.pace(speed) for speed in np.linspace(0.5, 5.0, 19)]
+    assert (np.diff(paces) >= 0).all()
