@@ -101,7 +101,10 @@ class FootLock:
     def _shown(self, pose: Pose, placed: Placed, place: Step, elapsed: float) -> Pose:
         """Return the pose with its feet shifted, and the pelvis lowered where they are far."""
         shifts = [foot.shift for foot in self.feet]
-        if max(s.length + abs(s.y) + abs(s.yaw) * 0.1 for s in shifts) < 1e-5 * self._height:
+        if (
+            max(s.length + abs(s.y) + abs(s.yaw) * 0.06 * self._height for s in shifts)
+            < 1e-5 * self._height
+        ):
             self._sunk = 0.0
             return pose
         ankles, turns = self._ankles(placed, place)

@@ -19,6 +19,7 @@ _ON_BALL, _ON_HEEL = (
 )  # it stands on the heel if that is so much lower: still, and newly
 _STEP_TIME = 0.22  # [s]: what a quick step takes
 _STEP_HEIGHT, _STEP_SLOPE = 0.025, 0.35  # how high it goes: at most, and for its length
+_STEP_LEAST = 6e-4  # and at least, of the body's height
 _PEEL, _PEELED = 0.009, 0.02  # a foot that lifts is so high once it is so far from where it stood,
 _FREE, _CLEAR = 0.06, 0.14  # and that begins to matter less from here on, and ends there
 _FADE_TIME = 0.2  # [s]: after that nothing is left of an old shift
@@ -145,7 +146,9 @@ class HeldFoot:
         """Keep a foot that is on its way clear of the ground, and every foot out of it."""
         least = -sole.low
         if self.stepping > 0.0:
-            top = min(_STEP_HEIGHT * self._height, _STEP_SLOPE * self._stride + 1e-3)
+            top = min(
+                _STEP_HEIGHT * self._height, _STEP_SLOPE * self._stride + _STEP_LEAST * self._height
+            )
             least = top * math.sin(math.pi * self.stepping / _STEP_TIME) ** 2 - sole.low
         elif not self.held:
             x, z = self.shift.moved(sole, heel=False)

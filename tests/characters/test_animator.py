@@ -373,6 +373,18 @@ def test_it_does_not_matter_in_which_unit_a_body_is(walker, factor):
     assert np.allclose(ways(in_other_units(walker, factor)), ways(walker), atol=2e-3)
 
 
+def test_feet_hold_alike_in_whatever_unit_a_body_is(human):
+    names = ("idle", "Walk", "Run")
+    few = replace(human, clips={name: human.clips[name] for name in names})
+
+    def turns(factor):
+        animator, target = Animator(in_other_units(few, factor)), np.array([0.3, 0.4])
+        commands = [CharacterCommand(n / 15, "move", 2.0 + n // 20, target) for n in range(45)]
+        return np.array([animator.update(command).pose.rotations for command in commands])
+
+    assert np.abs((turns(0.01) * turns(1.0)).sum(-1)).min() > 1 - 1e-5
+
+
 def test_a_run_that_is_slower_than_the_walk_does_not_slow_it_down(walker):
     clips = {**walker.clips, "Run": replace(walker.clips["Walk"], name="Run", rate=20.0)}
     gaits = Gaits(clips, walker.skeleton, walker.skeleton.rest)
