@@ -73,6 +73,10 @@ def _problems_of_body(character: Character, sizes: Sizes) -> Iterator[str]:
     if sizes.height and abs(low) > 0.05 * sizes.height:
         where = "above" if low > 0 else "below"
         yield f"At rest it is {abs(low):.2g} m {where} the ground: move it to y = 0 in its file."
+    lowest, highest = character.bounds[:, [0, 2]]
+    beside = float(np.hypot(*np.maximum(np.maximum(lowest, -highest), 0.0)))
+    if beside > 0.05 * sizes.height:
+        yield f"At rest it is {beside:.2g} m beside x = z = 0, where it is put down: move it there."
     off = max((_unevenness(mesh) for mesh in character.meshes), default=0.0)
     if off > 1e-3:
         yield f"Skin weights do not sum to one: they are off by {off:.2g}; normalise them."

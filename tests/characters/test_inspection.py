@@ -71,14 +71,17 @@ def test_what_was_noted_while_reading_comes_first(sound):
 def test_bodies_of_an_odd_size_or_place_are_told(sound):
     mesh = sound.meshes[0]
 
-    def moved(scale, rise):
-        positions = (scale * mesh.positions + [0.0, rise, 0.0]).astype(np.float32)
+    def moved(scale, rise, aside=0.0):
+        positions = (scale * mesh.positions + [aside, rise, 0.0]).astype(np.float32)
         return problems(sound, meshes=(replace(mesh, positions=positions),))
 
     assert "tall" not in moved(1.0, 0.0)
     assert "170 m tall" in moved(100.0, 0.0)
     assert "0.5 m above the ground" in moved(1.0, 0.5)
     assert "0.5 m below the ground" in moved(1.0, -0.5)
+    assert "beside" not in moved(1.0, 0.0, 0.1)
+    assert "1.8 m beside x = z = 0" in moved(1.0, 0.0, 2.0)
+    assert "1.8 m beside x = z = 0" in moved(1.0, 0.0, -2.0)
 
 
 def test_weights_textures_and_crowds_are_told(sound):
