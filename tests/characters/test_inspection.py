@@ -79,7 +79,7 @@ def test_bodies_of_an_odd_size_or_place_are_told(sound):
     assert "170 m tall" in moved(100.0, 0.0)
     assert "0.5 m above the ground" in moved(1.0, 0.5)
     assert "0.5 m below the ground" in moved(1.0, -0.5)
-    assert "beside" not in moved(1.0, 0.0, 0.1)
+    assert "beside x" not in moved(1.0, 0.0, 0.1)
     assert "1.8 m beside x = z = 0" in moved(1.0, 0.0, 2.0)
     assert "1.8 m beside x = z = 0" in moved(1.0, 0.0, -2.0)
 
