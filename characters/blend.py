@@ -14,7 +14,7 @@ from characters import rotations
 from characters.errors import CharacterError
 from characters.legs import Legs
 from characters.motion import STANDING, Motion, Step
-from characters.phase import Cyclic, Endless, in_step
+from characters.phase import Cyclic, Endless, in_step, unit
 from characters.pose import Array, Pose
 from characters.travel import mean_step
 
@@ -131,8 +131,7 @@ class Blend:
     @property
     def _cycle(self) -> float:
         """What a unit of phase lasts [s]: one second, if nothing in it has a cycle."""
-        duration = self.duration
-        return duration if 0.0 < duration < math.inf else 1.0
+        return unit(self.duration)
 
     def _rate(self, member: Cyclic) -> float:
         """Return how far a member's own phase goes in a unit of phase."""
@@ -202,11 +201,12 @@ class Paced:
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s] since phase 0."""
-        return self.at(time / self.duration)
+        return self.at(time * self.rate / unit(self.motion.duration))
 
     def travel(self, start: float, end: float) -> Step:
         """Return how the root moves over the ground between two times [s]."""
-        return self.between(start / self.duration, end / self.duration)
+        cycle = unit(self.motion.duration) / self.rate
+        return self.between(start / cycle, end / cycle)
 
 
 @dataclass(frozen=True)

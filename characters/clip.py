@@ -67,14 +67,11 @@ class Clip:
         """Return the pose at a time [s]; the root stands at the origin if it has root motion."""
         frame, u = self.position(time)
         after = min(frame + 1, self._last)
-        poses = self.in_place
-        t, r, s, m = poses.translations, poses.rotations, poses.scales, poses.morphs
+        before = self._table[frame]
         # The signs were made continuous, so a straight mix goes the shorter way.
+        pose = self._parts(before + (self._table[after] - before) * u)
         return Pose(
-            t[frame] + (t[after] - t[frame]) * u,
-            rotations.normalize(r[frame] + (r[after] - r[frame]) * u),
-            None if s is None else s[frame] + (s[after] - s[frame]) * u,
-            None if m is None else m[frame] + (m[after] - m[frame]) * u,
+            pose.translations, rotations.normalize(pose.rotations), pose.scales, pose.morphs
         )
 
     def travel(self, start: float, end: float) -> Step:
@@ -94,6 +91,24 @@ class Clip:
     @cached_property
     def in_place(self) -> Pose:
         """The poses with the root's planar motion taken out and continuous quaternion signs."""
+        return self._parts(self._table)
+
+    def _parts(self, rows: Array) -> Pose:
+        """Return rows of the table, (…, columns), as poses that lie in the same memory."""
+        joints = self.poses.rotations.shape[1]
+        lead = rows.shape[:-1]
+        turned, shifted = 4 * joints, 7 * joints
+        sized = shifted if self.poses.scales is None else 10 * joints
+        return Pose(
+            rows[..., turned:shifted].reshape(*lead, joints, 3),
+            rows[..., :turned].reshape(*lead, joints, 4),
+            rows[..., shifted:sized].reshape(*lead, joints, 3) if sized > shifted else None,
+            None if self.poses.morphs is None else rows[..., sized:],
+        )
+
+    @cached_property
+    def _table(self) -> Array:
+        """The numbers of each pose in one row, (frames, columns), so that all are mixed at once."""
         translations = self.poses.translations.copy()
         turns = rotations.continuous(self.poses.rotations)
         if self.root_motion:
@@ -103,7 +118,9 @@ class Clip:
             translations[:, 0] = rotations.rotate(back, translations[:, 0] - ground)
             turns[:, 0] = rotations.multiply(back, turns[:, 0])
             turns = rotations.continuous(turns)
-        return Pose(translations, turns, self.poses.scales, self.poses.morphs)
+        parts = [turns, translations]
+        parts += [part for part in (self.poses.scales, self.poses.morphs) if part is not None]
+        return np.concatenate([part.reshape(len(self), -1) for part in parts], axis=1)
 
     @cached_property
     def track(self) -> Array:

@@ -1,9 +1,7 @@
 """A motion whose parameters change while it plays."""
 
-import math
-
 from characters.motion import Step
-from characters.phase import Cyclic
+from characters.phase import Cyclic, unit
 from characters.pose import Pose
 
 
@@ -24,13 +22,7 @@ class Live:
 
     def phase(self, time: float) -> float:
         """Return the phase at a time [s]; grows by one each cycle."""
-        return self._phase + (time - self._time) / self._cycle
-
-    @property
-    def _cycle(self) -> float:
-        """What a unit of phase lasts [s]: a second where the motion has no cycle."""
-        duration = self._motion.duration
-        return duration if 0.0 < duration < math.inf else 1.0
+        return self._phase + (time - self._time) / unit(self._motion.duration)
 
     def change(self, motion: Cyclic, time: float) -> None:
         """Go on with another motion from a time on [s], at the phase that was reached."""

@@ -7,13 +7,12 @@ each over Angular, −90…90°, joined over Speed, where 3 is the border betwee
 import math
 from collections.abc import Mapping
 
-import numpy as np
-
 from characters.blend import Blend, BlendSpace1D, Paced
 from characters.clip import Clip
 from characters.legs import find_legs
 from characters.phase import Phased, Still, phased
 from characters.pose import Pose, Skeleton
+from characters.smoothing import along
 from characters.strides import Strides
 from characters.treads import Treads
 
@@ -93,11 +92,11 @@ class Gaits:
 
     def pace(self, speed: float) -> float:
         """Return how fast the ground goes by at a Speed, going straight [m/s]; rises with it."""
-        return float(np.interp(speed, self._speeds, self._paces))
+        return along(speed, self._speeds, self._paces)
 
     def speed(self, pace: float) -> float:
         """Return the Speed at which the ground goes by so fast [m/s]: the inverse of `pace`."""
-        return float(np.interp(pace, self._paces, self._speeds))
+        return along(pace, self._paces, self._speeds)
 
     def radius(self, speed: float) -> float:
         """Return the radius of the tightest curve at a Speed [m]."""
@@ -116,7 +115,7 @@ class Gaits:
         stride
             What the way over the ground is multiplied with, to turn tighter than any clip.
         """
-        running = float(np.interp(speed, _BAND, (0.0, 1.0)))
+        running = along(speed, _BAND, (0.0, 1.0))
         # Steps on the spot are small ones.
         smaller = 1.0 - _SMALLER * (1.0 - stride)
         rate, share = self._effort(speed, running)

@@ -36,6 +36,15 @@ class Cyclic(Motion, Protocol):
         ...
 
 
+def unit(duration: float) -> float:
+    """Return what a unit of phase lasts [s]: a cycle, or a second where there is none.
+
+    >>> unit(0.8), unit(0.0), unit(math.inf)
+    (0.8, 1.0, 1.0)
+    """
+    return duration if 0.0 < duration < math.inf else 1.0
+
+
 @dataclass(frozen=True)
 class Phased:
     """A looped motion with marks for its phase; `Cyclic`."""
@@ -64,11 +73,12 @@ class Phased:
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s] after a left footfall."""
-        return self.at(time / self.duration)
+        return self.at(time / unit(self.duration))
 
     def travel(self, start: float, end: float) -> Step:
         """Return how the root moves over the ground between two times [s]."""
-        return self.between(start / self.duration, end / self.duration)
+        cycle = unit(self.duration)
+        return self.between(start / cycle, end / cycle)
 
     def time(self, phase: float) -> float:
         """Return the time [s] in the motion at a phase, through the marks and smooth at them.

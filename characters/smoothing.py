@@ -1,6 +1,8 @@
 """Numbers that follow a wish without jumping, at any frame rate."""
 
 import math
+from bisect import bisect_right
+from collections.abc import Sequence
 
 
 def eased(value: float, wish: float, elapsed: float, lag: float) -> float:
@@ -13,6 +15,21 @@ def eased(value: float, wish: float, elapsed: float, lag: float) -> float:
     True
     """
     return wish + (value - wish) * math.exp(-elapsed / lag)
+
+
+def along(value: float, knots: Sequence[float], values: Sequence[float]) -> float:
+    """Return what lies at a value on straight lines between knots, which ascend; held beyond them.
+
+    What `np.interp` does, for one number in a fraction of the time.
+
+    >>> along(1.5, (1.0, 2.0, 4.0), (10.0, 20.0, 0.0)), along(9.0, (1.0, 2.0), (10.0, 20.0))
+    (15.0, 20.0)
+    """
+    after = bisect_right(knots, value)
+    if after == 0 or after == len(knots):
+        return values[max(after - 1, 0)]
+    low, a = knots[after - 1], values[after - 1]
+    return a + (values[after] - a) * (value - low) / (knots[after] - low)
 
 
 def sprung(

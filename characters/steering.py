@@ -2,11 +2,13 @@
 
 import math
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 
 from characters.locomotion import IDLE_SPEED, STEEPEST, TOP_SPEED, Gaits
 from characters.motion import Step
+from characters.smoothing import along
 
 ARRIVED = 0.05
 """Distance at which a target counts as reached [m on the table]."""
@@ -16,8 +18,10 @@ _BRAKING = 1.4  # [s]: how long it would take to stop from its fastest run, by t
 # a time, for characters are of any size, and in any unit
 _EAGERNESS = 2.0  # Angular for each radian between where it looks and where it wants to go
 _ROOM = 1.4  # how much larger than needed the turning circle is kept away from the target
-_LADDER = np.linspace(1.0, TOP_SPEED, 17)  # Speeds whose turning circles are measured,
-_SPEEDS = np.array([IDLE_SPEED, *_LADDER])  # and that at which it stops
+_LADDER: list[float] = np.linspace(
+    1.0, TOP_SPEED, 17
+).tolist()  # Speeds whose turning circles are measured,
+_SPEEDS = [IDLE_SPEED, *_LADDER]  # and that at which it stops
 _BEHIND = math.radians(150)  # a target farther behind is turned to the way round already begun
 
 
@@ -54,7 +58,7 @@ class Pilot:
         self._gaits = gaits
         self._scale = scale
         self._circles = [gaits.radius(speed) * scale for speed in _SPEEDS]
-        self._radii = np.maximum.accumulate(self._circles[1:])
+        self._radii = list(accumulate(self._circles[1:], max))
         self._arrived = False
         self._side = 1.0
 
@@ -88,14 +92,14 @@ class Pilot:
         if stop:
             speed = min(speed, self._fastest_before(distance - ARRIVED))
         speed = max(speed, IDLE_SPEED)
-        circle = float(np.interp(speed, _SPEEDS, self._circles))
+        circle = along(speed, _SPEEDS, self._circles)
         stride = min(1.0, needed / (_ROOM * circle))
         angular = min(max(_EAGERNESS * error, -STEEPEST), STEEPEST)
         return Course(speed, angular, stride)
 
     def _fastest_within(self, radius: float) -> float:
         """Return the Speed at which a curve of that radius [m on the table] can still be run."""
-        return float(np.interp(radius / _ROOM, self._radii, _LADDER))
+        return along(radius / _ROOM, self._radii, _LADDER)
 
     def _fastest_before(self, distance: float) -> float:
         """Return the Speed from which it can slow down to a stroll over a distance."""

@@ -3,9 +3,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import BlendSpace1D, BlendSpace2D, CharacterError, Motion, Pose, rotations
+from characters import (
+    BlendSpace1D,
+    BlendSpace2D,
+    CharacterError,
+    Clip,
+    Motion,
+    Pose,
+    Schedule,
+    StateMachine,
+    rotations,
+)
 from characters.blend import Blend, Paced, mix, shares
-from characters.phase import Cyclic, Phased, Still, phased
+from characters.phase import Cyclic, Phased, Still, in_step, phased
 
 coordinates = st.floats(-2, 2)
 point = st.tuples(coordinates, coordinates)
@@ -142,3 +152,14 @@ def test_in_any_blend_of_walk_and_run_left_feet_land_together(walker, skeleton, 
 def test_clips_without_steps_start_together_at_phase_nought(actor):
     clip = actor.clips["kiss_tail"]
     assert np.allclose(Phased(clip).at(0.25).rotations, clip.sample(0.25 * clip.duration).rotations)
+
+
+def test_what_has_no_cycle_is_paced_by_the_clock():
+    rest = Pose(np.zeros((1, 3)), np.array([[0.0, 0.0, 0.0, 1.0]]))
+    empty = Schedule((), rest)
+    assert Paced(in_step(empty), 2.0).sample(3.0).rotations.shape == (1, 4)
+    turns = rotations.about("y", np.linspace(0.0, 1.0, 11))[:, None]
+    clip = Clip("turn", 10.0, Pose(np.zeros((11, 1, 3)), turns), loop=False)
+    machine = StateMachine({"turn": clip}, "turn")
+    shown = Paced(in_step(machine), 2.0).sample(0.25)
+    assert shown.rotations == pytest.approx(clip.sample(0.5).rotations)
