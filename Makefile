@@ -13,8 +13,9 @@ INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --co
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
 
-test: .venv/ready-dev  ## the whole test suite
-	$(BIN)/python -m pytest
+# A file's tests stay in one process, for they share what takes long to make.
+test: .venv/ready-dev  ## the whole test suite, on all cores
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 check: .venv/ready-dev  ## formatting, lint and types
 	$(BIN)/ruff format --check .
@@ -25,6 +26,9 @@ bench: .venv/ready-dev  ## every figure that the documents name
 	$(BIN)/python -m tests.bench.line
 	$(BIN)/python -m tests.bench.accuracy
 	$(BIN)/python -m tests.bench.animation
+	$(BIN)/python -m tests.bench.crowd
+	$(BIN)/python -m tests.bench.mocap
+	$(BIN)/python -m tests.bench.retarget
 	$(BIN)/python -m tests.bench.loading
 	$(BIN)/python -m tests.bench.feet
 	$(BIN)/python -m tests.bench.picture
