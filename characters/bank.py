@@ -26,6 +26,7 @@ from characters.pose import Array, Pose, Skeleton
 Numbers = NDArray[np.intp]
 Floats = NDArray[Any]
 
+_BLOCK = 64  # characters whose rows are looked up at once: so many stay near the processor
 _STILL = 1e-7  # [m], or part of a scale: what moves less is the same in every row
 
 
@@ -161,9 +162,13 @@ class Bank:
         row, u = self.rows(clips, times)
         share = np.asarray(weights, float)
         factors = np.concatenate([share * (1.0 - u), share * u], axis=-1).astype(self.table.dtype)
-        looked_up = self.table.take(np.concatenate([row, row + 1], axis=-1), axis=0)
-        total: Floats = (factors[:, None] @ looked_up)[:, 0]
-        self._mix_astray(looked_up, factors, total)
+        numbers = np.concatenate([row, row + 1], axis=-1)
+        total = np.empty((len(numbers), self.table.shape[1]), self.table.dtype)
+        for first in range(0, len(numbers), _BLOCK):
+            block = slice(first, first + _BLOCK)
+            looked_up = self.table.take(numbers[block], axis=0)
+            np.matmul(factors[block, None], looked_up, out=total[block, None])
+        self._mix_astray(numbers, factors, total)
         return total
 
     def blended(self, voices: Sequence[tuple[int, float, float]]) -> tuple[Pose, Floats]:
@@ -183,9 +188,9 @@ class Bank:
             rows += (row, row + 1)
             factors += (weight * (1.0 - u), weight * u)
         share = np.array(factors, self.table.dtype)
-        looked_up = self.table.take(rows, axis=0)
-        mixed = share @ looked_up
-        self._mix_astray(looked_up[None], share[None], mixed[None])
+        mixed = share @ self.table.take(rows, axis=0)
+        if self.astray.size:
+            self._mix_astray(np.array([rows]), share[None], mixed[None])
         turned, shifted, sized, morphed = self.edges
         turns = mixed[:turned].reshape(-1, 4)
         turns = turns / np.sqrt(np.einsum("ji,ji->j", turns, turns))[:, None]
@@ -239,21 +244,36 @@ class Bank:
             sizes[:, self.scaled] = scales.reshape(count, -1, 3)
         return Pose(places, turns, sizes, morphs if morphs.shape[1] else None)
 
-    def _mix_astray(self, rows: Floats, factors: Floats, total: Floats) -> None:
+    def _mix_astray(self, numbers: Numbers, factors: Floats, total: Floats) -> None:
         """Mix the joints anew that turn far, with the signs of each character's heaviest row.
 
-        `rows` (characters, rows, columns) are mixed by `factors` (characters, rows) to `total`
+        Rows `numbers` (characters, rows) are mixed by `factors` (characters, rows) to `total`
         (characters, columns).
         """
         if not self.astray.size:
             return
-        heaviest = np.arange(len(rows)), factors.argmax(1)
-        for joint in self.astray.tolist():
-            turns = [np.ascontiguousarray(rows[..., 4 * joint + k]) for k in range(4)]
-            dots = sum(part * part[heaviest][:, None] for part in turns)
+        turns = self._astray_table.take(numbers, axis=1)  # (4 n, characters, rows)
+        heaviest = np.arange(len(numbers)), factors.argmax(1)
+        for place, joint in enumerate(self.astray.tolist()):
+            own = turns[4 * place : 4 * place + 4]
+            dots = sum(part * part[heaviest][:, None] for part in own)
             signed = np.where(dots < 0, -factors, factors)
-            for k, part in enumerate(turns):
-                total[:, 4 * joint + k] = np.einsum("cv,cv->c", part, signed)
+            total[:, 4 * joint : 4 * joint + 4] = np.einsum("kcv,cv->ck", own, signed)
+
+    @cached_property
+    def _astray_table(self) -> Floats:
+        """The quaternions that may disagree, component by component, (4 n, rows)."""
+        columns = (4 * self.astray[:, None] + np.arange(4)).ravel()
+        return np.ascontiguousarray(self.table[:, columns].T)
+
+    @cached_property
+    def stretched(self) -> Numbers:
+        """Joints whose scale is not always one, (n,)."""
+        if self.still.scales is None:
+            return np.zeros(0, np.intp)
+        uneven = np.abs(self.still.scales - 1.0).max(-1) > _STILL
+        uneven[self.scaled] = True
+        return np.flatnonzero(uneven)
 
 
 def _twice_if_single(pose: Pose) -> Pose:

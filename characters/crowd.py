@@ -72,10 +72,10 @@ def crowd_globals(bank: Bank, clips: ArrayLike, times: ArrayLike, weights: Array
     turns = columns[:turned].reshape(joints, 4, -1)
     turns = turns / np.sqrt(np.einsum("jkn,jkn->jn", turns, turns))[:, None]
     shifts = _filled(bank.still.translations, bank.moved, columns[turned:shifted])
-    scales = None
+    stretched, scales = bank.stretched, None
     if bank.still.scales is not None:
-        scales = _filled(bank.still.scales, bank.scaled, columns[shifted:sized])
-    return _globals(turns, shifts, scales, bank.skeleton)
+        scales = _filled(bank.still.scales, bank.scaled, columns[shifted:sized])[stretched]
+    return _globals(turns, shifts, scales, stretched, bank.skeleton)
 
 
 def globals_of_many(pose: Pose, skeleton: Skeleton) -> Floats:
@@ -98,18 +98,23 @@ def globals_of_many(pose: Pose, skeleton: Skeleton) -> Floats:
     scales = None
     if pose.scales is not None:
         scales = _innermost(pose.scales.reshape(count, -1)).reshape(joints, 3, count)
-    return _globals(turns, shifts, scales, skeleton)
+    return _globals(turns, shifts, scales, np.arange(joints), skeleton)
 
 
-def _globals(turns: Floats, shifts: Floats, scales: Floats | None, skeleton: Skeleton) -> Floats:
-    """Return matrices (characters, joints, 3, 4) of locals (joints, 4 or 3, characters)."""
+def _globals(
+    turns: Floats, shifts: Floats, scales: Floats | None, stretched: Numbers, skeleton: Skeleton
+) -> Floats:
+    """Return matrices (characters, joints, 3, 4) of locals (joints, 4 or 3, characters).
+
+    The scales are those of the joints `stretched` (n,) alone.
+    """
     order = _order(skeleton.parents)
     joints, _, count = turns.shape
     # Joints of a depth lie side by side, under each component: one long line for each product.
     matrices = np.empty((3, 4, joints, count), turns.dtype)
     _rotate(turns.swapaxes(0, 1)[:, order.joints], matrices)
     if scales is not None:
-        matrices[:, :3] *= scales.swapaxes(0, 1)[:, order.joints]
+        matrices[:, :3, order.places[stretched]] *= scales.swapaxes(0, 1)
     matrices[:, 3] = shifts.swapaxes(0, 1)[:, order.joints]
     for level in order.levels:
         above, here = matrices[:, :, level.parents], matrices[:, :, level.place]
