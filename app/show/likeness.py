@@ -16,8 +16,8 @@ from robot.emotion import HAPPY_ABOVE
 LARGEST = 216
 """Side of the picture that is drawn at most [px]; software rendering takes longer for more."""
 
-PAUSE = 0.045
-"""Shortest time from one picture to the next where the processor draws [s]: every second frame of
+PAUSE = 0.08
+"""Shortest time from one picture to the next where the processor draws [s]: every third frame of
 a usual camera, for the character on the table needs the processor too."""
 
 SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software")
