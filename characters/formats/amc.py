@@ -82,5 +82,6 @@ def find_skeleton(path: Path) -> Path:
         return beside[0]
     found = f"{len(beside)} .asf files, none of its name" if beside else "no .asf file"
     raise CharacterError(
-        f"{path}: an .amc needs its skeleton, and beside it there is {found}; give skeleton="
+        f"{path}: an .amc needs its skeleton, and beside it there is {found}; "
+        "name it: --skeleton, or skeleton= in Python"
     )
