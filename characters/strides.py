@@ -51,7 +51,7 @@ class Strides:
         pose, feet = self.treads.mixed(self.voices, phase, self.share)
         if len(self.voices) == 1 and self.share == self.stride == 1.0:
             return pose
-        return self.treads.legs.reach(pose, *self._feet(feet.tolist()))
+        return self.treads.legs.reach(pose, *self._feet(feet))
 
     def contacts(self, phase: float) -> list[float]:
         """Return how much of the mix has each foot on the ground, 0…1."""

@@ -66,6 +66,11 @@ class Treads:
     _times: dict[tuple[int, float], float] = field(default_factory=dict, repr=False, compare=False)
     """Times that were worked out lately: a phase is asked for three times in a frame."""
 
+    _stood: list[tuple[Sequence[tuple[int, float]], float, list[float]]] = field(
+        default_factory=list, repr=False, compare=False
+    )
+    """What was mixed last: voices, phase and contacts, which are asked for after the pose."""
+
     @staticmethod
     def of(motions: Sequence[Phased], skeleton: Skeleton, legs: Legs, standing: Pose) -> "Treads":
         """Return the treads of looped clips, with contacts that are found in them.
@@ -83,8 +88,8 @@ class Treads:
 
     def mixed(
         self, voices: Sequence[tuple[int, float]], phase: float, share: float
-    ) -> tuple[Pose, Array]:
-        """Return the mean of clips at a phase, and of their feet, (legs, 8).
+    ) -> tuple[Pose, list[list[float]]]:
+        """Return the mean of clips at a phase, and of ball, facing and contact of each foot.
 
         Parameters
         ----------
@@ -98,8 +103,10 @@ class Treads:
         heard = [(number, self.time(number, phase), weight * share) for number, weight in voices]
         if share < 1.0:
             heard.append((len(self.motions), 0.0, 1.0 - share))
-        pose, feet = self.bank.blended(heard)
-        return pose, feet.reshape(-1, 8) / share
+        pose, numbers = self.bank.blended(heard)
+        feet: list[list[float]] = (numbers.reshape(-1, 8) / share).tolist()
+        self._stood[:] = [(voices, phase, [foot[7] for foot in feet])]
+        return pose, feet
 
     def time(self, number: int, phase: float) -> float:
         """Return the time [s] in a clip at a phase."""
@@ -118,6 +125,9 @@ class Treads:
 
     def contacts(self, voices: Sequence[tuple[int, float]], phase: float) -> list[float]:
         """Return how much of a mix has each foot on the ground, 0…1."""
+        for mixed, at_phase, stood in self._stood:
+            if mixed is voices and at_phase == phase:
+                return stood
         total = [0.0] * self.legs.count
         for number, weight in voices:
             motion, down = self.motions[number], self._down[number]
