@@ -207,11 +207,7 @@ def find_legs(skeleton: Skeleton) -> Legs | None:
     lines = [line for feet in find_feet(skeleton) for line in _lines(feet, skeleton)[:1]]
     if not lines or skeleton.rest.scales is not None:
         return None
-    carriers = {joint for line in lines for joint in line}
-    for joint in reversed(range(len(skeleton))):
-        if joint in carriers and skeleton.parents[joint] >= 0:
-            carriers.add(skeleton.parents[joint])
-    order = sorted(carriers)
+    order = skeleton.carrying(joint for line in lines for joint in line)
     number = {joint: place for place, joint in enumerate(order)} | {-1: -1}
     part = Skeleton(
         tuple(skeleton.names[joint] for joint in order),

@@ -1,5 +1,6 @@
 """Skeletons and poses: arrays over joints, never objects a joint."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -104,6 +105,14 @@ class Skeleton:
             raise CharacterError(
                 f"skeleton has no joint {name!r}; it has {', '.join(self.names)}"
             ) from None
+
+    def carrying(self, joints: Iterable[int]) -> list[int]:
+        """Return some joints with all that carry them, parents first."""
+        wanted = set(joints)
+        for joint in reversed(range(len(self))):
+            if joint in wanted and self.parents[joint] >= 0:
+                wanted.add(self.parents[joint])
+        return sorted(wanted)
 
     @property
     def has_root_motion(self) -> bool:

@@ -250,11 +250,7 @@ class Gaze:
 
 def _carriers(skeleton: Skeleton, joints: list[int]) -> list[_Joint]:
     """Return some joints with all that carry them, parents first."""
-    wanted = set(joints)
-    for joint in reversed(range(len(skeleton))):
-        if joint in wanted and skeleton.parents[joint] >= 0:
-            wanted.add(skeleton.parents[joint])
-    order = sorted(wanted)
+    order = skeleton.carrying(joints)
     place = {joint: number for number, joint in enumerate(order)} | {-1: -1}
     matrices = skeleton.rest.globals(skeleton)[order, :3, :3]
     sizes = np.linalg.norm(matrices, axis=1, keepdims=True)
