@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from characters.acts import acts_of, proceed
+from characters.acts import WEIGHT_LAG, acts_of, proceed
 from characters.character import Character
 from characters.command import CharacterCommand
 from characters.errors import CharacterError
@@ -14,7 +14,6 @@ from characters.pose import Pose
 from characters.rotations import wrap
 from characters.smoothing import eased, sprung
 
-_WEIGHT_LAG = 0.12  # [s]
 _GAZE_LAG = 0.9  # [s]: how slowly it turns on the spot where it need not hop
 _HOP_FROM = 0.015  # [m]: nearer targets are not worth a hop
 _HOP_REACH = 0.05  # [m]
@@ -83,7 +82,7 @@ class Actor:
                 f"the character does not know {action!r}; it knows "
                 f"{', '.join(['idle', *self._acts])}"
             )
-        self.weight = eased(self.weight, wish, elapsed, _WEIGHT_LAG)
+        self.weight = eased(self.weight, wish, elapsed, WEIGHT_LAG)
         action, self._done = proceed(self._machine, self._acts, action, self._done, now)
         if action != self._machine.state and action != "idle":
             self.weight = wish

@@ -15,6 +15,9 @@ from characters.pose import Pose, Skeleton
 INTENSITIES = (("head", -1.0), ("legs", 0.0), ("tail", 1.0))
 """Endings of an action's clips and the weights that they stand for (thesis, section 5.3)."""
 
+WEIGHT_LAG = 0.12
+"""How slowly the intensity of an action follows its wish [s]."""
+
 
 @dataclass(frozen=True)
 class Footing:
@@ -97,33 +100,42 @@ class Act:
         return min(phase, 1.0) if self._once else phase
 
 
-def acts_of(character: Character, besides: Iterable[str] = ()) -> dict[str, Act]:
-    """Return what a character knows to do.
+def clips_of_acts(clips: Iterable[str], besides: Iterable[str] = ()) -> dict[str, dict[float, str]]:
+    """Return the clips of each action by the intensity that they stand for.
 
     An action X is the clips X_head, X_legs and X_tail, for weights −1, 0 and 1. A clip without
     such an ending is an action of one intensity.
 
+    >>> clips_of_acts(["idle", "kiss_head", "kiss_tail", "nod"])
+    {'kiss': {-1.0: 'kiss_head', 1.0: 'kiss_tail'}, 'nod': {0.0: 'nod'}}
+
     Parameters
     ----------
-    character
-        Whose clips.
+    clips
+        Names of all clips of a character.
     besides
-        Clips that are something else.
+        Clips that are something else, as "idle" is anyway.
     """
-    others = {"idle", *besides}
-    acts: dict[str, Act] = {}
-    for name in character.clips:
+    known, others = list(clips), {"idle", *besides}
+    acts: dict[str, dict[float, str]] = {}
+    for name in known:
         action, _, ending = name.rpartition("_")
         if not action or ending not in dict(INTENSITIES):
             action = name
         if action in acts or action in others or name in others:
             continue
-        clips = [(w, character.clips.get(f"{action}_{e}")) for e, w in INTENSITIES]
-        there = [(weight, clip) for weight, clip in clips if clip is not None]
-        there = there or [(0.0, character.clips[name])]
-        knots = tuple(weight for weight, _ in there)
-        space = BlendSpace1D(knots, tuple(Phased(clip) for _, clip in there))
-        acts[action] = Act(space, once=not any(clip.loop for _, clip in there))
+        there = {w: f"{action}_{e}" for e, w in INTENSITIES if f"{action}_{e}" in known}
+        acts[action] = there or {0.0: name}
+    return acts
+
+
+def acts_of(character: Character, besides: Iterable[str] = ()) -> dict[str, Act]:
+    """Return what a character knows to do; see `clips_of_acts`."""
+    acts: dict[str, Act] = {}
+    for action, names in clips_of_acts(character.clips, besides).items():
+        clips = [character.clips[name] for name in names.values()]
+        space = BlendSpace1D(tuple(names), tuple(Phased(clip) for clip in clips))
+        acts[action] = Act(space, once=not any(clip.loop for clip in clips))
     return acts
 
 

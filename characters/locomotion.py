@@ -48,7 +48,9 @@ RUN_CLIPS = {
 }
 """The run tree."""
 
-_BAND = (2.75, 3.25)  # Speeds between which walking is mixed into running
+BAND = (2.75, 3.25)
+"""Speeds between which walking is mixed into running."""
+
 # Speeds, and how fast the ground goes by there as a multiple of the walk or the run as recorded.
 _STROLL, _BRISK, _JOG, _SPRINT = 0.5, 1.3, 0.8, 1.25
 # Of the slowdown to a stroll, this power goes into shorter steps and the rest into slower ones:
@@ -86,7 +88,7 @@ class Gaits:
         self._lengths = [motion.between(0.0, 1.0).length for motion in straight]
         self._cadences = [1.0 / motion.duration for motion in straight]
         walk, run = (x * y for x, y in zip(self._lengths, self._cadences, strict=True))
-        self._speeds = [IDLE_SPEED, *_BAND, TOP_SPEED]
+        self._speeds = [IDLE_SPEED, *BAND, TOP_SPEED]
         paces = [_STROLL * walk, _BRISK * walk, _JOG * run, _SPRINT * run]
         self._paces = [max(paces[: count + 1]) for count in range(len(paces))]
 
@@ -115,7 +117,7 @@ class Gaits:
         stride
             What the way over the ground is multiplied with, to turn tighter than any clip.
         """
-        running = along(speed, _BAND, (0.0, 1.0))
+        running = along(speed, BAND, (0.0, 1.0))
         # Steps on the spot are small ones.
         smaller = 1.0 - _SMALLER * (1.0 - stride)
         rate, share = self._effort(speed, running)

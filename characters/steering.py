@@ -13,7 +13,9 @@ from characters.smoothing import along
 ARRIVED = 0.05
 """Distance at which a target counts as reached [m on the table]."""
 
-_LEFT_AGAIN = 0.065  # [m]: a target that was reached is left again only beyond this distance
+LEFT_AGAIN = 0.065
+"""A target that was reached is left again only beyond this distance [m on the table]."""
+
 _BRAKING = 1.4  # [s]: how long it would take to stop from its fastest run, by the brakes it uses;
 # a time, for characters are of any size, and in any unit
 _EAGERNESS = 2.0  # Angular for each radian between where it looks and where it wants to go
@@ -77,7 +79,7 @@ class Pilot:
             Whether to stop there, or only to pass.
         """
         distance = math.hypot(target[0] - place.x, target[1] - place.z)
-        self._arrived = stop and distance < (_LEFT_AGAIN if self._arrived else ARRIVED)
+        self._arrived = stop and distance < (LEFT_AGAIN if self._arrived else ARRIVED)
         if self._arrived or distance == 0.0:
             return STAY
         error = -place.bearing(*target)  # positive to the right

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from characters.acts import Act, Footing, acts_of, proceed
+from characters.acts import WEIGHT_LAG, Act, Footing, acts_of, proceed
 from characters.character import Character
 from characters.command import CharacterCommand
 from characters.errors import CharacterError
@@ -30,9 +30,11 @@ from characters.strides import Strides
 _SPEED_LAG = 0.15  # [s]
 _ANGULAR_LAG = 0.15  # [s]
 _STRIDE_LAG = 0.08  # [s]
-_WEIGHT_LAG = 0.12  # [s]
 _TURN_FROM, _TURN_UNTIL = math.radians(25), math.radians(4)  # turning on the spot, with steps
 _TURN_SPEED = 1.2  # Speed of those steps
+
+NO_ACTS = (*WALK_CLIPS.values(), *RUN_CLIPS.values(), "move")
+"""Clips that walking is made of, and the word for it."""
 
 
 class Walker:
@@ -57,7 +59,7 @@ class Walker:
         self._motion = self.gaits.at(IDLE_SPEED, 0.0)
         self._steps = Live(self._motion)
         self._first = _likest(idle.sample(0.0), self.gaits.at(IDLE_SPEED, 0.0), skeleton)
-        self._acts = acts_of(character, (*WALK_CLIPS.values(), *RUN_CLIPS.values(), "move"))
+        self._acts = acts_of(character, NO_ACTS)
         self._done = ""  # what was asked for, and has ended
         self._machine = StateMachine({"idle": idle, "move": self._steps, **self._acts}, "idle")
         self._time = 0.0
@@ -183,7 +185,7 @@ class Walker:
             self.weight = weight
             act.begin(weight)
             return
-        self.weight = eased(self.weight, weight, self._time - now, _WEIGHT_LAG)
+        self.weight = eased(self.weight, weight, self._time - now, WEIGHT_LAG)
         act.change(self.weight, now - self._machine.entered)
 
     def _report(self, used: Course, going: bool) -> None:

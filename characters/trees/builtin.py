@@ -1,13 +1,13 @@
 """What a character does without a file that says so, as a plan: for people to see."""
 
+from collections.abc import Iterable, Mapping
+
+from characters.acts import clips_of_acts
 from characters.character import Character
-from characters.locomotion import RUN_CLIPS, WALK_CLIPS
+from characters.locomotion import BAND, RUN_CLIPS, WALK_CLIPS
 from characters.trees.conditions import Condition
 from characters.trees.plan import PARAMETERS, Change, Machine, Node, Plan, Row
-from characters.walker import Walker
-
-_ENDINGS = {"head": -1.0, "legs": 0.0, "tail": 1.0}  # `characters.actor.INTENSITIES`
-_WALKED, _RUN = 2.75, 3.25  # Speeds between which walking becomes running
+from characters.walker import NO_ACTS, Walker
 
 
 def built_in(character: Character) -> Plan:
@@ -40,35 +40,31 @@ def built_in(character: Character) -> Plan:
 
 def _walker(character: Character) -> dict[str, Node]:
     trees = [
-        Row(_space(name, "angular", knots, character), {"value": at})
-        for name, knots, at in (("walking", WALK_CLIPS, _WALKED), ("running", RUN_CLIPS, _RUN))
-        if any(clip in character.clips for clip in knots.values())
+        Row(_space(name, "angular", there), {"value": at})
+        for name, knots, at in zip(
+            ("walking", "running"), (WALK_CLIPS, RUN_CLIPS), BAND, strict=True
+        )
+        if (there := {knot: clip for knot, clip in knots.items() if clip in character.clips})
     ]
     move = Node("space", "move", "locomotion", {"by": "speed"}, {}, tuple(trees))
     idle = "idle" if "idle" in character.clips else "Walk"
-    return {"idle": _clip(idle), "move": move}
+    return {"idle": _clip(idle), "move": move, **_acts(character, NO_ACTS)}
 
 
 def _actor(character: Character) -> dict[str, Node]:
     idle = [name for name in character.clips if "idle" in name.lower()] or [*character.clips][:1]
-    states = {"idle": _clip(idle[0])} if idle else {}
-    for name in character.clips:
-        action, _, ending = name.rpartition("_")
-        if not action or ending not in _ENDINGS:
-            action = name
-        if action in states or name in idle:
-            continue
-        knots = {
-            w: f"{action}_{e}" for e, w in _ENDINGS.items() if f"{action}_{e}" in character.clips
-        }
-        states[action] = _space(action, "weight", knots, character) if knots else _clip(name)
-    return states
+    return {**({"idle": _clip(idle[0])} if idle else {}), **_acts(character, idle[:1])}
 
 
-def _space(name: str, by: str, knots: dict[float, str], character: Character) -> Node:
-    rows = [
-        Row(_clip(clip), {"value": at}) for at, clip in knots.items() if clip in character.clips
-    ]
+def _acts(character: Character, besides: Iterable[str]) -> dict[str, Node]:
+    return {
+        action: _space(action, "weight", clips) if len(clips) > 1 else _clip(*clips.values())
+        for action, clips in clips_of_acts(character.clips, besides).items()
+    }
+
+
+def _space(name: str, by: str, clips: Mapping[float, str]) -> Node:
+    rows = [Row(_clip(clip), {"value": at}) for at, clip in clips.items()]
     return Node("space", name, name, {"by": by}, {}, tuple(rows))
 
 

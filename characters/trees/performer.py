@@ -9,6 +9,7 @@ from characters.mirror import Mirror
 from characters.motion import STANDING, Motion, Step
 from characters.pose import Pose
 from characters.smoothing import eased
+from characters.steering import ARRIVED, LEFT_AGAIN
 from characters.trees.building import Builder
 from characters.trees.plan import PARAMETERS, Change, Plan
 from characters.trees.steered import Steering
@@ -16,7 +17,6 @@ from characters.trees.steered import Steering
 LAGS = {"speed": 0.15, "angular": 0.15, "weight": 0.12}
 """How slowly parameters follow where the file does not say [s]: a wish that jumps is no pop."""
 
-_ARRIVED, _LEFT_AGAIN = 0.05, 0.065  # [m on the table], as in `characters.steering`
 _BRAKING = 63.0  # Speed for each metre on the table that is left to go
 _SLOW_TURN = math.radians(60)  # a target farther round than this is approached at a walk
 _TURNING_SPEED = 1.5
@@ -93,7 +93,7 @@ class TreePlayer:
         if command.action == "move" and command.target is not None:
             x, z = map(float, command.target)
             away = math.hypot(x - self.place.x, z - self.place.z)
-            self._arrived = command.stop and away < (_LEFT_AGAIN if self._arrived else _ARRIVED)
+            self._arrived = command.stop and away < (LEFT_AGAIN if self._arrived else ARRIVED)
             if not self._arrived:
                 wish |= self._course(command, (x, z), away)
         for name, value in wish.items():
@@ -107,7 +107,7 @@ class TreePlayer:
         right = -self.place.bearing(*target)
         speed = min(max(command.speed, 0.0), 5.0)
         if command.stop:
-            speed = min(speed, 0.6 + _BRAKING * max(away - _ARRIVED, 0.0))
+            speed = min(speed, 0.6 + _BRAKING * max(away - ARRIVED, 0.0))
         if abs(right) > _SLOW_TURN:
             speed = min(speed, _TURNING_SPEED)
         angular = min(max(2.0 * math.degrees(right), -90.0), 90.0)
