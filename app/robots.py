@@ -51,7 +51,7 @@ class RobotLine:
             line._real = not url.startswith("sim")
             if url == "sim":
                 url = line._closing.enter_context(SimulatedPort(clock=clock)).url
-            robot = connect(url, "cubeling", clock=clock, on_bytes=on_bytes)
+            robot = connect(url, clock=clock, on_bytes=on_bytes)
             line._robot = line._closing.enter_context(robot)
         except BaseException:
             line.close()
@@ -68,7 +68,7 @@ class RobotLine:
         """Ask the robot to feel; returns at once."""
         self._target = target
         if self._robot is not None:
-            self._robot.express(target.emotion)
+            self._robot.express(target.emotion, target.label)
 
     def view(self) -> RobotView:
         """Return what the robot says of itself, or what it was asked where there is none."""

@@ -33,6 +33,12 @@ class CharacterCommand:
     weight: float = 0.0
     """Intensity of the action, −1…1."""
 
+    feeling: NDArray[np.float64] | None = None
+    """What face and bearing show: (valence, arousal), each −1…1; None for what the clips have."""
+
+    mood: str = ""
+    """The word for that feeling, "happy", "angry" …, as everyone else shows it; "" for none."""
+
     visible: bool = True
     """Whether the character is to be seen."""
 

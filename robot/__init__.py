@@ -11,10 +11,10 @@ from robot.catalogue import Catalogue, JointLimits
 from robot.connection import Robot, connect
 from robot.emotion import Emotion
 from robot.errors import RobotError
-from robot.mood import Mood, MoodLine
+from robot.feeling.mood import Mood, MoodLine
 from robot.ports import SerialPort, serial_ports
-from robot.pty import SimulatedPort
-from robot.simulator import Simulator
+from robot.simulators.cubeling.simulator import Simulator
+from robot.simulators.port import SimulatedPort
 from robot.telemetry import LinkCounts, LinkState, Telemetry
 
 __all__ = [

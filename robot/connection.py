@@ -1,29 +1,30 @@
 """A robot on a port: what the rest of the program talks to."""
 
 import time
+from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from robot import messages as m
 from robot.catalogue import Catalogue
-from robot.driver import DRIVERS, Driver
+from robot.driver import Driver
+from robot.drivers import DRIVERS
 from robot.emotion import Emotion
 from robot.errors import RobotError
+from robot.port import Clock
+from robot.protocol import messages as m
 from robot.pump import ByteHook, Pump
 from robot.telemetry import Telemetry
-from robot.transport import Clock, Port, open_port
-
-ANSWER_WITHIN = 2.0
-"""A robot that has not introduced itself after this long is taken for none [s]."""
+from robot.transport import Opener, opener
 
 
 def connect(
     url: str,
-    protocol: str = "cubeling",
+    protocol: str | None = None,
     *,
     clock: Clock = time.monotonic,
     on_bytes: ByteHook | None = None,
-    answer_within: float = ANSWER_WITHIN,
+    answer_within: float | None = None,
+    settings: Path | str | None = None,
 ) -> "Robot":
     """Open a port and wait until the robot on it has introduced itself.
 
@@ -31,15 +32,18 @@ def connect(
     ----------
     url
         Any pySerial URL ("/dev/ttyACM0", "COM3", "socket://localhost:5000"), or a simulated robot:
-        "sim:cubeling", "sim:cubeling?seed=7".
+        "sim:cubeling", "sim:pleo?seed=7". The protocol may stand in front: "pleo:/dev/ttyACM0".
     protocol
-        What the robot speaks.
+        What the robot speaks, one of `drivers.DRIVERS`; None for what the URL says, or "cubeling".
     clock
         The time [s] by which the link, and a simulated robot, live.
     on_bytes
         Is given every byte of both directions, from the link's thread. It must be quick.
     answer_within
-        How long to wait for the robot [s]. A board that reboots when its port is opened needs more.
+        How long to wait for the robot [s]; None for the protocol's own time. A board that reboots
+        when its port is opened needs more.
+    settings
+        A TOML file for the driver: which motion stands for which mood …; None for its own.
 
     Returns
     -------
@@ -51,14 +55,16 @@ def connect(
     RobotError
         If the port does not open, or nobody on it answers in time. Nothing is left open then.
     """
-    if protocol not in DRIVERS:
-        raise RobotError(f"no robot speaks {protocol!r} here; known are: {', '.join(DRIVERS)}")
-    port = open_port(url, clock)
+    url, protocol = _protocol_of(url, protocol)
+    kind = DRIVERS[protocol]
     # So that two programs are not taken for one: the microsecond in which this one connects.
     host = int(clock() * 1e6) % 0xFFFFFFFF + 1
-    robot = Robot(url, port, DRIVERS[protocol](host), clock, on_bytes)
+    driver = kind.make(host, None if settings is None else Path(settings))
+    open_port = opener(url, clock, kind.baud)
+    robot = Robot(url, open_port, driver, clock, on_bytes)
+    wait = kind.answer_within if answer_within is None else answer_within
     try:
-        if robot.wait_until_ready(answer_within):
+        if robot.wait_until_ready(wait):
             return robot
         if robot.failed:
             robot.check()
@@ -67,9 +73,25 @@ def connect(
         raise
     robot.close()
     raise RobotError(
-        f"nobody on {url} answers in the protocol {protocol!r} within {answer_within:g} s: "
+        f"nobody on {url} answers in the protocol {protocol!r} within {wait:g} s: "
         "is the robot switched on, and is this its port?"
     )
+
+
+def _protocol_of(url: str, protocol: str | None) -> tuple[str, str]:
+    """Return the port's own URL, and the protocol that is spoken there."""
+    named, colon, rest = url.partition(":")
+    if colon and named in DRIVERS:
+        if protocol not in (None, named):
+            raise RobotError(f"{url!r} is to be spoken to in {protocol!r}: which of the two?")
+        url, protocol = rest, named
+    if protocol is None:
+        simulated = url.removeprefix("sim:").partition("?")[0]
+        known = url.startswith("sim:") and simulated in DRIVERS
+        protocol = simulated if known else "cubeling"
+    if protocol not in DRIVERS:
+        raise RobotError(f"no robot speaks {protocol!r} here; known are: {', '.join(DRIVERS)}")
+    return url, protocol
 
 
 class Robot:
@@ -83,7 +105,7 @@ class Robot:
     def __init__(
         self,
         url: str,
-        port: Port,
+        open_port: Opener,
         driver: Driver,
         clock: Clock,
         on_bytes: ByteHook | None,
@@ -92,14 +114,23 @@ class Robot:
         """The port it is on."""
         self._driver = driver
         self._clock = clock
-        self._pump = Pump(url, port, driver, clock, on_bytes)
+        self._pump = Pump(url, open_port, driver, clock, on_bytes)
 
     # --- What to do ----------------------------------------------------------------------------
 
-    def express(self, emotion: Emotion) -> None:
-        """Let the robot feel this from now on; the latest wins. Never waits and never raises."""
+    def express(self, emotion: Emotion, label: str | None = None) -> None:
+        """Let the robot feel this from now on; the latest wins. Never waits and never raises.
+
+        Parameters
+        ----------
+        emotion
+            Where in the plane of valence and arousal.
+        label
+            The mood's word, "happy", so that the robot shows the same as everyone else; the one of
+            its own words that is closest is taken. None: the robot chooses.
+        """
         with self._pump.lock:
-            self._driver.express(emotion)
+            self._driver.express(emotion, label)
         self._pump.wake()
 
     def play(self, name: str) -> None:

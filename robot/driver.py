@@ -1,25 +1,30 @@
-"""What every protocol's host end can do, and which protocols there are."""
+"""What every protocol's host end can do."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol
 
 from robot.catalogue import Catalogue
 from robot.emotion import Emotion
-from robot.host import HostLink
 from robot.telemetry import LinkState, Telemetry
 
 
 class Driver(Protocol):
-    """A protocol's host end, without clock, thread or port; `HostLink` is one."""
+    """A protocol's host end, without clock, thread or port.
+
+    Whoever owns those calls `receive` and `tick` with the time, and writes `bytes_to_send`. No
+    method waits, and none raises because of what the robot says.
+    """
 
     catalogue: Catalogue | None
     """What the robot has; None until it is known."""
 
-    def express(self, emotion: Emotion) -> None:
-        """Ask for an emotion; only the latest counts."""
+    def express(self, emotion: Emotion, label: str | None = None) -> None:
+        """Ask for an emotion; only the latest counts. `label` is the mood's word, if it has one."""
 
     def play(self, item: int, index: int) -> bool:
-        """Ask for a motion or a sound once; False if too many wait."""
+        """Ask for a motion or a sound of the catalogue once; False if too many wait."""
 
     def stop(self) -> None:
         """Ask for the neutral pose."""
@@ -49,5 +54,16 @@ class Driver(Protocol):
         """Return all that is known."""
 
 
-DRIVERS: dict[str, Callable[[int], Driver]] = {"cubeling": HostLink}
-"""The protocols by name; a driver is made from a number that tells this program from others."""
+@dataclass(frozen=True)
+class DriverKind:
+    """A protocol, as `connect` needs to know it."""
+
+    make: Callable[[int, Path | None], Driver]
+    """Makes a driver from a number that tells this program from others, and a settings file or
+    None; raises RobotError, in one line, for settings that are wrong."""
+
+    baud: int
+    """Bits a second on a real serial line."""
+
+    answer_within: float
+    """How long `connect` waits for the robot where its caller does not say [s]."""

@@ -9,7 +9,8 @@ import serial
 
 from robot.driver import Driver
 from robot.errors import RobotError
-from robot.transport import Clock, Port, open_port
+from robot.port import Clock, Port
+from robot.transport import Opener
 
 ByteHook = Callable[[Literal["tx", "rx"], bytes, float], None]
 """Is called from the link's thread with a direction, the bytes, and the time [s]."""
@@ -33,9 +34,9 @@ class Pump:
     Parameters
     ----------
     url
-        Where to find the port again.
-    port
-        The open port; the pump closes it.
+        What the port is called.
+    open_port
+        Opens the port, now and after an unplugging; the pump closes it.
     driver
         Who speaks. Whoever else touches it holds `lock`.
     clock
@@ -45,7 +46,7 @@ class Pump:
     """
 
     def __init__(
-        self, url: str, port: Port, driver: Driver, clock: Clock, on_bytes: ByteHook | None
+        self, url: str, open_port: Opener, driver: Driver, clock: Clock, on_bytes: ByteHook | None
     ) -> None:
         self.lock = threading.Lock()
         """Guards the driver; never held while the port is waited for."""
@@ -56,7 +57,8 @@ class Pump:
         self.failure: Exception | None = None
         """What ended the thread, if that was not `close`."""
         self._url = url
-        self._port: Port | None = port
+        self._open_port = open_port
+        self._port: Port | None = open_port()
         self._driver = driver
         self._clock = clock
         self._on_bytes = on_bytes
@@ -137,7 +139,7 @@ class Pump:
             self.closing.wait()
             return
         try:
-            port = open_port(self._url, self._clock)
+            port = self._open_port()
         except RobotError:
             self.closing.wait(REOPEN_EVERY)
             return

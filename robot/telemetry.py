@@ -70,8 +70,14 @@ class Telemetry:
     stopped: bool = False
     """Whether the robot holds its neutral pose after `stop()`."""
 
+    limp: bool = False
+    """Whether its motors have no power: it takes every command, and nothing moves."""
+
     joints: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
-    """Measured angles by name [rad]."""
+    """Angles by name [rad]."""
+
+    reckoned: bool = False
+    """Whether `joints` are where they should be by now, because the robot cannot measure them."""
 
     motion: str | None = None
     """The motion being played; None when it stands still."""

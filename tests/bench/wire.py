@@ -12,12 +12,12 @@ from rich.console import Console
 from rich.table import Table
 
 import robot
+from robot.drivers.cubeling.host import HostLink
 from robot.emotion import Emotion
-from robot.host import HostLink
-from robot.messages import Beat
-from robot.schema import pack, unpack
-from robot.simulator import Simulator
-from robot.wire import FrameReader, encode_frame
+from robot.protocol.messages import Beat
+from robot.protocol.schema import pack, unpack
+from robot.protocol.wire import FrameReader, encode_frame
+from robot.simulators.cubeling.simulator import Simulator
 
 SAMPLES = 1000
 
@@ -31,9 +31,9 @@ class WatchedSimulator(Simulator):
         self.felt_at = 0.0
         express = self.body.express
 
-        def watched(emotion: Emotion) -> None:
+        def watched(emotion: Emotion, mood: int = 255) -> None:
             self.felt_at = time.perf_counter()
-            express(emotion)
+            express(emotion, mood)
             self.felt.set()
 
         self.body.express = watched  # type: ignore[method-assign] # a spy on this one body
@@ -117,7 +117,7 @@ def latency_with_loss(drop: float) -> list[float]:
 
 def codec_time() -> list[float]:
     """Time to encode and decode one EXPRESS [s], each sample the mean of 100."""
-    from robot.messages import Express
+    from robot.protocol.messages import Express
 
     message, took = Express(7, 0.5, -0.5), []
     for _ in range(100):

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
+from robot.drivers.cubeling.host import HostLink
 from robot.emotion import Emotion
-from robot.host import HostLink
-from robot.simulator import Simulator
+from robot.protocol import messages as m
+from robot.simulators.cubeling.simulator import Simulator
 
 # A busy machine is no reason for a property to fail.
 settings.register_profile("no deadline", deadline=None)
@@ -130,9 +131,9 @@ class World:
         body = self.robot.body
         express, neutral = body.express, body.neutral
 
-        def seen_express(emotion: Emotion) -> None:
+        def seen_express(emotion: Emotion, mood: int = m.NOTHING) -> None:
             self.applied.append((self.now, emotion))
-            express(emotion)
+            express(emotion, mood)
 
         def seen_neutral() -> None:
             self.neutral_at.append(self.now)

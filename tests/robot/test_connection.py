@@ -14,10 +14,10 @@ import pytest
 import robot
 from robot.emotion import Emotion
 from robot.errors import RobotError
-from robot.pty import SimulatedPort
-from robot.simulator import Simulator
-from robot.timing import FAILSAFE_PROMISE
-from robot.wire import FrameReader
+from robot.protocol.timing import FAILSAFE_PROMISE
+from robot.protocol.wire import FrameReader
+from robot.simulators.cubeling.simulator import Simulator
+from robot.simulators.port import SimulatedPort
 
 HAPPY = Emotion(0.8, 0.5)
 

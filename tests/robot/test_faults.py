@@ -14,9 +14,9 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from robot import messages as m
-from robot import timing
 from robot.emotion import Emotion
+from robot.protocol import messages as m
+from robot.protocol import timing
 
 HARM = {
     "drops": {"drop": 0.2},

@@ -7,9 +7,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot import messages as m
-from robot import wire
-from robot.schema import FORMS, HEADER, FieldForm, MessageError, MessageForm, Sender, pack, unpack
+from robot.protocol import messages as m
+from robot.protocol import wire
+from robot.protocol.schema import (
+    FORMS,
+    HEADER,
+    FieldForm,
+    MessageError,
+    MessageForm,
+    Sender,
+    pack,
+    unpack,
+)
+from robot.protocol.timing import VERSION
 
 forms = st.sampled_from(sorted(FORMS.values(), key=lambda form: form.number))
 
@@ -41,7 +51,7 @@ def test_a_message_survives_the_wire_exactly_even_with_fields_of_a_later_version
 ):
     form, content = sent
     body = pack(content, session)
-    assert len(body) == form.size <= wire.MAX_BODY
+    assert len(body) == form.parts[-1].end <= wire.MAX_BODY
     assert unpack(body + new, form.sender) == (session, content)
 
 
@@ -49,9 +59,30 @@ def test_a_message_survives_the_wire_exactly_even_with_fields_of_a_later_version
 def test_a_message_cut_short_is_refused(sent, data):
     form, content = sent
     body = pack(content, 1)
-    shorter = data.draw(st.integers(0, len(body) - 1))
+    shorter = data.draw(st.integers(0, form.size - 1))
     with pytest.raises(MessageError):
         unpack(body[:shorter], form.sender)
+
+
+@given(contents(), st.data())
+def test_what_an_earlier_version_does_not_say_has_its_default(sent, data):
+    form, content = sent
+    version = data.draw(st.integers(1, VERSION))
+    body = pack(content, 1, version)
+    _, received = unpack(body, form.sender)
+    for part in form.parts:
+        for field in part.fields:
+            known = part.since <= version
+            expected = content if known else form.kind
+            assert getattr(received, field.name) == getattr(expected, field.name)
+    assert pack(received, 1, version) == body
+
+
+def test_the_first_version_is_still_what_it_was():
+    """A robot made for version 1 goes on working; these are its bytes."""
+    first = pack(m.Express(1, 0.8, -0.25, 1), 0xABCD, version=1)
+    assert first.hex(" ") == "10 cd ab 01 00 00 00 40 1f 3c f6"
+    assert unpack(first, "host") == (0xABCD, m.Express(1, 0.8, -0.25, m.NOTHING))
 
 
 @given(contents())

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.errors import RobotError
-from robot.mood import GAP_MAX, Action, Label, MoodLine, next_label
+from robot.feeling.mood import GAP_MAX, Action, Label, MoodLine, next_label
 
 FRAME = 1 / 30
 

@@ -4,10 +4,10 @@ import re
 
 import pytest
 
-from robot import wire
-from robot.reference import DOCUMENT, VECTORS, renewed
-from robot.schema import FORMS, unpack
-from robot.wire import FrameReader
+from robot.protocol import wire
+from robot.protocol.reference import DOCUMENT, VECTORS, renewed
+from robot.protocol.schema import FORMS, unpack
+from robot.protocol.wire import FrameReader
 
 TEXT = DOCUMENT.read_text("utf-8")
 PROSE = " ".join(TEXT.split())
@@ -15,7 +15,7 @@ HEX = re.compile(r"^ *(00(?: [0-9a-f]{2})+)(?:  +(.*))?$", re.MULTILINE)
 
 
 def test_tables_and_vectors_are_those_of_the_code():
-    assert renewed(TEXT) == TEXT, "run `python -m robot.reference`"
+    assert renewed(TEXT) == TEXT, "run `python -m robot.protocol.reference`"
 
 
 def test_the_vectors_of_the_document_are_read_as_what_it_says():

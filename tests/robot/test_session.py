@@ -4,13 +4,13 @@ from typing import Any
 
 import pytest
 
-from robot import messages as m
-from robot import timing
-from robot.dinosaur import CATALOGUE
 from robot.emotion import Emotion
-from robot.schema import pack, unpack
-from robot.simulator import Simulator
-from robot.wire import FrameReader, encode_frame
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.schema import pack, unpack
+from robot.protocol.wire import FrameReader, encode_frame
+from robot.simulators.cubeling.dinosaur import CATALOGUE
+from robot.simulators.cubeling.simulator import Simulator
 
 HAPPY = Emotion(0.8, 0.5)
 ANGRY = Emotion(-0.9, 0.6)

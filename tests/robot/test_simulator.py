@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot import dinosaur
-from robot import messages as m
-from robot.body import FEELING_SPEED, STEP, DinosaurBody
 from robot.emotion import Emotion
+from robot.protocol import messages as m
+from robot.simulators.cubeling import dinosaur
+from robot.simulators.cubeling.body import FEELING_SPEED, STEP, DinosaurBody
 
 MOODS = {"happy": Emotion(0.9, 0.9), "neutral": Emotion(0, 0), "angry": Emotion(-0.9, 0.9)}
 

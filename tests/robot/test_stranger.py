@@ -8,7 +8,7 @@ import struct
 import pytest
 
 from robot.emotion import Emotion
-from robot.messages import ITEM_MOTION
+from robot.protocol.messages import ITEM_MOTION
 
 
 def crc(data: bytes) -> int:

@@ -6,12 +6,12 @@ No clock, no thread, no port: whoever owns those calls `receive` and `tick` with
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from robot import messages as m
-from robot import timing
 from robot.catalogue import Catalogue
 from robot.emotion import Emotion
-from robot.schema import MessageError, pack, unpack
-from robot.wire import FrameReader, crc16, encode_frame
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.schema import MessageError, pack, unpack
+from robot.protocol.wire import FrameReader, crc16, encode_frame
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class BodyState:
     """From empty, 0, to full, 1."""
 
     joints: tuple[float, ...]
-    """Measured angles [rad]."""
+    """Angles [rad]."""
 
     motion: int = m.NOTHING
     """Index of the motion played now."""
@@ -42,6 +42,12 @@ class BodyState:
     still: bool = False
     """Whether it holds its neutral pose after STOP."""
 
+    limp: bool = False
+    """Whether its motors have no power."""
+
+    reckoned: bool = False
+    """Whether the joints are where they should be, and not measured."""
+
 
 class Body(Protocol):
     """What the protocol moves."""
@@ -49,8 +55,8 @@ class Body(Protocol):
     catalogue: Catalogue
     """What it has."""
 
-    def express(self, emotion: Emotion) -> None:
-        """Feel this from now on."""
+    def express(self, emotion: Emotion, mood: int) -> None:
+        """Feel this from now on; the mood is one of the catalogue's, or `NOTHING`: choose one."""
 
     def play(self, item: int, index: int) -> None:
         """Play a motion or a sound that the catalogue has."""
@@ -83,6 +89,7 @@ class DeviceLink:
         self._result = m.TAKEN
         self._in_force = False
         self._beat = 0
+        self._version = timing.VERSION
         self._heard = 0.0
         self._stated = 0.0
         self._last_gone = float("-inf")
@@ -142,9 +149,10 @@ class DeviceLink:
         if session != self.session:
             self.session, self._beat, self._stated = session, 0, now
         self._heard = now
+        self._version = min(hello.version, timing.VERSION)
         catalogue = self.body.catalogue
         welcome = m.Welcome(
-            version=min(hello.version, timing.VERSION),
+            version=self._version,
             taken=self._taken if self._in_force else 0,
             catalogue=crc16(repr(catalogue).encode()),
             joints=len(catalogue.joints),
@@ -177,7 +185,10 @@ class DeviceLink:
     def _carry_out(self, command: m.Express | m.Play | m.Stop) -> int:
         match command:
             case m.Express():
-                self.body.express(Emotion(command.valence, command.arousal))
+                moods = len(self.body.catalogue.moods)
+                if command.mood >= moods and command.mood != m.NOTHING:
+                    return m.UNKNOWN
+                self.body.express(Emotion(command.valence, command.arousal), command.mood)
             case m.Play():
                 if command.index >= len(_names(self.body.catalogue, command.item)):
                     return m.UNKNOWN
@@ -190,7 +201,12 @@ class DeviceLink:
         self._stated = now
         state = self.body.state()
         joints = state.joints + (0.0,) * (m.JOINTS_MAX - len(state.joints))
-        flags = m.CHARGING * state.charging | m.STILL * state.still
+        flags = (
+            m.CHARGING * state.charging
+            | m.STILL * state.still
+            | m.LIMP * state.limp
+            | m.RECKONED * state.reckoned
+        )
         self._send(
             m.State(
                 beat=self._beat,
@@ -217,7 +233,7 @@ class DeviceLink:
         self.body.neutral()
 
     def _send(self, message: Any) -> None:
-        self._out += encode_frame(pack(message, self.session))
+        self._out += encode_frame(pack(message, self.session, self._version))
 
 
 def _names(catalogue: Catalogue, item: int) -> tuple[str, ...]:

@@ -7,13 +7,27 @@ each is sent in its turn, at most once, and dropped when the session breaks.
 
 from collections import deque
 from dataclasses import dataclass
+from typing import NamedTuple
 
-from robot import messages as m
-from robot import timing
 from robot.emotion import Emotion
+from robot.feeling.words import closest_word
+from robot.protocol import messages as m
+from robot.protocol import timing
 
 Command = m.Express | m.Play | m.Stop
-Order = Emotion | None
+
+
+class Feeling(NamedTuple):
+    """What `express` asks for."""
+
+    emotion: Emotion
+    """Where in the plane."""
+
+    label: str | None
+    """The word for it, if there is one."""
+
+
+Order = Feeling | None
 """A standing order; None is the order to stop."""
 
 
@@ -46,6 +60,8 @@ class CommandLane:
         """Commands acknowledged but not carried out."""
         self.dropped = 0
         """Actions given up before they were acknowledged."""
+        self.moods: tuple[str, ...] = ()
+        """The robot's words for what it can show."""
         self._order: Order = None
         self._ordered = False  # whether there is a standing order at all
         self._unsent = False  # whether it still has to be put in flight
@@ -57,7 +73,7 @@ class CommandLane:
     @property
     def commanded(self) -> Emotion | None:
         """The emotion that was last asked for; None before, and after a stop."""
-        return self._order
+        return self._order.emotion if self._order else None
 
     @property
     def tries(self) -> int:
@@ -69,10 +85,10 @@ class CommandLane:
         """Whether the command on its way has been sent as often as the protocol allows."""
         return self.tries >= timing.TRIES_MAX
 
-    def express(self, emotion: Emotion) -> None:
-        """Order an emotion."""
-        if emotion != self._order:
-            self._set_order(emotion)
+    def express(self, emotion: Emotion, label: str | None = None) -> None:
+        """Order an emotion, and the word for it."""
+        if Feeling(emotion, label) != self._order:
+            self._set_order(Feeling(emotion, label))
 
     def stop(self) -> None:
         """Order a stop, before and instead of everything that waits or is on its way."""
@@ -111,7 +127,7 @@ class CommandLane:
         if result != m.TAKEN:
             self.refused += 1
         elif not isinstance(flight.command, m.Play):
-            self.acknowledged = flight.order
+            self.acknowledged = flight.order.emotion if flight.order else None
 
     def break_off(self) -> None:
         """Lose the session: actions that wait or fly are dropped, the standing order stays."""
@@ -128,7 +144,7 @@ class CommandLane:
         """
         if taken >= self._order_number > 0:
             if not self._unsent:
-                self.acknowledged = self._order
+                self.acknowledged = self.commanded
         else:
             self._unsent = self._ordered
 
@@ -154,7 +170,11 @@ class CommandLane:
         order = self._order
         if order is None:
             return self._fly(m.Stop(number), order, now, tries)
-        return self._fly(m.Express(number, order.valence, order.arousal), order, now, tries)
+        emotion = order.emotion
+        word = order.label and closest_word(self.moods, emotion, order.label)
+        mood = self.moods.index(word) if word else m.NOTHING
+        express = m.Express(number, emotion.valence, emotion.arousal, mood)
+        return self._fly(express, order, now, tries)
 
     def _fly(self, command: Command, order: Order, now: float, tries: int = 1) -> Command:
         self._flight = Flight(command, order, now, tries)

@@ -1,6 +1,6 @@
 """How long an answer takes, and how long to wait before asking again."""
 
-from robot import timing
+from robot.protocol import timing
 
 
 class RoundTrip:

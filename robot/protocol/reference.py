@@ -1,24 +1,25 @@
-"""The parts of PROTOCOL.md that are drawn from the code: `python -m robot.reference` renews them.
+"""The parts of PROTOCOL.md that are drawn from the code.
 
+`python -m robot.protocol.reference` renews them.
 A test compares the document with the code, so neither can drift.
 """
 
 import re
 from pathlib import Path
 
-from robot import messages as m
-from robot import timing
-from robot.schema import FORMS, FieldForm, MessageForm, pack
-from robot.wire import MAX_BODY, MAX_FRAME, encode_frame
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.schema import FORMS, HEADER, FieldForm, MessageForm, pack
+from robot.protocol.wire import MAX_BODY, MAX_FRAME, encode_frame
 
-DOCUMENT = Path(__file__).with_name("PROTOCOL.md")
+DOCUMENT = Path(__file__).parents[1] / "PROTOCOL.md"
 """The protocol's document."""
 
 VECTORS: tuple[tuple[int, object], ...] = (
     (1, m.Hello(1, 0x12345678)),
     (1, m.Ask(m.ITEM_MOTION, 2)),
     (1, m.Beat(513)),
-    (0xABCD, m.Express(1, 0.8, -0.25)),
+    (0xABCD, m.Express(1, 0.8, -0.25, 1)),
     (0xABCD, m.Express(2, 0.0, 0.0)),
     (0xABCD, m.Play(3, m.ITEM_SOUND, 0)),
     (0xABCD, m.Stop(4)),
@@ -104,7 +105,9 @@ def renewed(document: str) -> str:
 
 
 def _section(form: MessageForm) -> str:
-    head = f"#### `{form.number:02X}` {form.name}, from the {form.sender}, {form.size} bytes"
+    sizes = [f"{form.size} bytes"]
+    sizes += [f"{part.end} since version {part.since}" for part in form.parts[1:]]
+    head = f"#### `{form.number:02X}` {form.name}, from the {form.sender}, {', '.join(sizes)}"
     lines = [head, "", form.meaning]
     if form.fields:
         lines += [
@@ -112,7 +115,7 @@ def _section(form: MessageForm) -> str:
             "| offset | type | field | unit | allowed | meaning |",
             "|---:|---|---|---|---|---|",
         ]
-        offset = form.size - form.layout.size
+        offset = HEADER.size
         for field in form.fields:
             lines.append(_row(offset, field))
             offset += field.size
@@ -129,7 +132,9 @@ def _row(offset: int, field: FieldForm) -> str:
         allowed = f"≥ {low:g}"
     elif high is not None:
         allowed = f"≤ {high:g}"
-    return f"| {offset} | {field.form} | {field.name} | {unit} | {allowed} | {field.meaning} |"
+    since = "" if field.since == 1 else f" (since version {field.since})"
+    meaning = field.meaning + since
+    return f"| {offset} | {field.form} | {field.name} | {unit} | {allowed} | {meaning} |"
 
 
 def _hex(session: int, content: object) -> str:

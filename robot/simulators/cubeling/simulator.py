@@ -1,7 +1,7 @@
 """A whole simulated robot: the protocol's other end and a body, in virtual or in real time."""
 
-from robot.body import DinosaurBody
-from robot.device import DeviceLink
+from robot.simulators.cubeling.body import DinosaurBody
+from robot.simulators.cubeling.device import DeviceLink
 
 
 class Simulator:
@@ -14,6 +14,9 @@ class Simulator:
     seed
         Of everything in it that is drawn.
     """
+
+    edge = b"\0"
+    """Every frame ends with it."""
 
     def __init__(self, seed: int = 0) -> None:
         self._seed = seed
@@ -40,3 +43,7 @@ class Simulator:
         """Lose power and come back: the protocol's memory and the feelings are gone."""
         self.body = DinosaurBody(self._seed)
         self.link = DeviceLink(self.body)
+
+    def portrait(self) -> tuple[float, str]:
+        """Return what it shows now: the mood from angry, −1, to happy, 1, and the word for it."""
+        return self.body.feeling.valence, self.body.label

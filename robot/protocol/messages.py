@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Final
 
-from robot.schema import message, wire
+from robot.protocol.schema import message, wire
 
 NOTHING: Final = 255
 """An index that points at nothing: no motion, no sound."""
@@ -24,6 +24,12 @@ CHARGING: Final = 1
 
 STILL: Final = 2
 """Bit of STATE.flags: stopped; the robot holds its neutral pose."""
+
+LIMP: Final = 4
+"""Bit of STATE.flags: the motors have no power; whatever is asked, nothing moves."""
+
+RECKONED: Final = 8
+"""Bit of STATE.flags: the joints are where they should be by now; the robot cannot measure them."""
 
 
 # --- The host speaks ---------------------------------------------------------------------------
@@ -63,6 +69,10 @@ class Express:
     number: int = wire("u32", "number of the command", low=1)
     valence: float = wire("i16", "unpleasant to pleasant", scale=1e-4, unit="1", low=-1, high=1)
     arousal: float = wire("i16", "calm to excited", scale=1e-4, unit="1", low=-1, high=1)
+    mood: int = wire(
+        "u8", "mood to show, an index; 255: the robot chooses by valence and arousal",
+        since=2, default=NOTHING,
+    )  # fmt: skip
 
 
 @message(0x11, "host", "A command: play a motion or a sound once.")
@@ -137,7 +147,10 @@ class State:
 
     beat: int = wire("u16", "count of the last BEAT heard; 0 before the first")
     taken: int = wire("u32", "number of the last command taken; 0 before the first")
-    flags: int = wire("u8", "bit 0: charging; bit 1: stopped; others 0")
+    flags: int = wire(
+        "u8", "bit 0: charging; bit 1: stopped; bit 2: motors without power; bit 3: joints are "
+        "where they should be, and not measured; others 0",
+    )  # fmt: skip
     valence: float = wire(
         "i16", "shown now, unpleasant to pleasant", scale=1e-4, unit="1", low=-1, high=1
     )
@@ -147,7 +160,7 @@ class State:
     motion: int = wire("u8", "motion played now, an index; 255 none")
     sound: int = wire("u8", "sound played now, an index; 255 none")
     joints: tuple[float, ...] = wire(
-        "i16x16", "measured angles, in catalogue order; 0 for those it does not have",
+        "i16x16", "angles, in catalogue order; 0 for those it does not have",
         scale=1e-3, unit="rad",
     )  # fmt: skip
 

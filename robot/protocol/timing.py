@@ -1,6 +1,6 @@
 """The protocol's times and limits, each named once; PROTOCOL.md quotes them and a test compares."""
 
-VERSION = 1
+VERSION = 2
 """Highest version of the protocol that this code speaks."""
 
 BEAT_EVERY = 0.050
@@ -47,6 +47,9 @@ GONE_EVERY = 0.020
 
 ACTIONS_MAX = 16
 """Motions and sounds that may wait to be sent; more are refused."""
+
+ANSWER_WITHIN = 2.0
+"""A robot that has not introduced itself after this long is taken for none [s]."""
 
 BAUD = 115200
 """Bits a second on a real serial line, 8N1, no flow control."""

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from robot import dinosaur
-from robot import messages as m
-from robot.device import BodyState
-from robot.dinosaur import Motion
 from robot.emotion import Emotion
-from robot.mood import LABELS, next_label
+from robot.feeling.mood import LABELS, next_label
+from robot.protocol import messages as m
+from robot.simulators.cubeling import dinosaur
+from robot.simulators.cubeling.device import BodyState
+from robot.simulators.cubeling.dinosaur import Motion
 
 STEP = 0.020
 """Everything advances in steps of this length [s], as hobby servos do; so the outcome does not
@@ -45,6 +45,7 @@ class DinosaurBody:
         self._now: float | None = None
         self._target = np.zeros(2)
         self._feeling = np.zeros(2)
+        self._told = m.NOTHING
         self._label = LABELS[0]
         self._angles = np.zeros(len(dinosaur.LOW))
         self._motion: Motion = dinosaur.MOOD_LOOPS[0]
@@ -57,9 +58,10 @@ class DinosaurBody:
 
     # --- What the host commands ----------------------------------------------------------------
 
-    def express(self, emotion: Emotion) -> None:
-        """Feel this from now on."""
+    def express(self, emotion: Emotion, mood: int = m.NOTHING) -> None:
+        """Feel this from now on, and show this mood, or the one that fits."""
         self._target = np.array([emotion.valence, emotion.arousal])
+        self._told = mood
         self._still = False
 
     def play(self, item: int, index: int) -> None:
@@ -78,6 +80,7 @@ class DinosaurBody:
     def neutral(self) -> None:
         """Feel neutral, and end what was played. A body that holds still keeps still."""
         self._target = np.zeros(2)
+        self._told = m.NOTHING
         self._sound, self._sound_left = None, 0.0
         self._start_motion(self._loop)
 
@@ -105,7 +108,10 @@ class DinosaurBody:
         length = float(np.hypot(*way))
         self._feeling = self._feeling + way * min(1.0, FEELING_SPEED * STEP / max(length, 1e-9))
         before, looping = self._label, self._motion in dinosaur.MOOD_LOOPS
-        self._label = next_label(before, float(self._feeling[0]))
+        if self._told == m.NOTHING:
+            self._label = next_label(before, float(self._feeling[0]))
+        else:
+            self._label = LABELS[self._told]
         if self._label != before:
             if looping:
                 self._start_motion(self._loop)
@@ -157,6 +163,11 @@ class DinosaurBody:
         """What it shows now."""
         valence, arousal = np.clip(self._feeling, -1.0, 1.0).tolist()
         return Emotion(valence, arousal)
+
+    @property
+    def label(self) -> str:
+        """The mood that it shows now."""
+        return self._label
 
     @property
     def target(self) -> Emotion:

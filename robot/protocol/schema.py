@@ -6,6 +6,9 @@ A message is a frozen dataclass whose fields carry their form on the wire::
     @dataclass(frozen=True)
     class Express:
         valence: float = wire("i16", scale=1e-4, low=-1, high=1, unit="1", meaning="...")
+
+A later version adds fields behind the last one, each with the version that brought it and a default
+for those who do not know it.
 """
 
 import dataclasses
@@ -13,6 +16,8 @@ import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar, get_args
+
+from robot.protocol.timing import VERSION
 
 Sender = Literal["host", "robot"]
 Form = Literal["u8", "u16", "u32", "i16", "i16x16", "text16"]
@@ -60,6 +65,9 @@ class FieldForm:
 
     meaning: str
     """What it says."""
+
+    since: int = 1
+    """Version of the protocol that brought it."""
 
     @property
     def size(self) -> int:
@@ -127,16 +135,58 @@ class MessageForm:
     fields: tuple[FieldForm, ...]
     """In the order in which they are sent."""
 
-    layout: struct.Struct
-    """All of them, packed without gaps, little endian."""
-
     kind: type[Any]
     """The dataclass."""
 
+    parts: tuple["Part", ...]
+    """The fields of the first version that has it, then what each later version added."""
+
     @property
     def size(self) -> int:
-        """Bytes of the body, header included."""
-        return HEADER.size + self.layout.size
+        """Bytes of the body in its first version, header included."""
+        return self.parts[0].end
+
+    def known(self, version: int) -> tuple["Part", ...]:
+        """Return the parts that a version has; the first at least."""
+        return tuple(part for part in self.parts if part.since <= version) or self.parts[:1]
+
+
+@dataclass(frozen=True)
+class Part:
+    """The fields of a message that one version brought; packed without gaps, little endian."""
+
+    since: int
+    """That version."""
+
+    fields: tuple[FieldForm, ...]
+    """In the order in which they are sent."""
+
+    layout: struct.Struct
+    """All of them."""
+
+    start: int
+    """Where they begin in the body [bytes]."""
+
+    @property
+    def end(self) -> int:
+        """Where they end in the body [bytes]."""
+        return self.start + self.layout.size
+
+    def unpack(self, body: bytes) -> dict[str, Any]:
+        """Return the values by name; raises MessageError where one is not allowed."""
+        values = self.layout.unpack_from(body, self.start)
+        content = {}
+        for field in self.fields:
+            content[field.name] = field.from_wire(values[: field.count])
+            values = values[field.count :]
+        return content
+
+    def pack(self, content: Any) -> bytes:
+        """Return the bytes; raises ValueError where a value does not fit."""
+        values: list[Any] = []
+        for field in self.fields:
+            values += field.to_wire(getattr(content, field.name))
+        return self.layout.pack(*values)
 
 
 FORMS: dict[int, MessageForm] = {}
@@ -155,9 +205,16 @@ def wire(
     unit: str = "",
     low: float | None = None,
     high: float | None = None,
+    since: int = 1,
+    default: Any = dataclasses.MISSING,
 ) -> Any:
-    """Return a dataclass field that knows its form on the wire."""
-    return dataclasses.field(metadata={"wire": (form, scale, unit, low, high, meaning)})
+    """Return a dataclass field that knows its form on the wire.
+
+    A field that a later version added needs a default: what is meant where it is missing.
+    """
+    assert since == 1 or default is not dataclasses.MISSING
+    known = (form, scale, unit, low, high, meaning, since)
+    return dataclasses.field(default=default, metadata={"wire": known})
 
 
 def message(number: int, sender: Sender, meaning: str) -> Callable[[type[Kind]], type[Kind]]:
@@ -168,8 +225,8 @@ def message(number: int, sender: Sender, meaning: str) -> Callable[[type[Kind]],
             FieldForm(field.name, *field.metadata["wire"])
             for field in dataclasses.fields(kind)  # type: ignore[arg-type] # it is a dataclass
         )
-        layout = struct.Struct("<" + "".join(_FORMATS[field.form] for field in fields))
-        form = MessageForm(number, kind.__name__.upper(), sender, meaning, fields, layout, kind)
+        name = kind.__name__.upper()
+        form = MessageForm(number, name, sender, meaning, fields, kind, _parts_of(fields))
         assert number not in FORMS, f"message number {number:#x} is used twice"
         FORMS[number] = _BY_KIND[kind] = form
         return kind
@@ -177,13 +234,24 @@ def message(number: int, sender: Sender, meaning: str) -> Callable[[type[Kind]],
     return enter
 
 
+def _parts_of(fields: tuple[FieldForm, ...]) -> tuple[Part, ...]:
+    versions = sorted({1, *(field.since for field in fields)})
+    assert [field.since for field in fields] == sorted(field.since for field in fields)
+    parts: list[Part] = []
+    for version in versions:
+        own = tuple(field for field in fields if field.since == version)
+        layout = struct.Struct("<" + "".join(_FORMATS[field.form] for field in own))
+        parts.append(Part(version, own, layout, parts[-1].end if parts else HEADER.size))
+    return tuple(parts)
+
+
 def form_of(kind: type[Any]) -> MessageForm:
     """Return the form of a message class."""
     return _BY_KIND[kind]
 
 
-def pack(content: Any, session: int) -> bytes:
-    """Return the body for one message.
+def pack(content: Any, session: int, version: int = VERSION) -> bytes:
+    """Return the body for one message, as `version` has it.
 
     Raises
     ------
@@ -191,16 +259,18 @@ def pack(content: Any, session: int) -> bytes:
         If a field is out of its range.
     """
     form = _BY_KIND[type(content)]
-    values: list[Any] = []
-    for field in form.fields:
-        values += field.to_wire(getattr(content, field.name))
-    return HEADER.pack(form.number, session) + form.layout.pack(*values)
+    body = HEADER.pack(form.number, session)
+    for part in form.known(version):
+        body += part.pack(content)
+    return body
 
 
 def unpack(body: bytes, sender: Sender) -> tuple[int, Any]:
     """Return the session and the message of a body.
 
     Bytes after the last field that this version knows are skipped: a later version put them there.
+    Where the fields that a version added are not all there, they have their defaults: the other end
+    speaks an earlier one.
 
     Parameters
     ----------
@@ -227,9 +297,8 @@ def unpack(body: bytes, sender: Sender) -> tuple[int, Any]:
         return session, None
     if len(body) < form.size:
         raise MessageError(f"{form.name} has {form.size} bytes, not {len(body)}")
-    values = form.layout.unpack_from(body, HEADER.size)
-    content = {}
-    for field in form.fields:
-        content[field.name] = field.from_wire(values[: field.count])
-        values = values[field.count :]
+    content: dict[str, Any] = {}
+    for part in form.parts:
+        if part.end <= len(body):
+            content |= part.unpack(body)
     return session, form.kind(**content)

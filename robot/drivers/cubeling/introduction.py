@@ -1,7 +1,7 @@
 """How the host learns what a robot has: one question at a time, until the catalogue is whole."""
 
-from robot import messages as m
 from robot.catalogue import Catalogue, JointLimits
+from robot.protocol import messages as m
 
 
 class Introduction:

@@ -12,8 +12,9 @@ from types import TracebackType
 from typing import Literal, Protocol, Self
 
 from robot.errors import RobotError
-from robot.simulator import Simulator
-from robot.transport import Clock
+from robot.port import Clock
+from robot.simulators.base import Simulated
+from robot.simulators.cubeling.simulator import Simulator
 
 WAIT = 0.010
 """Longest wait for bytes [s]; the robot lives in steps of 20 ms."""
@@ -153,7 +154,7 @@ class SimulatedPort:
 
     def __init__(
         self,
-        simulator: Simulator | None = None,
+        simulator: Simulated | None = None,
         *,
         kind: Literal["pty", "tcp"] | None = None,
         tcp_port: int = 0,

@@ -3,9 +3,9 @@
 from dataclasses import replace
 from types import MappingProxyType
 
-from robot import messages as m
 from robot.catalogue import Catalogue
 from robot.emotion import Emotion
+from robot.protocol import messages as m
 from robot.telemetry import Telemetry
 
 
@@ -21,6 +21,8 @@ def view_of(link: Telemetry, state: m.State | None, catalogue: Catalogue | None)
         battery=state.battery,
         charging=bool(state.flags & m.CHARGING),
         stopped=bool(state.flags & m.STILL),
+        limp=bool(state.flags & m.LIMP),
+        reckoned=bool(state.flags & m.RECKONED),
         joints=MappingProxyType(dict(zip(names, state.joints, strict=False))),
         motion=_name(catalogue.motions, state.motion),
         sound=_name(catalogue.sounds, state.sound),

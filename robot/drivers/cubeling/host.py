@@ -9,17 +9,17 @@ is never acknowledged makes it greet again, under the next session number, for a
 from dataclasses import replace
 from typing import Any, Literal
 
-from robot import messages as m
-from robot import timing
 from robot.catalogue import Catalogue
-from robot.commands import CommandLane
+from robot.drivers.cubeling.commands import CommandLane
+from robot.drivers.cubeling.introduction import Introduction
+from robot.drivers.cubeling.roundtrip import RoundTrip
+from robot.drivers.cubeling.view import view_of
 from robot.emotion import Emotion
-from robot.introduction import Introduction
-from robot.roundtrip import RoundTrip
-from robot.schema import MessageError, pack, unpack
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.schema import MessageError, pack, unpack
+from robot.protocol.wire import FrameReader, encode_frame
 from robot.telemetry import LinkCounts, LinkState, Telemetry
-from robot.view import view_of
-from robot.wire import FrameReader, encode_frame
 
 Phase = Literal["port", "greeting", "asking", "open", "closed"]
 
@@ -51,13 +51,14 @@ class HostLink:
         self._heard: float | None = None
         self._asked = 0.0  # when the last HELLO or ASK was sent
         self._beat_sent = 0.0
+        self._version = timing.VERSION
         self._frames_sent = self._skipped = self._sessions = 0
 
     # --- What the owner asks for ---------------------------------------------------------------
 
-    def express(self, emotion: Emotion) -> None:
+    def express(self, emotion: Emotion, label: str | None = None) -> None:
         """Ask for an emotion; only the latest counts, and it is kept through every break."""
-        self._lane.express(emotion)
+        self._lane.express(emotion, label)
 
     def play(self, item: int, index: int) -> bool:
         """Ask for a motion or a sound once; False if too many wait already.
@@ -199,6 +200,7 @@ class HostLink:
         """Open the session; ask for the catalogue unless this robot has told it before."""
         known = self._introduction
         self._sessions += 1
+        self._version = welcome.version
         self._beat_sent = now - timing.BEAT_EVERY
         self._lane.resume(welcome.taken)
         if self.catalogue is not None and known is not None and (
@@ -217,6 +219,7 @@ class HostLink:
         question = self._introduction.question()
         if question is None:
             self.catalogue = self._introduction.catalogue()
+            self._lane.moods = self.catalogue.moods
             self._phase = "open"
             return
         self._asked = now
@@ -233,5 +236,5 @@ class HostLink:
         return now - self._heard if self._heard is not None else 0.0
 
     def _send(self, message: Any) -> None:
-        self._out += encode_frame(pack(message, self._session))
+        self._out += encode_frame(pack(message, self._session, self._version))
         self._frames_sent += 1

@@ -1,0 +1,1 @@
+"""The protocol "cubeling", the host's end."""

@@ -1,0 +1,1 @@
+"""What a robot or a character feels, and how that changes."""

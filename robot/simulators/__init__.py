@@ -1,0 +1,9 @@
+"""Simulated robots: one package for each, and the table by which "sim:NAME" finds them."""
+
+from collections.abc import Callable
+
+from robot.simulators.base import Simulated
+from robot.simulators.cubeling.simulator import Simulator
+
+SIMULATORS: dict[str, Callable[[int], Simulated]] = {"cubeling": Simulator}
+"""The simulated robots by name; made from a seed."""

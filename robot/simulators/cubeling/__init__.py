@@ -1,0 +1,1 @@
+"""The protocol "cubeling", the robot's end: a simulated dinosaur."""
