@@ -1,7 +1,7 @@
-"""The parts of PROTOCOL.md that are drawn from the code.
+"""What is drawn from the code: parts of PROTOCOL.md, the C header, the test vectors.
 
 `python -m robot.protocol.reference` renews them.
-A test compares the document with the code, so neither can drift.
+A test compares them with the code, so neither can drift.
 """
 
 import re
@@ -9,46 +9,19 @@ from pathlib import Path
 
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.schema import FORMS, HEADER, FieldForm, MessageForm, pack
-from robot.protocol.wire import MAX_BODY, MAX_FRAME, encode_frame
+from robot.protocol.header import header
+from robot.protocol.schema import FORMS, HEADER, FieldForm, MessageForm
+from robot.protocol.vectors import VECTORS, vectors_file
+from robot.protocol.wire import MAX_BODY, MAX_FRAME
 
 DOCUMENT = Path(__file__).parents[1] / "PROTOCOL.md"
 """The protocol's document."""
 
-VECTORS: tuple[tuple[int, object], ...] = (
-    (1, m.Hello(1, 0x12345678)),
-    (1, m.Ask(m.ITEM_MOTION, 2)),
-    (1, m.Beat(513)),
-    (0xABCD, m.Express(1, 0.8, -0.25, 1)),
-    (0xABCD, m.Express(2, 0.0, 0.0)),
-    (0xABCD, m.Play(3, m.ITEM_SOUND, 0)),
-    (0xABCD, m.Stop(4)),
-    (0xABCD, m.Bye()),
-    (1, m.Welcome(1, 0, 0xBEEF, 14, 8, 6, 3, "Dino", "simulator 1")),
-    (1, m.Joint(8, -0.262, 0.262, 0.349, "torso")),
-    (1, m.Name(m.ITEM_MOOD, 1, "happy")),
-    (
-        0xABCD,
-        m.State(513, 4, m.STILL, 0.8, -0.25, 0.5, 1, m.NOTHING, 1, (0.0, -1.571, *[0.0] * 14)),
-    ),
-    (0xABCD, m.Ack(4, m.TAKEN)),
-    (7, m.Gone()),
-)
-"""Sessions and messages whose frames the document shows."""
+HEADER_FILE = Path(__file__).parent / "c" / "cubeling_messages.h"
+"""The messages for C."""
 
-_RULES = {
-    "BEAT_EVERY": "the host sends BEAT",
-    "STATE_EVERY": "the robot sends STATE of its own accord if it has not for this long",
-    "FAILSAFE_AFTER": "silence of the host after which a robot should act",
-    "FAILSAFE_PROMISE": "silence of the host after which a robot must have acted",
-    "DEGRADED_AFTER": "silence of the robot: the link is degraded",
-    "LOST_AFTER": "silence of the robot: the link is lost, and HELLO is sent again",
-    "HELLO_EVERY": "between two HELLOs without an answer",
-    "RETRY_FIRST": "before a repeat, while no round trip is known",
-    "RETRY_MIN": "before a repeat, at least",
-    "RETRY_MAX": "before a repeat, at most",
-    "GONE_EVERY": "between two GONEs, at least",
-}
+VECTORS_FILE = Path(__file__).with_name("vectors.json")
+"""The test vectors for programs."""
 
 
 def message_tables() -> str:
@@ -58,7 +31,9 @@ def message_tables() -> str:
 
 def timing_table() -> str:
     """Return the table of all times."""
-    rows = [f"| {1000 * getattr(timing, name):.0f} | {rule} |" for name, rule in _RULES.items()]
+    rows = [
+        f"| {1000 * getattr(timing, name):.0f} | {rule} |" for name, rule in timing.RULES.items()
+    ]
     return "\n".join(["| ms | what |", "|---:|---|", *rows])
 
 
@@ -81,8 +56,10 @@ def limits_table() -> str:
 def vectors() -> str:
     """Return every test vector: the message and the bytes of its frame."""
     lines = []
-    for session, content in VECTORS:
-        lines += [f"{content} in session {session}", f"    {_hex(session, content)}", ""]
+    for vector in VECTORS:
+        older = "" if vector.version == timing.VERSION else f", version {vector.version}"
+        title = f"{vector.content} in session {vector.session}{older}"
+        lines += [title, f"    {vector.frame.hex(' ')}", ""]
     return "```\n" + "\n".join(lines).rstrip() + "\n```"
 
 
@@ -137,9 +114,15 @@ def _row(offset: int, field: FieldForm) -> str:
     return f"| {offset} | {field.form} | {field.name} | {unit} | {allowed} | {meaning} |"
 
 
-def _hex(session: int, content: object) -> str:
-    return encode_frame(pack(content, session)).hex(" ")
+def drawn() -> dict[Path, str]:
+    """Return every file that is drawn from the code, whole or in parts, and what it should hold."""
+    return {
+        DOCUMENT: renewed(DOCUMENT.read_text("utf-8")),
+        HEADER_FILE: header(),
+        VECTORS_FILE: vectors_file(),
+    }
 
 
 if __name__ == "__main__":
-    DOCUMENT.write_text(renewed(DOCUMENT.read_text("utf-8")), "utf-8")
+    for path, text in drawn().items():
+        path.write_text(text, "utf-8")

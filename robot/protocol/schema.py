@@ -33,7 +33,7 @@ _FORMATS: dict[str, str] = {
     "i16x16": "16h",
     "text16": "16s",
 }
-_LIMITS = {"u8": (0, 255), "u16": (0, 65535), "u32": (0, 2**32 - 1), "i16": (-32768, 32767)}
+LIMITS = {"u8": (0, 255), "u16": (0, 65535), "u32": (0, 2**32 - 1), "i16": (-32768, 32767)}
 assert set(_FORMATS) == set(get_args(Form))
 
 
@@ -98,7 +98,7 @@ class FieldForm:
         """Turn what `struct` unpacked into a value; raises MessageError where it is not allowed."""
         if self.form == "text16":
             try:
-                return values[0].rstrip(b"\0").decode()
+                return values[0].partition(b"\0")[0].decode()
             except UnicodeDecodeError:
                 raise MessageError(f"{self.name} is not UTF-8") from None
         for one in values:
@@ -108,7 +108,7 @@ class FieldForm:
         return values[0] if self.scale == 1 else values[0] / round(1 / self.scale)
 
     def _check(self, count: int, error: type[ValueError]) -> None:
-        smallest, largest = _LIMITS[self.form.removesuffix("x16")]
+        smallest, largest = LIMITS[self.form.removesuffix("x16")]
         low = smallest if self.low is None else round(self.low / self.scale)
         high = largest if self.high is None else round(self.high / self.scale)
         if not low <= count <= high:

@@ -53,3 +53,18 @@ ANSWER_WITHIN = 2.0
 
 BAUD = 115200
 """Bits a second on a real serial line, 8N1, no flow control."""
+
+RULES: dict[str, str] = {
+    "BEAT_EVERY": "the host sends BEAT",
+    "STATE_EVERY": "the robot sends STATE of its own accord if it has not for this long",
+    "FAILSAFE_AFTER": "silence of the host after which a robot should act",
+    "FAILSAFE_PROMISE": "silence of the host after which a robot must have acted",
+    "DEGRADED_AFTER": "silence of the robot: the link is degraded",
+    "LOST_AFTER": "silence of the robot: the link is lost, and HELLO is sent again",
+    "HELLO_EVERY": "between two HELLOs without an answer",
+    "RETRY_FIRST": "before a repeat, while no round trip is known",
+    "RETRY_MIN": "before a repeat, at least",
+    "RETRY_MAX": "before a repeat, at most",
+    "GONE_EVERY": "between two GONEs, at least",
+}
+"""The times that both ends keep, and what PROTOCOL.md says of each."""

@@ -71,7 +71,7 @@ def encode_frame(body: bytes) -> bytes:
     if not 1 <= len(body) <= MAX_BODY:
         raise ValueError(f"a frame holds 1 to {MAX_BODY} bytes, not {len(body)}")
     encoded = cobs_encode(body)
-    return b"\0" + encoded + _check_bytes(encoded) + b"\0"
+    return b"\0" + encoded + check_bytes(encoded) + b"\0"
 
 
 def decode_frame(frame: bytes) -> bytes:
@@ -79,12 +79,13 @@ def decode_frame(frame: bytes) -> bytes:
     if not 5 <= len(frame) <= MAX_FRAME:
         raise FrameError("too short or too long for a frame")
     encoded = frame[:-3]
-    if frame[-3:] != _check_bytes(encoded):
+    if frame[-3:] != check_bytes(encoded):
         raise FrameError("the check does not match")
     return cobs_decode(encoded)
 
 
-def _check_bytes(encoded: bytes) -> bytes:
+def check_bytes(encoded: bytes) -> bytes:
+    """Return the three bytes that follow an encoded body."""
     crc = crc16(encoded)
     return bytes([0xE0 | crc >> 12, 0x80 | crc >> 6 & 0x3F, 0x80 | crc & 0x3F])
 

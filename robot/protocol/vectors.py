@@ -1,0 +1,116 @@
+"""Test vectors: messages and their bytes, and bytes that are none; for whoever writes a robot."""
+
+import json
+from dataclasses import asdict, dataclass
+
+from robot.protocol import messages as m
+from robot.protocol.schema import form_of, pack
+from robot.protocol.timing import VERSION
+from robot.protocol.wire import MAX_BODY, check_bytes, encode_frame
+
+
+@dataclass(frozen=True)
+class Vector:
+    """A message and its frame."""
+
+    session: int
+    """The session in its header."""
+
+    content: object
+    """The message."""
+
+    version: int = VERSION
+    """The version of the protocol in which it is sent."""
+
+    @property
+    def body(self) -> bytes:
+        """What its frame holds."""
+        return pack(self.content, self.session, self.version)
+
+    @property
+    def frame(self) -> bytes:
+        """Its bytes on the line, edges included."""
+        return encode_frame(self.body)
+
+
+VECTORS = (
+    Vector(1, m.Hello(VERSION, 0x12345678)),
+    Vector(1, m.Ask(m.ITEM_MOTION, 2)),
+    Vector(1, m.Beat(513)),
+    Vector(0xABCD, m.Express(1, 0.8, -0.25, 1)),
+    Vector(0xABCD, m.Express(1, 0.8, -0.25), version=1),
+    Vector(0xABCD, m.Express(2, 0.0, 0.0)),
+    Vector(0xABCD, m.Play(3, m.ITEM_SOUND, 0)),
+    Vector(0xABCD, m.Stop(4)),
+    Vector(0xABCD, m.Bye()),
+    Vector(1, m.Welcome(VERSION, 0, 0xBEEF, 14, 8, 6, 3, "Dino", "simulator 1")),
+    Vector(1, m.Joint(8, -0.262, 0.262, 0.349, "torso")),
+    Vector(1, m.Name(m.ITEM_MOOD, 1, "happy")),
+    Vector(
+        0xABCD,
+        m.State(513, 4, m.STILL, 0.8, -0.25, 0.5, 1, m.NOTHING, 1, (0.0, -1.571, *[0.0] * 14)),
+    ),
+    Vector(0xABCD, m.Ack(4, m.TAKEN)),
+    Vector(7, m.Gone()),
+)
+"""At least one frame of every message, and one in every version of those that grew."""
+
+
+def broken() -> list[tuple[str, bytes]]:
+    """Return bytes that hold no message for a robot, and why."""
+    beat = Vector(0xABCD, m.Beat(513)).frame
+    long = encode_frame(bytes([0x03]) * MAX_BODY)
+    return [
+        ("one bit of the body is wrong", _changed(beat, 3, 0x04)),
+        ("one bit of the check is wrong", _changed(beat, len(beat) - 2, 0x01)),
+        ("the first bits of the check are wrong", _changed(beat, len(beat) - 4, 0x40)),
+        ("a byte is missing", beat[:4] + beat[5:]),
+        ("cut short", beat[:5] + beat[-1:]),
+        ("a byte too long", long[:-4] + bytes([0x03]) + long[-4:]),
+        ("a piece of COBS passes the end", _checked(bytes([0x09, 0x03, 0x01]))),
+        ("shorter than its message", encode_frame(Vector(0xABCD, m.Beat(513)).body[:-1])),
+        ("shorter than a header", encode_frame(bytes([0x03, 0x01]))),
+        ("number 0 of a command", encode_frame(bytes([0x12, 0xCD, 0xAB, 0, 0, 0, 0]))),
+        ("a valence out of its range", _out_of_range()),
+        ("a number that no message has", encode_frame(bytes([0x77, 0xCD, 0xAB, 1, 2, 3]))),
+        ("what only a robot may say", Vector(0xABCD, m.Ack(4, m.TAKEN)).frame),
+    ]
+
+
+def vectors_file() -> str:
+    """Return all vectors as JSON."""
+    document = {
+        "protocol": "cubeling",
+        "version": VERSION,
+        "about": "bytes in hexadecimal; `frame` with its edges; `fields` in the units of "
+        "PROTOCOL.md; `version` is the one in which the message is sent",
+        "frames": [_entry(vector) for vector in VECTORS],
+        "skipped by a robot": [{"why": why, "bytes": data.hex(" ")} for why, data in broken()],
+    }
+    return json.dumps(document, indent=1) + "\n"
+
+
+def _entry(vector: Vector) -> dict[str, object]:
+    return {
+        "message": form_of(type(vector.content)).name,
+        "version": vector.version,
+        "session": vector.session,
+        "fields": asdict(vector.content),  # type: ignore[call-overload] # a message is a dataclass
+        "body": vector.body.hex(" "),
+        "frame": vector.frame.hex(" "),
+    }
+
+
+def _changed(frame: bytes, at: int, bits: int) -> bytes:
+    return frame[:at] + bytes([frame[at] ^ bits]) + frame[at + 1 :]
+
+
+def _checked(encoded: bytes) -> bytes:
+    """Return the frame of bytes that COBS never makes, with the check that they would have."""
+    return b"\0" + encoded + check_bytes(encoded) + b"\0"
+
+
+def _out_of_range() -> bytes:
+    body = bytearray(Vector(0xABCD, m.Express(1, 1.0, 0.0)).body)
+    body[7:9] = (10001).to_bytes(2, "little")
+    return encode_frame(bytes(body))
