@@ -1,6 +1,7 @@
 """A robot on a port: what the rest of the program talks to."""
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -170,7 +171,9 @@ class Robot:
     def telemetry(self) -> Telemetry:
         """What is known now."""
         with self._pump.lock:
-            return self._driver.telemetry(self._clock())
+            known = self._driver.telemetry(self._clock())
+        counts = replace(known.counts, discarded=self._pump.discarded)
+        return replace(known, counts=counts)
 
     @property
     def catalogue(self) -> Catalogue:

@@ -7,6 +7,7 @@ from typing import Literal
 
 import serial
 
+from robot.budget import REST, Budget
 from robot.driver import Driver
 from robot.errors import RobotError
 from robot.port import Clock, Port
@@ -18,8 +19,12 @@ ByteHook = Callable[[Literal["tx", "rx"], bytes, float], None]
 REOPEN_EVERY = 0.25
 """A port that is gone is looked for this often [s]."""
 
-READ_AT_ONCE = 4096
-"""Most bytes taken from the port in one go; a babbling robot gets no more of our time."""
+READ_AT_ONCE = 1024
+"""Most bytes taken from the port in one go."""
+
+READS_THROWN_AWAY = 16
+"""Most reads whose bytes are dropped in one go. pySerial's own way to empty a buffer never ends on
+a socket that babbles (`test_a_line_that_babbles_is_given_up_in_time_and_stops_nobody`)."""
 
 JOIN_WITHIN = 1.0
 """Longest wait for the thread to end [s]."""
@@ -62,6 +67,9 @@ class Pump:
         self._driver = driver
         self._clock = clock
         self._on_bytes = on_bytes
+        self.discarded = 0
+        """Bytes thrown away unread: the robot said too much."""
+        self._budget = Budget()
         self._woken = False
         self._driver.port_opened(clock())
         self._thread = threading.Thread(target=self._run, name=f"robot {url}", daemon=True)
@@ -114,6 +122,19 @@ class Pump:
         if answer:
             self._write(port, answer)
             self._tell("tx", answer, now)
+        if self._budget.spend(len(data), now):
+            self._throw_away(port)
+            self.closing.wait(REST)
+
+    def _throw_away(self, port: Port) -> None:
+        """Drop what a babbling robot has sent beyond its budget, undecoded."""
+        try:
+            for _ in range(READS_THROWN_AWAY):
+                if not port.in_waiting:
+                    break
+                self.discarded += len(port.read(READ_AT_ONCE))
+        except OSError:
+            self._unplug(port)
 
     def _write(self, port: Port, data: bytes) -> None:
         try:

@@ -38,6 +38,9 @@ class LinkCounts:
     dropped: int = 0
     """Motions and sounds given up, by a stop or a lost link, before they were acknowledged."""
 
+    discarded: int = 0
+    """Bytes thrown away unread, because the robot sent more than any robot has to say."""
+
     sessions: int = 0
     """Sessions opened; every one after the first is a reconnection."""
 

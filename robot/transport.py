@@ -9,6 +9,7 @@ from typing import cast
 import serial
 
 from robot.errors import RobotError
+from robot.plug import Identity, identity_of, name_of
 from robot.port import READ_TIMEOUT, Clock, Port
 from robot.protocol import timing
 from robot.simulators.memory import SimulatedWire
@@ -65,7 +66,25 @@ def opener(url: str, clock: Clock = time.monotonic, baud: int = timing.BAUD) -> 
         raise RobotError("a port must be named; `cubeling robot list` shows those there are")
     if url.startswith("sim:"):
         return SimulatedWire(url, clock).open
-    return lambda: _open_serial(url, baud)
+    return _Plug(url, baud).open
+
+
+class _Plug:
+    """A port of this computer, or a network's, that may be pulled and put in again."""
+
+    def __init__(self, url: str, baud: int) -> None:
+        self._url = url
+        self._baud = baud
+        self._identity: Identity | None = None
+
+    def open(self) -> Port:
+        name = self._url
+        if self._identity is not None:
+            name = name_of(self._identity) or name
+        port = _open_serial(name, self._baud)
+        if self._identity is None and "://" not in name:
+            self._identity = identity_of(name)
+        return port
 
 
 def _open_serial(url: str, baud: int) -> Port:

@@ -1,0 +1,70 @@
+"""A robot that says too much is not listened to."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import robot
+from robot.budget import BURST, RATE, REST, Budget
+from robot.pump import READ_AT_ONCE, READS_THROWN_AWAY
+
+
+def test_a_line_at_full_speed_is_within_the_budget_for_ever():
+    budget = Budget()
+    for step in range(10_000):
+        assert not budget.spend(115, step * 0.010)
+
+
+def test_what_waited_while_this_computer_slept_is_within_the_budget():
+    budget = Budget()
+    budget.spend(10, 0.0)
+    assert not budget.spend(BURST, 60.0)
+
+
+@given(st.lists(st.tuples(st.integers(0, 5000), st.floats(0, 0.1)), max_size=200))
+def test_no_more_is_listened_to_than_the_rate_and_one_burst(arrivals):
+    budget, now, heard = Budget(), 0.0, 0
+    for count, pause in arrivals:
+        now += pause
+        if not budget.spend(count, now):
+            heard += count
+    assert heard <= BURST + RATE * now + 1
+
+
+def test_a_clock_that_is_set_back_takes_nothing_away():
+    budget = Budget()
+    budget.spend(0, 100.0)
+    assert not budget.spend(1000, 50.0)
+
+
+class BabblingPort:
+    """Noise without an end, as fast as it is read."""
+
+    def __init__(self) -> None:
+        self.noise = np.random.default_rng(1).bytes(READ_AT_ONCE)
+        self.reads = 0
+        self.in_waiting = 60_000
+
+    def read(self, size=1, /):
+        self.reads += 1
+        return self.noise[:size]
+
+    def write(self, data, /):
+        return len(data)
+
+    def close(self):
+        pass
+
+
+def test_a_port_that_babbles_is_read_at_a_bounded_rate(monkeypatch):
+    port = BabblingPort()
+    monkeypatch.setattr("robot.connection.opener", lambda *_: lambda: port)
+    ticks = itertools.count()
+    with pytest.raises(robot.RobotError, match="nobody"):
+        robot.connect("/dev/babble", clock=lambda: next(ticks) * 0.001, answer_within=0.3)
+    # Once the burst is spent: every 20 ms at most two reads that count and those thrown away.
+    rests = 0.3 / REST
+    assert port.reads < 2 * BURST / READ_AT_ONCE + rests * (READS_THROWN_AWAY + 2)
