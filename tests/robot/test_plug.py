@@ -18,7 +18,7 @@ HAPPY = Emotion(0.8, 0.5)
 @pytest.fixture
 def usb(monkeypatch):
     """The USB devices of this computer, by port: (vendor, product, serial number, socket)."""
-    devices: dict[str, tuple] = {}
+    devices: dict[str, tuple[object, ...]] = {}
 
     def comports():
         return [
