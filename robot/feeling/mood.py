@@ -52,14 +52,14 @@ class Mood:
     """Where on the line the mood is."""
 
     value: float
-    """From angry, −1, over neutral, 0, to happy, 1."""
+    """From angry, −1, over neutral, 0, to happy, 1: its valence."""
 
-    label: Label
-    """The word for it, with hysteresis."""
+    label: str
+    """The word for it, with hysteresis: of a `MoodLine` a `Label`, else one of its label set's."""
 
     emotion: Emotion
-    """The same for a robot: valence is the value and arousal its magnitude, for the further from
-    neutral the more excited, whichever way; neutral itself is the origin of the plane."""
+    """The same for a robot: valence is the value. On the line the arousal is its magnitude, for the
+    further from neutral the more excited, whichever way, and neutral the origin of the plane."""
 
     timestamp: float
     """When [s]."""
