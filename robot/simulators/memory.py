@@ -1,5 +1,6 @@
 """A simulated robot behind pySerial's interface, without a port: what "sim:NAME" opens."""
 
+import re
 import threading
 from urllib.parse import parse_qsl
 
@@ -9,15 +10,17 @@ from robot.errors import RobotError
 from robot.port import READ_TIMEOUT, Clock
 from robot.simulators import SIMULATORS
 from robot.simulators.base import Simulated
+from robot.simulators.faults import Faults, faults_of
+from robot.simulators.faulty import FaultyRobot
 
 
 class SimulatedWire:
-    """A simulated robot, and the wire to it.
+    """A simulated robot, and the wire to it, which outlives every unplugging.
 
     Parameters
     ----------
     url
-        "sim:NAME", with options: "sim:cubeling?seed=7".
+        "sim:NAME", with options: "sim:cubeling?seed=7&drop=0.05"; see `simulator_of`.
     clock
         The time by which both live.
 
@@ -30,32 +33,56 @@ class SimulatedWire:
     def __init__(self, url: str, clock: Clock) -> None:
         self.robot = simulator_of(url)
         """The robot at the far end."""
+        self._url = url
         self._clock = clock
 
     def open(self) -> "MemoryPort":
-        """Plug in."""
-        return MemoryPort(self.robot, self._clock)
+        """Open the port; raises RobotError while its plug is out."""
+        robot = self.robot
+        if isinstance(robot, FaultyRobot):
+            robot.advance(self._clock())
+            if not robot.plugged_in:
+                raise RobotError(f"cannot open the port {self._url}: its plug is out")
+        return MemoryPort(robot, self._clock)
 
 
 def simulator_of(url: str) -> Simulated:
-    """Make the simulated robot that a URL names."""
+    """Make the simulated robot that a URL names, with the faults that it names.
+
+    Parameters
+    ----------
+    url
+        "sim:NAME?OPTIONS"; "sim:" may be left out. Options are `seed`, and those of
+        `faults.OPTIONS`: "cubeling?drop=0.05&stall=1s/10s&seed=7".
+
+    Raises
+    ------
+    RobotError
+        If there is no such robot or option, or a value is not allowed.
+    """
     name, _, query = url.removeprefix("sim:").partition("?")
     if name not in SIMULATORS:
         known = ", ".join(f"sim:{one}" for one in SIMULATORS)
         raise RobotError(f"there is no simulated robot {url!r}; there is {known}")
-    options = dict(parse_qsl(query, keep_blank_values=True))
-    seed = options.pop("seed", "0")
-    if options:
-        raise RobotError(f"{url!r}: {next(iter(options))!r} is no option of a simulator; seed is")
-    if not (seed.isascii() and seed.isdigit()):
-        raise RobotError(f"{url!r}: the seed must be a whole number from 0, not {seed!r}")
-    return SIMULATORS[name](int(seed))
+    options: dict[str, str] = {}
+    for option, text in parse_qsl(query, keep_blank_values=True):
+        if option in options:
+            raise RobotError(f"{url!r}: {option} is given twice")
+        options[option] = text
+    seed_text = options.pop("seed", "0")
+    if not re.fullmatch(r"[0-9]{1,18}", seed_text):
+        raise RobotError(f"{url!r}: the seed must be a whole number from 0, not {seed_text!r}")
+    seed = int(seed_text)
+    faults = faults_of(url, options)
+    robot = SIMULATORS[name](seed)
+    return robot if faults == Faults() else FaultyRobot(robot, faults, seed)
 
 
 class MemoryPort:
     """A simulated robot behind pySerial's interface, without a port.
 
-    The robot lives while it is read from; a closed port stops its time.
+    The robot lives while it is read from; a closed port stops its time. Once its plug was pulled,
+    every call raises serial.SerialException, as a real port does.
     """
 
     def __init__(self, simulator: Simulated, clock: Clock) -> None:
@@ -65,6 +92,8 @@ class MemoryPort:
         self._arrived = bytearray()
         self._open = True
         self._cancelled = threading.Event()
+        self._plug = simulator if isinstance(simulator, FaultyRobot) else None
+        self._pulls = self._plug.pulls if self._plug else 0
 
     @property
     def in_waiting(self) -> int:
@@ -101,4 +130,6 @@ class MemoryPort:
         if not self._open:
             raise serial.PortNotOpenError
         self.simulator.advance(self._clock())
+        if self._plug is not None and self._plug.pulls != self._pulls:
+            raise serial.SerialException("the plug was pulled")
         self._arrived += self.simulator.bytes_to_send()
