@@ -1,10 +1,8 @@
-"""What the robot's tests share: virtual time, a line that does harm, and bounded waiting."""
+"""What the robot's tests share: virtual time, a world, and bounded waiting."""
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 
-import numpy as np
 import pytest
 from hypothesis import settings
 
@@ -12,81 +10,28 @@ from robot.drivers.cubeling.host import HostLink
 from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.simulators.cubeling.simulator import Simulator
+from robot.simulators.faults import Faults
+from robot.simulators.line import Line
 
 # A busy machine is no reason for a property to fail.
 settings.register_profile("no deadline", deadline=None)
 settings.load_profile("no deadline")
 
 
-@dataclass
-class Harm:
-    """What a line does to the bytes; chances are per chunk written."""
-
-    drop: float = 0.0
-    flip: float = 0.0
-    duplicate: float = 0.0
-    split: float = 0.0
-    garbage: float = 0.0
-    delay: float = 0.0
-
-
-@dataclass
-class Line:
-    """One direction of a serial line in virtual time. It never reorders, as no wire does."""
-
-    random: np.random.Generator
-    harm: Harm
-    cut: bool = False
-    harmed: int = 0
-    _waiting: list[tuple[float, bytes]] = field(default_factory=list)
-
-    def send(self, data: bytes, now: float) -> None:
-        # The frames of one write meet their fates one by one.
-        for frame in data.split(b"\0\0"):
-            if frame:
-                self._send_one(b"\0" + frame.strip(b"\0") + b"\0", now)
-
-    def _send_one(self, data: bytes, now: float) -> None:
-        happens = self.random.random(5) < (
-            self.harm.drop, self.harm.flip, self.harm.duplicate, self.harm.split, self.harm.garbage,
-        )  # fmt: skip
-        drop, flip, duplicate, split, garbage = happens.tolist()
-        self.harmed += int(happens.any())
-        if drop or self.cut:
-            return
-        if flip:
-            wrong = bytearray(data)
-            wrong[self.random.integers(len(data))] ^= 1 << self.random.integers(8)
-            data = bytes(wrong)
-        if garbage:
-            data = self.random.bytes(int(self.random.integers(1, 40))) + data
-        late = now + self.harm.delay
-        if split:
-            middle = int(self.random.integers(1, len(data)))
-            self._waiting += [(late, data[:middle]), (late + 0.004, data[middle:])]
-        else:
-            self._waiting.append((late, data))
-        if duplicate:
-            self._waiting.append((late + 0.030, data))
-
-    def receive(self, now: float) -> bytes:
-        arrived = b""
-        while self._waiting and self._waiting[0][0] <= now:
-            arrived += self._waiting.pop(0)[1]
-        return arrived
-
-
 class World:
-    """A host and a simulated robot on one virtual clock, with a line of each direction between."""
+    """A host and a simulated robot on one virtual clock, with a line of each direction between.
+
+    `harm` is what both lines do, in the fields of `Faults`.
+    """
 
     def __init__(self, seed: int = 0, step: float = 0.005, **harm: float) -> None:
-        random = np.random.default_rng(seed)
+        faults = Faults(**harm)  # type: ignore[arg-type] # those of its fields that are numbers
         self.now = 100.0
         self.step = step
         self.host = HostLink(host=7)
         self.robot = Simulator(seed)
-        self.there = Line(random, Harm(**harm))
-        self.back = Line(random, Harm(**harm))
+        self.there = Line(faults, Simulator.edge, (seed, 0))
+        self.back = Line(faults, Simulator.edge, (seed, 1))
         self.applied: list[tuple[float, Emotion]] = []
         self.neutral_at: list[float] = []
         self.reboots: list[float] = []

@@ -20,13 +20,13 @@ from robot.protocol import timing
 
 HARM = {
     "drops": {"drop": 0.2},
-    "flips": {"flip": 0.2},
-    "doubles": {"duplicate": 0.3},
+    "flips": {"flip": 0.01},
+    "doubles": {"dup": 0.3},
     "splits": {"split": 0.5},
-    "babbles": {"garbage": 0.3},
-    "is slow": {"delay": 0.08},
+    "babbles": {"babble": 300.0},
+    "is slow": {"delay": 0.08, "jitter": 0.02},
     "does it all": {
-        "drop": 0.05, "flip": 0.05, "duplicate": 0.05, "split": 0.2, "garbage": 0.05, "delay": 0.02,
+        "drop": 0.05, "flip": 0.003, "dup": 0.05, "split": 0.2, "babble": 100.0, "delay": 0.02,
     },
 }  # fmt: skip
 

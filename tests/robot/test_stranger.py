@@ -183,7 +183,7 @@ def test_a_strangers_robot_is_neutral_in_time_and_brought_back(strange_world):
 
 
 def test_a_strangers_robot_survives_a_bad_line(strange_world):
-    w = strange_world(drop=0.1, flip=0.1, duplicate=0.1, garbage=0.1, split=0.3)
+    w = strange_world(drop=0.1, flip=0.005, dup=0.1, babble=300, split=0.3)
     for index in range(1, 60):
         w.host.express(Emotion(index / 10_000, 0.0))
         w.run(0.1)
