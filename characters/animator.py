@@ -76,7 +76,8 @@ class Animator:
     seed
         Of blinks and small movements: two of a kind with different seeds do not move together.
     alive
-        Whether it looks, blinks, breathes and stirs; without, its clips are shown as they are.
+        Whether it looks, blinks, breathes, stirs and shows what it feels; without, its clips are
+        shown as they are.
     """
 
     def __init__(
@@ -98,7 +99,13 @@ class Animator:
         self._performer: Performer = (TreePlayer if planned else kind)(character, scale, place)
         self._life: Life | None = None
         if alive:
-            self._life = Life(character.skeleton, character.anatomy, character.morphs, seed)
+            self._life = Life(
+                character.skeleton,
+                character.anatomy,
+                character.morphs,
+                seed,
+                meshes=character.meshes,
+            )
 
     @property
     def actions(self) -> tuple[str, ...]:
@@ -129,6 +136,9 @@ class Animator:
                 target=None if command.gaze is None else _seen_from(placed, command.gaze),
                 effort=performer.speed / TOP_SPEED,
                 busy=float(performer.state not in ("idle", "walk", "run")),
+                feeling=_felt(command),
+                mood=command.mood,
+                played=performer.state == command.mood,
             )
         return PosedCharacter(
             pose=pose,
@@ -145,15 +155,24 @@ class Animator:
 def _check(command: CharacterCommand) -> None:
     """Refuse numbers that would stay with the character for ever."""
     numbers = [command.timestamp, command.speed, command.weight]
-    for point in (command.target, command.look_at, command.gaze):
+    for point in (command.target, command.look_at, command.gaze, command.feeling):
         if point is not None:
             numbers += [float(value) for value in point]
     if not all(map(math.isfinite, numbers)):
         raise CharacterError(
             f"command at {command.timestamp} s has a number that is not finite: speed "
             f"{command.speed}, weight {command.weight}, target {command.target}, look_at "
-            f"{command.look_at}, gaze {command.gaze}; leave out what is not known"
+            f"{command.look_at}, gaze {command.gaze}, feeling {command.feeling}; leave out what is "
+            "not known"
         )
+
+
+def _felt(command: CharacterCommand) -> tuple[float, float] | None:
+    """Return valence and arousal within their range, or None."""
+    if command.feeling is None:
+        return None
+    valence, arousal = (min(max(float(value), -1.0), 1.0) for value in command.feeling)
+    return valence, arousal
 
 
 def _placed(place: Step, height: float, scale: float) -> Array:

@@ -33,7 +33,7 @@ class Blinking:
         self._now = 0.0
         self._start = self._wait()
 
-    def update(self, elapsed: float, turned: float = 0.0) -> float:
+    def update(self, elapsed: float, turned: float = 0.0, pace: float = 1.0) -> float:
         """Advance by a time [s] and return how far the lids are closed, 0…1.
 
         Parameters
@@ -42,8 +42,12 @@ class Blinking:
             Since the last call.
         turned
             How far the gaze has jumped since then [rad].
+        pace
+            How much quicker blinks follow each other; lids themselves only slow down, for those
+            who are drowsy.
         """
-        self._now += elapsed
+        waiting = self._now < self._start
+        self._now += elapsed * (pace if waiting else min(pace, 1.0))
         open_again = self._start + _CLOSING + _SHUT + _OPENING
         if self._now > open_again:
             self._now -= open_again

@@ -120,7 +120,14 @@ class Gaze:
         self._eye_turns = [(0.0, 0.0)] * len(eyes)
 
     def update(
-        self, pose: Pose, target: Array | None, elapsed: float, head_share: float = 1.0
+        self,
+        pose: Pose,
+        target: Array | None,
+        elapsed: float,
+        head_share: float = 1.0,
+        *,
+        pace: float = 1.0,
+        bow: float = 0.0,
     ) -> Pose:
         """Advance by a time [s] and return the pose with head and eyes turned.
 
@@ -134,6 +141,10 @@ class Gaze:
             Since the last call.
         head_share
             How much of its part the head takes, 0…1; the eyes look anyway.
+        pace
+            How much quicker the head turns than usual.
+        bow
+            How far the head hangs beside [rad]; the eyes look up from it.
         """
         if not self.able:
             return pose
@@ -148,11 +159,13 @@ class Gaze:
         self.jumped = 0.0 if aim is None or self._aim is None else math.dist(aim, self._aim)
         self._aim = aim
         wish = (0.0, 0.0) if aim is None else self._head_wish(aim, held, head_share)
-        self._yaw, self._yaw_speed = sprung(self._yaw, self._yaw_speed, wish[0], elapsed, _HEAD_LAG)
+        lag = _HEAD_LAG / pace
+        self._yaw, self._yaw_speed = sprung(self._yaw, self._yaw_speed, wish[0], elapsed, lag)
         self._pitch, self._pitch_speed = sprung(
-            self._pitch, self._pitch_speed, wish[1], elapsed, _HEAD_LAG
+            self._pitch, self._pitch_speed, wish[1], elapsed, lag
         )
-        turned = turn(body, _turn_between(held, (held[0] + self._yaw, held[1] + self._pitch)))
+        aimed = held[0] + self._yaw, held[1] + self._pitch - bow
+        turned = turn(body, _turn_between(held, aimed))
         local = pose.rotations.copy()
         self._turn_line(local, turned)
         if self._eyes:

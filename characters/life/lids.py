@@ -1,12 +1,13 @@
 """Which morphs close the eyes: there is no one name for them."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.mesh import Mesh
 from characters.pose import Array
 
 # Without capitals, marks and what stands before a dot. VRM, ARKit and Mixamo, Ready Player Me,
@@ -37,7 +38,7 @@ class Lids:
         found: dict[str, int] = {}
         for number, name in enumerate(morphs):
             for form in (name, name.rpartition(".")[2]):
-                found.setdefault(re.sub(r"[\W_]", "", form).lower(), number)
+                found.setdefault(plain(form), number)
         both = next((found[name] for name in _BOTH if name in found), None)
         pairs = (
             (found[stem + left], found[stem + right])
@@ -63,3 +64,38 @@ class Lids:
             return
         apart = float(weights[self.sides].max()) if self.sides.size else 0.0
         weights[self.both] = max(float(weights[self.both]), min(closed, 1.0 - apart))
+
+    def narrow(self, weights: Array, most: float) -> None:
+        """Close the eyes at most so far, 0…1, in weights of morphs (morphs,)."""
+        if self.both is not None:
+            weights[self.both] = min(float(weights[self.both]), most)
+        weights[self.sides] = np.minimum(weights[self.sides], most)
+
+
+def plain(name: str) -> str:
+    """Return a morph's name without capitals, blanks and marks.
+
+    >>> plain("Eye Blink_L")
+    'eyeblinkl'
+    """
+    return re.sub(r"[\W_]", "", name).lower()
+
+
+def blinks_in(morphs: Sequence[str], meshes: Iterable[Mesh], lids: Lids) -> Array:
+    """Return how much of a blink there is in each morph, (morphs,), from what they move.
+
+    1 is a morph that closes the eyes as a blink does; below 0 are those that open them wider.
+    What is added to a blink closes the lids too far by just this.
+    """
+    names = [morphs[number] for number in (lids.sides if lids.both is None else [lids.both])]
+    along, whole = np.zeros(len(morphs)), 0.0
+    for mesh in meshes:
+        blink = np.zeros(mesh.positions.shape)
+        for morph in mesh.morphs:
+            if morph.name in names:
+                blink[morph.vertices] += morph.shifts
+        whole += float((blink * blink).sum())
+        for morph in mesh.morphs:
+            share = float((blink[morph.vertices] * morph.shifts).sum())
+            along[morphs.index(morph.name)] += share
+    return along / whole if whole > 0.0 else along

@@ -1,17 +1,23 @@
-"""Gaze, blinks, breath and small movements, laid over a pose."""
+"""Gaze, blinks, breath and small movements, and what is felt, laid over a pose."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from characters import rotations
 from characters.anatomy import Anatomy
+from characters.life.bearing import PLAIN, Bearing
 from characters.life.blink import Blinking
+from characters.life.face import Face
 from characters.life.gaze import HUMAN, Gaze, Limits
-from characters.life.lids import Lids
+from characters.life.lids import Lids, blinks_in
 from characters.life.stirring import Stirring
+from characters.mesh import Mesh
 from characters.pose import Array, Pose, Skeleton
 from characters.smoothing import eased
 
 _CALM_LAG = 0.5  # [s]
+_HELD_IN_ACTION = 0.5  # so much of a bearing stays in the midst of an action
 
 
 class Life:
@@ -24,11 +30,14 @@ class Life:
     skeleton, anatomy
         Whose joints turn.
     morphs
-        Names of the character's morphs; those that close the eyes (`Lids`) and "breath" are used.
+        Names of the character's morphs; those that close the eyes (`Lids`), those that make faces
+        (`Expressions`) and "breath" are used.
     seed
         Of blinks and drift.
     limits
         How far it can look.
+    meshes
+        That the morphs change: they tell how much of a blink is in each.
     """
 
     def __init__(
@@ -38,12 +47,15 @@ class Life:
         morphs: tuple[str, ...] = (),
         seed: int = 0,
         limits: Limits = HUMAN,
+        meshes: Sequence[Mesh] = (),
     ) -> None:
         self._gaze = Gaze(skeleton, anatomy, limits)
         self._blinking = Blinking(seed)
         self._stirring = Stirring(skeleton, anatomy, seed)
         self._morphs = len(morphs)
         self._lids = Lids.of(morphs)
+        self._face = Face(morphs, blinks_in(morphs, meshes, self._lids))
+        self._bearing = Bearing(skeleton, anatomy)
         self._wide = morphs.index("surprised") if "surprised" in morphs else None
         self._breath = morphs.index("breath") if "breath" in morphs else None
         self._calm = 1.0
@@ -61,6 +73,9 @@ class Life:
         target: Array | None = None,
         effort: float = 0.0,
         busy: float = 0.0,
+        feeling: tuple[float, float] | None = None,
+        mood: str = "",
+        played: bool = False,
     ) -> Pose:
         """Advance by a time [s] and return the pose with what lives in it.
 
@@ -76,23 +91,50 @@ class Life:
             How hard the body works, 0 at rest … 1 at a full run.
         busy
             How much head and trunk have to do otherwise, 0 … 1 in the midst of an action.
+        feeling
+            Valence and arousal, each −1…1, or None to leave face and bearing to the clips.
+        mood
+            The word for that feeling.
+        played
+            Whether the clips show this very mood, so that the face need not.
         """
         self._calm = eased(self._calm, 1.0 - max(busy, min(2.0 * effort, 1.0)), elapsed, _CALM_LAG)
+        manner = self._bearing.update(elapsed, feeling)
+        self._face.update(elapsed, None if played else feeling, mood)
         joints = self._stirring.joints
-        turns = self._stirring.update(elapsed, effort, self._calm)
+        turns = self._stirring.update(elapsed, effort, self._calm, manner)
         local = pose.rotations.copy()
         local[joints] = rotations.multiply(local[joints], turns)
+        share = _HELD_IN_ACTION + (1.0 - _HELD_IN_ACTION) * self._calm
+        if manner is not PLAIN:
+            borne, turns = self._bearing.joints, self._bearing.turns(share)
+            local[borne] = rotations.multiply(local[borne], rotations.from_rotation_vector(turns))
         stirred = Pose(pose.translations, local, pose.scales, pose.morphs)
-        looked = self._gaze.update(stirred, target, elapsed, 1.0 - 0.8 * busy)
-        return self._with_face(looked, elapsed)
+        looked = self._gaze.update(
+            stirred,
+            target,
+            elapsed,
+            1.0 - 0.8 * busy,
+            pace=manner.pace,
+            bow=manner.bow * share,
+        )
+        return self._with_face(looked, elapsed, busy)
 
-    def _with_face(self, pose: Pose, elapsed: float) -> Pose:
-        """Return the pose with lids and breath in its morphs."""
-        closed = self._blinking.update(elapsed, self._gaze.jumped)
-        if not self._lids and self._breath is None:
+    def _with_face(self, pose: Pose, elapsed: float, busy: float) -> Pose:
+        """Return the pose with feeling, lids and breath in its morphs."""
+        pace = self._bearing.manner.pace
+        closed = self._blinking.update(elapsed, self._gaze.jumped, pace)
+        felt = self._face.felt and self._face.able
+        if not self._lids and self._breath is None and not felt:
             return pose
         morphs = np.zeros(self._morphs) if pose.morphs is None else pose.morphs.copy()
-        self._lids.close(morphs, closed)
+        if felt:
+            # A lid that an expression holds half closed is only closed the other half.
+            shut, hang = self._face.show(morphs, elapsed, closed, busy)
+            self._lids.close(morphs, max(closed, hang - shut))
+            self._lids.narrow(morphs, 1.0 - shut)
+        else:
+            self._lids.close(morphs, closed)
         if self._wide is not None:
             # Morphs add up: eyes that are torn open would not close all the way.
             morphs[self._wide] *= 1.0 - closed

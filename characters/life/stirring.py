@@ -10,6 +10,8 @@ import numpy as np
 
 from characters import rotations
 from characters.anatomy import Anatomy
+from characters.life.axes import body_axes, turned
+from characters.life.bearing import PLAIN, Manner
 from characters.pose import Array, Skeleton
 
 RESTING_RATE, HARDEST_RATE = 0.25, 0.7
@@ -73,9 +75,9 @@ class Stirring:
         there = [(name, joint) for name, joint in found if joint is not None]
         self.joints = np.array([joint for _, joint in there], np.intp)
         """Numbers of the joints that move, (n,)."""
-        axes = _body_axes(skeleton, self.joints)
+        axes = body_axes(skeleton, self.joints)
         still = (0.0, 0.0, 0.0)
-        self._breath = _turned(axes, [breath.get(name, still) for name, _ in there])
+        self._breath = turned(axes, [breath.get(name, still) for name, _ in there])
         drift = np.array([_DRIFT.get(name, still) for name, _ in there]).reshape(-1, 3)
         # One wave for each axis of each joint: (n, 3 axes, 3).
         self._drift = np.radians(drift)[..., None] * np.swapaxes(axes, -1, -2)
@@ -86,7 +88,7 @@ class Stirring:
         self.breath = 0.0
         """How full the chest is, 0…1."""
 
-    def update(self, elapsed: float, effort: float, calm: float) -> Array:
+    def update(self, elapsed: float, effort: float, calm: float, manner: Manner = PLAIN) -> Array:
         """Advance by a time [s] and return what turns the joints, (n, 4).
 
         The rotations are in the joints' own frames: they multiply local rotations from the right.
@@ -99,18 +101,22 @@ class Stirring:
             How hard the body works, 0 at rest … 1 at a full run; breath follows it slowly.
         calm
             How much of the drift shows, 0…1.
+        manner
+            How quick and how large it all is.
         """
-        self._time += elapsed
+        self._time += elapsed * manner.pace
         self._effort += (effort - self._effort) * (1.0 - math.exp(-elapsed / _RECOVERY))
         rate = RESTING_RATE + (HARDEST_RATE - RESTING_RATE) * self._effort
-        self._phase = (self._phase + elapsed * rate) % 1.0
+        self._phase = (self._phase + elapsed * (rate * manner.pace)) % 1.0
         self.breath = lungs(self._phase)
         depth = (self.breath - 0.5) * (1.0 + (DEEPER - 1.0) * self._effort)
-        turned = self._breath * depth
+        vectors = self._breath * (depth * manner.size)
         if calm > 1e-3:
             waves = np.sin(self._rates * self._time + self._phases).sum(0)
-            turned += np.einsum("ja,jak->jk", waves * (calm / math.sqrt(_WAVES)), self._drift)
-        return rotations.from_rotation_vector(turned)
+            vectors += np.einsum(
+                "ja,jak->jk", waves * (calm * manner.size / math.sqrt(_WAVES)), self._drift
+            )
+        return rotations.from_rotation_vector(vectors)
 
 
 def lungs(phase: float) -> float:
@@ -122,18 +128,3 @@ def lungs(phase: float) -> float:
     if phase < 0.4:
         return 0.5 - 0.5 * math.cos(math.pi * phase / 0.4)
     return 0.5 + 0.5 * math.cos(math.pi * (phase - 0.4) / 0.6)
-
-
-def _body_axes(skeleton: Skeleton, joints: np.ndarray) -> Array:
-    """Return the body's axes at rest in the frames of joints, (n, 3, 3), a column each."""
-    turns = skeleton.rest.globals(skeleton)[joints, :3, :3]
-    lengths = np.linalg.norm(turns, axis=1, keepdims=True)
-    axes: Array = np.swapaxes(turns / np.where(lengths > 0, lengths, 1.0), -1, -2)
-    return axes
-
-
-def _turned(axes: Array, degrees: list[tuple[float, float, float]]) -> Array:
-    """Return rotation vectors in joints' frames, (n, 3), of turns about the body's axes."""
-    wanted = np.radians(np.array(degrees).reshape(-1, 3))
-    vectors: Array = np.einsum("jkb,jb->jk", axes, wanted)
-    return vectors

@@ -1,0 +1,151 @@
+"""How a body bears a feeling: tall or slumped, tense or loose, quick or slow.
+
+Low spirits show in a bowed head and a sunken chest, pride in the opposite (Wallbott, "Bodily
+expression of emotion", 1998); arousal in the tempo and size of all movements.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters.anatomy import Anatomy
+from characters.life.axes import body_axes, turned
+from characters.pose import Array, Skeleton
+from characters.smoothing import sprung
+
+LAG = 0.9
+"""How slowly a body follows a feeling [s]; the face is faster."""
+
+FASTER = 0.6
+"""Powers of two by which full arousal quickens breath, gaze and blinks, and calm slows them."""
+
+LARGER = 0.7
+"""The same of the size of small movements."""
+
+BOW = math.radians(13.0)
+"""How far a head hangs that is as low as can be [rad]; one that is held high is lifted by less."""
+
+# Degrees by which joints turn about the body's axes, x to the left, y up, z forward: of a body as
+# tall and open as can be, and of one as tense as can be. Slumped is the opposite of tall.
+_TALL: dict[str, tuple[float, float, float]] = {
+    "spine": (-3.0, 0.0, 0.0),
+    "chest": (-5.0, 0.0, 0.0),
+    "upperChest": (-3.0, 0.0, 0.0),
+    "leftShoulder": (0.0, -3.0, 1.5),
+    "rightShoulder": (0.0, 3.0, -1.5),
+    "leftUpperArm": (-2.0, 0.0, 3.0),
+    "rightUpperArm": (-2.0, 0.0, -3.0),
+}
+_TENSE: dict[str, tuple[float, float, float]] = {
+    "spine": (3.0, 0.0, 0.0),
+    "chest": (3.0, 0.0, 0.0),
+    "neck": (4.0, 0.0, 0.0),
+    "leftShoulder": (0.0, 4.0, 9.0),
+    "rightShoulder": (0.0, -4.0, -9.0),
+    "leftUpperArm": (0.0, 0.0, 9.0),
+    "rightUpperArm": (0.0, 0.0, -9.0),
+}
+# On four legs the trunk carries the forelegs too: the neck and the tail tell.
+_TALL_ON_FOUR: dict[str, tuple[float, float, float]] = {
+    "neck": (-9.0, 0.0, 0.0),
+    "head": (2.0, 0.0, 0.0),
+    "tail1": (14.0, 0.0, 0.0),
+    "tail2": (8.0, 0.0, 0.0),
+}
+_TENSE_ON_FOUR: dict[str, tuple[float, float, float]] = {
+    "neck": (12.0, 0.0, 0.0),
+    "head": (-3.0, 0.0, 0.0),
+    "tail1": (10.0, 0.0, 0.0),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Manner:
+    """How a body does what it does without being asked."""
+
+    pace: float = 1.0
+    """Tempo of breath, gaze and blinks; 1 without a feeling."""
+
+    size: float = 1.0
+    """Size of small movements and depth of breath; 1 without a feeling."""
+
+    bow: float = 0.0
+    """How far the head hangs [rad]."""
+
+    tall: float = 0.0
+    """From slumped, −1, to tall, 1."""
+
+    tense: float = 0.0
+    """From loose, 0, to tense, 1."""
+
+
+PLAIN = Manner()
+"""That of a body that feels nothing."""
+
+
+class Bearing:
+    """The bearing of one character; a body that feels nothing is left alone, to the bit.
+
+    Parameters
+    ----------
+    skeleton, anatomy
+        Whose joints turn.
+    """
+
+    def __init__(self, skeleton: Skeleton, anatomy: Anatomy) -> None:
+        on_four = anatomy.kind == "quadruped"
+        tall = _TALL_ON_FOUR if on_four else _TALL
+        tense = _TENSE_ON_FOUR if on_four else _TENSE
+        found = [(name, anatomy.joint(name)) for name in {**tall, **tense}]
+        there = [(name, joint) for name, joint in found if joint is not None]
+        self.joints = np.array([joint for _, joint in there], np.intp)
+        """Numbers of the joints that turn, (n,)."""
+        axes = body_axes(skeleton, self.joints)
+        still = (0.0, 0.0, 0.0)
+        self._tall = turned(axes, [tall.get(name, still) for name, _ in there])
+        self._tense = turned(axes, [tense.get(name, still) for name, _ in there])
+        self._valence = self._arousal = (0.0, 0.0)
+        self.manner = PLAIN
+        """How the body moves now."""
+
+    def update(self, elapsed: float, feeling: tuple[float, float] | None) -> Manner:
+        """Advance by a time [s] towards a feeling, valence and arousal −1…1, or to none."""
+        valence, arousal = feeling or (0.0, 0.0)
+        if self.manner is PLAIN and valence == arousal == 0.0:
+            return PLAIN
+        self._valence = sprung(*self._valence, valence, elapsed, LAG)
+        self._arousal = sprung(*self._arousal, arousal, elapsed, LAG)
+        moving = (*self._valence, *self._arousal)
+        if valence == arousal == 0.0 and max(map(abs, moving)) < 1e-4:
+            self._valence = self._arousal = (0.0, 0.0)
+            self.manner = PLAIN
+        else:
+            self.manner = manner(self._valence[0], self._arousal[0])
+        return self.manner
+
+    def turns(self, share: float) -> Array:
+        """Return rotation vectors in the joints' own frames, (n, 3) [rad]; `share` 0…1 of them."""
+        tall, tense = self.manner.tall * share, self.manner.tense * share
+        vectors: Array = self._tall * tall + self._tense * tense
+        return vectors
+
+
+def manner(valence: float, arousal: float) -> Manner:
+    """Return how a body moves that feels so, each −1…1.
+
+    >>> manner(0.7, 0.6).pace > 1 > manner(0.0, -0.9).pace
+    True
+    >>> manner(-0.6, -0.4).bow > 0 > manner(0.7, 0.6).bow
+    True
+    """
+    tall = min(max(0.75 * valence + 0.55 * arousal, -1.0), 1.0)
+    tense = max(-valence, 0.0) * max(arousal, 0.0)
+    hung = -tall if tall < 0.0 else -0.4 * tall
+    return Manner(
+        pace=2.0 ** (FASTER * arousal),
+        size=2.0 ** (LARGER * arousal),
+        bow=BOW * min(hung + 0.9 * tense, 1.0),
+        tall=tall,
+        tense=min(1.5 * tense, 1.0),
+    )
