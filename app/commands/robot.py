@@ -10,6 +10,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
+from app.commands.robot_conform import conform
 from robot import SimulatedPort, serial_ports
 from robot.simulators.base import Simulated
 from robot.simulators.memory import simulator_of
@@ -17,6 +18,8 @@ from robot.simulators.memory import simulator_of
 app = typer.Typer(
     help="Simulated robots and real ports.", no_args_is_help=True, rich_markup_mode="rich"
 )
+
+app.command()(conform)
 
 
 @app.command()
