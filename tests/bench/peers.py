@@ -1,0 +1,185 @@
+"""What a bad robot costs the picture: `python -m tests.bench.peers [--rounds N]`.
+
+The whole line with its picture, on recorded frames, in turns with no robot and with each of these
+behind a real pseudo-terminal, each in a process of its own as a real one is: one that behaves, one
+that falls silent, one that does not read either, one that babbles as fast as it is let, and one
+that floods us with valid frames of our session made to keep us busy. Exit code 1 if a frame
+of the worst takes more than 5 % longer than with none.
+"""
+
+import argparse
+import os
+import select
+import subprocess
+import sys
+import time
+import tty
+from collections import defaultdict
+from contextlib import ExitStack, contextmanager
+
+import moderngl
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from app.commands.replay import bundled
+from app.opening import fitting
+from app.playground import Playground
+from app.robots import RobotLine
+from app.scenarios import Inputs
+from characters.rendering import create_context
+from robot.protocol import messages as m
+from robot.protocol.schema import pack
+from robot.protocol.wire import encode_frame
+from robot.simulators.cubeling.simulator import Simulator
+from tracking import Frame, Intrinsics, open_source
+
+KINDS = ("well", "silent", "deaf", "babbling", "hostile")
+NOBODY = ("none", "none again")  # the second tells how much of a difference is noise
+FRAMES = 90
+MOST = 1.05
+"""What a frame may cost with the worst robot, against none."""
+
+
+# --- The robot's side, in its own process --------------------------------------------------------
+
+
+def misbehave(kind: str) -> None:
+    """Be a good robot until a line comes on the standard input, then a bad one until it ends."""
+    near, far = os.openpty()
+    tty.setraw(far)
+    os.set_blocking(near, False)
+    sys.stdout.write(os.ttyname(far) + "\n")
+    sys.stdout.flush()
+    robot = Simulator()
+    while not _ready(sys.stdin.fileno(), 0.0):
+        _serve(robot, near)
+    sys.stdin.readline()
+    flood = _flood(kind, robot.link.session)
+    while not _ready(sys.stdin.fileno(), 0.0):
+        if kind == "well":
+            _serve(robot, near)
+        elif kind == "deaf":
+            time.sleep(0.01)
+        else:
+            if _ready(near, 0.001):
+                os.read(near, 65536)
+            if flood:
+                _, writable, _ = select.select([], [near], [], 0.001)
+                if writable:
+                    try:
+                        os.write(near, flood)
+                    except BlockingIOError:
+                        time.sleep(0.0005)
+
+
+def _serve(robot: Simulator, near: int) -> None:
+    data = os.read(near, 4096) if _ready(near, 0.005) else b""
+    robot.receive(data, time.monotonic())
+    answer = robot.bytes_to_send()
+    if answer:
+        os.write(near, answer)
+
+
+def _ready(descriptor: int, within: float) -> bool:
+    return bool(select.select([descriptor], [], [], within)[0])
+
+
+def _flood(kind: str, session: int) -> bytes:
+    if kind == "babbling":
+        return np.random.default_rng(0).bytes(4096)
+    if kind != "hostile":
+        return b""
+    welcome = m.Welcome(2, 0, 1, 16, 254, 254, 254, "Mallory", "1")
+    state = m.State(1, 1, 0, 0.0, 0.0, 1.0, 0, 0, 0, (0.0,) * 16)
+    frames = [m.Gone(), welcome, m.Name(m.ITEM_MOTION, 0, "x"), state, m.Ack(1, 1)]
+    return b"".join(
+        encode_frame(pack(frame, session + shift)) for shift in range(12) for frame in frames
+    )
+
+
+# --- The host's side -----------------------------------------------------------------------------
+
+
+@contextmanager
+def peer(kind: str):
+    """Start a robot; give its port and what makes it bad."""
+    command = [sys.executable, "-m", "tests.bench.peers", "--peer", kind]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        url = process.stdout.readline().decode().strip()
+
+        def turn_bad() -> None:
+            assert process.stdin is not None
+            process.stdin.write(b"go\n")
+            process.stdin.flush()
+
+        try:
+            yield url, turn_bad
+        finally:
+            process.stdin.close()
+            process.wait(5.0)
+
+
+def block(
+    kind: str, frames: list[Frame], intrinsics: Intrinsics, context: moderngl.Context
+) -> list[float]:
+    """Return the milliseconds of each frame with such a robot."""
+    with ExitStack() as closing:
+        playground = Playground("companion", intrinsics, context=context)
+        closing.callback(playground.close)
+        url = "none"
+        turn_bad = None
+        if kind != "none":
+            url, turn_bad = closing.enter_context(peer(kind))
+        line = closing.enter_context(RobotLine.open(url, time.monotonic))
+        if turn_bad is not None:
+            turn_bad()
+        took = []
+        for frame in frames:
+            began = time.perf_counter()
+            step = playground.step(frame, Inputs())
+            line.feel(step.emotion)
+            line.view()
+            took.append(1000 * (time.perf_counter() - began))
+        return took
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--rounds", type=int, default=7, help="blocks of frames with each robot")
+    parser.add_argument("--peer", choices=KINDS, help=argparse.SUPPRESS)
+    asked = parser.parse_args()
+    if asked.peer:
+        misbehave(asked.peer)
+        return
+    context = create_context()
+    with open_source(str(bundled("companion"))) as source:
+        intrinsics = fitting(source.intrinsics, source.size)
+        frames = [frame for frame, _ in zip(source, range(200 + FRAMES), strict=False)][200:]
+    block("none", frames, intrinsics, context)  # warm
+    took: dict[str, list[list[float]]] = defaultdict(list)
+    for turn in range(asked.rounds):
+        for kind in (*NOBODY, *KINDS)[:: 1 if turn % 2 else -1]:
+            url = "none" if kind in NOBODY else kind
+            took[kind].append(block(url, frames, intrinsics, context))
+    context.release()
+    table = Table("robot", "frame, ms", "p99, ms", "against none")
+    # Frames differ, so each is compared with itself: its median over the rounds.
+    typical = {kind: np.median(times, axis=0) for kind, times in took.items()}
+    worst = 0.0
+    for kind in (*NOBODY, *KINDS):
+        ratio = float(typical[kind].sum() / typical["none"].sum())
+        worst = max(worst, ratio if kind in KINDS else 0.0)
+        slow = np.percentile(took[kind], 99)
+        table.add_row(kind, f"{typical[kind].mean():.2f}", f"{slow:.1f}", f"× {ratio:.3f}")
+    verdict = "reached" if worst <= MOST else "MISSED"
+    table.add_row("worst", "", f"target × {MOST:.2f}", f"× {worst:.3f}: {verdict}")
+    Console().print(table)
+    sys.exit(worst > MOST)
+
+
+if __name__ == "__main__":
+    main()
