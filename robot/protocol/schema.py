@@ -13,8 +13,9 @@ for those who do not know it.
 
 import dataclasses
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, TypeVar, get_args
 
 from robot.protocol.timing import VERSION
@@ -74,10 +75,23 @@ class FieldForm:
         """Bytes on the wire."""
         return struct.calcsize("<" + _FORMATS[self.form])
 
-    @property
+    @cached_property
     def count(self) -> int:
         """Values that it takes from a struct of the whole message."""
         return 16 if self.form == "i16x16" else 1
+
+    @cached_property
+    def limits(self) -> tuple[int, int]:
+        """Smallest and largest count allowed."""
+        smallest, largest = LIMITS[self.form.removesuffix("x16")]
+        low = smallest if self.low is None else round(self.low / self.scale)
+        high = largest if self.high is None else round(self.high / self.scale)
+        return low, high
+
+    @cached_property
+    def per_unit(self) -> int:
+        """Counts in one unit."""
+        return round(1 / self.scale)
 
     def to_wire(self, value: Any) -> list[Any]:
         """Turn a value into what `struct` packs; raises ValueError where it does not fit."""
@@ -89,9 +103,9 @@ class FieldForm:
         values = list(value) if self.form == "i16x16" else [value]
         if len(values) != self.count:
             raise ValueError(f"{self.name} must have {self.count} values, not {len(values)}")
-        counts = [round(one / self.scale) for one in values]
-        for one in counts:
-            self._check(one, ValueError)
+        scale = self.scale
+        counts = [round(one / scale) for one in values]
+        self._check(counts, ValueError)
         return counts
 
     def from_wire(self, values: tuple[Any, ...]) -> Any:
@@ -101,19 +115,18 @@ class FieldForm:
                 return values[0].partition(b"\0")[0].decode()
             except UnicodeDecodeError:
                 raise MessageError(f"{self.name} is not UTF-8") from None
-        for one in values:
-            self._check(one, MessageError)
+        self._check(values, MessageError)
+        per = self.per_unit
         if self.form == "i16x16":
-            return tuple(one / round(1 / self.scale) for one in values)
-        return values[0] if self.scale == 1 else values[0] / round(1 / self.scale)
+            return tuple([one / per for one in values])
+        return values[0] if self.scale == 1 else values[0] / per
 
-    def _check(self, count: int, error: type[ValueError]) -> None:
-        smallest, largest = LIMITS[self.form.removesuffix("x16")]
-        low = smallest if self.low is None else round(self.low / self.scale)
-        high = largest if self.high is None else round(self.high / self.scale)
-        if not low <= count <= high:
-            least, most, value = (n * self.scale for n in (low, high, count))
-            raise error(f"{self.name} must be from {least:g} to {most:g}, not {value:g}")
+    def _check(self, counts: Sequence[int], error: type[ValueError]) -> None:
+        low, high = self.limits
+        for count in counts:
+            if not low <= count <= high:
+                least, most, value = (n * self.scale for n in (low, high, count))
+                raise error(f"{self.name} must be from {least:g} to {most:g}, not {value:g}")
 
 
 @dataclass(frozen=True)
@@ -167,7 +180,7 @@ class Part:
     start: int
     """Where they begin in the body [bytes]."""
 
-    @property
+    @cached_property
     def end(self) -> int:
         """Where they end in the body [bytes]."""
         return self.start + self.layout.size
@@ -176,9 +189,11 @@ class Part:
         """Return the values by name; raises MessageError where one is not allowed."""
         values = self.layout.unpack_from(body, self.start)
         content = {}
+        start = 0
         for field in self.fields:
-            content[field.name] = field.from_wire(values[: field.count])
-            values = values[field.count :]
+            end = start + field.count
+            content[field.name] = field.from_wire(values[start:end])
+            start = end
         return content
 
     def pack(self, content: Any) -> bytes:

@@ -20,6 +20,10 @@ MAX_FRAME = MAX_BODY + 1 + 3
 """Longest frame between its edges [bytes]."""
 
 
+_RUN = tuple(bytes([length + 1]) for length in range(MAX_BODY + 1))
+# What COBS writes in front of a run of each length.
+
+
 class FrameError(ValueError):
     """Bytes between two edges that are no frame."""
 
@@ -42,22 +46,24 @@ def cobs_encode(body: bytes) -> bytes:
     >>> cobs_encode(bytes([7, 0, 8, 9])).hex(" ")
     '02 07 03 08 09'
     """
-    return b"".join(bytes([len(run) + 1]) + run for run in body.split(b"\0"))
+    return b"".join([_RUN[len(run)] + run for run in body.split(b"\0")])
 
 
 def cobs_decode(encoded: bytes) -> bytes:
     """Undo `cobs_encode`; raises FrameError where the runs do not fill the bytes exactly."""
-    runs = []
-    start = 0
-    while start < len(encoded):
-        end = start + encoded[start]
-        if end == start or end > len(encoded):
-            raise FrameError("a run of COBS passes the end of the frame")
-        runs.append(encoded[start + 1 : end])
-        start = end
-    if not runs:
+    if not encoded:
         raise FrameError("empty frame")
-    return b"\0".join(runs)
+    body = bytearray(encoded)
+    start, length = 0, len(encoded)
+    while start < length:
+        run = encoded[start]
+        if not run:
+            raise FrameError("a run of COBS is empty")
+        body[start] = 0  # each run begins where a zero stood; the first one's is nobody's
+        start += run
+    if start > length:
+        raise FrameError("a run of COBS passes the end of the frame")
+    return bytes(body[1:])
 
 
 def encode_frame(body: bytes) -> bytes:
