@@ -14,7 +14,23 @@ from robot.emotion import Emotion
 from robot.errors import RobotError
 from robot.feeling.mood import Label, next_label
 
+Face = Literal["neutral", "happy", "sad", "angry", "surprised", "afraid", "disgusted"]
 Simple = Literal["neutral", "happy", "angry"]
+
+SIMPLE_FACES: Mapping[Face, Simple] = MappingProxyType(
+    {
+        "neutral": "neutral",
+        "happy": "happy",
+        "sad": "neutral",
+        "angry": "angry",
+        "surprised": "neutral",
+        "afraid": "angry",
+        "disgusted": "angry",
+    }
+)
+"""What a robot with the three moods of the thesis shows for each face. For anger, fear and disgust
+angry: something is disliked, and it stirs. For sadness and surprise neutral: the angry loop would
+be a lie, and the happy one a worse."""
 
 
 class Word(NamedTuple):
@@ -29,8 +45,8 @@ class Word(NamedTuple):
     arousal: float
     """From calm, −1, to excited, 1."""
 
-    simple: Simple
-    """What a robot shows for it that knows the three moods of the thesis only."""
+    face: Face
+    """Which of Ekman's faces shows it (specification S18, table 5.2; for other words, ours)."""
 
     set: str
     """The label set that it belongs to; "words" for what robots call their moods."""
@@ -46,23 +62,23 @@ TABLE: tuple[Word, ...] = (
     Word("happy", 0.7, 0.6, "happy", "thesis"),
     Word("angry", -0.7, 0.6, "angry", "thesis"),
     # Words that robots have for their moods; afraid and disgusted as below, the others are ours.
-    Word("sad", -0.6, -0.4, "neutral", "words"),
-    Word("surprised", 0.1, 0.8, "neutral", "words"),
-    Word("afraid", -0.64, 0.6, "angry", "words"),
-    Word("disgusted", -0.6, 0.3, "angry", "words"),
+    Word("sad", -0.6, -0.4, "sad", "words"),
+    Word("surprised", 0.1, 0.8, "surprised", "words"),
+    Word("afraid", -0.64, 0.6, "afraid", "words"),
+    Word("disgusted", -0.6, 0.3, "disgusted", "words"),
     Word("excited", 0.6, 0.8, "happy", "words"),
     Word("content", 0.6, -0.3, "happy", "words"),
     Word("calm", 0.3, -0.6, "neutral", "words"),
     Word("sleepy", 0.0, -0.9, "neutral", "words"),
-    Word("bored", -0.4, -0.6, "neutral", "words"),
+    Word("bored", -0.4, -0.6, "sad", "words"),
     # The eight directions of the circumplex (Russell 1980), 45° apart; the radius is ours.
     Word("neutral", 0.0, 0.0, "neutral", "circumplex"),
     Word("pleased", _RIM, 0.0, "happy", "circumplex"),
     Word("excited", _SLANT, _SLANT, "happy", "circumplex"),
-    Word("aroused", 0.0, _RIM, "neutral", "circumplex"),
+    Word("aroused", 0.0, _RIM, "surprised", "circumplex"),
     Word("distressed", -_SLANT, _SLANT, "angry", "circumplex"),
     Word("displeased", -_RIM, 0.0, "angry", "circumplex"),
-    Word("depressed", -_SLANT, -_SLANT, "neutral", "circumplex"),
+    Word("depressed", -_SLANT, -_SLANT, "sad", "circumplex"),
     Word("sleepy", 0.0, -_RIM, "neutral", "circumplex"),
     Word("relaxed", _SLANT, -_SLANT, "neutral", "circumplex"),
     # Ekman's six basic emotions (1992). The plane does not tell fear from anger (ALMA's places for
@@ -70,11 +86,11 @@ TABLE: tuple[Word, ...] = (
     # something, the more stirred is afraid.
     Word("neutral", 0.0, 0.0, "neutral", "ekman"),
     Word("happy", 0.7, 0.4, "happy", "ekman"),
-    Word("sad", -0.6, -0.5, "neutral", "ekman"),
+    Word("sad", -0.6, -0.5, "sad", "ekman"),
     Word("angry", -0.75, 0.4, "angry", "ekman"),
-    Word("surprised", 0.1, 0.8, "neutral", "ekman"),
-    Word("afraid", -0.4, 0.8, "angry", "ekman"),
-    Word("disgusted", -0.75, -0.05, "angry", "ekman"),
+    Word("surprised", 0.1, 0.8, "surprised", "ekman"),
+    Word("afraid", -0.4, 0.8, "afraid", "ekman"),
+    Word("disgusted", -0.75, -0.05, "disgusted", "ekman"),
     # The 22 emotions of Ortony, Clore and Collins (1988), and surprise and disgust; places:
     # pleasure and arousal of ALMA (Gebhard 2005), surprise and disgust by specification S18. Where
     # several share a place the first stands for all: a place does not say what it is about.
@@ -90,23 +106,21 @@ TABLE: tuple[Word, ...] = (
     Word("satisfaction", 0.3, -0.2, "happy", "occ"),
     Word("relief", 0.2, -0.3, "happy", "occ"),
     Word("gloating", 0.3, -0.3, "happy", "occ"),
-    Word("distress", -0.4, -0.2, "neutral", "occ"),
-    Word("pity", -0.4, -0.2, "neutral", "occ"),
-    Word("disappointment", -0.3, 0.1, "neutral", "occ"),
-    Word("shame", -0.3, 0.1, "neutral", "occ"),
-    Word("remorse", -0.3, 0.1, "neutral", "occ"),
-    Word("resentment", -0.2, -0.3, "neutral", "occ"),
+    Word("distress", -0.4, -0.2, "sad", "occ"),
+    Word("pity", -0.4, -0.2, "sad", "occ"),
+    Word("disappointment", -0.3, 0.1, "sad", "occ"),
+    Word("shame", -0.3, 0.1, "sad", "occ"),
+    Word("remorse", -0.3, 0.1, "sad", "occ"),
+    Word("resentment", -0.2, -0.3, "sad", "occ"),
     Word("anger", -0.51, 0.59, "angry", "occ"),
     Word("reproach", -0.3, -0.1, "angry", "occ"),
     Word("hate", -0.6, 0.6, "angry", "occ"),
-    Word("surprise", 0.1, 0.8, "neutral", "occ"),
-    Word("fear", -0.64, 0.6, "angry", "occ"),
-    Word("fear-confirmed", -0.5, -0.3, "angry", "occ"),
-    Word("disgust", -0.6, 0.3, "angry", "occ"),
+    Word("surprise", 0.1, 0.8, "surprised", "occ"),
+    Word("fear", -0.64, 0.6, "afraid", "occ"),
+    Word("fear-confirmed", -0.5, -0.3, "afraid", "occ"),
+    Word("disgust", -0.6, 0.3, "disgusted", "occ"),
 )
-"""Every word, set by set. `simple` follows the faces of specification S18 (table 5.2): joy shows as
-happy; anger, fear and disgust as angry, for something is disliked and it stirs; sadness and
-surprise as neutral, for the angry loop would be a lie, and the happy one a worse."""
+"""Every word, set by set."""
 
 
 @dataclass(frozen=True)
