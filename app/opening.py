@@ -69,6 +69,9 @@ class Wish:
     salvage: bool = False
     """Whether a source that breaks off is simply at its end."""
 
+    robot_settings: Path | None = None
+    """Which motion stands for which mood …, for robots that need to be told."""
+
     start: str = "camera"
     """From which arrow on a session is replayed: one of `STARTS`."""
 
@@ -101,6 +104,7 @@ def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = No
         playground,
         screen,
         robot=wish.robot,
+        robot_settings=wish.robot_settings,
         record=wish.record,
         codec=wish.codec,
         about=describe(wish, cube, source),

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Self
 
 from app.scenarios import EmotionTarget
 from app.show.overlay import RobotView
-from robot import Robot, SimulatedPort, connect
+from robot import Emotion, Robot, SimulatedPort, connect
 
 OnBytes = Callable[[str, bytes, float], None]
 Clock = Callable[[], float]
@@ -26,18 +27,26 @@ class RobotLine:
         self._real = False
 
     @classmethod
-    def open(cls, url: str, clock: Clock, on_bytes: OnBytes | None = None) -> Self:
+    def open(
+        cls,
+        url: str,
+        clock: Clock,
+        on_bytes: OnBytes | None = None,
+        settings: Path | None = None,
+    ) -> Self:
         """Connect.
 
         Parameters
         ----------
         url
             "none"; "sim" for a simulated robot behind a pseudo-terminal of this computer; or any
-            URL that `robot.connect` takes.
+            URL that `robot.connect` takes: "pleo:/dev/ttyACM0", "sim:opencat".
         clock
             The session's time [s].
         on_bytes
             Called with ("tx" | "rx", bytes, time) for everything on the wire.
+        settings
+            A TOML file for the robot's driver, or None.
 
         Raises
         ------
@@ -51,7 +60,7 @@ class RobotLine:
             line._real = not url.startswith("sim")
             if url == "sim":
                 url = line._closing.enter_context(SimulatedPort(clock=clock)).url
-            robot = connect(url, clock=clock, on_bytes=on_bytes)
+            robot = connect(url, clock=clock, on_bytes=on_bytes, settings=settings)
             line._robot = line._closing.enter_context(robot)
         except BaseException:
             line.close()
@@ -78,9 +87,10 @@ class RobotLine:
                 "none", mood, "neutral" if self._target is None else self._target.label
             )
         telemetry = self._robot.telemetry
-        observed = telemetry.observed
-        mood = 0.0 if observed is None else observed.valence
-        return RobotView(telemetry.state, mood, telemetry.label or "neutral", self._real)
+        # Pleo and OpenCat do not tell what they show; what they took is then the nearest truth.
+        shown = telemetry.observed or telemetry.acknowledged or Emotion(0.0, 0.0)
+        label = telemetry.label or shown.label
+        return RobotView(telemetry.state, shown.valence, label, self._real)
 
     def check(self) -> None:
         """Raise `RobotError` if the robot cannot be reached now."""

@@ -69,6 +69,9 @@ class Plan:
     patience: float = PATIENCE_S
     """How long a live source may be lost before the session ends [s]."""
 
+    robot_settings: Path | None = None
+    """A TOML file for the robot's driver, or None."""
+
 
 def run(plan: Plan, progress: Progress | None = None) -> Summary:
     """Play a session to its end, until the player closes it, or until Ctrl-C.
@@ -85,7 +88,7 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
         if plan.record is not None:
             recorder = closing.enter_context(Recorder(plan.record, plan.about or {}))
         tap = WireTap(recorder) if recorder is not None else None
-        robot = closing.enter_context(RobotLine.open(plan.robot, clock, tap))
+        robot = closing.enter_context(RobotLine.open(plan.robot, clock, tap, plan.robot_settings))
         closing.callback(clock.release)  # a robot says goodbye in real time
         closing.enter_context(_interruptible(summary))
         play = _Play(plan, summary, recorder, robot)

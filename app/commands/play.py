@@ -32,8 +32,15 @@ Intrinsics = Annotated[
 RobotUrl = Annotated[
     str,
     typer.Option(
-        "--robot", "-r", help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT."
+        "--robot",
+        "-r",
+        help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT; with the protocol in "
+        "front where it is not ours: pleo:/dev/ttyACM0, opencat:COM3, sim:pleo.",
     ),
+]
+RobotSettings = Annotated[
+    Path | None,
+    typer.Option(help="A .toml file for the robot: what a Pleo or an OpenCat does in each mood."),
 ]
 Record = Annotated[Path | None, typer.Option(help="Record the session to this .mcap file.")]
 Codec = Annotated[
@@ -55,6 +62,7 @@ def play(
     character: Actor = None,
     intrinsics: Intrinsics = None,
     robot: RobotUrl = "sim",
+    robot_settings: RobotSettings = None,
     record: Record = None,
     codec: Codec = "jpeg",
     output: Output = None,
@@ -91,6 +99,7 @@ def play(
         codec,
         output,
         pictures,
+        robot_settings=robot_settings,
     )
     scenario_cube(scenario)  # a wrong name is told before a missing display
     if pictures and output is None:

@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from app.checking import check_session
-from app.commands.play import Actor, Codec, Output, Pictures, Record, RobotUrl
+from app.commands.play import Actor, Codec, Output, Pictures, Record, RobotSettings, RobotUrl
 from app.commands.progress import finished_video, play_to_end, tell_guess
 from app.errors import AppError
 from app.opening import Wish, open_session
@@ -23,6 +23,7 @@ def replay(
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
     character: Actor = None,
     robot: RobotUrl = "sim",
+    robot_settings: RobotSettings = None,
     record: Record = None,
     codec: Codec = "jpeg",
     output: Output = None,
@@ -60,6 +61,7 @@ def replay(
         turns=told.turns,
         look=told.look,
         robot=robot,
+        robot_settings=robot_settings,
         record=record,
         codec=codec,
         output=output,
