@@ -103,8 +103,8 @@ class Log:
         """Bytes heard."""
         self.frames = 0
         """Valid frames heard."""
-        self.states: list[tuple[float, int, m.State]] = []
-        """When [s], in which version of the protocol, and what, for the STATEs of our sessions."""
+        self.states: list[tuple[float, m.State]] = []
+        """When [s] and what, for the STATEs of our sessions."""
         self.faults: dict[str, list[Heard]] = {}
         """The first frames that broke each passive rule."""
         self.counts: dict[str, int] = {}
@@ -112,7 +112,7 @@ class Log:
         self._open = 0
         self._greeted = False
 
-    def enter(self, heard: Heard, version: int) -> None:
+    def enter(self, heard: Heard) -> None:
         """Remember a frame, and hold it against the rules for all of them."""
         if heard.message is None:
             # Before the first WELCOME it may be the text of a boot loader.
@@ -126,7 +126,7 @@ class Log:
             if heard.session != self._open:
                 self._fault("session", heard)
             elif isinstance(heard.message, m.State) and len(self.states) < STATES_KEPT:
-                self.states.append((heard.at, version, heard.message))
+                self.states.append((heard.at, heard.message))
 
     def _fault(self, rule: str, heard: Heard) -> None:
         self.counts[rule] = self.counts.get(rule, 0) + 1

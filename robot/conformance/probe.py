@@ -21,6 +21,9 @@ ACTS_WITHIN = 0.250
 SHOWN_WITHIN = 5.0
 """Within this time an emotion is shown that was asked for [s] (PROTOCOL.md, section 7)."""
 
+NEUTRAL = 0.05
+"""How far from (0, 0) an emotion may be that counts as neutral."""
+
 SLACK = 0.050
 """How much later than it was sent a frame may be read here, on a busy computer [s]."""
 
@@ -102,6 +105,10 @@ class Probe:
         self.hear(0)
         self._line.write(data)
 
+    def send(self, data: bytes) -> None:
+        """Send bytes as they are; what was heard before can still be waited for."""
+        self._line.write(data)
+
     def pour(self, data: bytes) -> None:
         """Send many bytes, no faster than a serial line takes them."""
         for start in range(0, len(data), POUR):
@@ -170,7 +177,7 @@ class Probe:
         data = self._line.read(until)
         self.log.bytes += len(data)
         for heard in self._splitter.feed(data, self.now):
-            self.log.enter(heard, self.version)
+            self.log.enter(heard)
             self._queue.append(heard)
 
     # --- What a host does ----------------------------------------------------------------------
@@ -192,6 +199,19 @@ class Probe:
             except UnmetError as unmet:
                 last = unmet
         raise SilentError(last.expected + ", at the third try", last.came)
+
+    def calm(self) -> m.Welcome:
+        """Open a session as a host that never spoke, and wait until the robot shows neutral."""
+        welcome = self.fresh()
+
+        def neutral(state: m.State) -> bool:
+            return max(abs(state.valence), abs(state.arousal)) < NEUTRAL
+
+        last = self.live(SHOWN_WITHIN, neutral)[-1]
+        if not neutral(last):
+            expected = f"emotion (0, 0) within {SHOWN_WITHIN:.0f} s after HELLO of another host"
+            raise UnmetError(expected, f"({last.valence}, {last.arousal})")
+        return welcome
 
     def again(self, offer: int = timing.VERSION) -> m.Welcome:
         """Open another session as the same host."""

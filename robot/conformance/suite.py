@@ -6,7 +6,12 @@ from typing import Literal
 
 from robot.conformance.check import Chapter, Check
 from robot.conformance.checks.bodies import BODIES
+from robot.conformance.checks.catalogue import CATALOGUE
+from robot.conformance.checks.commands import COMMANDS
+from robot.conformance.checks.failsafe import FAILSAFE
 from robot.conformance.checks.frames import FRAMES
+from robot.conformance.checks.heartbeat import HEARTBEAT
+from robot.conformance.checks.sessions import SESSIONS
 from robot.conformance.line import Line
 from robot.conformance.probe import Probe
 from robot.conformance.verdicts import NotApplicableError, SilentError, UnmetError
@@ -14,7 +19,9 @@ from robot.errors import RobotError
 from robot.protocol import messages as m
 from robot.protocol import timing
 
-CHAPTERS: tuple[Chapter, ...] = (FRAMES, BODIES)
+CHAPTERS: tuple[Chapter, ...] = (
+    FRAMES, BODIES, SESSIONS, CATALOGUE, COMMANDS, HEARTBEAT, FAILSAFE,
+)  # fmt: skip
 """The checks, by section."""
 
 LONGEST = 60.0

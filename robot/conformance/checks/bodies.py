@@ -1,5 +1,7 @@
 """Checks of section 3: what is skipped, and what is used."""
 
+from functools import partial
+
 from robot.conformance.check import Chapter
 from robot.conformance.heard import header
 from robot.conformance.probe import ACTS_WITHIN, Probe
@@ -123,12 +125,16 @@ def express_of_version_2_used(robot: Probe) -> None:
         raise NotApplicableError("it speaks version 1, or has fewer than two moods")
     for mood in (welcome.moods - 1, 0):
         robot.express(0.0, 0.0, mood)
-        states = robot.live(ACTS_WITHIN, lambda state, mood=mood: state.mood == mood)  # type: ignore[misc]
+        states = robot.live(ACTS_WITHIN, partial(_has_mood, mood=mood))
         if states[-1].mood != mood:
             raise UnmetError(
                 f"STATE(mood={mood}) within {1000 * ACTS_WITHIN:.0f} ms after EXPRESS with it",
                 f"mood={states[-1].mood}",
             )
+
+
+def _has_mood(state: m.State, mood: int) -> bool:
+    return state.mood == mood
 
 
 def _longer(message: object, robot: Probe, more: int) -> bytes:

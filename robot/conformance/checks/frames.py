@@ -57,7 +57,7 @@ def frame_in_pieces(robot: Probe) -> None:
         robot.write(bytes([byte]))
         robot.hear(PIECE_EVERY)
     robot.reaction(after="a frame byte by byte")
-    states = [state.beat for _, _, state in robot.log.states[-20:]]
+    states = [state.beat for _, state in robot.log.states[-20:]]
     if count not in states:
         raise UnmetError(f"STATE(beat={count}) after that BEAT byte by byte", f"{states[-4:]}")
 
@@ -173,7 +173,7 @@ def _drops(robot: Probe, frame: bytes, place: int, what: str) -> None:
 def _unseen(robot: Probe, count: int, what: str) -> None:
     """See that no STATE has answered a BEAT that should have been dropped."""
     robot.hear(0)
-    if any(state.beat == count for _, _, state in robot.log.states[-20:]):
+    if any(state.beat == count for _, state in robot.log.states[-20:]):
         raise UnmetError(f"no answer to {what}", f"STATE(beat={count})")
 
 

@@ -1,0 +1,271 @@
+"""Checks of the failsafe and of farewells (section 7): a robot alone goes to neutral."""
+
+from robot.conformance.check import Chapter
+from robot.conformance.heard import header
+from robot.conformance.probe import ACTS_WITHIN, AT_ONCE, NEUTRAL, SHOWN_WITHIN, SLACK, Probe, told
+from robot.conformance.verdicts import UnmetError
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.wire import encode_frame
+
+FAILSAFE = Chapter("Failsafe", 7)
+
+ALONE = timing.FAILSAFE_PROMISE + 0.02
+"""How long the robot hears nothing [s]: its time, and a little for the line."""
+
+NOT_YET = 0.3
+"""After so much silence a session must still be open [s]."""
+
+NOISE_EVERY = 0.03
+"""Time between two stretches of noise [s]."""
+
+STIRRED = 0.25
+"""How far from (0, 0) an emotion must be before its way back is looked at."""
+
+
+@FAILSAFE.must
+def session_ends_after_silence(robot: Probe) -> None:
+    """After 500 ms without a message of its session, that session is gone."""
+    robot.fresh()
+    robot.beat("HELLO")
+    robot.hear(ALONE)
+    _is_gone(robot, f"{1000 * ALONE:.0f} ms of silence")
+
+
+@FAILSAFE.must
+def session_survives_short_silence(robot: Probe) -> None:
+    """After 300 ms without a message the session is still open."""
+    robot.fresh()
+    robot.beat("HELLO")
+    robot.hear(NOT_YET)
+    robot.beat(f"{1000 * NOT_YET:.0f} ms of silence")
+
+
+@FAILSAFE.must
+def any_message_counts(robot: Probe) -> None:
+    """Whatever message of the session comes keeps it open: ASK, a command, a repeated HELLO."""
+    robot.fresh()
+    number = robot.next_number()
+    for message in (
+        m.Ask(m.ITEM_MOTION, 0),
+        m.Express(number, 0.0, 0.0),
+        m.Express(number, 0.0, 0.0),
+        m.Hello(timing.VERSION, robot.host),
+    ):
+        robot.hear(NOT_YET)
+        robot.say(message)
+    robot.hear(NOT_YET)
+    robot.beat("ASK, EXPRESS, EXPRESS and HELLO, 300 ms apart")
+
+
+@FAILSAFE.must
+def silent_after_failsafe(robot: Probe) -> None:
+    """When the session has ended by silence, the robot is silent too."""
+    robot.fresh()
+    robot.hear(ALONE + SLACK)
+    came = robot.hear(0.3)
+    if came:
+        raise UnmetError("silence once the session has ended by silence", told(came))
+
+
+@FAILSAFE.must
+def failsafe_forgets_the_emotion(robot: Probe) -> None:
+    """After the failsafe no command is in force: WELCOME says 0 to the same host."""
+    robot.fresh()
+    robot.express(0.3, 0.3)
+    robot.hear(ALONE)
+    welcome = robot.again()
+    if welcome.taken:
+        raise UnmetError("WELCOME(taken=0) after the failsafe", f"taken={welcome.taken}")
+
+
+@FAILSAFE.must
+def failsafe_keeps_the_numbers(robot: Probe) -> None:
+    """After the failsafe the numbers of the same host go on: old commands stay without effect."""
+    robot.fresh()
+    robot.command(m.Express(5, 0.0, 0.0))
+    robot.hear(ALONE)
+    robot.again()
+    before = robot.beat("HELLO")
+    if before.taken != 5:
+        raise UnmetError("STATE(taken=5) after EXPRESS 5, the failsafe, HELLO", f"{before.taken}")
+    robot.say(m.Express(5, 0.9, 0.9))
+    robot.expect(m.Ack, "EXPRESS 5 again", number=5)
+    after = robot.live(ACTS_WITHIN)[-1]
+    if max(after.valence - before.valence, after.arousal - before.arousal) > NEUTRAL:
+        raise UnmetError("no effect of EXPRESS 5, taken before the failsafe", f"{after.valence}")
+    robot.command(m.Express(6, 0.0, 0.0))
+    welcome = robot.again()
+    if welcome.taken != 6:
+        raise UnmetError("WELCOME(taken=6) after EXPRESS 6", f"taken={welcome.taken}")
+
+
+@FAILSAFE.must
+def failsafe_goes_to_neutral(robot: Probe) -> None:
+    """After the failsafe the emotion shown goes to (0, 0), and a motion that was played ends."""
+    _stirred(robot)
+    robot.hear(ALONE)
+    robot.again()
+    _becomes_neutral(robot, "the failsafe")
+
+
+@FAILSAFE.must
+def failsafe_acts_in_time(robot: Probe) -> None:
+    """The way to neutral has begun 500 ms after the last message, not at the next greeting."""
+    _stirred(robot)
+    begin = robot.beat("EXPRESS")
+    robot.hear(ALONE + 0.5)
+    robot.again()
+    now = robot.beat("HELLO")
+    before = max(abs(begin.valence), abs(begin.arousal))
+    after = max(abs(now.valence), abs(now.arousal))
+    if after > before - NEUTRAL:
+        raise UnmetError(
+            f"an emotion nearer to (0, 0) than {before} after 1 s of silence", f"{after}"
+        )
+
+
+@FAILSAFE.must
+def failsafe_not_fed_by_noise(robot: Probe) -> None:
+    """Noise and damaged frames do not keep a session open."""
+    robot.fresh()
+    robot.beat("HELLO")
+    damaged = bytearray(robot.frame(m.Beat(robot.next_count())))
+    damaged[-2] ^= 1
+    _fed(robot, (b"\x55\xaa noise \r\n", bytes(damaged), b"\0\0\0"), "noise")
+
+
+@FAILSAFE.must
+def failsafe_not_fed_by_strangers(robot: Probe) -> None:
+    """Messages of other sessions do not keep a session open."""
+    robot.fresh()
+    robot.beat("HELLO")
+    foreign = robot.session ^ 0x1111
+    frames = (
+        robot.frame(m.Beat(7), foreign),
+        robot.frame(m.Express(1, 0.5, 0.5), foreign),
+        robot.frame(m.Hello(timing.VERSION, robot.host), 0),
+    )
+    _fed(robot, frames, "messages of another session")
+
+
+@FAILSAFE.must
+def failsafe_not_fed_by_what_is_skipped(robot: Probe) -> None:
+    """Bodies that are skipped do not keep a session open: echoes, unknown, short, out of range."""
+    robot.fresh()
+    robot.beat("HELLO")
+    frames = (
+        robot.frame(m.Ack(1, m.TAKEN)),
+        encode_frame(header(0x42, robot.session) + b"\1\1\1\1"),
+        encode_frame(header(0x03, robot.session) + b"\1"),
+        encode_frame(header(0x10, robot.session) + b"\1\1\1\1\x7f\x7f\x7f\x7f\xff"),
+    )
+    _fed(robot, frames, "bodies to be skipped")
+
+
+@FAILSAFE.must
+def bye_ends_the_session(robot: Probe) -> None:
+    """After BYE the session is gone, and no command is in force."""
+    robot.fresh()
+    robot.express(0.3, 0.3)
+    robot.say(m.Bye())
+    robot.hear(AT_ONCE)
+    _is_gone(robot, "BYE")
+    welcome = robot.again()
+    if welcome.taken:
+        raise UnmetError("WELCOME(taken=0) after BYE", f"taken={welcome.taken}")
+
+
+@FAILSAFE.must
+def bye_goes_to_neutral(robot: Probe) -> None:
+    """After BYE the emotion shown goes to (0, 0), and a motion that was played ends."""
+    _stirred(robot)
+    robot.say(m.Bye())
+    robot.again()
+    _becomes_neutral(robot, "BYE")
+
+
+@FAILSAFE.must
+def another_host_goes_to_neutral(robot: Probe) -> None:
+    """When another host greets, the emotion shown goes to (0, 0), and a motion ends."""
+    _stirred(robot)
+    robot.fresh()
+    _becomes_neutral(robot, "HELLO of another host")
+
+
+@FAILSAFE.must
+def same_host_keeps_the_emotion(robot: Probe) -> None:
+    """When the same host greets again in time, the emotion stays: a short break changes nothing."""
+    robot.fresh()
+    robot.express(0.6, 0.6)
+    _reaches(robot, 0.6)
+    robot.again()
+    for state in robot.live(0.5):
+        if abs(state.valence - 0.6) > NEUTRAL:
+            raise UnmetError("valence 0.6 in the next session of its host", f"{state.valence}")
+
+
+@FAILSAFE.must
+def stopped_keeps_still(robot: Probe) -> None:
+    """A robot that was stopped keeps still when the session ends, by the failsafe or by BYE."""
+    for way in ("the failsafe", "BYE"):
+        robot.fresh()
+        robot.command(m.Stop(robot.next_number()))
+        if way == "BYE":
+            robot.say(m.Bye())
+        else:
+            robot.hear(ALONE)
+        robot.again()
+        flags = robot.live(ACTS_WITHIN)[-1].flags
+        if not flags & m.STILL:
+            raise UnmetError(f"flag 1 after STOP and {way}", f"flags={flags}")
+
+
+def _is_gone(robot: Probe, after: str) -> None:
+    robot.say(m.Beat(robot.next_count()))
+    robot.expect(m.Gone, f"{after}, then BEAT")
+
+
+def _fed(robot: Probe, frames: tuple[bytes, ...], what: str) -> None:
+    """Send what must not count until the session must have ended, and see that it has."""
+    end = robot.now + ALONE
+    while robot.now < end:
+        for frame in frames:
+            robot.write(frame)
+        robot.hear(min(NOISE_EVERY, max(end - robot.now, 0)))
+    robot.hear(2 * timing.GONE_EVERY)
+    _is_gone(robot, f"{1000 * ALONE:.0f} ms of {what}")
+
+
+def _stirred(robot: Probe) -> None:
+    """Make the robot show something, and play a motion if it has one."""
+    welcome = robot.fresh()
+    robot.express(0.8, 0.8)
+    _reaches(robot, STIRRED)
+    if welcome.motions:
+        robot.command(m.Play(robot.next_number(), m.ITEM_MOTION, welcome.motions - 1))
+
+
+def _reaches(robot: Probe, valence: float) -> None:
+    last = robot.live(SHOWN_WITHIN, lambda state: state.valence >= valence - 0.01)[-1].valence
+    if last < valence - 0.01:
+        raise UnmetError(f"valence {valence} within {SHOWN_WITHIN:.0f} s after EXPRESS", f"{last}")
+
+
+def _becomes_neutral(robot: Probe, after: str) -> None:
+    """See that nothing goes on of what `_stirred` began."""
+    assert robot.welcome is not None
+    played = robot.welcome.motions - 1
+    begin = robot.now
+
+    def neutral(state: m.State) -> bool:
+        if played > 0 and state.motion == played and robot.now > begin + ACTS_WITHIN:
+            raise UnmetError(f"the end of motion {played} after {after}", f"motion={played}")
+        return max(abs(state.valence), abs(state.arousal)) < NEUTRAL
+
+    last = robot.live(SHOWN_WITHIN, neutral)[-1]
+    if not neutral(last):
+        raise UnmetError(
+            f"emotion (0, 0) within {SHOWN_WITHIN:.0f} s after {after}",
+            f"({last.valence}, {last.arousal})",
+        )

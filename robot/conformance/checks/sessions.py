@@ -1,0 +1,276 @@
+"""Checks of section 5: who is spoken to, and what is kept from one session to the next."""
+
+from robot.conformance.check import Chapter
+from robot.conformance.heard import Heard
+from robot.conformance.probe import AT_ONCE, SLACK, Probe, told
+from robot.conformance.verdicts import UnmetError
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.messages import CHARGING, STILL
+from robot.protocol.schema import form_of
+
+SESSIONS = Chapter("Sessions", 5)
+
+QUIET = 0.4
+"""How long a robot without a session is listened to [s]."""
+
+GREETINGS = 40
+"""HELLOs in a row."""
+
+GREETING_EVERY = 0.005
+"""Time between two of them [s]; the answers take 4 ms each at 115200 baud."""
+
+STRANGERS = 60
+"""Frames of foreign sessions in a row, 2 ms apart."""
+
+_FOREIGN = (
+    m.Ask(m.ITEM_JOINT, 0),
+    m.Beat(7),
+    m.Express(1, 0.5, 0.5),
+    m.Play(1, m.ITEM_MOTION, 0),
+    m.Stop(1),
+    m.Bye(),
+)
+
+
+@SESSIONS.must
+def greeting_answered(robot: Probe) -> None:
+    """HELLO opens the session in its header and is answered by WELCOME, within 100 ms."""
+    for _ in range(3):
+        robot.fresh()
+        robot.beat("HELLO and WELCOME")
+
+
+@SESSIONS.must
+def greeting_repeated(robot: Probe) -> None:
+    """HELLO with the open session is a repeat: WELCOME comes again, and nothing is forgotten."""
+    robot.fresh()
+    first = robot.greet()
+    number = robot.express(0.0, 0.0)
+    second = robot.greet()
+    taken = robot.beat("a repeated HELLO").taken
+    if second.taken != number or taken != number:
+        raise UnmetError(
+            f"taken={number} in WELCOME and STATE after a repeated HELLO",
+            f"{second.taken} in WELCOME, {taken} in STATE",
+        )
+    robot.greet()
+    if (first.catalogue, first.joints) != (second.catalogue, second.joints):
+        raise UnmetError(f"the same WELCOME, {first}", f"{second}")
+
+
+@SESSIONS.must
+def session_zero_refused(robot: Probe) -> None:
+    """Session 0 is never opened, and nothing is done for it when no session is open."""
+    robot.fresh()
+    came = robot.reaction(robot.frame(m.Hello(2, robot.host), 0), after="HELLO in session 0")
+    _only_gone(came, "no WELCOME in session 0")
+    robot.say(m.Bye())
+    robot.hear(AT_ONCE)
+    for message in (m.Hello(2, robot.host), m.Beat(0x0707), m.Express(9, 0.5, 0.5)):
+        robot.say(message, session=0)
+        _only_gone(robot.hear(AT_ONCE), f"nothing but GONE to {message} in session 0")
+
+
+@SESSIONS.must
+def highest_numbers_accepted(robot: Probe) -> None:
+    """Sessions up to 65535 and hosts up to 4294967295 are as good as any."""
+    robot.fresh()
+    session, host = robot.session, robot.host
+    for robot.session, robot.host in ((0xFFFF, 0xFFFFFFFF), (0x8000, 0x80000000), (1, 1)):
+        robot.greet()
+        robot.beat(f"HELLO in session {robot.session}, host {robot.host}")
+    robot.session, robot.host = session, host
+
+
+@SESSIONS.must
+def newest_session_wins(robot: Probe) -> None:
+    """HELLO with another session opens that one; the one before is gone."""
+    robot.fresh()
+    before = robot.session
+    robot.again()
+    robot.beat("a second session")
+    robot.say(m.Beat(7), session=before)
+    _gone(robot, before, "BEAT in the session before")
+    robot.beat("that")
+
+
+@SESSIONS.must
+def many_greetings_survived(robot: Probe) -> None:
+    """After 40 sessions that began within 200 ms the last one is open."""
+    robot.fresh()
+    for _ in range(GREETINGS):
+        robot.next_session()
+        robot.say(m.Hello(timing.VERSION, robot.host))
+        robot.hear(GREETING_EVERY)
+    robot.hear(AT_ONCE)
+    robot.beat(f"{GREETINGS} HELLOs")
+
+
+@SESSIONS.must
+def another_host_begins_anew(robot: Probe) -> None:
+    """For another host than before, the number of the last command is forgotten."""
+    robot.fresh()
+    for _ in range(3):
+        robot.express(0.0, 0.0)
+    welcome = robot.fresh()
+    _taken(robot, welcome, 0, 0, "HELLO of another host")
+    robot.express(0.0, 0.0)
+    taken = robot.beat("EXPRESS 1 of another host").taken
+    if taken != 1:
+        raise UnmetError("STATE(taken=1) after EXPRESS 1 of another host", f"taken={taken}")
+
+
+@SESSIONS.must
+def another_host_in_the_same_session(robot: Probe) -> None:
+    """Another host may have chosen the same session: it begins anew all the same."""
+    robot.fresh()
+    robot.express(0.0, 0.0)
+    robot.next_host()
+    welcome = robot.greet()
+    _taken(robot, welcome, 0, 0, "HELLO of another host in the same session")
+
+
+@SESSIONS.must
+def same_host_continues(robot: Probe) -> None:
+    """A new session of the same host keeps what was commanded; WELCOME says its number."""
+    robot.fresh()
+    robot.express(0.0, 0.0)
+    number = robot.express(0.3, 0.3)
+    welcome = robot.again()
+    _taken(robot, welcome, number, number, "another session of the same host")
+
+
+@SESSIONS.must
+def foreign_session_told(robot: Probe) -> None:
+    """Whatever is not of the open session is answered by GONE in the session of that message."""
+    robot.fresh()
+    for message in _FOREIGN:
+        foreign = robot.session ^ 0x1111
+        robot.hear(2 * timing.GONE_EVERY)
+        robot.say(message, session=foreign)
+        _gone(robot, foreign, f"{form_of(type(message)).name} in another session")
+    taken = robot.beat("messages of another session").taken
+    if taken:
+        raise UnmetError("STATE(taken=0): commands of another session are not taken", f"{taken=}")
+
+
+@SESSIONS.must
+def gone_without_session(robot: Probe) -> None:
+    """A robot without a session answers every message but HELLO by GONE."""
+    robot.fresh()
+    robot.say(m.Bye())
+    robot.hear(AT_ONCE)
+    for message in _FOREIGN:
+        robot.hear(2 * timing.GONE_EVERY)
+        robot.say(message)
+        _gone(robot, robot.session, f"{form_of(type(message)).name} after BYE")
+
+
+@SESSIONS.must
+def gone_not_too_often(robot: Probe) -> None:
+    """GONE is sent at most every 20 ms."""
+    robot.fresh()
+    frame = robot.frame(m.Beat(7), robot.session ^ 0x1111)
+    robot.hear(2 * timing.GONE_EVERY)
+    begin = robot.now
+    gone: list[Heard] = []
+    for _ in range(STRANGERS):
+        robot.send(frame)
+        gone += _gones(robot.hear(0.002))
+    gone += _gones(robot.hear(AT_ONCE))
+    if not gone:
+        raise UnmetError(f"GONE after {STRANGERS} BEATs of another session", "none")
+    most = (gone[-1].at - begin + SLACK) / timing.GONE_EVERY + 2
+    if len(gone) > most:
+        raise UnmetError(
+            f"at most {most:.0f} GONEs in {1000 * (gone[-1].at - begin):.0f} ms, "
+            f"after {STRANGERS} BEATs of another session",
+            f"{len(gone)}",
+        )
+
+
+@SESSIONS.must
+def silent_without_session(robot: Probe) -> None:
+    """A robot without a session sends nothing before it is asked; BYE has no answer."""
+    robot.fresh()
+    robot.live(0.1)
+    came = robot.hear(0)
+    robot.say(m.Bye())
+    robot.hear(SLACK)  # what was on its way
+    came = robot.hear(QUIET)
+    if came:
+        raise UnmetError(f"silence for {1000 * QUIET:.0f} ms after BYE", told(came))
+
+
+@SESSIONS.must
+def own_session_in_header(robot: Probe) -> None:
+    """Whatever the robot sends but GONE bears the session of its last WELCOME."""
+    robot.fresh()
+    robot.live(0.2)
+    robot.again()
+    robot.live(0.2)
+    faults = robot.log.faults.get("session", [])
+    if faults:
+        count = robot.log.counts["session"]
+        raise UnmetError(f"session {robot.session} or that before", f"{count} × {faults[0]}")
+
+
+@SESSIONS.must
+def version_agreed(robot: Probe) -> str:
+    """WELCOME names the highest version that both speak: never above the one offered."""
+    most = robot.fresh(offer=255).version
+    for offer in (1, 2, most):
+        version = robot.fresh(offer).version
+        if version != min(offer, most):
+            raise UnmetError(
+                f"WELCOME(version={min(offer, most)}) after HELLO (version {offer}), "
+                f"as it answers HELLO (version 255) by {most}",
+                f"version={version}",
+            )
+        robot.beat(f"HELLO (version {offer})")
+    return f"it speaks version {most}"
+
+
+@SESSIONS.must
+def version_1_spoken(robot: Probe) -> None:
+    """In a session of version 1 the robot sends nothing that later versions added."""
+    robot.fresh(offer=1)
+    number = robot.next_number()
+    robot.command(m.Express(number, 0.0, 0.0))
+    for state in robot.live(0.2):
+        later = state.flags & ~(CHARGING | STILL)
+        if later:
+            raise UnmetError("STATE with flags 0 and 1 alone in version 1", f"flags={state.flags}")
+
+
+def _taken(robot: Probe, welcome: m.Welcome, in_force: int, last: int, after: str) -> None:
+    """See what a robot says that it has taken."""
+    state = robot.beat(after)
+    if (welcome.taken, state.taken) != (in_force, last):
+        raise UnmetError(
+            f"WELCOME(taken={in_force}) and STATE(taken={last}) after {after}",
+            f"WELCOME(taken={welcome.taken}) and STATE(taken={state.taken})",
+        )
+
+
+def _gone(robot: Probe, session: int, after: str) -> None:
+    """See that a session is said to be gone."""
+    found, before = robot.wait_for(
+        lambda heard: isinstance(heard.message, m.Gone) and heard.session == session, AT_ONCE
+    )
+    if found is None:
+        raise UnmetError(
+            f"GONE in session {session} within {1000 * AT_ONCE:.0f} ms after {after}", told(before)
+        )
+
+
+def _gones(heard: list[Heard]) -> list[Heard]:
+    return [one for one in heard if isinstance(one.message, m.Gone)]
+
+
+def _only_gone(came: list[Heard], expected: str) -> None:
+    others = [heard for heard in came if not isinstance(heard.message, m.Gone | m.State)]
+    others += [heard for heard in came if isinstance(heard.message, m.State) and not heard.session]
+    if others:
+        raise UnmetError(expected, told(others))
