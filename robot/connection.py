@@ -61,7 +61,7 @@ def connect(
     # So that two programs are not taken for one: the microsecond in which this one connects.
     host = int(clock() * 1e6) % 0xFFFFFFFF + 1
     driver = kind.make(host, None if settings is None else Path(settings))
-    open_port = opener(url, clock, kind.baud)
+    open_port = opener(url, clock, getattr(driver, "baud", kind.baud))
     robot = Robot(url, open_port, driver, clock, on_bytes)
     wait = kind.answer_within if answer_within is None else answer_within
     try:

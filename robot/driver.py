@@ -63,7 +63,8 @@ class DriverKind:
     None; raises RobotError, in one line, for settings that are wrong."""
 
     baud: int
-    """Bits a second on a real serial line."""
+    """Bits a second on a real serial line; a driver's own attribute `baud`, where its settings have
+    made one, goes before it."""
 
     answer_within: float
     """How long `connect` waits for the robot where its caller does not say [s]."""

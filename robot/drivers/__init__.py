@@ -4,6 +4,8 @@ from pathlib import Path
 
 from robot.driver import Driver, DriverKind
 from robot.drivers.cubeling.host import HostLink
+from robot.drivers.opencat.host import OpenCatHost
+from robot.drivers.opencat.settings import load as opencat_settings
 from robot.errors import RobotError
 from robot.protocol import timing
 
@@ -14,7 +16,13 @@ def _cubeling(host: int, settings: Path | None) -> Driver:
     return HostLink(host)
 
 
+def _opencat(host: int, settings: Path | None) -> Driver:
+    return OpenCatHost(opencat_settings(settings))
+
+
 DRIVERS: dict[str, DriverKind] = {
     "cubeling": DriverKind(_cubeling, timing.BAUD, timing.ANSWER_WITHIN),
+    # A board takes seconds to start when its port is opened, and a new one asks its owner first.
+    "opencat": DriverKind(_opencat, 115200, 25.0),
 }
 """The protocols by name."""

@@ -4,6 +4,11 @@ from collections.abc import Callable
 
 from robot.simulators.base import Simulated
 from robot.simulators.cubeling.simulator import Simulator
+from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
 
-SIMULATORS: dict[str, Callable[[int], Simulated]] = {"cubeling": Simulator}
+SIMULATORS: dict[str, Callable[[int], Simulated]] = {
+    "cubeling": Simulator,
+    "opencat": OpenCatSimulator,
+    "nybble": nybble,
+}
 """The simulated robots by name; made from a seed."""

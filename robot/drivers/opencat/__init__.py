@@ -1,0 +1,1 @@
+"""The driver for Petoi's Bittle and Nybble, and for other boards that run OpenCat."""

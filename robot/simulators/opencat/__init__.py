@@ -1,0 +1,1 @@
+"""A simulated Bittle or Nybble, with the habits of its board."""
