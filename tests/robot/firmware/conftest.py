@@ -1,0 +1,143 @@
+"""The firmware in virtual time: a board that only remembers, and the robot on it."""
+
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from robot.firmware.dino import servos
+from robot.firmware.dino.board import Board
+from robot.firmware.dino.desk import Desk
+from robot.firmware.dino.joints import Joints
+from robot.firmware.dino.robot import Robot, run
+from robot.firmware.dino.table import Table
+from robot.protocol.schema import pack, unpack
+from robot.protocol.timing import VERSION
+from robot.protocol.wire import FrameReader, encode_frame
+
+
+@dataclass(frozen=True)
+class Pulse:
+    """What a servo was told."""
+
+    time: int
+    """When [ms]."""
+
+    pin: int
+    us: int
+    """Length [µs]; 0 for none."""
+
+
+class VirtualBoard(Board):
+    """A board whose line and time belong to the test."""
+
+    def __init__(self) -> None:
+        self.now = 0
+        self.incoming = b""
+        self.outgoing = b""
+        self.takes = 10_000
+        """How many bytes the line takes in one go."""
+        self.pulses: list[Pulse] = []
+        self.tones: list[int] = []
+        self.dead = False
+        """Whether the servo driver is unplugged."""
+        self.watched = 0
+
+    def read(self, data: bytearray) -> int:
+        taken, self.incoming = self.incoming[: len(data)], self.incoming[len(data) :]
+        data[: len(taken)] = taken
+        return len(taken)
+
+    def write(self, data: memoryview) -> int:
+        taken = bytes(data[: self.takes])
+        self.outgoing += taken
+        return len(taken)
+
+    def pulse(self, pin: int, us: int) -> None:
+        if self.dead:
+            raise OSError(19, "no device")
+        self.pulses.append(Pulse(self.now, pin, us))
+
+    def tone(self, hertz: int) -> None:
+        self.tones.append(hertz)
+
+    def watch(self) -> None:
+        self.watched += 1
+
+    def feed(self) -> None:
+        pass
+
+
+class Dino:
+    """The firmware as a `Simulated` robot: times in seconds, bytes in and out."""
+
+    edge = b"\0"
+
+    def __init__(self, table: Any = servos) -> None:
+        self.table = Table(table)
+        self.reboot()
+
+    def reboot(self) -> None:
+        self.board = VirtualBoard()
+        self.joints = Joints(self.table.servos, self.board)
+        self.robot = Robot(self.board, self.table, self.joints)
+        self.start: float | None = None
+
+    def receive(self, data: bytes, now: float) -> None:
+        self.board.incoming += data
+        self.advance(now)
+
+    def advance(self, now: float) -> None:
+        if self.start is None:
+            self.start = now
+        self.board.now = round(1000 * (now - self.start))
+        self.robot.turn(self.board.now)
+        while self.board.incoming:
+            self.robot.turn(self.board.now)
+
+    def bytes_to_send(self) -> bytes:
+        data, self.board.outgoing = self.board.outgoing, b""
+        return data
+
+    def portrait(self) -> tuple[float, str]:
+        body = self.robot.body
+        return body.valence / 10_000, body.moods[body.mood]
+
+    # What tests ask in their own words.
+
+    def says(self) -> list[tuple[int, Any]]:
+        """Return the messages that it has sent since, with their sessions."""
+        return [unpack(body, "robot") for body in FrameReader().feed(self.bytes_to_send())]
+
+    def hears(self, message: object, session: int = 1, version: int = VERSION) -> None:
+        """Let it hear a message now."""
+        self.board.incoming += encode_frame(pack(message, session, version))
+        self.robot.turn(self.board.now)
+
+    def lives(self, ms: int, step: int = 5) -> None:
+        """Let time pass."""
+        end = self.board.now + ms
+        while self.board.now < end:
+            self.board.now = min(self.board.now + step, end)
+            self.robot.turn(self.board.now)
+
+
+@pytest.fixture
+def dino() -> Dino:
+    """Make a robot that nobody has greeted."""
+    return Dino()
+
+
+@pytest.fixture
+def desk() -> Iterator[Desk]:
+    """Run the firmware, as it is, behind a pseudo-terminal."""
+    made = Desk()
+    thread = threading.Thread(target=run, args=(made, Table(servos)), daemon=True)
+    thread.start()
+    yield made
+    made.close()
+    thread.join(2)
+    assert not thread.is_alive()
+    made.give_back()
