@@ -1,0 +1,1 @@
+"""The protocol "pleo": the host's end of the Pleo Monitor console."""

@@ -1,0 +1,75 @@
+"""The joints of a Pleo: limits, steps and speeds, and the angles that it can be sent to.
+
+Source: OliverHoffmann/PleoCommand (2010), firmware 1.1.
+"""
+
+import math
+from dataclasses import dataclass
+
+from robot.catalogue import JointLimits
+
+ASSUMED_SPEED = 50.0
+"""Top speed where none was published [°/s]: about that of the joints beside it."""
+
+
+@dataclass(frozen=True)
+class Joint:
+    """One joint. Zero is neutral; positive is forward, up or right."""
+
+    name: str
+    """What it is called."""
+
+    low: int
+    """Smallest angle [°]."""
+
+    high: int
+    """Largest angle [°]."""
+
+    step: int
+    """Its angles are multiples of this [°]."""
+
+    speed: float = ASSUMED_SPEED
+    """Top speed [°/s]."""
+
+    @property
+    def limits(self) -> JointLimits:
+        """The same in the catalogue's units."""
+        low, high, speed = map(math.radians, (self.low, self.high, self.speed))
+        return JointLimits(self.name, low, high, speed)
+
+    def nearest(self, degrees: float) -> int:
+        """Return the closest angle [°] that it can be sent to: within its limits and on a step.
+
+        >>> JOINTS[8].name, JOINTS[8].nearest(-9.2), JOINTS[8].nearest(40)
+        ('torso', -10, 14)
+        """
+        lowest, highest = math.ceil(self.low / self.step), math.floor(self.high / self.step)
+        return self.step * round(min(max(degrees / self.step, lowest), highest))
+
+    def time(self, start: float | None, end: float) -> float:
+        """Return how long it takes from one angle to another [s]; from None, at worst."""
+        way = max(self.high - end, end - self.low) if start is None else abs(end - start)
+        return way / self.speed
+
+
+JOINTS = (
+    Joint("right shoulder", -30, 55, 1, 30),
+    Joint("right elbow", 0, 90, 1, 70),
+    Joint("left shoulder", -30, 55, 1, 30),
+    Joint("left elbow", 0, 90, 1, 70),
+    Joint("left hip", -45, 40, 10),
+    Joint("left knee", -70, 0, 2, 50),
+    Joint("right hip", -45, 40, 10),
+    Joint("right knee", -70, 0, 2, 50),
+    Joint("torso", -15, 15, 2, 20),
+    Joint("tail sideways", -90, 90, 1, 200),
+    Joint("tail up", -90, 90, 1, 200),
+    Joint("neck sideways", -65, 55, 1),
+    Joint("neck up", -75, 75, 1, 40),
+    # One motor: 25…85 are the eyelids, −80…−30 the mouth. Its step is said to be 1 to 20.
+    Joint("eyes and mouth", -80, 85, 1, 220),
+)
+"""Every joint; its place here is its number on the console."""
+
+JOINT_NUMBERS = {joint.name: number for number, joint in enumerate(JOINTS)}
+"""Number of each joint by name."""
