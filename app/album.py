@@ -1,6 +1,6 @@
 """Sheets of pictures of a character: from all sides, its clips frame by frame, its faces."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -67,6 +67,15 @@ class Album:
             pictures.append(_captioned(face, name))
         return _sheet(character.name, "its face", [side_by_side(pictures, FACES)])
 
+    def moods(self, character: Character, poses: Mapping[str, Pose]) -> Image:
+        """Return how a character looks in some moods: whole, and its face below, a column each."""
+        columns, reach = [], list(poses.values())
+        for name, pose in poses.items():
+            whole = self._large.portrait(character, pose, around=0.5, above=0.1, reach=reach)
+            face = self._faces.portrait(character, pose, around=0.3, above=0.05, focus="face")
+            columns.append(_captioned(stacked(whole, face), name))
+        return _sheet(character.name, "its moods", [side_by_side(columns, len(columns))])
+
     def release(self) -> None:
         """Give the card's memory back; a second call does nothing."""
         for studio in (self._large, self._small, self._faces):
@@ -91,6 +100,12 @@ def trimmed(picture: Image) -> Image:
     if not rows.size:
         return picture
     return picture[max(rows[0] - _AIR, 0) : rows[-1] + 1 + _AIR]
+
+
+def stacked(*pictures: Image) -> Image:
+    """Return pictures on top of each other, on paper as wide as the widest."""
+    width = max(picture.shape[1] for picture in pictures)
+    return np.concatenate([_widened(picture, width) for picture in pictures])
 
 
 def save(picture: Image, path: Path, most: int | None = None) -> None:

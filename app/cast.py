@@ -12,11 +12,14 @@ import moderngl
 import numpy as np
 from rich.console import Console
 
-from app.album import Album, Image, save
-from characters import Animator, Character, CharacterCommand, PosedCharacter, Step
+from app.album import Album, Image, save, stacked
+from characters import Animator, Character, CharacterCommand, Pose, PosedCharacter, Step
+from characters.life.lids import Lids
 from characters.rendering import Actor, Stage, View, create_context
 from characters.rendering.framing import Extent, Framing
 from characters.rendering.portrait import PAPER
+from robot import Emotion
+from robot.feeling.words import PLACES, closest_word
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures" / "cast"
 
@@ -67,6 +70,36 @@ def draw_group(context: moderngl.Context, size: tuple[int, int] = (1100, 520)) -
         return stage.draw(view, actors)
     finally:
         stage.release()
+
+
+MOODS = ("neutral", "happy", "excited", "surprised", "angry", "afraid", "sad", "bored", "sleepy",
+         "calm", "content")  # fmt: skip
+"""What is shown on the sheet of moods."""
+
+SETTLED = 4.0, 4.7
+"""Between these times after a mood has begun it is drawn, when it does not blink [s]."""
+
+
+def draw_moods(album: Album, cast: Iterable[Character]) -> Image:
+    """Return a sheet of how everyone looks in every mood."""
+    return stacked(*(album.moods(who, {word: _moody(who, word) for word in MOODS}) for who in cast))
+
+
+def _moody(character: Character, word: str) -> Pose:
+    """Return how a character stands that has felt so for a while, with its eyes open."""
+    animator = Animator(character, place=Step())
+    known = closest_word(animator.actions, Emotion(*PLACES[word]), word)
+    action = known if known in PLACES and known is not None else "idle"
+    feeling, gaze = np.array(PLACES[word]), np.array([0.1, 0.1, 1.0])
+    first, last = (round(time * 30) for time in SETTLED)
+    poses = [
+        animator.update(
+            CharacterCommand(number / 30, action, gaze=gaze, feeling=feeling, mood=word)
+        ).pose
+        for number in range(last + 1)
+    ]
+    lids = Lids.of(character.morphs)
+    return min(poses[first:], key=lambda pose: lids.closed(pose.morphs))
 
 
 def _after(animator: Animator, action: str, seconds: float) -> PosedCharacter:

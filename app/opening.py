@@ -48,6 +48,9 @@ class Wish:
     turns: float = 2.0
     """Full turns from the least to the greatest intensity in `companion`."""
 
+    personality: str | None = None
+    """Who feels: a bundled personality or a .toml file; None for the scenario's own."""
+
     look: str = "auto"
     """What the character's eyes follow: one of `LOOKS`."""
 
@@ -83,11 +86,17 @@ def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = No
 
     Raises
     ------
-    TrackingError, CharacterError, AppError
+    TrackingError, CharacterError, RobotError, AppError
         Something that was asked for is not there or not usable.
     """
     cube = CubeModel.load(wish.cube or scenario_cube(wish.scenario))
-    scenario = make_scenario(wish.scenario, cube, speed_map=wish.speed_map, turns=wish.turns)
+    scenario = make_scenario(
+        wish.scenario,
+        cube,
+        speed_map=wish.speed_map,
+        turns=wish.turns,
+        personality=wish.personality,
+    )
     character = Character.load(wish.character or scenario.character)
     calibration = None if wish.intrinsics is None else Intrinsics.load(wish.intrinsics)
     refuse_overwriting(wish)
@@ -162,6 +171,7 @@ def describe(wish: Wish, cube: CubeModel, source: FrameSource) -> dict[str, str]
         "character": wish.character or "",
         "speed_map": wish.speed_map,
         "turns": f"{wish.turns:g}",
+        "personality": wish.personality or "",
         "look": wish.look,
         "source": wish.source.split("://")[0] if "://" in wish.source else Path(wish.source).name,
         "rate": f"{source.rate:g}",

@@ -163,9 +163,13 @@ class Playground:
         return self.scenario.update(controls, self._posed, known)
 
     def attend(self, state: CubeState, controls: CubeControls, outcome: Outcome) -> Outcome:
-        """Add to what a scenario wants where the character looks."""
+        """Add to what a scenario wants where the character looks, and that it shows its mood.
+
+        Nothing else says so: character, likeness and robot show the one emotion of the outcome.
+        """
         gaze = self._attention.update(state, controls, outcome.command)
-        return replace(outcome, command=replace(outcome.command, gaze=gaze))
+        command = outcome.emotion.shown_by(replace(outcome.command, gaze=gaze))
+        return replace(outcome, command=command)
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:
         """Fourth arrow: move the character."""

@@ -10,6 +10,7 @@ from characters.character import Character
 from characters.command import CharacterCommand, PosedCharacter
 from characters.errors import CharacterError
 from characters.life import Life
+from characters.life.face import RECIPES
 from characters.locomotion import TOP_SPEED
 from characters.motion import Step
 from characters.pose import Array, Pose
@@ -138,7 +139,7 @@ class Animator:
                 busy=float(performer.state not in ("idle", "walk", "run")),
                 feeling=_felt(command),
                 mood=command.mood,
-                played=performer.state == command.mood,
+                played=performer.state in RECIPES,
             )
         return PosedCharacter(
             pose=pose,

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.play import CAMERA
+from app.commands.play import CAMERA, Personality
 from app.commands.progress import finished_video, play_to_end, tell_guess
 from app.commands.replay import bundled
 from app.opening import Wish, open_session
@@ -28,6 +28,7 @@ def demo(
         Path | None,
         typer.Option("--output", "-o", help="Write this video even if there is a display."),
     ] = None,
+    personality: Personality = None,
 ) -> None:
     """See it work: with your camera, or with the bundled recording, or as a video.
 
@@ -39,20 +40,20 @@ def demo(
     """
     console = Console()
     if output is not None or not has_display():
-        render(scenario, output or VIDEO, console)
+        render(scenario, output or VIDEO, console, personality)
         return
     with ExitStack() as closing:
         camera = None if recording else _camera(closing, console)
         if camera is None:
             console.print(f"Playing the bundled recording of [bold]{scenario}[/]; Esc ends it.")
-            wish = _recorded(scenario)
+            wish = _recorded(scenario, personality=personality)
         else:
             console.print(
                 f"Playing [bold]{scenario}[/] with your camera; Esc ends it. No cube yet? "
                 f"[cyan]cubeling cube {scenario_cube(scenario)}[/], "
                 "or [cyan]cubeling demo --recording[/]"
             )
-            wish = Wish(scenario, CAMERA)
+            wish = Wish(scenario, CAMERA, personality=personality)
         plan = open_session(wish, closing, camera)
         tell_guess(wish, plan.source, console)
         summary = play_to_end(plan, console, scenario)
@@ -60,9 +61,9 @@ def demo(
     summary.check()
 
 
-def render(scenario: str, output: Path, console: Console) -> None:
+def render(scenario: str, output: Path, console: Console, personality: str | None = None) -> None:
     """Render the bundled recording of a scenario to a video and say what happened."""
-    wish = _recorded(scenario, output)
+    wish = _recorded(scenario, output, personality)
     with ExitStack() as closing:
         plan = open_session(wish, closing)
         console.print(
@@ -75,9 +76,9 @@ def render(scenario: str, output: Path, console: Console) -> None:
     summary.check()
 
 
-def _recorded(scenario: str, output: Path | None = None) -> Wish:
+def _recorded(scenario: str, output: Path | None = None, personality: str | None = None) -> Wish:
     scenario_cube(scenario)  # refuses a name that is none
-    return Wish(scenario, str(bundled(scenario)), output=output)
+    return Wish(scenario, str(bundled(scenario)), output=output, personality=personality)
 
 
 def _camera(closing: ExitStack, console: Console) -> FrameSource | None:

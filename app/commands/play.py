@@ -25,6 +25,10 @@ Source = Annotated[
 ]
 Cube = Annotated[str | None, typer.Option(help="A bundled cube, or the .toml file of your own.")]
 Actor = Annotated[str | None, typer.Option(help="A bundled character, or a .glb file.")]
+Personality = Annotated[
+    str | None,
+    typer.Option(help="Who feels: a bundled personality, or the .toml file of your own."),
+]
 Intrinsics = Annotated[
     Path | None,
     typer.Option(help="The camera's calibration (ROS camera_info YAML); guessed without."),
@@ -72,6 +76,7 @@ def play(
     turns: Annotated[
         float, typer.Option(help="Full turns from the least to the greatest intensity.")
     ] = 2.0,
+    personality: Personality = None,
     look: Annotated[
         str, typer.Option(help="What the character's eyes follow: auto, cube, hand, camera, none.")
     ] = "auto",
@@ -93,6 +98,7 @@ def play(
         intrinsics,
         speed_map,
         turns,
+        personality,
         look,
         robot,
         record,

@@ -8,7 +8,16 @@ import typer
 from rich.console import Console
 
 from app.checking import check_session
-from app.commands.play import Actor, Codec, Output, Pictures, Record, RobotSettings, RobotUrl
+from app.commands.play import (
+    Actor,
+    Codec,
+    Output,
+    Personality,
+    Pictures,
+    Record,
+    RobotSettings,
+    RobotUrl,
+)
 from app.commands.progress import finished_video, play_to_end, tell_guess
 from app.errors import AppError
 from app.opening import Wish, open_session
@@ -22,6 +31,7 @@ def replay(
     ],
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
     character: Actor = None,
+    personality: Personality = None,
     robot: RobotUrl = "sim",
     robot_settings: RobotSettings = None,
     record: Record = None,
@@ -59,6 +69,7 @@ def replay(
         character=character or told.character or None,
         speed_map=told.speed_map,
         turns=told.turns,
+        personality=personality or told.personality or None,
         look=told.look,
         robot=robot,
         robot_settings=robot_settings,

@@ -1,7 +1,9 @@
 """What every scenario is: from what the hand does to what character and robot are to do."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
+
+import numpy as np
 
 from characters import CharacterCommand, PosedCharacter, Step
 from characters.rendering import FloorPath
@@ -22,16 +24,21 @@ class Inputs:
 
 @dataclass(frozen=True)
 class EmotionTarget:
-    """What the robot is asked to feel."""
+    """What character, likeness and robot feel, and are asked to show."""
 
     emotion: Emotion
     """Valence and arousal."""
 
     label: str
-    """The word for it, with hysteresis: "angry", "neutral" or "happy"."""
+    """The word for it, with hysteresis: one of the personality's label set."""
 
     timestamp: float
     """That of the frame [s]."""
+
+    def shown_by(self, command: CharacterCommand) -> CharacterCommand:
+        """Return a command to a character that shows this too."""
+        feeling = np.array([self.emotion.valence, self.emotion.arousal])
+        return replace(command, feeling=feeling, mood=self.label)
 
 
 @dataclass(frozen=True)
@@ -42,7 +49,7 @@ class Outcome:
     """To the animator."""
 
     emotion: EmotionTarget
-    """To the robot."""
+    """To the robot; face and bearing of the character show it too."""
 
     hint: str
     """One short sentence for the player: what to do now."""
@@ -65,6 +72,9 @@ class Scenario(Protocol):
 
     character: str
     """Name of the bundled character that plays it."""
+
+    personality: str
+    """Name of the bundled personality that it is played with."""
 
     start: Step
     """Where the character first stands on the table [m], and which way it looks [rad]."""

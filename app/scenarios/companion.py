@@ -6,10 +6,11 @@ from typing import Literal, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from app.scenarios.base import EmotionTarget, Inputs, Outcome
+from app.scenarios.base import Inputs, Outcome
 from app.scenarios.presence import Presence
+from app.scenarios.temper import Temper
 from characters import CharacterCommand, PosedCharacter, Step
-from robot import MoodLine
+from robot import Personality
 from tracking import CubeControls, CubeModel
 
 Action = Literal["idle", "kiss", "shout"]
@@ -36,17 +37,22 @@ class Companion:
         The cube in use; the roles of its faces name the actions.
     turns
         How many full turns lead from intensity −1 to 1.
+    personality
+        Who feels; without, the law of the thesis.
     """
 
     name = "companion"
     cube = "companion"
     character = "vleo"
+    personality = "thesis"
     start = Step(float(BESIDE[0]), float(BESIDE[1]), 0.2)
 
-    def __init__(self, cube: CubeModel, turns: float = 2.0) -> None:
+    def __init__(
+        self, cube: CubeModel, turns: float = 2.0, personality: Personality | None = None
+    ) -> None:
         self._roles = {face.name: face.role for face in cube.faces}
         self._turns = turns
-        self._mood = MoodLine()
+        self._temper = Temper(personality or Personality.load(self.personality))
         self._presence = Presence()
         self._action: Action = "idle"
         self._face: str | None = None
@@ -59,12 +65,12 @@ class Companion:
     ) -> Outcome:
         """Decide on one frame; see `Scenario.update`."""
         if inputs.clear:
-            self._mood = MoodLine()
+            self._temper.forget()
         self._choose(controls)
         visible = self._presence.update(controls)
         # Hidden, Vleo does nothing that the robot could feel: a lost cube leaves the mood (M11).
         acting = self._action if visible else "idle"
-        mood = self._mood.update(acting, self._weight, controls.timestamp)
+        emotion = self._temper.update(controls, acting, self._weight)
         command = CharacterCommand(
             timestamp=controls.timestamp,
             action=self._action,
@@ -73,7 +79,6 @@ class Companion:
             weight=self._weight,
             visible=visible,
         )
-        emotion = EmotionTarget(mood.emotion, mood.label, controls.timestamp)
         return Outcome(command, emotion, self._hint(controls), self._action)
 
     def _choose(self, controls: CubeControls) -> None:

@@ -3,11 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.scenarios.base import EmotionTarget, Inputs, Outcome
+from app.scenarios.base import Inputs, Outcome
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
+from app.scenarios.temper import Temper
 from characters import CharacterCommand, PosedCharacter, Step
-from robot import Emotion
+from robot import Personality
 from tracking import CubeControls
 
 Point = NDArray[np.float64]
@@ -31,16 +32,21 @@ CAMERA = np.array([0.0, 2.0])
 class Follow:
     """The character chases the cube; the turn of the cube sets how fast (M10).
 
-    Shaking the cube is not in the thesis: the character then jumps, waves or cheers, if it can.
+    Shaking the cube is not in the thesis: the character then jumps, waves or cheers, if it can, and
+    that pleases it. The faster it goes the more awake it is.
     """
 
     name = "follow"
     cube = "locomotion"
     character = "human"
+    personality = "lively"
     start = Step(-0.15, 0.03, 0.0)
 
-    def __init__(self, speed_map: str = "corrected") -> None:
+    def __init__(
+        self, speed_map: str = "corrected", personality: Personality | None = None
+    ) -> None:
         self._dial = SpeedDial(speed_map)
+        self._temper = Temper(personality or Personality.load(self.personality))
         self._presence = Presence()
         self._treats = 0
         self._treat: tuple[str, bool] | None = None  # what it does, and whether it has begun
@@ -49,7 +55,10 @@ class Follow:
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
     ) -> Outcome:
         """Decide on one frame; see `Scenario.update`."""
+        if inputs.clear:
+            self._temper.forget()
         speed = self._dial.update(controls.camera_angle, controls.timestamp)
+        visible = self._presence.update(controls)
         treat = self._shaken(controls, character, inputs)
         command = CharacterCommand(
             timestamp=controls.timestamp,
@@ -57,11 +66,13 @@ class Follow:
             speed=speed,
             target=_beside(controls.position, character),
             look_at=CAMERA,
-            visible=self._presence.update(controls),
+            visible=visible,
         )
-        return Outcome(
-            command, excitement(speed, controls.timestamp), _hint(controls, speed), gait(speed)
+        # Out of sight it goes nowhere, and does nothing that it could feel.
+        emotion = self._temper.update(
+            controls, (treat or "idle") if visible else "idle", speed=speed if visible else 0.0
         )
+        return Outcome(command, emotion, _hint(controls, speed), gait(speed))
 
     def _shaken(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
@@ -93,12 +104,6 @@ def gait(speed: float) -> str:
     if speed <= IDLE_BELOW:
         return "stand"
     return "walk" if speed <= RUN_ABOVE else "run"
-
-
-def excitement(speed: float, timestamp: float) -> EmotionTarget:
-    """How a walk moves the robot: neither pleased nor cross, but the more awake the faster."""
-    arousal = float(np.clip(speed / 5.0, 0.0, 1.0))
-    return EmotionTarget(Emotion(0.0, arousal), "neutral", timestamp)
 
 
 def _hint(controls: CubeControls, speed: float) -> str:

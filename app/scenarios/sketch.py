@@ -4,11 +4,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.scenarios.base import Inputs, Outcome
-from app.scenarios.follow import CAMERA, IDLE_BELOW, excitement, gait
+from app.scenarios.follow import CAMERA, IDLE_BELOW, gait
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
+from app.scenarios.temper import Temper
 from characters import CharacterCommand, ClosedPath, PosedCharacter, Step
 from characters.rendering import FloorPath
+from robot import Personality
 from tracking import CubeControls
 
 MOST_POINTS = 8
@@ -37,10 +39,14 @@ class Sketch:
     name = "sketch"
     cube = "locomotion"
     character = "human"
+    personality = "lively"
     start = Step(0.14, 0.0, 0.0)
 
-    def __init__(self, speed_map: str = "corrected") -> None:
+    def __init__(
+        self, speed_map: str = "corrected", personality: Personality | None = None
+    ) -> None:
         self._dial = SpeedDial(speed_map)
+        self._temper = Temper(personality or Personality.load(self.personality))
         self._presence = Presence()
         self._points: list[NDArray[np.float64]] = []
         self._path: ClosedPath | None = None
@@ -56,11 +62,14 @@ class Sketch:
         """Decide on one frame; see `Scenario.update`."""
         if inputs.clear or controls.shaken:
             self._points, self._path = [], None
+        if inputs.clear:
+            self._temper.forget()
         if self._path is None:
             self._draw(controls)
         speed = self._dial.update(controls.camera_angle, controls.timestamp)
         if self._path is None:
             speed = 0.0
+        visible = self._presence.update(controls)
         command = CharacterCommand(
             timestamp=controls.timestamp,
             action="move" if speed > IDLE_BELOW else "idle",
@@ -68,9 +77,9 @@ class Sketch:
             target=self._target(character),
             stop=False,
             look_at=CAMERA,
-            visible=self._presence.update(controls),
+            visible=visible,
         )
-        emotion = excitement(speed, controls.timestamp)
+        emotion = self._temper.update(controls, "idle", speed=speed if visible else 0.0)
         return Outcome(command, emotion, self._hint(controls, speed), gait(speed), self._floor())
 
     def _draw(self, controls: CubeControls) -> None:

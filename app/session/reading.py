@@ -42,6 +42,9 @@ class About:
     turns: float
     """Full turns from the least to the greatest intensity."""
 
+    personality: str
+    """Name or file of who felt; "" for the scenario's own."""
+
     look: str
     """What the character's eyes followed."""
 
@@ -90,6 +93,7 @@ def _about(path: Path, frames: int, seconds: float) -> About:
         notes.get("character", ""),
         notes.get("speed_map", "corrected"),
         float(notes.get("turns", "2")),
+        notes.get("personality", ""),
         notes.get("look", "auto"),
         frames,
         seconds,

@@ -12,6 +12,7 @@ from app.show.palette import PAPER, between, mood_color
 from characters import Animator, Character, CharacterCommand, Step
 from characters.rendering import Actor, Stage, View
 from robot.emotion import HAPPY_ABOVE
+from robot.feeling.words import closest_word
 
 LARGEST = 216
 """Side of the picture that is drawn at most [px]; software rendering takes longer for more."""
@@ -82,16 +83,25 @@ class Likeness:
     def _drawing(self, target: EmotionTarget) -> NDArray[np.uint8]:
         if self._stage is None:
             raise RuntimeError("the likeness is closed")
-        command = CharacterCommand(
-            timestamp=target.timestamp,
-            action=target.label,
-            weight=intensity(target),
-            gaze=self._eye,
-        )
-        posed = self._animator.update(command)
+        posed = self._animator.update(self.command(target))
         image = backdrop(self._drawn, target.emotion.valence)
         view = View(image, self._matrix, np.zeros(0), self._camera_from_table)
         return self._stage.draw(view, [Actor(self._character, posed)])
+
+    def command(self, target: EmotionTarget) -> CharacterCommand:
+        """Return how it is asked to show an emotion.
+
+        It plays the mood that a robot with the same words would; what that leaves out is in its
+        face and its bearing, as in any other character's.
+        """
+        action = closest_word(self._animator.actions, target.emotion, target.label)
+        command = CharacterCommand(
+            timestamp=target.timestamp,
+            action=action or "idle",
+            weight=intensity(target, action),
+            gaze=self._eye,
+        )
+        return target.shown_by(command)
 
     def close(self) -> None:
         """Give the card's memory back."""
@@ -100,20 +110,25 @@ class Likeness:
             self._stage = None
 
 
-def intensity(target: EmotionTarget) -> float:
+def intensity(target: EmotionTarget, played: str | None = None) -> float:
     """Return how strongly an emotion is to be shown, −1…1.
 
     From where a mood begins to where it cannot be stronger; within neutral, from calm to stirred.
+    `played` is the mood that shows it, where that has another name.
 
     >>> from robot import Emotion
     >>> [round(intensity(EmotionTarget(Emotion(v, abs(v)), "happy", 0.0)), 2) for v in (0.3, 1.0)]
     [-1.0, 1.0]
     >>> intensity(EmotionTarget(Emotion(0.0, 0.0), "neutral", 0.0))
     -1.0
+    >>> round(intensity(EmotionTarget(Emotion(-0.6, -0.4), "sad", 0.0), "neutral"), 2)
+    -0.4
     """
     strength = max(abs(target.emotion.valence), target.emotion.arousal)
     if target.label == "neutral":
         share = strength / HAPPY_ABOVE
+    elif played == "neutral":
+        share = (target.emotion.arousal + 1.0) / 2.0
     else:
         share = (strength - HAPPY_ABOVE) / (1.0 - HAPPY_ABOVE)
     return float(np.clip(2.0 * share - 1.0, -1.0, 1.0))

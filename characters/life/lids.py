@@ -52,6 +52,13 @@ class Lids:
         """Whether there are any."""
         return self.both is not None or self.sides.size > 0
 
+    def closed(self, weights: Array | None) -> float:
+        """Return how far weights of morphs (morphs,) close the eyes by the lids' own morphs."""
+        if weights is None or not self:
+            return 0.0
+        apart = float(weights[self.sides].max()) if self.sides.size else 0.0
+        return apart if self.both is None else max(apart, float(weights[self.both]))
+
     def close(self, weights: Array, closed: float) -> None:
         """Close the eyes at least so far, 0…1, in weights of morphs (morphs,).
 

@@ -96,7 +96,7 @@ class Life:
         mood
             The word for that feeling.
         played
-            Whether the clips show this very mood, so that the face need not.
+            Whether the clips are those of a mood, so that the face need not show one.
         """
         self._calm = eased(self._calm, 1.0 - max(busy, min(2.0 * effort, 1.0)), elapsed, _CALM_LAG)
         manner = self._bearing.update(elapsed, feeling)
