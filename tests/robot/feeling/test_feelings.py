@@ -198,6 +198,37 @@ def test_without_hysteresis_the_same_noise_chatters():
     assert len(list(itertools.groupby(shown))) == 20
 
 
+@pytest.mark.parametrize("hysteresis", [0.0, 0.03, 0.1])
+def test_a_label_gives_way_where_the_feeling_is_past_the_border_by_the_hysteresis(hysteresis):
+    feelings = Feelings(still(hysteresis=hysteresis))
+    border = 0.4  # half way from neutral, at 0, to pleased, at 0.8
+    there, back = border + hysteresis, border - hysteresis
+    shown = []
+    for valence in (there - 0.001, there + 0.001, back + 0.001, back - 0.001):
+        put(feelings, valence, 0.0)
+        shown.append(feelings.update("idle", 0, float(len(shown))).label)
+    assert shown == ["neutral", "pleased", "pleased", "neutral"]
+
+
+def test_the_thesis_words_have_the_hysteresis_of_their_personality():
+    for hysteresis, word in ((0.05, "happy"), (0.01, "neutral")):
+        feelings = Feelings(still(labels="thesis", hysteresis=hysteresis))
+        put(feelings, 0.34, 0.0)
+        assert feelings.update("idle", 0, 0.0).label == "happy"
+        put(feelings, 0.30, 0.0)
+        assert feelings.update("idle", 0, 1.0).label == word
+
+
+def test_a_label_lasts_as_long_as_its_dwell_and_no_longer():
+    feelings = Feelings(still(labels="ekman", dwell=1.0))
+    seen = []
+    for tick in range(0, 400, 25):
+        put(feelings, *((0.7, 0.4) if tick < 50 else (-0.6, -0.5)))
+        seen.append(feelings.update("idle", 0, tick / 100).label)
+    turns = [(label, len(list(run))) for label, run in itertools.groupby(seen)]
+    assert turns == [("happy", 4), ("neutral", 4), ("sad", 8)]
+
+
 @given(personalities, st.lists(doings, min_size=5, max_size=60))
 def test_no_label_is_left_before_its_time(who, done):
     feelings, now = Feelings(who), 0.0
