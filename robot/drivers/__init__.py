@@ -6,6 +6,9 @@ from robot.driver import Driver, DriverKind
 from robot.drivers.cubeling.host import HostLink
 from robot.drivers.opencat.host import OpenCatHost
 from robot.drivers.opencat.settings import load as opencat_settings
+from robot.drivers.pleo import timing as pleo
+from robot.drivers.pleo.driver import PleoDriver
+from robot.drivers.pleo.settings_file import load_settings as pleo_settings
 from robot.errors import RobotError
 from robot.protocol import timing
 
@@ -20,9 +23,14 @@ def _opencat(host: int, settings: Path | None) -> Driver:
     return OpenCatHost(opencat_settings(settings))
 
 
+def _pleo(host: int, settings: Path | None) -> Driver:
+    return PleoDriver(pleo_settings(settings))
+
+
 DRIVERS: dict[str, DriverKind] = {
     "cubeling": DriverKind(_cubeling, timing.BAUD, timing.ANSWER_WITHIN),
     # A board takes seconds to start when its port is opened, and a new one asks its owner first.
     "opencat": DriverKind(_opencat, 115200, 25.0),
+    "pleo": DriverKind(_pleo, pleo.BAUD, pleo.ANSWER_WITHIN),
 }
 """The protocols by name."""

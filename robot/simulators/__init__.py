@@ -5,10 +5,12 @@ from collections.abc import Callable
 from robot.simulators.base import Simulated
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
+from robot.simulators.pleo.simulator import PleoSimulator
 
 SIMULATORS: dict[str, Callable[[int], Simulated]] = {
     "cubeling": Simulator,
     "opencat": OpenCatSimulator,
     "nybble": nybble,
+    "pleo": PleoSimulator,
 }
 """The simulated robots by name; made from a seed."""

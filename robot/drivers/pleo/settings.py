@@ -1,7 +1,7 @@
 """What Pleo plays for each mood: the settings, as they are used."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
@@ -37,7 +37,7 @@ class Mood:
     motion_speed: int = 100
     """How fast it is played [%]."""
 
-    joints: Mapping[int, int] = MappingProxyType({})
+    joints: Mapping[int, int] = field(default_factory=lambda: MappingProxyType({}))
     """The pose: angles [°] by the joints' numbers, within limits and on steps; others are 0."""
 
     sound: str | None = None

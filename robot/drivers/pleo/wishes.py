@@ -28,7 +28,7 @@ class Step(NamedTuple):
     """What is sent."""
 
     part: Literal["tone", "body", "sound", "action"]
-    """tone: a speed or a volume. body: what shows a mood. sound: what goes with it. action: what
+    """tone: the motion's speed. body: what shows a mood. sound: what goes with it. action: what
     `play` asked for."""
 
     length: float = 0.0
@@ -190,7 +190,7 @@ class Wishes:
         if mood is not None and mood.sound is not None:
             within = self._settings.play_within
             tones = commands.sound_speed(mood.sound_speed), commands.sound_volume(mood.volume)
-            self._steps.extendleft(Step(tone, "tone") for tone in tones if self._is_new(tone))
+            self._steps.extend(Step(tone, "sound") for tone in tones if self._is_new(tone))
             self._steps.append(Step(commands.sound_play(mood.sound, within), "sound"))
 
     @property

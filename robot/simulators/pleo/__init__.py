@@ -1,0 +1,1 @@
+"""A simulated Pleo: its body, its own behaviour, and the Pleo Monitor console."""
