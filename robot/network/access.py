@@ -130,6 +130,7 @@ def _tls(scheme: str, given: Credentials) -> ssl.SSLContext | None:
         context = ssl.create_default_context(cafile=given.ca)
     except (OSError, ssl.SSLError) as error:
         raise RobotError(f"{given.ca} holds no certificate (PEM) that can be read") from error
+    context.sslsocket_class = _WholeOrClosed
     if given.certificate is not None:
         try:
             # A key under a passphrase would make OpenSSL ask at the terminal, from any thread.
@@ -141,6 +142,18 @@ def _tls(scheme: str, given: Credentials) -> ssl.SSLContext | None:
                 "or need a passphrase"
             ) from error
     return context
+
+
+class _WholeOrClosed(ssl.SSLSocket):
+    """Is closed if the handshake fails; paho would leave it to the garbage collector."""
+
+    def do_handshake(self, block: bool = False) -> None:
+        """Shake hands, or close."""
+        try:
+            super().do_handshake(block)
+        except OSError:
+            self.close()
+            raise
 
 
 def _no_passphrase() -> str:

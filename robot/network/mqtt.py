@@ -49,9 +49,6 @@ POLL = 0.25
 CLOSE_WITHIN = 1.0
 """Longest wait for the last words to be confirmed [s]."""
 
-TAKEN_OVER = 0x8E
-"""MQTT 5's reason: another client has connected under this name."""
-
 QOS = 1
 """Every message is confirmed by the broker."""
 
@@ -76,7 +73,7 @@ class MqttBus:
     address
         The broker.
     name
-        The client's id: one for each member. Who connects later under the same name takes it over.
+        The client's id: another one for every member and run.
     """
 
     def __init__(self, address: Address, name: str) -> None:
@@ -137,8 +134,9 @@ class MqttBus:
         self._thread.start()
         self._verdict.wait(VERDICT_WITHIN)
         if self._state == "refused":
+            trouble = self._trouble
             self.close()
-            raise RobotError(self._trouble)
+            raise RobotError(trouble)
 
     def publish(self, letter: Letter) -> bool:
         """Hand over a message; False if there is no connection, or too many wait. Never waits."""
@@ -276,21 +274,15 @@ class MqttBus:
             client.disconnect()
             return
         options = SubscribeOptions(qos=QOS)
-        client.subscribe([(topic_filter, options) for topic_filter, _ in self._handlers])
+        if self._handlers:
+            client.subscribe([(topic_filter, options) for topic_filter, _ in self._handlers])
         self._connections += 1
         self._change("connected", "")
 
     def _on_disconnect(
         self, client: paho.Client, _: Any, flags: Any, why: ReasonCode, *__: Any
     ) -> None:
-        if why.value == TAKEN_OVER:
-            self._closing.set()  # to try on would take it back, and so on for ever
-            self._change(
-                "refused",
-                f"another program has connected to {self._address} as {self._name}: "
-                "give one of them another name",
-            )
-        elif self._state != "connected" and self._ended is None:
+        if self._state != "connected" and self._ended is None:
             self._ended = "it closed the connection without a word; does it want TLS (mqtts://)?"
 
     def _on_message(self, client: paho.Client, _: Any, message: paho.MQTTMessage) -> None:

@@ -9,9 +9,9 @@ from robot.emotion import Emotion
 from robot.errors import RobotError
 from robot.network import messages as m
 from robot.network.bus import Letter
-from robot.network.endpoint import BEAT_EVERY
+from robot.network.endpoint import BEAT_EVERY, REPLACED, Run
 from robot.network.following import HOLD, Followed, Following
-from robot.network.schema import COUNT_MAX, MalformedError, decode, encode
+from robot.network.schema import MalformedError, decode, encode
 from robot.network.topics import Member, Pattern, member_of
 from robot.telemetry import Telemetry
 
@@ -77,7 +77,7 @@ class RobotNode:
             for pattern in follows
         )
         self._robot = robot
-        self._session = session
+        self._run = Run(session)
         self._follows = follows
         self._expressed: Emotion | None = None
         self._label: str | None = None
@@ -92,10 +92,16 @@ class RobotNode:
         """What the broker says when the connection breaks."""
         return self._status("lost")
 
+    @property
+    def trouble(self) -> str:
+        """Why it has fallen silent for good; "" as long as it has not."""
+        return REPLACED.format(self.member) if self._run.replaced else ""
+
     # --- What the bus brings -------------------------------------------------------------------
 
     def connected(self, now: float) -> None:
         """Say everything again."""
+        self._run.connected(now)
         self._beaten = self._state_sent = -math.inf
         self._state = None
         self._taken_due = True
@@ -110,7 +116,10 @@ class RobotNode:
             if topic == self._own_taken:
                 self._remember(decode(m.Taken, payload), now)
             elif member == self.member:
-                self._go_beyond(decode(m.Status, payload).session)
+                if self._run.meet_status(decode(m.Status, payload), now):
+                    self._begin_anew()
+            elif self._run.replaced:
+                return  # the robot is the other program's now
             elif member.role == "player" and any(one.matches(member) for one in self._follows):
                 self._hear(member, kind, payload, now)
         except MalformedError:
@@ -126,7 +135,9 @@ class RobotNode:
 
     def letters(self, now: float) -> list[Letter]:
         """Return what is to be published now."""
-        out = []
+        out: list[Letter] = []
+        if self._run.replaced:
+            return out
         if now - self._beaten >= BEAT_EVERY:
             self._beaten = now
             self._beat += 1
@@ -146,7 +157,7 @@ class RobotNode:
     def farewell(self) -> tuple[Letter, ...]:
         """Return the last words."""
         self._beat += 1
-        return (self._status("closed"),)
+        return () if self._run.replaced else (self._status("closed"),)
 
     # --- Players -------------------------------------------------------------------------------
 
@@ -212,9 +223,10 @@ class RobotNode:
 
     def _remember(self, taken: m.Taken, now: float) -> None:
         """Take over from an earlier run how far it got, so that nothing is done twice."""
-        if taken.session == self._session:
+        if taken.session == self._run.number:
             return  # our own words
-        self._go_beyond(taken.session)
+        if self._run.meet(taken.session, now):
+            self._begin_anew()
         for place, (session, number) in taken.players.items():
             site, _, name = place.partition("/")
             player = self.following.player(Member(site, "player", name), session, now)
@@ -222,17 +234,15 @@ class RobotNode:
                 player.taken = max(number, player.taken or 0)
         self._taken_due = True
 
-    def _go_beyond(self, session: int) -> None:
-        """Make this session greater than an earlier run's, if a clock went back in between."""
-        if self._session < session < COUNT_MAX:
-            self._session = session + 1
-            self._beaten = -math.inf
-            self._taken_due = True
+    def _begin_anew(self) -> None:
+        """Say who we are under the number that this run has got just now."""
+        self._beaten = -math.inf
+        self._taken_due = True
 
     # --- What is said --------------------------------------------------------------------------
 
     def _status(self, status: str) -> Letter:
-        said = m.Status(self._session, self._beat, status, tuple(map(str, self._follows)))
+        said = m.Status(self._run.number, self._beat, status, tuple(map(str, self._follows)))
         return Letter(self.member.topic("status"), encode(said), retain=True)
 
     def _taken(self) -> Letter:
@@ -242,7 +252,7 @@ class RobotNode:
             for member, one in self.following.players.items()
             if one.taken is not None
         }
-        taken = m.Taken(self._session, self._taken_number, players)
+        taken = m.Taken(self._run.number, self._taken_number, players)
         return Letter(self._own_taken, encode(taken), retain=True)
 
     def _known(self) -> m.RobotState:
@@ -251,7 +261,7 @@ class RobotNode:
         holder = self.following.holder
         battery = telemetry.battery
         return m.RobotState(
-            session=self._session,
+            session=self._run.number,
             number=0,
             link=telemetry.state,
             player=None if holder is None else holder.place,

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from robot.emotion import Emotion
 from robot.network import messages as m
 from robot.network.bus import Letter
-from robot.network.endpoint import BEAT_EVERY, SILENT_AFTER
-from robot.network.schema import COUNT_MAX, TEXT_BYTES, MalformedError, decode, encode
+from robot.network.endpoint import BEAT_EVERY, REPLACED, SILENT_AFTER, Run
+from robot.network.schema import TEXT_BYTES, MalformedError, decode, encode
 from robot.network.topics import ROOT, Member, Pattern, member_of
 
 MAX_AGE = 10.0
@@ -108,7 +108,7 @@ class Player:
             f"{ROOT}/+/robot/+/status",
             f"{ROOT}/+/robot/+/taken",
         )
-        self._session = session
+        self._run = Run(session)
         self._max_age = max_age
         self._kept: deque[_Kept] = deque()
         self._number = self._sent = 0
@@ -122,6 +122,11 @@ class Player:
     def will(self) -> Letter | None:
         """What the broker says when the connection breaks."""
         return self._status("lost")
+
+    @property
+    def trouble(self) -> str:
+        """Why it has fallen silent for good; "" as long as it has not."""
+        return REPLACED.format(self.member) if self._run.replaced else ""
 
     # --- What the character does and feels -----------------------------------------------------
 
@@ -148,7 +153,7 @@ class Player:
         """Feel this from now on; the latest wins."""
         known = self._feeling
         feeling = m.Feeling(
-            self._session,
+            self._run.number,
             1 if known is None else known.number,
             emotion.valence,
             emotion.arousal,
@@ -168,6 +173,7 @@ class Player:
 
     def connected(self, now: float) -> None:
         """Say everything again."""
+        self._run.connected(now)
         self._beaten = self._felt = -math.inf
         self._feeling_due = self._feeling is not None
         self._send_again(now)
@@ -180,7 +186,8 @@ class Player:
         member, kind = found
         try:
             if member == self.member:
-                self._go_beyond(decode(m.Status, payload).session)
+                if self._run.meet_status(decode(m.Status, payload), now):
+                    self._begin_anew()
             elif kind == "status":
                 self._hear(member, decode(m.Status, payload), now)
             elif kind == "taken":
@@ -208,7 +215,9 @@ class Player:
 
     def letters(self, now: float) -> list[Letter]:
         """Return what is to be published now."""
-        out = []
+        out: list[Letter] = []
+        if self._run.replaced:
+            return out
         if now - self._beaten >= BEAT_EVERY:
             self._beaten = now
             self._beat += 1
@@ -224,7 +233,7 @@ class Player:
     def farewell(self) -> tuple[Letter, ...]:
         """Return the last words."""
         self._beat += 1
-        return (self._status("closed"),)
+        return () if self._run.replaced else (self._status("closed"),)
 
     # --- Small things --------------------------------------------------------------------------
 
@@ -262,9 +271,10 @@ class Player:
     def _acknowledge(self, robot: Member, taken: m.Taken, now: float) -> None:
         """Take note of how far a robot has got."""
         session, number = taken.players.get(self.member.place, (0, 0))
-        self._go_beyond(session)
+        if self._run.meet(session, now):
+            self._begin_anew()
         known = self.robots.get(robot)
-        if known is None or session != self._session:
+        if known is None or session != self._run.number:
             return
         if number > known.taken:
             known.taken = min(number, self._number)
@@ -272,11 +282,8 @@ class Player:
         elif number < self._sent:  # it repeats itself: it has lost the rest
             self._send_again(now)
 
-    def _go_beyond(self, session: int) -> None:
-        """Make this session greater than one seen under our name, unless it is in use already."""
-        if not self._session < session < COUNT_MAX:
-            return
-        self._session = session + 1
+    def _begin_anew(self) -> None:
+        """Count from 1 again, in a session that has just got another number."""
         self._kept = deque(
             replace(kept, number=number) for number, kept in enumerate(self._kept, start=1)
         )
@@ -284,7 +291,7 @@ class Player:
         for robot in self.robots.values():
             robot.taken = 0
         if self._feeling is not None:
-            self._feeling = replace(self._feeling, session=self._session)
+            self._feeling = replace(self._feeling, session=self._run.number)
             self._feeling_due = True
         self._beaten = -math.inf
 
@@ -298,13 +305,13 @@ class Player:
         self._count(sent=1)
         oldest = self._kept[0].number
         age = round(max(0.0, now - kept.made), 3)
-        action = m.Action(self._session, kept.number, oldest, kept.name, kept.weight, age)
+        action = m.Action(self._run.number, kept.number, oldest, kept.name, kept.weight, age)
         return Letter(self.member.topic("action"), encode(action))
 
     def _status(self, status: str) -> Letter:
         return Letter(
             self.member.topic("status"),
-            encode(m.Status(self._session, self._beat, status)),
+            encode(m.Status(self._run.number, self._beat, status)),
             retain=True,
         )
 

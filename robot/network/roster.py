@@ -48,6 +48,7 @@ class Roster:
     """
 
     will: Letter | None = None
+    trouble = ""
 
     def __init__(self, site: str = EVERYONE, watcher: Watcher | None = None) -> None:
         place = "+" if site == EVERYONE else site
@@ -78,6 +79,9 @@ class Roster:
         if member not in self.members and len(self.members) >= MEMBERS_MAX:
             return
         seen = self.members.setdefault(member, Seen(now))
+        before = seen.said.get("status")
+        if before is not None and message.session < before.session:
+            return  # of a run that is over
         seen.said[kind] = message
         if kind == "status":
             seen.heard = now

@@ -83,13 +83,15 @@ class Station(Generic[E]):
 
     @property
     def state(self) -> BusState:
-        """How the connection is."""
-        return self._bus.state
+        """How the connection is; "refused" also for a member that has been replaced."""
+        return "refused" if self.endpoint.trouble else self._bus.state
 
     @property
     def trouble(self) -> str:
         """Why there is none, in one line; "" when nothing is wrong."""
-        return self._bus.trouble if self.failure is None else f"it broke: {self.failure!r}"
+        if self.failure is not None:
+            return f"it broke: {self.failure!r}"
+        return self.endpoint.trouble or self._bus.trouble
 
     def wake(self) -> None:
         """Let the member think now."""

@@ -1,6 +1,9 @@
 """Players and robots at one broker in virtual time, on lines that lose, double and reorder."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ from robot.errors import RobotError
 from robot.network import Member, MemoryBroker, MemoryBus, Pattern, Player, RobotNode, Station
 from robot.network.bus import Handler
 from robot.telemetry import LinkState, Telemetry
+from tests.robot.network.mosquitto import Mosquitto
 
 NAMES = tuple(f"{player}{number}" for player in "abc" for number in range(1, 100))
 
@@ -57,7 +61,7 @@ class Room:
         self.harm = Harm()
         self.random = np.random.default_rng(seed)
         self.buses: dict[str, MemoryBus] = {}
-        self.stations: dict[str, Station] = {}
+        self.stations: dict[str, Station[Any]] = {}
         self.robots: dict[str, FakeRobot] = {}
         self.made: dict[str, list[str]] = {}
         self.held: set[str] = set()  # who cannot reconnect
@@ -132,3 +136,20 @@ class HarmedBus(MemoryBus):
 @pytest.fixture
 def room() -> Room:
     return Room()
+
+
+@pytest.fixture
+def mosquitto(tmp_path: Path) -> Iterator[Callable[..., Mosquitto]]:
+    """Start brokers with the options given; they end with the test."""
+    started: list[Mosquitto] = []
+
+    def start(*options: str) -> Mosquitto:
+        folder = tmp_path / f"broker{len(started)}"
+        folder.mkdir()
+        started.append(Mosquitto(folder, *options))
+        started[-1].start()
+        return started[-1]
+
+    yield start
+    for broker in started:
+        broker.kill()

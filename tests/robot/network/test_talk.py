@@ -167,6 +167,30 @@ def test_a_player_started_anew_begins_a_new_count_and_an_old_clock_does_no_harm(
     assert room.robots["rex"].played == ["a1", "a2"]
 
 
+def test_of_two_programs_under_one_name_the_one_started_last_speaks(room):
+    first = room.player("a", session=500)
+    old = room.stations["a"]
+    rex = room.node("rex")
+    room.run(2.0)
+    room.stations["first"], room.buses["first"] = old, room.buses["a"]
+    second = room.player("a", session=5)  # by a clock that is behind
+    room.run(0.5)
+    assert "another program" in first.trouble
+    assert second.trouble == ""
+    room.act("a")
+    first.feel(Emotion(-1.0, 1.0))
+    room.run(3.0)
+    assert room.robots["rex"].played == ["a1"]
+    assert room.robots["rex"].felt == []
+    room.stations["old"], room.buses["old"] = room.stations["rex"], room.buses["rex"]
+    room.node("rex")
+    room.run(0.5)
+    assert "another program" in rex.trouble
+    room.act("a")
+    room.run(1.0)
+    assert room.robots["rex"].played == ["a1", "a2"]
+
+
 def test_a_busy_robot_gets_the_action_later(room):
     room.player("a")
     room.node("rex")
