@@ -27,6 +27,9 @@ CHAPTERS: tuple[Chapter, ...] = (
 LONGEST = 60.0
 """No check begins later than this after the first one [s]."""
 
+FIRST_WITHIN = 0.5
+"""How long each of the first greetings waits [s]: long, so that being slow is not being silent."""
+
 SILENCES = 2
 """After so many checks in a row that nobody answers, the rest is left out."""
 
@@ -159,7 +162,7 @@ def _introduced(robot: Probe) -> m.Welcome:
     while robot.now < end:
         robot.next_session()
         try:
-            return robot.greet(timing.HELLO_EVERY)
+            return robot.greet(FIRST_WITHIN)
         except UnmetError:
             continue
     came = f"{robot.log.bytes} bytes came, but no WELCOME" if robot.log.bytes else "nothing came"
