@@ -11,6 +11,7 @@ from rich.table import Table
 from rich.text import Text
 
 from app.commands.robot_conform import conform
+from app.commands.robot_try import try_
 from robot import SimulatedPort, serial_ports
 from robot.simulators.base import Simulated
 from robot.simulators.memory import simulator_of
@@ -20,6 +21,7 @@ app = typer.Typer(
 )
 
 app.command()(conform)
+app.command("try")(try_)
 
 
 @app.command()
