@@ -309,7 +309,9 @@ class MqttBus:
         elif isinstance(error, ssl.SSLError):
             self._change("refused", f"{self._address}: no TLS comes about: {error.reason}")
         else:
-            self._change("away", f"{self._address}: {_reason(error)}")
+            secret = self._address.tls is not None and isinstance(error, ConnectionResetError)
+            hint = "; does it speak TLS there?" if secret else ""
+            self._change("away", f"{self._address}: {_reason(error)}{hint}")
 
     def _change(self, state: BusState, trouble: str) -> None:
         self._state, self._trouble = state, trouble
