@@ -43,6 +43,7 @@ class SimulatedWire:
             robot.advance(self._clock())
             if not robot.plugged_in:
                 raise RobotError(f"cannot open the port {self._url}: its plug is out")
+            robot.bytes_to_send()  # a port that nobody had open has lost what came
         return MemoryPort(robot, self._clock)
 
 

@@ -1,0 +1,255 @@
+"""A host, a robot and one mixture of faults, from event to event in virtual time."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from robot.port import READ_TIMEOUT
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.wire import MAX_FRAME
+from robot.pump import REOPEN_EVERY
+from robot.simulators.faulty import INBOX_MAX, FaultyRobot
+from robot.simulators.line import IN_FLIGHT_MAX
+from tests.campaigns.mixes import Mix
+from tests.campaigns.witness import (
+    BrokenPromiseError,
+    LightRobot,
+    WatchedLane,
+    Witness,
+    watched_host,
+)
+
+LOOK_EVERY = 0.050
+"""How often the robot looks at its clock [s]; the protocol allows no more."""
+
+EVENTS_AT_ONCE_MAX = 1000
+"""Most events at one moment of virtual time; more are an endless loop."""
+
+QUIET_MEAN = 0.3
+"""Mean length of a stretch in which nothing is asked for [s]."""
+
+NEVER = float("inf")
+
+
+@dataclass
+class Outcome:
+    """What came of one run."""
+
+    mix: str
+    """Name of the mixture."""
+
+    seed: int
+    """Of all that was drawn."""
+
+    seconds: float
+    """Virtual time [s]."""
+
+    counts: Counter[str]
+    """Exchanges, heartbeats, faults and so on, by name."""
+
+    recoveries: int
+    """How often the last wish came true, at first or again, in a quiet stretch."""
+
+    worst_recovery: float
+    """Longest of them [s]."""
+
+    worst_failsafe: float
+    """Longest time from the last message to neutral, of a robot that did not hang [s]."""
+
+    latencies: list[int]
+    """Histogram of the time from wish to body."""
+
+    largest: dict[str, int] = field(default_factory=dict)
+    """Largest size of everything that could grow."""
+
+    violation: str | None = None
+    """The promise that was broken, and when."""
+
+
+class CampaignWorld:
+    """Runs until so many exchanges are done, or a promise is broken."""
+
+    def __init__(self, mix: Mix, seed: int) -> None:
+        self.mix, self.seed = mix, seed
+        self.random = np.random.default_rng((seed, 3))
+        self.witness = Witness()
+        self.light = LightRobot(self.witness)
+        self.faulty = FaultyRobot(self.light, mix.faults, seed, LOOK_EVERY)
+        self.witness.faulty = self.faulty
+        self.now = 0.0
+        self.events_now = 0
+        self.host_number = 0
+        self.port_open = False
+        self.pulls = 0
+        self.tick_at = self.wish_at = self.reopen_at = 0.0
+        self.host_ends_at = NEVER
+        self.host = watched_host(self.witness, 0)
+        self.recoveries, self.worst_recovery = 0, 0.0
+        self.largest: dict[str, int] = {}
+        self.quiet = False
+        self.quiet_ends = self.untrue_since = NEVER
+        self._start_host()
+        self._begin_stretch()
+
+    def run(self, exchanges: int) -> Outcome:
+        """Return what came of it; a broken promise is in it too."""
+        violation = None
+        try:
+            while self.witness.counts["exchanges"] < exchanges:
+                self._step()
+                if self.quiet:
+                    self._watch_quiet()
+        except BrokenPromiseError as broken:
+            violation = f"at {self.now:.6f} s: {broken}"
+        except Exception as error:
+            violation = f"at {self.now:.6f} s: {error!r}"
+        return self._outcome(violation)
+
+    # --- From event to event -------------------------------------------------------------------
+
+    def _step(self) -> None:
+        faulty = self.faulty
+        now = max(self.now, min(faulty.due, self.tick_at, self.wish_at, self.host_ends_at))
+        self.events_now = self.events_now + 1 if now == self.now else 0
+        if self.events_now > EVENTS_AT_ONCE_MAX:
+            raise BrokenPromiseError("virtual time stands still")
+        self.now = self.witness.now = now
+        if now >= self.host_ends_at:
+            self._start_host()
+        faulty.advance(now)
+        self._watch_plug()
+        if now >= self.wish_at:
+            self._wish()
+        arrived = faulty.bytes_to_send()  # lost if nobody has the port open
+        if self.port_open:
+            self._talk(arrived)
+        self.tick_at = now + READ_TIMEOUT
+
+    def _talk(self, data: bytes) -> None:
+        now = self.now
+        if data:
+            self.host.receive(data, now)
+            if self.chasing and self.lane.idle:
+                self._wish()
+        self.host.tick(now)
+        out = self.host.bytes_to_send()
+        if out:
+            self.witness.sends_bytes("there", out)
+            self.faulty.receive(out, now)
+
+    def _watch_plug(self) -> None:
+        """Be to the host what its pump is when the port vanishes and comes back."""
+        if self.port_open and self.faulty.pulls != self.pulls:
+            self.host.port_lost()
+            self.port_open, self.reopen_at = False, self.now + REOPEN_EVERY
+        if not self.port_open and self.now >= self.reopen_at:
+            self._open_port()
+
+    def _open_port(self) -> None:
+        self.port_open = self.faulty.plugged_in
+        self.reopen_at = self.now + REOPEN_EVERY
+        if self.port_open:
+            self.pulls = self.faulty.pulls
+            self.host.port_opened(self.now)
+
+    def _start_host(self) -> None:
+        """Start the host's program; if one runs, end it, politely or not."""
+        if self.host_number:
+            self.witness.counts["restart"] += 1
+            if self.random.random() < 0.5 and self.port_open:
+                self.host.close()
+                farewell = self.host.bytes_to_send()
+                self.witness.sends_bytes("there", farewell)
+                self.faulty.receive(farewell, self.now)
+        self.host_number += 1
+        self.host = watched_host(self.witness, self.host_number)
+        assert isinstance(self.host._lane, WatchedLane)
+        self.lane = self.host._lane
+        lives = self.mix.host_lives
+        self.host_ends_at = self.now + float(self.random.exponential(lives)) if lives else NEVER
+        self.tick_at = self.now
+        self._open_port()
+        if self.quiet:
+            self._fall_quiet()  # the new program knows nothing of the last wish
+
+    # --- What the host is asked for --------------------------------------------------------------
+
+    def _begin_stretch(self) -> None:
+        """Ask for a while: always the next when the last has landed, or at any moment."""
+        self.quiet = False
+        self.chasing = bool(self.random.random() < 0.8)
+        self.stretch_ends = self.now + float(self.random.uniform(0.5, 5.0))
+        self.wish_at = self.now
+
+    def _wish(self) -> None:
+        if self.now >= self.stretch_ends:
+            self._fall_quiet()
+            return
+        draw = float(self.random.random())
+        if draw < 0.04:
+            self.host.play(m.ITEM_MOTION if draw < 0.02 else m.ITEM_SOUND, 0)
+        elif draw < 0.045:
+            self.host.stop()
+        elif draw < 0.1:
+            for _ in range(3):
+                self.host.express(self.witness.asks())
+        self.host.express(self.witness.asks())
+        # Whoever chases is woken by the acknowledgement; this is for when none comes.
+        gap = 0.2 if self.chasing else 0.08
+        self.wish_at = self.now + float(self.random.uniform(0.0, gap))
+
+    def _fall_quiet(self) -> None:
+        """Ask for one last thing, and then for nothing."""
+        self.chasing = False
+        self.host.express(self.witness.asks())
+        self.last = self.host._lane.commanded
+        self.quiet, self.wish_at = True, NEVER
+        self.quiet_ends = self.now + float(self.random.exponential(QUIET_MEAN))
+        self.untrue_since = self.now
+
+    def _watch_quiet(self) -> None:
+        """See that the last wish comes true, and again whenever the robot has lost it."""
+        if self.light.link.light.target == self.last == self.lane.acknowledged:
+            if self.untrue_since < NEVER:
+                self.recoveries += 1
+                self.worst_recovery = max(self.worst_recovery, self.now - self.untrue_since)
+                self.untrue_since = NEVER
+            if self.now >= self.quiet_ends:
+                self._measure()
+                self._begin_stretch()
+            return
+        self.untrue_since = min(self.untrue_since, self.now)
+        took = self.now - self.untrue_since
+        if took > self.mix.within:
+            state = self.host.state(self.now)
+            raise BrokenPromiseError(
+                f"the last wish is not true after {took:.1f} s; the link is {state}"
+            )
+
+    # --- What could grow -------------------------------------------------------------------------
+
+    def _measure(self) -> None:
+        host, link, faulty = self.host, self.light.link, self.faulty
+        sizes = {
+            "frame": (len(host._reader._pending), MAX_FRAME + 1),
+            "frame ": (len(link._reader._pending), MAX_FRAME + 1),
+            "actions": (len(self.lane._actions), timing.ACTIONS_MAX),
+            "beats": (len(host._round_trip._sent), 16),
+            "inbox": (len(faulty._inbox), INBOX_MAX),
+            "line": (max(faulty.there.in_flight, faulty.back.in_flight), IN_FLIGHT_MAX),
+            "unsent": (len(host._out) + len(link._out), 0),
+        }
+        for name, (size, most) in sizes.items():
+            self.largest[name] = max(size, self.largest.get(name, 0))
+            if size > most:
+                raise BrokenPromiseError(f"{name} has grown to {size}; {most} is allowed")
+
+    def _outcome(self, violation: str | None) -> Outcome:
+        witness, faulty = self.witness, self.faulty
+        counts = witness.counts + faulty.counts + faulty.there.counts + faulty.back.counts
+        return Outcome(
+            self.mix.name, self.seed, self.now, counts, self.recoveries, self.worst_recovery,
+            witness.worst_failsafe, witness.latencies, self.largest, violation,
+        )  # fmt: skip
