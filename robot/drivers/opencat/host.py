@@ -4,18 +4,19 @@ No clock, no thread, no port: whoever owns those calls `receive` and `tick` with
 """
 
 import math
-import re
 from types import MappingProxyType
 from typing import Literal
 
 from robot.catalogue import Catalogue
 from robot.drivers.opencat import tokens
-from robot.drivers.opencat.exchange import LOST_TRIES, Command, Exchange, Flight
+from robot.drivers.opencat.exchange import LOST_TRIES, Exchange, Flight
 from robot.drivers.opencat.greeting import STARTS, Greeting
+from robot.drivers.opencat.hearsay import Hearsay
+from robot.drivers.opencat.introduction import catalogue_of
 from robot.drivers.opencat.lines import LineReader
-from robot.drivers.opencat.models import MODELS, model_of
+from robot.drivers.opencat.models import model_of
 from robot.drivers.opencat.settings import Settings, load
-from robot.drivers.opencat.wishes import Wishes
+from robot.drivers.opencat.wishes import REST, Wishes
 from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.telemetry import LinkCounts, LinkState, Telemetry
@@ -23,11 +24,6 @@ from robot.telemetry import LinkCounts, LinkState, Telemetry
 REST_ASK_EVERY = 60.0
 """A robot that lies without power is told to rest again this often [s], as its sign of life: any
 other question would switch its balancing on."""
-
-NAME_MAX = 16
-"""Longest name in a catalogue [bytes of UTF-8]."""
-
-_ANGLES = re.compile(r"(-?\d{1,3}),\s*" * 15 + r"(-?\d{1,3}),?")
 
 Phase = Literal["port", "greeting", "open", "closed"]
 
@@ -56,8 +52,7 @@ class OpenCatHost:
         self._out = bytearray()
         self._heard: float | None = None
         self._sent = -math.inf
-        self._low_power = False
-        self._angles: dict[str, float] = {}
+        self._hearsay = Hearsay()
         self._lines_sent = self._lines_heard = self._skipped = self._sessions = self._repeats = 0
 
     # --- What the owner asks for ---------------------------------------------------------------
@@ -165,11 +160,11 @@ class OpenCatHost:
         beeps = playing is not None and playing.kind == "melody"
         return Telemetry(
             state=self.state(now),
-            commanded=self._wishes.commanded,
-            acknowledged=self._wishes.acknowledged,
-            stopped=self._wishes.stopped,
-            limp=self._wishes.limp or self._low_power,
-            joints=MappingProxyType(dict(self._angles)),
+            commanded=self._wishes.order.commanded,
+            acknowledged=self._wishes.order.acknowledged,
+            stopped=self._wishes.order.stopped,
+            limp=self._wishes.limp or self._hearsay.is_weak(now),
+            joints=MappingProxyType(self._hearsay.angles),
             reckoned=True,
             motion=playing.name if playing and skill else None,
             sound=playing.name if playing and beeps else None,
@@ -199,7 +194,10 @@ class OpenCatHost:
             return
         heard = None if self._greeting.stage == "starting" else self._exchange.hear(line, now)
         if isinstance(heard, Flight):
-            self._wishes.landed(heard.command, heard.refused, now)
+            if self._hearsay.is_weak(now):
+                self._wishes.given_up(heard.command, now)  # echoed, and nothing has moved
+            else:
+                self._wishes.landed(heard.command, heard.refused, now)
         elif heard is not None:
             self._was_answered(heard.line, now)
         else:
@@ -209,21 +207,16 @@ class OpenCatHost:
         """Take a line that is no echo."""
         self._greeting.hear(line, now)
         flight = self._exchange.flight
-        if line == "G" and flight and flight.command.kind in ("posture", "gesture", "pose"):
-            self._wishes.limp = False  # said when a board takes up a command after a rest
-        elif line.startswith("Low power"):
-            self._low_power = True
-        elif line.startswith("Got ") and line.endswith("power"):
-            self._low_power = False
-        elif line.startswith("EXCEPTION"):
+        news = self._hearsay.take(line, self._model, now)
+        if news == "power" and flight and flight.command.kind in ("posture", "gesture", "pose"):
+            self._wishes.limp = False
+        elif news == "weak":
+            self._wishes.limp = True
+            self._wishes.order.lose()
+        elif news == "fell":
             self._exchange.doubt()
             self._wishes.disturb()
-        elif found := _ANGLES.fullmatch(line):
-            self._angles = {
-                joint.name: math.radians(int(found[joint.number + 1]))
-                for joint in MODELS[self._model]
-            }
-        elif len(line) > 1 and not flight and not self._exchange.question:
+        elif news == "unknown" and not flight and not self._exchange.question:
             self._skipped += 1
 
     def _was_answered(self, question: bytes, now: float) -> None:
@@ -240,7 +233,7 @@ class OpenCatHost:
             self._break_off()
         self._greeting.begin(now, started=True)
         self._wishes.limp = True
-        self._low_power = False
+        self._hearsay.forget()
 
     def _open(self, now: float) -> None:
         """Begin a session with a board that is known."""
@@ -248,15 +241,8 @@ class OpenCatHost:
         self._model = self._settings.model or model_of(greeting.name)
         behaviour = self._settings.behaviours[self._model]
         self._wishes.behave(behaviour)
-        self._angles = {}
-        self.catalogue = Catalogue(
-            name=_shortened(greeting.name or "OpenCat"),
-            firmware=f"OpenCat {greeting.version}".strip(),
-            joints=tuple(joint.limits for joint in MODELS[self._model]),
-            motions=behaviour.motions,
-            sounds=tuple(behaviour.sounds),
-            moods=tuple(behaviour.moods),
-        )
+        self._hearsay.angles = {}
+        self.catalogue = catalogue_of(self._model, greeting.name, greeting.version, behaviour)
         self._phase = "open"
         self._sessions += 1
 
@@ -264,24 +250,21 @@ class OpenCatHost:
 
     def _act(self, now: float) -> None:
         """Send what is wanted; where nothing is, ask now and then whether the board is there."""
-        command = self._wishes.next(now)
+        command = None if self._hearsay.is_weak(now) else self._wishes.next(now)
         if command is None and self._answer_is_old(now):
             if not self._wishes.resting:
                 self._send(self._exchange.ask(now), now)
                 return
-            command = self._wishes.rest()
+            command = REST
         if command is not None:
-            self._launch(command, now)
-
-    def _launch(self, command: Command, now: float) -> None:
-        self._send(self._exchange.launch(command, now), now)
+            self._send(self._exchange.launch(command, now), now)
 
     def _ask_again(self, now: float) -> None:
         """Repeat a question, and look for a board that is lost."""
         if self._phase == "open" and self._exchange.tries >= LOST_TRIES:
             self._phase = "greeting"
             self._wishes.drop_actions()
-            self._wishes.restate()
+            self._wishes.order.lose()
             self._greeting.ask_again()
         self._repeats += 1
         self._send(self._exchange.ask(now), now)
@@ -304,8 +287,4 @@ class OpenCatHost:
         self._wishes.dropped += given_up is not None and given_up.kind in ("gesture", "melody")
         self._exchange.restart()
         self._wishes.drop_actions()
-        self._wishes.restate()
-
-
-def _shortened(name: str) -> str:
-    return name.encode()[:NAME_MAX].decode(errors="ignore")
+        self._wishes.order.lose()

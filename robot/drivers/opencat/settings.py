@@ -1,6 +1,5 @@
 """How each model shows each mood, read from TOML; what may not be sent is refused here already."""
 
-import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,11 +10,9 @@ from typing import Any
 
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.models import MODELS
+from robot.drivers.opencat.table import Notes, Table
 from robot.errors import RobotError
 from robot.feeling.words import PLACES
-
-Notes = tuple[tuple[int, int], ...]
-"""Notes of a melody, each with its value: 4 is a quarter of a second, 8 an eighth."""
 
 BAUDS = (57600, 115200)
 """Bits a second that OpenCat boards speak at."""
@@ -108,7 +105,7 @@ def _bundled() -> Mapping[str, Any]:
 
 def settings_of(said: Mapping[str, Any], source: str) -> Settings:
     """Return the settings that a TOML document says, over the bundled ones."""
-    document = _Table(_merged(_bundled(), said), source, "")
+    document = Table(_merged(_bundled(), said), source, "")
     top = document.table("opencat")
     model = top.text("model")
     if model and model not in MODELS:
@@ -130,7 +127,7 @@ def settings_of(said: Mapping[str, Any], source: str) -> Settings:
     return settings
 
 
-def _behaviour(table: "_Table", model: str) -> Behaviour:
+def _behaviour(table: Table, model: str) -> Behaviour:
     sounds = {}
     told = table.table("sounds", {})
     for name in list(told.left):
@@ -153,7 +150,7 @@ def _behaviour(table: "_Table", model: str) -> Behaviour:
     return Behaviour(moods, tuple(motions), sounds, stop)
 
 
-def _mood(table: "_Table", model: str, sounds: Mapping[str, Notes]) -> Mood:
+def _mood(table: Table, model: str, sounds: Mapping[str, Notes]) -> Mood:
     joints = {joint.name: joint for joint in MODELS[model]}
     pose = {}
     angles = table.table("pose", {})
@@ -188,78 +185,3 @@ def _merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
         deeper = isinstance(old, Mapping) and isinstance(value, Mapping) and "posture" not in value
         merged[key] = _merged(old, value) if deeper else value  # type: ignore[arg-type] # see above
     return merged
-
-
-class _Table:
-    """A table of a settings file, whose words are asked for one by one and none is left over."""
-
-    def __init__(self, content: Any, source: str, name: str) -> None:
-        self._source, self._name = source, name
-        if not isinstance(content, Mapping):
-            raise self.wrong("this must be a table")
-        self.left: dict[str, Any] = dict(content)
-
-    def wrong(self, what: str) -> RobotError:
-        place = f" [{self._name}]" if self._name else ""
-        return RobotError(f"{self._source}{place}: {what}")
-
-    def end(self) -> None:
-        if self.left:
-            raise self.wrong(f"the word {next(iter(self.left))!r} means nothing here")
-
-    def table(self, key: str, default: Any = None) -> "_Table":
-        return _Table(self._take(key, default), self._source, f"{self._name}.{key}".strip("."))
-
-    def text(self, key: str, default: str | None = None) -> str:
-        value = self._take(key, default)
-        if not isinstance(value, str):
-            raise self.wrong(f"{key} must be a text, not {value!r}")
-        return value
-
-    def number(self, key: str, low: float, high: float, default: float | None = None) -> float:
-        value = self._take(key, default)
-        if (
-            isinstance(value, bool)
-            or not isinstance(value, int | float)
-            or not low <= value <= high
-        ):
-            raise self.wrong(f"{key} must be a number from {low:g} to {high:g}, not {value!r}")
-        return float(value)
-
-    def skill(self, key: str) -> str:
-        name = self.text(key)
-        self.may_send(lambda: tokens.skill(name))
-        return name
-
-    def skills(self, key: str) -> tuple[str, ...]:
-        names = self._take(key, [])
-        if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-            raise self.wrong(f"{key} must be a list of skills, not {names!r}")
-        for name in names:
-            self.may_send(lambda name=name: tokens.skill(name))
-        return tuple(names)
-
-    def melody(self, key: str) -> Notes:
-        notes = self._take(key, None)
-        pairs = isinstance(notes, list) and all(
-            isinstance(note, list) and len(note) == 2 and all(type(n) is int for n in note)
-            for note in notes
-        )
-        if not pairs or not notes or not re.fullmatch(r"[\w -]{1,16}", key):
-            raise self.wrong(f"{key} must be a list of [note, value] pairs, not {notes!r}")
-        melody = tuple((note, value) for note, value in notes)
-        self.may_send(lambda: tokens.melody(melody))
-        return melody
-
-    def may_send(self, make: Any) -> None:
-        """Try to make a line for the board, and say where its refusal comes from."""
-        try:
-            make()
-        except RobotError as error:
-            raise self.wrong(str(error)) from error
-
-    def _take(self, key: str, default: Any) -> Any:
-        value = self.left.pop(key, default)
-        if value is None:
-            raise self.wrong(f"{key!r} is missing")
-        return value

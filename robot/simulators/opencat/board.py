@@ -5,19 +5,15 @@ together while it is busy, skills broken off by the next byte, brown-outs, and n
 wrong line from a right one. Everything is drawn from a seed, and no clock is read.
 """
 
-import re
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
-from robot.simulators.opencat.body import JOINTS, Body
-from robot.simulators.opencat.skills import REST, SKILLS
+from robot.simulators.opencat.habits import Habits
+from robot.simulators.opencat.interpreter import Interpreter, Job
+from robot.simulators.opencat.skills import SKILLS
 from robot.simulators.opencat.startup import QUESTION, Spoken, startup
-
-DISASTERS = frozenset("acsS!gGnwWKTXzpRxMLIfFoqtlvVzh")
-"""Tokens that calibrate, write memory, change what outlasts the line, or stop the board."""
 
 LINE_TIMEOUT = 0.010
 """A line that does not end is taken after so long a pause [s]."""
@@ -27,50 +23,6 @@ Event = tuple[float, Callable[[float], None]]
 
 LOG_KEPT = 500
 """How many of the lines taken are remembered."""
-
-
-@dataclass(frozen=True)
-class Habits:
-    """How ugly a board is."""
-
-    merges: bool = True
-    """Whether lines that wait are read as one, and skills broken off by the next byte: BiBoard.
-    Otherwise lines wait in order, and a skill is always played to its end: NyBoard."""
-
-    buffer: int = 256
-    """Bytes that wait at most; more are lost."""
-
-    answers_query: bool = True
-    """Whether "?" is answered with model and version; old boards only echo it."""
-
-    slow: float = 0.03
-    """Chance of a line that is taken only after half a second to one and a half."""
-
-    mangled: float = 0.01
-    """Chance of an echo that text without an end stands in front of."""
-
-    brown_outs: float = 0.01
-    """Chance of a skill in which the battery gives way, and the board starts anew."""
-
-    restless: float = 25.0
-    """Mean time between sensor texts, and falls, that nobody asked for [s]; 0 for none."""
-
-    battery_lasts: float = 5400.0
-    """Time until the battery is low [s]; somebody changes it ten minutes later."""
-
-
-@dataclass
-class Job:
-    """What the board is busy with."""
-
-    ends: float
-    """When it is done [s]."""
-
-    finish: Callable[[float], None]
-    """Is called then."""
-
-    skill: bool = False
-    """Whether it is a skill, which the next byte may break off."""
 
 
 class Board:
@@ -100,17 +52,19 @@ class Board:
         """How ugly it is."""
         self.log: deque[tuple[float, str]] = deque(maxlen=LOG_KEPT)
         """When which line was taken, as it was read."""
-        self.disasters: deque[str] = deque(maxlen=LOG_KEPT)
-        """Lines that calibrate, write memory or the like."""
         self.lost = 0
         """Bytes that came while too many waited."""
         self.starts = 0
         """How often it has started."""
-        self.body = Body(crossed=model.startswith("Nybble"))
-        """The robot."""
         self._random, self._model, self._version = random, model, version
+        self._interpreter = Interpreter(random, (model, version), self.habits, self._say)
+        self.body = self._interpreter.body
+        """The robot."""
+        self.disasters = self._interpreter.disasters
+        """Lines that calibrate, write memory or the like."""
         self._new_board = new_board
         self._now: float | None = None
+        self._lived = 0.0
         self._out = bytearray()
         self._forget()
 
@@ -121,7 +75,7 @@ class Board:
         self._input = bytearray()
         self._input_at = 0.0
         self._job: Job | None = None
-        self._rested = True  # whether the last token was a rest
+        self._interpreter.rested, self._interpreter.low_power = True, False
         self._noise_at = self._low_at = self._warn_at = float("inf")
         self._low_until = 0.0
 
@@ -152,12 +106,14 @@ class Board:
     def advance(self, now: float) -> None:
         """Live until time `now` [s]."""
         if self._now is None:
+            self._lived = now
             self._start(now)
         while True:
             at, happens = min(self._coming(), key=lambda event: event[0])
             if at > now:
                 break
-            happens(at)
+            self._lived = max(at, self._lived)  # what had to wait happens later than it was due
+            happens(self._lived)
         self._now = now
 
     def start_again(self) -> None:
@@ -213,7 +169,7 @@ class Board:
     def _be_restless(self, now: float) -> None:
         """Say something about sensors; now and then fall over and get up."""
         self._noise_at = now + self._pause()
-        if self._rested or self._random.random() < 0.9:
+        if self._interpreter.rested or self._random.random() < 0.9:
             yaw, pitch, roll = self._random.normal(0.0, 20.0, 3).tolist()
             self._say(f"{yaw:.2f}\t{pitch:.2f}\t{roll:.2f}")
             return
@@ -225,7 +181,8 @@ class Board:
         self._low_at, self._low_until, self._warn_at = float("inf"), now + 600.0, now
 
     def _warn(self, now: float) -> None:
-        if now < self._low_until:
+        self._interpreter.low_power = now < self._low_until
+        if self._interpreter.low_power:
             self._say("Low power: 6.71V. The robot won't move.")
             self.body.let_go(now)
             self._warn_at = now + 10.0
@@ -253,81 +210,10 @@ class Board:
         late = float(self._random.uniform(0.002, 0.030))
         if self._random.random() < self.habits.slow:
             late += float(self._random.uniform(0.5, 1.5))
-        self._job = Job(now + late, lambda at: self._do(text[0], text[1:], at))
+        self._job = Job(now + late, lambda at: self._do(text, at))
 
-    def _do(self, token: str, rest: str, now: float) -> None:
-        if self._rested and token != "d":
-            self._say("G")
-        self._rested = token == "d"
-        if token in DISASTERS:
-            self.disasters.append(token + rest)
-        match token:
-            case "?":
-                if self.habits.answers_query and not rest:
-                    self._say(self._model)
-                    self._say(self._version)
-                self._echo(token)
-            case "j":
-                self._tell_angles(now)
-                self._echo(token)
-            case "d":
-                self._say("g")
-                seconds = self.body.take(REST, now) if self.body.powered else 0.0
-                self._job = Job(now + seconds, self._let_go)
-            case "k":
-                self._play(rest, now)
-            case "i":
-                self._busy(token, self._pose(rest, now), now)
-            case "b":
-                self._busy(token, self._beep(rest), now)
-            case _:
-                self._say("Undefined token!")
-                self._echo(token)
-
-    def _play(self, name: str, now: float) -> None:
-        skill = SKILLS.get(name)
-        if skill is None:
-            self._say(f"?{name}?")
-            self._echo("k")
-            return
-        self._say(name)
-        if now < self._low_until:
-            self._echo("k")
-            return
-        seconds = self.body.take(skill, now)
-        if skill.seconds and self._random.random() < self.habits.brown_outs:
-            self._job = Job(now + seconds / 2, self._start)
-        else:
-            self._busy("k", seconds, now, skill=skill.seconds > 0)
-
-    def _pose(self, rest: str, now: float) -> float:
-        numbers = [int(number) for number in re.findall(r"-?\d+", rest)]
-        pairs = zip(numbers[::2], numbers[1::2], strict=False)
-        wanted = {joint: float(angle) for joint, angle in pairs if 0 <= joint < JOINTS}
-        return self.body.move(wanted, now) if now >= self._low_until else 0.0
-
-    def _beep(self, rest: str) -> float:
-        numbers = [int(number) for number in re.findall(r"\d+", rest)]
-        if len(numbers) < 2:
-            self.disasters.append("b" + rest)  # stored, as the volume
-            return 0.0
-        return sum(1.0 / value for value in numbers[1::2] if value)
-
-    def _let_go(self, now: float) -> None:
-        self.body.let_go(now)
-        self._echo("d")
-
-    def _busy(self, token: str, seconds: float, now: float, skill: bool = False) -> None:
-        self._job = Job(now + seconds, lambda _: self._echo(token), skill)
-
-    def _tell_angles(self, now: float) -> None:
-        self._say("=")
-        self._say("".join(f"{joint}\t" for joint in range(JOINTS)))
-        self._say("".join(f"{round(angle)},\t" for angle in self.body.angles(now)))
-
-    def _echo(self, token: str) -> None:
-        mangled = self._random.random() < self.habits.mangled
-        self._say(f"AA {token}" if mangled else token)
+    def _do(self, text: str, now: float) -> None:
+        self._job = self._interpreter.do(text, now, brown_out=self._start)
 
     def _say(self, text: str) -> None:
         self._out += f"{text}\r\n".encode("latin-1")

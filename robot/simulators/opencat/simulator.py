@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from robot.simulators.opencat.board import Board, Habits
+from robot.simulators.opencat.board import Board
+from robot.simulators.opencat.habits import Habits
 
 
 class OpenCatSimulator:

@@ -1,0 +1,20 @@
+"""What a robot has, as its model and its settings say; the board itself tells only two words."""
+
+from robot.catalogue import Catalogue
+from robot.drivers.opencat.models import MODELS
+from robot.drivers.opencat.settings import Behaviour
+
+NAME_MAX = 16
+"""Longest name in a catalogue [bytes of UTF-8]."""
+
+
+def catalogue_of(model: str, name: str, version: str, behaviour: Behaviour) -> Catalogue:
+    """Return what a robot of this model has, which calls itself `name`, or nothing."""
+    return Catalogue(
+        name=(name or "OpenCat").encode()[:NAME_MAX].decode(errors="ignore"),
+        firmware=f"OpenCat {version}".strip(),
+        joints=tuple(joint.limits for joint in MODELS[model]),
+        motions=behaviour.motions,
+        sounds=tuple(behaviour.sounds),
+        moods=tuple(behaviour.moods),
+    )

@@ -1,0 +1,162 @@
+"""The standing order: the mood that is held, or the stop; only the latest counts."""
+
+from collections import deque
+
+from robot.drivers.opencat import tokens
+from robot.drivers.opencat.exchange import Command
+from robot.drivers.opencat.settings import Behaviour, Mood
+from robot.emotion import Emotion
+from robot.feeling.words import closest_word
+
+POSTURE_WITHIN = 5.0
+"""A posture takes at most so long [s]; a joint that goes from end to end needs under 2 s."""
+
+POSE_WITHIN = 4.0
+"""A pose takes at most so long [s]."""
+
+REFUSED_TRIES = 2
+"""An order that a board did not know is sent so often: the first time may have been a wrong bit."""
+
+
+class StandingOrder:
+    """What the robot is to show until something else is ordered, and how much of it is still due.
+
+    Parameters
+    ----------
+    behaviour
+        What the model does for which mood.
+    """
+
+    def __init__(self, behaviour: Behaviour) -> None:
+        self.commanded: Emotion | None = None
+        """The emotion that was last asked for; None before, and after a stop."""
+        self.stopped = False
+        """Whether the robot has taken the posture for a stop, and is to keep it."""
+        self.number = 0
+        """Counts orders; 0 while there is none."""
+        self._behaviour = behaviour
+        self._label: str | None = None
+        self._word: str | None = None  # the mood ordered; None for a stop
+        self._due: deque[Command] = deque()
+        self._shown: tuple[str, Emotion] | None = None
+        self._refusals = 0
+        self._again = False  # whether it is due again once it has landed
+
+    def express(self, emotion: Emotion, label: str | None) -> bool:
+        """Order a mood; return whether that is another order than the one that stands."""
+        self.commanded, self._label = emotion, label
+        word = self._closest(emotion)
+        if self.number and word == self._word:
+            return False
+        self._set(word)
+        return True
+
+    def stop(self) -> None:
+        """Order the posture for a stop."""
+        self.commanded = self._label = None
+        self._set(None)
+
+    def behave(self, behaviour: Behaviour) -> None:
+        """Become another model: the order stays, what is done for it changes."""
+        self._behaviour = behaviour
+        if self.commanded is not None:
+            self._word = self._closest(self.commanded)
+        self.lose()
+
+    @property
+    def acknowledged(self) -> Emotion | None:
+        """The emotion that the robot has taken and still holds; None if it holds none.
+
+        A new emotion with the same word is taken as soon as it is asked for.
+        """
+        if self._shown is None:
+            return None
+        word, emotion = self._shown
+        same = word == self._word and self.commanded is not None
+        return self.commanded if same else emotion
+
+    @property
+    def ordered(self) -> Mood | None:
+        """The mood ordered."""
+        return self._behaviour.moods[self._word] if self.number and self._word else None
+
+    @property
+    def held(self) -> Mood | None:
+        """The mood ordered, where the robot shows it."""
+        return self.ordered if self._shown and self._shown[0] == self._word else None
+
+    @property
+    def due(self) -> Command | None:
+        """What is to be sent next; it stays due until it has landed."""
+        return self._due[0] if self._due else None
+
+    def landed(self, command: Command) -> None:
+        """Take note that a posture or a pose has been echoed."""
+        if command.order != self.number:
+            return
+        self._refusals = 0
+        if self._due and self._due[0] == command:
+            self._due.popleft()
+        if self._due:
+            return
+        self.stopped = command.word is None
+        if command.word is not None and self.commanded is not None:
+            self._shown = command.word, self.commanded
+        else:
+            self._shown = None
+        if self._again:
+            self.hold_again()
+
+    def was_refused(self, command: Command) -> None:
+        """Take note that the board does not know a posture: it is tried again, then left."""
+        if command.order != self.number:
+            return
+        self._refusals += 1
+        if self._refusals >= REFUSED_TRIES:
+            self._shown = None
+            self._due.clear()
+
+    def hold_again(self) -> None:
+        """Make the whole order due: something has displaced it."""
+        self._again = False
+        self._due.clear()
+        mood = self.ordered
+        if mood is not None:
+            self._due.append(self._posture(mood.posture))
+            if mood.pose:
+                line = tokens.pose(mood.pose)
+                self._due.append(Command("pose", line, "", POSE_WITHIN, self._word, self.number))
+        elif self.number:
+            self._due.append(self._posture(self._behaviour.stop))
+
+    def disturb(self) -> None:
+        """Take note that the robot did something by itself, got up after a fall for example."""
+        if self._due:
+            self._again = True
+        else:
+            self.hold_again()
+
+    def let_go(self) -> None:
+        """Take note that the robot lies without power: it shows nothing, and nothing is due."""
+        self._shown, self.stopped = None, False
+        self._due.clear()
+
+    def lose(self) -> None:
+        """Take note that the robot may have lost it: it is due from its beginning."""
+        self._shown, self.stopped = None, False
+        self._refusals = 0
+        self.hold_again()
+
+    def _set(self, word: str | None) -> None:
+        self._word = word
+        self.number += 1
+        self._refusals = 0
+        self.stopped = False
+        self.hold_again()
+
+    def _closest(self, emotion: Emotion) -> str:
+        return closest_word(tuple(self._behaviour.moods), emotion, self._label) or "neutral"
+
+    def _posture(self, name: str) -> Command:
+        line = tokens.skill(name)
+        return Command("posture", line, name, POSTURE_WITHIN, self._word, self.number)
