@@ -10,6 +10,7 @@ from pathlib import Path
 from app.clock import SessionClock
 from app.errors import AppError
 from app.gaps import Gaps
+from app.players import PlayerLine
 from app.playground import Given, Playground, Step
 from app.robots import RobotLine
 from app.scenarios import Inputs
@@ -68,6 +69,9 @@ class Plan:
 
     patience: float = PATIENCE_S
     """How long a live source may be lost before the session ends [s]."""
+
+    player: PlayerLine | None = None
+    """Who publishes what the character does and feels; the caller closes it."""
 
     robot_settings: Path | None = None
     """A TOML file for the robot's driver, or None."""
@@ -142,6 +146,8 @@ class _Play:
         prepared = self._prepare(frame) if self._prepare else frame
         step = plan.playground.step(prepared, inputs, given)
         self._robot.feel(step.emotion)
+        if plan.player is not None:
+            plan.player.tell(step.command, step.emotion)
         seconds = time.perf_counter() - began
         view = self._robot.view()
         if self._recorder is not None:

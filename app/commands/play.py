@@ -1,16 +1,20 @@
 """`cubeling play`."""
 
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 
+from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.progress import finished_video, play_to_end, tell_guess
+from app.network import SITE
 from app.opening import Wish, open_session
 from app.scenarios import scenario_cube
 from app.show.display import require_display
+from robot.network import Credentials
 
 CAMERA = "camera:0"
 
@@ -81,6 +85,11 @@ def play(
         str, typer.Option(help="What the character's eyes follow: auto, cube, hand, camera, none.")
     ] = "auto",
     pictures: Pictures = True,
+    mqtt: Broker = None,
+    player: PlayerName = None,
+    site: Site = SITE,
+    password_file: PasswordFile = None,
+    ca: Ca = None,
 ) -> None:
     """Play with the cube in front of a camera.
 
@@ -111,7 +120,8 @@ def play(
     if pictures and output is None:
         require_display()
     with ExitStack() as closing:
-        plan = open_session(wish, closing)
+        line = publisher(mqtt, player, site, Credentials(None, password_file, ca), closing)
+        plan = replace(open_session(wish, closing), player=line)
         tell_guess(wish, plan.source, Console())
         summary = play_to_end(plan, Console(), f"playing {scenario}")
     Console().print(summary)

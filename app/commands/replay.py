@@ -1,6 +1,7 @@
 """`cubeling replay`."""
 
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -8,6 +9,7 @@ import typer
 from rich.console import Console
 
 from app.checking import check_session
+from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.play import (
     Actor,
     Codec,
@@ -20,9 +22,11 @@ from app.commands.play import (
 )
 from app.commands.progress import finished_video, play_to_end, tell_guess
 from app.errors import AppError
+from app.network import SITE
 from app.opening import Wish, open_session
 from app.session import about, salvaged
 from app.show.display import has_display
+from robot.network import Credentials
 
 
 def replay(
@@ -52,6 +56,11 @@ def replay(
     check: Annotated[
         bool, typer.Option(help="Compare every recorded channel with what the frames lead to now.")
     ] = False,
+    mqtt: Broker = None,
+    player: PlayerName = None,
+    site: Site = SITE,
+    password_file: PasswordFile = None,
+    ca: Ca = None,
 ) -> None:
     """Play a recorded session: in a window, to a video, or only to its summary.
 
@@ -85,7 +94,10 @@ def replay(
         console.print(verdict)
         raise typer.Exit(0 if verdict.identical else 1)
     with ExitStack() as closing:
+        line = publisher(mqtt, player, site, Credentials(None, password_file, ca), closing)
         plan = open_session(wish, closing)
+        if line is not None:  # others live in real time
+            plan = replace(plan, player=line, paced=True)
         tell_guess(wish, plan.source, console)
         summary = play_to_end(plan, console, f"replaying {session.name}")
     console.print(summary)

@@ -64,11 +64,13 @@ REPLACED = "another program, started later, speaks as {}: give one of them anoth
 class Endpoint(Protocol):
     """A member's part in the talk. Whoever owns clock and bus calls it; nothing here waits."""
 
-    will: Letter | None
-    """What the broker is to publish when the connection breaks."""
+    @property
+    def will(self) -> Letter | None:
+        """What the broker is to publish when the connection breaks."""
 
-    filters: tuple[str, ...]
-    """What it wants to hear, in the order in which it wants to hear what is retained."""
+    @property
+    def filters(self) -> tuple[str, ...]:
+        """What it wants to hear, in the order in which it wants to hear what is retained."""
 
     @property
     def trouble(self) -> str:
