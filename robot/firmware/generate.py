@@ -7,12 +7,12 @@
 from pathlib import Path
 
 from robot.emotion import ANGRY_BELOW, HAPPY_ABOVE
+from robot.motions import Motion, Sway
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.schema import FORMS, HEADER, FieldForm, MessageForm, form_of
 from robot.protocol.wire import MAX_BODY, MAX_FRAME
 from robot.simulators.cubeling import dinosaur
-from robot.simulators.cubeling.dinosaur import Motion, Sway
 
 BOARD = Path(__file__).parent / "dino"
 """The folder that is copied to the board."""

@@ -59,7 +59,7 @@ def test_no_joint_leaves_its_limits_or_turns_faster_than_it_can(wishes):
 @pytest.mark.parametrize("motion", dinosaur.MOTIONS, ids=lambda motion: motion.name)
 def test_every_motion_asks_only_what_the_joints_can_do(motion):
     times = np.arange(0, motion.period, STEP)
-    angles = np.array([motion.angles(t) for t in [*times, motion.period]])
+    angles = np.array([motion.angles(t, dinosaur.JOINTS) for t in [*times, motion.period]])
     assert (angles >= dinosaur.LOW - 1e-9).all()
     assert (angles <= dinosaur.HIGH + 1e-9).all()
     assert np.allclose(angles[0], angles[-1])  # a loop closes

@@ -4,10 +4,10 @@ import numpy as np
 
 from robot.emotion import Emotion
 from robot.feeling.mood import LABELS, next_label
+from robot.motions import Motion
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
 from robot.simulators.cubeling.device import BodyState
-from robot.simulators.cubeling.dinosaur import Motion
 
 STEP = 0.020
 """Everything advances in steps of this length [s], as hobby servos do; so the outcome does not
@@ -125,7 +125,7 @@ class DinosaurBody:
             self._start_motion(self._loop)
         wanted = np.zeros_like(self._angles)
         if not self._still:
-            wanted = self._motion.angles(self._motion_time)
+            wanted = self._motion.angles(self._motion_time, dinosaur.JOINTS)
         wanted = np.clip(wanted, dinosaur.LOW, dinosaur.HIGH)
         reach = dinosaur.SPEED * STEP
         self._angles = self._angles + np.clip(wanted - self._angles, -reach, reach)

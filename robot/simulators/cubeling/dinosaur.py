@@ -4,13 +4,13 @@ Joints, limits and speeds are those of the Pleo Monitor (OliverHoffmann/PleoComm
 top speed was published, 50°/s is assumed. The motions are our own.
 """
 
-from dataclasses import dataclass
 from math import radians
 
 import numpy as np
 from numpy.typing import NDArray
 
 from robot.catalogue import Catalogue, JointLimits
+from robot.motions import Motion, Sway
 
 Array = NDArray[np.float64]
 
@@ -32,51 +32,8 @@ _JOINTS_DEG = (
 )
 
 
-@dataclass(frozen=True)
-class Sway:
-    """One joint of a motion: a sine about an offset."""
-
-    offset: float = 0.0
-    """Middle of the sway [°]."""
-
-    amplitude: float = 0.0
-    """Half its width [°]."""
-
-    times: int = 1
-    """Whole cycles in one period of the motion, so that a loop closes."""
-
-    phase: float = 0.0
-    """Where in its cycle it starts [cycles]."""
-
-
-@dataclass(frozen=True)
-class Motion:
-    """What the body does, and the sound that it starts with."""
-
-    name: str
-    """What it is called."""
-
-    period: float
-    """Length of one round [s]."""
-
-    sways: dict[str, Sway]
-    """What each joint does; those not named stay neutral."""
-
-    sound: str | None = None
-    """Name of the sound of a mood's loop."""
-
-    def angles(self, t: float) -> Array:
-        """Return the angles asked for, `t` seconds into it, (joints,) [rad]."""
-        angles = np.zeros(len(_JOINTS_DEG))
-        for joint, sway in self.sways.items():
-            turn = sway.times * t / self.period + sway.phase
-            degrees = sway.offset + sway.amplitude * np.sin(2 * np.pi * turn)
-            angles[JOINT_INDEX[joint]] = np.radians(degrees)
-        return angles
-
-
-JOINT_INDEX = {name: index for index, (name, *_) in enumerate(_JOINTS_DEG)}
-"""Index of each joint by name."""
+JOINTS = tuple(name for name, *_ in _JOINTS_DEG)
+"""Names of the joints, in the order of the catalogue."""
 
 MOOD_LOOPS = (
     Motion(
