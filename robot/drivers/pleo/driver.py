@@ -43,7 +43,7 @@ class PleoDriver:
         self._console = Console(settings.boot_text)
         self._wishes = Wishes(settings)
         self._start: deque[Command] = deque()
-        self._reassure = False  # whether APP UNLOAD must come next, after an answer was lost
+        self._reassure = False  # whether APP UNLOAD must come next: Pleo may have restarted
         self._unsure = 0  # answers lost in a row
         self._heard: float | None = None
         self._pinged = 0.0
@@ -201,11 +201,15 @@ class PleoDriver:
         elif self._phase == "starting":
             self._started(landing, now)
         else:
-            self._reassure |= landing.outcome == "unsure"
             self._measure(landing)
-            if landing.command in (commands.NUDGE, commands.APP_UNLOAD, commands.STATS_POWER):
-                return
-            self._wishes.land(landing)
+            # All of these may be a restart that nobody saw.
+            late = landing.ended - landing.sent >= timing.DEGRADED_AFTER
+            failed = answer.error is not None and landing.command.text.startswith("MOTION PLAY")
+            self._reassure |= late or failed or landing.outcome == "unsure"
+            if landing.command is commands.APP_UNLOAD:
+                self._reassure = False
+            elif landing.command not in (commands.NUDGE, commands.STATS_POWER):
+                self._wishes.land(landing)
 
     def _started(self, landing: Landing, now: float) -> None:
         if landing.outcome == "unsure":  # all of these may be sent twice
@@ -230,8 +234,7 @@ class PleoDriver:
             command = self._start.popleft()
             self._console.send(command, now, patient=command is commands.APP_UNLOAD)
             return
-        if self._reassure:  # silence may have been a restart that nobody saw
-            self._reassure = False
+        if self._reassure:
             self._console.send(commands.APP_UNLOAD, now)
             return
         command_due = self._wishes.next(now)

@@ -30,7 +30,7 @@ BABBLE_EVERY = 0.4
 """Pleo's own behaviour says something this often in the mean [s]."""
 
 SLOW_CHANCE = 0.01
-"""So many answers take `SLOW` longer."""
+"""So many answers take `SLOW` longer; never that to an empty line, for there is nothing to do."""
 
 SLOW = (0.5, 4.0)
 """How much longer [s]."""
@@ -183,7 +183,7 @@ class PleoSimulator:
         if self.echo:
             self._say(f"{line}\r\n", self._now)
         lines, took = self.monitor.obey(line)
-        if self._random.random() < self.slow_chance:
+        if line.strip() and self._random.random() < self.slow_chance:
             took += float(self._random.uniform(*SLOW))
         self._answer("".join(f"{one}\r\n" for one in lines), took)
         self._type(rest)
