@@ -52,6 +52,8 @@ def conform(
     if list_:
         console.print(listing(checks))
         return
+    if output is not None:
+        output.write_text("")  # a file that cannot be written is better known before than after
     line_port = opener(port)()
     try:
         report = examine(
@@ -64,7 +66,7 @@ def conform(
         raise RobotError(f"{port}: {error}") from error
     finally:
         line_port.close()
-    console.print(verdict(report))
+    console.print(verdict(report), soft_wrap=True)
     if output is not None:
         output.write_text(json.dumps(as_json(report, port), indent=1) + "\n", "utf-8")
     if not report.conforms:
@@ -81,7 +83,7 @@ def show(result: Result, console: Console) -> None:
         f"{result.check.name:{NAME_WIDTH}}",
         (f"§{result.check.section}  {result.remark}".rstrip(), "dim"),
     )
-    console.print(line)
+    console.print(line, soft_wrap=True)
     if result.verdict == "failed":
         told = (
             ("required", result.check.requires),
@@ -102,7 +104,9 @@ def verdict(report: Report) -> Text:
         for mark in ("ok", "failed", "skipped")
     }
     numbers = ", ".join(f"{count} {mark}" for mark, count in counts.items() if count)
-    ending = ("It conforms.", "bold green") if report.conforms else ("It does not.", "bold red")
+    ending = (
+        ("It conforms.", "bold green") if report.conforms else ("It does not conform.", "bold red")
+    )
     cut = f" The rest was left out: {report.cut_short}." if report.cut_short else ""
     return Text.assemble(
         f"\n{welcome.name} ({welcome.firmware}), version {welcome.version}: ",

@@ -1,5 +1,6 @@
 """What a check tries a robot with: it speaks as a host would, or as none should, and listens."""
 
+import contextlib
 from collections import deque
 from collections.abc import Callable, Iterable
 from typing import Any, TypeVar
@@ -263,7 +264,7 @@ class Probe:
             AT_ONCE,
         )
         if found is None:
-            raise UnmetError(f"STATE({count=}) after {after}, then BEAT({count})", told(before))
+            raise UnmetError(f"STATE(beat={count}) after {after}, then BEAT({count})", told(before))
         return [heard for heard in before if not isinstance(heard.message, m.State)]
 
     def unanswered(self, data: bytes, what: str) -> None:
@@ -273,8 +274,14 @@ class Probe:
             raise UnmetError(f"no answer to {what} [{shown_bytes(data)}]", told(came))
 
     def goodbye(self) -> None:
-        """Leave the robot neutral and without a session."""
-        self.say(m.Bye())
+        """Leave the robot neutral, not stopped and without a session, whatever it was doing.
+
+        It is all said at once and nothing waited for: the port may be about to close.
+        """
+        self.next_host()
+        self.next_session()
+        with contextlib.suppress(UnmetError):  # it does not read its line
+            self.say(m.Hello(1, self.host), m.Express(1, 0.0, 0.0), m.Bye(), version=1)
 
 
 def told(heard: Iterable[Heard]) -> str:

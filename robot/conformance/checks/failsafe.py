@@ -102,7 +102,7 @@ def failsafe_keeps_the_numbers(robot: Probe) -> None:
 
 @FAILSAFE.must
 def failsafe_goes_to_neutral(robot: Probe) -> None:
-    """After the failsafe the emotion shown goes to (0, 0), and a motion that was played ends."""
+    """After the failsafe a motion ends, and what is shown goes to (0, 0) and the first mood."""
     _stirred(robot)
     robot.hear(ALONE)
     robot.again()
@@ -112,8 +112,10 @@ def failsafe_goes_to_neutral(robot: Probe) -> None:
 @FAILSAFE.must
 def failsafe_acts_in_time(robot: Probe) -> None:
     """The way to neutral has begun 500 ms after the last message, not at the next greeting."""
-    _stirred(robot)
-    begin = robot.beat("EXPRESS")
+    robot.calm()
+    robot.express(0.4, 0.4)
+    _reaches(robot, 0.4)  # all of it, so that it does not go on rising in the silence
+    begin = robot.live(ACTS_WITHIN)[-1]
     robot.hear(ALONE + 0.5)
     robot.again()
     now = robot.beat("HELLO")
@@ -178,7 +180,7 @@ def bye_ends_the_session(robot: Probe) -> None:
 
 @FAILSAFE.must
 def bye_goes_to_neutral(robot: Probe) -> None:
-    """After BYE the emotion shown goes to (0, 0), and a motion that was played ends."""
+    """After BYE a motion ends, and what is shown goes to (0, 0) and the first mood."""
     _stirred(robot)
     robot.say(m.Bye())
     robot.again()
@@ -187,7 +189,7 @@ def bye_goes_to_neutral(robot: Probe) -> None:
 
 @FAILSAFE.must
 def another_host_goes_to_neutral(robot: Probe) -> None:
-    """When another host greets, the emotion shown goes to (0, 0), and a motion ends."""
+    """When another host greets, a motion ends, and what is shown goes to (0, 0), the first mood."""
     _stirred(robot)
     robot.fresh()
     _becomes_neutral(robot, "HELLO of another host")
@@ -256,16 +258,17 @@ def _becomes_neutral(robot: Probe, after: str) -> None:
     """See that nothing goes on of what `_stirred` began."""
     assert robot.welcome is not None
     played = robot.welcome.motions - 1
+    moods = (0,) if robot.welcome.moods else (0, m.NOTHING)
     begin = robot.now
 
     def neutral(state: m.State) -> bool:
         if played > 0 and state.motion == played and robot.now > begin + ACTS_WITHIN:
             raise UnmetError(f"the end of motion {played} after {after}", f"motion={played}")
-        return max(abs(state.valence), abs(state.arousal)) < NEUTRAL
+        return max(abs(state.valence), abs(state.arousal)) < NEUTRAL and state.mood in moods
 
     last = robot.live(SHOWN_WITHIN, neutral)[-1]
     if not neutral(last):
         raise UnmetError(
-            f"emotion (0, 0) within {SHOWN_WITHIN:.0f} s after {after}",
-            f"({last.valence}, {last.arousal})",
+            f"emotion (0, 0) and mood 0 within {SHOWN_WITHIN:.0f} s after {after}",
+            f"({last.valence}, {last.arousal}) and mood {last.mood}",
         )

@@ -209,6 +209,12 @@ class PlaysOnWhenAlone(Mutant):
         super().say(session, message)
 
 
+@breaks("failsafe goes to neutral", "bye goes to neutral", "another host goes to neutral")
+class KeepsItsMoodWhenAlone(Stating):
+    def alter(self, state: m.State) -> m.State:
+        return replace(state, mood=2)
+
+
 @breaks("failsafe acts in time")
 class GoesToNeutralWhenGreeted(Mutant):
     def prepare(self) -> None:

@@ -1,0 +1,211 @@
+"""Whatever is at the other end, the suite comes to an end and says what it found."""
+
+import pytest
+import serial
+
+from robot.conformance import PortLine, SimulatedLine, all_checks, chosen, examine, heard, probe
+from robot.conformance.probe import Probe
+from robot.conformance.suite import LONGEST
+from robot.errors import RobotError
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.schema import unpack
+from robot.protocol.wire import decode_frame
+from robot.simulators.cubeling import body
+from robot.simulators.cubeling.simulator import Simulator
+from tests.robot.conformance.mutants.base import Mutant
+
+
+def verdicts(report) -> set[str]:
+    return {one.verdict for one in report.results}
+
+
+class Silent(Mutant):
+    def hear(self, number, session, body):
+        pass
+
+
+def test_a_robot_that_says_nothing_is_given_up_after_two_seconds():
+    line = SimulatedLine(Silent())
+    begin = line.now()
+    with pytest.raises(RobotError, match=r"no robot of this protocol answers.*nothing came"):
+        examine(line, all_checks(), 1)
+    assert line.now() - begin < timing.ANSWER_WITHIN + 0.5
+
+
+class Babbler(Silent):
+    def live(self):
+        self.write(bytes(range(256)))
+
+
+def test_a_robot_that_only_babbles_is_given_up_too():
+    with pytest.raises(RobotError, match=r"bytes came, but no WELCOME"):
+        examine(SimulatedLine(Babbler()), all_checks(), 1)
+
+
+class BabblingRobot(Mutant):
+    def live(self):
+        if round(self.now * 1000) % 20 == 0:
+            self.write(b"\0oh so much to say" * 5)
+
+
+def test_a_robot_that_babbles_between_its_frames_fails_in_bounded_time():
+    line = SimulatedLine(BabblingRobot())
+    begin = line.now()
+    report = examine(line, all_checks(), 1)
+    assert not report.conforms
+    assert {one.check.name for one in report.results if one.verdict == "failed"} >= {
+        "sends valid frames",
+        "silent without session",
+    }
+    assert line.now() - begin < LONGEST + 15
+
+
+class StatesWithoutEnd(Mutant):
+    """Sends a valid STATE every millisecond, in a session or not."""
+
+    def live(self):
+        state = m.State(0, 0, 0, 0.0, 0.0, 1.0, 0, m.NOTHING, m.NOTHING, (0.0,) * 16)
+        self.send(self.session or 1, state)
+
+
+def test_a_robot_that_never_stops_sending_states_fills_no_memory(monkeypatch):
+    monkeypatch.setattr(heard, "STATES_KEPT", 50)
+    monkeypatch.setattr(probe, "QUEUE_MAX", 50)
+    robot = Probe(SimulatedLine(StatesWithoutEnd()), 1)
+    robot.fresh()
+    assert len(robot.hear(0.2)) == len(robot.log.states) == 50
+
+
+class Hangs(Mutant):
+    def prepare(self):
+        self.heard = 0
+
+    def hear(self, number, session, body):
+        self.heard += 1
+        if self.heard < 300:
+            super().hear(number, session, body)
+
+    def say(self, session, message):
+        if self.heard < 300:
+            super().say(session, message)
+
+
+def test_a_robot_that_hangs_in_the_middle_fails_and_the_rest_is_left_out():
+    line = SimulatedLine(Hangs())
+    begin = line.now()
+    report = examine(line, all_checks(), 1)
+    assert len(report.results) == len(all_checks())
+    assert verdicts(report) == {"ok", "failed", "skipped"}
+    assert report.cut_short == "it no longer answers a greeting"
+    assert not report.conforms
+    assert line.now() - begin < 10
+
+
+def test_when_time_is_up_the_rest_is_left_out_and_the_robot_does_not_conform():
+    report = examine(SimulatedLine(Simulator()), all_checks(), 1, longest=1.0)
+    assert "have taken 1 s" in report.cut_short
+    assert not report.conforms
+
+
+def test_a_robot_that_takes_five_seconds_for_an_emotion_has_time_enough(monkeypatch):
+    monkeypatch.setattr(body, "FEELING_SPEED", 0.31)
+    report = examine(SimulatedLine(Simulator()), all_checks(), 1)
+    assert report.conforms
+    assert 40 < report.seconds < LONGEST
+
+
+class Listener(Simulator):
+    """Writes down what it is told."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.told: list[object] = []
+
+    def receive(self, data, now):
+        for frame in data.split(b"\0"):
+            if len(frame) > 4:
+                self.told.append(unpack(decode_frame(frame), "host")[1])
+        super().receive(data, now)
+
+
+def test_whatever_happens_the_robot_is_left_neutral_and_without_a_session():
+    robot = Listener()
+
+    def interrupt(result) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        examine(SimulatedLine(robot), chosen(["stop holds"]), 1, interrupt)
+    assert isinstance(robot.told[-1], m.Bye)
+    assert robot.link.session == 0
+    assert robot.body.target.valence == robot.body.target.arousal == 0
+    assert not robot.body.state().still
+
+
+class DeadPort:
+    """A port that is pulled out after so many reads, or does not take bytes."""
+
+    def __init__(self, reads: int = 0, full: bool = False) -> None:
+        self.reads, self.full = reads, full
+
+    @property
+    def in_waiting(self) -> int:
+        return 1
+
+    def read(self, size: int = 1, /) -> bytes:
+        self.reads -= 1
+        if self.reads < 0:
+            raise serial.SerialException("device reports readiness to read but returned no data")
+        return b"\1"
+
+    def write(self, data: bytes, /) -> int:
+        if self.full:
+            raise serial.SerialTimeoutException("Write timeout")
+        return len(data)
+
+    def close(self) -> None:
+        pass
+
+
+def ticking():
+    time = 0.0
+
+    def clock() -> float:
+        nonlocal time
+        time += 0.01
+        return time
+
+    return clock
+
+
+def test_a_port_that_is_pulled_out_ends_the_suite_in_one_line():
+    with pytest.raises(RobotError, match="the port went away in the middle of the checks"):
+        examine(PortLine(DeadPort(reads=20), ticking()), all_checks(), 1)
+
+
+def test_a_robot_that_does_not_read_its_line_is_given_up():
+    with pytest.raises(RobotError, match="no robot of this protocol answers"):
+        examine(PortLine(DeadPort(reads=10**6, full=True), ticking()), all_checks(), 1)
+
+
+class Version1(Mutant):
+    def hear(self, number, session, body):
+        if number == 0x01 and len(body) > 3:
+            body = body[:3] + bytes([min(body[3], 1)]) + body[4:]
+        if number == 0x10:
+            body = body[:11]
+        super().hear(number, session, body)
+
+
+def test_a_robot_of_version_1_conforms():
+    report = examine(SimulatedLine(Version1()), all_checks(), 1)
+    assert report.conforms
+    assert report.welcome.version == 1
+    skipped = [one.check.name for one in report.results if one.verdict == "skipped"]
+    assert skipped == ["express of version 2 used", "unknown mood refused"]
+
+
+def test_our_simulated_robot_conforms():
+    report = examine(SimulatedLine(Simulator(7)), all_checks(), 2**32 - 1)
+    assert verdicts(report) == {"ok"}
