@@ -1,5 +1,6 @@
 """The firmware in virtual time: a board that only remembers, and the robot on it."""
 
+import contextlib
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -134,7 +135,12 @@ def dino() -> Dino:
 def desk() -> Iterator[Desk]:
     """Run the firmware, as it is, behind a pseudo-terminal."""
     made = Desk()
-    thread = threading.Thread(target=run, args=(made, Table(servos)), daemon=True)
+
+    def live() -> None:
+        with contextlib.suppress(SystemExit):  # by `close`
+            run(made, Table(servos))
+
+    thread = threading.Thread(target=live, daemon=True)
     thread.start()
     yield made
     made.close()

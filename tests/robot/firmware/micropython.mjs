@@ -1,11 +1,13 @@
 // Runs the firmware in MicroPython itself, compiled to WebAssembly.
 //
-// node micropython.mjs INTERPRETER FOLDER SCRIPT [pin=value …]
+//     node micropython.mjs INTERPRETER FOLDER SCRIPT
 //
-// Copies FOLDER/dino into the interpreter's file system and runs SCRIPT there. If the script leaves a
-// function `turn`, that is called for as long as standard input is open; then bytes go both ways:
-// `host.read()` gives what has come, `host.write(bytes)` sends.
+// copies FOLDER/dino into the interpreter's file system and runs SCRIPT there. If the script leaves a
+// function `again`, that is called until it returns False. If it leaves `turn`, the robot is put behind a TCP port on this machine, whose number is printed: then
+// `host.next()` gives the next byte that has come, or -1, and `host.write(hex)` sends bytes.
+// It ends when standard input does.
 import fs from 'node:fs';
+import net from 'node:net';
 import path from 'node:path';
 
 const [interpreter, folder, script] = process.argv.slice(2);
@@ -20,18 +22,29 @@ for (const name of fs.readdirSync(path.join(folder, 'dino'))) {
 }
 
 const waiting = [];
-const start = performance.now();
+let client = null;
 mp.registerJsModule('host', {
   next: () => (waiting.length ? waiting.shift() : -1),
-  write: (hex) => { fs.writeSync(1, Buffer.from(hex, 'hex')); },
-  milliseconds: () => Math.floor(performance.now() - start),
+  write: (hex) => { client?.write(Buffer.from(hex, 'hex')); },
+  milliseconds: () => Math.floor(performance.now()),
 });
 mp.runPython("import sys\nsys.path.insert(0, '/')");
 mp.runPython(fs.readFileSync(script, 'utf8'));
 
+// Between two calls it collects its garbage, and only then.
+const again = mp.globals.get('again');
+while (again?.()) ;
+
 const turn = mp.globals.get('turn');
 if (turn) {
-  process.stdin.on('data', (data) => { waiting.push(...data); turn(); });
-  process.stdin.on('end', () => process.exit(0));
+  const server = net.createServer({ noDelay: true }, (socket) => {
+    client = socket;
+    socket.on('data', (data) => { waiting.push(...data); turn(); });
+    socket.on('error', () => {});
+    socket.on('close', () => { if (client === socket) client = null; });
+  });
+  server.listen(0, '127.0.0.1', () => console.log(server.address().port));
   setInterval(() => turn(), 5);
+  process.stdin.on('end', () => process.exit(0));
+  process.stdin.resume();
 }

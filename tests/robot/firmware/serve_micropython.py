@@ -1,4 +1,4 @@
-"""Run by MicroPython: the robot on a board whose line is the interpreter's standard streams."""
+"""Run by MicroPython, see micropython.mjs: the robot on a board whose line is a TCP port."""
 # ruff: noqa
 # mypy: ignore-errors
 

@@ -1,0 +1,241 @@
+"""The firmware's body: servos that are never hurried, feelings at their own pace, and rest."""
+
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, get_args
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robot.feeling.mood import Label, next_label
+from robot.firmware import generate
+from robot.firmware.dino import body, motions, servos, sounds
+from robot.firmware.dino.joints import RETRY, STAGGER
+from robot.firmware.dino.robot import live, run
+from robot.firmware.dino.table import Table
+from robot.protocol import messages as m
+from robot.simulators.cubeling import dinosaur
+from tests.robot.firmware.conftest import Dino, Pulse, VirtualBoard
+
+SERVOS = {servo.pin: servo for servo in Table(servos).servos}
+
+COMMANDS = st.lists(
+    st.tuples(
+        st.one_of(
+            st.builds(m.Express, st.just(1), st.floats(-1, 1), st.floats(-1, 1),
+                      st.sampled_from([0, 1, 2, 255])),
+            st.builds(m.Play, st.just(1), st.just(1), st.integers(0, 7)),
+            st.builds(m.Stop, st.just(1)),
+            st.none(),
+        ),
+        st.sampled_from([5, 20, 33, 150, 600, 3000]),
+        st.sampled_from([1, 5, 7, 30, 90]),
+    ),
+    max_size=12,
+)  # fmt: skip
+"""Commands, how long each lasts [ms], and how often the board gets to look meanwhile [ms]."""
+
+
+def obey(dino: Dino, commands: list[tuple[Any, int, int]]) -> None:
+    """Let the body do what it is told."""
+    dino.hears(m.Hello(2, 9))
+    number = 0
+    for command, lasts, step in commands:
+        if command is not None:
+            number += 1
+            dino.hears(type(command)(number, *list(vars(command).values())[1:]))
+        dino.lives(lasts, step)
+
+
+@given(COMMANDS)
+@settings(max_examples=60)
+def test_no_servo_is_ever_sent_faster_than_its_top_speed_or_beyond_its_limits(commands):
+    dino = Dino()
+    obey(dino, commands)
+    last: dict[int, Pulse] = {}
+    for pulse in dino.board.pulses:
+        servo = SERVOS[pulse.pin]
+        per_degree = (servo.longest - servo.shortest) / 180
+        angle = ((pulse.us - servo.shortest) / per_degree - servo.neutral) * servo.direction
+        assert servo.low - 0.1 <= angle <= servo.high + 0.1
+        before = last.get(pulse.pin)
+        if before is not None:
+            degrees = abs(pulse.us - before.us) / per_degree
+            # A pulse is a whole microsecond, a tenth of a degree.
+            assert degrees <= servo.speed * (pulse.time - before.time) / 1000 + 0.1
+        last[pulse.pin] = pulse
+
+
+def test_servos_get_their_first_pulse_at_neutral_and_one_after_the_other(dino):
+    dino.lives(2000, step=1)
+    first: dict[int, Pulse] = {}
+    for pulse in dino.board.pulses:
+        first.setdefault(pulse.pin, pulse)
+    assert list(first) == list(SERVOS)
+    times = [pulse.time for pulse in first.values()]
+    assert all(after - before >= STAGGER for before, after in pairwise(times))
+    for pin, pulse in first.items():
+        servo = SERVOS[pin]
+        share = (pulse.us - servo.shortest) / (servo.longest - servo.shortest)
+        assert share == pytest.approx(servo.neutral / 180, abs=1e-3)
+
+
+def test_it_lives_without_a_host_then_rests_with_limp_servos_and_wakes_for_a_host(dino):
+    dino.lives(30_000)
+    assert len({pulse.us for pulse in dino.board.pulses}) > 50, "it should breathe"
+    dino.lives(40_000)
+    assert [pulse.us for pulse in dino.board.pulses[-5:]] == [0] * 5
+    assert dino.joints.neutral
+    assert dino.joints.limp
+    count = len(dino.board.pulses)
+    dino.lives(60_000)
+    assert len(dino.board.pulses) == count
+    dino.hears(m.Hello(2, 9))
+    dino.hears(m.Beat(1))
+    flags = dino.says()[-1][1].flags
+    assert flags & m.LIMP
+    dino.lives(100)
+    dino.hears(m.Beat(2))
+    flags = dino.says()[-1][1].flags
+    assert not flags & m.LIMP
+    assert flags & m.RECKONED
+
+
+def test_a_servo_driver_that_is_unplugged_makes_it_limp_and_it_says_so(dino):
+    dino.hears(m.Hello(2, 9))
+    dino.lives(400)
+    dino.board.dead = True
+    dino.lives(40)
+    dino.hears(m.Beat(1))
+    assert dino.says()[-1][1].flags & m.LIMP
+    where = list(dino.joints.angles)
+    dino.lives(300)
+    assert dino.joints.angles == where, "what has no power does not move"
+    dino.board.dead = False
+    dino.board.pulses.clear()
+    dino.lives(RETRY + 5 * STAGGER + 100)
+    dino.hears(m.Beat(2))
+    assert {pulse.pin for pulse in dino.board.pulses} == set(SERVOS)
+    assert all(dino.joints.powered)
+
+
+def test_a_feeling_is_shown_at_a_bounded_rate_in_any_direction():
+    for valence, arousal in ((1.0, 0.0), (0.6, -0.8), (0.001, 1.0), (-1.0, 1.0)):
+        dino = Dino()
+        dino.hears(m.Hello(2, 9))
+        dino.hears(m.Express(1, valence, arousal))
+        dino.lives(400)
+        shown = (dino.robot.body.valence**2 + dino.robot.body.arousal**2) ** 0.5
+        assert 3900 <= shown <= 4020
+        for _ in range(5):
+            dino.hears(m.Beat(0))
+            dino.lives(300)
+        assert dino.robot.body.valence == round(1e4 * valence)
+        assert dino.robot.body.arousal == round(1e4 * arousal)
+
+
+@given(st.lists(st.sampled_from([-1.0, -0.4, -0.3, -0.2, 0.0, 0.2, 0.3, 0.4, 1.0]), max_size=6))
+@settings(max_examples=40)
+def test_without_a_word_it_chooses_the_mood_that_the_simulated_robot_would(valences):
+    dino = Dino()
+    dino.hears(m.Hello(2, 9))
+    label: Label = "neutral"
+    for number, valence in enumerate(valences, 1):
+        dino.hears(m.Express(number, valence, 0.0))
+        for _ in range(22):
+            dino.hears(m.Beat(0))
+            dino.lives(100, step=20)
+            # 100 ms hold five steps; the words on the way may change in each of them.
+            for _ in range(3):
+                label = next_label(label, dino.robot.body.valence / 1e4)
+        assert dino.portrait() == (valence, label)
+
+
+def test_after_an_error_the_servos_are_limp_and_the_robot_is_back():
+    class Failing(VirtualBoard):
+        errors: list[BaseException] = []  # noqa: RUF012 # one board, one test
+        turns = 0
+
+        def elapsed(self) -> int:
+            self.now += 5
+            return 5
+
+        def wait(self, ms: int) -> None:
+            self.turns += 1
+            if self.turns == 200:
+                raise MemoryError("on purpose")
+
+        def note(self, error: BaseException) -> None:
+            self.errors.append(error)
+            self.limp = [pulse.us for pulse in self.pulses[-5:]]
+
+        def left(self) -> bool:
+            return self.turns > 600
+
+    board = Failing()
+    run(board, Table(servos))
+    assert [str(error) for error in board.errors] == ["on purpose"]
+    assert board.limp == [0] * 5
+    after = [pulse for pulse in board.pulses if pulse.time > 1000 and pulse.us]
+    assert after, "it should be back"
+    # It begins where it was, and not at neutral: no jump.
+    before = {pulse.pin: pulse.us for pulse in board.pulses if pulse.time < 1000 and pulse.us}
+    assert {pulse.pin: pulse.us for pulse in reversed(after)} == before
+    assert board.pulses[-1].us == 0, "nothing is left under power for the developer"
+
+
+def test_the_watchdog_waits_for_the_first_host(dino):
+    dino.lives(100)
+    assert dino.board.watched == 0
+    dino.hears(m.Hello(2, 9))
+    dino.lives(100)
+    assert dino.board.watched == 1
+
+
+def test_a_program_without_a_host_ends_when_the_developer_asks():
+    class Left(VirtualBoard):
+        def elapsed(self) -> int:
+            return 5
+
+        def left(self) -> bool:
+            return True
+
+    board = Left()
+    table = Table(servos)
+    live(board, table, Dino().joints)
+
+
+def test_sounds_glide_and_end(dino):
+    dino.hears(m.Hello(2, 9))
+    dino.hears(m.Play(1, m.ITEM_SOUND, 3))
+    dino.lives(400)
+    assert dino.robot.body.sound == 3
+    assert 1800 in dino.board.tones
+    dino.hears(m.Beat(1))
+    dino.lives(200)
+    assert (dino.robot.body.sound, dino.board.tones[-1]) == (m.NOTHING, 0)
+
+
+def test_sounds_last_as_long_as_those_of_the_simulated_robot():
+    for name, glides in sounds.SOUNDS:
+        length = sum(glide[2] for glide in glides) / 1000
+        assert length == pytest.approx(dinosaur.SOUNDS[name], abs=0.05), name
+    assert [name for name, _ in sounds.SOUNDS] == list(dinosaur.SOUNDS)
+
+
+def test_drawn_files_are_current():
+    here = Path(generate.BOARD)
+    assert (here / "messages.py").read_text("utf-8") == generate.messages()
+    assert (here / "motions.py").read_text("utf-8") == generate.motions()
+
+
+@pytest.mark.parametrize("value", [-1.0, -0.34, -0.3, -0.27, 0.0, 0.27, 0.3, 0.34, 1.0])
+def test_hysteresis_is_that_of_the_moods(value):
+    for label in get_args(Label):
+        shown = Dino().robot.body
+        shown.mood = shown.moods.index(label)
+        shown.valence = round(1e4 * value)
+        assert shown.moods[shown._next_mood()] == next_label(label, value)
+    assert body.STEP == 20
+    assert motions.HYSTERESIS == 500

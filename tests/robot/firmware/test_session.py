@@ -1,0 +1,195 @@
+"""The firmware's end of the protocol, in virtual time: against our host and our simulated robot."""
+
+from types import SimpleNamespace
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robot.conformance import SimulatedLine, all_checks, examine
+from robot.emotion import Emotion
+from robot.firmware.dino import servos
+from robot.protocol import messages as m
+from robot.protocol.schema import pack, unpack
+from robot.protocol.wire import FrameReader, encode_frame
+from robot.simulators.cubeling.simulator import Simulator
+from tests.robot.firmware.conftest import Dino
+
+
+@pytest.fixture
+def dino_world(world):
+    def make(**harm: float):
+        made = world(seed=5, **harm)
+        made.robot = Dino()
+        return made
+
+    return make
+
+
+def told(dino: Dino) -> list[int]:
+    """Write down every valence that the body is told."""
+    valences: list[int] = []
+    express = dino.robot.body.express
+
+    def seen(valence: int, arousal: int, mood: int) -> None:
+        valences.append(valence)
+        express(valence, arousal, mood)
+
+    dino.robot.body.express = seen  # type: ignore[method-assign] # a spy on this one body
+    return valences
+
+
+def test_it_conforms():
+    report = examine(SimulatedLine(Dino()), all_checks(), host=77)
+    assert [one.check.name for one in report.results if one.verdict != "ok"] == []
+    assert report.conforms
+
+
+def test_our_host_gets_to_know_it_and_is_obeyed(dino_world):
+    w = dino_world()
+    w.run_until(lambda: w.telemetry.state == "ready", within=0.5)
+    catalogue = w.host.catalogue
+    assert catalogue.name == "Dino"
+    assert "eyes and mouth" in [joint.name for joint in catalogue.joints]
+    w.host.express(Emotion(0.8, 0.5), "happy")
+    w.run(1.5)
+    assert w.telemetry.observed == w.telemetry.acknowledged == Emotion(0.8, 0.5)
+    assert (w.telemetry.label, w.telemetry.motion) == ("happy", "happy")
+    assert w.telemetry.reckoned
+    w.host.play(m.ITEM_MOTION, catalogue.motions.index("wag tail"))
+    w.run(0.5)
+    assert w.telemetry.motion == "wag tail"
+    w.run(2.0)
+    assert w.telemetry.motion == "happy"
+
+
+def test_emotions_survive_a_bad_line_in_order(dino_world):
+    w = dino_world(drop=0.1, flip=0.005, dup=0.1)
+    valences = told(w.robot)
+    for index in range(1, 60):
+        w.host.express(Emotion(index / 10_000, 0.0))
+        w.run(0.1)
+    w.run_until(lambda: valences[-1:] == [59], within=3)
+    assert valences == sorted(set(valences))
+
+
+def test_a_cut_line_makes_it_neutral_in_time_and_the_host_brings_it_back(dino):
+    dino.hears(m.Hello(2, 9))
+    dino.hears(m.Express(1, 0.5, 0.5, 1))
+    dino.lives(445, step=1)
+    assert dino.robot.link.session == 1
+    dino.lives(10, step=1)
+    assert dino.robot.link.session == 0
+    dino.lives(1500)
+    assert dino.portrait() == (0.0, "neutral")
+    dino.says()
+    dino.hears(m.Hello(2, 9), session=2)
+    ((_, welcome),) = dino.says()
+    assert welcome.taken == 0
+
+
+def test_bytes_that_waited_while_it_hung_are_of_no_session(dino):
+    dino.hears(m.Hello(2, 9))
+    dino.says()
+    dino.board.now += 700
+    dino.hears(m.Express(1, 0.5, 0.5))
+    assert dino.says() == [(1, m.Gone())]
+
+
+def test_a_host_of_version_1_is_spoken_to_in_version_1(dino):
+    dino.hears(m.Hello(1, 9))
+    dino.hears(m.Express(1, 0.9, 0.9), version=1)
+    dino.hears(m.Beat(4))
+    welcome, ack, state = [message for _, message in dino.says()]
+    assert (welcome.version, ack.result, state.flags) == (1, m.TAKEN, 0)
+    dino.lives(300)
+    assert dino.robot.body.valence > 0
+
+
+def test_the_catalogues_number_changes_when_the_catalogue_does():
+    first, *others = servos.SERVOS
+    further = (*first[:2], first[2] - 1, *first[3:])
+    numbers = set()
+    for change in ({}, {"BUZZER": None}, {"SERVOS": (further, *others)}, {"SERVOS": (first,)}):
+        dino = Dino(SimpleNamespace(**(vars(servos) | change)))
+        dino.hears(m.Hello(2, 9))
+        ((_, welcome),) = dino.says()
+        numbers.add(welcome.catalogue)
+    assert len(numbers) == 4
+
+
+def test_a_line_that_takes_nothing_blocks_nothing(dino):
+    dino.board.takes = 0
+    dino.hears(m.Hello(2, 9))
+    for count in range(100):
+        dino.hears(m.Beat(count))
+        dino.lives(50)
+    assert dino.robot.link.session == 1
+    dino.board.takes = 7
+    dino.lives(1000)
+    # What was whole in the queue comes out whole.
+    assert [type(message) for _, message in dino.says()][:2] == [m.Welcome, m.State]
+
+
+def _steps() -> st.SearchStrategy[list[tuple[int, int, object, int]]]:
+    """(session, version, message or garbage, ms until the next)."""
+    number = st.integers(1, 6)
+    unit = st.sampled_from([-1.0, -0.5, 0.0, 0.5, 1.0])
+    message = st.one_of(
+        st.builds(m.Hello, st.integers(1, 3), st.integers(1, 2)),
+        st.builds(m.Ask, st.integers(1, 5), st.integers(0, 9)),
+        st.builds(m.Beat, st.integers(0, 9)),
+        st.builds(m.Express, number, unit, unit, st.sampled_from([0, 1, 2, 3, 255])),
+        st.builds(m.Play, number, st.integers(1, 2), st.integers(0, 9)),
+        st.builds(m.Stop, number),
+        st.just(m.Bye()),
+        st.binary(max_size=30),
+    )
+    step = st.tuples(
+        st.sampled_from([1, 1, 1, 1, 2, 0]),
+        st.integers(1, 2),
+        message,
+        st.sampled_from([0, 1, 5, 19, 21, 60, 105, 440, 460]),
+    )
+    return st.lists(step, max_size=40)
+
+
+@given(_steps())
+@settings(max_examples=150)
+def test_it_answers_whatever_comes_as_the_simulated_robot_does(steps):
+    """The same bytes at the same times; only what is their own may differ."""
+    ours, simulated = Dino(), Simulator(3)
+    now = 0
+
+    def hear(data: bytes) -> None:
+        ours.receive(data, now / 1000)
+        # A hair faster, so that a tenth of a second is never a rounding less.
+        simulated.receive(data, now / 1000 * (1 + 1e-9))
+        assert _gist(ours.bytes_to_send()) == _gist(simulated.bytes_to_send())
+
+    hear(b"")
+    for session, version, message, wait in [(1, 2, m.Hello(2, 1), 1), *steps]:
+        raw = isinstance(message, bytes)
+        hear(message if raw else encode_frame(pack(message, session, version)))
+        for _ in range(wait):
+            now += 1
+            hear(b"")
+
+
+def _gist(data: bytes) -> list[tuple[object, ...]]:
+    """What two robots of the same dinosaur must say alike."""
+    gist: list[tuple[object, ...]] = []
+    for body in FrameReader().feed(data):
+        session, said = unpack(body, "robot")
+        kind = type(said).__name__
+        match said:
+            case m.Welcome():
+                counts = (said.version, said.taken, said.motions, said.sounds, said.moods)
+                gist.append((kind, session, *counts))
+            case m.State():
+                still = said.flags & m.STILL
+                known = (said.beat, said.taken, still, said.mood, said.motion == m.NOTHING)
+                gist.append((kind, session, *known))
+            case _:
+                gist.append((kind, session, said))
+    return gist
