@@ -8,7 +8,7 @@ import typer
 import typer.exceptions
 from rich.console import Console
 
-from app.commands import calibrate, character, cube, demo, doctor, play, replay, robot
+from app.commands import bridge, calibrate, character, cube, demo, doctor, play, replay, robot
 from app.errors import AppError
 from characters import CharacterError
 from characters.errors import CharacterWarning
@@ -30,6 +30,7 @@ app = typer.Typer(
 app.command()(demo.demo)
 app.command()(play.play)
 app.command()(replay.replay)
+app.command()(bridge.bridge)
 app.command()(cube.cube)
 app.command()(calibrate.calibrate)
 app.add_typer(character.app, name="character")

@@ -155,8 +155,8 @@ class Player:
         feeling = m.Feeling(
             self._run.number,
             1 if known is None else known.number,
-            emotion.valence,
-            emotion.arousal,
+            round(emotion.valence, 4),
+            round(emotion.arousal, 4),
             label,
         )
         if feeling == known:
