@@ -154,9 +154,7 @@ def faults_line(seen: list[Outcome]) -> str:
     """Say how often which fault was injected, over all mixtures."""
     kinds = (f"{name} {sum(one.counts[name] for one in seen):,}" for name in _FAULTS)
     sizes = {name for one in seen for name in one.largest}
-    largest = (
-        f"{name.strip()} {max(one.largest.get(name, 0) for one in seen)}" for name in sorted(sizes)
-    )
+    largest = (f"{name} {max(one.largest.get(name, 0) for one in seen)}" for name in sorted(sizes))
     return f"faults: {', '.join(kinds)}\nlargest: {', '.join(largest)}"
 
 
