@@ -8,7 +8,7 @@ import typer
 import typer.exceptions
 from rich.console import Console
 
-from app.commands import bridge, calibrate, character, cube, demo, doctor, play, replay, robot
+from app.commands import bridge, calibrate, character, cube, demo, doctor, mood, play, replay, robot
 from app.errors import AppError
 from characters import CharacterError
 from characters.errors import CharacterWarning
@@ -35,6 +35,7 @@ app.command()(cube.cube)
 app.command()(calibrate.calibrate)
 app.add_typer(character.app, name="character")
 app.add_typer(robot.app, name="robot")
+app.add_typer(mood.app, name="mood")
 app.command()(doctor.doctor)
 
 

@@ -71,11 +71,12 @@ TABLE: tuple[Word, ...] = (
     Word("calm", 0.3, -0.6, "neutral", "words"),
     Word("sleepy", 0.0, -0.9, "neutral", "words"),
     Word("bored", -0.4, -0.6, "sad", "words"),
-    # The eight directions of the circumplex (Russell 1980), 45° apart; the radius is ours.
+    # The eight directions of the circumplex (Russell 1980), 45° apart; the
+    # radius and some of the words are ours.
     Word("neutral", 0.0, 0.0, "neutral", "circumplex"),
     Word("pleased", _RIM, 0.0, "happy", "circumplex"),
     Word("excited", _SLANT, _SLANT, "happy", "circumplex"),
-    Word("aroused", 0.0, _RIM, "surprised", "circumplex"),
+    Word("alert", 0.0, _RIM, "surprised", "circumplex"),
     Word("distressed", -_SLANT, _SLANT, "angry", "circumplex"),
     Word("displeased", -_RIM, 0.0, "angry", "circumplex"),
     Word("depressed", -_SLANT, -_SLANT, "sad", "circumplex"),

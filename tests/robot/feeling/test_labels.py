@@ -14,7 +14,7 @@ from robot.feeling.words import PLACES, SIMPLE, closest_word, simple_mood
 THREE = ("neutral", "happy", "angry")
 
 SHOWN = {
-    "neutral": "neutral sad surprised calm sleepy bored aroused depressed relaxed distress pity "
+    "neutral": "neutral sad surprised calm sleepy bored alert depressed relaxed distress pity "
     "disappointment shame remorse resentment surprise",
     "happy": "happy excited content pleased joy happy-for gratitude gratification admiration pride "
     "love hope satisfaction relief gloating",
