@@ -2,31 +2,67 @@
 
 import json
 import secrets
+import textwrap
 import time
+from itertools import zip_longest
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from robot.conformance import PortLine, Report, Result, all_checks, chosen, examine
+from robot.conformance import Check, PortLine, Report, Result, all_checks, chosen, examine
 from robot.errors import RobotError
 from robot.transport import opener
 
 MARKS = {"ok": ("ok", "green"), "failed": ("FAILED", "bold red"), "skipped": ("skipped", "dim")}
 POOR = ("poor", "yellow")
+"""The mark of a failed check that is only about being better."""
 
 NAME_WIDTH = 38
 """Columns for the name of a check."""
+
+MARGIN = 18
+"""Columns before what was expected and what came."""
+
+PICTURE_WIDTH = 100
+"""Columns of a picture of the output."""
+
+SVG = """\
+<svg class="rich-terminal" viewBox="0 0 {width} {height}" xmlns="http://www.w3.org/2000/svg">
+<style>
+.{unique_id}-matrix {{
+  font: {char_height}px ui-monospace, Menlo, Consolas, "DejaVu Sans Mono", monospace;
+}}
+.{unique_id}-title {{ font: bold 16px sans-serif; }}
+{styles}
+</style>
+<defs>
+<clipPath id="{unique_id}-clip-terminal">
+<rect x="0" y="0" width="{terminal_width}" height="{terminal_height}"/>
+</clipPath>
+{lines}
+</defs>
+{chrome}
+<g transform="translate({terminal_x}, {terminal_y})" clip-path="url(#{unique_id}-clip-terminal)">
+{backgrounds}
+<g class="{unique_id}-matrix">
+{matrix}
+</g>
+</g>
+</svg>
+"""
+"""How the output becomes a picture: like Rich's own, but with no font from the network."""
 
 
 def conform(
     port: Annotated[
         str,
-        typer.Argument(help="/dev/ttyACM0, COM3, socket://HOST:PORT, sim:cubeling", metavar="PORT"),
+        typer.Argument(
+            metavar="PORT", help="/dev/ttyACM0, COM3, socket://HOST:PORT, sim:cubeling …"
+        ),
     ] = "",
     only: Annotated[
         list[str] | None,
@@ -35,29 +71,48 @@ def conform(
     output: Annotated[
         Path | None, typer.Option("--json", help="Write what was found to this file too.")
     ] = None,
+    picture: Annotated[
+        Path | None, typer.Option("--svg", help="Draw the output into this file too.")
+    ] = None,
     list_: Annotated[bool, typer.Option("--list", help="Say what is checked, and end.")] = False,
 ) -> None:
     """Check whether a robot keeps to robot/PROTOCOL.md, and say where it does not.
 
-    Works with any robot: ours, your own firmware, a stranger's. It is spoken to for at most a
-    minute, shows all its moods and motions, and is neutral at the end. Use a good cable: a check
-    tries everything once.
+    Works with any robot: ours, your own firmware, a stranger's. It takes half a minute, a minute
+    with a slow robot. The robot shows its moods and motions meanwhile, and is neutral at the end.
+    Use a good cable: every frame counts.
 
     Ends with exit code 0 if the robot does all that it must, 1 if not, 2 if nobody answers.
 
     Example: [cyan]cubeling robot conform /dev/ttyACM0[/]
     """
-    console = Console(highlight=False)
     checks = chosen(only) if only else all_checks()
     if list_:
-        console.print(listing(checks))
+        Console().print(listing(checks))
         return
+    for path in (output, picture):
+        if path is not None:  # what cannot be written is better known before than after
+            path.write_text("", "utf-8")
+    console = Console(highlight=False, record=picture is not None)
+    if picture is not None:
+        console.width = PICTURE_WIDTH
+    report = _examined(port, checks, console)
+    console.print()
+    console.print(verdict(report), soft_wrap=picture is None)
     if output is not None:
-        output.write_text("")  # a file that cannot be written is better known before than after
-    line_port = opener(port)()
+        output.write_text(json.dumps(as_json(report, port), indent=1) + "\n", "utf-8")
+    if picture is not None:
+        console.save_svg(str(picture), title="cubeling robot conform", code_format=SVG)
+    if not report.conforms:
+        raise typer.Exit(1)
+
+
+def _examined(port: str, checks: list[Check], console: Console) -> Report:
+    """Try what is behind a port, and print what each check finds."""
+    line = opener(port)()
     try:
-        report = examine(
-            PortLine(line_port, time.monotonic),
+        return examine(
+            PortLine(line, time.monotonic),
             checks,
             secrets.randbits(32),
             lambda result: show(result, console),
@@ -65,12 +120,7 @@ def conform(
     except RobotError as error:
         raise RobotError(f"{port}: {error}") from error
     finally:
-        line_port.close()
-    console.print(verdict(report), soft_wrap=True)
-    if output is not None:
-        output.write_text(json.dumps(as_json(report, port), indent=1) + "\n", "utf-8")
-    if not report.conforms:
-        raise typer.Exit(1)
+        line.close()
 
 
 def show(result: Result, console: Console) -> None:
@@ -78,22 +128,26 @@ def show(result: Result, console: Console) -> None:
     mark, style = MARKS[result.verdict]
     if result.verdict == "failed" and result.check.level == "should":
         mark, style = POOR
-    line = Text.assemble(
-        (f"{mark:8}", style),
-        f"{result.check.name:{NAME_WIDTH}}",
-        (f"§{result.check.section}  {result.remark}".rstrip(), "dim"),
+    console.print(
+        Text.assemble(
+            (f"{mark:8}", style),
+            f"{result.check.name:{NAME_WIDTH}}",
+            (f"§{result.check.section}  {result.remark}".rstrip(), "dim"),
+        ),
+        soft_wrap=True,
     )
-    console.print(line, soft_wrap=True)
-    if result.verdict == "failed":
-        told = (
-            ("required", result.check.requires),
-            ("expected", result.expected),
-            ("came", result.came),
-        )
-        grid = Table.grid(padding=(0, 2))
-        for word, text in told:
-            grid.add_row(Text(word, "dim"), Text(text))
-        console.print(Padding(grid, (0, 0, 0, 8)))
+    if result.verdict != "failed":
+        return
+    for word, told in (
+        ("required", result.check.requires),
+        ("expected", result.expected),
+        ("came", result.came),
+    ):
+        lines = textwrap.wrap(told, console.width - MARGIN, break_on_hyphens=False) or [""]
+        for head, line in zip_longest([word], lines, fillvalue=""):
+            # The margins have no style, so that a picture does not take them for text.
+            parts = ("        ", (f"{head:{MARGIN - 8}}", "dim" if head else ""), (line, "not dim"))
+            console.print(Text.assemble(*parts), soft_wrap=True)
 
 
 def verdict(report: Report) -> Text:
@@ -104,19 +158,17 @@ def verdict(report: Report) -> Text:
         for mark in ("ok", "failed", "skipped")
     }
     numbers = ", ".join(f"{count} {mark}" for mark, count in counts.items() if count)
-    ending = (
-        ("It conforms.", "bold green") if report.conforms else ("It does not conform.", "bold red")
-    )
+    good, bad = ("It conforms.", "bold green"), ("It does not conform.", "bold red")
     cut = f" The rest was left out: {report.cut_short}." if report.cut_short else ""
     return Text.assemble(
-        f"\n{welcome.name} ({welcome.firmware}), version {welcome.version}: ",
+        f"{welcome.name} ({welcome.firmware}), version {welcome.version}: ",
         f"{numbers} in {report.seconds:.0f} s. ",
-        ending,
+        good if report.conforms else bad,
         cut,
     )
 
 
-def listing(checks: list[Any]) -> Table:
+def listing(checks: list[Check]) -> Table:
     """Return a table of what is checked."""
     table = Table("§", "check", "level", "what is required", box=None, pad_edge=False)
     for check in checks:

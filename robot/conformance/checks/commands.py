@@ -50,8 +50,8 @@ def repeat_acknowledged(robot: Probe) -> None:
     robot.command(m.Express(5, 0.0, 0.0))
     for number in (5, 5, 4, 1):
         robot.say(m.Express(number, 0.0, 0.0))
-        robot.expect(m.Ack, f"EXPRESS {number} after EXPRESS 5", number=number)
-        _sees(robot, f"EXPRESS {number} after EXPRESS 5", taken=5)
+        robot.expect(m.Ack, f"EXPRESS {number}, with 5 taken before", number=number)
+        _sees(robot, f"EXPRESS {number}, with 5 taken before", taken=5)
 
 
 @COMMANDS.must

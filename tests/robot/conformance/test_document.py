@@ -1,0 +1,28 @@
+"""The document of the suite and the suite itself say the same."""
+
+from pathlib import Path
+
+import pytest
+
+from robot.conformance import all_checks
+from robot.conformance.reference import DOCUMENT, checks_table, renewed
+
+
+def test_the_document_is_as_the_code_would_draw_it():
+    document = DOCUMENT.read_text("utf-8")
+    assert renewed(document) == document, "run `python -m robot.conformance.reference`"
+
+
+def test_a_document_without_the_mark_is_refused():
+    with pytest.raises(ValueError, match="must have one part marked"):
+        renewed("# nothing")
+
+
+def test_the_table_names_every_check():
+    assert all(f"| {check.name}" in checks_table() for check in all_checks())
+
+
+def test_the_picture_asks_nothing_of_the_network():
+    picture = (Path(DOCUMENT).parent / "pictures" / "conform.svg").read_text("utf-8")
+    assert "http" not in picture.replace("http://www.w3.org/", "")
+    assert len(picture) < 40_000
