@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from robot.drivers.opencat import tokens
+from robot.emotion import Emotion
 
 QUESTION_WITHIN = 2.0
 """A question that is not echoed after this long is repeated [s]; a board may be busy as long."""
@@ -49,6 +50,9 @@ class Command:
 
     order: int = 0
     """Number of the standing order that it belongs to; 0 for none."""
+
+    taken: Emotion | None = None
+    """The emotion that the robot has taken when this has landed; None if more is to follow."""
 
 
 @dataclass

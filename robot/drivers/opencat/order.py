@@ -92,10 +92,13 @@ class StandingOrder:
 
     def landed(self, command: Command) -> None:
         """Take note that a posture or a pose has been echoed."""
-        if command.order != self.number:
+        if command.order != self.number:  # displaced while it was on its way, and yet taken
+            self._shown = None
+            if command.word is not None and command.taken is not None:
+                self._shown = command.word, command.taken
             return
         self._refusals = 0
-        if self._due and self._due[0] == command:
+        if self._due and self._due[0].line == command.line:
             self._due.popleft()
         if self._due:
             return
@@ -122,12 +125,11 @@ class StandingOrder:
         self._due.clear()
         mood = self.ordered
         if mood is not None:
-            self._due.append(self._posture(mood.posture))
+            self._due.append(self._posture(mood.posture, None if mood.pose else self.commanded))
             if mood.pose:
-                line = tokens.pose(mood.pose)
-                self._due.append(Command("pose", line, "", POSE_WITHIN, self._word, self.number))
+                self._due.append(self._pose(mood))
         elif self.number:
-            self._due.append(self._posture(self._behaviour.stop))
+            self._due.append(self._posture(self._behaviour.stop, None))
 
     def disturb(self) -> None:
         """Take note that the robot did something by itself, got up after a fall for example."""
@@ -157,6 +159,10 @@ class StandingOrder:
     def _closest(self, emotion: Emotion) -> str:
         return closest_word(tuple(self._behaviour.moods), emotion, self._label) or "neutral"
 
-    def _posture(self, name: str) -> Command:
+    def _posture(self, name: str, taken: Emotion | None) -> Command:
         line = tokens.skill(name)
-        return Command("posture", line, name, POSTURE_WITHIN, self._word, self.number)
+        return Command("posture", line, name, POSTURE_WITHIN, self._word, self.number, taken)
+
+    def _pose(self, mood: Mood) -> Command:
+        line = tokens.pose(mood.pose)
+        return Command("pose", line, "", POSE_WITHIN, self._word, self.number, self.commanded)

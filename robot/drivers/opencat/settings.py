@@ -178,7 +178,7 @@ def _mood(table: Table, model: str, sounds: Mapping[str, Notes]) -> Mood:
 
 
 def _merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
-    """Return `base` with what `over` says, table by table; a mood is replaced whole."""
+    """Return `base` with what `over` says, table by table; a mood that names a posture whole."""
     merged = dict(base)
     for key, value in over.items():
         old = merged.get(key)

@@ -77,7 +77,7 @@ class Table:
             for note in notes
         )
         if not pairs or not notes or not re.fullmatch(r"[\w -]{1,16}", key):
-            raise self.wrong(f"{key} must be a list of [note, value] pairs, not {notes!r}")
+            raise self.wrong(f"{key!r} must be a list of [note, value] pairs, not {notes!r}")
         melody = tuple((note, value) for note, value in notes)
         self.may_send(lambda: tokens.melody(melody))
         return melody
