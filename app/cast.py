@@ -90,7 +90,7 @@ def _moody(character: Character, word: str) -> Pose:
     animator = Animator(character, place=Step())
     known = closest_word(animator.actions, Emotion(*PLACES[word]), word)
     action = known if known in PLACES and known is not None else "idle"
-    feeling, gaze = np.array(PLACES[word]), np.array([0.1, 0.1, 1.0])
+    feeling, gaze = np.array(PLACES[word]), np.array([0.1, 0.16, 1.0])
     first, last = (round(time * 30) for time in SETTLED)
     poses = [
         animator.update(

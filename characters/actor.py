@@ -53,6 +53,8 @@ class Actor:
     def __init__(self, character: Character, scale: float, place: Step | None) -> None:
         self.place = place or STANDING
         self.state, self.speed, self.angular, self.weight, self.height = "idle", 0.0, 0.0, 0.0, 0.0
+        self.tempo = 1.0
+        """How much faster it idles than its clip; a mood changes it."""
         self._acts = acts_of(character)
         states: dict[str, Motion] = {"idle": _idle(character), **self._acts}
         self._machine = StateMachine(states, "idle")
@@ -69,7 +71,8 @@ class Actor:
 
     def update(self, command: CharacterCommand, elapsed: float) -> Pose:
         """Advance by a time [s] under a command and return the pose, with the root in place."""
-        now, self._time = self._time, self._time + elapsed
+        going = elapsed * self.tempo if self.state == "idle" else elapsed
+        now, self._time = self._time, self._time + going
         self._act(command, elapsed, now)
         self._move(command, elapsed)
         return self._machine.sample(self._time)

@@ -128,6 +128,8 @@ class Animator:
         self._now = command.timestamp
         elapsed = min(max(elapsed, 0.0), LONGEST_STEP)
         performer = self._performer
+        if self._life is not None and isinstance(performer, Actor):
+            performer.tempo = self._life.tempo
         pose = performer.update(command, elapsed)
         placed = _placed(performer.place, performer.height, self.scale)
         if self._life is not None:
@@ -156,9 +158,11 @@ class Animator:
 def _check(command: CharacterCommand) -> None:
     """Refuse numbers that would stay with the character for ever."""
     numbers = [command.timestamp, command.speed, command.weight]
-    for point in (command.target, command.look_at, command.gaze, command.feeling):
+    for point in (command.target, command.look_at, command.gaze):
         if point is not None:
             numbers += [float(value) for value in point]
+    if command.feeling is not None:
+        numbers += command.feeling.tolist()
     if not all(map(math.isfinite, numbers)):
         raise CharacterError(
             f"command at {command.timestamp} s has a number that is not finite: speed "
@@ -172,8 +176,8 @@ def _felt(command: CharacterCommand) -> tuple[float, float] | None:
     """Return valence and arousal within their range, or None."""
     if command.feeling is None:
         return None
-    valence, arousal = (min(max(float(value), -1.0), 1.0) for value in command.feeling)
-    return valence, arousal
+    valence, arousal = command.feeling.tolist()
+    return min(max(valence, -1.0), 1.0), min(max(arousal, -1.0), 1.0)
 
 
 def _placed(place: Step, height: float, scale: float) -> Array:

@@ -5,9 +5,11 @@ expression of emotion", 1998); arousal in the tempo and size of all movements.
 """
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from characters.anatomy import Anatomy
 from characters.life.axes import body_axes, turned
@@ -23,21 +25,24 @@ FASTER = 0.6
 LARGER = 0.7
 """The same of the size of small movements."""
 
-BOW = math.radians(13.0)
+BOW = math.radians(16.0)
 """How far a head hangs that is as low as can be [rad]; one that is held high is lifted by less."""
+
+Degrees = tuple[float, float, float]
+"""Of a turn about the body's axes: x to the left, y up, z forward."""
 
 # Degrees by which joints turn about the body's axes, x to the left, y up, z forward: of a body as
 # tall and open as can be, and of one as tense as can be. Slumped is the opposite of tall.
-_TALL: dict[str, tuple[float, float, float]] = {
-    "spine": (-3.0, 0.0, 0.0),
-    "chest": (-5.0, 0.0, 0.0),
-    "upperChest": (-3.0, 0.0, 0.0),
-    "leftShoulder": (0.0, -3.0, 1.5),
-    "rightShoulder": (0.0, 3.0, -1.5),
+_TALL: dict[str, Degrees] = {
+    "spine": (-4.0, 0.0, 0.0),
+    "chest": (-7.0, 0.0, 0.0),
+    "upperChest": (-4.0, 0.0, 0.0),
+    "leftShoulder": (0.0, -5.0, 2.0),
+    "rightShoulder": (0.0, 5.0, -2.0),
     "leftUpperArm": (-2.0, 0.0, 3.0),
     "rightUpperArm": (-2.0, 0.0, -3.0),
 }
-_TENSE: dict[str, tuple[float, float, float]] = {
+_TENSE: dict[str, Degrees] = {
     "spine": (3.0, 0.0, 0.0),
     "chest": (3.0, 0.0, 0.0),
     "neck": (4.0, 0.0, 0.0),
@@ -47,13 +52,13 @@ _TENSE: dict[str, tuple[float, float, float]] = {
     "rightUpperArm": (0.0, 0.0, -9.0),
 }
 # On four legs the trunk carries the forelegs too: the neck and the tail tell.
-_TALL_ON_FOUR: dict[str, tuple[float, float, float]] = {
-    "neck": (-9.0, 0.0, 0.0),
-    "head": (2.0, 0.0, 0.0),
+_TALL_ON_FOUR: dict[str, Degrees] = {
+    "neck": (-15.0, 0.0, 0.0),
+    "head": (5.0, 0.0, 0.0),
     "tail1": (14.0, 0.0, 0.0),
     "tail2": (8.0, 0.0, 0.0),
 }
-_TENSE_ON_FOUR: dict[str, tuple[float, float, float]] = {
+_TENSE_ON_FOUR: dict[str, Degrees] = {
     "neck": (12.0, 0.0, 0.0),
     "head": (-3.0, 0.0, 0.0),
     "tail1": (10.0, 0.0, 0.0),
@@ -91,20 +96,22 @@ class Bearing:
     ----------
     skeleton, anatomy
         Whose joints turn.
+    stirring
+        Numbers of joints that turn anyway, (m,), by breath and drift.
     """
 
-    def __init__(self, skeleton: Skeleton, anatomy: Anatomy) -> None:
+    def __init__(
+        self, skeleton: Skeleton, anatomy: Anatomy, stirring: Sequence[int] | NDArray[np.intp] = ()
+    ) -> None:
         on_four = anatomy.kind == "quadruped"
-        tall = _TALL_ON_FOUR if on_four else _TALL
-        tense = _TENSE_ON_FOUR if on_four else _TENSE
-        found = [(name, anatomy.joint(name)) for name in {**tall, **tense}]
-        there = [(name, joint) for name, joint in found if joint is not None]
-        self.joints = np.array([joint for _, joint in there], np.intp)
-        """Numbers of the joints that turn, (n,)."""
-        axes = body_axes(skeleton, self.joints)
-        still = (0.0, 0.0, 0.0)
-        self._tall = turned(axes, [tall.get(name, still) for name, _ in there])
-        self._tense = turned(axes, [tense.get(name, still) for name, _ in there])
+        tall = _named(_TALL_ON_FOUR if on_four else _TALL, anatomy)
+        tense = _named(_TENSE_ON_FOUR if on_four else _TENSE, anatomy)
+        joints = list(dict.fromkeys([*map(int, stirring), *tall, *tense]))
+        self.joints = np.array(joints, np.intp)
+        """Numbers of the joints that turn, (n,): first those that turn anyway."""
+        axes, still = body_axes(skeleton, self.joints), (0.0, 0.0, 0.0)
+        self._tall = turned(axes, [tall.get(joint, still) for joint in joints])
+        self._tense = turned(axes, [tense.get(joint, still) for joint in joints])
         self._valence = self._arousal = (0.0, 0.0)
         self.manner = PLAIN
         """How the body moves now."""
@@ -126,9 +133,16 @@ class Bearing:
 
     def turns(self, share: float) -> Array:
         """Return rotation vectors in the joints' own frames, (n, 3) [rad]; `share` 0…1 of them."""
-        tall, tense = self.manner.tall * share, self.manner.tense * share
-        vectors: Array = self._tall * tall + self._tense * tense
+        vectors: Array = self._tall * (self.manner.tall * share)
+        if self.manner.tense > 0.0:
+            vectors += self._tense * (self.manner.tense * share)
         return vectors
+
+
+def _named(degrees: Mapping[str, Degrees], anatomy: Anatomy) -> dict[int, Degrees]:
+    """Return turns of parts as those of the joints that a body has."""
+    found = {anatomy.joint(part): turn for part, turn in degrees.items()}
+    return {joint: turn for joint, turn in found.items() if joint is not None}
 
 
 def manner(valence: float, arousal: float) -> Manner:

@@ -6,10 +6,11 @@ affect", 1980); which expression goes with which word is what children draw.
 
 import math
 from collections.abc import Sequence
+from operator import mul
 
 from characters.life.expressions import EXPRESSIONS, Expressions
 from characters.pose import Array
-from characters.smoothing import eased, sprung
+from characters.smoothing import eased
 
 RECIPES: dict[str, tuple[float, ...]] = {
     #            happy angry  sad  surprised relaxed lids
@@ -17,15 +18,27 @@ RECIPES: dict[str, tuple[float, ...]] = {
     "excited":   (0.90, 0.00, 0.00, 0.30, 0.00, 0.00),
     "content":   (0.40, 0.00, 0.00, 0.00, 0.45, 0.00),
     "calm":      (0.10, 0.00, 0.00, 0.00, 0.60, 0.30),
-    "sleepy":    (0.00, 0.00, 0.00, 0.00, 0.75, 0.74),
+    "sleepy":    (0.00, 0.00, 0.10, 0.00, 0.40, 0.66),
     "bored":     (0.00, 0.00, 0.50, 0.00, 0.15, 0.46),
     "sad":       (0.00, 0.00, 1.00, 0.00, 0.00, 0.00),
     "disgusted": (0.00, 0.60, 0.45, 0.00, 0.00, 0.25),
     "angry":     (0.00, 1.00, 0.00, 0.00, 0.00, 0.00),
     "afraid":    (0.00, 0.00, 0.75, 0.45, 0.00, 0.00),
     "surprised": (0.00, 0.00, 0.00, 1.00, 0.00, 0.00),
+    "pleased":   (0.85, 0.00, 0.00, 0.00, 0.10, 0.00),
+    "alert":     (0.25, 0.00, 0.00, 0.35, 0.00, 0.00),
+    "aroused":   (0.25, 0.00, 0.00, 0.35, 0.00, 0.00),
+    "distressed": (0.0, 0.35, 0.60, 0.20, 0.00, 0.00),
+    "displeased": (0.0, 0.40, 0.50, 0.00, 0.00, 0.00),
+    "depressed": (0.00, 0.00, 1.00, 0.00, 0.00, 0.20),
+    "relaxed":   (0.20, 0.00, 0.00, 0.00, 0.60, 0.20),
 }  # fmt: skip
 """For each word how far every one of `EXPRESSIONS` is on, and how far the lids hang, 0…1."""
+
+_ALIKE = {"joy": "happy", "gratification": "happy", "anger": "angry", "hate": "angry",
+          "surprise": "surprised", "fear": "afraid", "disgust": "disgusted",
+          "distress": "sad", "pity": "sad"}  # fmt: skip
+RECIPES.update((word, RECIPES[alike]) for word, alike in _ALIKE.items())
 
 HINTED = 0.6
 """How much of a feeling shows that is still called neutral."""
@@ -43,6 +56,11 @@ _LOUD, _QUIET = (
 )  # morphs of the mouth from which on it speaks, and below which it is mute
 _SPEAKS = 0.5  # expression of an action that leaves no room for another
 _GIVES_WAY, _RETURNS = 0.15, 0.7  # [s]: lags of the mood's face when an action speaks, and after
+
+_CHANNELS = len(EXPRESSIONS) + 1  # and the lids
+_NOTHING = (0.0,) * _CHANNELS
+_SURPRISED = EXPRESSIONS.index("surprised")
+_GONE = 1e-4  # of an expression that is not seen any more
 
 
 def wish(feeling: tuple[float, float], mood: str) -> tuple[float, ...]:
@@ -93,27 +111,37 @@ class Face:
     """
 
     def __init__(self, morphs: Sequence[str], blinks: Array) -> None:
-        self._expressions = Expressions.of(morphs)
-        self.able = bool(self._expressions)
+        there = Expressions.of(morphs)
+        self.able = bool(there)
         """Whether it can show anything."""
-        self._shut = (blinks[self._expressions.numbers] @ self._expressions.weights).tolist()
-        self._now = [(0.0, 0.0)] * (len(EXPRESSIONS) + 1)
+        # A face has a few morphs only: plain numbers are quicker than arrays.
+        self._speech: list[int] = there.speech.tolist()
+        self._parts = [
+            (number, [(column, weight) for column, weight in enumerate(row) if weight > 0.0])
+            for number, row in zip(there.numbers.tolist(), there.weights.tolist(), strict=True)
+        ]
+        self._shut: list[float] = (blinks[there.numbers] @ there.weights).tolist()
+        self._now, self._speeds = [0.0] * _CHANNELS, [0.0] * _CHANNELS
         self._room = 1.0
         self.felt = False
         """Whether there is anything to be shown."""
 
     def update(self, elapsed: float, feeling: tuple[float, float] | None, mood: str) -> None:
         """Advance by a time [s] towards the face of a feeling; None for that of the clips."""
-        wished = (0.0,) * len(self._now) if feeling is None else wish(feeling, mood)
-        if not self.felt and not any(wished):
+        wished = _NOTHING if feeling is None else wish(feeling, mood)
+        stirred = any(wished)
+        if not self.felt and not stirred:
             return
-        self._now = [
-            sprung(value, speed, to, elapsed, LAG)
-            for (value, speed), to in zip(self._now, wished, strict=True)
-        ]
-        self.felt = any(wished) or any(abs(v) + abs(s) > 1e-4 for v, s in self._now)
+        rate = 2.0 / LAG
+        decay = math.exp(-rate * elapsed)  # of a critically damped spring, as in `sprung`
+        for number, to in enumerate(wished):
+            away, speed = self._now[number] - to, self._speeds[number]
+            push = speed + rate * away
+            self._now[number] = to + (away + push * elapsed) * decay
+            self._speeds[number] = (speed - rate * push * elapsed) * decay
+        self.felt = stirred or max(map(abs, (*self._now, *self._speeds))) > _GONE
         if not self.felt:
-            self._now = [(0.0, 0.0)] * len(self._now)
+            self._now, self._speeds = [0.0] * _CHANNELS, [0.0] * _CHANNELS
 
     def show(
         self, weights: Array, elapsed: float, closed: float, acting: float
@@ -135,27 +163,31 @@ class Face:
         -------
         How far the expressions hold the lids closed, and how far they are to hang, 0…1.
         """
-        there = self._expressions
-        room = self._room_beside(weights, acting)
+        values = weights.tolist()
+        room = self._room_beside(values, acting)
         lag = _GIVES_WAY if room < self._room else _RETURNS
         self._room = eased(self._room, room, elapsed, lag)
-        shown = [value * self._room for value, _ in self._now]
-        hang = min(max(shown.pop(), 0.0), 1.0)
-        share = min(max(sum(shown), 0.0), 1.0)
-        shut = sum(part * own for part, own in zip(shown, self._shut, strict=True))
-        shown[EXPRESSIONS.index("surprised")] *= 1.0 - closed  # wide eyes would not close
-        weights[there.numbers] *= 1.0 - share
-        weights[there.numbers] += there.weights @ shown
-        weights[there.speech] *= 1.0 - share
-        return min(max(shut, 0.0), 1.0), hang
+        room = self._room
+        *shown, hang = [min(max(value * room, 0.0), 1.0) for value in self._now]
+        left = 1.0 - min(sum(shown), 1.0)
+        shut = sum(map(mul, shown, self._shut))
+        shown[_SURPRISED] *= 1.0 - closed  # wide eyes would not close
+        for number, parts in self._parts:
+            values[number] *= left
+            for column, weight in parts:
+                values[number] += weight * shown[column]
+        for number in self._speech:
+            values[number] *= left
+        weights[:] = values
+        return min(shut, 1.0), hang
 
-    def _room_beside(self, weights: Array, acting: float) -> float:
+    def _room_beside(self, values: list[float], acting: float) -> float:
         """Return how much room the clips leave for a mood, 0…1."""
-        there, speaking = self._expressions, 0.0
-        if there.speech.size:
-            loudest = float(weights[there.speech].max())
+        speaking = 0.0
+        if self._speech:
+            loudest = max([values[number] for number in self._speech])
             speaking = (loudest - _QUIET) / (_LOUD - _QUIET)
-        if acting > 0.0 and there.numbers.size:
-            strongest = float(weights[there.numbers].max())
+        if acting > 0.0:
+            strongest = max(values[number] for number, _ in self._parts)
             speaking = max(speaking, acting * strongest / _SPEAKS)
         return 1.0 - min(max(speaking, 0.0), 1.0)

@@ -17,6 +17,8 @@ _BOTH = ("blink", "eyeblink", "eyesblink", "eyesclosed", "eyeclosed", "eyesclose
 _PAIRS = (*_BOTH, "blinkeye", "closeeye")
 _SIDES = (("left", "right"), ("l", "r"))
 
+_LEAST_CLOSED = 0.1  # so much of the lids may be closed less than `blinks_in` says
+
 
 @dataclass(frozen=True)
 class Lids:
@@ -74,9 +76,9 @@ class Lids:
 
     def narrow(self, weights: Array, most: float) -> None:
         """Close the eyes at most so far, 0…1, in weights of morphs (morphs,)."""
-        if self.both is not None:
-            weights[self.both] = min(float(weights[self.both]), most)
-        weights[self.sides] = np.minimum(weights[self.sides], most)
+        for number in self.sides if self.both is None else (self.both, *self.sides):
+            if weights[number] > most:
+                weights[number] = most
 
 
 def plain(name: str) -> str:
@@ -89,20 +91,33 @@ def plain(name: str) -> str:
 
 
 def blinks_in(morphs: Sequence[str], meshes: Iterable[Mesh], lids: Lids) -> Array:
-    """Return how much of a blink there is in each morph, (morphs,), from what they move.
+    """Return how much of a blink there is in each morph, (morphs,), 0…1, from what they move.
 
-    1 is a morph that closes the eyes as a blink does; below 0 are those that open them wider.
-    What is added to a blink closes the lids too far by just this.
+    1 is a morph that closes the eyes as a blink does; a blink beside it closes them too far by just
+    this. What counts is the part of the lids that it closes least (`_LEAST_CLOSED`), so that
+    slanted lids leave no gap.
     """
     names = [morphs[number] for number in (lids.sides if lids.both is None else [lids.both])]
-    along, whole = np.zeros(len(morphs)), 0.0
+    ways, moved = [np.zeros((0, 3))], [np.zeros((len(morphs), 0, 3))]
     for mesh in meshes:
         blink = np.zeros(mesh.positions.shape)
         for morph in mesh.morphs:
             if morph.name in names:
                 blink[morph.vertices] += morph.shifts
-        whole += float((blink * blink).sum())
-        for morph in mesh.morphs:
-            share = float((blink[morph.vertices] * morph.shifts).sum())
-            along[morphs.index(morph.name)] += share
-    return along / whole if whole > 0.0 else along
+        lid = np.flatnonzero(blink.any(axis=1))
+        shifts = np.zeros((len(morphs), *blink.shape))
+        for morph in mesh.morphs if lid.size else ():
+            shifts[morphs.index(morph.name), morph.vertices] = morph.shifts
+        ways.append(blink[lid])
+        moved.append(shifts[:, lid])
+    way = np.concatenate(ways)
+    if not len(way):
+        return np.zeros(len(morphs))
+    lengths = np.einsum("va,va->v", way, way)
+    shares = np.einsum("mva,va->mv", np.concatenate(moved, axis=1), way) / lengths
+    # Vertices that a blink moves far count for more than those at the corners of the eye.
+    order = np.argsort(shares, axis=1)
+    up_to = np.cumsum(lengths[order], axis=1) / lengths.sum()
+    least = np.argmax(up_to >= _LEAST_CLOSED, axis=1)
+    found = np.take_along_axis(shares, np.take_along_axis(order, least[:, None], 1), 1)[:, 0]
+    return np.asarray(np.clip(found, 0.0, 1.0))

@@ -1,5 +1,6 @@
 """Gaze, blinks, breath and small movements, and what is felt, laid over a pose."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -52,10 +53,10 @@ class Life:
         self._gaze = Gaze(skeleton, anatomy, limits)
         self._blinking = Blinking(seed)
         self._stirring = Stirring(skeleton, anatomy, seed)
+        self._bearing = Bearing(skeleton, anatomy, self._stirring.joints)
         self._morphs = len(morphs)
         self._lids = Lids.of(morphs)
         self._face = Face(morphs, blinks_in(morphs, meshes, self._lids))
-        self._bearing = Bearing(skeleton, anatomy)
         self._wide = morphs.index("surprised") if "surprised" in morphs else None
         self._breath = morphs.index("breath") if "breath" in morphs else None
         self._calm = 1.0
@@ -64,6 +65,11 @@ class Life:
     def breath(self) -> float:
         """How full the chest is, 0…1."""
         return self._stirring.breath
+
+    @property
+    def tempo(self) -> float:
+        """How much faster a clip in which it stands is to go, because of what it feels."""
+        return math.sqrt(self._bearing.manner.pace)
 
     def update(
         self,
@@ -101,14 +107,13 @@ class Life:
         self._calm = eased(self._calm, 1.0 - max(busy, min(2.0 * effort, 1.0)), elapsed, _CALM_LAG)
         manner = self._bearing.update(elapsed, feeling)
         self._face.update(elapsed, None if played else feeling, mood)
-        joints = self._stirring.joints
-        turns = self._stirring.update(elapsed, effort, self._calm, manner)
+        share = _HELD_IN_ACTION + (1.0 - _HELD_IN_ACTION) * self._calm
+        joints, borne = self._stirring.joints, None
+        if manner is not PLAIN:
+            joints, borne = self._bearing.joints, self._bearing.turns(share)
+        turns = self._stirring.update(elapsed, effort, self._calm, manner, borne)
         local = pose.rotations.copy()
         local[joints] = rotations.multiply(local[joints], turns)
-        share = _HELD_IN_ACTION + (1.0 - _HELD_IN_ACTION) * self._calm
-        if manner is not PLAIN:
-            borne, turns = self._bearing.joints, self._bearing.turns(share)
-            local[borne] = rotations.multiply(local[borne], rotations.from_rotation_vector(turns))
         stirred = Pose(pose.translations, local, pose.scales, pose.morphs)
         looked = self._gaze.update(
             stirred,

@@ -88,7 +88,14 @@ class Stirring:
         self.breath = 0.0
         """How full the chest is, 0…1."""
 
-    def update(self, elapsed: float, effort: float, calm: float, manner: Manner = PLAIN) -> Array:
+    def update(
+        self,
+        elapsed: float,
+        effort: float,
+        calm: float,
+        manner: Manner = PLAIN,
+        borne: Array | None = None,
+    ) -> Array:
         """Advance by a time [s] and return what turns the joints, (n, 4).
 
         The rotations are in the joints' own frames: they multiply local rotations from the right.
@@ -103,6 +110,9 @@ class Stirring:
             How much of the drift shows, 0…1.
         manner
             How quick and how large it all is.
+        borne
+            Rotation vectors of a bearing, (m, 3), in the frames of `joints` and others after
+            them; those are turned too, and m rotations are returned.
         """
         self._time += elapsed * manner.pace
         self._effort += (effort - self._effort) * (1.0 - math.exp(-elapsed / _RECOVERY))
@@ -116,6 +126,9 @@ class Stirring:
             vectors += np.einsum(
                 "ja,jak->jk", waves * (calm * manner.size / math.sqrt(_WAVES)), self._drift
             )
+        if borne is not None:
+            borne[: len(vectors)] += vectors
+            vectors = borne
         return rotations.from_rotation_vector(vectors)
 
 
