@@ -44,7 +44,7 @@ class Chapter:
     title
         What the section is about.
     section
-        Its number.
+        Its number; 0 for checks of several.
     """
 
     def __init__(self, title: str, section: int) -> None:
@@ -60,10 +60,14 @@ class Chapter:
         """Enter a function as a check that a good robot passes."""
         return self._enter(run, "should")
 
-    def _enter(self, run: Run, level: Level) -> Run:
+    def must_of(self, section: int) -> Callable[[Run], Run]:
+        """Enter a function as `must` does, for a sentence of another section."""
+        return lambda run: self._enter(run, "must", section)
+
+    def _enter(self, run: Run, level: Level, section: int | None = None) -> Run:
         name = getattr(run, "__name__", "").replace("_", " ")
         requires = " ".join((run.__doc__ or "").split())
-        self._checks.append(Check(name, self.section, level, requires, run))
+        self._checks.append(Check(name, section or self.section, level, requires, run))
         return run
 
     def __iter__(self) -> Iterator[Check]:

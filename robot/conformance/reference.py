@@ -19,7 +19,9 @@ def checks_table() -> str:
         for check in chapter:
             star = "" if check.level == "must" else " \\*"
             rows.append(f"| {check.name}{star} | {check.requires} |")
-        head = f"### {chapter.title} (section {chapter.section})"
+        sections = sorted({check.section for check in chapter})
+        word = "section" if len(sections) == 1 else "sections"
+        head = f"### {chapter.title} ({word} {', '.join(map(str, sections))})"
         parts.append("\n".join([head, "", "| check | what is required |", "|---|---|", *rows]))
     return "\n\n".join(parts)
 

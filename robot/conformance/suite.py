@@ -11,7 +11,10 @@ from robot.conformance.checks.commands import COMMANDS
 from robot.conformance.checks.failsafe import FAILSAFE
 from robot.conformance.checks.frames import FRAMES
 from robot.conformance.checks.heartbeat import HEARTBEAT
+from robot.conformance.checks.neutral import NEUTRALITY
 from robot.conformance.checks.sessions import SESSIONS
+from robot.conformance.checks.strangers import OTHERS
+from robot.conformance.checks.whole import WHOLE
 from robot.conformance.line import Line
 from robot.conformance.probe import Probe
 from robot.conformance.verdicts import NotApplicableError, SilentError, UnmetError
@@ -20,9 +23,9 @@ from robot.protocol import messages as m
 from robot.protocol import timing
 
 CHAPTERS: tuple[Chapter, ...] = (
-    FRAMES, BODIES, SESSIONS, CATALOGUE, COMMANDS, HEARTBEAT, FAILSAFE,
+    FRAMES, BODIES, SESSIONS, OTHERS, CATALOGUE, COMMANDS, HEARTBEAT, FAILSAFE, NEUTRALITY, WHOLE,
 )  # fmt: skip
-"""The checks, by section."""
+"""The checks, by subject; those of everything heard come last."""
 
 LONGEST = 60.0
 """No check begins later than this after the first one [s]."""

@@ -3,7 +3,6 @@
 import numpy as np
 
 from robot.conformance.check import Chapter
-from robot.conformance.heard import Heard
 from robot.conformance.probe import Probe
 from robot.conformance.verdicts import UnmetError
 from robot.protocol import messages as m
@@ -139,23 +138,6 @@ def flood_survived(robot: Probe) -> None:
     robot.next_session()
     robot.greet()
     robot.beat("8 kB of noise and a greeting")
-
-
-@FRAMES.must
-def sends_valid_frames(robot: Probe) -> None:
-    """All that the robot sends is whole frames, of a robot's messages in the version agreed."""
-    robot.fresh()
-    robot.live(0.3)
-    wrong = robot.log.faults.get("frame", [])
-    if wrong:
-        raise UnmetError(
-            "only whole frames of a robot's messages",
-            f"{robot.log.counts['frame']} that are none; {_examples(wrong)}",
-        )
-
-
-def _examples(wrong: list[Heard]) -> str:
-    return "; ".join(str(heard) for heard in wrong)
 
 
 def _drops(robot: Probe, frame: bytes, place: int, what: str) -> None:

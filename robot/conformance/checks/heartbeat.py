@@ -5,9 +5,8 @@ from itertools import pairwise
 from statistics import median
 
 from robot.conformance.check import Chapter
-from robot.conformance.checks.catalogue import known_joints
 from robot.conformance.probe import SHOWN_WITHIN, SLACK, Probe
-from robot.conformance.verdicts import NotApplicableError, UnmetError
+from robot.conformance.verdicts import UnmetError
 from robot.protocol import messages as m
 from robot.protocol import timing
 
@@ -25,15 +24,6 @@ ROUND_TRIP = 0.020
 SILENCE = 0.35
 """How long a robot is listened to that should send STATE by itself [s]; the failsafe is later."""
 
-OVER_LIMIT = 0.02
-"""How far a joint may seem to be beyond its limits [rad]: rounding, and the noise of its sensor."""
-
-OVER_SPEED = 0.05
-"""How much farther than its speed allows a joint may seem to have moved [rad]: noise, twice."""
-
-WINDOW = 0.1
-"""Shortest time between two STATEs by which a speed is judged [s]."""
-
 STATES_A_SECOND = 40.0
 """STATEs that a good robot sends at most: one for each BEAT, and as many again."""
 
@@ -48,6 +38,17 @@ def beat_answered(robot: Probe) -> None:
 
 
 @HEARTBEAT.must
+def beat_forgotten_in_a_new_session(robot: Probe) -> None:
+    """Before the first BEAT of a session, STATE says 0 for its count."""
+    robot.fresh()
+    robot.beat("HELLO")
+    robot.again()
+    state = robot.expect(m.State, "HELLO of another session", timing.STATE_EVERY + SLACK)
+    if state.beat:
+        raise UnmetError("STATE(beat=0) before the first BEAT of a session", f"beat={state.beat}")
+
+
+@HEARTBEAT.must
 def state_by_itself(robot: Probe) -> None:
     """When no BEAT comes, STATE comes every 100 ms."""
     robot.fresh()
@@ -59,25 +60,6 @@ def state_by_itself(robot: Probe) -> None:
             f"STATE every {1000 * timing.STATE_EVERY:.0f} ms after WELCOME",
             f"{len(heard)} in {1000 * SILENCE:.0f} ms, the longest pause {1000 * longest:.0f} ms",
         )
-
-
-@HEARTBEAT.must
-def state_possible(robot: Probe) -> None:
-    """Every STATE shows moods, motions and sounds of the catalogue, and joints that there are."""
-    welcome = robot.fresh()
-    robot.live(0.3)
-    for _, state in robot.log.states:
-        counts = {"mood": welcome.moods, "motion": welcome.motions, "sound": welcome.sounds}
-        for word, count in counts.items():
-            index = getattr(state, word)
-            none = m.NOTHING if word != "mood" or not count else -1
-            if index >= count and index != none:
-                raise UnmetError(f"STATE with a {word} below {count}", f"{word}={index}")
-        if any(state.joints[welcome.joints :]):
-            beyond = state.joints[welcome.joints :]
-            raise UnmetError(f"0 for joints from {welcome.joints} on", f"{beyond}")
-        if state.flags & ~(m.CHARGING | m.STILL | m.LIMP | m.RECKONED):
-            raise UnmetError("STATE with no flags but 0 to 3", f"flags={state.flags}")
 
 
 @HEARTBEAT.must
@@ -121,38 +103,6 @@ def emotion_takes_time(robot: Probe) -> None:
         )
 
 
-@HEARTBEAT.must
-def joints_within_limits(robot: Probe) -> None:
-    """No joint is ever beyond the limits of the catalogue."""
-    joints = _moved(robot)
-    for _, state in robot.log.states:
-        for index, joint in enumerate(joints):
-            angle = state.joints[index]
-            if not joint.low - OVER_LIMIT <= angle <= joint.high + OVER_LIMIT:
-                raise UnmetError(
-                    f"joint {index} ({joint.name}) from {joint.low} to {joint.high} rad",
-                    f"{angle} rad",
-                )
-
-
-@HEARTBEAT.must
-def joints_within_speed(robot: Probe) -> str:
-    """No joint moves faster than the speed in the catalogue, whatever the robot is told."""
-    joints = _moved(robot)
-    fastest = 0.0
-    for (then, before), (now, after) in _windows(robot):
-        for index, joint in enumerate(joints):
-            way = abs(after.joints[index] - before.joints[index])
-            most = joint.speed * (now - then + SLACK / 2) + OVER_SPEED
-            fastest = max(fastest, (way - OVER_SPEED) / (joint.speed * (now - then + SLACK / 2)))
-            if way > most:
-                raise UnmetError(
-                    f"joint {index} ({joint.name}) at most {joint.speed} rad/s",
-                    f"{way:.3f} rad in {1000 * (now - then):.0f} ms",
-                )
-    return f"the fastest at {100 * max(fastest, 0.0):.0f} % of its own"
-
-
 @HEARTBEAT.should
 def not_too_talkative(robot: Probe) -> str:
     """Apart from the answers to BEAT, STATE comes no more often than every 50 ms."""
@@ -188,32 +138,3 @@ def _far(state: m.State, goal: tuple[float, float]) -> float:
 
 def _shows(state: m.State, goal: tuple[float, float]) -> bool:
     return _far(state, goal) < SHOWN
-
-
-def _moved(robot: Probe) -> tuple[m.Joint, ...]:
-    """Make the robot move, and return its joints."""
-    joints = known_joints(robot)
-    if not joints:
-        raise NotApplicableError("it has no joints")
-    welcome = robot.fresh()
-    for emotion in ((1.0, 1.0), (-1.0, -1.0)):
-        robot.express(*emotion)
-        robot.live(0.6)
-        if welcome.motions:
-            last = m.Play(robot.next_number(), m.ITEM_MOTION, welcome.motions - 1)
-            robot.command(last)
-            robot.live(0.6)
-    return joints
-
-
-def _windows(robot: Probe) -> list[tuple[tuple[float, m.State], tuple[float, m.State]]]:
-    """Return pairs of STATEs that are a little apart."""
-    pairs = []
-    first = 0
-    states = robot.log.states
-    for index, (at, state) in enumerate(states):
-        while first < index and at - states[first + 1][0] >= WINDOW:
-            first += 1
-        if at - states[first][0] >= WINDOW:
-            pairs.append((states[first], (at, state)))
-    return pairs

@@ -1,39 +1,21 @@
 """Checks of section 5: who is spoken to, and what is kept from one session to the next."""
 
 from robot.conformance.check import Chapter
+from robot.conformance.checks.strangers import see_gone
 from robot.conformance.heard import Heard
-from robot.conformance.probe import AT_ONCE, SLACK, Probe, told
+from robot.conformance.probe import AT_ONCE, Probe, told
 from robot.conformance.verdicts import UnmetError
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.messages import CHARGING, STILL
-from robot.protocol.schema import form_of
 
 SESSIONS = Chapter("Sessions", 5)
-
-QUIET = 0.4
-"""How long a robot without a session is listened to [s]."""
 
 GREETINGS = 40
 """HELLOs in a row."""
 
 GREETING_EVERY = 0.005
 """Time between two of them [s]; the answers take 4 ms each at 115200 baud."""
-
-STRANGERS = 60
-"""Frames of foreign sessions in a row."""
-
-STRANGERS_AT_ONCE = 4
-"""So many of them go in one write."""
-
-_FOREIGN = (
-    m.Ask(m.ITEM_JOINT, 0),
-    m.Beat(7),
-    m.Express(1, 0.5, 0.5),
-    m.Play(1, m.ITEM_MOTION, 0),
-    m.Stop(1),
-    m.Bye(),
-)
 
 
 @SESSIONS.must
@@ -94,7 +76,7 @@ def newest_session_wins(robot: Probe) -> None:
     robot.again()
     robot.beat("a second session")
     robot.say(m.Beat(7), session=before)
-    _gone(robot, before, "BEAT in the session before")
+    see_gone(robot, before, "BEAT in the session before")
     robot.beat("that")
 
 
@@ -145,81 +127,6 @@ def same_host_continues(robot: Probe) -> None:
 
 
 @SESSIONS.must
-def foreign_session_told(robot: Probe) -> None:
-    """Whatever is not of the open session is answered by GONE in the session of that message."""
-    robot.fresh()
-    for message in _FOREIGN:
-        foreign = robot.session ^ 0x1111
-        robot.hear(2 * timing.GONE_EVERY)
-        robot.say(message, session=foreign)
-        _gone(robot, foreign, f"{form_of(type(message)).name} in another session")
-    taken = robot.beat("messages of another session").taken
-    if taken:
-        raise UnmetError("STATE(taken=0): commands of another session are not taken", f"{taken=}")
-
-
-@SESSIONS.must
-def gone_without_session(robot: Probe) -> None:
-    """A robot without a session answers every message but HELLO by GONE."""
-    robot.fresh()
-    robot.say(m.Bye())
-    robot.hear(AT_ONCE)
-    for message in _FOREIGN:
-        robot.hear(2 * timing.GONE_EVERY)
-        robot.say(message)
-        _gone(robot, robot.session, f"{form_of(type(message)).name} after BYE")
-
-
-@SESSIONS.must
-def gone_not_too_often(robot: Probe) -> None:
-    """GONE is sent at most every 20 ms."""
-    robot.fresh()
-    frame = robot.frame(m.Beat(7), robot.session ^ 0x1111)
-    robot.hear(2 * timing.GONE_EVERY)
-    begin = robot.now
-    gone: list[Heard] = []
-    for _ in range(STRANGERS // STRANGERS_AT_ONCE):
-        robot.send(frame * STRANGERS_AT_ONCE)
-        gone += _gones(robot.hear(0.002))
-    gone += _gones(robot.hear(AT_ONCE))
-    if not gone:
-        raise UnmetError(f"GONE after {STRANGERS} BEATs of another session", "none")
-    most = (gone[-1].at - begin + SLACK) / timing.GONE_EVERY + 2
-    if len(gone) > most:
-        raise UnmetError(
-            f"at most {most:.0f} GONEs in {1000 * (gone[-1].at - begin):.0f} ms, "
-            f"after {STRANGERS} BEATs of another session",
-            f"{len(gone)}",
-        )
-
-
-@SESSIONS.must
-def silent_without_session(robot: Probe) -> None:
-    """A robot without a session sends nothing before it is asked; BYE has no answer."""
-    robot.fresh()
-    robot.live(0.1)
-    came = robot.hear(0)
-    robot.say(m.Bye())
-    robot.hear(SLACK)  # what was on its way
-    came = robot.hear(QUIET)
-    if came:
-        raise UnmetError(f"silence for {1000 * QUIET:.0f} ms after BYE", told(came))
-
-
-@SESSIONS.must
-def own_session_in_header(robot: Probe) -> None:
-    """Whatever the robot sends but GONE bears the session of its last WELCOME."""
-    robot.fresh()
-    robot.live(0.2)
-    robot.again()
-    robot.live(0.2)
-    faults = robot.log.faults.get("session", [])
-    if faults:
-        count = robot.log.counts["session"]
-        raise UnmetError(f"session {robot.session} or that before", f"{count} × {faults[0]}")
-
-
-@SESSIONS.must
 def version_agreed(robot: Probe) -> str:
     """WELCOME names the highest version that both speak: never above the one offered."""
     most = robot.fresh(offer=255).version
@@ -255,21 +162,6 @@ def _taken(robot: Probe, welcome: m.Welcome, in_force: int, last: int, after: st
             f"WELCOME(taken={in_force}) and STATE(taken={last}) after {after}",
             f"WELCOME(taken={welcome.taken}) and STATE(taken={state.taken})",
         )
-
-
-def _gone(robot: Probe, session: int, after: str) -> None:
-    """See that a session is said to be gone."""
-    found, before = robot.wait_for(
-        lambda heard: isinstance(heard.message, m.Gone) and heard.session == session, AT_ONCE
-    )
-    if found is None:
-        raise UnmetError(
-            f"GONE in session {session} within {1000 * AT_ONCE:.0f} ms after {after}", told(before)
-        )
-
-
-def _gones(heard: list[Heard]) -> list[Heard]:
-    return [one for one in heard if isinstance(one.message, m.Gone)]
 
 
 def _only_gone(came: list[Heard], expected: str) -> None:

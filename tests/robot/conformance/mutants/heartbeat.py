@@ -28,6 +28,15 @@ class CountsBeatsInSevenBits(Stating):
         return replace(state, beat=state.beat & 0x7FFF)
 
 
+@breaks("beat forgotten in a new session")
+class RemembersTheLastBeat(Stating):
+    last = 0
+
+    def alter(self, state: m.State) -> m.State:
+        self.last = state.beat or self.last
+        return replace(state, beat=self.last)
+
+
 @breaks("state by itself")
 class SpeaksOnlyWhenAsked(Mutant):
     asked = False
