@@ -11,11 +11,11 @@ from robot.driver import Driver
 from robot.drivers import DRIVERS
 from robot.emotion import Emotion
 from robot.errors import RobotError
-from robot.port import Clock
+from robot.port import Clock, Opener
 from robot.protocol import messages as m
 from robot.pump import ByteHook, Pump
 from robot.telemetry import Telemetry
-from robot.transport import Opener, opener
+from robot.transport import opener
 
 
 def connect(
@@ -61,7 +61,10 @@ def connect(
     # So that two programs are not taken for one: the microsecond in which this one connects.
     host = int(clock() * 1e6) % 0xFFFFFFFF + 1
     driver = kind.make(host, None if settings is None else Path(settings))
-    open_port = opener(url, clock, getattr(driver, "baud", kind.baud))
+    if kind.opener is None or url.startswith("sim:"):
+        open_port = opener(url, clock, getattr(driver, "baud", kind.baud))
+    else:
+        open_port = kind.opener(url, clock)
     robot = Robot(url, open_port, driver, clock, on_bytes)
     wait = kind.answer_within if answer_within is None else answer_within
     try:

@@ -7,6 +7,7 @@ from typing import Protocol
 
 from robot.catalogue import Catalogue
 from robot.emotion import Emotion
+from robot.port import Clock, Opener
 from robot.telemetry import LinkState, Telemetry
 
 
@@ -68,3 +69,6 @@ class DriverKind:
 
     answer_within: float
     """How long `connect` waits for the robot where its caller does not say [s]."""
+
+    opener: Callable[[str, Clock], Opener] | None = None
+    """Returns what opens the URL, for a robot that is on no serial port; None for one that is."""

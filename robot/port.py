@@ -25,3 +25,7 @@ class Port(Protocol):
 
     def close(self) -> None:
         """Give the port back."""
+
+
+Opener = Callable[[], Port]
+"""Opens a port, the first time and again; raises RobotError while it cannot."""

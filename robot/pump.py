@@ -10,8 +10,7 @@ import serial
 from robot.budget import REST, Budget
 from robot.driver import Driver
 from robot.errors import RobotError
-from robot.port import Clock, Port
-from robot.transport import Opener
+from robot.port import Clock, Opener, Port
 
 ByteHook = Callable[[Literal["tx", "rx"], bytes, float], None]
 """Is called from the link's thread with a direction, the bytes, and the time [s]."""

@@ -3,14 +3,13 @@
 import re
 import sys
 import time
-from collections.abc import Callable
 from typing import cast
 
 import serial
 
 from robot.errors import RobotError
 from robot.plug import Identity, identity_of, name_of
-from robot.port import READ_TIMEOUT, Clock, Port
+from robot.port import READ_TIMEOUT, Clock, Opener, Port
 from robot.protocol import timing
 from robot.simulators.memory import SimulatedWire
 
@@ -22,10 +21,6 @@ if sys.platform != "win32":
 
 WRITE_TIMEOUT = 0.2
 """Longest wait in one write [s]; a robot that no longer reads makes its line fill up."""
-
-
-Opener = Callable[[], Port]
-"""Opens a port, the first time and again; raises RobotError while it cannot."""
 
 
 _NO_PORT = "there is no such port; `cubeling robot list` shows those there are"

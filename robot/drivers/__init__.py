@@ -9,6 +9,8 @@ from robot.drivers.opencat.settings import load as opencat_settings
 from robot.drivers.pleo import timing as pleo
 from robot.drivers.pleo.driver import PleoDriver
 from robot.drivers.pleo.settings_file import load_settings as pleo_settings
+from robot.drivers.reachy.driver import ReachyDriver
+from robot.drivers.reachy.line import open_reachy
 from robot.errors import RobotError
 from robot.protocol import timing
 
@@ -27,10 +29,18 @@ def _pleo(host: int, settings: Path | None) -> Driver:
     return PleoDriver(pleo_settings(settings))
 
 
+def _reachy(host: int, settings: Path | None) -> Driver:
+    if settings is not None:
+        raise RobotError(f"{settings}: Reachy Mini's driver has no settings; leave them out")
+    return ReachyDriver()
+
+
 DRIVERS: dict[str, DriverKind] = {
     "cubeling": DriverKind(_cubeling, timing.BAUD, timing.ANSWER_WITHIN),
     # A board takes seconds to start when its port is opened, and a new one asks its owner first.
     "opencat": DriverKind(_opencat, 115200, 25.0),
     "pleo": DriverKind(_pleo, pleo.BAUD, pleo.ANSWER_WITHIN),
+    # It has no serial port of its own; its daemon is reached over the network, and it gets up.
+    "reachy": DriverKind(_reachy, 0, 10.0, open_reachy),
 }
 """The protocols by name."""

@@ -1,0 +1,1 @@
+"""Reachy Mini, by way of its own SDK and daemon: `pip install "cubeling[reachy]"`."""

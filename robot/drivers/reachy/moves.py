@@ -1,0 +1,129 @@
+"""What Reachy Mini can turn, how far and how fast we turn it, and what it does in each mood."""
+
+from math import radians
+
+import numpy as np
+
+from robot.catalogue import Catalogue, JointLimits
+from robot.motions import Array, Motion, Sway
+
+_LIMITS_DEG = (
+    ("head roll", -25, 25, 60),
+    ("head pitch", -30, 30, 60),
+    ("head yaw", -35, 35, 90),
+    ("body yaw", -25, 25, 60),
+    ("right antenna", -90, 90, 180),
+    ("left antenna", -90, 90, 180),
+)
+"""Well inside what the robot allows: ±40° of pitch and roll, at most 65° between head and body
+(Reachy Mini's SDK documentation, "Core concepts"). The speeds are ours; nothing is published."""
+
+JOINTS = tuple(name for name, *_ in _LIMITS_DEG)
+"""Names of what it turns. Zero looks ahead; positive is right, down and to its left, as the SDK's
+roll, pitch and yaw; antennas stand up at zero and fall outwards or back."""
+
+LOW = np.radians([row[1] for row in _LIMITS_DEG])
+HIGH = np.radians([row[2] for row in _LIMITS_DEG])
+SPEED = np.radians([row[3] for row in _LIMITS_DEG])
+"""Fastest turn of each [rad/s]."""
+
+MOODS = (
+    Motion(
+        "neutral",
+        5.0,
+        {
+            "head yaw": Sway(0, 10),
+            "head pitch": Sway(0, 2, 2),
+            "right antenna": Sway(-12, 5, 2),
+            "left antenna": Sway(12, 5, 2, 0.1),
+        },
+    ),
+    Motion(
+        "happy",
+        2.4,
+        {
+            "head roll": Sway(0, 11, 2),
+            "head pitch": Sway(-10, 5, 2, 0.25),
+            "body yaw": Sway(0, 12),
+            "right antenna": Sway(-5, 26, 3),
+            "left antenna": Sway(5, 26, 3, 0.5),
+        },
+    ),
+    Motion(
+        "angry",
+        2.0,
+        {
+            "head pitch": Sway(15, 3, 4),
+            "head yaw": Sway(0, 12, 2),
+            "right antenna": Sway(-75, 6, 6),
+            "left antenna": Sway(75, 6, 6, 0.5),
+        },
+    ),
+    Motion(
+        "sad",
+        6.0,
+        {
+            "head pitch": Sway(22, 3),
+            "head roll": Sway(5, 2, 1, 0.25),
+            "right antenna": Sway(-85, 4),
+            "left antenna": Sway(85, 4, 1, 0.1),
+        },
+    ),
+    Motion(
+        "surprised",
+        4.0,
+        {
+            "head pitch": Sway(-16, 2),
+            "right antenna": Sway(8, 3, 4),
+            "left antenna": Sway(-8, 3, 4),
+        },
+    ),
+    Motion(
+        "sleepy",
+        7.0,
+        {
+            "head pitch": Sway(14, 7),
+            "head roll": Sway(6, 3),
+            "right antenna": Sway(-50, 4),
+            "left antenna": Sway(50, 4),
+        },
+    ),
+)
+"""One endless motion for each mood, neutral first."""
+
+ACTIONS = (
+    Motion("nod", 1.6, {"head pitch": Sway(2, 10, 2)}),
+    Motion("shake head", 1.8, {"head yaw": Sway(0, 16, 2)}),
+    Motion("wiggle", 1.5, {"right antenna": Sway(0, 30, 3), "left antenna": Sway(0, 30, 3, 0.5)}),
+    Motion("bow", 3.0, {"head pitch": Sway(12, 12, 1, -0.25)}),
+    Motion("kiss", 2.0, {"head pitch": Sway(-4, 9, 2), "head roll": Sway(8, 0)}),
+)
+"""Motions that are played once and then give way to the mood again."""
+
+MOTIONS = MOODS + ACTIONS
+"""Every motion, in the order of the catalogue."""
+
+
+def catalogue(firmware: str) -> Catalogue:
+    """Return what a Reachy Mini has; `firmware` is its daemon's version."""
+    joints = tuple(
+        JointLimits(name, radians(low), radians(high), radians(speed))
+        for name, low, high, speed in _LIMITS_DEG
+    )
+    names = tuple(motion.name for motion in MOTIONS)
+    moods = tuple(motion.name for motion in MOODS)
+    return Catalogue("Reachy Mini", firmware, joints, names, (), moods)
+
+
+def toward(angles: Array, wanted: Array, elapsed: float) -> Array:
+    """Return angles that have come closer to those wanted, within limits, at the speeds allowed.
+
+    Parameters
+    ----------
+    angles, wanted
+        (joints,) [rad]
+    elapsed
+        Time for the way [s].
+    """
+    reach = SPEED * elapsed
+    return np.clip(angles + np.clip(wanted - angles, -reach, reach), LOW, HIGH)
