@@ -49,7 +49,10 @@ class Hardware(Board):
         self._return = False
         if table.port:
             number, tx, rx = table.port
-            self._uart = machine.UART(number, 115200, tx=tx, rx=rx, timeout=0, rxbuf=512, txbuf=512)
+            self._uart = machine.UART(
+                number, 115200, tx=machine.Pin(tx), rx=machine.Pin(rx), timeout=0, rxbuf=512,
+                txbuf=512,
+            )  # fmt: skip
         self._in = self._uart or sys.stdin.buffer
         self._out = self._uart or sys.stdout.buffer
         self._readable = select.poll()

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robot.feeling.mood import Label, next_label
-from robot.firmware import generate
+from robot.firmware import generate, wiring
 from robot.firmware.dino import body, motions, servos, sounds
 from robot.firmware.dino.joints import RETRY, STAGGER
 from robot.firmware.dino.robot import live, run
@@ -228,6 +228,7 @@ def test_drawn_files_are_current():
     here = Path(generate.BOARD)
     assert (here / "messages.py").read_text("utf-8") == generate.messages()
     assert (here / "motions.py").read_text("utf-8") == generate.motions()
+    assert wiring.PICTURE.read_text("utf-8") == wiring.wiring(Table(servos))
 
 
 @pytest.mark.parametrize("value", [-1.0, -0.34, -0.3, -0.27, 0.0, 0.27, 0.3, 0.34, 1.0])

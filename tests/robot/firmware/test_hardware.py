@@ -102,6 +102,29 @@ class Stream:
         return len(data)
 
 
+class Uart:
+    """A UART, which takes and gives what it can at once."""
+
+    latest: ClassVar["Uart"]
+
+    def __init__(self, number: int, baud: int, tx: Pin, rx: Pin, **buffers: int) -> None:
+        assert buffers["timeout"] == 0, "it would wait"
+        self.set_up = (number, baud, tx.number, rx.number)
+        self.coming, self.gone = b"", b""
+        Uart.latest = self
+
+    def readinto(self, data: bytearray) -> int | None:
+        if not self.coming:
+            return None
+        count = min(len(data), len(self.coming))
+        data[:count], self.coming = self.coming[:count], self.coming[count:]
+        return count
+
+    def write(self, data: memoryview) -> int | None:
+        self.gone += bytes(data[:4])
+        return min(4, len(data)) or None
+
+
 class Watchdog:
     """Counts what keeps the board from a reboot."""
 
@@ -133,7 +156,7 @@ class MicroPython:
             vars(made).update(content)
             monkeypatch.setitem(sys.modules, name, made)
 
-        module("machine", Pin=Pin, PWM=Pwm, I2C=Bus, WDT=Watchdog, reset=self._reset,
+        module("machine", Pin=Pin, PWM=Pwm, I2C=Bus, UART=Uart, WDT=Watchdog, reset=self._reset,
                ADC=lambda pin: SimpleNamespace(read_u16=lambda: 40_000))  # fmt: skip
         module("micropython", kbd_intr=self._kbd_intr)
         module("select", poll=Poll, POLLIN=1, POLLOUT=4)
@@ -210,6 +233,20 @@ def test_the_line_never_waits(micropython):
     micropython.line.room = 3
     assert board.write(memoryview(b"frame")) == 3
     assert micropython.line.gone == b"fra"
+
+
+def test_a_host_on_a_uart_leaves_the_prompt_alone(micropython):
+    board = micropython.board(PORT=(1, 8, 9))
+    uart = Uart.latest
+    assert uart.set_up == (1, 115_200, 8, 9)
+    data = bytearray(8)
+    assert board.read(data) == 0
+    uart.coming = b"\r\x03"
+    assert board.read(data) == 2
+    assert board.write(memoryview(b"a frame")) == 4
+    board.begin(True)
+    assert not board.left()
+    assert micropython.interrupt == 3, "Ctrl-C on the USB socket still interrupts"
 
 
 def test_the_clock_survives_its_wrap(micropython):
