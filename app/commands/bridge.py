@@ -150,14 +150,17 @@ class Lines:
 
     def connections(self, bridge: Bridge) -> None:
         """Say in one line each what is wrong with a connection, or is right again."""
-        troubles = [station.trouble for station in (bridge.roster, *bridge.stations.values())]
-        names = ["", *bridge.stations]
-        for name, trouble in zip(names, troubles, strict=True):
-            if self._told.get(name, "") != trouble:
-                self._told[name] = trouble
-                shared = name and trouble == troubles[0]
-                if not shared:  # the onlooker says it for all
-                    self._print(f"{trouble}; trying again" if trouble else "connected again")
+        shared = bridge.roster.trouble
+        for name, station in {"": bridge.roster, **bridge.stations}.items():
+            trouble = station.trouble
+            told, self._told[name] = self._told.get(name, ""), trouble
+            if name and trouble == shared:
+                continue  # the onlooker says it for all
+            if trouble and (not told or (station.state == "refused" and trouble != told)):
+                again = "" if station.state == "refused" else "; trying again"
+                self._print(f"{trouble}{again}")
+            elif told and not trouble:
+                self._print("connected again")
 
     def _print(self, text: str) -> None:
         with self._lock:

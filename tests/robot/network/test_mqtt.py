@@ -7,6 +7,7 @@ import socket
 import subprocess
 import threading
 import time
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -188,6 +189,35 @@ def test_what_the_broker_does_not_allow_is_told(mosquitto, tmp_path, soon):
     assert bus.publish(Letter("cubeling/1/hall/player/bob/status", b"{}"))
     soon(lambda: "does not let us publish to cubeling/1/hall/player/bob/status" in bus.trouble)
     bus.close()
+
+
+def test_the_example_rules_let_each_speak_for_itself_alone(mosquitto, tmp_path, soon):
+    rules = Path(robot.__file__).parent / "network" / "mosquitto.example.acl"
+    passwords = tmp_path / "passwords"
+    passwords.touch()
+    for user in ("ann", "hall"):
+        subprocess.run(["mosquitto_passwd", "-b", str(passwords), user, "x"], check=True)
+    broker = mosquitto(f"password_file {passwords}", f"acl_file {rules}", "max_packet_size 8192")
+    heard: list[str] = []
+    buses = {}
+    for user in ("ann", "hall"):
+        buses[user] = MqttBus(Address.of(f"mqtt://{user}:x@127.0.0.1:{broker.port}"), user)
+    buses["hall"].subscribe("cubeling/1/#", lambda topic, _: heard.append(topic))
+    for bus in buses.values():
+        bus.open()
+    allowed = ["cubeling/1/museum/robot/rex/state", "cubeling/1/museum/player/ann/action"]
+    for user, topic in (
+        ("ann", "cubeling/1/museum/player/bob/action"),
+        ("hall", "cubeling/1/museum/player/ann/action"),
+        ("ann", "cubeling/1/museum/robot/rex/state"),
+        ("hall", allowed[0]),
+        ("ann", allowed[1]),
+    ):
+        assert buses[user].publish(Letter(topic, b"{}"))
+    soon(lambda: sorted(heard) == sorted(allowed))
+    soon(lambda: all("does not let us" in bus.trouble for bus in buses.values()))
+    for bus in buses.values():
+        bus.close()
 
 
 def openssl(*words: str) -> None:

@@ -1,0 +1,67 @@
+"""How to get into a broker: URLs, passwords, certificates; no message shows a password."""
+
+from pathlib import Path
+
+import pytest
+
+from robot.errors import RobotError
+from robot.network import Address, Credentials
+
+
+def test_a_url_says_where_and_who():
+    address = Address.of("mqtt://ann:se%40same@museum.local:1884")
+    assert (address.host, address.port, address.user) == ("museum.local", 1884, "ann")
+    assert address.password == "se@same"
+    assert str(address) == "mqtt://museum.local:1884"
+    assert "same" not in repr(address)
+
+
+@pytest.mark.parametrize(("url", "port"), [("mqtt://h", 1883), ("mqtts://h/", 8883)])
+def test_each_scheme_has_its_usual_port(url, port):
+    address = Address.of(url)
+    assert address.port == port
+    assert (address.tls is not None) == (port == 8883)
+
+
+def test_the_password_comes_from_the_url_then_the_file_then_the_environment(tmp_path, monkeypatch):
+    monkeypatch.setenv("CUBELING_MQTT_PASSWORD", "variable")
+    file = tmp_path / "password"
+    file.write_text("from the file\nnot this\n")
+    given = Credentials(user="ann", password_file=file)
+    assert Address.of("mqtt://ann:url@h", given).password == "url"
+    assert Address.of("mqtt://h", given).password == "from the file"
+    assert Address.of("mqtt://ann@h").password == "variable"
+    assert Address.of("mqtt://h").password is None  # nobody has no password
+
+
+@pytest.mark.parametrize(
+    ("url", "given", "says"),
+    [
+        ("museum.local", {}, "mqtt://HOST"),
+        ("http://museum.local", {}, "http"),
+        ("mqtt://", {}, "mqtt://HOST"),
+        ("mqtt://ann:secret@h:port", {}, "port"),
+        ("mqtt://ann:secret@h:99999", {}, "port"),
+        ("mqtt://ann:secret@h/topic", {}, "only a host"),
+        ("mqtt://:secret@h", {}, "needs a user"),
+        ("mqtt://h", {"ca": Path("ca.pem")}, "mqtts://"),
+        ("mqtts://h", {"ca": Path("absent.pem")}, "absent.pem"),
+        ("mqtts://h", {"key": Path("a.key")}, "certificate"),
+        ("mqtts://h", {"certificate": Path("absent.pem")}, "absent.pem"),
+        ("mqtt://h", {"user": "ann", "password_file": Path("absent")}, "absent"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line_without_the_password(url, given, says):
+    with pytest.raises(RobotError, match=says) as refused:
+        Address.of(url, Credentials(**given))
+    assert "secret" not in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_an_empty_password_file_and_one_that_is_no_certificate_are_refused(tmp_path):
+    file = tmp_path / "file"
+    file.write_text("\n")
+    with pytest.raises(RobotError, match="first line"):
+        Address.of("mqtt://h", Credentials(user="ann", password_file=file))
+    with pytest.raises(RobotError, match="no certificate"):
+        Address.of("mqtts://h", Credentials(ca=file))

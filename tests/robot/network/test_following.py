@@ -1,0 +1,147 @@
+"""Whose mood a robot shows, and what it does when its player is gone."""
+
+import pytest
+
+from robot.emotion import Emotion
+from robot.errors import RobotError
+from robot.network import Member, Pattern, RobotNode
+from robot.network.endpoint import SILENT_AFTER
+from robot.network.following import HOLD, PLAYERS_MAX
+from robot.network.messages import Feeling, RobotState, Status
+from robot.network.schema import decode, encode
+from tests.robot.network.conftest import FakeRobot
+
+HAPPY, ANGRY, NEUTRAL = Emotion(0.8, 0.5), Emotion(-0.8, 0.5), Emotion(0.0, 0.0)
+
+
+def test_an_action_gives_the_robot_to_who_did_it(room):
+    ann, bob = room.player("a"), room.player("b")
+    room.node("rex")
+    ann.feel(HAPPY, "happy")
+    room.run(0.5)
+    bob.feel(ANGRY, "angry")
+    room.run(0.5)
+    felt = room.robots["rex"].felt
+    assert felt[-1] == HAPPY  # a mere feeling takes nobody's robot
+    room.act("b")
+    room.run(0.5)
+    assert felt[-1] == ANGRY
+    ann.feel(Emotion(0.9, 0.5))
+    room.run(0.5)
+    assert felt[-1] == ANGRY
+    room.act("a")
+    room.run(0.5)
+    assert felt[-1] == Emotion(0.9, 0.5)
+
+
+@pytest.mark.parametrize("end", ["goodbye", "last will", "silence"])
+def test_a_player_who_is_gone_keeps_its_mood_on_the_robot_for_a_while(room, end):
+    ann = room.player("a")
+    room.node("rex")
+    ann.feel(HAPPY, "happy")
+    room.run(3.0)
+    rex = room.robots["rex"]
+    noticed = 0.0
+    if end == "goodbye":
+        room.stations.pop("a").close()
+    elif end == "last will":
+        room.held.add("a")
+        room.buses["a"].cut()
+    else:  # its program hangs: no beat, and a connection that stands
+        del room.stations["a"]
+        noticed = SILENT_AFTER
+    room.run(noticed + HOLD - 2.2)
+    assert rex.felt[-1] == HAPPY
+    room.run(2.5)
+    assert rex.felt[-1] == NEUTRAL
+
+
+def test_a_robot_goes_from_a_player_who_is_gone_to_one_who_is_there(room):
+    ann, bob = room.player("a"), room.player("b")
+    room.node("rex")
+    ann.feel(HAPPY)
+    room.run(0.5)
+    bob.feel(ANGRY)
+    room.run(0.5)
+    room.stations.pop("a").close()
+    room.run(HOLD + 0.5)
+    assert room.robots["rex"].felt[-1] == ANGRY
+
+
+def test_a_robot_cut_off_from_the_broker_is_neutral_in_the_end(room):
+    ann = room.player("a")
+    room.node("rex")
+    ann.feel(HAPPY)
+    room.run(0.5)
+    room.broker.kill()
+    room.run(SILENT_AFTER + HOLD + 0.5)
+    assert room.robots["rex"].felt[-1] == NEUTRAL
+    room.broker.start()
+    room.run(0.5)
+    assert room.robots["rex"].felt[-1] == HAPPY
+
+
+def test_a_retained_feeling_of_nobody_moves_no_robot(room):
+    ann = room.player("a")
+    ann.feel(HAPPY)
+    room.run(0.5)
+    room.stations.pop("a").close()
+    room.node("rex")
+    room.run(1.0)
+    assert room.robots["rex"].felt == []
+
+
+def test_a_robot_follows_whom_it_was_told_and_nobody_else(room):
+    room.player("a")
+    room.player("b")
+    room.node("rex", follow="b")
+    room.run(0.5)
+    room.act("a")
+    room.act("b")
+    room.run(0.5)
+    assert room.robots["rex"].played == ["b1"]
+    assert [robot.name for robot in room.stations["b"].endpoint.robots] == ["rex"]
+    assert not room.stations["a"].endpoint.robots
+
+
+def test_the_state_tells_what_the_robot_does_only_when_it_changes_and_not_too_often(room):
+    ann = room.player("a")
+    room.node("rex")
+    topic = "cubeling/1/hall/robot/rex/state"
+    told: list[RobotState] = []
+    onlooker = room.broker.bus()
+    onlooker.subscribe(topic, lambda _, payload: told.append(decode(RobotState, payload)))
+    onlooker.open()
+    room.run(3.0)
+    assert len(told) == 1
+    for step in range(100):
+        ann.feel(Emotion(step / 100, 0.5))
+        room.run(0.02)
+    room.robots["rex"].link = "lost"
+    room.run(1.0)
+    assert len(told) < 2.0 / 0.2 + 5
+    assert [state.number for state in told] == list(range(1, len(told) + 1))
+    assert (told[-1].link, told[-1].player, told[-1].commanded) == ("lost", "hall/a", (0.99, 0.5))
+    status = decode(Status, room.broker.retained["cubeling/1/hall/robot/rex/status"].payload)
+    assert status.status == "online"  # the node is, the robot is not
+
+
+def test_more_players_than_a_robot_can_count_make_no_memory_grow(room):
+    node = RobotNode(Member("hall", "robot", "rex"), FakeRobot(), 1, (Pattern.parse("*", "hall"),))
+    for number in range(10 * PLAYERS_MAX):
+        for kind, message in (
+            ("emotion", Feeling(1, 1, 0.1, 0.1)),
+            ("status", Status(1, 1, "online")),
+        ):
+            topic = f"cubeling/1/hall/player/p{number}/{kind}"
+            node.receive(topic, encode(message), number / 1000)
+    assert len(node.following.players) == PLAYERS_MAX
+
+
+@pytest.mark.parametrize(
+    "text", ["", "a/b/c", "a b", "+", "#", "hall/", "/a", "-a", "x" * 33, "\n"]
+)
+def test_what_can_be_no_name_is_refused_in_one_line(text):
+    with pytest.raises(RobotError) as refused:
+        Pattern.parse(text, "hall")
+    assert "\n" not in str(refused.value)

@@ -1,0 +1,114 @@
+"""Messages in the tree: what is written is read, what is wrong is refused, the document is true."""
+
+import dataclasses
+import json
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from robot.network import messages as m
+from robot.network import schema
+from robot.network.reference import DOCUMENT, renewed
+from robot.network.schema import MalformedError, decode, encode
+from robot.network.topics import Member, fits, is_name, member_of
+
+KINDS = list(dict.fromkeys(m.KINDS.values()))
+COUNTS = st.integers(1, schema.COUNT_MAX)
+UNITS = st.floats(-1, 1)
+TEXTS = st.text(max_size=20).filter(lambda text: text.isprintable())
+MESSAGES = st.one_of(
+    st.builds(m.Status, COUNTS, COUNTS, st.sampled_from(["online", "lost", "closed"]),
+              st.lists(TEXTS, max_size=5).map(tuple)),
+    st.builds(m.Action, COUNTS, COUNTS, COUNTS, TEXTS, UNITS, st.floats(0, 1e6)),
+    st.builds(m.Feeling, COUNTS, COUNTS, UNITS, UNITS, st.none() | TEXTS),
+    st.builds(m.Taken, COUNTS, COUNTS,
+              st.dictionaries(TEXTS, st.tuples(COUNTS, COUNTS), max_size=5)),
+    st.builds(m.RobotState, COUNTS, COUNTS, TEXTS, observed=st.none() | st.tuples(UNITS, UNITS),
+              battery=st.none() | st.floats(0, 1)),
+)  # fmt: skip
+
+
+@given(MESSAGES)
+def test_what_is_written_is_read(message):
+    assert decode(type(message), encode(message)) == message
+
+
+@given(MESSAGES, st.dictionaries(st.text(max_size=8), st.integers() | st.text(max_size=8)))
+def test_fields_of_a_later_version_are_skipped(message, later):
+    fields = {field.name for field in dataclasses.fields(message)}
+    document = {k: v for k, v in later.items() if k not in fields} | json.loads(encode(message))
+    assert decode(type(message), json.dumps(document).encode()) == message
+
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=4), inner),
+    max_leaves=8,
+)
+
+
+@given(st.sampled_from(KINDS), st.data())
+def test_whatever_comes_is_read_or_refused_with_the_one_error(kind, data):
+    names = [field.name for field in dataclasses.fields(kind)]
+    document = data.draw(st.dictionaries(st.sampled_from(names), JSON))
+    for payload in (json.dumps(document).encode(), data.draw(st.binary(max_size=60))):
+        try:
+            message = decode(kind, payload)
+        except MalformedError:
+            continue
+        assert decode(kind, encode(message)) == message
+
+
+@pytest.mark.parametrize(
+    ("kind", "payload", "says"),
+    [
+        (m.Action, b"x" * 4097, "4097 bytes"),
+        (m.Action, b"[]", "no JSON object"),
+        (m.Action, b'{"session":1,"number":1,"oldest":1}', "name is missing"),
+        (m.Action, b'{"session":1,"number":0,"oldest":1,"name":"a"}', "number must be"),
+        (m.Action, b'{"session":1,"number":true,"oldest":1,"name":"a"}', "number must be"),
+        (m.Action, b'{"session":1,"number":9007199254740993,"oldest":1,"name":"a"}', "number"),
+        (m.Action, b'{"session":1,"number":1,"oldest":1,"name":"a\\n"}', "name must be"),
+        (m.Action, b'{"session":1,"number":1,"oldest":1,"name":"a","weight":1.1}', "weight"),
+        (m.Feeling, b'{"session":1,"number":1,"valence":NaN,"arousal":0}', "valence must be"),
+        (m.Status, b'{"session":1,"number":1,"status":"here"}', "status must be"),
+        (m.Taken, b'{"session":1,"number":1,"players":{"a/b":[1]}}', "players must be"),
+    ],
+)
+def test_what_is_not_allowed_is_refused(kind, payload, says):
+    with pytest.raises(MalformedError, match=says):
+        decode(kind, payload)
+
+
+def test_the_largest_messages_fit():
+    place = "ä" * 16 + "/" + "ä" * 16
+    marks = {f"{place[:-1]}{n:02}": (schema.COUNT_MAX,) * 2 for n in range(schema.LIST_MAX)}
+    follows = tuple(marks)
+    for message in (m.Taken(1, schema.COUNT_MAX, marks), m.Status(1, 1, "online", follows)):
+        assert decode(type(message), encode(message)) == message
+
+
+def test_the_document_says_what_the_code_says():
+    text = DOCUMENT.read_text("utf-8")
+    assert renewed(text) == text, "run python -m robot.network.reference"
+    for form in KINDS:
+        for field in dataclasses.fields(form):
+            assert f"| `{field.name}` |" in text
+
+
+@given(st.text(max_size=40))
+def test_a_name_never_means_anything_in_a_topic(text):
+    if is_name(text):
+        topic = Member(text, "robot", text).topic("state")
+        assert member_of(topic) == (Member(text, "robot", text), "state")
+        assert not set(text) & set("/+#$\0 :=")
+        assert fits("cubeling/1/+/robot/+/state", topic)
+
+
+@pytest.mark.parametrize(
+    "topic", ["", "cubeling/1/a/robot/b", "cubeling/2/a/robot/b/state", "cubeling/1/a/cat/b/state",
+              "cubeling/1//robot/b/state", "cubeling/1/a/robot/b/state/c", "x/cubeling/1/a/b/c"],
+)  # fmt: skip
+def test_topics_of_others_are_none_of_ours(topic):
+    assert member_of(topic) is None
