@@ -87,8 +87,8 @@ class Console:
         if self.reader.ended(now, settle or timing.PROMPT_SETTLES):
             return self._land(flight)
         wait = timing.NUDGE_EVERY if flight.nudges else flight.command.within
-        if now - flight.asked < wait:
-            return None
+        if now - flight.asked < wait or self.reader.prompt_came is not None:
+            return None  # a prompt that still has to settle is not asked for
         if flight.patient and self.reader.answer.prompted:
             return self._land(flight)
         if flight.command is NUDGE and flight.patient:  # a search: its owner decides what is next

@@ -191,7 +191,7 @@ class PleoDriver:
         if landing.outcome == "silent" or (answer.restarted and self._phase != "seeking"):
             self._seek(now)
             return
-        self._pinged = now
+        self._pinged = min(landing.ended, now)
         self._battery = self._battery if answer.battery is None else answer.battery
         self._unsure = self._unsure + 1 if landing.outcome == "unsure" else 0
         if self._unsure >= timing.UNSURE_MAX:
@@ -203,7 +203,7 @@ class PleoDriver:
         else:
             self._measure(landing)
             # All of these may be a restart that nobody saw.
-            late = landing.ended - landing.sent >= timing.DEGRADED_AFTER
+            late = landing.ended - landing.sent >= timing.RESTART_TAKES
             failed = answer.error is not None and landing.command.text.startswith("MOTION PLAY")
             self._reassure |= late or failed or landing.outcome == "unsure"
             if landing.command is commands.APP_UNLOAD:

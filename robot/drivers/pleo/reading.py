@@ -107,7 +107,7 @@ class ConsoleReader:
 
     def finish(self) -> Answer:
         """Return the answer that has ended, and expect nothing more of it."""
-        if self._stray is not None and self._line == self._stray[0]:
+        if self._since is None and self._stray is not None and self._line == self._stray[0]:
             self._take(self._line.removesuffix("> "))
         answer = self.answer
         self.begin()

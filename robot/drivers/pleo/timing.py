@@ -45,6 +45,11 @@ PING_EVERY = 1.0
 DEGRADED_AFTER = 1.0
 """A command without its prompt for this long makes the link degraded [s]."""
 
+RESTART_TAKES = 2.0
+"""An answer that took so long may hold a restart that nobody saw [s]: APP UNLOAD is sent again.
+
+An assumption; a restart that is quicker is seen by its text, or when a motion is refused."""
+
 REFUSED_AGAIN = 2.0
 """A mood that the console answered with an error text is tried again after this [s]."""
 

@@ -45,6 +45,22 @@ class Script:
         self.driver.receive(text.encode("latin-1"), self.now)
         return self.run(seconds)
 
+    def auto(self, seconds: float, reply: str = "\r\n> ") -> list[str]:
+        """Let time pass with a console that answers everything; return the commands sent.
+
+        An answer takes 20 ms. Empty lines are answered, and left out of what is returned.
+        """
+        sent: list[str] = []
+        answers = [self.now] if self.driver._console.flight else []
+        for _ in range(round(seconds / STEP)):
+            lines = self.run(STEP).decode("latin-1").split("\n")[:-1]
+            sent += [line for line in lines if line]
+            answers += [self.now + 0.020 for _ in lines]
+            if answers and self.now >= answers[0]:
+                answers.pop(0)
+                self.driver.receive(reply.encode("latin-1"), self.now)
+        return sent
+
     def started(self) -> "Script":
         """Go through the start, and the first question for the battery."""
         assert self.run(STEP) == b"\n"

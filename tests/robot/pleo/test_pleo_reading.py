@@ -66,7 +66,8 @@ def test_a_prompt_at_the_start_of_a_line_ends_the_answer(text):
 
 
 @pytest.mark.parametrize(
-    "text", ["", ">", "> 5", "> mu: but no monitor line\r\n", "a > b", "joint move <id> ", "> 5\r\n"]
+    "text",
+    ["", ">", "> 5", "> mu: but no monitor line\r\n", "a > b", "joint move <id> ", "> 5\r\n"],
 )
 def test_the_prompts_characters_in_a_text_do_not_end_it(text):
     assert not ended(read(text))
@@ -95,7 +96,9 @@ def test_monitor_lines_do_not_hold_up_a_prompt():
     assert reader.ended(1.0 + PROMPT_SETTLES + 1e-9)
 
 
-@pytest.mark.parametrize(("echo", "error"), [("MOTION PLAY a:error.umf", None), ("", "MOTION PLAY")])
+@pytest.mark.parametrize(
+    ("echo", "error"), [("MOTION PLAY a:error.umf", None), ("", "MOTION PLAY")]
+)
 def test_the_echo_of_a_command_is_no_error(echo, error):
     found = read("motion play a:error.umf\r\n> ", echo=echo).answer.error
     assert found is None if error is None else found is not None

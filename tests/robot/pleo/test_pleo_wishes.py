@@ -1,0 +1,293 @@
+"""What is sent when: the latest mood, each sound and action once, poses at the joints' own pace."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import robot.drivers.pleo
+from robot.drivers.pleo import commands, timing
+from robot.drivers.pleo.commands import Command
+from robot.protocol import messages as m
+
+OK = "\r\n> "
+
+POSES = """
+[moods.neutral]
+joints = {}
+[moods.angry]
+joints = { torso = -9.2, "tail up" = 45, "left hip" = -45 }
+[moods.sad]
+joints = { torso = 8 }
+[moods.happy]
+motion = "a:happy.umf"
+length_s = 3
+loop = false
+"""
+
+
+@pytest.fixture
+def poses(tmp_path, script):
+    (tmp_path / "poses.toml").write_text(POSES)
+    return script(tmp_path / "poses.toml").started()
+
+
+def shown(pleo, label: str):
+    pleo.express(label)
+    pleo.auto(1.0)
+    return pleo
+
+
+def test_every_command_is_on_the_list_and_made_in_one_place(allowed):
+    made = [commands.NUDGE, commands.APP_UNLOAD, commands.JOINT_NEUTRAL, commands.STATS_POWER]
+    made += [commands.joint_move(13, -80), commands.motion_play("a:x.umf", 1.0)]
+    made += [commands.sound_play("a:x.usf", 1.0), commands.motion_speed(100)]
+    made += [commands.sound_speed(100), commands.sound_volume(0)]
+    assert all(allowed.fullmatch(command.text) for command in made)
+    makers = {name for name, one in vars(commands).items() if callable(one) and name != "dataclass"}
+    constants = {name for name, one in vars(commands).items() if isinstance(one, Command)}
+    assert makers - {"Command", "_setting"} == {
+        "joint_move", "motion_play", "motion_speed", "sound_play", "sound_speed", "sound_volume",
+    }  # fmt: skip
+    assert constants == {"NUDGE", "APP_UNLOAD", "JOINT_NEUTRAL", "STATS_POWER"}
+    folder = Path(robot.drivers.pleo.__file__).parent
+    elsewhere = [path for path in folder.glob("*.py") if path.name != "commands.py"]
+    assert not [path for path in elsewhere if re.search(r"\bCommand\(", path.read_text())]
+
+
+def test_of_the_moods_asked_for_while_the_console_is_busy_only_the_last_is_sent(script):
+    pleo = script().started()
+    pleo.express("happy")
+    assert pleo.run(0.1) == b"MOTION SPEED 100\n"
+    for label in ("angry", "neutral", "angry"):
+        pleo.express(label)
+        assert pleo.run(0.3) == b""
+    assert pleo.auto(1.0) == ["MOTION SPEED 120", "MOTION PLAY a:angry.umf",
+                              "SOUND SPEED 100", "SOUND PLAY a:angry.usf"]  # fmt: skip
+
+
+def test_moods_follow_each_other_no_faster_than_the_settings_say(script):
+    pleo = script().started()
+    pleo.express("happy")
+    assert pleo.auto(0.4)[:2] == ["MOTION SPEED 100", "MOTION PLAY a:happy.umf"]
+    pleo.express("angry")
+    assert pleo.auto(0.09) == []
+    pleo.express("neutral")
+    assert pleo.auto(0.5) == ["MOTION PLAY a:neutral.umf", "SOUND PLAY a:neutral.usf"]
+
+
+def test_the_same_mood_is_not_sent_again_but_what_was_felt_is_acknowledged(script):
+    pleo = shown(script().started(), "happy")
+    pleo.driver.express(robot.Emotion(0.5, 0.7), "happy")
+    assert pleo.auto(1.0) == []
+    assert pleo.telemetry.acknowledged == robot.Emotion(0.5, 0.7)
+
+
+def test_a_loop_is_played_again_when_it_has_ended_and_its_sound_is_not(script):
+    pleo = shown(script().started(), "happy")
+    sent = pleo.auto(10.0)
+    assert sent.count("MOTION PLAY a:happy.umf") in (3, 4)  # 3.2 s each
+    assert not any(line.startswith("SOUND") for line in sent)
+    assert pleo.telemetry.acknowledged is not None
+
+
+def test_a_motion_that_is_no_loop_is_played_once(poses):
+    poses.express("happy")
+    sent = poses.auto(10.0)
+    assert sent.count("MOTION PLAY a:happy.umf") == 1
+
+
+def test_a_lost_answer_to_a_moods_motion_sends_it_again(script):
+    pleo = script().started()
+    pleo.express("happy")
+    assert pleo.run(0.1) + pleo.say(OK) == b"MOTION SPEED 100\nMOTION PLAY a:happy.umf\n"
+    assert pleo.run(timing.LONG_WITHIN) == b"\n"
+    assert pleo.state == "degraded"
+    assert pleo.telemetry.acknowledged is None
+    assert pleo.auto(1.0)[:3] == ["APP UNLOAD", "MOTION SPEED 100", "MOTION PLAY a:happy.umf"]
+    assert pleo.telemetry.counts.retries == 1
+    assert pleo.state == "ready"
+    assert pleo.telemetry.acknowledged is not None
+
+
+def test_a_late_answer_with_text_in_it_is_an_answer_and_nothing_is_sent_again(poses):
+    poses.express("happy")
+    assert poses.run(0.1) + poses.say(OK) == b"MOTION SPEED 100\nMOTION PLAY a:happy.umf\n"
+    assert poses.run(timing.LONG_WITHIN) == b"\n"
+    assert poses.say("playing a:happy.umf\r\n> \r\n> ") == b"APP UNLOAD\n"
+    assert poses.auto(10.0) == []
+    assert poses.telemetry.counts.retries == 0
+
+
+def test_a_mood_that_was_lost_and_is_no_longer_wanted_is_not_sent_again(script):
+    pleo = script().started()
+    pleo.express("happy")
+    pleo.run(0.1)
+    pleo.say(OK)
+    pleo.express("angry")
+    pleo.run(timing.LONG_WITHIN)
+    sent = pleo.auto(1.0)
+    assert "MOTION PLAY a:angry.umf" in sent
+    assert "MOTION PLAY a:happy.umf" not in sent
+
+
+@pytest.mark.parametrize(("item", "index"), [(m.ITEM_MOTION, 0), (m.ITEM_SOUND, 0)])
+def test_an_action_is_sent_once_even_if_its_answer_is_lost(script, item, index):
+    pleo = script().started()
+    assert pleo.driver.play(item, index)
+    sent = pleo.run(0.1)
+    assert sent in (b"MOTION PLAY a:nod.umf\n", b"SOUND PLAY a:chirp.usf\n")
+    assert pleo.run(timing.LONG_WITHIN) == b"\n"
+    assert pleo.auto(10.0) == ["APP UNLOAD"]
+    assert pleo.telemetry.counts.dropped == 1
+
+
+def test_too_many_actions_are_refused_and_those_without_a_session_are_dropped(script):
+    pleo = script()
+    assert pleo.driver.play(m.ITEM_SOUND, 0)
+    assert pleo.telemetry.counts.dropped == 1
+    pleo.started()
+    taken = [pleo.driver.play(m.ITEM_MOTION, 1) for _ in range(timing.ACTIONS_MAX + 1)]
+    assert taken == [True] * timing.ACTIONS_MAX + [False]
+    pleo.driver.port_lost()
+    assert pleo.telemetry.counts.dropped == 1 + timing.ACTIONS_MAX
+
+
+def test_after_an_action_the_moods_loop_returns(script):
+    pleo = shown(script().started(), "happy")
+    pleo.driver.play(m.ITEM_MOTION, 0)
+    begun = pleo.now
+    sent: list[str] = []
+    while len(sent) < 2:
+        sent += pleo.auto(0.1)
+    assert sent == ["MOTION PLAY a:nod.umf", "MOTION PLAY a:happy.umf"]
+    assert 2.0 <= pleo.now - begun < 2.2  # a nod lasts 2 s
+
+
+def test_a_stop_goes_before_everything_and_is_not_repeated(script):
+    pleo = shown(script().started(), "happy")
+    pleo.driver.play(m.ITEM_SOUND, 0)
+    pleo.driver.stop()
+    assert pleo.auto(0.5) == ["JOINT NEUTRAL"]
+    known = pleo.telemetry
+    assert (known.stopped, known.commanded, known.acknowledged) == (True, None, None)
+    assert known.counts.dropped == 1
+    pleo.driver.stop()
+    assert pleo.auto(5.0) == []
+    pleo.driver.play(m.ITEM_MOTION, 0)
+    assert pleo.auto(0.5) == ["MOTION PLAY a:nod.umf"]
+    assert not pleo.telemetry.stopped
+    pleo.driver.stop()
+    assert pleo.auto(0.5) == ["JOINT NEUTRAL"]
+    pleo.express("happy")
+    assert "MOTION PLAY a:happy.umf" in pleo.auto(1.0)
+    assert not pleo.telemetry.stopped
+
+
+def test_an_error_text_is_counted_kept_and_not_fatal(script):
+    pleo = script().started()
+    pleo.express("happy")
+    pleo.run(0.1)
+    pleo.say(OK)
+    # Pleo's own behaviour may be what refuses.
+    assert pleo.say("MC_GetMotorStatus Failed: joint 14\r\n> ") == b"APP UNLOAD\n"
+    assert pleo.telemetry.counts.refused == 1
+    assert pleo.driver.last_error == "MC_GetMotorStatus Failed: joint 14"
+    assert pleo.telemetry.acknowledged is None
+    pleo.auto(1.0)
+    assert pleo.telemetry.acknowledged is None
+    assert "MOTION PLAY a:happy.umf" in pleo.auto(3.0)  # the next round of the loop
+    assert pleo.telemetry.acknowledged is not None
+
+
+def test_a_motion_that_is_no_loop_and_refused_is_tried_a_few_times(poses):
+    poses.express("happy")
+    sent = poses.auto(20.0, "Error: file not found\r\n> ")
+    assert sent.count("MOTION PLAY a:happy.umf") == timing.REFUSED_MAX
+    assert poses.telemetry.acknowledged is None
+    assert poses.state == "ready"
+
+
+def test_an_error_while_idle_is_kept_and_begins_nothing_anew(script):
+    pleo = shown(script().started(), "happy")
+    assert b"APP" not in pleo.say("MC_GetMotorStatus Failed: joint 14\r\n")
+    assert pleo.driver.last_error == "MC_GetMotorStatus Failed: joint 14"
+    assert pleo.telemetry.counts.sessions == 1
+
+
+@pytest.mark.parametrize("text", ["\r\nPleo Monitor v1.1\r\n> ", "\r\nhello\r\nready\r\n> "])
+def test_a_console_that_starts_anew_while_idle_is_begun_with_anew(script, text):
+    pleo = shown(script().started(), "happy")
+    pleo.say(text, 0.1)
+    assert pleo.state == "lost"
+    sent = pleo.auto(3.0)
+    assert sent[:3] == ["APP UNLOAD", "JOINT NEUTRAL", "SOUND VOLUME 70"]
+    assert "MOTION PLAY a:happy.umf" in sent
+    assert pleo.telemetry.counts.sessions == 2
+
+
+def test_a_console_that_starts_anew_inside_an_answer_is_begun_with_anew(script):
+    pleo = script().started()
+    pleo.express("happy")
+    pleo.run(0.1)
+    pleo.say(OK)
+    pleo.say("Booting\r\n> ", 0.1)
+    sent = pleo.auto(3.0)
+    assert sent[0] == "APP UNLOAD"
+    assert "MOTION PLAY a:happy.umf" in sent
+
+
+def test_three_lost_answers_in_a_row_end_the_session(script):
+    pleo = script().started()
+    pleo.express("happy")
+    pleo.run(0.1)
+    for _ in range(3 * timing.UNSURE_MAX):
+        pleo.run(timing.LONG_WITHIN)
+        pleo.say(OK)
+        if pleo.state == "lost":
+            return
+    pytest.fail("the session went on")
+
+
+def test_a_pose_is_sent_within_limits_and_on_steps(poses):
+    poses.express("angry")
+    sent = poses.auto(3.0)
+    moves = sorted(line for line in sent if line.startswith("JOINT"))
+    assert moves == ["JOINT MOVE 10 45", "JOINT MOVE 4 -40", "JOINT MOVE 8 -10"]
+    assert poses.telemetry.acknowledged is not None
+
+
+def test_a_joint_gets_no_new_angle_before_it_can_be_where_it_was_sent(poses):
+    poses.express("angry")
+    times: list[tuple[float, str]] = []
+    for number in range(200):
+        if len(times) == 1 and number > 25:
+            poses.express("sad")
+        times += [(poses.now, line) for line in poses.auto(0.02) if "JOINT MOVE 8 " in line]
+    (first, one), (second, other) = times
+    assert (one, other) == ("JOINT MOVE 8 -10", "JOINT MOVE 8 8")
+    assert second - first == pytest.approx(10 / 20, abs=0.1)  # 10° from neutral at 20 °/s
+
+
+def test_joints_that_a_pose_does_not_name_go_back_to_neutral(poses):
+    poses.express("angry")
+    poses.auto(3.0)
+    poses.express("neutral")
+    sent = poses.auto(3.0)
+    moves = sorted(line for line in sent if line.startswith("JOINT"))
+    assert moves == ["JOINT MOVE 10 0", "JOINT MOVE 4 0", "JOINT MOVE 8 0"]
+
+
+def test_a_pose_after_a_motion_begins_from_neutral(poses):
+    shown(poses, "happy")
+    poses.express("sad")
+    sent = poses.auto(3.0)
+    assert [line for line in sent if "JOINT" in line] == ["JOINT NEUTRAL", "JOINT MOVE 8 8"]
+
+
+def test_an_idle_console_is_asked_for_its_prompt_and_now_and_then_for_its_battery(script):
+    pleo = script().started()
+    before = pleo.telemetry.counts.frames_sent
+    assert pleo.auto(62.0) == ["STATS POWER"] * 2  # every 30 s, and the first was at the start
+    assert 55 <= pleo.telemetry.counts.frames_sent - before <= 62
+    assert 0 <= (pleo.telemetry.round_trip or -1) < 0.2
