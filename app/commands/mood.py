@@ -7,6 +7,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from app.errors import AppError
 from app.moods import draw, felt_by, read_history, read_wire, write_table
 from app.moods.formats import checked, save
 from robot import LABEL_SETS, Personality
@@ -18,6 +19,9 @@ app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode="rich",
 )
+
+MOST = 4
+"""Personalities that can be told apart in one picture."""
 
 Session = Annotated[Path, typer.Argument(help="A session recorded with --record.")]
 Salvage = Annotated[bool, typer.Option(help="Take what is whole of a session that was cut off.")]
@@ -45,6 +49,8 @@ def plot(
     """
     output = checked(output or Path(f"{session.stem}-mood.svg"))
     who = [Personality.load(name) for name in personality or ()]
+    if len(who) > MOST:
+        raise AppError(f"{len(who)} personalities are too many for one picture: {MOST} at most")
     history = read_history(session, salvage=salvage)
     again = [felt_by(history, each) for each in who]
     labels = who[0].label_set if who else fitting(history.felt.labels)

@@ -152,7 +152,7 @@ def png(drawing: Drawing) -> bytes:
         _png_shape(image, pen, shape, scale)
     small = image.resize((size[0] // FINER, size[1] // FINER), Image.Resampling.LANCZOS)
     file = BytesIO()
-    small.save(file, "PNG", optimize=True)
+    small.save(file, "PNG")
     return file.getvalue()
 
 
