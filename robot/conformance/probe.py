@@ -62,8 +62,10 @@ class Probe:
         """The version agreed in it."""
         self.welcome: m.Welcome | None = None
         """The last greeting that was answered."""
-        self.joints: tuple[m.Joint, ...] | None = None
-        """The joints of its catalogue; None if they are not all known."""
+        self.catalogue: dict[tuple[int, int], m.Joint | m.Name] | None = None
+        """Its catalogue by item and index; None if it is not all known."""
+        self.moved = False
+        """Whether a check has made all of it move."""
         self._line = line
         self._splitter = Splitter()
         self._queue: deque[Heard] = deque(maxlen=QUEUE_MAX)

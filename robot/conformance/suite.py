@@ -27,7 +27,7 @@ CHAPTERS: tuple[Chapter, ...] = (
 )  # fmt: skip
 """The checks, by subject; those of everything heard come last."""
 
-LONGEST = 60.0
+LONGEST = 75.0
 """No check begins later than this after the first one [s]."""
 
 FIRST_WITHIN = 0.5

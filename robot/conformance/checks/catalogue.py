@@ -7,6 +7,9 @@ from robot.protocol import messages as m
 
 CATALOGUE = Chapter("Catalogue", 5)
 
+SAMPLES = 4
+"""Entries that are asked for twice, about."""
+
 _ITEMS = {
     m.ITEM_JOINT: "joint",
     m.ITEM_MOTION: "motion",
@@ -26,7 +29,7 @@ def catalogue_complete(robot: Probe) -> str:
 @CATALOGUE.must
 def names_distinct(robot: Probe) -> None:
     """No entry is without a name, and no two of a kind have the same; the robot has a name too."""
-    entries = read_catalogue(robot)
+    entries = known_catalogue(robot)
     for item, word in _ITEMS.items():
         names = [entry.name for key, entry in entries.items() if key[0] == item]
         if not all(name.strip() for name in names) or len(set(names)) != len(names):
@@ -38,8 +41,7 @@ def names_distinct(robot: Probe) -> None:
 @CATALOGUE.must
 def joint_limits_sensible(robot: Probe) -> None:
     """Every joint has a smallest angle below its largest, and a speed."""
-    read_catalogue(robot)
-    for entry in robot.joints or ():
+    for entry in known_joints(robot):
         if not (entry.low < entry.high and entry.speed > 0):
             raise UnmetError(
                 f"joint {entry.index} with low < high and speed > 0",
@@ -50,18 +52,15 @@ def joint_limits_sensible(robot: Probe) -> None:
 @CATALOGUE.must
 def catalogue_steady(robot: Probe) -> None:
     """The catalogue is the same for every host and in every session, as its number says."""
-    read_catalogue(robot)
-    first = robot.welcome
+    first = robot.fresh()
     robot.again()
-    robot.fresh()
-    second = robot.welcome
-    assert first is not None
-    assert second is not None
+    second = robot.fresh()
     for field in ("catalogue", "joints", "motions", "sounds", "moods", "name", "firmware"):
         one, other = getattr(first, field), getattr(second, field)
         if one != other:
             raise UnmetError(f"WELCOME({field}={one}) in every session", f"{field}={other}")
-    for key in _keys(second)[:: max(len(_keys(second)) // 8, 1)]:
+    keys = _keys(second)
+    for key in keys[:: max(len(keys) // SAMPLES, 1)]:
         if _ask(robot, *key) != _ask(robot, *key):
             raise UnmetError(f"the same entry at every ASK for {_ITEMS[key[0]]} {key[1]}", "two")
 
@@ -83,16 +82,18 @@ def no_entry_beyond_the_catalogue(robot: Probe) -> None:
 def read_catalogue(robot: Probe) -> dict[tuple[int, int], m.Joint | m.Name]:
     """Open a session and read all entries, by item and index."""
     welcome = robot.fresh()
-    entries = {key: _ask(robot, *key) for key in _keys(welcome)}
-    robot.joints = tuple(one for one in entries.values() if isinstance(one, m.Joint))
-    return entries
+    robot.catalogue = {key: _ask(robot, *key) for key in _keys(welcome)}
+    return robot.catalogue
 
 
-def known_joints(robot: Probe) -> tuple[m.Joint, ...]:
-    """Return the robot's joints; reads them if no check has done so before."""
-    if robot.joints is None:
-        read_catalogue(robot)
-    return robot.joints or ()
+def known_catalogue(robot: Probe) -> dict[tuple[int, int], m.Joint | m.Name]:
+    """Return all entries, read by the first check that wanted them."""
+    return read_catalogue(robot) if robot.catalogue is None else robot.catalogue
+
+
+def known_joints(robot: Probe) -> list[m.Joint]:
+    """Return the robot's joints."""
+    return [entry for entry in known_catalogue(robot).values() if isinstance(entry, m.Joint)]
 
 
 def _keys(welcome: m.Welcome) -> list[tuple[int, int]]:

@@ -15,7 +15,7 @@ HEARTBEAT = Chapter("Heartbeat and state", 7)
 SHOWN = 0.02
 """How close the emotion shown comes to the one asked for."""
 
-ROUND_TRIPS = 50
+ROUND_TRIPS = 30
 """BEATs by which the round trip is measured."""
 
 ROUND_TRIP = 0.020

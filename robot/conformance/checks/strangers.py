@@ -37,10 +37,11 @@ def foreign_session_told(robot: Probe) -> None:
         foreign = robot.session ^ 0x1111
         robot.hear(2 * timing.GONE_EVERY)
         robot.say(message, session=foreign)
-        see_gone(robot, foreign, f"{form_of(type(message)).name} in another session")
-    taken = robot.beat("messages of another session").taken
-    if taken:
-        raise UnmetError("STATE(taken=0): commands of another session are not taken", f"{taken=}")
+        name = form_of(type(message)).name
+        see_gone(robot, foreign, f"{name} in another session")
+        taken = robot.beat(f"{name} in another session").taken
+        if taken:
+            raise UnmetError(f"STATE(taken=0) after {name} in another session", f"taken={taken}")
 
 
 @OTHERS.must

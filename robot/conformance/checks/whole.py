@@ -100,11 +100,13 @@ def _examples(wrong: list[Heard]) -> str:
     return "; ".join(str(heard) for heard in wrong)
 
 
-def _moved(robot: Probe) -> tuple[m.Joint, ...]:
+def _moved(robot: Probe) -> list[m.Joint]:
     """Make the robot move, and return its joints."""
     joints = known_joints(robot)
     if not joints:
         raise NotApplicableError("it has no joints")
+    if robot.moved:
+        return joints
     welcome = robot.fresh()
     for emotion in ((1.0, 1.0), (-1.0, -1.0)):
         robot.express(*emotion)
@@ -113,6 +115,7 @@ def _moved(robot: Probe) -> tuple[m.Joint, ...]:
             last = m.Play(robot.next_number(), m.ITEM_MOTION, welcome.motions - 1)
             robot.command(last)
             robot.live(0.6)
+    robot.moved = True
     return joints
 
 
