@@ -403,3 +403,53 @@ def test_lines_that_would_run_together_are_never_sent_together(desk):
         d.run(6.0)
     assert all("\n" not in text for _, text in d.robot.board.log)
     assert d.shown == "happy"
+
+
+def _introduced(at: float = 2.0) -> OpenCatHost:
+    """Make a host whose board has introduced itself, and that was asked nothing since."""
+    host = OpenCatHost()
+    host.port_opened(at - 2.0)
+    host.tick(at)
+    assert host.bytes_to_send() == b"?\n"
+    host.receive(b"Bittle X\r\nB10_241013\r\n?\r\n", at)
+    return host
+
+
+def test_a_question_asked_before_a_fall_does_not_tell_when_the_fall_is_over():
+    host = _introduced()
+    host.tick(13.0)
+    assert host.bytes_to_send() == b"j\n"
+    host.express(HAPPY, "happy")
+    host.receive(b"EXCEPTION: Fall over\r\nj\r\n", 13.1)
+    host.tick(14.0)
+    assert host.bytes_to_send() == b"?\n", "not the posture yet: another echo is to come"
+    host.receive(b"k\r\nBittle X\r\nB10_241013\r\n?\r\n", 15.0)
+    host.tick(16.0)
+    assert host.bytes_to_send() == b"kbuttUp\n"
+
+
+def test_an_echo_from_a_board_without_power_is_no_acknowledgement():
+    host = _introduced()
+    host.express(HAPPY, "happy")
+    host.tick(3.0)
+    assert host.bytes_to_send() == b"kbuttUp\n"
+    host.receive(b"Low power: 6.71V. The robot won't move.\r\nk\r\n", 3.5)
+    assert host.telemetry(3.5).acknowledged is None
+    assert host.telemetry(3.5).limp
+    host.receive(b"Got 7.9 V power\r\n", 6.0)
+    host.tick(6.0)
+    assert host.bytes_to_send() == b"kbuttUp\n"
+
+
+def test_the_answer_to_a_question_of_before_the_unplugging_is_not_believed():
+    host = _introduced()
+    host.tick(13.0)
+    assert host.bytes_to_send() == b"j\n"
+    host.port_lost()
+    host.port_opened(14.0)
+    host.tick(15.5)
+    assert host.bytes_to_send() == b"?\n"
+    host.receive(b"j\r\n", 15.6)
+    assert host.state(15.6) == "lost"
+    host.receive(b"Bittle X\r\nB10_241013\r\n?\r\n", 15.7)
+    assert host.state(15.7) == "ready"
