@@ -164,7 +164,7 @@ class PleoSimulator:
             return
         if self.busy:
             if text.strip():
-                self.violations.append(Violation(self._now, text))
+                self.violations.append(Violation(self._now, text[:INPUT_MAX]))
             text = "".join(one for one in text if self._random.random() < 0.5)
         self._input = (self._input + text)[:INPUT_MAX]
         if not self.busy:
