@@ -1,0 +1,205 @@
+"""Everything that reads what others wrote, each as a function of bytes that must never fail.
+
+A target may raise only if it found a mistake: an exception that is not documented, or something
+that has grown beyond its bound. Drivers and simulators come from their tables, so a new one is
+fuzzed from its first day.
+"""
+
+import contextlib
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from robot.driver import Driver
+from robot.drivers import DRIVERS
+from robot.drivers.cubeling.host import HostLink
+from robot.emotion import Emotion
+from robot.errors import RobotError
+from robot.feeling import personality_file
+from robot.protocol.schema import MessageError, Sender, pack, unpack
+from robot.protocol.wire import (
+    MAX_BODY,
+    MAX_FRAME,
+    FrameError,
+    FrameReader,
+    cobs_decode,
+    cobs_encode,
+    decode_frame,
+    encode_frame,
+)
+from robot.simulators import SIMULATORS
+from robot.simulators.base import Simulated
+from robot.simulators.cubeling.simulator import Simulator
+from robot.simulators.memory import simulator_of
+
+HELD_MAX = 2_000_000
+"""Most that a driver or a simulator may hold, whatever it was fed [bytes]."""
+
+GROWTH_MAX = 65_536
+"""And so much more, at most, when it is fed half a megabyte again [bytes]."""
+
+OUT_MAX = 262_144
+"""Most that may wait to be written [bytes]."""
+
+Target = Callable[[bytes], None]
+
+
+def pieces(data: bytes) -> Iterator[tuple[bytes, float]]:
+    """Cut the data as its own bytes say, and say how much later each piece comes [s]."""
+    start, size = 0, len(data)
+    while start < size:
+        head = data[start]
+        end = start + 1 + (head & 63)
+        yield data[start + 1 : end], (0.0, 0.005, 0.06, 0.7)[head >> 6]
+        start = end
+
+
+# --- Frames and messages ----------------------------------------------------------------------
+
+
+def reader(data: bytes) -> None:
+    """Feed the stream in pieces; whatever came before, a whole frame behind it arrives."""
+    frames = FrameReader()
+    for piece, _ in pieces(data):
+        for body in frames.feed(piece):
+            assert 1 <= len(body) <= MAX_BODY
+        assert len(frames._pending) <= MAX_FRAME + 1
+    assert frames.feed(encode_frame(b"whole"))[-1] == b"whole"
+
+
+def frame(data: bytes) -> None:
+    """Decode one frame; what is one is the only one of its body."""
+    with contextlib.suppress(FrameError):
+        body = decode_frame(data)
+        assert encode_frame(body)[1:-1] == data
+
+
+def cobs(data: bytes) -> None:
+    """Undo COBS, which has only one way."""
+    with contextlib.suppress(FrameError):
+        body = cobs_decode(data)
+        if 0 not in data and len(body) <= MAX_BODY:
+            assert cobs_encode(body) == data
+
+
+def message_from(sender: Sender) -> Target:
+    """Make the target that reads bodies of one side."""
+
+    def read(data: bytes) -> None:
+        with contextlib.suppress(MessageError):
+            session, message = unpack(data, sender)
+            if message is not None:
+                assert unpack(pack(message, session), sender) == (session, message)
+
+    return read
+
+
+# --- Drivers and simulated robots ----------------------------------------------------------------
+
+
+def run_driver(driver: Driver, data: bytes, whole: Callable[[bytes], bytes] = bytes) -> None:
+    """Let a driver hear the pieces, while it is asked for things."""
+    now = 1.0
+    driver.port_opened(now)
+    for piece, later in pieces(data):
+        now += later
+        driver.receive(whole(piece), now)
+        driver.tick(now)
+        if len(piece) % 16 == 3:
+            driver.express(Emotion(len(piece) / 100, -0.5), "happy")
+        elif len(piece) == 9:
+            driver.play(1, piece[0])
+        elif len(piece) == 17:
+            driver.stop()
+        elif len(piece) == 33:
+            driver.port_lost()
+            driver.port_opened(now)
+        assert len(driver.bytes_to_send()) <= OUT_MAX
+        driver.telemetry(now)
+    driver.close()
+    driver.receive(data[:64], now)
+
+
+def driver_of(name: str) -> Target:
+    """Make the target that lets a driver hear anything."""
+    return lambda data: run_driver(DRIVERS[name].make(7, None), data)
+
+
+def host_bodies(data: bytes) -> None:
+    """Let our host hear bodies in whole frames of its own session."""
+    run_driver(HostLink(7), data, _framed)
+
+
+def run_robot(robot: Simulated, data: bytes, whole: Callable[[bytes], bytes] = bytes) -> None:
+    """Let a simulated robot hear the pieces."""
+    now = 1.0
+    for piece, later in pieces(data):
+        now += later
+        robot.receive(whole(piece), now)
+        robot.advance(now)
+        assert len(robot.bytes_to_send()) <= OUT_MAX
+        robot.portrait()
+    robot.reboot()
+    robot.receive(data[:64], now)
+
+
+def simulator_named(name: str) -> Target:
+    """Make the target that lets a simulated robot hear anything."""
+    return lambda data: run_robot(SIMULATORS[name](1), data)
+
+
+def robot_bodies(data: bytes) -> None:
+    """Let our robot hear bodies in whole frames, after a greeting that opens session 1."""
+    robot = Simulator(1)
+    robot.receive(encode_frame(bytes([1, 1, 0, 2, 7, 0, 0, 0])), 1.0)
+    run_robot(robot, data, _framed)
+
+
+def _framed(piece: bytes) -> bytes:
+    """Make a whole frame of session 1 from a piece; its first byte is the message's number."""
+    return encode_frame(piece[:1] + b"\1\0" + piece[1:]) if piece else b""
+
+
+# --- Texts ------------------------------------------------------------------------------------
+
+
+def settings_of(name: str) -> Target:
+    """Make the target that reads a driver's settings file."""
+
+    def read(data: bytes) -> None:
+        with tempfile.NamedTemporaryFile(suffix=".toml") as file:
+            file.write(data)
+            file.flush()
+            with contextlib.suppress(RobotError):
+                DRIVERS[name].make(7, Path(file.name))
+
+    return read
+
+
+def personality(data: bytes) -> None:
+    """Read a personality's file."""
+    with contextlib.suppress(RobotError):
+        personality_file.parse(data.decode("utf-8", "replace"), "fuzz.toml")
+
+
+def fault_url(data: bytes) -> None:
+    """Read a simulator's URL."""
+    with contextlib.suppress(RobotError):
+        simulator_of("sim:cubeling?" + data.decode("utf-8", "replace"))
+
+
+TARGETS: dict[str, Target] = {
+    "reader": reader,
+    "frame": frame,
+    "cobs": cobs,
+    "message:host": message_from("host"),
+    "message:robot": message_from("robot"),
+    "bodies:host": host_bodies,
+    "bodies:robot": robot_bodies,
+    **{f"driver:{name}": driver_of(name) for name in DRIVERS},
+    **{f"simulator:{name}": simulator_named(name) for name in SIMULATORS},
+    **{f"settings:{name}": settings_of(name) for name in DRIVERS},
+    "personality": personality,
+    "url": fault_url,
+}
+"""All of them, by the name that the command line takes."""

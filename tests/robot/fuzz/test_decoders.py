@@ -1,0 +1,123 @@
+"""No decoder fails in a way that is not documented, and none keeps more than its bound."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from robot.drivers import DRIVERS
+from robot.simulators import SIMULATORS
+from tests.campaigns.decoders import GROWTH_MAX, HELD_MAX, TARGETS
+from tests.campaigns.soak import weight
+
+ROOT = Path(__file__).parents[3] / "robot"
+
+WORDS = [
+    b"\0", b"\x81\1\0", b"\x84", b"\x90", b"\x9f", b"> ", b"\r\n", b"\n", b"k", b"ksit", b"?", b"~",
+    b"error", b"Battery sensor value = ", b"drop=", b"stall=1s/", b"&", b"1e9", b"nan", b"ms",
+]  # fmt: skip
+"""What decoders listen for."""
+
+noise = st.binary(max_size=300)
+anything = st.one_of(
+    noise,
+    st.lists(st.one_of(st.sampled_from(WORDS), st.binary(max_size=24)), max_size=24).map(b"".join),
+)
+
+
+def texts_for(name: str) -> list[bytes]:
+    """Return what a settings file of this kind looks like when it is right."""
+    kind, _, driver = name.partition(":")
+    if kind == "personality":
+        found = sorted((ROOT / "feeling" / "personalities").glob("*.toml"))
+    else:
+        found = sorted((ROOT / "drivers" / driver).glob("*.toml"))
+    return [path.read_bytes() for path in found] or [b"a = 1\n"]
+
+
+@st.composite
+def nearly_right(draw, name: str) -> bytes:
+    """Take a file that is right, and spoil it here and there."""
+    lines = draw(st.sampled_from(texts_for(name))).splitlines(keepends=True)
+    for _ in range(draw(st.integers(1, 4))):
+        at = draw(st.integers(0, len(lines) - 1))
+        kind = draw(st.integers(0, 3))
+        key, equals, value = lines[at].partition(b"=")
+        if kind == 0:
+            del lines[at : at + 1]
+        elif kind == 1 and equals:
+            other = [b"-1", b"1e400", b"nan", b'""', b"[]", b"true", b"{}", b"1979-05-27", b"[[1]]"]
+            lines[at] = key + b"= " + draw(st.sampled_from(other)) + b"\n"
+        elif kind == 2:
+            lines.insert(at, draw(st.sampled_from(lines)))
+        else:
+            lines[at] = draw(st.binary(max_size=20)) + value
+        if not lines:
+            return b""
+    return b"".join(lines)
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_no_decoder_fails_on_anything(name):
+    target = TARGETS[name]
+    given_files = name.startswith(("settings:", "personality"))
+
+    @settings(max_examples=60, deadline=None)
+    @given(st.one_of(nearly_right(name), noise) if given_files else anything)
+    def holds(data: bytes) -> None:
+        target(data)
+
+    holds()
+
+
+HALF = 128
+"""Floods in half a megabyte."""
+
+FLOODS = {
+    "of one byte": b"a" * 4096,
+    "without an end of line": bytes(range(32, 127)) * 43,
+    "of edges": bytes(4096),
+    "of all bytes": bytes(range(256)) * 16,
+    "of prompts": b"> " * 2048,
+    "of lines": b"k\r\nerror\n" * 455,
+}
+
+
+def check_held(who: object, feed: Callable[[float], None]) -> None:
+    """Feed it a megabyte, and see that the second half made it no heavier."""
+    held = []
+    for half in range(2):
+        for index in range(HALF):
+            feed(0.001 * (half * HALF + index))
+        held.append(weight(who)[1])
+    assert held[1] < HELD_MAX
+    assert held[1] - held[0] < GROWTH_MAX
+
+
+@pytest.mark.parametrize("flood", FLOODS)
+@pytest.mark.parametrize("name", DRIVERS)
+def test_a_driver_that_hears_a_megabyte_does_not_grow(name, flood):
+    driver = DRIVERS[name].make(7, None)
+    driver.port_opened(0.0)
+
+    def feed(now: float) -> None:
+        driver.receive(FLOODS[flood], now)
+        driver.tick(now)
+        driver.bytes_to_send()
+
+    check_held(driver, feed)
+
+
+@pytest.mark.parametrize("flood", FLOODS)
+@pytest.mark.parametrize("name", SIMULATORS)
+def test_a_robot_that_hears_a_megabyte_does_not_grow_though_nobody_reads_it(name, flood):
+    robot = SIMULATORS[name](1)
+    check_held(robot, lambda now: robot.receive(FLOODS[flood], now))
+
+
+def test_what_grows_is_found():
+    heard: list[bytes] = []
+    with pytest.raises(AssertionError):
+        check_held(heard, lambda now: heard.append(FLOODS["of edges"] + bytes(1)))
