@@ -42,12 +42,12 @@ def wander(world, random, chance: float = 0.004):
     return each
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", range(4))
 def test_nothing_is_typed_before_the_prompt_and_only_what_is_allowed(pleo_world, allowed, seed):
     world = pleo_world(seed, cut_reads=True)
     random = np.random.default_rng(seed)
-    world.run(240, wander(world, random))
-    assert len(world.robot.obeyed) > 50
+    world.run(120, wander(world, random))
+    assert len(world.robot.obeyed) > 30
     assert list(world.robot.violations) == []
     assert all(allowed.fullmatch(line) for _, line in world.sent)
 
@@ -142,14 +142,14 @@ def test_a_robot_that_does_not_answer_at_first_is_looked_for_for_ever(script):
     assert pleo.say("> ", 1.0) == b"APP UNLOAD\n"
 
 
-def test_a_day_of_moods_grows_nothing(pleo_world):
+def test_a_long_session_grows_nothing(pleo_world):
     world = pleo_world(5)
     world.run_until(lambda: world.state == "ready", within=COMES_BACK)
     random = np.random.default_rng(5)
     each = wander(world, random, chance=0.02)
-    world.run(120, each)
+    world.run(60, each)
     before = sizes(world.driver)
-    world.run(240, each)
+    world.run(120, each)
     assert sizes(world.driver) <= before + 20
 
 

@@ -8,7 +8,6 @@ HAPPY = Emotion(0.8, 0.5)
 def test_the_bytes_of_a_start(script):
     pleo = script()
     assert pleo.state == "connecting"
-    assert pleo.driver.catalogue is None
     assert pleo.run(0.1) == b"\n"
     assert pleo.say("app: drive 3 satisfied\r\nmu: sensor 1 = 0\r\n> ") == b"APP UNLOAD\n"
     assert pleo.say("APP UNLOAD\r\nUnloading ...\r\ndone\r\n>", 0.1) == b""
@@ -17,7 +16,9 @@ def test_the_bytes_of_a_start(script):
     assert pleo.state == "connecting"
     assert pleo.say("SOUND VOLUME 70\r\n> ", 0.1) == b"STATS POWER\n"
     assert pleo.state == "ready"
-    assert pleo.driver.catalogue.moods == ("neutral", "happy", "angry")
+    catalogue = pleo.driver.catalogue
+    assert catalogue is not None
+    assert catalogue.moods == ("neutral", "happy", "angry")
     assert pleo.say("STATS POWER\r\nBattery sensor value = 57 (584 raw)\r\n> ", 0.1) == b""
     assert pleo.telemetry.battery == 0.57
     assert pleo.telemetry.counts.sessions == 1
@@ -28,8 +29,8 @@ def test_the_bytes_of_a_mood_change(script):
     pleo.driver.express(HAPPY, "happy")
     assert pleo.run(0.005) == b"MOTION SPEED 100\n"  # at once: the prompt is free
     assert pleo.say("> ", 0.1) == b"MOTION PLAY a:happy.umf\n"
-    assert pleo.telemetry.commanded == HAPPY
-    assert pleo.telemetry.acknowledged is None
+    known = pleo.telemetry
+    assert (known.commanded, known.acknowledged) == (HAPPY, None)
     assert pleo.say("playing a:happy.umf\r\n> ", 0.1) == b"SOUND SPEED 100\n"
     assert pleo.telemetry.acknowledged == HAPPY
     assert pleo.say("> ", 0.1) == b"SOUND PLAY a:happy.usf\n"
