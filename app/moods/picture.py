@@ -13,7 +13,7 @@ from app.moods.tints import FAINT, INK, LINES, OBSERVED, QUIET, RULE, action_tin
 from app.moods.wire import Trace, Wire
 from robot.feeling.labels import LabelSet
 
-WIDTH, HEIGHT = 1120.0, 656.0
+WIDTH, HEIGHT = 1120.0, 668.0
 LEFT, RIGHT = 70.0, 710.0
 VALENCE, AROUSAL, ACTION = (112.0, 306.0), (334.0, 474.0), (500.0, 574.0)
 """Top and bottom of each panel."""
