@@ -8,7 +8,7 @@ endif
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := demo
-.PHONY: demo test check bench bench-tracking recordings assets pictures cast clean
+.PHONY: demo test campaign check bench bench-tracking recordings assets pictures cast clean
 
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
@@ -16,6 +16,12 @@ demo: .venv/ready  ## set everything up and play
 # A file's tests stay in one process, for they share what takes long to make.
 test: .venv/ready-dev  ## the whole test suite, on all cores
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
+
+# Longer than a test suite may take, and of another kind: nothing here has an expected value.
+campaign: .venv/ready-dev  ## a million exchanges on the robot's wire, what its check lets pass, hours without growth
+	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
+	$(BIN)/python -m tests.campaigns.crc
+	$(BIN)/python -m tests.campaigns.soak --hours 2
 
 check: .venv/ready-dev  ## formatting, lint and types
 	$(BIN)/ruff format --check .
