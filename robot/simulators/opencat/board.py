@@ -18,6 +18,9 @@ from robot.simulators.opencat.startup import QUESTION, Spoken, startup
 LINE_TIMEOUT = 0.010
 """A line that does not end is taken after so long a pause [s]."""
 
+UNREAD_MAX = 65536
+"""Most bytes that wait to be read; a board says more to nobody."""
+
 Event = tuple[float, Callable[[float], None]]
 """When something happens [s], and what."""
 
@@ -216,4 +219,5 @@ class Board:
         self._job = self._interpreter.do(text, now, brown_out=self._start)
 
     def _say(self, text: str) -> None:
-        self._out += f"{text}\r\n".encode("latin-1")
+        if len(self._out) < UNREAD_MAX:
+            self._out += f"{text}\r\n".encode("latin-1")

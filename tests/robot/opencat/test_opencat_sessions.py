@@ -249,7 +249,9 @@ def test_over_a_real_port(soon):
         soon(lambda: [text for _, text in simulator.board.log][-1] == "d")
 
 
-@pytest.mark.parametrize("url", ["sim:opencat?seed=4", "sim:nybble?seed=4", "opencat:sim:nybble?seed=4"])
+@pytest.mark.parametrize(
+    "url", ["sim:opencat?seed=4", "sim:nybble?seed=4", "opencat:sim:nybble?seed=4"]
+)
 def test_without_a_port(url):
     import time
 

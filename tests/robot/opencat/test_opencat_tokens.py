@@ -1,6 +1,7 @@
 """No byte that calibrates, saves, resets or walks away can leave the driver."""
 
 import string
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -155,3 +156,15 @@ def test_nothing_leaves_a_host_but_through_the_gate(monkeypatch):
     with pytest.raises(RobotError, match="gate"):
         host.tick(60.0)
     assert host.bytes_to_send() == b""
+
+
+def test_the_example_in_the_document_loads_and_says_what_the_document_says(tmp_path):
+    text = (Path(__file__).parents[3] / "docs" / "opencat.md").read_text("utf-8")
+    example = tmp_path / "example.toml"
+    example.write_text(text.split("```toml\n")[1].split("```")[0], "utf-8")
+    settings, bundled = load(example), load()
+    assert (settings.baud, settings.model) == (57600, "bittle")
+    assert settings.behaviours["bittle"].moods["afraid"].sound == "purr"
+    assert settings.behaviours["nybble"] == bundled.behaviours["nybble"]
+    for name in ("commands_per_s", "dwell", "ask_every", "rest_after"):
+        assert getattr(settings, name) == getattr(bundled, name), "the document quotes defaults"
