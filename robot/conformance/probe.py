@@ -64,6 +64,8 @@ class Probe:
         """The last greeting that was answered."""
         self.catalogue: dict[tuple[int, int], m.Joint | m.Name] | None = None
         """Its catalogue by item and index; None if it is not all known."""
+        self.held_up = 0.0
+        """How much longer than asked for a wait has lasted: this computer had other work [s]."""
         self.moved = False
         """Whether a check has made all of it move."""
         self._line = line
@@ -177,7 +179,9 @@ class Probe:
         return answer
 
     def _take(self, until: float) -> None:
+        until = max(until, self.now)
         data = self._line.read(until)
+        self.held_up = max(self.held_up, self.now - until)
         self.log.bytes += len(data)
         for heard in self._splitter.feed(data, self.now):
             self.log.enter(heard)

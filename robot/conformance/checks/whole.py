@@ -15,7 +15,7 @@ OVER_LIMIT = 0.02
 OVER_SPEED = 0.05
 """How much farther than its speed allows a joint may seem to have moved [rad]: noise, twice."""
 
-WINDOW = 0.1
+WINDOW = 0.2
 """Shortest time between two STATEs by which a speed is judged [s]."""
 
 
@@ -86,8 +86,8 @@ def joints_within_speed(robot: Probe) -> str:
     for (then, before), (now, after) in _windows(robot):
         for index, joint in enumerate(joints):
             way = abs(after.joints[index] - before.joints[index])
-            most = joint.speed * (now - then + SLACK / 2) + OVER_SPEED
-            fastest = max(fastest, (way - OVER_SPEED) / (joint.speed * (now - then + SLACK / 2)))
+            most = joint.speed * (now - then + SLACK) + OVER_SPEED
+            fastest = max(fastest, (way - OVER_SPEED) / (joint.speed * (now - then + SLACK)))
             if way > most:
                 raise UnmetError(
                     f"joint {index} ({joint.name}) at most {joint.speed} rad/s",

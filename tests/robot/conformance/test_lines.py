@@ -70,3 +70,19 @@ def test_a_good_robot_conforms_over_a_real_serial_line(late: float, looks_every:
     assert report.conforms, failed
     assert {name for name, _ in failed} <= {"round trip short"}
     assert report.seconds < 60
+
+
+class BusyComputer(SlowLine):
+    """Holds everybody up for 400 ms, now and then."""
+
+    def read(self, until: float) -> bytes:
+        if self.time % 5.3 < 0.02:
+            self.time += 0.4
+            self.robot.advance(self.time)
+        return super().read(until)
+
+
+def test_what_fails_while_the_computer_is_held_up_is_tried_again():
+    report = examine(BusyComputer(0.0, 0.001), all_checks(), 1)
+    assert report.conforms
+    assert any("held up for 4" in one.remark for one in report.results)
