@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from app.session import messages
 from robot.protocol import messages as m
+from robot.protocol import timing
 from robot.protocol.schema import MessageError, Sender, unpack
 from robot.protocol.wire import FrameReader
 
@@ -81,6 +82,7 @@ class _Listener:
         self._asked: dict[int, tuple[float, tuple[float, float]]] = {}
         self._landed: set[int] = set()
         self._moods: dict[int, str] = {}
+        self._heard: float | None = None
 
     def hear(self, direction: str, data: bytes, time: float) -> None:
         """Take bytes of one direction."""
@@ -90,7 +92,16 @@ class _Listener:
                 _, content = unpack(body, sender)
             except MessageError:
                 continue
+            if sender == "robot":
+                self._notice_silence(time)
             self._take(content, time)
+
+    def _notice_silence(self, time: float) -> None:
+        """End both traces where the robot was not heard for so long that the link was lost."""
+        last, self._heard = self._heard, time
+        if last is not None and time - last > timing.LOST_AFTER:
+            for trace in (self.acknowledged, self.observed):
+                trace.append((last + timing.LOST_AFTER, NOWHERE, ""))
 
     def _take(self, content: Any, time: float) -> None:
         match content:

@@ -111,7 +111,7 @@ def test_asked_acknowledged_and_observed_are_told_apart(talking_session):
     wire = read_wire(talking_session)
     assert wire
     np.testing.assert_allclose(wire.delays, [0.05])
-    times = np.array([0.0, 0.03, 0.12, 0.17, 0.22, 0.28, 0.31])
+    times = np.array([0.0, 0.03, 0.10, 0.17, 0.22, 0.28, 0.31])
     acknowledged, _ = wire.acknowledged.at(times)
     nothing = [np.nan, np.nan]
     np.testing.assert_allclose(
@@ -135,6 +135,20 @@ def test_a_robot_that_was_away_still_has_what_it_had_taken(tmp_path, talking_ses
             recorder.wire(direction, encode_frame(pack(content, 9)), time)
     acknowledged, _ = read_wire(path).acknowledged.at(np.array([0.22, 0.4]))
     np.testing.assert_allclose(acknowledged, [[0.5, 0.25], [np.nan, np.nan]], atol=1e-4)
+
+
+def test_a_robot_that_is_silent_shows_nothing_that_is_known(tmp_path, talking_session):
+    path = tmp_path / "silent.mcap"
+    said = [*SAID[:7], (0.9, "rx", state(0.0, 0.0))]
+    with open_source(str(talking_session)) as source, Recorder(path, {"scenario": "x"}) as recorder:
+        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        recorder.write(playground.step(next(iter(source))))
+        for time, direction, content in said:
+            recorder.wire(direction, encode_frame(pack(content, 9)), time)
+    wire = read_wire(path)
+    times = np.array([0.6, 0.7, 0.95])
+    assert np.isnan(wire.acknowledged.at(times)[0][:, 0]).tolist() == [False, True, True]
+    assert np.isnan(wire.observed.at(times)[0][:, 0]).tolist() == [False, True, False]
 
 
 def test_a_session_without_a_robot_has_nothing_to_acknowledge(short_session):
