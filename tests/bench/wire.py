@@ -18,6 +18,8 @@ from robot.protocol.messages import Beat
 from robot.protocol.schema import pack, unpack
 from robot.protocol.wire import FrameReader, encode_frame
 from robot.simulators.cubeling.simulator import Simulator
+from robot.simulators.faults import Faults
+from robot.simulators.faulty import FaultyRobot
 
 SAMPLES = 1000
 
@@ -85,20 +87,18 @@ def bare_round_trip() -> list[float]:
 
 def latency_with_loss(drop: float) -> list[float]:
     """Time from `express` to the body in virtual time, with this share of frames lost [s]."""
-    random = np.random.default_rng(1)
     host, device = HostLink(host=7), Simulator()
+    faulty = FaultyRobot(device, Faults(drop=drop), seed=1)
     now, step = 0.0, 0.001
     host.port_opened(now)
 
     def turn() -> None:
         nonlocal now
         now += step
+        faulty.advance(now)
+        host.receive(faulty.bytes_to_send(), now)
         host.tick(now)
-        for send, take in ((host, device), (device, host)):
-            for frame in send.bytes_to_send().split(b"\0\0"):
-                if frame and random.random() >= drop:
-                    take.receive(b"\0" + frame.strip(b"\0") + b"\0", now)
-        device.advance(now)
+        faulty.receive(host.bytes_to_send(), now)
 
     for _ in range(1000):
         turn()
