@@ -1,7 +1,9 @@
 """The firmware's body: servos that are never hurried, feelings at their own pace, and rest."""
 
 from itertools import pairwise
+from math import radians
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, get_args
 
 import pytest
@@ -65,6 +67,23 @@ def test_no_servo_is_ever_sent_faster_than_its_top_speed_or_beyond_its_limits(co
             # A pulse is a whole microsecond, a tenth of a degree.
             assert degrees <= servo.speed * (pulse.time - before.time) / 1000 + 0.1
         last[pulse.pin] = pulse
+
+
+def test_a_joint_stops_at_its_limit_however_far_a_motion_would_take_it():
+    rows = [(*row[:2], -5, 5, *row[4:]) for row in servos.SERVOS]
+    dino = Dino(SimpleNamespace(**(vars(servos) | {"SERVOS": rows})))
+    obey(dino, [(m.Express(1, 1.0, 1.0, 1), 400, 5)] * 8)
+    assert max(dino.joints.angles) <= 500
+    dino.hears(m.Beat(1))
+    assert max(dino.says()[-1][1].joints) == pytest.approx(radians(5), abs=1e-3)
+
+
+def test_after_a_hang_it_is_late_and_not_hasty(dino):
+    obey(dino, [(m.Express(1, 1.0, 1.0, 1), 400, 5)] * 5)
+    before = list(dino.joints.angles)
+    dino.lives(400, step=400)
+    for servo, one, other in zip(dino.table.servos, before, dino.joints.angles, strict=True):
+        assert abs(one - other) <= 100 * servo.speed * body.STEP_MAX / 1000
 
 
 def test_servos_get_their_first_pulse_at_neutral_and_one_after_the_other(dino):

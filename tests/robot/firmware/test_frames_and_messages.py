@@ -93,6 +93,7 @@ def test_the_longest_frame_fits_and_a_longer_one_is_dropped():
     body = bytes(range(1, MAX_BODY + 1))
     assert read(encode_frame(body)) == [body]
     assert read(b"\0" + b"\x7a" * (MAX_FRAME + 1) + b"\0" + encode_frame(body)) == [body]
+    assert read(encode_frame(body)[:-1] + b"\1\0") == [], "its begin alone is no frame"
 
 
 def _hosts() -> st.SearchStrategy[object]:
@@ -136,9 +137,9 @@ def test_a_body_is_skipped_exactly_where_the_host_side_code_skips_it(number, res
 
 def test_what_finds_no_room_is_lost_whole():
     out = frames.Outbox(100)
-    for _ in range(3):
-        out.put(bytearray(40), 40)
-    assert (out.end, out.lost) == (92, 1)
+    for size in (40, 40, 40, 3):
+        out.put(bytearray(40), size)
+    assert (out.end, out.lost) == (92, 2)
     assert read(bytes(out.data[: out.end])) == [bytes(40)] * 2
     out.sent(92)
     assert (out.start, out.end) == (0, 0)
