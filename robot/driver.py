@@ -72,3 +72,6 @@ class DriverKind:
 
     opener: Callable[[str, Clock], Opener] | None = None
     """Returns what opens the URL, for a robot that is on no serial port; None for one that is."""
+
+    spacing: float = 0.0
+    """Least time between two writes [s], for a robot that takes all that has come for one line."""

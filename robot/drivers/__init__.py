@@ -35,11 +35,17 @@ def _reachy(host: int, settings: Path | None) -> Driver:
     return ReachyDriver()
 
 
+_OPENCAT = DriverKind(
+    _opencat,
+    115200,
+    25.0,  # a board takes seconds to start when its port is opened, and a new one asks its owner
+    spacing=0.1,  # what is written within a few milliseconds is read as one line
+)
+
 DRIVERS: dict[str, DriverKind] = {
     "cubeling": DriverKind(_cubeling, timing.BAUD, timing.ANSWER_WITHIN),
-    # A board takes seconds to start when its port is opened, and a new one asks its owner first.
-    "opencat": DriverKind(_opencat, 115200, 25.0),
-    "nybble": DriverKind(_opencat, 115200, 25.0),  # so that "sim:nybble" needs no protocol named
+    "opencat": _OPENCAT,
+    "nybble": _OPENCAT,  # so that "sim:nybble" needs no protocol named
     "pleo": DriverKind(_pleo, pleo.BAUD, pleo.ANSWER_WITHIN),
     # It has no serial port of its own; its daemon is reached over the network, and it gets up.
     "reachy": DriverKind(_reachy, 0, 10.0, open_reachy),

@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import robot
+from robot.drivers import DRIVERS
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.host import OpenCatHost
 from robot.drivers.opencat.settings import load
@@ -19,6 +20,7 @@ from robot.errors import RobotError
 from robot.protocol import messages as m
 from robot.simulators.opencat.habits import Habits
 from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
+from robot.spacing import SpacedPort
 
 UGLY = Habits(slow=0.1, mangled=0.03, brown_outs=0.05, restless=8.0, battery_lasts=900.0)
 BOARDS = {
@@ -245,6 +247,7 @@ def test_over_a_real_port(soon):
             with pytest.raises(RobotError, match="cannot play 'c'"):
                 bittle.play("c")
             assert simulator.portrait() == (0.8, "happy")
+            soon(lambda: [text for _, text in simulator.board.log][-1] == "b14 8 18 8 21 8")
         soon(lambda: not simulator.board.body.powered)
         soon(lambda: [text for _, text in simulator.board.log][-1] == "d")
 
@@ -287,3 +290,36 @@ def test_a_settings_file_that_is_none_is_refused_in_one_line(tmp_path):
         with pytest.raises(RobotError, match=re.escape(str(path))) as refusal:
             load(path)
         assert "\n" not in str(refusal.value)
+
+
+def test_a_goodbye_on_the_heels_of_a_command_keeps_its_distance():
+    import time
+
+    class Wire:
+        in_waiting = 0
+
+        def __init__(self) -> None:
+            self.written: list[tuple[float, bytes]] = []
+
+        def write(self, data: bytes) -> None:
+            self.written.append((time.monotonic(), data))
+
+        def cancel_read(self) -> str:
+            return "cancelled"
+
+    wire = Wire()
+    port = SpacedPort(wire, 0.1, time.monotonic)  # type: ignore[arg-type] # all that is used
+    port.write(b"kpu\n")
+    port.write(b"")
+    port.write(b"d\n")
+    (first, _), _, (last, goodbye) = wire.written
+    assert goodbye == b"d\n"
+    assert 0.09 <= last - first < 2.0
+    assert port.cancel_read() == "cancelled"
+
+
+@pytest.mark.parametrize("protocol", ["opencat", "nybble"])
+def test_the_distance_between_lines_is_less_than_their_rate_asks_for(protocol):
+    kind = DRIVERS[protocol]
+    assert kind.spacing >= 0.1
+    assert kind.spacing <= 1.0 / load().commands_per_s, "a driver that keeps its rate never waits"
