@@ -14,6 +14,7 @@ from robot.errors import RobotError
 from robot.port import Clock, Opener
 from robot.protocol import messages as m
 from robot.pump import ByteHook, Pump
+from robot.spacing import spaced
 from robot.telemetry import Telemetry
 from robot.transport import opener
 
@@ -65,6 +66,8 @@ def connect(
         open_port = opener(url, clock, getattr(driver, "baud", kind.baud))
     else:
         open_port = kind.opener(url, clock)
+    if kind.spacing:
+        open_port = spaced(open_port, kind.spacing, clock)
     robot = Robot(url, open_port, driver, clock, on_bytes)
     wait = kind.answer_within if answer_within is None else answer_within
     try:
