@@ -55,7 +55,7 @@ class Chance:
 class Line:
     """One direction of a line. It loses, damages, doubles and delays, but never reorders.
 
-    A frame is what ends at an edge, with the edges in front of it. Its fate is drawn when its
+    A frame is what ends at an edge, with the zero bytes in front of it. Its fate is drawn when its
     first byte comes, and bytes never wait here for their edge.
 
     Parameters
@@ -157,7 +157,7 @@ class Line:
 
     def _end_of_frame(self, data: bytes, start: int) -> int:
         """Return where the frame ends that begins or goes on at `start`: there, or not yet."""
-        if not self._filled:
+        if not self._filled and self._edge == b"\0":  # elsewhere an empty line is a frame, too
             filled = data[start:].lstrip(self._edge)
             if not filled:
                 return len(data)
