@@ -180,8 +180,7 @@ class PleoSimulator:
         self._input = ""
         if line.strip():
             self.obeyed.append(line)
-        if self.echo:
-            self._say(f"{line}\r\n", self._now)
+        self._say(f"{line if self.echo else ''}\r\n", self._now)  # off the prompt's line
         lines, took = self.monitor.obey(line)
         if line.strip() and self._random.random() < self.slow_chance:
             took += float(self._random.uniform(*SLOW))

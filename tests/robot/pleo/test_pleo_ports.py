@@ -42,7 +42,7 @@ def test_a_mood_reaches_pleo_over_a_real_port_and_the_goodbye_is_neutral(soon):
             pleo.express(HAPPY)
             soon(lambda: simulator.portrait()[1] == "happy")
             soon(lambda: pleo.telemetry.acknowledged == HAPPY)
-            soon(lambda: pleo._pump._driver._console.flight is None)  # type: ignore[attr-defined]
+            soon(lambda: pleo._driver._console.flight is None)  # type: ignore[attr-defined]
         soon(lambda: simulator.obeyed[-1] == "JOINT NEUTRAL")
         assert not simulator.violations
 
