@@ -258,7 +258,7 @@ class Probe:
         return states
 
     def reaction(self, *said: bytes, after: str = "it") -> list[Heard]:
-        """Send bytes, then BEAT; return what came before its STATE, apart from other STATEs.
+        """Send bytes, then BEAT; return the messages before its STATE, apart from other STATEs.
 
         A robot takes bytes in their order, so whatever it says to them comes before that STATE.
         """
@@ -271,7 +271,7 @@ class Probe:
         )
         if found is None:
             raise UnmetError(f"STATE(beat={count}) after {after}, then BEAT({count})", told(before))
-        return [heard for heard in before if not isinstance(heard.message, m.State)]
+        return [one for one in before if not isinstance(one.message, m.State | None)]
 
     def unanswered(self, data: bytes, what: str) -> None:
         """Send bytes that must be skipped; raises UnmetError if anything answers them."""

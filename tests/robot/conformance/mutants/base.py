@@ -1,11 +1,12 @@
 """A robot that keeps every rule but one: what comes and goes is altered around a good simulator."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 from robot.protocol import messages as m
-from robot.protocol.schema import pack, unpack
-from robot.protocol.wire import MAX_FRAME, FrameError, decode_frame, encode_frame
+from robot.protocol.schema import MessageError, pack, unpack
+from robot.protocol.wire import MAX_BODY, MAX_FRAME, FrameError, decode_frame, encode_frame
 from robot.simulators.cubeling.simulator import Simulator
 
 MUTANTS: dict[str, list[type["Mutant"]]] = {}
@@ -76,7 +77,7 @@ class Mutant:
     # --- What they can use ---------------------------------------------------------------------
 
     def give(self, body: bytes) -> None:
-        self.robot.receive(encode_frame(body), self.now)
+        self.robot.receive(encode_frame(body[:MAX_BODY]), self.now)
         self.collect()
 
     def tell(self, message: Any, session: int | None = None) -> None:
@@ -102,8 +103,9 @@ class Mutant:
         for frame in self.frames(data):
             body = self.decode(frame)
             if body is not None and len(body) >= 3:
-                self.hear(body[0], int.from_bytes(body[1:3], "little"), body)
-            elif body is not None:
+                with suppress(MessageError, IndexError):  # a child looked at what is to be skipped
+                    self.hear(body[0], int.from_bytes(body[1:3], "little"), body)
+            elif body:
                 self.hear_stub(body)
 
     def hear_stub(self, body: bytes) -> None:
