@@ -7,7 +7,7 @@ from robot.errors import RobotError
 from robot.network import Member, Pattern, RobotNode
 from robot.network.endpoint import SILENT_AFTER
 from robot.network.following import HOLD, PLAYERS_MAX
-from robot.network.messages import Feeling, RobotState, Status
+from robot.network.messages import Action, Feeling, RobotState, Status
 from robot.network.schema import decode, encode
 from tests.robot.network.conftest import FakeRobot
 
@@ -79,6 +79,22 @@ def test_a_robot_cut_off_from_the_broker_is_neutral_in_the_end(room):
     room.broker.start()
     room.run(0.5)
     assert room.robots["rex"].felt[-1] == HAPPY
+
+
+def test_what_comes_late_from_an_earlier_run_moves_nothing(room):
+    node = room.node("rex")
+    for session, number in ((2, 1), (1, 1), (1, 2), (2, 2), (1, 3)):
+        action = Action(session, number, 1, f"a{session}{number}")
+        node.receive("cubeling/1/hall/player/a/action", encode(action), room.now)
+        feeling = Feeling(session, number, session / 10, 0.0)
+        node.receive("cubeling/1/hall/player/a/emotion", encode(feeling), room.now)
+        node.receive("cubeling/1/hall/player/a/status", encode(Status(1, 9, "closed")), room.now)
+        node.tick(room.now)
+    assert room.robots["rex"].played == ["a21", "a22"]
+    assert room.robots["rex"].felt == [Emotion(0.2, 0.0)]
+    room.now += HOLD
+    node.tick(room.now)
+    assert room.robots["rex"].felt == [Emotion(0.2, 0.0)]
 
 
 def test_a_retained_feeling_of_nobody_moves_no_robot(room):

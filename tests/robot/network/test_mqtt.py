@@ -205,6 +205,9 @@ def test_the_example_rules_let_each_speak_for_itself_alone(mosquitto, tmp_path, 
     buses["hall"].subscribe("cubeling/1/#", lambda topic, _: heard.append(topic))
     for bus in buses.values():
         bus.open()
+    buses["hall"].publish(Letter("cubeling/1/museum/robot/ida/state", b"{}"))
+    soon(lambda: heard)  # now it is subscribed
+    heard.clear()
     allowed = ["cubeling/1/museum/robot/rex/state", "cubeling/1/museum/player/ann/action"]
     for user, topic in (
         ("ann", "cubeling/1/museum/player/bob/action"),
