@@ -92,7 +92,7 @@ def conform(
         return
     for path in (output, picture):
         if path is not None:  # what cannot be written is better known before than after
-            path.write_text("", "utf-8")
+            path.open("a").close()
     console = Console(highlight=False, record=picture is not None)
     if picture is not None:
         console.width = PICTURE_WIDTH
