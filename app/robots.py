@@ -7,7 +7,7 @@ from typing import Self
 
 from app.scenarios import EmotionTarget
 from app.show.overlay import RobotView
-from robot import Emotion, Robot, SimulatedPort, connect
+from robot import Emotion, Robot, SimulatedPort, SteppedRobot, connect
 
 OnBytes = Callable[[str, bytes, float], None]
 Clock = Callable[[], float]
@@ -25,6 +25,7 @@ class RobotLine:
         self._robot: Robot | None = None
         self._target: EmotionTarget | None = None
         self._real = False
+        self._steps: Steps | None = None
 
     @classmethod
     def open(
@@ -33,6 +34,8 @@ class RobotLine:
         clock: Clock,
         on_bytes: OnBytes | None = None,
         settings: Path | None = None,
+        *,
+        stepped: bool = False,
     ) -> Self:
         """Connect.
 
@@ -47,6 +50,9 @@ class RobotLine:
             Called with ("tx" | "rx", bytes, time) for everything on the wire.
         settings
             A TOML file for the robot's driver, or None.
+        stepped
+            Whether a simulated robot lives by the frames' time, for a session that is drawn faster
+            or slower than life: its bytes are then the same every time.
 
         Raises
         ------
@@ -58,6 +64,10 @@ class RobotLine:
             return line
         try:
             line._real = not url.startswith("sim")
+            if stepped and not line._real:
+                line._steps = Steps(url, clock, on_bytes, settings)
+                line._robot = line._closing.enter_context(line._steps.robot)
+                return line
             if url == "sim":
                 url = line._closing.enter_context(SimulatedPort(clock=clock)).url
             robot = connect(url, clock=clock, on_bytes=on_bytes, settings=settings)
@@ -76,6 +86,8 @@ class RobotLine:
     def feel(self, target: EmotionTarget) -> None:
         """Ask the robot to feel; returns at once."""
         self._target = target
+        if self._steps is not None:
+            self._steps.reach(target.timestamp)
         if self._robot is not None:
             self._robot.express(target.emotion, target.label)
 
@@ -101,3 +113,45 @@ class RobotLine:
         """Let the robot go."""
         self._closing.close()
         self._robot = None
+
+
+class Steps:
+    """Keeps a simulated robot's time in step with the frames.
+
+    Parameters
+    ----------
+    url
+        "sim", or what `SteppedRobot` takes.
+    clock
+        The session's time, in which `on_bytes` is told [s].
+    on_bytes, settings
+        See `RobotLine.open`. What the robot says before the first frame is told with it.
+    """
+
+    def __init__(
+        self, url: str, clock: Clock, on_bytes: OnBytes | None, settings: Path | None
+    ) -> None:
+        self._clock = clock
+        self._on_bytes = on_bytes
+        self._early: list[tuple[str, bytes, float]] = []
+        self._shift = 0.0
+        self._frame: float | None = None
+        url = "sim:cubeling" if url == "sim" else url
+        self.robot = SteppedRobot(url, on_bytes=self._tell, settings=settings)
+        """The robot."""
+
+    def reach(self, timestamp: float) -> None:
+        """Let the robot live until the frame with this time [s]."""
+        if self._frame is None:
+            self._frame = timestamp
+            self._shift = self._clock() - self.robot.now
+            for direction, data, time in self._early:
+                self._tell(direction, data, time)
+        self.robot.advance(max(0.0, timestamp - self._frame))
+        self._frame = timestamp
+
+    def _tell(self, direction: str, data: bytes, time: float) -> None:
+        if self._frame is None:
+            self._early.append((direction, data, time))
+        elif self._on_bytes is not None:
+            self._on_bytes(direction, data, time + self._shift)

@@ -92,7 +92,9 @@ def run(plan: Plan, progress: Progress | None = None) -> Summary:
         if plan.record is not None:
             recorder = closing.enter_context(Recorder(plan.record, plan.about or {}))
         tap = WireTap(recorder) if recorder is not None else None
-        robot = closing.enter_context(RobotLine.open(plan.robot, clock, tap, plan.robot_settings))
+        stepped = not plan.paced and not plan.source.live
+        line = RobotLine.open(plan.robot, clock, tap, plan.robot_settings, stepped=stepped)
+        robot = closing.enter_context(line)
         closing.callback(clock.release)  # a robot says goodbye in real time
         closing.enter_context(_interruptible(summary))
         play = _Play(plan, summary, recorder, robot)

@@ -18,6 +18,7 @@ from robot.feeling.personality import Personality
 from robot.ports import SerialPort, serial_ports
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.port import SimulatedPort
+from robot.stepped import SteppedRobot
 from robot.telemetry import LinkCounts, LinkState, Telemetry
 
 __all__ = [
@@ -36,6 +37,7 @@ __all__ = [
     "SerialPort",
     "SimulatedPort",
     "Simulator",
+    "SteppedRobot",
     "Telemetry",
     "connect",
     "serial_ports",

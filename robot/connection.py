@@ -11,9 +11,10 @@ from robot.driver import Driver
 from robot.drivers import DRIVERS
 from robot.emotion import Emotion
 from robot.errors import RobotError
-from robot.port import Clock, Opener
+from robot.exchange import ByteHook, Exchange
+from robot.port import Clock
 from robot.protocol import messages as m
-from robot.pump import ByteHook, Pump
+from robot.pump import Pump
 from robot.spacing import spaced
 from robot.telemetry import Telemetry
 from robot.transport import opener
@@ -57,7 +58,7 @@ def connect(
     RobotError
         If the port does not open, or nobody on it answers in time. Nothing is left open then.
     """
-    url, protocol = _protocol_of(url, protocol)
+    url, protocol = protocol_of(url, protocol)
     kind = DRIVERS[protocol]
     # So that two programs are not taken for one: the microsecond in which this one connects.
     host = int(clock() * 1e6) % 0xFFFFFFFF + 1
@@ -68,7 +69,7 @@ def connect(
         open_port = kind.opener(url, clock)
     if kind.spacing:
         open_port = spaced(open_port, kind.spacing, clock)
-    robot = Robot(url, open_port, driver, clock, on_bytes)
+    robot = Robot(url, Pump(url, open_port, driver, clock, on_bytes), driver, clock)
     wait = kind.answer_within if answer_within is None else answer_within
     try:
         if robot.wait_until_ready(wait):
@@ -85,7 +86,7 @@ def connect(
     )
 
 
-def _protocol_of(url: str, protocol: str | None) -> tuple[str, str]:
+def protocol_of(url: str, protocol: str | None) -> tuple[str, str]:
     """Return the port's own URL, and the protocol that is spoken there."""
     named, colon, rest = url.partition(":")
     if colon and named in DRIVERS:
@@ -112,16 +113,15 @@ class Robot:
     def __init__(
         self,
         url: str,
-        open_port: Opener,
+        exchange: Exchange,
         driver: Driver,
         clock: Clock,
-        on_bytes: ByteHook | None,
     ) -> None:
         self.url = url
         """The port it is on."""
         self._driver = driver
         self._clock = clock
-        self._pump = Pump(url, open_port, driver, clock, on_bytes)
+        self._exchange = exchange
 
     # --- What to do ----------------------------------------------------------------------------
 
@@ -136,9 +136,9 @@ class Robot:
             The mood's word, "happy", so that the robot shows the same as everyone else; the one of
             its own words that is closest is taken. None: the robot chooses.
         """
-        with self._pump.lock:
+        with self._exchange.lock:
             self._driver.express(emotion, label)
-        self._pump.wake()
+        self._exchange.wake()
 
     def play(self, name: str) -> None:
         """Let the robot play one of its motions or sounds once.
@@ -159,39 +159,39 @@ class Robot:
         else:
             known = ", ".join(catalogue.motions + catalogue.sounds)
             raise RobotError(f"{catalogue.name} cannot play {name!r}; it knows {known}")
-        with self._pump.lock:
+        with self._exchange.lock:
             taken = self._driver.play(item, index)
         if not taken:
             raise RobotError(f"{name!r} is one too many: the robot has not played the others yet")
-        self._pump.wake()
+        self._exchange.wake()
 
     def stop(self) -> None:
         """Let the robot end everything and hold its neutral pose, until it is asked for more."""
-        with self._pump.lock:
+        with self._exchange.lock:
             self._driver.stop()
-        self._pump.wake()
+        self._exchange.wake()
 
     # --- How it is -----------------------------------------------------------------------------
 
     @property
     def telemetry(self) -> Telemetry:
         """What is known now."""
-        with self._pump.lock:
+        with self._exchange.lock:
             known = self._driver.telemetry(self._clock())
-        counts = replace(known.counts, discarded=self._pump.discarded)
+        counts = replace(known.counts, discarded=self._exchange.discarded)
         return replace(known, counts=counts)
 
     @property
     def catalogue(self) -> Catalogue:
         """What the robot has."""
-        with self._pump.lock:
+        with self._exchange.lock:
             if self._driver.catalogue is None:
                 raise RobotError(f"the robot on {self.url} has not introduced itself yet")
             return self._driver.catalogue
 
     def check(self) -> None:
         """Raise RobotError, in one line, if the robot cannot be reached now."""
-        failure = self._pump.failure
+        failure = self._exchange.failure
         if failure is not None:
             raise RobotError(f"the link to {self.url} broke: {failure!r}") from failure
         telemetry = self.telemetry
@@ -207,23 +207,23 @@ class Robot:
     @property
     def failed(self) -> bool:
         """Whether the link's thread has broken down; `check` says why."""
-        return self._pump.failure is not None
+        return self._exchange.failure is not None
 
     def wait_until_ready(self, timeout: float) -> bool:
         """Wait until the link is ready, for at most `timeout` seconds; whether it is."""
-        pump = self._pump
-        with pump.heard:
-            return pump.heard.wait_for(self._is_settled, timeout) and not pump.closing.is_set()
+        heard, closing = self._exchange.heard, self._exchange.closing
+        with heard:
+            return heard.wait_for(self._is_settled, timeout) and not closing.is_set()
 
     def _is_settled(self) -> bool:
         state = self._driver.state(self._clock())
-        return self._pump.closing.is_set() or state in ("ready", "degraded")
+        return self._exchange.closing.is_set() or state in ("ready", "degraded")
 
     # --- The end -------------------------------------------------------------------------------
 
     def close(self) -> None:
         """Say goodbye, end the thread and give the port back. A second call does nothing."""
-        self._pump.close()
+        self._exchange.close()
 
     def __enter__(self) -> Self:
         return self

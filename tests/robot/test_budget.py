@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 import robot
 from robot.budget import BURST, RATE, REST, Budget
-from robot.pump import READ_AT_ONCE, READS_THROWN_AWAY
+from robot.exchange import READ_AT_ONCE, READS_THROWN_AWAY
 
 
 def test_a_line_at_full_speed_is_within_the_budget_for_ever():

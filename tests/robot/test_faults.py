@@ -51,7 +51,7 @@ def check_applied(world, commanded: int) -> None:
 
 
 @pytest.mark.parametrize("kind", HARM)
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(4))
 def test_the_last_emotion_always_arrives_and_none_comes_twice(kind, seed, world):
     w = world(seed, **HARM[kind])
     random = np.random.default_rng(seed)
@@ -95,7 +95,7 @@ def test_every_wrong_bit_is_noticed(world):
 def test_a_long_session_does_not_grow(world):
     w = world(seed=2, step=0.025, **HARM["does it all"])
     sizes = set()
-    for index in range(1, 200):
+    for index in range(1, 120):
         w.host.express(numbered(index))
         w.run(1)
         sizes.add(len(w.host._round_trip._sent))
@@ -197,5 +197,5 @@ def test_whatever_happens_in_whatever_order_the_promises_are_kept(world):
     class StormHere(Storm):
         make_world = world
 
-    patient = settings(max_examples=120, stateful_step_count=40, deadline=None)
+    patient = settings(max_examples=60, stateful_step_count=40, deadline=None)
     run_state_machine_as_test(StormHere, settings=patient)
