@@ -94,7 +94,7 @@ class Drawing:
 
     def __init__(self, width: float, height: float, title: str) -> None:
         self.width, self.height = width, height
-        self.title = title
+        self.title = printable(title)
         self.shapes: list[Shape] = []
 
     def area(self, points: ArrayLike, fill: str) -> None:
@@ -130,8 +130,8 @@ class Drawing:
         bold: bool = False,
         upright: bool = False,
     ) -> None:
-        """Write words."""
-        self.shapes.append(Text(words, x, y, size, colour, align, bold, upright))
+        """Write words; what cannot be printed becomes "?"."""
+        self.shapes.append(Text(printable(words), x, y, size, colour, align, bold, upright))
 
 
 def thinned(points: Array, grain: float = 0.1) -> Array:
@@ -157,6 +157,15 @@ def thinned(points: Array, grain: float = 0.1) -> Array:
             kept[middle] = True
             open_ += [(first, middle), (middle, last)]
     return points[kept]
+
+
+def printable(words: str) -> str:
+    r"""Return words with "?" for what no file of ours may hold, as in an odd file name.
+
+    >>> printable("a\x00b\udcffc")
+    'a?b?c'
+    """
+    return "".join(letter if letter.isprintable() else "?" for letter in words)
 
 
 def text_width(words: str, size: float) -> float:

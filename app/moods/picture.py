@@ -1,11 +1,11 @@
 """The picture of a session's moods: over time on the left, as a way in the plane on the right."""
 
-import itertools
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from app.moods.captions import heading, legend, shares
+from app.moods.curves import Curve, curves_of, spans
 from app.moods.drawing import Array, Drawing, text_width
 from app.moods.history import Felt, History
 from app.moods.plane import draw_plane
@@ -18,28 +18,8 @@ LEFT, RIGHT = 70.0, 710.0
 VALENCE, AROUSAL, ACTION = (112.0, 306.0), (334.0, 474.0), (500.0, 574.0)
 """Top and bottom of each panel."""
 
-
-OWN = "the scenario's own personality"
-
-
-@dataclass(frozen=True)
-class Curve:
-    """One feeling among several."""
-
-    felt: Felt
-    """What is drawn."""
-
-    name: str
-    """What the legend calls it."""
-
-    colour: str
-    """Colour, "#rrggbb"."""
-
-    dashes: tuple[float, ...]
-    """So that it can be told from others without colour."""
-
-    width: float
-    """How thick."""
+PLANE = (790.0, 112.0, 1090.0, 412.0)
+"""Left, top, right and bottom of the plane."""
 
 
 def draw(history: History, again: Sequence[Felt], wire: Wire, labels: LabelSet) -> Drawing:
@@ -57,9 +37,9 @@ def draw(history: History, again: Sequence[Felt], wire: Wire, labels: LabelSet) 
         The words whose regions and bands are drawn: those of the first curve.
     """
     drawing = Drawing(WIDTH, HEIGHT, f"Moods of {history.name}")
-    curves = _curves(history, again)
+    curves = curves_of(history, again)
     first = curves[0].felt
-    _heading(drawing, history, again)
+    heading(drawing, LEFT, history, again)
     start, end = float(first.times[0]), float(first.times[-1])
     axes = _Axes(start, max(end, start + 1e-3))
     shown = Wire(*_NOTHING) if again else wire
@@ -69,23 +49,15 @@ def draw(history: History, again: Sequence[Felt], wire: Wire, labels: LabelSet) 
         _traces(drawing, axes, panel, axis, curves, shown)
     _actions(drawing, axes, history)
     _clock(drawing, axes)
-    _legend(drawing, curves, shown)
+    legend(drawing, LEFT, curves, shown)
     ways = [(curve.felt, curve.colour, curve.dashes, curve.width) for curve in curves]
-    _shares(drawing, curves)
-    draw_plane(drawing, (790.0, 112.0, 1090.0, 412.0), labels, ways)
+    shares(drawing, PLANE[0], 504.0, curves)
+    draw_plane(drawing, PLANE, labels, ways)
     return drawing
 
 
 _EMPTY = Trace(np.zeros(0), np.zeros((0, 2)), ())
 _NOTHING = (_EMPTY, _EMPTY, np.zeros(0))
-
-
-def _curves(history: History, again: Sequence[Felt]) -> list[Curve]:
-    if not again:
-        return [Curve(history.felt, "felt, and asked of the robot", INK, (), 1.8)]
-    styles = itertools.cycle(LINES)
-    curves = [Curve(felt, felt.who, *next(styles), 2.0) for felt in again]
-    return [*curves, Curve(history.felt, "as recorded", QUIET, (1.5, 2.5), 1.2)]
 
 
 class _Axes:
@@ -101,20 +73,6 @@ class _Axes:
     def y(self, value: Array | float, panel: tuple[float, float]) -> Array:
         """Return how far down a value, −1…1, lies in a panel."""
         return panel[1] - (np.asarray(value) + 1) / 2 * (panel[1] - panel[0])
-
-
-def _heading(drawing: Drawing, history: History, again: Sequence[Felt]) -> None:
-    told = history.about
-    drawing.text(f"Moods of {history.name}", LEFT, 42, 20, INK, bold=True)
-    parts = [f"scenario {told.scenario}", f"{told.duration:.1f} s"]
-    parts.append(f"recorded with {told.personality or OWN}")
-    if again:
-        names = [felt.who for felt in again]
-        listed = " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
-        parts.append(f"felt again by {listed}")
-        if len(names) > 1:
-            parts.append(f"bands: {names[0]}")
-    drawing.text("   ·   ".join(parts), LEFT, 64, 12, QUIET)
 
 
 def _bands(
@@ -134,15 +92,6 @@ def _bands(
             drawing.line([(left, panel[0]), (left, panel[1])], FAINT, 0.8)
         if named and text_width(label, 11) < right - left:
             drawing.text(label, (left + right) / 2, panel[1] + 17, 11, INK, 0.5, bold=True)
-
-
-def spans(names: Sequence[str], times: Array) -> list[tuple[str, float, float]]:
-    """Return (name, start, end [s]) for every run of the same name; each ends where one begins."""
-    starts = [0] + [i for i in range(1, len(names)) if names[i] != names[i - 1]]
-    ends = [float(times[start]) for start in starts[1:]] + [float(times[-1])]
-    return [
-        (names[start], float(times[start]), end) for start, end in zip(starts, ends, strict=True)
-    ]
 
 
 def _grid(drawing: Drawing, axes: _Axes, panel: tuple[float, float], name: str) -> None:
@@ -238,35 +187,3 @@ def ticks(start: float, end: float, most: int = 10) -> list[float]:
     step = next(power * each for each in (1, 2, 5, 10) if (end - start) / (power * each) <= most)
     first, last = int(np.ceil(start / step - 1e-9)), int(np.floor(end / step + 1e-9))
     return [round(float(step * index), 9) for index in range(first, last + 1)]
-
-
-def _shares(drawing: Drawing, curves: Sequence[Curve]) -> None:
-    """Say how long each label lasted."""
-    x, y = 790.0, 504.0
-    drawing.text("Time in each mood", x, y, 11.5, INK, bold=True)
-    for curve in curves:
-        if len(curves) > 1:
-            y += 16
-            drawing.text(curve.name, x, y, 10, QUIET)
-        y += 13 if len(curves) > 1 else 18
-        seconds: dict[str, float] = {}
-        for label, start, end in spans(curve.felt.labels, curve.felt.times):
-            seconds[label] = seconds.get(label, 0.0) + end - start
-        most = sorted(seconds.items(), key=lambda item: -item[1])[:4]
-        told = " · ".join(f"{label} {length:.1f} s" for label, length in most)
-        drawing.text(told, x, y, 10, INK)
-
-
-def _legend(drawing: Drawing, curves: Sequence[Curve], wire: Wire) -> None:
-    entries = [(curve.name, curve.colour, curve.width, curve.dashes) for curve in curves]
-    if len(wire.acknowledged.times):
-        median = 1e3 * float(np.median(wire.delays)) if len(wire.delays) else 0.0
-        late = f" (median {median:.0f} ms later)" if median >= 0.5 else ""
-        entries.append((f"acknowledged{late}", LINES[1][0], 1.6, (4.0, 4.0)))
-    if wire:
-        entries.append(("observed on the robot", OBSERVED, 5.0, ()))
-    x = LEFT
-    for name, colour, width, dashes in entries:
-        drawing.line([(x, 91), (x + 30, 91)], colour, width, dashes)
-        drawing.text(name, x + 37, 95, 11.5, INK)
-        x += 58 + text_width(name, 11.5)

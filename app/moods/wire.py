@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.errors import AppError
 from app.session import messages
 from robot.protocol import messages as m
 from robot.protocol import timing
@@ -59,11 +60,21 @@ class Wire:
 
 
 def read_wire(path: Path) -> Wire:
-    """Decode the bytes of a session; all is empty where no robot spoke our protocol."""
+    """Decode the bytes of a session; all is empty where no robot spoke our protocol.
+
+    Raises
+    ------
+    AppError
+        The channel does not hold what a recorder writes.
+    """
     listener = _Listener()
     for _, time, data in messages(path, "/robot/wire"):
-        line = json.loads(data)
-        listener.hear(line["direction"], bytes.fromhex(line["hex"]), time)
+        try:
+            line = json.loads(data)
+            direction, heard = line["direction"], bytes.fromhex(line["hex"])
+        except (ValueError, KeyError, TypeError) as error:
+            raise AppError(f"cannot read the session '{path}': /robot/wire: {error}") from error
+        listener.hear(direction, heard, time)
     delays = np.array(listener.delays)
     return Wire(_trace(listener.acknowledged), _trace(listener.observed), delays)
 

@@ -1,6 +1,7 @@
 """Moods of a session: read, felt again, drawn and tabled as they were."""
 
 import csv
+import dataclasses
 import io
 import itertools
 import xml.etree.ElementTree as ElementTree
@@ -10,10 +11,13 @@ import pypdfium2
 import pytest
 from PIL import Image
 
+from app.errors import AppError
 from app.moods import draw, felt_by, read_history, read_wire
+from app.moods import wire as wires
+from app.moods.curves import spans
 from app.moods.drawing import Drawing, Line, thinned
-from app.moods.formats import dashed, pdf, save, svg
-from app.moods.picture import spans, ticks
+from app.moods.formats import dashed, pdf, png, save, svg
+from app.moods.picture import ticks
 from app.moods.plane import regions
 from app.opening import fitting
 from app.playground import Playground
@@ -85,6 +89,13 @@ def test_other_personalities_feel_the_same_session_otherwise(history):
         assert np.abs(one.emotion - other.emotion).max() > 0.3
 
 
+def test_out_of_sight_nothing_is_done_that_could_be_felt(history):
+    hidden = tuple(dataclasses.replace(each, visible=False) for each in history.commands)
+    alone = dataclasses.replace(history, commands=hidden)
+    assert set(felt_by(alone, Personality.load("thesis")).labels) == {"neutral"}
+    assert set(alone.actions) == {""}
+
+
 def test_who_starts_over_feels_anew(tmp_path, bundled_session):
     path = tmp_path / "over.mcap"
     about = {"scenario": "companion", "cube": "companion"}
@@ -99,10 +110,10 @@ def test_who_starts_over_feels_anew(tmp_path, bundled_session):
     assert history.started_over == {frames[5].timestamp}
     excited = Personality("w", temperament=lively.temperament, movement=2.0, arousal_half_life=0.1)
     commands = tuple(
-        type(each)(**{**vars(each), "visible": True, "speed": 5.0 if index < 5 else 0.0})
+        dataclasses.replace(each, visible=True, speed=5.0 if index < 5 else 0.0)
         for index, each in enumerate(history.commands)
     )
-    felt = felt_by(type(history)(**{**vars(history), "commands": commands}), excited)
+    felt = felt_by(dataclasses.replace(history, commands=commands), excited)
     assert felt.emotion[4, 1] > 0.3
     assert felt.emotion[5, 1] == lively.temperament.arousal
 
@@ -149,6 +160,22 @@ def test_a_robot_that_is_silent_shows_nothing_that_is_known(tmp_path, talking_se
     times = np.array([0.6, 0.7, 0.95])
     assert np.isnan(wire.acknowledged.at(times)[0][:, 0]).tolist() == [False, True, True]
     assert np.isnan(wire.observed.at(times)[0][:, 0]).tolist() == [False, True, False]
+
+
+@pytest.mark.parametrize("line", [b"{", b"{}", b"[]", b'{"direction": "tx", "hex": "0g"}'])
+def test_a_wire_that_no_recorder_wrote_is_refused_in_one_line(monkeypatch, short_session, line):
+    monkeypatch.setattr(wires, "messages", lambda *_: iter([("/robot/wire", 0.0, line)]))
+    with pytest.raises(AppError, match=r"cannot read the session .* /robot/wire") as refusal:
+        read_wire(short_session)
+    assert "\n" not in str(refusal.value)
+
+
+def test_odd_names_do_not_spoil_a_picture(history, short_session):
+    about = dataclasses.replace(history.about, personality="a\x00\n<b>&\udcff")
+    odd = dataclasses.replace(history, name="\udcff\x1b.mcap", about=about)
+    drawing = draw(odd, (), read_wire(short_session), LABEL_SETS["thesis"])
+    assert any("recorded with a??<b>&?" in each for each in words_of(svg(drawing)))
+    assert pdf(drawing)
 
 
 def test_a_session_without_a_robot_has_nothing_to_acknowledge(short_session):
@@ -263,6 +290,24 @@ def test_dashes_cover_their_share_of_a_line():
     lengths = [np.hypot(*np.diff(piece, axis=0).T).sum() for piece in pieces]
     assert sum(lengths) == pytest.approx(50.0)
     assert dashed(line, ()) == [line]
+
+
+@pytest.mark.parametrize("upright", [False, True])
+@pytest.mark.parametrize("write", [pdf, png])
+@pytest.mark.parametrize("align", [0.0, 0.5, 1.0])
+def test_words_lie_about_their_point_as_they_are_aligned(write, align, upright):
+    drawing = Drawing(200, 200, "")
+    drawing.text("IMMMMI", 100, 100, 16, "#000000", align, upright=upright)
+    if write is pdf:
+        image = pypdfium2.PdfDocument(pdf(drawing))[0].render(scale=2).to_pil()
+    else:
+        image = Image.open(io.BytesIO(png(drawing)))
+    rows, columns = np.nonzero(np.asarray(image.convert("L")) < 128)
+    # Upright words run upwards, with their baseline to the right.
+    along, across = (400 - rows, columns) if upright else (columns, rows)
+    before = (200 - along.min()) / (along.max() - along.min())
+    assert before == pytest.approx(align, abs=0.06)
+    assert across.max() == pytest.approx(200, abs=3)
 
 
 # --- On the command line -------------------------------------------------------------------------
