@@ -20,6 +20,10 @@ from robot.telemetry import Telemetry
 from robot.transport import opener
 
 
+INTRODUCTION = 10.0
+"""A robot that answers, over a line that loses much, has so long to introduce itself [s]."""
+
+
 def connect(
     url: str,
     protocol: str | None = None,
@@ -76,10 +80,18 @@ def connect(
             return robot
         if robot.failed:
             robot.check()
+        answers = robot.telemetry.silence is not None
+        if answers and robot.wait_until_ready(INTRODUCTION):
+            return robot
     except BaseException:  # also Ctrl-C while waiting: nothing is left open then either
         robot.close()
         raise
     robot.close()
+    if answers:
+        raise RobotError(
+            f"the robot on {url} answers, but has not introduced itself within "
+            f"{wait + INTRODUCTION:g} s: is the line very bad?"
+        )
     raise RobotError(
         f"nobody on {url} answers in the protocol {protocol!r} within {wait:g} s: "
         "is the robot switched on, and is this its port?"

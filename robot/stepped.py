@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from robot.connection import Robot, protocol_of
+from robot.connection import INTRODUCTION, Robot, protocol_of
 from robot.driver import Driver
 from robot.drivers import DRIVERS
 from robot.errors import RobotError
@@ -83,7 +83,7 @@ class SteppedRobot(Robot):
         self._crank = _Crank(opener(port, lambda: self.now), driver, lambda: self.now, on_bytes)
         super().__init__(port, self._crank, driver, lambda: self.now)
         while not self._is_settled():
-            if self.now > kind.answer_within:
+            if self.now > kind.answer_within + INTRODUCTION:
                 self.close()
                 raise RobotError(f"the robot on {url} does not introduce itself")
             self.advance(STEP)

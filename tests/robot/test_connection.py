@@ -270,3 +270,10 @@ def test_a_line_that_babbles_is_given_up_in_time_and_stops_nobody():
         finally:
             ending.set()
             babbler.join()
+
+
+def test_a_robot_that_answers_over_a_bad_line_has_longer_to_introduce_itself():
+    url = "sim:cubeling?drop=0.25&delay=20ms&seed=4"
+    with robot.connect(url, answer_within=0.3) as dino:
+        assert dino.telemetry.state == "ready"
+        assert len(dino.catalogue.joints) == 14

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from robot import budget, exchange, port, pump, transport
+from robot import budget, connection, exchange, port, pump, transport
 from robot.protocol import timing
 
 README = Path(pump.__file__).with_name("README.md").read_text("utf-8")
@@ -14,7 +14,11 @@ def test_the_waits_of_the_readme_are_those_of_the_code():
     rows = ROW.findall(README)
     assert len(rows) >= 9
     for milliseconds, name in rows:
-        home = next(one for one in (timing, port, transport, exchange, pump, budget) if hasattr(one, name))
+        home = next(
+            one
+            for one in (timing, connection, port, transport, exchange, pump, budget)
+            if hasattr(one, name)
+        )
         assert getattr(home, name) * 1000 == int(milliseconds), name
 
 
