@@ -207,6 +207,8 @@ class DeviceLink:
             | m.LIMP * state.limp
             | m.RECKONED * state.reckoned
         )
+        if self._version < 2:
+            flags &= m.CHARGING | m.STILL  # the others are zero there
         self._send(
             m.State(
                 beat=self._beat,
