@@ -185,12 +185,16 @@ class RobotNode:
                 self._take(member, player, action)
 
     def _take(self, member: Member, player: Followed, action: m.Action) -> None:
-        """Take an action if it is the next one; answer either way."""
-        self._taken_due = True
+        """Take an action if it is the next one; answer that, and one that was taken before.
+
+        Without an answer it comes again, which is soon enough for one that came too early, and for
+        a robot that is busy.
+        """
         last = action.oldest - 1 if player.taken is None else max(player.taken, action.oldest - 1)
-        if action.number != last + 1:  # has come before, or one before it has not come yet
-            return
-        if self._play(action.name):
+        if action.number <= last:
+            self._taken_due = True
+        elif action.number == last + 1 and self._play(action.name):
+            self._taken_due = True
             player.taken = action.number
             self.following.holder = member
 

@@ -25,7 +25,7 @@ CAPACITY = 64
 RESEND_AFTER = 1.0
 """Actions that no robot has taken in this time are sent again [s]."""
 
-RESEND_SOONEST = 0.1
+RESEND_SOONEST = 0.5
 """Actions are not sent again more often than this [s], whatever the robots say."""
 
 EMOTION_EVERY = 0.1

@@ -23,9 +23,9 @@ STEPS = st.lists(
 @settings(max_examples=30)
 @given(
     seed=st.integers(0, 10_000),
-    drop=st.floats(0, 0.3),
-    double=st.floats(0, 0.3),
-    late=st.floats(0, 0.3),
+    drop=st.sampled_from([0.0, 0.1, 0.3]),
+    double=st.sampled_from([0.0, 0.3]),
+    late=st.sampled_from([0.0, 0.3]),
     steps=STEPS,
 )
 def test_every_action_is_done_once_and_in_order_whatever_the_bus_does(
@@ -53,10 +53,11 @@ def test_every_action_is_done_once_and_in_order_whatever_the_bus_does(
             room.broker.start()
         elif what == "cut":
             room.buses[who].cut()
-        else:
-            room.run(amount * 0.02)
+        elif what == "wait":
+            room.run(amount * 0.02, step=0.04)
+        room.run(0.12, step=0.04)
     room.harm = Harm()
-    room.run(12.0)
+    room.run(12.0, step=0.04)
     for robot in room.robots.values():
         for name in "ab":
             assert [did for did in robot.played if did[0] == name] == room.made[name]
