@@ -453,3 +453,19 @@ def test_the_answer_to_a_question_of_before_the_unplugging_is_not_believed():
     assert host.state(15.6) == "lost"
     host.receive(b"Bittle X\r\nB10_241013\r\n?\r\n", 15.7)
     assert host.state(15.7) == "ready"
+
+
+def test_a_robot_that_lies_is_let_lie_though_its_sign_of_life_is_lost(desk, quiet):
+    robot = Deaf(4, habits=quiet)
+    d = desk(robot).ready()
+    d.feel("happy")
+    d.until(lambda: d.telemetry.limp, 140.0)
+    before = len(d.sent)
+    robot.held = True
+    d.until(lambda: d.state == "lost", REST_ASK_EVERY + 15.0)
+    robot.held = False
+    d.until(lambda: d.state == "ready", 5.0)
+    d.run(2 * REST_ASK_EVERY)
+    assert not any(line[0] == "k" for line in d.lines[before:])
+    assert not robot.board.body.powered
+    assert d.telemetry.limp
