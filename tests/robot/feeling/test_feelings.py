@@ -203,7 +203,7 @@ def test_a_label_gives_way_where_the_feeling_is_past_the_border_by_the_hysteresi
     feelings = Feelings(still(hysteresis=hysteresis))
     border = 0.4  # half way from neutral, at 0, to pleased, at 0.8
     there, back = border + hysteresis, border - hysteresis
-    shown = []
+    shown: list[str] = []
     for valence in (there - 0.001, there + 0.001, back + 0.001, back - 0.001):
         put(feelings, valence, 0.0)
         shown.append(feelings.update("idle", 0, float(len(shown))).label)
