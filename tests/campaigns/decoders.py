@@ -9,6 +9,7 @@ import contextlib
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 from robot.driver import Driver
 from robot.drivers import DRIVERS
@@ -16,6 +17,8 @@ from robot.drivers.cubeling.host import HostLink
 from robot.emotion import Emotion
 from robot.errors import RobotError
 from robot.feeling import personality_file
+from robot.network.messages import KINDS
+from robot.network.schema import MalformedError, decode, encode
 from robot.protocol.schema import MessageError, Sender, pack, unpack
 from robot.protocol.wire import (
     MAX_BODY,
@@ -36,7 +39,7 @@ HELD_MAX = 2_000_000
 """Most that a driver or a simulator may hold, whatever it was fed [bytes]."""
 
 GROWTH_MAX = 65_536
-"""And so much more, at most, when it is fed half a megabyte again [bytes]."""
+"""And so much more, at most, when it is fed as much again [bytes]."""
 
 OUT_MAX = 262_144
 """Most that may wait to be written [bytes]."""
@@ -182,6 +185,17 @@ def personality(data: bytes) -> None:
         personality_file.parse(data.decode("utf-8", "replace"), "fuzz.toml")
 
 
+def payload_of(kind: type[Any]) -> Target:
+    """Make the target that reads one kind of message from a broker."""
+
+    def read(data: bytes) -> None:
+        with contextlib.suppress(MalformedError):
+            message = decode(kind, data)
+            assert decode(kind, encode(message)) == message
+
+    return read
+
+
 def fault_url(data: bytes) -> None:
     """Read a simulator's URL."""
     with contextlib.suppress(RobotError):
@@ -199,6 +213,7 @@ TARGETS: dict[str, Target] = {
     **{f"driver:{name}": driver_of(name) for name in DRIVERS},
     **{f"simulator:{name}": simulator_named(name) for name in SIMULATORS},
     **{f"settings:{name}": settings_of(name) for name in DRIVERS},
+    **{f"payload:{'-'.join(key)}": payload_of(kind) for key, kind in KINDS.items()},
     "personality": personality,
     "url": fault_url,
 }

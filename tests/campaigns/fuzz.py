@@ -35,7 +35,12 @@ def main() -> int:
     def one_input(data: bytes) -> None:
         target(data)
 
-    options = [f"-max_total_time={wanted.seconds}", f"-seed={wanted.seed}", "-max_len=4096"]
+    options = [
+        f"-max_total_time={wanted.seconds}",
+        f"-seed={wanted.seed}",
+        "-max_len=4096",
+        "-len_control=0",
+    ]
     atheris.Setup(
         [sys.argv[0], *options, "-rss_limit_mb=1024", f"-artifact_prefix={found}/"], one_input
     )

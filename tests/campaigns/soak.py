@@ -22,8 +22,8 @@ from rich.table import Table
 from robot.driver import Driver
 from robot.drivers import DRIVERS
 from robot.emotion import Emotion
+from robot.exchange import REOPEN_EVERY
 from robot.protocol import messages as m
-from robot.pump import REOPEN_EVERY
 from robot.simulators import SIMULATORS
 from robot.simulators.faults import Faults, Spell
 from robot.simulators.faulty import FaultyRobot

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from robot.exchange import REOPEN_EVERY
 from robot.port import READ_TIMEOUT
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.wire import MAX_FRAME
-from robot.pump import REOPEN_EVERY
 from robot.simulators.faulty import INBOX_MAX, FaultyRobot
 from robot.simulators.line import IN_FLIGHT_MAX
 from tests.campaigns.mixes import Mix
