@@ -49,6 +49,7 @@ def examine(*, cameras: bool = True) -> list[Finding]:
         _recordings(),
         _display(),
         _ports(),
+        _broker(),
     ]
     return [*findings, _camera()] if cameras else findings
 
@@ -138,6 +139,15 @@ def _ports() -> Finding:
     if not ports:
         return Finding("robot", "missing", "no serial port", "cubeling robot simulate")
     return Finding("robot", "good", ", ".join(port.url for port in ports))
+
+
+def _broker() -> Finding:
+    """Look for a broker's program; only who plays in several places needs one."""
+    path = shutil.which("mosquitto") or shutil.which("mosquitto", path="/usr/sbin:/usr/local/sbin")
+    if path is None:
+        remedy = "apt install mosquitto"
+        return Finding("broker", "missing", "none: only for players in several places", remedy)
+    return Finding("broker", "good", path)
 
 
 WATCHED_S = 4.0
