@@ -31,6 +31,9 @@ from tests.campaigns.world import CampaignWorld, Outcome
 RUN = 20_000
 """Exchanges in one run; then a new world begins [exchanges]."""
 
+TELL_EVERY = 20
+"""So many runs between two lines about how far it is."""
+
 CRC_CHANCE = 2**-16
 """Chance that a stretch with many wrong bits passes the check, at most; see tests.campaigns.crc."""
 
@@ -173,7 +176,14 @@ def main() -> int:
         runs = [Run(mixes[0], wanted.run_seed, RUN)]
     console, start = Console(width=130), time.perf_counter()
     with ProcessPoolExecutor(wanted.jobs) as pool:
-        outcomes = list(pool.map(carry_out, runs))
+        outcomes = []
+        for outcome in pool.map(carry_out, runs):
+            outcomes.append(outcome)
+            if len(outcomes) % TELL_EVERY == 0:
+                done = sum(one.counts["exchanges"] for one in outcomes)
+                broken = sum(one.violation is not None for one in outcomes)
+                took = time.perf_counter() - start
+                console.print(f"{done:,} exchanges, {broken} runs broken, {took:.0f} s")
     groups = {mix.name: [one for one in outcomes if one.mix == mix.name] for mix in mixes}
     violations = [one for one in outcomes if one.violation]
     seen = [gather(group) for group in groups.values() if group]
