@@ -455,10 +455,21 @@ def test_the_answer_to_a_question_of_before_the_unplugging_is_not_believed():
     assert host.state(15.7) == "ready"
 
 
+class Unheard(OpenCatSimulator):
+    """A board whose words can be lost on the way."""
+
+    held = False
+
+    def bytes_to_send(self) -> bytes:
+        said = super().bytes_to_send()
+        return b"" if self.held else said
+
+
 def test_a_robot_that_lies_is_let_lie_though_its_sign_of_life_is_lost(desk, quiet):
-    robot = Deaf(4, habits=quiet)
+    robot = Unheard(4, habits=quiet)
     d = desk(robot).ready()
     d.feel("happy")
+    d.settle()
     d.until(lambda: d.telemetry.limp, 140.0)
     before = len(d.sent)
     robot.held = True
