@@ -76,6 +76,12 @@ def simulate(
             f"[dim]cubeling play companion --robot {shown}      Ctrl-C ends it[/]",
             soft_wrap=True,
         )
+        if "unplug=" in name:
+            console.print(
+                "[dim]While it is unplugged the line is silent: this port cannot vanish and come "
+                "back[/]",
+                soft_wrap=True,
+            )
         end = None if seconds is None else time.monotonic() + seconds
         with suppress(KeyboardInterrupt), Live(console=console, transient=True) as live:
             while end is None or time.monotonic() < end:
