@@ -10,22 +10,19 @@ import json
 import os
 import shutil
 import subprocess
-import time
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-import serial
 
-import robot
 import robot.firmware
 import robot.protocol
-from robot.conformance import PortLine, chosen, examine
+from robot.conformance import SimulatedLine, all_checks, examine
+from robot.emotion import Emotion
 
 FOLDER = Path(robot.firmware.__file__).parent
 FILES = [FOLDER / "main.py", *sorted((FOLDER / "dino").glob("*.py"))]
-FOR_A_DESK = {"desk.py"}
+FOR_A_BOARD = [path for path in FILES if path.name != "desk.py"]
 PACKAGE = "@micropython/micropython-webassembly-pyscript"
 HERE = Path(__file__).parent
 KNOWN = {"sys", "time", "select", "machine", "micropython", "struct", "math", "array", "dino"}
@@ -56,28 +53,60 @@ def run(script: Path) -> str:
     return done.stdout
 
 
-@contextmanager
-def served() -> Iterator[str]:
-    """Run the firmware in MicroPython behind a TCP port."""
-    node, mjs = interpreter()
-    script = HERE / "serve_micropython.py"
-    command = [node, str(HERE / "micropython.mjs"), mjs, str(FOLDER), str(script)]
+class InMicroPython:
+    """The firmware in MicroPython as a `Simulated` robot, on virtual time."""
+
+    edge = b"\0"
+    look_every = 0.005
+    """As often as on a board does it look at its line and its clock [s]."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self._process = process
+        self._start: float | None = None
+        self._looked = 0.0
+        self._out = b""
+
+    def receive(self, data: bytes, now: float) -> None:
+        if self._start is None:
+            self._start = now
+        self._looked = now
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._process.stdin.write(f"{round(1000 * (now - self._start))} {data.hex()}\n")
+        self._process.stdin.flush()
+        self._out += bytes.fromhex(self._process.stdout.readline())
+
+    def advance(self, now: float) -> None:
+        if now - self._looked >= self.look_every:
+            self.receive(b"", now)
+
+    def bytes_to_send(self) -> bytes:
+        data, self._out = self._out, b""
+        return data
+
+    def reboot(self) -> None:
+        raise NotImplementedError
+
+    def portrait(self) -> tuple[float, str]:
+        raise NotImplementedError
+
+
+@pytest.fixture
+def in_micropython() -> Iterator[InMicroPython]:
+    """Run the firmware in MicroPython."""
+    command = [*interpreter(), str(FOLDER), str(HERE / "virtual_board.py")]
+    command.insert(1, str(HERE / "micropython.mjs"))
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     ) as process:
-        assert process.stdout is not None
+        yield InMicroPython(process)
         assert process.stdin is not None
-        try:
-            yield f"socket://127.0.0.1:{int(process.stdout.readline())}"
-        finally:
-            process.stdin.close()
-            process.wait(5)
+        process.stdin.close()
+        assert process.wait(5) == 0
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+@pytest.mark.parametrize("path", FOR_A_BOARD, ids=lambda path: path.name)
 def test_it_needs_nothing_that_a_board_does_not_have(path):
-    if path.name in FOR_A_DESK:
-        pytest.skip("is for CPython alone")
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         if isinstance(node, ast.Import):
             names = {alias.name for alias in node.names}
@@ -97,9 +126,8 @@ def test_micropythons_compiler_takes_it(path, tmp_path):
 
 
 def test_a_board_is_small_and_so_is_the_program():
-    for_the_board = [path for path in FILES if path.name not in FOR_A_DESK]
-    assert sum(path.stat().st_size for path in for_the_board) < 60_000
-    assert max(len(path.read_text("utf-8").splitlines()) for path in for_the_board) <= 250
+    assert sum(path.stat().st_size for path in FOR_A_BOARD) < 60_000
+    assert max(len(path.read_text("utf-8").splitlines()) for path in FOR_A_BOARD) <= 250
 
 
 def test_micropython_reads_and_writes_every_vector(tmp_path):
@@ -122,28 +150,34 @@ def test_micropython_reads_and_writes_every_vector(tmp_path):
                                    for text in pair]  # fmt: skip
 
 
-def test_in_micropython_ten_minutes_need_no_more_memory_than_one(tmp_path):
-    script = tmp_path / "minutes.py"
-    board = (HERE / "serve_micropython.py").read_text("utf-8").partition("\ndef turn")[0]
-    script.write_text(board + (HERE / "ten_minutes.py").read_text("utf-8"))
+def test_in_micropython_a_longer_session_needs_no_more_memory(tmp_path):
+    script = tmp_path / "session.py"
+    parts = [HERE / "virtual_board.py", HERE / "long_session.py"]
+    script.write_text("".join(part.read_text("utf-8") for part in parts))
     used = [int(word) for word in run(script).split()]
-    assert len(used) == 10
+    assert len(used) == 4
     # The interpreter and what the script itself keeps are in it; a Pico has 190 kB for all.
     assert max(used) < 60_000
     assert max(used[1:]) <= used[0] + 2_000
 
 
-def test_in_micropython_it_obeys_our_host(soon):
-    with served() as url, robot.connect(url) as dino:
-        dino.express(robot.Emotion(0.8, 0.5), "happy")
-        soon(lambda: dino.telemetry.label == "happy")
-        assert dino.telemetry.acknowledged == robot.Emotion(0.8, 0.5)
-
-
-def test_in_micropython_it_keeps_to_the_protocol(soon):
-    words = ["garbage before", "frame in pieces", "wrong bit", "version 1 spoken", "repeat",
-             "highest numbers", "field out of range"]  # fmt: skip
-    with served() as url, serial.serial_for_url(url, timeout=0.01) as port:
-        report = examine(PortLine(port, time.monotonic), chosen(words), host=77)
+def test_in_micropython_it_conforms(in_micropython):
+    report = examine(SimulatedLine(in_micropython), all_checks(), host=77)
     assert [one.check.name for one in report.results if one.verdict != "ok"] == []
-    assert len(report.results) >= len(words)
+    assert report.conforms
+
+
+def test_in_micropython_it_obeys_our_host_on_a_bad_line(in_micropython, world):
+    w = world(seed=6, drop=0.05, flip=0.001, dup=0.05)
+    w.robot = in_micropython
+    w.run_until(lambda: w.telemetry.state == "ready", within=2)
+    w.host.express(Emotion(0.8, 0.5), "happy")
+    w.run(1.5)
+    assert w.telemetry.observed == w.telemetry.acknowledged == Emotion(0.8, 0.5)
+    assert (w.telemetry.label, w.telemetry.motion) == ("happy", "happy")
+    w.there.cut = True
+    w.run(0.6)
+    w.there.cut = False
+    w.run_until(lambda: w.telemetry.state == "ready", within=2)
+    w.run(1.5)
+    assert w.telemetry.observed == Emotion(0.8, 0.5)

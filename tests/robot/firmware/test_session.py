@@ -155,7 +155,7 @@ def _steps() -> st.SearchStrategy[list[tuple[int, int, object, int]]]:
 
 
 @given(_steps())
-@settings(max_examples=150)
+@settings(max_examples=60)
 def test_it_answers_whatever_comes_as_the_simulated_robot_does(steps):
     """The same bytes at the same times; only what is their own may differ."""
     ours, simulated = Dino(), Simulator(3)
