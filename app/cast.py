@@ -1,7 +1,7 @@
 """Draws the bundled characters, to look at and to judge: `python -m app.cast`.
 
 Each is drawn from all sides, with the faces that it makes, and its clips frame by frame; and all
-of them together, as they are on a table.
+of them together, as they are on a table, and in every mood.
 """
 
 from collections.abc import Iterable, Iterator
@@ -72,8 +72,7 @@ def draw_group(context: moderngl.Context, size: tuple[int, int] = (1100, 520)) -
         stage.release()
 
 
-MOODS = ("neutral", "happy", "excited", "surprised", "angry", "afraid", "sad", "bored", "sleepy",
-         "calm", "content")  # fmt: skip
+MOODS = ("neutral", "happy", "excited", "surprised", "angry", "afraid", "sad", "sleepy")
 """What is shown on the sheet of moods."""
 
 SETTLED = 4.0, 4.7
@@ -125,6 +124,10 @@ def _pages(album: Album, character: Character) -> Iterator[tuple[str, Image]]:
 if __name__ == "__main__":
     context = create_context()
     save(draw_group(context), FOLDER.parent / "cast.jpg", MOST)
+    album = Album(context)
+    moods = draw_moods(album, map(Character.load, Character.bundled()))
+    save(moods, FOLDER.parent / "moods-on-faces.jpg", MOST)
+    album.release()
     context.release()
     for path in draw_cast(map(Character.load, Character.bundled())):
         Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")

@@ -155,7 +155,7 @@ def manner(valence: float, arousal: float) -> Manner:
     """
     tall = min(max(0.75 * valence + 0.55 * arousal, -1.0), 1.0)
     tense = max(-valence, 0.0) * max(arousal, 0.0)
-    hung = -tall if tall < 0.0 else -0.4 * tall
+    hung = -tall if tall < 0.0 else -0.3 * tall
     return Manner(
         pace=2.0 ** (FASTER * arousal),
         size=2.0 ** (LARGER * arousal),

@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 
 from app.playground import Playground
-from app.scenarios import CUBES, Inputs, make_scenario
+from app.robots import RobotLine
+from app.scenarios import CUBES, EmotionTarget, Inputs, make_scenario
 from app.scenarios.temper import Temper
 from app.session import about
 from app.show.likeness import Likeness
 from characters import Animator, Character, CharacterError
 from characters.rendering import create_context
-from robot import LABEL_SETS, Personality
+from robot import LABEL_SETS, Emotion, Personality
 from robot.drivers.cubeling.host import HostLink
 from robot.feeling.words import closest_word
 from robot.simulators.cubeling.simulator import Simulator
@@ -89,6 +90,18 @@ class Pair:
             self.host.receive(self.robot.bytes_to_send(), self.now)
             self.host.tick(self.now)
             self.robot.receive(self.host.bytes_to_send(), self.now)
+
+
+def test_the_line_hands_the_robot_emotion_and_word():
+    class Told:
+        def express(self, emotion, label=None):
+            self.said = emotion, label
+
+    line, told = RobotLine(), Told()
+    line._robot = told  # type: ignore[assignment] # all of a robot that this needs
+    target = EmotionTarget(Emotion(0.6, 0.7), "excited", 0.0)
+    line.feel(target)
+    assert told.said == (target.emotion, "excited")
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,15 @@
 """How long one update of a character takes: `python -m tests.bench.animation`.
 
 The full update is everything at once: a point of the locomotion space that keeps changing, a layer
-of waving arms over it, head and eyes that follow a point, blinks, breath, and feet that are held.
+of waving arms over it, head and eyes that follow a point, blinks, breath, feet that are held, and a
+mood that shows in face and bearing.
 Ends with 1 where its median is beyond the limit.
 """
 
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from rich.console import Console
@@ -45,8 +47,11 @@ def wandering(animator: Animator, speed: float) -> Callable[[int], object]:
     return work
 
 
-def everything(animator: Animator, speed: float) -> Callable[[int], object]:
-    """Return the work of a full update: chasing, a layer on top, and a moving point to look at."""
+def everything(animator: Animator, speed: float, mood: str = "happy") -> Callable[[int], object]:
+    """Return the work of a full update: chasing, a layer on top, a moving point to look at, a mood.
+
+    Without a word for the mood nothing is felt.
+    """
     character = animator.character
     arms = mask_of(character.skeleton, {"LeftShoulder": 1.0, "RightShoulder": 1.0})
     wave = character.clips["wave"]
@@ -55,7 +60,11 @@ def everything(animator: Animator, speed: float) -> Callable[[int], object]:
         angle, time = number / 60, number / 30
         target = 0.4 * np.array([np.sin(angle), np.cos(angle)])
         gaze = np.array([0.3 * np.sin(time), 0.1, 0.4])
-        posed = animator.update(CharacterCommand(time, "move", speed, target, gaze=gaze))
+        command = CharacterCommand(time, "move", speed, target, gaze=gaze)
+        if mood:
+            feeling = np.array([np.sin(time / 3), np.cos(time / 5)])
+            command = replace(command, feeling=feeling, mood=mood)
+        posed = animator.update(command)
         return overlaid(posed.pose, wave.sample(time % wave.duration), arms, 0.0)
 
     return work
@@ -92,6 +101,7 @@ def main() -> int:
         "walk and run mixed": wandering(Animator(human), 3.0),
         "run": wandering(Animator(human), 4.5),
         "set off and stop": switching(Animator(human)),
+        "full update, nothing felt": everything(Animator(human), 3.0, ""),
         "kiss, intensity changing": acting(Animator(vleo), "kiss"),
         "globals of the human alone": lambda number: rest.globals(human.skeleton),
     }

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from characters import Animator, Character, CharacterCommand, CharacterError
@@ -103,7 +103,7 @@ def test_the_sad_hang_their_heads_and_the_happy_hold_them_high(someone):
         np.mean([pitch(someone, pose) for pose in lived(someone, felt(word, 4))[-60:]])
         for word in ("sad", "neutral", "happy")
     )
-    assert sad + math.radians(4) < plain < happy - math.radians(1.5)
+    assert sad + math.radians(10) < plain < happy - math.radians(5)
 
 
 @pytest.mark.parametrize("valence", [-0.8, -0.3, 0.3, 0.8])
@@ -133,7 +133,7 @@ words = st.sampled_from(["", "neutral", "unheard of", *RECIPES])
 moods = st.tuples(st.floats(-1, 1), st.floats(-1, 1), words)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20, deadline=None, phases=(Phase.explicit, Phase.reuse, Phase.generate))
 @given(
     name=st.sampled_from(list(CAST)),
     plan=st.lists(st.tuples(st.one_of(st.none(), moods), st.integers(1, 30)), max_size=6),
