@@ -12,14 +12,9 @@ from robot.protocol import timing
 from robot.protocol.wire import MAX_FRAME
 from robot.simulators.faulty import INBOX_MAX, FaultyRobot
 from robot.simulators.line import IN_FLIGHT_MAX
+from tests.campaigns.ends import LightRobot, WatchedLane, watched_host
 from tests.campaigns.mixes import Mix
-from tests.campaigns.witness import (
-    BrokenPromiseError,
-    LightRobot,
-    WatchedLane,
-    Witness,
-    watched_host,
-)
+from tests.campaigns.witness import BrokenPromiseError, Witness
 
 LOOK_EVERY = 0.050
 """How often the robot looks at its clock [s]; the protocol allows no more."""

@@ -1,0 +1,170 @@
+"""The two ends of the wire in a campaign.
+
+They are the product's own; a few of their methods tell the witness what they do.
+"""
+
+from typing import Any
+
+from robot.catalogue import Catalogue, JointLimits
+from robot.drivers.cubeling.commands import Command, CommandLane
+from robot.drivers.cubeling.host import HostLink
+from robot.drivers.cubeling.roundtrip import RoundTrip
+from robot.emotion import Emotion
+from robot.protocol import messages as m
+from robot.protocol.wire import FrameReader
+from robot.simulators.cubeling.device import BodyState, DeviceLink
+from tests.campaigns.witness import BrokenPromiseError, Witness
+
+NEUTRAL = Emotion(0.0, 0.0)
+
+
+class WatchedReader(FrameReader):
+    """Notices a frame that is taken for whole and was never sent."""
+
+    def __init__(self, witness: Witness, way: str) -> None:
+        super().__init__()
+        self._witness, self._sent = witness, witness.frames[way]
+
+    def _finish(self) -> bytes | None:
+        frame = bytes(self._pending)
+        body = super()._finish()
+        if body is None:
+            self._witness.counts["detected"] += 1
+        elif frame not in self._sent:
+            self._witness.counts["undetected"] += 1
+        return body
+
+
+class WatchedLane(CommandLane):
+    """Tells which command is sent, and which has been acknowledged."""
+
+    def __init__(self, witness: Witness, host: int) -> None:
+        super().__init__()
+        self.witness, self.host = witness, host
+        self.idle = True
+
+    def next(self, now: float, retry_after: float) -> Command | None:
+        command = super().next(now, retry_after)
+        if command is not None:
+            self.idle = False
+            self.witness.sends(self.host, command)
+        return command
+
+    def land(self, number: int, result: int = m.TAKEN) -> None:
+        flying = self._flight is not None
+        super().land(number, result)
+        if flying and self._flight is None:
+            self.idle = True
+            self.witness.counts["exchanges"] += 1
+
+
+class WatchedRoundTrip(RoundTrip):
+    """Counts the heartbeats that were answered."""
+
+    def __init__(self, witness: Witness) -> None:
+        super().__init__()
+        self.witness = witness
+
+    def stop(self, count: int, now: float) -> None:
+        waiting = len(self._sent)
+        super().stop(count, now)
+        self.witness.counts["heartbeats"] += waiting - len(self._sent)
+
+
+def watched_host(witness: Witness, host: int) -> HostLink:
+    """Make a host's end whose commands, heartbeats and frames are seen."""
+    link = HostLink(host)
+    link._lane = WatchedLane(witness, host)
+    link._round_trip = WatchedRoundTrip(witness)
+    link._reader = WatchedReader(witness, "back")
+    return link
+
+
+class LightBody:
+    """A body without physics."""
+
+    catalogue = Catalogue(
+        "Light", "campaign 1", (JointLimits("neck", -1.0, 1.0, 1.0),), ("nod", "bow"), ("purr",),
+        ("neutral", "happy", "angry"),
+    )  # fmt: skip
+
+    def __init__(self, witness: Witness) -> None:
+        self.witness = witness
+        self.target = NEUTRAL
+
+    def express(self, emotion: Emotion, mood: int) -> None:
+        self.target = emotion
+
+    def play(self, item: int, index: int) -> None:
+        pass
+
+    def stop(self) -> None:
+        self.neutral()
+
+    def neutral(self) -> None:
+        self.target = NEUTRAL
+        self.witness.goes_neutral()
+
+    def state(self) -> BodyState:
+        return BodyState(self.target, 0, 1.0, (0.0,))
+
+
+class WatchedLink(DeviceLink):
+    """A robot's end that tells what takes effect, and when it last heard of its host."""
+
+    def __init__(self, witness: Witness) -> None:
+        self.light = LightBody(witness)
+        super().__init__(self.light)
+        self.witness = witness
+        self.heard = witness.now
+        self._reader = WatchedReader(witness, "there")
+
+    def tick(self, now: float) -> None:
+        session = self.session
+        super().tick(now)
+        if session and not self.session:
+            self.witness.falls_silent(self.heard, now)
+            if self.light.target != NEUTRAL:
+                raise BrokenPromiseError("the failsafe does not lead to neutral")
+
+    def _take(self, session: int, message: Any, now: float) -> None:
+        if isinstance(message, m.Hello) or (session and session == self.session):
+            self.heard = now
+        super()._take(session, message, now)
+
+    def _carry_out(self, command: m.Express | m.Play | m.Stop) -> int:
+        self.witness.carries_out(self._host, command)
+        return super()._carry_out(command)
+
+
+class LightRobot:
+    """The campaign's robot: a `Simulated`."""
+
+    edge = b"\0"
+
+    def __init__(self, witness: Witness) -> None:
+        self.witness = witness
+        self.link = WatchedLink(witness)
+
+    def receive(self, data: bytes, now: float) -> None:
+        self.witness.now = now
+        self.link.receive(data, now)
+        self.witness.looks(self.link, now)
+
+    def advance(self, now: float) -> None:
+        self.witness.now = now
+        self.link.tick(now)
+        self.witness.looks(self.link, now)
+
+    def bytes_to_send(self) -> bytes:
+        data = self.link.bytes_to_send()
+        if data:
+            self.witness.sends_bytes("back", data)
+        return data
+
+    def reboot(self) -> None:
+        self.witness.reboots()
+        self.link = WatchedLink(self.witness)
+
+    def portrait(self) -> tuple[float, str]:
+        return self.link.light.target.valence, "light"
