@@ -92,9 +92,9 @@ def test_a_face_says_what_is_felt(someone, word):
 
 def test_the_sleepy_have_heavy_lids_and_bow_their_heads(someone):
     awake, sleepy = (lived(someone, felt(word, 3))[-40:] for word in ("neutral", "sleepy"))
-    lids = Lids.of(someone.morphs)
-    assert min(lids.closed(pose.morphs) for pose in sleepy) > 0.25
-    assert min(lids.closed(pose.morphs) for pose in awake) == 0.0
+    blinks = blinks_in(someone.morphs, someone.meshes, Lids.of(someone.morphs))
+    assert min(float(pose.morphs @ blinks) for pose in sleepy) > 0.5
+    assert min(float(pose.morphs @ blinks) for pose in awake) < 0.1
     assert pitch(someone, sleepy[-1]) < pitch(someone, awake[-1]) - math.radians(3)
 
 
