@@ -157,7 +157,7 @@ class Lines:
             if name and trouble == shared:
                 continue  # the onlooker says it for all
             if trouble and (not told or (station.state == "refused" and trouble != told)):
-                again = "" if station.state == "refused" else "; trying again"
+                again = "; trying again" if station.state == "away" else ""
                 self._print(f"{trouble}{again}")
             elif told and not trouble:
                 self._print("connected again")

@@ -1,32 +1,17 @@
 """The bus over a broker: one thread that connects, reads and writes, again and again."""
 
 import contextlib
-import select
 import socket
 import ssl
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from typing import Any
-
-from paho.mqtt import client as paho
-from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode
-from paho.mqtt.packettypes import PacketTypes
-from paho.mqtt.properties import Properties
-from paho.mqtt.reasoncodes import ReasonCode
-from paho.mqtt.subscribeoptions import SubscribeOptions
 
 from robot.errors import RobotError
 from robot.network.access import Address
 from robot.network.bus import BusState, Handler, Letter
-from robot.network.topics import fits
-
-KEEPALIVE = 4
-"""The broker takes a member for lost that is silent for 1.5 times this [s], and we the broker."""
-
-ANSWER_WITHIN = 5.0
-"""Longest wait for the broker's answer in each of: TCP, TLS, MQTT [s]."""
+from robot.network.line import ANSWER_WITHIN, CLOSE_WITHIN, BrokerLine
 
 VERDICT_WITHIN = 6.0
 """Longest wait of `open` [s]; then the broker counts as away, and is tried on."""
@@ -34,23 +19,11 @@ VERDICT_WITHIN = 6.0
 RETRY_FIRST, RETRY_LAST = 0.1, 5.0
 """Pause before the next attempt to connect: doubles from the one to the other [s]."""
 
-UNCONFIRMED_MAX = 100
-"""Most messages on their way to the broker without its confirmation."""
-
 WAITING_MAX = 100
-"""Most messages that wait for those; more are not taken."""
-
-PACKET_MAX = 8192
-"""Longest packet that the broker may send to us [bytes]."""
+"""Most messages that wait to be sent; more are not taken."""
 
 POLL = 0.25
 """Longest sleep of the thread [s]."""
-
-CLOSE_WITHIN = 1.0
-"""Longest wait for the last words to be confirmed [s]."""
-
-QOS = 1
-"""Every message is confirmed by the broker."""
 
 _REASONS = {
     "refused": "nobody listens there",
@@ -61,6 +34,7 @@ _REASONS = {
     "unreachable": "the network does not reach it",
     "reset": "it closed the connection",
 }
+"""Signs in the systems' messages, and what they mean."""
 
 
 class MqttBus:
@@ -89,8 +63,6 @@ class MqttBus:
         self._closing = threading.Event()
         self._waiting: deque[Letter] = deque()
         self._farewell: tuple[Letter, ...] = ()
-        self._unconfirmed: dict[int, str] = {}
-        self._ended: str | None = None
         self._wake_reader, self._wake_writer = socket.socketpair()
         self._wake_reader.setblocking(False)
         self._wake_writer.setblocking(False)
@@ -164,138 +136,50 @@ class MqttBus:
     def _run(self) -> None:
         pause = RETRY_FIRST
         while not self._closing.is_set():
-            known, self._ended = self._connections, None
-            client = self._client()
+            line = BrokerLine(
+                self._address, self._name, self._will, self._handlers, self._wake_reader
+            )
             try:
-                client.connect(
-                    self._address.host, self._address.port, KEEPALIVE, clean_start=True,
-                    properties=_properties(PacketTypes.CONNECT, MaximumPacketSize=PACKET_MAX),
-                )  # fmt: skip
-                self._serve(client)
+                line.connect()
+                self._serve(line)
             except Exception as error:  # whatever it is, the thread must go on
                 self._fail(error)
-            self._hang_up(client)
-            if self._connections != known:
+            line.hang_up()
+            self._waiting.clear()
+            if line.connected:
                 pause = RETRY_FIRST
             self._closing.wait(RETRY_LAST if self._state == "refused" else pause)
             pause = min(2 * pause, RETRY_LAST)
         self._close_wakers()
 
-    def _serve(self, client: paho.Client) -> None:
+    def _serve(self, line: BrokerLine) -> None:
         """Read and write until the connection ends."""
         began = time.monotonic()
+        ended = "the connection broke"
         while not self._closing.is_set():
-            if not self._exchange(client, POLL):
+            stands = line.exchange(self._waiting, POLL)
+            self._follow(line)
+            if not stands:
                 break
-            if self._state != "connected" and time.monotonic() - began > ANSWER_WITHIN:
-                self._ended = "nobody speaks MQTT there"
+            if not line.connected and time.monotonic() - began > ANSWER_WITHIN:
+                ended = "nobody speaks MQTT there"
                 break
-        if self._closing.is_set() and self._state == "connected":
-            self._say_goodbye(client)
-        elif self._ended is None:
-            self._ended = "the connection broke"
-        if self._ended is not None and self._state != "refused":
-            self._change("away", f"{self._address}: {self._ended}")
+        if self._closing.is_set() and line.connected:
+            line.say_goodbye((*self._waiting, *self._farewell))
+        elif line.refusal:
+            self._change("refused", line.refusal)
+        else:
+            if line.wordless:
+                ended = "it closed the connection without a word; does it want TLS (mqtts://)?"
+            self._change("away", f"{self._address}: {ended}")
 
-    def _exchange(self, client: paho.Client, wait: float) -> bool:
-        """Read and write once, waiting for either; whether the connection still stands."""
-        line = client.socket()
-        if line is None:
-            return False
-        writing = [line] if client.want_write() else []
-        readable, writable, _ = select.select([line, self._wake_reader], writing, [], wait)
-        if self._wake_reader in readable:
-            with contextlib.suppress(BlockingIOError):
-                self._wake_reader.recv(4096)
-        if line in readable:
-            self._read(client)
-        while self._waiting and len(self._unconfirmed) < UNCONFIRMED_MAX:
-            self._send(client, self._waiting.popleft())
-        if writable and client.socket() is not None:
-            client.loop_write()
-        return client.socket() is not None and client.loop_misc() == MQTTErrorCode.MQTT_ERR_SUCCESS
-
-    def _read(self, client: paho.Client) -> None:
-        client.loop_read()
-        # What TLS has decrypted already does not wake `select`.
-        while isinstance(line := client.socket(), ssl.SSLSocket) and line.pending():
-            client.loop_read()
-
-    def _send(self, client: paho.Client, letter: Letter) -> None:
-        info = client.publish(letter.topic, letter.payload, QOS, letter.retain)
-        if info.rc == MQTTErrorCode.MQTT_ERR_SUCCESS:
-            self._unconfirmed[info.mid] = letter.topic
-
-    def _say_goodbye(self, client: paho.Client) -> None:
-        for letter in self._farewell:
-            self._send(client, letter)
-        end = time.monotonic() + CLOSE_WITHIN
-        while (self._unconfirmed or self._waiting) and time.monotonic() < end:
-            if not self._exchange(client, 0.05):
-                return
-        client.disconnect()
-        self._exchange(client, 0.0)
-
-    def _hang_up(self, client: paho.Client) -> None:
-        self._waiting.clear()
-        self._unconfirmed.clear()
-        line = client.socket()
-        if line is not None:
-            with contextlib.suppress(OSError):
-                line.close()
-
-    # --- What the broker says ------------------------------------------------------------------
-
-    def _client(self) -> paho.Client:
-        """Make a client that knows nothing of earlier connections."""
-        client = paho.Client(CallbackAPIVersion.VERSION2, self._name, protocol=paho.MQTTv5)
-        client.connect_timeout = ANSWER_WITHIN
-        client.max_inflight_messages_set(UNCONFIRMED_MAX)
-        if self._address.user is not None:
-            client.username_pw_set(self._address.user, self._address.password)
-        if self._address.tls is not None:
-            client.tls_set_context(self._address.tls)
-        if self._will is not None:
-            client.will_set(self._will.topic, self._will.payload, QOS, self._will.retain)
-        client.on_connect = self._on_connect
-        client.on_disconnect = self._on_disconnect
-        client.on_message = self._on_message
-        client.on_publish = self._on_publish
-        return client
-
-    def _on_connect(
-        self, client: paho.Client, _: Any, flags: Any, why: ReasonCode, *__: Any
-    ) -> None:
-        if why.is_failure:
-            who = self._address.user
-            as_whom = "without a user" if who is None else f"as {who!r}"
-            self._ended = f"{why}"
-            self._change("refused", f"{self._address} does not let us in {as_whom}: {why}")
-            client.disconnect()
-            return
-        options = SubscribeOptions(qos=QOS)
-        if self._handlers:
-            client.subscribe([(topic_filter, options) for topic_filter, _ in self._handlers])
-        self._connections += 1
-        self._change("connected", "")
-
-    def _on_disconnect(
-        self, client: paho.Client, _: Any, flags: Any, why: ReasonCode, *__: Any
-    ) -> None:
-        if self._state != "connected" and self._ended is None:
-            self._ended = "it closed the connection without a word; does it want TLS (mqtts://)?"
-
-    def _on_message(self, client: paho.Client, _: Any, message: paho.MQTTMessage) -> None:
-        for topic_filter, handler in self._handlers:
-            if fits(topic_filter, message.topic):
-                handler(message.topic, bytes(message.payload))
-                return  # one member, one inbox: overlapping filters give it once
-
-    def _on_publish(self, client: paho.Client, _: Any, mid: int, why: ReasonCode, *__: Any) -> None:
-        topic = self._unconfirmed.pop(mid, "")
-        if why.is_failure:
-            self._trouble = f"{self._address} does not let us publish to {topic}: {why}"
-            self._hook()
+    def _follow(self, line: BrokerLine) -> None:
+        """Take over what has become of the connection."""
+        if line.connected and self._state != "connected":
+            self._connections += 1
+            self._change("connected", "")
+        if line.denial and line.denial != self._trouble:
+            self._change(self._state, line.denial)
 
     def _fail(self, error: Exception) -> None:
         """Say why no connection came about; a bad certificate is a refusal."""
@@ -334,10 +218,3 @@ def _reason(error: Exception) -> str:
         if sign in text:
             return words
     return text or type(error).__name__
-
-
-def _properties(packet: int, **values: Any) -> Properties:
-    properties = Properties(packet)  # type: ignore[no-untyped-call] # paho leaves it out
-    for name, value in values.items():
-        setattr(properties, name, value)
-    return properties

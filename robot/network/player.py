@@ -25,9 +25,6 @@ CAPACITY = 64
 RESEND_AFTER = 1.0
 """Actions that no robot has taken in this time are sent again [s]."""
 
-RESEND_SOONEST = 0.5
-"""Actions are not sent again more often than this [s], whatever the robots say."""
-
 EMOTION_EVERY = 0.1
 """Emotions are published at most this often [s]; the latest wins."""
 
@@ -252,9 +249,7 @@ class Player:
         if known is None:
             if len(self.robots) == ROBOTS_MAX and not self._forget_one():
                 return
-            known = self.robots[robot] = Follower(status.session, "closed", now)
-        if known.session != status.session or known.status != "online":
-            self._send_again(now)
+            known = self.robots[robot] = Follower(status.session, status.status, now)
         known.session, known.status, known.heard = status.session, "online", now
 
     def _forget_one(self) -> bool:
@@ -279,8 +274,6 @@ class Player:
         if number > known.taken:
             known.taken = min(number, self._number)
             self._progress = now
-        elif number < self._sent:  # it repeats itself: it has lost the rest
-            self._send_again(now)
 
     def _begin_anew(self) -> None:
         """Count from 1 again, in a session that has just got another number."""
@@ -296,9 +289,7 @@ class Player:
         self._beaten = -math.inf
 
     def _send_again(self, now: float) -> None:
-        if now - self._resent >= RESEND_SOONEST:
-            self._resent = now
-            self._sent = 0
+        self._resent, self._sent = now, 0
 
     def _action(self, kept: _Kept, now: float) -> Letter:
         self._sent = kept.number

@@ -82,6 +82,17 @@ def test_the_last_feeling_is_on_the_robot_after_the_broker_lost_its_memory(room)
     assert room.robots["rex"].felt[-1] == Emotion(0.9, 0.9)
 
 
+def test_a_feeling_is_said_again_to_a_broker_that_forgot_it(room):
+    room.player("a").feel(Emotion(0.9, 0.9))
+    room.run(0.5)
+    room.broker.kill()
+    room.broker.start()
+    room.run(0.5)
+    room.node("rex")
+    room.run(0.5)
+    assert room.robots["rex"].felt == [Emotion(0.9, 0.9)]
+
+
 def test_feelings_are_rate_limited_and_the_latest_wins(room):
     ann = room.player("a")
     room.node("rex")
