@@ -10,6 +10,7 @@ from robot.drivers.pleo.driver import PleoDriver
 from robot.drivers.pleo.settings_file import load_settings
 from robot.emotion import Emotion
 from robot.protocol import messages as m
+from robot.simulators.memory import simulator_of
 
 MOODS = ("neutral", "happy", "angry")
 
@@ -183,3 +184,21 @@ def test_garbage_raises_nothing_and_the_link_works_afterwards(chunks):
             driver.receive(b"\r\n> ", now)
     assert driver.state(now) == "ready"
     assert driver.telemetry(now).acknowledged is not None
+
+
+@pytest.mark.parametrize("faults", ["drop=0.1", "reboot=20s", "stall=2s/10s&dup=0.05&delay=20ms"])
+def test_whatever_befalls_the_line_moods_go_on_being_taken(faults):
+    robot, driver, now = simulator_of(f"sim:pleo?{faults}"), PleoDriver(load_settings()), 10.0
+    driver.port_opened(now)
+    taken = 0
+    for _ in range(12000):
+        now += 0.010
+        robot.advance(now)
+        driver.receive(robot.bytes_to_send(), now)
+        driver.tick(now)
+        robot.receive(driver.bytes_to_send(), now)
+        known = driver.telemetry(now)
+        if known.acknowledged == known.commanded:
+            taken += 1
+            driver.express(Emotion(0.0, taken / 1000), MOODS[taken % 3])
+    assert taken > 20  # in two minutes, where a mood takes 1 to 2 s and a lost answer up to 9
