@@ -12,11 +12,9 @@ from robot.network.bus import Letter
 from robot.network.endpoint import BEAT_EVERY, REPLACED, Run
 from robot.network.following import HOLD, Followed, Following
 from robot.network.schema import MalformedError, decode, encode
+from robot.network.telling import Telling
 from robot.network.topics import Member, Pattern, member_of
 from robot.telemetry import Telemetry
-
-STATE_EVERY = 0.2
-"""The robot's state is published at most this often [s], and only when it has changed."""
 
 NEUTRAL = Emotion(0.0, 0.0)
 
@@ -70,6 +68,8 @@ class RobotNode:
         """The players."""
         self.malformed = 0
         """Messages that could not be understood, and were left alone."""
+        self.counts = {"played": 0, "unknown": 0, "missed": 0}
+        """What became of the actions that were taken; see `messages.RobotState`."""
         self._own_taken = member.topic("taken")  # first: what an earlier run of ours has taken
         self.filters = (self._own_taken, member.topic("status")) + tuple(
             pattern.filter("player", kind)
@@ -81,10 +81,9 @@ class RobotNode:
         self._follows = follows
         self._expressed: Emotion | None = None
         self._label: str | None = None
-        self._counts = {"played": 0, "unknown": 0, "missed": 0}
-        self._state: m.RobotState | None = None
-        self._state_sent = self._beaten = -math.inf
-        self._beat = self._taken_number = self._state_number = 0
+        self._telling = Telling()
+        self._beaten = -math.inf
+        self._beat = self._taken_number = 0
         self._taken_due = False
 
     @property
@@ -102,8 +101,8 @@ class RobotNode:
     def connected(self, now: float) -> None:
         """Say everything again."""
         self._run.connected(now)
-        self._beaten = self._state_sent = -math.inf
-        self._state = None
+        self._beaten = -math.inf
+        self._telling.again()
         self._taken_due = True
 
     def receive(self, topic: str, payload: bytes, now: float) -> None:
@@ -145,13 +144,11 @@ class RobotNode:
         if self._taken_due:
             self._taken_due = False
             out.append(self._taken())
-        if now - self._state_sent >= STATE_EVERY:
-            state = self._known()
-            if state != self._state:
-                self._state, self._state_sent = state, now
-                self._state_number += 1
-                told = replace(state, number=self._state_number)
-                out.append(Letter(self.member.topic("state"), encode(told), retain=True))
+        holder = self.following.holder
+        state = self._telling.state(self._robot.telemetry, holder, self.counts, now)
+        if state is not None:
+            state = replace(state, session=self._run.number)
+            out.append(Letter(self.member.topic("state"), encode(state), retain=True))
         return out
 
     def farewell(self) -> tuple[Letter, ...]:
@@ -201,21 +198,21 @@ class RobotNode:
     def _play(self, name: str) -> bool:
         """Hand an action to the robot; False if it must come again, as the robot is too busy."""
         if self._robot.telemetry.state not in ("ready", "degraded"):
-            self._counts["missed"] += 1
+            self.counts["missed"] += 1
             return True
         try:
             catalogue = self._robot.catalogue
         except RobotError:
-            self._counts["missed"] += 1
+            self.counts["missed"] += 1
             return True
         if name not in catalogue.motions + catalogue.sounds:
-            self._counts["unknown"] += 1
+            self.counts["unknown"] += 1
             return True
         try:
             self._robot.play(name)
         except RobotError:
             return False
-        self._counts["played"] += 1
+        self.counts["played"] += 1
         return True
 
     def _express(self, emotion: Emotion, label: str | None) -> None:
@@ -259,32 +256,8 @@ class RobotNode:
         taken = m.Taken(self._run.number, self._taken_number, players)
         return Letter(self._own_taken, encode(taken), retain=True)
 
-    def _known(self) -> m.RobotState:
-        """Return what is known of the robot, in steps that are worth a message."""
-        telemetry = self._robot.telemetry
-        holder = self.following.holder
-        battery = telemetry.battery
-        return m.RobotState(
-            session=self._run.number,
-            number=0,
-            link=telemetry.state,
-            player=None if holder is None else holder.place,
-            commanded=_point(telemetry.commanded),
-            acknowledged=_point(telemetry.acknowledged),
-            observed=_point(telemetry.observed),
-            label=telemetry.label,
-            motion=telemetry.motion,
-            battery=None if battery is None else round(battery, 2),
-            charging=telemetry.charging,
-            **self._counts,
-        )
-
 
 def _is_later(feeling: m.Feeling, known: m.Feeling | None) -> bool:
     if known is None:
         return True
     return (feeling.session, feeling.number) > (known.session, known.number)
-
-
-def _point(emotion: Emotion | None) -> tuple[float, float] | None:
-    return None if emotion is None else (round(emotion.valence, 2), round(emotion.arousal, 2))

@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 from robot.emotion import Emotion
 from robot.network import messages as m
 from robot.network.bus import Letter
-from robot.network.endpoint import BEAT_EVERY, REPLACED, SILENT_AFTER, Run
+from robot.network.endpoint import BEAT_EVERY, REPLACED, Run
+from robot.network.followers import Followers
 from robot.network.schema import TEXT_BYTES, MalformedError, decode, encode
-from robot.network.topics import ROOT, Member, Pattern, member_of
+from robot.network.topics import ROOT, Member, member_of
 
 MAX_AGE = 10.0
 """An action older than this is given up [s]: a kiss that comes so late answers nothing."""
@@ -28,9 +29,6 @@ RESEND_AFTER = 1.0
 EMOTION_EVERY = 0.1
 """Emotions are published at most this often [s]; the latest wins."""
 
-ROBOTS_MAX = 64
-"""Most robots that one player keeps account of."""
-
 
 @dataclass(frozen=True)
 class _Kept:
@@ -40,23 +38,6 @@ class _Kept:
     name: str
     weight: float
     made: float
-
-
-@dataclass
-class Follower:
-    """A robot that follows the player, as far as the player knows."""
-
-    session: int
-    """The run of its node."""
-
-    status: str
-    """"online", "lost" or "closed"."""
-
-    heard: float
-    """When it last said that it was there [s]."""
-
-    taken: int = 0
-    """Number of the last action of this session that it has taken."""
 
 
 @dataclass(frozen=True)
@@ -96,7 +77,7 @@ class Player:
     def __init__(self, member: Member, session: int, max_age: float = MAX_AGE) -> None:
         self.member = member
         """Who it is."""
-        self.robots: dict[Member, Follower] = {}
+        self.followers = Followers(member)
         """The robots that follow."""
         self.counts = PlayerCounts()
         """What became of all."""
@@ -186,7 +167,7 @@ class Player:
                 if self._run.meet_status(decode(m.Status, payload), now):
                     self._begin_anew()
             elif kind == "status":
-                self._hear(member, decode(m.Status, payload), now)
+                self.followers.hear(member, decode(m.Status, payload), now)
             elif kind == "taken":
                 self._acknowledge(member, decode(m.Taken, payload), now)
         except MalformedError:
@@ -194,19 +175,14 @@ class Player:
 
     def tick(self, now: float) -> None:
         """Give up what everyone has, or what is too late; find who is silent."""
-        for follower in self.robots.values():
-            if follower.status == "online" and now - follower.heard > SILENT_AFTER:
-                follower.status = "lost"
-        awaited = [robot.taken for robot in self.robots.values() if robot.status != "closed"]
-        done = min(awaited, default=0)
+        self.followers.settle(now)
+        done = self.followers.done()
         while self._kept and self._kept[0].number <= done:
             self._kept.popleft()
         while self._kept and now - self._kept[0].made > self._max_age:
             self._kept.popleft()
             self._count(expired=1)
-        behind = any(
-            robot.status == "online" and robot.taken < self._sent for robot in self.robots.values()
-        )
+        behind = self.followers.is_behind(self._sent)
         if self._kept and behind and now - max(self._progress, self._resent) >= RESEND_AFTER:
             self._send_again(now)
 
@@ -234,45 +210,13 @@ class Player:
 
     # --- Small things --------------------------------------------------------------------------
 
-    def _hear(self, robot: Member, status: m.Status, now: float) -> None:
-        """Take note of a robot, if it follows."""
-        known = self.robots.get(robot)
-        if known is not None and status.session < known.session:
-            return
-        if status.status != "online":
-            if known is not None:
-                known.session, known.status = status.session, status.status
-            return
-        if not any(self._is_meant(pattern) for pattern in status.follows):
-            self.robots.pop(robot, None)
-            return
-        if known is None:
-            if len(self.robots) == ROBOTS_MAX and not self._forget_one():
-                return
-            known = self.robots[robot] = Follower(status.session, status.status, now)
-        known.session, known.status, known.heard = status.session, "online", now
-
-    def _forget_one(self) -> bool:
-        """Forget a robot that is not there, to make room; whether there was one."""
-        gone = [robot for robot, known in self.robots.items() if known.status != "online"]
-        for robot in gone[:1]:
-            del self.robots[robot]
-        return bool(gone)
-
-    def _is_meant(self, pattern: str) -> bool:
-        site, _, name = pattern.partition("/")
-        return Pattern(site, name).matches(self.member)
-
     def _acknowledge(self, robot: Member, taken: m.Taken, now: float) -> None:
         """Take note of how far a robot has got."""
         session, number = taken.players.get(self.member.place, (0, 0))
         if self._run.meet(session, now):
             self._begin_anew()
-        known = self.robots.get(robot)
-        if known is None or session != self._run.number:
-            return
-        if number > known.taken:
-            known.taken = min(number, self._number)
+        mine = session == self._run.number
+        if mine and self.followers.acknowledge(robot, min(number, self._number)):
             self._progress = now
 
     def _begin_anew(self) -> None:
@@ -281,8 +225,7 @@ class Player:
             replace(kept, number=number) for number, kept in enumerate(self._kept, start=1)
         )
         self._number, self._sent = len(self._kept), 0
-        for robot in self.robots.values():
-            robot.taken = 0
+        self.followers.begin_anew()
         if self._feeling is not None:
             self._feeling = replace(self._feeling, session=self._run.number)
             self._feeling_due = True

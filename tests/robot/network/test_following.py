@@ -6,6 +6,7 @@ from robot.emotion import Emotion
 from robot.errors import RobotError
 from robot.network import Member, Pattern, RobotNode
 from robot.network.endpoint import SILENT_AFTER
+from robot.network.followers import ROBOTS_MAX
 from robot.network.following import HOLD, PLAYERS_MAX
 from robot.network.messages import Action, Feeling, RobotState, Status
 from robot.network.schema import decode, encode
@@ -116,8 +117,8 @@ def test_a_robot_follows_whom_it_was_told_and_nobody_else(room):
     room.act("b")
     room.run(0.5)
     assert room.robots["rex"].played == ["b1"]
-    assert [robot.name for robot in room.stations["b"].endpoint.robots] == ["rex"]
-    assert not room.stations["a"].endpoint.robots
+    assert [robot.name for robot in room.stations["b"].endpoint.followers.robots] == ["rex"]
+    assert not room.stations["a"].endpoint.followers.robots
 
 
 def test_the_state_tells_what_the_robot_does_only_when_it_changes_and_not_too_often(room):

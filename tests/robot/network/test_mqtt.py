@@ -2,6 +2,7 @@
 
 import math
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -135,11 +136,13 @@ def test_a_broker_killed_in_the_middle_costs_no_action_and_doubles_none(
     def all_have_taken_all() -> bool:
         return all(
             station.endpoint.waiting == 0
-            and all(one.taken == len(done[name]) for one in station.endpoint.robots.values())
+            and all(
+                one.taken == len(done[name]) for one in station.endpoint.followers.robots.values()
+            )
             for name, station in players.items()
         )
 
-    soon(lambda: all(len(station.endpoint.robots) == 3 for station in players.values()))
+    soon(lambda: all(len(station.endpoint.followers.robots) == 3 for station in players.values()))
     act("ann", MOTIONS, 2)
     act("bob", SOUNDS, 2)
     soon(all_have_taken_all)
@@ -259,6 +262,8 @@ def openssl(*words: str) -> None:
 @pytest.fixture
 def authority(tmp_path):
     """Make an authority, a broker's certificate by it, and another authority."""
+    if shutil.which("openssl") is None:
+        pytest.skip("the openssl command is not installed")
     key = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2"]
     for name in ("ca", "other"):
         openssl("req", "-x509", *key, "-subj", f"/CN={name}", "-keyout", f"{tmp_path}/{name}.key",
@@ -347,16 +352,16 @@ def test_a_broker_that_hangs_fills_no_memory_and_delays_no_publisher(mosquitto):
     bus = MqttBus(Address.of(broker.url), "ann")
     bus.open()
     os.kill(broker.pid, signal.SIGSTOP)
-    worst, taken = 0.0, 0
+    took, taken = [], 0
     for _ in range(5000):
         began = time.perf_counter()
         taken += bus.publish(Letter("cubeling/x", b"x" * 1000))
-        worst = max(worst, time.perf_counter() - began)
+        took.append(time.perf_counter() - began)
     os.kill(broker.pid, signal.SIGCONT)
     bus.close()
     assert taken < 5000
     assert len(bus._waiting) <= WAITING_MAX
-    assert worst < 0.1
+    assert sorted(took)[4950] < 0.005  # the last percent is the scheduler's
 
 
 def test_a_port_where_nobody_speaks_mqtt_is_left_in_bounded_time(monkeypatch, soon):

@@ -226,7 +226,7 @@ def test_a_lost_robot_misses_the_action_and_its_node_says_so(room):
     room.robots["rex"].link = "ready"
     room.run(2.0)
     assert room.robots["rex"].played == []
-    assert (node._known().missed, room.stations["a"].endpoint.waiting) == (1, 0)
+    assert (node.counts["missed"], room.stations["a"].endpoint.waiting) == (1, 0)
 
 
 def test_what_nobody_follows_is_not_waited_for_for_ever(room):
