@@ -39,9 +39,13 @@ def _robot(seen: Seen) -> tuple[str, str, str]:
     if state is None:
         return "", "", ""
     link = state.link if state.battery is None else f"{state.link}, {state.battery:.0%}"
-    feels = "" if state.observed is None else f"{state.label or ''} {state.observed[0]:+.2f}"
+    feels = ""
+    if state.observed is not None:
+        feels = f"{state.label or ''} {state.observed[0]:+.2f}"
+    elif state.commanded is not None:  # it cannot say what it shows
+        feels = f"asked {state.commanded[0]:+.2f}"
     with_whom = f"with {state.player}" if state.player else ""
-    does = " ".join(word for word in (state.motion or "", with_whom) if word)
+    does = ", ".join(word for word in (state.motion or "", with_whom) if word)
     return link, feels.strip(), does
 
 

@@ -155,6 +155,15 @@ def test_more_players_than_a_robot_can_count_make_no_memory_grow(room):
     assert len(node.following.players) == PLAYERS_MAX
 
 
+def test_more_robots_than_a_player_can_count_make_no_memory_grow(room):
+    ann = room.player("a")
+    for number in range(10 * ROBOTS_MAX):
+        for status in ("online", "lost") if number % 2 else ("online",):
+            said = Status(1, 1, status, ("hall/*",))
+            ann.receive(f"cubeling/1/hall/robot/r{number}/status", encode(said), room.now)
+    assert len(ann.followers.robots) == ROBOTS_MAX
+
+
 @pytest.mark.parametrize(
     "text", ["", "a/b/c", "a b", "+", "#", "hall/", "/a", "-a", "x" * 33, "\n"]
 )
