@@ -95,7 +95,8 @@ class Body:
     def neutral(self) -> None:
         """Feel neutral, and end what was played. A body that holds still keeps still."""
         self._target = (0, 0)
-        self._told = NOTHING
+        if self._told != NOTHING:
+            self._told = _NEUTRAL
         self.voice.end()
         self._start(self.mood)
 

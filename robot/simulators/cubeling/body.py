@@ -84,7 +84,8 @@ class DinosaurBody:
     def neutral(self) -> None:
         """Feel neutral, and end what was played. A body that holds still keeps still."""
         self._target = np.zeros(2)
-        self._told = m.NOTHING
+        if self._told != m.NOTHING:
+            self._told = LABELS.index("neutral")
         self._sound, self._sound_left = None, 0.0
         self._start_motion(self._loop)
 

@@ -188,7 +188,10 @@ def _gist(data: bytes) -> list[tuple[object, ...]]:
                 gist.append((kind, session, *counts))
             case m.State():
                 still = said.flags & m.STILL
-                known = (said.beat, said.taken, still, said.mood, said.motion == m.NOTHING)
+                # One reckons in whole numbers: within a step of a border a rounding decides.
+                edge = min(abs(abs(said.valence) - border) for border in (0.33, 0.28)) < 0.02
+                mood = None if edge else said.mood
+                known = (said.beat, said.taken, still, mood, said.motion == m.NOTHING)
                 gist.append((kind, session, *known))
             case _:
                 gist.append((kind, session, said))
