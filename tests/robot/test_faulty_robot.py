@@ -16,6 +16,7 @@ from robot.simulators.memory import SimulatedWire, simulator_of
 from robot.simulators.port import SimulatedPort
 
 HAPPY = Emotion(0.8, 0.5)
+FRAME = b"\0frame 12\0"
 
 
 class Clock:
@@ -163,3 +164,24 @@ def test_a_robot_whose_host_is_cut_off_is_neutral_in_time():
     assert simulator.body.target == HAPPY
     faulty.advance(now + timing.FAILSAFE_PROMISE)
     assert simulator.body.target == Emotion(0.0, 0.0)
+
+
+def test_a_pulled_plug_loses_what_is_on_the_line_and_what_is_sent():
+    faulty = FaultyRobot(Simulator(), Faults(delay=0.2, unplug=Spell(2.0, 3.0)), 1)
+    host, now, on_the_line = HostLink(7), 0.0, 0
+    host.port_opened(now)
+    while True:
+        now += 0.001
+        faulty.advance(now)
+        if not faulty.plugged_in:
+            break
+        host.receive(faulty.bytes_to_send(), now)
+        host.tick(now)
+        faulty.receive(host.bytes_to_send(), now)
+        on_the_line = faulty.there.in_flight
+    assert on_the_line > 0
+    assert faulty.there.in_flight == faulty.back.in_flight == 0
+    faulty.receive(FRAME, now + 0.01)
+    faulty.advance(now + 0.5)
+    assert faulty.there.in_flight == 0
+    assert faulty.bytes_to_send() == b""
