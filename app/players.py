@@ -1,6 +1,7 @@
 """A session's character as a player in the network: what it does and feels, for everyone."""
 
 import time
+from collections.abc import Callable
 from contextlib import suppress
 
 from app.network import Network
@@ -25,14 +26,24 @@ class PlayerLine:
         What the player is called.
     max_age
         After which time an action is too late for a robot that was away [s].
+    say
+        Is told in one line when the connection breaks; called within `tell`.
     """
 
-    def __init__(self, network: Network, name: str, max_age: float = MAX_AGE) -> None:
+    def __init__(
+        self,
+        network: Network,
+        name: str,
+        max_age: float = MAX_AGE,
+        say: Callable[[str], None] = lambda line: None,
+    ) -> None:
         member = network.member("player", name)
         self._station: Station[Player] = network.join(
             Player(member, network.session, max_age), f"{member.site}:player:{name}"
         )
         self._doing = "idle"
+        self._say = say
+        self._told = False
 
     @property
     def state(self) -> BusState:
@@ -48,6 +59,10 @@ class PlayerLine:
         """Publish a frame's command, if it begins an action, and its emotion, if it has changed."""
         self.command(command)
         self.feel(emotion)
+        broken = self.state in ("away", "refused")
+        if broken and not self._told:
+            self._say(self.trouble)
+        self._told = broken
 
     def command(self, command: CharacterCommand) -> None:
         """Publish an action if this command begins one; a hidden character does nothing."""

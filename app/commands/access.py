@@ -53,14 +53,11 @@ def publisher(
             else "--player needs --mqtt URL, the broker where others are"
         )
     network = closing.enter_context(Network(Access(url, site, credentials)))
-    line = PlayerLine(network, name)
-    if line.state == "away":
-        away(line.trouble)
-    return line
+    return PlayerLine(network, name, say=away)
 
 
 def away(trouble: str) -> None:
-    """Say in one line that the broker is not there, and that it is looked for."""
+    """Say in one line why nothing is published; a broker that is away is looked for."""
     Console(stderr=True, soft_wrap=True, highlight=False, markup=False).print(
-        f"cubeling: {trouble}; trying again"
+        f"cubeling: {trouble}; until that is right, nobody hears the player"
     )

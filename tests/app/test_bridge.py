@@ -178,6 +178,28 @@ def test_a_bridge_that_is_killed_is_lost_by_its_last_will(broker):
 
 
 @needs_mosquitto
+def test_a_player_says_once_that_the_broker_is_gone(broker):
+    said: list[str] = []
+    with Network(Access(broker.url)) as network:
+        line = PlayerLine(network, "ann", say=said.append)
+        calm = EmotionTarget(Emotion(0.0, 0.0), "neutral", 0.0)
+        line.tell(command("idle"), calm)
+        broker.kill()
+        soon(lambda: line.state == "away")
+        for _ in range(3):
+            line.tell(command("kiss"), calm)
+        assert len(said) == 1
+        assert broker.url in said[0]
+        broker.start()
+        soon(lambda: line.state == "connected")
+        line.tell(command("idle"), calm)
+        broker.kill()
+        soon(lambda: line.state == "away")
+        line.tell(command("idle"), calm)
+        assert len(said) == 2
+
+
+@needs_mosquitto
 def test_a_broker_that_hangs_does_not_hold_up_the_picture(broker):
     with Network(Access(broker.url)) as network:
         line = PlayerLine(network, "ann")
