@@ -159,7 +159,7 @@ def _steps() -> st.SearchStrategy[list[tuple[int, int, object, int]]]:
 def test_it_answers_whatever_comes_as_the_simulated_robot_does(steps):
     """The same bytes at the same times; only what is their own may differ."""
     ours, simulated = Dino(), Simulator(3)
-    now = 0
+    now = told = 0
 
     def hear(data: bytes) -> None:
         ours.receive(data, now / 1000)
@@ -167,6 +167,8 @@ def test_it_answers_whatever_comes_as_the_simulated_robot_does(steps):
         simulated.receive(data, now / 1000 * (1 + 1e-9))
         said, expected = ours.bytes_to_send(), simulated.bytes_to_send()
         assert _gist(said) == _gist(expected)
+        if now < told + 40:
+            return  # their steps of 20 ms may begin one apart
         for (mood, valence), (other, other_valence) in zip(
             _moods(said), _moods(expected), strict=True
         ):
@@ -177,6 +179,7 @@ def test_it_answers_whatever_comes_as_the_simulated_robot_does(steps):
     for session, version, message, wait in [(1, 2, m.Hello(2, 1), 1), *steps]:
         raw = isinstance(message, bytes)
         hear(message if raw else encode_frame(pack(message, session, version)))
+        told = now
         for _ in range(wait):
             now += 1
             hear(b"")
