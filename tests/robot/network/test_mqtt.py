@@ -5,6 +5,7 @@ import os
 import shutil
 import signal
 import socket
+import ssl
 import subprocess
 import threading
 import time
@@ -291,13 +292,40 @@ def test_tls_with_the_right_authority_and_no_other(mosquitto, authority, join, s
     bus.subscribe("cubeling/#", lambda _, payload: heard.append(payload))
     bus.open()
     assert bus.state == "connected"
-    for number in range(60):  # several in one TLS record, too
+    for number in range(60):
         bus.publish(Letter("cubeling/x", b"%d" % number))
     soon(lambda: heard == [b"%d" % number for number in range(60)])
     bus.close()
     for wrong in (Credentials(ca=authority / "other.pem"), Credentials()):
         with pytest.raises(RobotError, match="not to be trusted"):
             MqttBus(Address.of(url, wrong), "ann").open()
+
+
+def test_what_tls_has_decrypted_already_is_read_at_once(authority, soon):
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.load_cert_chain(authority / "broker.pem", authority / "broker.key")
+    topic = b"cubeling/x"
+    publish = bytes([0x30, 3 + len(topic) + 1, 0, len(topic)]) + topic + b"\0%d"
+    over = threading.Event()
+
+    def broker() -> None:
+        with context.wrap_socket(server.accept()[0], server_side=True) as line:
+            line.recv(1000)  # CONNECT
+            line.sendall(b"\x20\3\0\0\0" + b"".join(publish % number for number in range(9)))
+            over.wait(10.0)
+
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        thread = threading.Thread(target=broker)
+        thread.start()
+        url = f"mqtts://localhost:{server.getsockname()[1]}"
+        bus = MqttBus(Address.of(url, Credentials(ca=authority / "ca.pem")), "ann")
+        heard: list[bytes] = []
+        bus.subscribe("cubeling/#", lambda _, payload: heard.append(payload))
+        bus.open()
+        soon(lambda: heard == [b"%d" % number for number in range(9)])
+        over.set()
+        bus.close()
+        thread.join(5.0)
 
 
 def test_a_broker_that_asks_for_a_certificate_gets_one(mosquitto, authority):

@@ -5,7 +5,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robot.emotion import Emotion
+from robot.network import Member, Player
+from robot.network.endpoint import SILENT_AFTER
+from robot.network.followers import Followers
+from robot.network.messages import Action, Status, Taken
 from robot.network.player import CAPACITY, EMOTION_EVERY, MAX_AGE
+from robot.network.schema import decode, encode
 from tests.robot.network.conftest import Harm, Room
 
 STEPS = st.lists(
@@ -237,6 +242,58 @@ def test_what_nobody_follows_is_not_waited_for_for_ever(room):
     room.run(MAX_AGE + 1.0)
     assert (ann.waiting, ann.counts.sent) == (0, 1)
     assert room.robots["rex"].played == []
+
+
+def test_a_robot_that_said_goodbye_is_not_waited_for(room):
+    ann = room.player("a")
+    room.node("rex")
+    room.node("max")
+    room.run(0.5)
+    room.stations.pop("max").close()
+    room.act("a")
+    room.run(0.5)
+    assert ann.waiting == 0
+
+
+def test_a_robot_that_is_silent_is_waited_for_but_not_pestered(room):
+    ann = room.player("a")
+    room.node("rex")
+    room.run(0.5)
+    del room.stations["rex"]  # its program hangs, and the connection stands
+    room.act("a")
+    room.run(SILENT_AFTER)
+    sent = ann.counts.sent
+    assert 3 < sent < 10
+    room.run(10.0)
+    assert (ann.counts.sent, ann.waiting) == (sent, 1)
+
+
+def test_a_late_acknowledgement_takes_nothing_back():
+    ann, rex = Member("hall", "player", "a"), Member("hall", "robot", "rex")
+    followers = Followers(ann)
+    followers.hear(rex, Status(1, 1, "online", ("hall/a",)), 0.0)
+    assert followers.acknowledge(rex, 5)
+    assert not followers.acknowledge(rex, 3)
+    assert followers.done() == 5
+
+
+def test_an_acknowledgement_of_the_session_before_says_nothing_of_this_one(room):
+    ann = Player(Member("hall", "player", "a"), session=5)
+    ann.connected(0.0)
+    robot = "cubeling/1/hall/robot/rex"
+    ann.receive(f"{robot}/status", encode(Status(1, 1, "online", ("*/*",))), 0.0)
+    ann.act("a1", 0.0, 0.0)
+    ann.letters(0.0)
+    ann.receive(f"{robot}/taken", encode(Taken(1, 1, {"hall/a": (5, 1)})), 0.1)
+    ann.tick(0.1)
+    assert ann.waiting == 0
+    ann.receive("cubeling/1/hall/player/a/status", encode(Status(900, 1, "lost")), 0.2)
+    ann.act("a2", 0.0, 0.3)
+    ann.receive(f"{robot}/taken", encode(Taken(1, 1, {"hall/a": (5, 1)})), 0.3)
+    ann.tick(0.4)
+    assert ann.waiting == 1
+    (action,) = [letter for letter in ann.letters(0.4) if letter.topic.endswith("action")]
+    assert decode(Action, action.payload).session == 901
 
 
 def test_nothing_that_arrives_stops_a_member(room):
