@@ -7,10 +7,14 @@ from typing import Self
 
 from app.scenarios import EmotionTarget
 from app.show.overlay import RobotView
-from robot import Emotion, Robot, SimulatedPort, SteppedRobot, connect
+from robot import Emotion, Robot, RobotError, SimulatedPort, SteppedRobot, connect
+from robot.feeling.words import closest_word
 
 OnBytes = Callable[[str, bytes, float], None]
 Clock = Callable[[], float]
+
+REMEMBERED = 1000
+"""So many emotions are remembered with their words; a robot takes none that is older [frames]."""
 
 
 class RobotLine:
@@ -24,6 +28,7 @@ class RobotLine:
         self._closing = ExitStack()
         self._robot: Robot | None = None
         self._target: EmotionTarget | None = None
+        self._asked: dict[Emotion, str] = {}
         self._real = False
         self._steps: Steps | None = None
 
@@ -86,6 +91,10 @@ class RobotLine:
     def feel(self, target: EmotionTarget) -> None:
         """Ask the robot to feel; returns at once."""
         self._target = target
+        self._asked.pop(target.emotion, None)  # so that the latest are last
+        self._asked[target.emotion] = target.label
+        if len(self._asked) > REMEMBERED:
+            del self._asked[next(iter(self._asked))]
         if self._steps is not None:
             self._steps.reach(target.timestamp)
         if self._robot is not None:
@@ -101,8 +110,17 @@ class RobotLine:
         telemetry = self._robot.telemetry
         # Pleo and OpenCat do not tell what they show; what they took is then the nearest truth.
         shown = telemetry.observed or telemetry.acknowledged or Emotion(0.0, 0.0)
-        label = telemetry.label or shown.label
+        label = telemetry.label or self._word_for(shown)
         return RobotView(telemetry.state, shown.valence, label, self._real)
+
+    def _word_for(self, emotion: Emotion) -> str:
+        """Return the mood that a robot shows for what it took: chosen as its driver chooses it."""
+        assert self._robot is not None
+        try:
+            moods = self._robot.catalogue.moods
+        except RobotError:  # it has not introduced itself yet
+            return emotion.label
+        return closest_word(moods, emotion, self._asked.get(emotion)) or emotion.label
 
     def check(self) -> None:
         """Raise `RobotError` if the robot cannot be reached now."""

@@ -57,7 +57,7 @@ class RobotView:
     """Valence that the robot itself reports, −1…1; the asked one where there is no robot."""
 
     label: str
-    """Its word for it: "angry", "neutral", "happy"."""
+    """Its word for it: "angry", "neutral", "happy", or another that it knows."""
 
     real: bool = False
     """Whether it stands on the desk; one that is simulated, or absent, is drawn instead."""
@@ -209,7 +209,7 @@ def _mood_knob(canvas: Canvas, left: float, level: float, wide: float, mood: flo
 def _robot_blank(words: str, scale: float) -> Canvas:
     """Draw what stays whatever the robot's mood is."""
     canvas = Canvas(316, 108, scale)
-    canvas.text(112, 42, words, 25, INK)
+    canvas.text(112, 42, words, _fitting(words, 25, 316 - 112 - 28), INK)
     _mood_scale(canvas, MOODS_LEFT, LEVEL, MOODS_WIDE)
     return canvas
 
@@ -218,10 +218,16 @@ def _robot_blank(words: str, scale: float) -> Canvas:
 def _absent_blank(words: str, caption: str, scale: float) -> Canvas:
     """Draw what stays under the likeness."""
     canvas = Canvas(SIDE + 2 * FRAME, UNDER + 106, scale)
-    canvas.text(FRAME + SIDE / 2, UNDER + 24, words, 23, INK, "middle")
+    size = _fitting(words, 23, SIDE - 12)
+    canvas.text(FRAME + SIDE / 2, UNDER + 24, words, size, INK, "middle")
     canvas.text(FRAME + SIDE / 2, UNDER + 44, caption, 14, QUIET, "middle")
     _mood_scale(canvas, FRAME + (SIDE - NARROW) / 2, UNDER + 65, NARROW)
     return canvas
+
+
+def _fitting(words: str, size: float, wide: float) -> float:
+    """Return a size of letters, at most `size`, in which words are no wider than `wide`."""
+    return size * min(1.0, wide / text_width(words, size))
 
 
 def _mood_scale(canvas: Canvas, left: float, level: float, wide: float) -> None:

@@ -14,7 +14,7 @@ from app.session import about
 from app.show.likeness import Likeness
 from characters import Animator, Character, CharacterError
 from characters.rendering import create_context
-from robot import LABEL_SETS, Emotion, Personality
+from robot import LABEL_SETS, Catalogue, Emotion, Personality, Telemetry
 from robot.drivers.cubeling.host import HostLink
 from robot.feeling.words import closest_word
 from robot.simulators.cubeling.simulator import Simulator
@@ -102,6 +102,24 @@ def test_the_line_hands_the_robot_emotion_and_word():
     target = EmotionTarget(Emotion(0.6, 0.7), "excited", 0.0)
     line.feel(target)
     assert told.said == (target.emotion, "excited")
+
+
+def test_what_a_silent_robot_shows_is_told_by_the_word_that_it_was_asked():
+    class Silent:
+        telemetry = Telemetry("ready", acknowledged=Emotion(-0.6, -0.4))
+        catalogue = Catalogue("silent", "", (), (), (), ("neutral", "happy", "angry"))
+
+        def express(self, emotion, label=None):
+            pass
+
+    line = RobotLine()
+    line._robot = Silent()  # type: ignore[assignment] # all of a robot that this needs
+    line.feel(EmotionTarget(Emotion(-0.6, -0.4), "sad", 0.0))
+    line.feel(EmotionTarget(Emotion(-0.7, 0.4), "angry", 0.1))
+    assert line.view().label == "neutral"
+    for number in range(3000):
+        line.feel(EmotionTarget(Emotion(0.0, number / 3000), "neutral", 0.2))
+    assert len(line._asked) <= 1000
 
 
 @pytest.mark.parametrize(
