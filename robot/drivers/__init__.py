@@ -18,7 +18,9 @@ from robot.protocol import timing
 def _cubeling(host: int, settings: Path | None) -> Driver:
     if settings is not None:
         raise RobotError(f"{settings}: the protocol 'cubeling' has no settings; leave them out")
-    return HostLink(host)
+    # Not from session 1: an answer to the program before may still be on the line, and a robot that
+    # missed our greeting is in its session.
+    return HostLink(host, session=host % 0xFFFF + 1)
 
 
 def _opencat(host: int, settings: Path | None) -> Driver:

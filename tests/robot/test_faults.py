@@ -14,9 +14,11 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
+from robot.drivers import DRIVERS
 from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.protocol import timing
+from robot.simulators.cubeling.simulator import Simulator
 
 HARM = {
     "drops": {"drop": 0.2},
@@ -102,6 +104,34 @@ def test_a_long_session_does_not_grow(world):
         assert len(w.host._out) + len(w.robot.link._out) < 1000
     assert max(sizes) <= 16
     assert w.telemetry.counts.sessions < 10
+
+
+def test_an_answer_to_the_program_before_does_not_open_the_session_of_the_next():
+    # Found by tests.campaigns.wire: an emotion was acknowledged that the robot had not taken.
+    robot, first, second = Simulator(), *(DRIVERS["cubeling"].make(n, None) for n in (10**6, 10**9))
+
+    def talk(host, now: float) -> bytes:
+        host.tick(now)
+        robot.receive(host.bytes_to_send(), now)
+        answer = robot.bytes_to_send()
+        host.receive(answer, now)
+        return answer
+
+    first.port_opened(0.0)
+    late = talk(first, 0.0)  # the WELCOME, which comes twice
+    for number in range(1, 60):
+        first.express(numbered(number))
+        talk(first, 0.01 * number)
+    second.port_opened(0.6)
+    second.bytes_to_send()  # the HELLO, which is lost
+    second.receive(late, 0.6)
+    second.express(numbered(77))
+    now = 0.6
+    while second.telemetry(now).acknowledged is None:
+        now += 0.02
+        assert now < 5.0
+        talk(second, now)
+    assert robot.body.target == numbered(77)
 
 
 class Storm(RuleBasedStateMachine):
