@@ -6,6 +6,7 @@ They are the product's own; a few of their methods tell the witness what they do
 from typing import Any
 
 from robot.catalogue import Catalogue, JointLimits
+from robot.drivers import DRIVERS
 from robot.drivers.cubeling.commands import Command, CommandLane
 from robot.drivers.cubeling.host import HostLink
 from robot.drivers.cubeling.roundtrip import RoundTrip
@@ -72,8 +73,12 @@ class WatchedRoundTrip(RoundTrip):
 
 
 def watched_host(witness: Witness, host: int) -> HostLink:
-    """Make a host's end whose commands, heartbeats and frames are seen."""
-    link = HostLink(host)
+    """Make a host's end whose commands, heartbeats and frames are seen.
+
+    It is made as `connect` makes it, so that a restart begins as that of the program does.
+    """
+    link = DRIVERS["cubeling"].make(host, None)
+    assert isinstance(link, HostLink)
     link._lane = WatchedLane(witness, host)
     link._round_trip = WatchedRoundTrip(witness)
     link._reader = WatchedReader(witness, "back")

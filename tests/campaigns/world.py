@@ -80,7 +80,7 @@ class CampaignWorld:
         self.pulls = 0
         self.tick_at = self.wish_at = self.reopen_at = 0.0
         self.host_ends_at = NEVER
-        self.host = watched_host(self.witness, 0)
+        self.host = watched_host(self.witness, 1)
         self.recoveries, self.worst_recovery = 0, 0.0
         self.largest: dict[str, int] = {}
         self.quiet = False
@@ -158,7 +158,8 @@ class CampaignWorld:
                 farewell = self.host.bytes_to_send()
                 self.witness.sends_bytes("there", farewell)
                 self.faulty.receive(farewell, self.now)
-        self.host_number += 1
+        # Far apart, as `connect` numbers programs by the moment in which they begin.
+        self.host_number += int(self.random.integers(10**5, 10**6))
         self.host = watched_host(self.witness, self.host_number)
         assert isinstance(self.host._lane, WatchedLane)
         self.lane = self.host._lane
