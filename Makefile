@@ -40,6 +40,7 @@ bench: .venv/ready-dev  ## every figure that the documents name
 	$(BIN)/python -m tests.bench.picture
 	$(BIN)/python -m tests.bench.looks
 	$(BIN)/python -m tests.bench.wire
+	$(BIN)/python -m tests.bench.peers
 	$(BIN)/python -m tests.bench.several
 	$(BIN)/python -m tests.bench.camera
 	$(BIN)/python -m tests.bench.calibration --seeds 2
@@ -55,6 +56,8 @@ assets: .venv/ready-dev  ## author the bundled characters anew
 
 pictures: .venv/ready-dev  ## draw the pictures of the documents anew
 	$(BIN)/python -m app.pictures
+	$(BIN)/python -m robot.firmware.wiring
+	$(BIN)/python -m tests.robot.conformance.picture
 
 cast: .venv/ready  ## draw the bundled characters from all sides, and their clips, to look at
 	$(BIN)/python -m app.cast

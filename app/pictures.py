@@ -12,9 +12,11 @@ import numpy as np
 from rich.console import Console
 
 from app.calibrating import Advice, Lesson, Picture
+from app.commands.mood import plot
 from app.commands.replay import bundled
-from app.opening import fitting
+from app.opening import Wish, fitting, open_session
 from app.playground import Playground
+from app.runner import run
 from app.show.coach import PERIOD, CoachView
 from app.show.coach_lines import write_coverage
 from app.show.likeness import Likeness
@@ -115,9 +117,33 @@ def draw_lesson() -> None:
     write_coverage(FOLDER / "calibrate-coverage.jpg", lesson)
 
 
+UNPLUGGED = "sim:cubeling?unplug=12s/1s&seed=3"
+"""The robot whose plug is pulled in the picture of a mood: twice while the session plays."""
+
+
+def draw_moods() -> None:
+    """Plot how a bundled session is felt by three, and one whose robot was unplugged."""
+    felt = FOLDER / "mood-personalities.svg"
+    plot(bundled("companion"), felt, ["thesis", "shy", "grumpy"])
+    with tempfile.TemporaryDirectory() as folder:
+        session = Path(folder) / "today.mcap"
+        wish = Wish(
+            "companion",
+            str(bundled("companion")),
+            personality="lively",
+            robot=UNPLUGGED,
+            record=session,
+            pictures=False,
+        )
+        with ExitStack() as closing:
+            run(open_session(wish, closing))
+        plot(session, FOLDER / "mood-robot.svg", None)
+
+
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
     for recording, pictures in MOMENTS.items():
         draw(recording, pictures)
     draw_sheet("companion")
     draw_lesson()
+    draw_moods()
