@@ -1,12 +1,14 @@
 """A robot written from PROTOCOL.md alone, with nothing of ours, works with our host.
 
-It is what a stranger's firmware would be: bitwise CRC, byte-wise COBS, offsets from the tables.
+It is what a stranger's firmware would be: bitwise CRC, byte-wise COBS, offsets from the tables; and
+it conforms.
 """
 
 import struct
 
 import pytest
 
+from robot.conformance import SimulatedLine, all_checks, examine
 from robot.emotion import Emotion
 from robot.protocol.messages import ITEM_MOTION
 
@@ -21,13 +23,25 @@ def crc(data: bytes) -> int:
     return register
 
 
+LENGTH = 1.0
+"""How long its motions take [s]."""
+
+FEELING_SPEED = 8000
+"""Fastest change of the emotion that it shows [1/10000 of valence and of arousal, per second]."""
+
+
 class StrangersRobot:
-    """One joint, two motions, no sound, one mood; section numbers are those of the document."""
+    """One joint, two motions, no sound, one mood, version 1; sections are those of the document."""
+
+    edge = b"\0"
 
     def __init__(self) -> None:
-        self.session = self.host = self.taken = self.in_force = self.beat = 0
-        self.heard = self.stated = 0.0
+        self.session = self.host = self.taken = self.result = self.in_force = self.beat = 0
+        self.now = self.heard = self.stated = self.refused = 0.0
         self.emotion = (0, 0)
+        self.shown = [0.0, 0.0]
+        self.stopped = False
+        self.motion, self.motion_ends = 255, 0.0
         self.told: list[tuple[int, int]] = []
         self.played: list[int] = []
         self.line = b""
@@ -76,6 +90,12 @@ class StrangersRobot:
         out, self.out = self.out, b""
         return out
 
+    def reboot(self) -> None:
+        self.__init__()  # type: ignore[misc] # it forgets all that it knew
+
+    def portrait(self) -> tuple[float, str]:
+        return self.shown[0] / 10_000, "plain"
+
     # Sections 4 to 7
 
     def message(self, body: bytes, now: float) -> None:
@@ -83,67 +103,100 @@ class StrangersRobot:
             return
         number, session = struct.unpack_from("<BH", body)
         sizes = {1: 8, 2: 5, 3: 5, 0x10: 11, 0x11: 9, 0x12: 7, 0x1F: 3}
-        if len(body) < sizes.get(number, 1000):
+        if len(body) < sizes.get(number, 1000) or self.out_of_range(number, body):
             return
         if number == 1:
-            self.hello(session, *struct.unpack_from("<BI", body, 3))
-        elif session != self.session or not session:
-            self.send(0x9F, b"", session)
+            if session:
+                self.hello(session, *struct.unpack_from("<BI", body, 3))
             return
-        elif number == 2:
+        if session != self.session or not session:
+            if now - self.refused >= 0.020:
+                self.refused = now
+                self.send(0x9F, b"", session)
+            return
+        self.heard = now
+        if number == 2:
             self.describe(body[3], body[4])
         elif number == 3:
             (self.beat,) = struct.unpack_from("<H", body, 3)
-            self.state(now)
+            self.state()
         elif number == 0x1F:
-            self.neutral()
+            self.end_session()
         else:
             self.command(number, body)
-        self.heard = now
+
+    def out_of_range(self, number: int, body: bytes) -> bool:
+        if number == 1:
+            version, host = struct.unpack_from("<BI", body, 3)
+            return not (version and host)
+        if number not in (0x10, 0x11, 0x12):
+            return False
+        emotion = struct.unpack_from("<hh", body, 7) if number == 0x10 else (0, 0)
+        item = body[7] if number == 0x11 else 1
+        return body[3:7] == bytes(4) or max(map(abs, emotion)) > 10_000 or item not in (1, 2)
 
     def hello(self, session: int, version: int, host: int) -> None:
         if host != self.host:
             self.neutral()
             self.host, self.taken = host, 0
-        self.session = session
+        if session != self.session:
+            self.session, self.beat, self.stated = session, 0, self.now
+        self.heard = self.now
         names = b"Stranger".ljust(16, b"\0") + b"own 1".ljust(16, b"\0")
         in_force = self.taken if self.in_force else 0
         self.send(0x81, struct.pack("<BIHBBBB", 1, in_force, 77, 1, 2, 0, 1) + names, session)
 
     def describe(self, item: int, index: int) -> None:
+        names = {(0, 0): b"head", (1, 0): b"rest", (1, 1): b"hop", (3, 0): b"plain"}
+        if (item, index) not in names:
+            return
+        name = names[item, index].ljust(16, b"\0")
         if item == 0:
-            fields = struct.pack("<BhhH", index, -1000, 1000, 2000) + b"head".ljust(16, b"\0")
-            self.send(0x82, fields, self.session)
+            self.send(0x82, struct.pack("<BhhH", index, -1000, 1000, 2000) + name, self.session)
         else:
-            name = {(1, 0): b"rest", (1, 1): b"hop", (3, 0): b"plain"}[item, index]
-            self.send(0x83, bytes([item, index]) + name.ljust(16, b"\0"), self.session)
+            self.send(0x83, bytes([item, index]) + name, self.session)
 
     def command(self, kind: int, body: bytes) -> None:
         (number,) = struct.unpack_from("<I", body, 3)
         if number > self.taken:
-            self.taken, self.in_force = number, True
+            self.taken, self.in_force, self.result = number, True, 0
             if kind == 0x10:
-                self.emotion = struct.unpack_from("<hh", body, 7)
+                self.emotion, self.stopped = struct.unpack_from("<hh", body, 7), False
                 self.told.append(self.emotion)
-            elif kind == 0x11:
+            elif kind == 0x12:
+                self.neutral()
+                self.in_force, self.stopped = True, True
+            elif body[7:9] in (b"\1\0", b"\1\1"):
+                self.motion, self.motion_ends, self.stopped = body[8], self.now + LENGTH, False
                 self.played.append(body[8])
             else:
-                self.emotion = (0, 0)
-        self.send(0x90, struct.pack("<IB", number, 0), self.session)
+                self.result = 1
+        self.send(0x90, struct.pack("<IB", number, self.result), self.session)
 
-    def state(self, now: float) -> None:
-        self.stated = now
-        fields = struct.pack("<HIBhhHBBB", self.beat, self.taken, 0, *self.emotion, 5000, 0, 0, 255)
+    def state(self) -> None:
+        self.stated = self.now
+        flags, shown = 2 * self.stopped, map(round, self.shown)
+        played = (0, self.motion, 255)
+        fields = struct.pack("<HIBhhHBBB", self.beat, self.taken, flags, *shown, 5000, *played)
         self.send(0x84, fields + struct.pack("<16h", 123, *[0] * 15), self.session)
 
     def neutral(self) -> None:
-        self.session, self.in_force, self.emotion = 0, False, (0, 0)
+        self.in_force, self.emotion, self.motion = False, (0, 0), 255
+
+    def end_session(self) -> None:
+        self.session = 0
+        self.neutral()
 
     def advance(self, now: float) -> None:
+        step, self.now = FEELING_SPEED * min(now - self.now, 0.05), now
+        for axis, wanted in enumerate(self.emotion):
+            self.shown[axis] += min(max(wanted - self.shown[axis], -step), step)
+        if now >= self.motion_ends:
+            self.motion = 255
         if self.session and now - self.heard >= 0.450:
-            self.neutral()
+            self.end_session()
         if self.session and now - self.stated >= 0.100:
-            self.state(now)
+            self.state()
 
 
 @pytest.fixture
@@ -156,6 +209,13 @@ def strange_world(world):
     return make
 
 
+def test_a_strangers_robot_conforms():
+    report = examine(SimulatedLine(StrangersRobot()), all_checks(), host=1)
+    failed = [(one.check.name, one.came) for one in report.results if one.verdict == "failed"]
+    assert failed == []
+    assert report.conforms
+
+
 def test_a_strangers_robot_introduces_itself_and_obeys(strange_world):
     w = strange_world()
     w.run_until(lambda: w.telemetry.state == "ready", within=0.5)
@@ -164,9 +224,11 @@ def test_a_strangers_robot_introduces_itself_and_obeys(strange_world):
     w.host.play(ITEM_MOTION, 1)
     w.run(0.3)
     assert (w.robot.told, w.robot.played) == ([(5000, -2500)], [1])
+    assert (w.telemetry.label, w.telemetry.motion, w.telemetry.sound) == ("plain", "hop", None)
+    w.run(1.0)
     telemetry = w.telemetry
     assert telemetry.observed == telemetry.acknowledged == Emotion(0.5, -0.25)
-    assert (telemetry.label, telemetry.motion, telemetry.sound) == ("plain", "rest", None)
+    assert telemetry.motion is None
     assert (telemetry.battery, dict(telemetry.joints)) == (0.5, {"head": 0.123})
 
 
