@@ -2,6 +2,10 @@
 
 from dataclasses import dataclass
 
+NAME_MAX = 16
+"""Longest name of a robot, a joint, a motion, a sound or a mood [bytes of UTF-8], whatever the
+protocol: our own has no room for more."""
+
 
 @dataclass(frozen=True)
 class JointLimits:
@@ -25,7 +29,7 @@ class Catalogue:
     """What a robot has."""
 
     name: str
-    """What the robot is called, at most 16 bytes of UTF-8."""
+    """What the robot is called, at most `NAME_MAX` bytes of UTF-8."""
 
     firmware: str
     """What runs on it, and which version."""

@@ -15,7 +15,8 @@ from robot.drivers.opencat.hearsay import Hearsay
 from robot.drivers.opencat.introduction import catalogue_of
 from robot.drivers.opencat.lines import LineReader
 from robot.drivers.opencat.models import model_of
-from robot.drivers.opencat.settings import Settings, load
+from robot.drivers.opencat.settings import Settings
+from robot.drivers.opencat.settings_file import load
 from robot.drivers.opencat.wishes import REST, Wishes
 from robot.emotion import Emotion
 from robot.protocol import messages as m

@@ -1,11 +1,8 @@
 """What a robot has, as its model and its settings say; the board itself tells only two words."""
 
-from robot.catalogue import Catalogue
+from robot.catalogue import NAME_MAX, Catalogue
 from robot.drivers.opencat.models import MODELS
 from robot.drivers.opencat.settings import Behaviour
-
-NAME_MAX = 16
-"""Longest name in a catalogue [bytes of UTF-8]."""
 
 
 def catalogue_of(model: str, name: str, version: str, behaviour: Behaviour) -> Catalogue:

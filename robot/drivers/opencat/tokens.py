@@ -95,7 +95,7 @@ def admitted(line: bytes) -> bytes:
     """
     reason = why_not(line)
     if reason is not None:
-        raise RobotError(f"{line!r} is not sent to an OpenCat board: {reason}")
+        raise RobotError(f"{line[:40]!r} is not sent to an OpenCat board: {reason}")
     return line
 
 

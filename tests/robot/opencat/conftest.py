@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings import Settings, load
+from robot.drivers.opencat.settings import Settings
+from robot.drivers.opencat.settings_file import load
 from robot.emotion import Emotion
 from robot.simulators.opencat.habits import Habits
 from robot.simulators.opencat.simulator import OpenCatSimulator

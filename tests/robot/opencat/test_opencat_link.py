@@ -8,7 +8,7 @@ import pytest
 
 from robot.drivers.opencat.exchange import LOST_TRIES, QUESTION_WITHIN
 from robot.drivers.opencat.host import REST_ASK_EVERY, OpenCatHost
-from robot.drivers.opencat.settings import load, settings_of
+from robot.drivers.opencat.settings_file import load, settings_of
 from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.simulators.opencat.habits import Habits

@@ -14,7 +14,7 @@ import robot
 from robot.drivers import DRIVERS
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings import load
+from robot.drivers.opencat.settings_file import load
 from robot.emotion import Emotion
 from robot.errors import RobotError
 from robot.protocol import messages as m

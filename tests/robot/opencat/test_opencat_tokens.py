@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings import load, settings_of
+from robot.drivers.opencat.settings_file import load, settings_of
 from robot.errors import RobotError
 
 ALLOWED = b"kibd?j"
@@ -71,7 +71,7 @@ BAD = {
     'posture = "calib"': "calibration",
     'posture = "wkF"': "walks away",
     'posture = "balance"\ngestures = ["hi", "!"]': "no name of a skill",
-    'posture = "balance"\ngestures = "hi"': "list of skills",
+    'posture = "balance"\ngestures = "hi"': "list of",
     'posture = "balance"\nsound = "loud"': "there is no sound",
     'posture = "balance"\npose = { wing = 4 }': "no joint",
     'posture = "balance"\npose = { head = "up" }': "number",
@@ -106,10 +106,12 @@ def test_settings_that_may_not_be_sent_are_refused_in_one_line(mood, tmp_path):
     ({"bittle": {"sounds": {"loud": [[5, 0]]}}}, "values"),
     ({"bittle": {"sounds": {"hi": [[5, 8]]}}}, "another name"),
     ({"bittle": {"moods": {"grim": {"posture": "sit"}}}}, "no mood"),
-    ({"bittle": {"moods": {"afraid": {"gestures": ["hi"]}}}}, "'posture' is missing"),
-    ({"bittle": {"sounds": {"a\nb": [[5, 8]]}}}, "pairs"),
+    ({"bittle": {"moods": {"afraid": {"gestures": ["hi"]}}}}, "posture is missing"),
+    ({"bittle": {"sounds": {"a\nb": [[5, 8]]}}}, "printable"),
     ({"bittle": {"moods": 3}}, "table"),
     ({"bittle": 3}, "table"),
+    ({"bittle": {"sounds": {"loud": [[10**5000, 8]]}}}, "pairs, not something so long"),
+    ({"bittle": {"sounds": {"a.b": [[5, 8]]}}}, "letters"),
 ])  # fmt: skip
 def test_settings_that_make_no_sense_are_refused_in_one_line(said, reason):
     with pytest.raises(RobotError, match=reason) as refusal:
