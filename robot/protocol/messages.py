@@ -149,7 +149,7 @@ class State:
     taken: int = wire("u32", "number of the last command taken; 0 before the first")
     flags: int = wire(
         "u8", "bit 0: charging; bit 1: stopped; bit 2: motors without power; bit 3: joints are "
-        "where they should be, and not measured; others 0",
+        "reckoned from what was commanded, not measured; others 0",
     )  # fmt: skip
     valence: float = wire(
         "i16", "shown now, unpleasant to pleasant", scale=1e-4, unit="1", low=-1, high=1

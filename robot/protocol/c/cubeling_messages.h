@@ -405,7 +405,7 @@ static inline int cubeling_unpack_name(const uint8_t *body, size_t size, cubelin
 typedef struct {
     uint16_t beat; /* count of the last BEAT heard; 0 before the first */
     uint32_t taken; /* number of the last command taken; 0 before the first */
-    uint8_t flags; /* bit 0: charging; bit 1: stopped; bit 2: motors without power; bit 3: joints are where they should be, and not measured; others 0 */
+    uint8_t flags; /* bit 0: charging; bit 1: stopped; bit 2: motors without power; bit 3: joints are reckoned from what was commanded, not measured; others 0 */
     int16_t valence; /* shown now, unpleasant to pleasant [1/10000] */
     int16_t arousal; /* shown now, calm to excited [1/10000] */
     uint16_t battery; /* empty to full [1/10000] */
