@@ -56,7 +56,11 @@ class Telemetry:
     """What `express` last asked for; None before."""
 
     acknowledged: Emotion | None = None
-    """What the robot last confirmed to have taken; None before, and after it was lost."""
+    """What the robot last confirmed to have taken; it stays while the next is on its way. None
+    before, after a stop was confirmed, and once the robot may have lost it: with the link, by a
+    restart, or because it said that it has not done what it was asked.
+
+    A robot that knows only words has taken every emotion that is asked for while its word plays."""
 
     observed: Emotion | None = None
     """What the robot last said that it shows; None before it said anything."""

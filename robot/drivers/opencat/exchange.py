@@ -18,7 +18,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 from robot.drivers.opencat import tokens
-from robot.emotion import Emotion
 
 QUESTION_WITHIN = 2.0
 """A question that is not echoed after this long is repeated [s]; a board may be busy as long."""
@@ -51,8 +50,8 @@ class Command:
     order: int = 0
     """Number of the standing order that it belongs to; 0 for none."""
 
-    taken: Emotion | None = None
-    """The emotion that the robot has taken when this has landed; None if more is to follow."""
+    whole: bool = False
+    """Whether the order is carried out when this has landed; else more is to follow."""
 
 
 @dataclass

@@ -112,7 +112,7 @@ class Wishes:
             return REST
         if self.order.due is not None:
             waits = self.order.due.kind == "posture" and now < self._skill_from
-            return None if waits else self.order.due
+            return None if waits else self.order.send()
         if self._melody is not None:
             name, self._melody = self._melody, None
             return self._beep(name)
@@ -186,6 +186,7 @@ class Wishes:
         return self._skill(name)
 
     def _skill(self, name: str) -> Command:
+        self.order.stopped = False  # until its posture is taken again
         return Command("gesture", tokens.skill(name), name, GESTURE_WITHIN)
 
     def _beep(self, name: str) -> Command:

@@ -48,8 +48,8 @@ class Wishes:
         self.commanded: Emotion | None = None
         """The emotion that was last asked for; None before, and after a stop."""
         self.acknowledged: Emotion | None = None
-        """The emotion whose mood the console took without an error and, as far as is known, still
-        holds."""
+        """What was last felt of the mood that the console last took without an error; None before,
+        and once it may have lost it: at a lost answer, for it may have restarted, or an error."""
         self.stopped = False
         """Whether the console has taken the neutral pose of a `stop`, and nothing since."""
         self.retries = 0
@@ -63,6 +63,7 @@ class Wishes:
         self._wanted: str | None = None  # a mood, STOP, or nothing yet
         self._doing: str | None = None  # what the last program is for
         self._feeling: Emotion | None = None  # and which emotion
+        self._taken: str | None = None  # the mood acknowledged, while nothing displaces it
         self._cut = False  # whether it was broken off, so that it must begin anew
         self._since = float("-inf")  # when it began
         self._steps: deque[Step] = deque()
@@ -81,7 +82,8 @@ class Wishes:
         self._wanted = closest_word(tuple(self._settings.moods), emotion, label)
         if self._wanted == self._doing:  # it would be the very same command
             self._feeling = emotion
-            self.acknowledged = self.acknowledged and emotion
+            if self._taken == self._doing:
+                self.acknowledged = emotion
 
     def stop(self) -> None:
         """Want the neutral pose, before and instead of everything that waits."""
@@ -108,11 +110,11 @@ class Wishes:
         if self._flight is not None and self._flight.part == "action":
             self.dropped += 1
         self._drop_actions()
-        self._flight = self._doing = self.acknowledged = self._repeat_at = None
+        self._flight = self._doing = self._repeat_at = None
+        self._lose()
         self._since = self._action_ends = float("-inf")
         self._steps.clear()
         self._known = Known()
-        self.stopped = False
 
     def began(self, command: Command, sent: float) -> None:
         """Hear of a command with which a session began."""
@@ -126,13 +128,13 @@ class Wishes:
         if step is None:
             return None
         self._flight = step
-        if step.part == "body" and self._repeat_at is not None:
-            self._repeat_at = None  # a repetition: what was acknowledged is so until it fails
-        elif step.part == "body":
-            self.acknowledged, self.stopped = None, False  # now it may show this, or not yet
+        if step.part == "body":
+            self._repeat_at = None
+            if self._taken != self._doing:
+                self._taken = None  # it is given up now; what was acknowledged stays the last
         if step.length:
             self._known.motion_played()
-        if step.part == "action" and self._doing == STOP:
+        if step.part in ("action", "body"):
             self.stopped = False
         self._known.sent(step.command, now)
         return step.command
@@ -223,8 +225,7 @@ class Wishes:
             self.dropped += 1
         elif step.part != "sound":
             self.retries += 1
-            self.acknowledged = None
-            self.stopped = False
+            self._lose()
             sounds = [one for one in self._steps if one.part == "sound"]
             self._steps = deque([*self._showing(), *sounds])
             self._flawed = False
@@ -239,13 +240,19 @@ class Wishes:
     def _shown(self, sent: float) -> None:
         """Write down what the console has taken, after the last command of the body's part."""
         mood = self._mood
-        self.acknowledged = None if self._flawed else self._feeling
+        self._lose()
+        if mood is not None and not self._flawed:
+            self.acknowledged, self._taken = self._feeling, self._doing
         self.stopped = mood is None and not self._flawed
         if mood is not None and mood.motion is not None and mood.loop:
             self._repeat_at = sent + mood.round
         elif self._flawed and self._tries < timing.REFUSED_MAX:
             self._tries += 1
             self._repeat_at = sent + timing.REFUSED_AGAIN
+
+    def _lose(self) -> None:
+        """Write down that nothing is known to be held."""
+        self.acknowledged, self._taken, self.stopped = None, None, False
 
     def _drop_actions(self) -> None:
         self.dropped += len(self._actions)

@@ -49,6 +49,7 @@ class _Flight:
 
     number: int
     emotion: Emotion | None
+    neutral: bool  # whether it is the pose of a stop
     sent: float
 
 
@@ -62,7 +63,7 @@ class ReachyDriver:
         self._commanded: Emotion | None = None
         self._acknowledged: Emotion | None = None
         self._mood = moves.MOODS[0]
-        self._still = False
+        self._still = self._stopped = False  # whether it is to be so, and whether it is
         self._playing: Motion | None = None
         self._waiting: deque[Motion] = deque()
         self._motion_time = 0.0
@@ -113,7 +114,7 @@ class ReachyDriver:
 
     def port_lost(self) -> None:
         """Send nothing until the port is back."""
-        self._open, self._acknowledged = False, None
+        self._open, self._acknowledged, self._stopped = False, None, False
         self._heard = None
         self._drop_actions()
         self._out.clear()
@@ -172,11 +173,12 @@ class ReachyDriver:
         joints = self._said.get("joints", [])
         playing = self._playing or (None if self._still else self._mood)
         known = self._sessions > 0
+        state = self.state(now)
         return Telemetry(
-            state=self.state(now),
+            state=state,
             commanded=self._commanded,
-            acknowledged=self._acknowledged,
-            stopped=self._still,
+            acknowledged=None if state == "lost" else self._acknowledged,
+            stopped=self._stopped and state != "lost",
             limp=bool(self._said.get("limp", False)),
             joints=MappingProxyType(dict(zip(moves.JOINTS, joints, strict=False))),
             motion=playing.name if known and playing is not None else None,
@@ -192,7 +194,7 @@ class ReachyDriver:
             self._sessions += 1
             self._angles = _angles_of(said)
         if "taken" in said and self._flight is not None and said["taken"] == self._flight.number:
-            self._acknowledged = self._flight.emotion
+            self._acknowledged, self._stopped = self._flight.emotion, self._flight.neutral
             self._flight = None
         if "joints" in said:
             self._said = {"joints": _angles_of(said).tolist(), "limp": said.get("limp") is True}
@@ -202,7 +204,8 @@ class ReachyDriver:
         self._targeted = now
         self._angles = moves.toward(self._angles, self._wanted(elapsed), elapsed)
         self._number += 1
-        self._flight = _Flight(self._number, self._commanded, now)
+        neutral = self._still and self._playing is None and not self._angles.any()
+        self._flight = _Flight(self._number, self._commanded, neutral, now)
         angles = [round(float(angle), 4) for angle in self._angles]
         self._say({"target": angles, "number": self._number})
 

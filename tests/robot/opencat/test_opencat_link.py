@@ -153,6 +153,80 @@ def test_nothing_is_acknowledged_before_the_robot_is_there(desk):
     assert d.telemetry.battery is None
 
 
+def test_what_is_acknowledged_stays_until_the_next_mood_is(desk):
+    d = desk().ready()
+    d.feel("happy")
+    d.settle()
+    d.host.express(Emotion(0.8, 0.7), "happy")
+    d.feel("sad")  # a posture, and then a pose
+    while d.telemetry.acknowledged != Emotion(-0.6, -0.4):
+        assert d.telemetry.acknowledged == Emotion(0.8, 0.7)
+        d.turn()
+    assert "i0 -40" in d.lines
+    d.host.stop()
+    d.until(lambda: d.telemetry.stopped, 10.0)
+    assert d.telemetry.acknowledged is None
+
+
+def test_what_is_felt_while_another_posture_is_taken_is_not_acknowledged_yet(desk):
+    d = desk().ready()
+    d.feel("happy")
+    d.settle()
+    d.feel("neutral")
+    d.until(lambda: d.lines[-1] == "kbalance", 5.0)
+    for valence in (0.8, 0.9):  # happy again, but it has left that posture
+        d.host.express(Emotion(valence, 0.6), "happy")
+        assert d.telemetry.acknowledged == HAPPY
+    d.until(lambda: d.telemetry.acknowledged != HAPPY, 5.0)
+    assert d.telemetry.acknowledged == Emotion(0.0, 0.0), "its echo came, displaced or not"
+    d.settle()
+    assert d.telemetry.acknowledged == Emotion(0.9, 0.6)
+
+
+def test_what_was_last_felt_of_a_displaced_mood_is_acknowledged_with_its_echo(desk):
+    d = desk().ready()
+    d.feel("happy")
+    d.until(lambda: d.lines[-1] == "kbuttUp", 5.0)
+    d.host.express(Emotion(0.9, 0.7), "happy")
+    d.feel("neutral")
+    d.until(lambda: d.telemetry.acknowledged is not None, 5.0)
+    assert d.telemetry.acknowledged == Emotion(0.9, 0.7)
+
+
+def test_half_an_order_that_was_displaced_is_no_acknowledgement(desk):
+    d = desk().ready()
+    d.feel("happy")
+    d.settle()
+    d.feel("sad")
+    d.until(lambda: d.lines[-1] == "ksit", 5.0)
+    d.feel("angry")
+    while d.telemetry.acknowledged == HAPPY:
+        d.turn()
+    assert d.telemetry.acknowledged == Emotion(-0.7, 0.6)
+    assert "i0 -40" not in d.lines
+
+
+def test_a_fall_ends_what_is_acknowledged():
+    host = _introduced()
+    host.express(HAPPY, "happy")
+    host.tick(3.0)
+    host.bytes_to_send()
+    host.receive(b"k\r\n", 3.5)
+    assert host.telemetry(3.5).acknowledged == HAPPY
+    host.receive(b"EXCEPTION: Fall over\r\n", 3.6)
+    assert host.telemetry(3.6).acknowledged is None
+
+
+def test_a_stopped_robot_that_plays_a_skill_is_not_called_still(desk):
+    d = desk().ready()
+    d.host.stop()
+    d.until(lambda: d.telemetry.stopped, 10.0)
+    d.host.play(m.ITEM_MOTION, d.host.catalogue.motions.index("pu"))
+    d.until(lambda: d.lines[-1] == "kpu", 5.0)
+    assert not d.telemetry.stopped
+    d.until(lambda: d.telemetry.stopped, 15.0)
+
+
 class Deaf(OpenCatSimulator):
     """A board whose echoes can be held back, as if it were busy."""
 

@@ -284,14 +284,45 @@ def test_what_is_left_of_a_mood_is_not_sent_once_another_is_asked_for(script, tm
     assert pleo.auto(1.0)[:2] == ["MOTION SPEED 120", "MOTION PLAY a:angry.umf"]
 
 
-def test_an_acknowledgement_ends_when_the_next_mood_is_on_its_way(script):
+def test_what_is_acknowledged_stays_until_the_next_mood_is(script):
     pleo = shown(script().started(), "happy")
-    pleo.express("neutral")
-    known = pleo.telemetry
-    assert known.acknowledged is not None  # nothing has been sent yet
+    felt = pleo.telemetry.acknowledged
+    assert felt is not None
+    pleo.driver.express(robot.Emotion(0.1, 0.2), "neutral")
     assert pleo.run(0.1) == b"MOTION PLAY a:neutral.umf\n"
-    known = pleo.telemetry
-    assert known.acknowledged is None
+    assert pleo.telemetry.acknowledged == felt
+    pleo.say(OK)
+    assert pleo.telemetry.acknowledged == robot.Emotion(0.1, 0.2)
+    pleo.driver.stop()
+    pleo.auto(0.5)
+    assert pleo.telemetry.acknowledged is None
+
+
+def test_what_is_felt_while_another_mood_is_on_its_way_is_not_acknowledged_yet(script):
+    pleo = shown(script().started(), "happy")
+    felt = pleo.telemetry.acknowledged
+    pleo.express("neutral")
+    assert pleo.run(0.1) == b"MOTION PLAY a:neutral.umf\n"
+    for valence in (0.6, 0.7):  # happy again, but neutral may play by now
+        pleo.driver.express(robot.Emotion(valence, 0.5), "happy")
+        assert pleo.telemetry.acknowledged == felt
+    assert pleo.say(OK, 0.5) == b"MOTION PLAY a:happy.umf\n"
+    assert pleo.telemetry.acknowledged == robot.Emotion(0.0, 0.0)
+    pleo.say(OK)
+    assert pleo.telemetry.acknowledged == robot.Emotion(0.7, 0.5)
+
+
+def test_half_a_pose_is_no_acknowledgement_of_it_and_ends_the_one_before(poses):
+    poses.express("angry")
+    poses.auto(5.0)
+    poses.driver.express(robot.Emotion(-0.6, -0.4), "sad")
+    assert b"JOINT MOVE" in poses.run(0.1)
+    poses.say(OK)
+    for valence in (-0.8, -0.9):
+        poses.driver.express(robot.Emotion(valence, 0.5), "angry")
+        assert poses.telemetry.acknowledged == robot.Emotion(0.0, 0.0)
+    poses.auto(5.0)
+    assert poses.telemetry.acknowledged == robot.Emotion(-0.9, 0.5)
 
 
 def test_an_action_waits_until_the_one_before_has_ended(script):

@@ -98,6 +98,33 @@ def test_what_is_acknowledged_is_what_the_robot_took():
     assert known.observed is None
 
 
+def test_what_is_acknowledged_stays_until_the_next_is_taken_or_the_robot_is_lost():
+    desk = Desk()
+    desk.driver.express(HAPPY, "happy")
+    desk.run(1.0)
+    desk.deaf = True
+    desk.driver.express(Emotion(-0.6, -0.4), "sad")
+    desk.run(0.2)
+    assert desk.driver.telemetry(desk.now).acknowledged == HAPPY
+    desk.run(LOST_AFTER)
+    known = desk.driver.telemetry(desk.now)
+    assert (known.state, known.acknowledged) == ("lost", None)
+
+
+def test_a_robot_is_not_called_stopped_before_it_stands_still():
+    desk = Desk()
+    desk.driver.express(HAPPY, "happy")
+    desk.run(1.0)
+    desk.driver.stop()
+    assert not desk.driver.telemetry(desk.now).stopped
+    desk.run(3.0)
+    known = desk.driver.telemetry(desk.now)
+    assert (known.stopped, known.acknowledged) == (True, None)
+    desk.driver.express(HAPPY, "happy")
+    desk.run(0.3)
+    assert not desk.driver.telemetry(desk.now).stopped
+
+
 def test_a_motion_is_played_once_and_the_mood_goes_on():
     desk = Desk()
     desk.driver.express(HAPPY, "sad")
