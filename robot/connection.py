@@ -19,7 +19,6 @@ from robot.spacing import spaced
 from robot.telemetry import Telemetry
 from robot.transport import opener
 
-
 INTRODUCTION = 10.0
 """A robot that answers, over a line that loses much, has so long to introduce itself [s]."""
 
