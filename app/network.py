@@ -3,9 +3,9 @@
 import time
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from types import TracebackType
-from typing import Self, TypeVar
+from typing import TypeVar
 
+from robot.closing import Closing
 from robot.network import (
     Address,
     Bus,
@@ -39,7 +39,7 @@ class Access:
     """User, password file, certificates."""
 
 
-class Network:
+class Network(Closing):
     """Puts members on a bus. `close` it at the end; a second `close` does nothing.
 
     Parameters
@@ -82,17 +82,6 @@ class Network:
     def close(self) -> None:
         """Say goodbye for all members."""
         self._closing.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def _bus(self, name: str) -> Bus:
         if self.address is None:

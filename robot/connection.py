@@ -3,10 +3,9 @@
 import time
 from dataclasses import replace
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
 from robot.catalogue import Catalogue
+from robot.closing import Closing
 from robot.driver import Driver
 from robot.drivers import DRIVERS
 from robot.emotion import Emotion
@@ -113,7 +112,7 @@ def protocol_of(url: str, protocol: str | None) -> tuple[str, str]:
     return url, protocol
 
 
-class Robot:
+class Robot(Closing):
     """A robot on a port. Made by `connect`; close it, or use it in a `with` statement.
 
     No method waits for the robot, and a robot that dies stops nobody: `telemetry.state` says how
@@ -235,14 +234,3 @@ class Robot:
     def close(self) -> None:
         """Say goodbye, end the thread and give the port back. A second call does nothing."""
         self._exchange.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()

@@ -1,9 +1,8 @@
 """A broker within one process: for a place without a network, and for tests in virtual time."""
 
 import threading
-from collections.abc import Callable
 
-from robot.network.bus import BusState, Handler, Letter
+from robot.network.bus import Bus, Letter
 from robot.network.topics import fits
 
 
@@ -66,45 +65,12 @@ class MemoryBroker:
                     handler(letter.topic, letter.payload)
 
 
-class MemoryBus:
+class MemoryBus(Bus):
     """One member's connection to a `MemoryBroker`; see `Bus`."""
 
     def __init__(self, broker: MemoryBroker) -> None:
-        self.handlers: list[tuple[str, Handler]] = []
-        """What is subscribed to."""
+        super().__init__()
         self._broker = broker
-        self._will: Letter | None = None
-        self._hook: Callable[[], None] = lambda: None
-        self._state: BusState = "connecting"
-        self._connections = 0
-        self._trouble = ""
-
-    @property
-    def state(self) -> BusState:
-        """How the connection is."""
-        return self._state
-
-    @property
-    def trouble(self) -> str:
-        """Why it is not connected."""
-        return self._trouble
-
-    @property
-    def connections(self) -> int:
-        """How often it has been connected."""
-        return self._connections
-
-    def subscribe(self, topic_filter: str, handler: Handler) -> None:
-        """Hear what is published there."""
-        self.handlers.append((topic_filter, handler))
-
-    def will(self, letter: Letter) -> None:
-        """Leave a last will."""
-        self._will = letter
-
-    def on_change(self, hook: Callable[[], None]) -> None:
-        """Call this whenever the connection changes."""
-        self._hook = hook
 
     def open(self) -> None:
         """Connect; if the broker is not running, the bus is away."""
@@ -115,7 +81,7 @@ class MemoryBus:
         if self._state in ("connected", "closed"):
             return
         if self._broker.join(self):
-            self._connections += 1
+            self.connections += 1
             self._change("connected", "")
         else:
             self._change("away", "the broker is not running")
@@ -144,7 +110,3 @@ class MemoryBus:
             self.publish(letter)
         self._broker.leave(self)
         self._change("closed", "")
-
-    def _change(self, state: BusState, trouble: str) -> None:
-        self._state, self._trouble = state, trouble
-        self._hook()

@@ -6,11 +6,10 @@ import ssl
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
 
 from robot.errors import RobotError
 from robot.network.access import Address
-from robot.network.bus import BusState, Handler, Letter
+from robot.network.bus import Bus, BusState, Letter
 from robot.network.line import ANSWER_WITHIN, CLOSE_WITHIN, BrokerLine
 
 VERDICT_WITHIN = 6.0
@@ -37,7 +36,7 @@ _REASONS = {
 """Signs in the systems' messages, and what they mean."""
 
 
-class MqttBus:
+class MqttBus(Bus):
     """One member's connection to an MQTT 5 broker; see `Bus`.
 
     Every connection begins with nothing: the broker keeps no session; the member says all again.
@@ -51,14 +50,9 @@ class MqttBus:
     """
 
     def __init__(self, address: Address, name: str) -> None:
+        super().__init__()
         self._address = address
         self._name = name
-        self._handlers: list[tuple[str, Handler]] = []
-        self._will: Letter | None = None
-        self._hook: Callable[[], None] = lambda: None
-        self._state: BusState = "connecting"
-        self._trouble = ""
-        self._connections = 0
         self._verdict = threading.Event()
         self._closing = threading.Event()
         self._waiting: deque[Letter] = deque()
@@ -67,33 +61,6 @@ class MqttBus:
         self._wake_reader.setblocking(False)
         self._wake_writer.setblocking(False)
         self._thread = threading.Thread(target=self._run, name=f"mqtt {name}", daemon=True)
-
-    @property
-    def state(self) -> BusState:
-        """How the connection is."""
-        return self._state
-
-    @property
-    def trouble(self) -> str:
-        """Why it is not connected, or what the broker did not allow; in one line."""
-        return self._trouble
-
-    @property
-    def connections(self) -> int:
-        """How often it has been connected."""
-        return self._connections
-
-    def subscribe(self, topic_filter: str, handler: Handler) -> None:
-        """Hear what is published there, now and after every reconnection; before `open`."""
-        self._handlers.append((topic_filter, handler))
-
-    def will(self, letter: Letter) -> None:
-        """Leave a last will; before `open`."""
-        self._will = letter
-
-    def on_change(self, hook: Callable[[], None]) -> None:
-        """Call this whenever the connection changes; before `open`."""
-        self._hook = hook
 
     def open(self) -> None:
         """Connect, and wait for the broker's verdict, at most `VERDICT_WITHIN`.
@@ -137,7 +104,7 @@ class MqttBus:
         pause = RETRY_FIRST
         while not self._closing.is_set():
             line = BrokerLine(
-                self._address, self._name, self._will, self._handlers, self._wake_reader
+                self._address, self._name, self._will, self.handlers, self._wake_reader
             )
             try:
                 line.connect()
@@ -176,7 +143,7 @@ class MqttBus:
     def _follow(self, line: BrokerLine) -> None:
         """Take over what has become of the connection."""
         if line.connected and self._state != "connected":
-            self._connections += 1
+            self.connections += 1
             self._change("connected", "")
         if line.denial and line.denial != self._trouble:
             self._change(self._state, line.denial)
@@ -198,10 +165,9 @@ class MqttBus:
             self._change("away", f"{self._address}: {_reason(error)}{hint}")
 
     def _change(self, state: BusState, trouble: str) -> None:
-        self._state, self._trouble = state, trouble
+        super()._change(state, trouble)
         if state != "connecting":
             self._verdict.set()
-        self._hook()
 
     def _close_wakers(self) -> None:
         for end in (self._wake_reader, self._wake_writer):

@@ -2,9 +2,9 @@
 
 import threading
 from collections import deque
-from types import TracebackType
 from typing import Generic, Self, TypeVar
 
+from robot.closing import Closing
 from robot.network.bus import Bus, BusState, Letter
 from robot.network.endpoint import Endpoint
 from robot.port import Clock
@@ -24,7 +24,7 @@ JOIN_WITHIN = 2.0
 E = TypeVar("E", bound=Endpoint)
 
 
-class Station(Generic[E]):
+class Station(Closing, Generic[E]):
     """Puts a member on a bus. Close it, or use it in a `with` statement.
 
     Whoever else touches the member holds `lock`; it is held for moments only.
@@ -123,17 +123,6 @@ class Station(Generic[E]):
         with self.lock:
             farewell = self.endpoint.farewell()
         self._bus.close(farewell)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def _run(self) -> None:
         try:

@@ -8,9 +8,9 @@ import socket
 import sys
 import threading
 import time
-from types import TracebackType
-from typing import Literal, Protocol, Self
+from typing import Literal, Protocol
 
+from robot.closing import Closing
 from robot.errors import RobotError
 from robot.port import Clock
 from robot.simulators.base import Simulated
@@ -130,7 +130,7 @@ class _TcpLine:
             self._client = None
 
 
-class SimulatedPort:
+class SimulatedPort(Closing):
     """Puts a simulated robot behind a real port, for as long as a `with` statement lasts.
 
     Parameters
@@ -185,17 +185,6 @@ class SimulatedPort:
         self._line.wake()
         self._thread.join()  # it waits for nothing longer than `WAIT`
         self._line.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     def _serve(self) -> None:
         while not self._ending.is_set():
