@@ -7,6 +7,9 @@ from typing import Literal
 
 from robot.emotion import Emotion
 
+COMPLAINT_MAX = 80
+"""Longest complaint that is passed on [characters]."""
+
 LinkState = Literal["connecting", "ready", "degraded", "lost", "closed"]
 """connecting: the port is open, and the robot has not answered yet. ready: it answers.
 degraded: it has been silent for 150 ms, or a command needed three sends. lost: it has been silent
@@ -86,6 +89,11 @@ class Telemetry:
     reckoned: bool = False
     """Whether `joints` are where they should be by now, because the robot cannot measure them."""
 
+    complaint: str | None = None
+    """What the robot last complained of, in its own words: "file not found", "low power"; at most
+    `COMPLAINT_MAX` characters, all of which can be printed. None before, and once it has taken
+    another mood or a stop since. None for a robot that has no words for it."""
+
     motion: str | None = None
     """The motion being played; None when it stands still."""
 
@@ -100,3 +108,13 @@ class Telemetry:
 
     counts: LinkCounts = field(default_factory=LinkCounts)
     """What went over the wire."""
+
+
+def complaint_of(line: str) -> str:
+    r"""Return what a robot's line complains of, as `Telemetry.complaint` has it.
+
+    >>> complaint_of("MC_GetMotorStatus Failed:\tjoint 14\r")
+    'MC_GetMotorStatus Failed: joint 14'
+    """
+    words = "".join(one if one.isprintable() else " " for one in line).split()
+    return " ".join(words)[:COMPLAINT_MAX]

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 from rich.live import Live
+from rich.markup import escape
 from rich.table import Table
 
 from robot import Emotion, Robot, RobotError, Telemetry, connect
@@ -36,8 +37,8 @@ def try_(
 ) -> None:
     """Let a robot show its moods one after the other, and tell how well it does.
 
-    For each: how soon the robot acknowledged it and, where it says what it shows, how soon it
-    showed it. Ends with the robot neutral; Ctrl-C ends it earlier.
+    For each: how soon the robot acknowledged it, how soon it showed it where it says what it shows,
+    and what it complains of. Ends with the robot neutral; Ctrl-C ends it earlier.
 
     Example: [cyan]cubeling robot try pleo:/dev/ttyACM0 --settings my-pleo.toml[/]
     """
@@ -90,7 +91,8 @@ def _show(robot: Robot, word: str, seconds: float, console: Console) -> str:
         silent = known.observed is None
         seen = "it does not say what it shows" if silent else "[red]not shown[/]"
     limp = "  [red]its motors have no power[/]" if known.limp else ""
-    return f"{word:12} {acknowledged}, {seen}; link {known.state}{limp}"
+    complaint = f"  [red]it complains: {escape(known.complaint)}[/]" if known.complaint else ""
+    return f"{word:12} {acknowledged}, {seen}; link {known.state}{limp}{complaint}"
 
 
 def _state(known: Telemetry) -> Table:

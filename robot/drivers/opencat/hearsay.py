@@ -6,8 +6,12 @@ from typing import Literal
 
 from robot.drivers.opencat.models import MODELS
 from robot.drivers.opencat.tokens import JOINTS
+from robot.telemetry import complaint_of
 
 _ANGLES = re.compile(r"-?\d{1,3},\s*" * (JOINTS - 1) + r"-?\d{1,3},?")
+
+_COMPLAINTS = ("Low power", "EXCEPTION", "Undefined token", "?")
+"""How lines begin that say what is wrong: of its battery, a fall, a token and a skill."""
 
 WEAK_FOR = 25.0
 """A board that has said so long ago that its battery is low, and not again, has power [s]; while it
@@ -21,11 +25,13 @@ class Hearsay:
 
     def __init__(self) -> None:
         self._weak_until = -math.inf
+        self.complaint: str | None = None
+        """What it last complained of; its owner says when that is over, or its battery does."""
         self.angles: dict[str, float] = {}
         """Angles of the joints by name [rad], as the board commanded them; it measures none."""
 
     def forget(self) -> None:
-        """Forget it all: the board has started anew, or is another one."""
+        """Forget it all but a complaint, which may be why: the board has started anew."""
         self._weak_until = -math.inf
         self.angles = {}
 
@@ -39,6 +45,8 @@ class Hearsay:
         known: nothing to be done. power: a command that moves is taken up. weak: the battery is
         low. fell: the robot does something by itself.
         """
+        if line.startswith(_COMPLAINTS) and len(line) > 1:  # "?" alone is an echo
+            self.complaint = complaint_of(line)
         if line == "G":  # balancing is switched on again by the first line after a rest
             return "power"
         if line.startswith("Low power"):
@@ -46,6 +54,7 @@ class Hearsay:
             return "weak"
         elif line.startswith("Got ") and line.endswith("power"):
             self._weak_until = now
+            self.complaint = None
         elif line.startswith("EXCEPTION"):
             return "fell"
         elif _ANGLES.fullmatch(line):

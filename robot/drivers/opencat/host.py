@@ -165,6 +165,7 @@ class OpenCatHost:
             acknowledged=self._wishes.order.acknowledged,
             stopped=self._wishes.order.stopped,
             limp=self._wishes.limp or self._hearsay.is_weak(now),
+            complaint=self._hearsay.complaint,
             joints=MappingProxyType(self._hearsay.angles),
             reckoned=True,
             motion=playing.name if playing and skill else None,
@@ -197,8 +198,8 @@ class OpenCatHost:
         if isinstance(heard, Flight):
             if self._hearsay.is_weak(now):
                 self._wishes.given_up(heard.command, now)  # echoed, and nothing has moved
-            else:
-                self._wishes.landed(heard.command, heard.refused, now)
+            elif self._wishes.landed(heard.command, heard.refused, now):
+                self._hearsay.complaint = None
         elif heard is not None:
             self._was_answered(heard.line, now)
         else:

@@ -96,15 +96,16 @@ class StandingOrder:
                 self._taken = None  # it is given up now; what was acknowledged stays the last
         return command
 
-    def landed(self, command: Command) -> None:
-        """Take note that a posture or a pose has been echoed."""
+    def landed(self, command: Command) -> bool:
+        """Take note that a posture or a pose has been echoed; return whether it is a new mood."""
         stands = command.order == self.number
         if stands:
             self._refusals = 0
             if self._due and self._due[0].line == command.line:
                 self._due.popleft()
         if self._due if stands else not command.whole:
-            return
+            return False
+        new = not (self.stopped if command.word is None else self._taken)
         self._forget()
         if command.word is None:
             self.stopped = stands
@@ -112,6 +113,7 @@ class StandingOrder:
             self.acknowledged, self._taken = self._felt, command.word
         if self._again:
             self.hold_again()
+        return new
 
     def was_refused(self, command: Command) -> None:
         """Take note that the board does not know a posture: it is tried again, then left."""

@@ -122,25 +122,27 @@ class Wishes:
 
     # --- What became of it ---------------------------------------------------------------------
 
-    def landed(self, command: Command, refused: bool, now: float) -> None:
-        """Take note that the board has echoed a command."""
+    def landed(self, command: Command, refused: bool, now: float) -> bool:
+        """Take note that the board has echoed a command; return whether a mood or stop is new."""
         self._end_of_skill(command, now)
         if refused:
             self.refused += 1
             if command.kind == "posture":
                 self.order.was_refused(command)
-            return
+            return False
         if command.kind != "melody":
             self.limp = command.kind == "rest"
         if command.kind == "rest":
             self.order.let_go()
         elif command.kind in ("posture", "pose"):
-            self.order.landed(command)
+            new = self.order.landed(command)
             mood = self.order.held
             if mood is not None and self._gesture_at is None:
                 self._gesture_at = now + mood.gesture_every
+            return new
         elif command.kind == "gesture":
             self.order.hold_again()
+        return False
 
     def given_up(self, command: Command, now: float) -> None:
         """Take note that a command was not echoed: an order stays due, an event is gone."""

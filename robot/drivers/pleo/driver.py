@@ -36,8 +36,6 @@ class PleoDriver:
     def __init__(self, settings: Settings) -> None:
         self.catalogue: Catalogue | None = None
         """What Pleo has, by the settings; None until a console has answered."""
-        self.last_error: str | None = None
-        """The last error text that the console wrote, whatever it was about."""
         self._settings = settings
         self._phase: Phase = "port"
         self._console = Console(settings.boot_text)
@@ -49,6 +47,7 @@ class PleoDriver:
         self._pinged = 0.0
         self._battery_asked = 0.0
         self._battery: float | None = None
+        self._complaint: str | None = None
         self._round_trip: float | None = None
         self._sessions = self._outside = 0
 
@@ -143,6 +142,7 @@ class PleoDriver:
             commanded=self._wishes.commanded,
             acknowledged=self._wishes.acknowledged,
             battery=self._battery,
+            complaint=self._complaint,
             stopped=self._wishes.stopped,
             round_trip=self._round_trip,
             silence=None if self._heard is None else now - self._heard,
@@ -187,7 +187,7 @@ class PleoDriver:
     def _land(self, landing: Landing, now: float) -> None:
         """Take what came of the last command."""
         answer = landing.answer
-        self.last_error = answer.error or self.last_error
+        self._complaint = answer.error or self._complaint
         if landing.outcome == "silent" or (answer.restarted and self._phase != "seeking"):
             self._seek(now)
             return
@@ -208,8 +208,10 @@ class PleoDriver:
             self._reassure |= late or failed or landing.outcome == "unsure"
             if landing.command is commands.APP_UNLOAD:
                 self._reassure = False
-            elif landing.command not in (commands.NUDGE, commands.STATS_POWER):
-                self._wishes.land(landing)
+            elif landing.command in (commands.NUDGE, commands.STATS_POWER):
+                pass  # nobody's wish
+            elif self._wishes.land(landing):
+                self._complaint = None
 
     def _started(self, landing: Landing, now: float) -> None:
         if landing.outcome == "unsure":  # all of these may be sent twice
@@ -223,7 +225,7 @@ class PleoDriver:
         """Hear what nobody asked for: a console that starts, or only noise."""
         reader = self._console.reader
         answer = reader.answer
-        self.last_error = answer.error or self.last_error
+        self._complaint = answer.error or self._complaint
         if answer.restarted or (answer.spoke and reader.ended(now)):
             self._outside += 1
             self._seek(now)

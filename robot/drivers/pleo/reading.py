@@ -14,12 +14,10 @@ import re
 from dataclasses import dataclass
 
 from robot.drivers.pleo import timing
+from robot.telemetry import complaint_of
 
 LINE_MAX = 512
 """Only so many characters of a line are kept, the last ones."""
-
-SHOWN_MAX = 120
-"""Longest error text that is kept [characters]."""
 
 _UNASKED = re.compile(r"mu: (?:sensor|joint)\b|MC_\w+ Failed:")
 _PROMPT = re.compile(r"\r?(?:> )+(?P<begun>(?:m|mu|mu:|mu: .*|M|MC|MC_.*)?)", re.DOTALL)
@@ -38,7 +36,7 @@ class Answer:
     """Whether there was any text in it, an echo included."""
 
     error: str | None = None
-    """The first text in it that looks like an error."""
+    """The first text in it that looks like an error, as `Telemetry.complaint` has it."""
 
     battery: float | None = None
     """From empty, 0, to full, 1, if it says so."""
@@ -151,8 +149,7 @@ class ConsoleReader:
 
     def _take_error(self, text: str) -> None:
         if self.answer.error is None:
-            shown = "".join(one if one.isprintable() else " " for one in text)
-            self.answer.error = shown.strip()[:SHOWN_MAX]
+            self.answer.error = complaint_of(text)
 
     def _look(self, now: float) -> None:
         """See whether a prompt stands at the end of what has come."""

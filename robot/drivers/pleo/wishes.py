@@ -139,15 +139,15 @@ class Wishes:
         self._known.sent(step.command, now)
         return step.command
 
-    def land(self, landing: Landing) -> None:
-        """Hear that the last command has ended, and how."""
+    def land(self, landing: Landing) -> bool:
+        """Hear that the last command has ended, and how; return whether a mood or stop is new."""
         step, self._flight = self._flight, None
         if step is None:
-            return
+            return False
         if landing.outcome != "answered":
             self._known = Known()
             self._recover(step)
-            return
+            return False
         if landing.answer.error is not None:
             self.refused += 1
             self._known.refused(step.command)
@@ -155,7 +155,8 @@ class Wishes:
         if step.part == "action" and step.length:
             self._acted(landing.sent + step.length)
         if step.part == "body" and not any(one.part == "body" for one in self._steps):
-            self._shown(landing.sent)
+            return self._shown(landing.sent)
+        return False
 
     def _next(self, now: float) -> Step | None:
         if self._wanted != self._doing and self._steps:
@@ -237,9 +238,10 @@ class Wishes:
         if mood is not None and (mood.loop or mood.motion is None):
             self._repeat_at = ends
 
-    def _shown(self, sent: float) -> None:
+    def _shown(self, sent: float) -> bool:
         """Write down what the console has taken, after the last command of the body's part."""
         mood = self._mood
+        new = not self._flawed and (not self.stopped if mood is None else not self._taken)
         self._lose()
         if mood is not None and not self._flawed:
             self.acknowledged, self._taken = self._feeling, self._doing
@@ -249,6 +251,7 @@ class Wishes:
         elif self._flawed and self._tries < timing.REFUSED_MAX:
             self._tries += 1
             self._repeat_at = sent + timing.REFUSED_AGAIN
+        return new
 
     def _lose(self) -> None:
         """Write down that nothing is known to be held."""

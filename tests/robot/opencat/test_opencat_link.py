@@ -206,6 +206,12 @@ def test_half_an_order_that_was_displaced_is_no_acknowledgement(desk):
     assert "i0 -40" not in d.lines
 
 
+def test_what_a_board_complained_of_before_it_started_anew_is_still_told():
+    host = _introduced()
+    host.receive(b"Low power: 6.71V. The robot won't move.\r\n* Start *\r\nReady!\r\n", 3.0)
+    assert host.telemetry(3.0).complaint == "Low power: 6.71V. The robot won't move."
+
+
 def test_a_fall_ends_what_is_acknowledged():
     host = _introduced()
     host.express(HAPPY, "happy")
@@ -214,7 +220,8 @@ def test_a_fall_ends_what_is_acknowledged():
     host.receive(b"k\r\n", 3.5)
     assert host.telemetry(3.5).acknowledged == HAPPY
     host.receive(b"EXCEPTION: Fall over\r\n", 3.6)
-    assert host.telemetry(3.6).acknowledged is None
+    known = host.telemetry(3.6)
+    assert (known.acknowledged, known.complaint) == (None, "EXCEPTION: Fall over")
 
 
 def test_a_stopped_robot_that_plays_a_skill_is_not_called_still(desk):
@@ -407,13 +414,19 @@ def test_a_robot_with_a_low_battery_is_called_limp_and_is_not_asked_to_move(desk
 def test_a_skill_that_the_board_does_not_know_is_counted_and_not_insisted_on(desk):
     said = {"bittle": {"moods": {"happy": {"posture": "zz"}}}}
     d = desk(settings=settings_of(said, "mine.toml")).ready()
+    d.feel("angry")
+    d.settle()
     d.feel("happy")
+    d.until(lambda: d.telemetry.counts.refused == 1, 5.0)
+    assert d.telemetry.acknowledged is None
     d.run(30.0)
     assert d.lines.count("kzz") == 2
     assert d.telemetry.counts.refused == 2
     assert d.telemetry.acknowledged is None
+    assert d.telemetry.complaint == "?zz?"
     d.feel("sad")
     d.settle()
+    assert d.telemetry.complaint is None
 
 
 def test_motions_and_sounds_are_played_once_and_only_while_there_is_a_link(desk):
@@ -510,7 +523,9 @@ def test_an_echo_from_a_board_without_power_is_no_acknowledgement():
     host.receive(b"Low power: 6.71V. The robot won't move.\r\nk\r\n", 3.5)
     assert host.telemetry(3.5).acknowledged is None
     assert host.telemetry(3.5).limp
+    assert host.telemetry(3.5).complaint == "Low power: 6.71V. The robot won't move."
     host.receive(b"Got 7.9 V power\r\n", 6.0)
+    assert host.telemetry(6.0).complaint is None
     host.tick(6.0)
     assert host.bytes_to_send() == b"kbuttUp\n"
 

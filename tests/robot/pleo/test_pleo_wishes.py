@@ -116,6 +116,16 @@ def test_a_lost_answer_to_a_moods_motion_sends_it_again(script):
     assert pleo.telemetry.acknowledged is not None
 
 
+def test_a_lost_answer_ends_what_was_acknowledged_before(script):
+    pleo = shown(script().started(), "happy")
+    pleo.express("neutral")
+    assert pleo.run(0.1) == b"MOTION PLAY a:neutral.umf\n"
+    assert pleo.run(timing.LONG_WITHIN) == b"\n"
+    assert pleo.telemetry.acknowledged is not None
+    assert pleo.say(OK) == b"APP UNLOAD\n"  # it may have restarted
+    assert pleo.telemetry.acknowledged is None
+
+
 def test_a_late_answer_with_text_in_it_is_an_answer_and_nothing_is_sent_again(poses):
     poses.express("happy")
     assert poses.run(0.1) + poses.say(OK) == b"MOTION SPEED 100\nMOTION PLAY a:happy.umf\n"
@@ -198,12 +208,42 @@ def test_an_error_text_is_counted_kept_and_not_fatal(script):
     # Pleo's own behaviour may be what refuses.
     assert pleo.say("MC_GetMotorStatus Failed: joint 14\r\n> ") == b"APP UNLOAD\n"
     assert pleo.telemetry.counts.refused == 1
-    assert pleo.driver.last_error == "MC_GetMotorStatus Failed: joint 14"
+    assert pleo.telemetry.complaint == "MC_GetMotorStatus Failed: joint 14"
     assert pleo.telemetry.acknowledged is None
     pleo.auto(1.0)
     assert pleo.telemetry.acknowledged is None
     assert "MOTION PLAY a:happy.umf" in pleo.auto(3.0)  # the next round of the loop
     assert pleo.telemetry.acknowledged is not None
+
+
+def test_a_complaint_stands_until_another_mood_is_taken(script):
+    pleo = script().started()
+    pleo.express("happy")
+    pleo.run(0.1)
+    for _ in ("MOTION SPEED", "MOTION PLAY", "SOUND SPEED"):
+        pleo.say(OK)
+    assert pleo.telemetry.complaint is None
+    pleo.say("Error: file not found:\ta:happy.usf" + "." * 99 + "\r\n> ")
+    complaint = pleo.telemetry.complaint
+    assert complaint == ("Error: file not found: a:happy.usf" + "." * 99)[:80]
+    assert "MOTION PLAY a:happy.umf" in pleo.auto(5.0)
+    assert pleo.telemetry.complaint == complaint  # the same mood once more is no news
+    pleo.express("neutral")
+    pleo.auto(1.0)
+    assert pleo.telemetry.complaint is None
+
+
+def test_a_complaint_ends_when_what_was_refused_is_taken_and_with_a_stop(script):
+    pleo = shown(script().started(), "neutral")
+    pleo.express("happy")
+    for end in (lambda: None, pleo.driver.stop):
+        pleo.auto(1.0, "Error: invalid parameter\r\n> ")
+        pleo.say("MC_GetMotorStatus Failed: joint 14\r\n")
+        assert pleo.telemetry.complaint == "MC_GetMotorStatus Failed: joint 14"
+        end()
+        sent = pleo.auto(4.0)
+        assert "MOTION PLAY a:happy.umf" in sent or "JOINT NEUTRAL" in sent
+        assert pleo.telemetry.complaint is None
 
 
 def test_a_motion_that_is_no_loop_and_refused_is_tried_a_few_times(poses):
@@ -217,7 +257,7 @@ def test_a_motion_that_is_no_loop_and_refused_is_tried_a_few_times(poses):
 def test_an_error_while_idle_is_kept_and_begins_nothing_anew(script):
     pleo = shown(script().started(), "happy")
     assert b"APP" not in pleo.say("MC_GetMotorStatus Failed: joint 14\r\n")
-    assert pleo.driver.last_error == "MC_GetMotorStatus Failed: joint 14"
+    assert pleo.telemetry.complaint == "MC_GetMotorStatus Failed: joint 14"
     assert pleo.telemetry.counts.sessions == 1
 
 
@@ -317,10 +357,11 @@ def test_half_a_pose_is_no_acknowledgement_of_it_and_ends_the_one_before(poses):
     poses.auto(5.0)
     poses.driver.express(robot.Emotion(-0.6, -0.4), "sad")
     assert b"JOINT MOVE" in poses.run(0.1)
-    poses.say(OK)
+    assert b"JOINT MOVE" in poses.say(OK)
     for valence in (-0.8, -0.9):
         poses.driver.express(robot.Emotion(valence, 0.5), "angry")
         assert poses.telemetry.acknowledged == robot.Emotion(0.0, 0.0)
+        poses.say(OK, 0.1)
     poses.auto(5.0)
     assert poses.telemetry.acknowledged == robot.Emotion(-0.9, 0.5)
 
