@@ -36,8 +36,7 @@ def test_the_bytes_of_a_mood_change(script):
     assert pleo.say("> ", 0.1) == b"SOUND PLAY a:happy.usf\n"
     assert pleo.say("> ", 0.1) == b""
     pleo.driver.express(Emotion(-0.9, 0.9))
-    assert pleo.run(0.5) == b"MOTION SPEED 120\n"
-    assert pleo.say("> ", 0.1) == b"MOTION PLAY a:angry.umf\n"
+    assert pleo.run(0.5) == b"MOTION PLAY a:angry.umf\n"
     assert pleo.say("> ", 0.1) == b"SOUND PLAY a:angry.usf\n"
     assert pleo.telemetry.acknowledged == Emotion(-0.9, 0.9)
 

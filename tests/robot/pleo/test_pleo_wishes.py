@@ -13,6 +13,9 @@ from robot.protocol import messages as m
 
 OK = "\r\n> "
 
+STEP = 0.005
+"""The link's thread turns this often [s]."""
+
 POSES = """
 [moods.neutral]
 joints = {}
@@ -68,8 +71,30 @@ def test_of_the_moods_asked_for_while_the_console_is_busy_only_the_last_is_sent(
     for label in ("angry", "neutral", "angry"):
         pleo.express(label)
         assert pleo.run(0.3) == b""
-    assert pleo.auto(1.0) == ["MOTION SPEED 120", "MOTION PLAY a:angry.umf",
-                              "SOUND SPEED 100", "SOUND PLAY a:angry.usf"]  # fmt: skip
+    assert pleo.auto(1.0) == [
+        "MOTION PLAY a:angry.umf",
+        "SOUND SPEED 100",
+        "SOUND PLAY a:angry.usf",
+    ]
+
+
+def test_a_motions_speed_is_sent_only_where_it_changes(script, tmp_path):
+    angry = "length_s = 2.0\nsound"
+    hasty = BUNDLED.read_text().replace(angry, f"motion_speed = 150\n{angry}")
+    pleo = shown(script(write(tmp_path, hasty)).started(), "happy")
+    for word, sent in (
+        ("neutral", ["MOTION PLAY a:neutral.umf"]),
+        ("angry", ["MOTION SPEED 150", "MOTION PLAY a:angry.umf"]),
+        ("neutral", ["MOTION SPEED 100", "MOTION PLAY a:neutral.umf"]),
+    ):
+        pleo.express(word)
+        assert [line for line in pleo.auto(1.0) if line.startswith("MOTION")] == sent
+
+
+def test_a_mood_begins_at_once_on_an_idle_console_that_need_be_told_nothing_first(script):
+    pleo = shown(script().started(), "neutral")
+    pleo.express("angry")
+    assert pleo.run(STEP) == b"MOTION PLAY a:angry.umf\n"
 
 
 def test_moods_follow_each_other_no_faster_than_the_settings_say(script):
@@ -321,7 +346,7 @@ def test_what_is_left_of_a_mood_is_not_sent_once_another_is_asked_for(script, tm
     assert pleo.run(0.1) + pleo.say(OK) == b"MOTION SPEED 100\nMOTION PLAY a:happy.umf\n"
     pleo.express("angry")
     assert pleo.auto(4.0) == []
-    assert pleo.auto(1.0)[:2] == ["MOTION SPEED 120", "MOTION PLAY a:angry.umf"]
+    assert pleo.auto(1.0)[0] == "MOTION PLAY a:angry.umf"
 
 
 def test_what_is_acknowledged_stays_until_the_next_mood_is(script):
