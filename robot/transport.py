@@ -1,7 +1,6 @@
 """Ports: what pySerial opens, and simulated robots that read and write like one."""
 
 import re
-import sys
 import time
 from typing import cast
 
@@ -12,12 +11,6 @@ from robot.plug import Identity, identity_of, name_of
 from robot.port import READ_TIMEOUT, Clock, Opener, Port
 from robot.protocol import timing
 from robot.simulators.memory import SimulatedWire
-
-_REFUSALS: tuple[type[Exception], ...] = (OSError, ValueError)  # SerialException is an OSError
-if sys.platform != "win32":
-    import termios
-
-    _REFUSALS += (termios.error,)  # pySerial lets it through where a port vanishes while it opens
 
 WRITE_TIMEOUT = 0.2
 """Longest wait in one write [s]; a robot that no longer reads makes its line fill up."""
@@ -59,6 +52,8 @@ def opener(url: str, clock: Clock = time.monotonic, baud: int = timing.BAUD) -> 
     """
     if not url:
         raise RobotError("a port must be named; `cubeling robot list` shows those there are")
+    if url.partition("?")[0] == "sim":  # what `play --robot` calls one
+        raise RobotError(f"{url!r} names no simulated robot: say which, as in sim:cubeling")
     if url.startswith("sim:"):
         return SimulatedWire(url, clock).open
     return _Plug(url, baud).open
@@ -91,7 +86,7 @@ def _open_serial(url: str, baud: int) -> Port:
             write_timeout=WRITE_TIMEOUT,
             exclusive=True,  # two programs on one port look like a broken robot to both
         )
-    except _REFUSALS as error:
+    except Exception as error:  # a port that vanishes, a URL that trips pySerial's own parsing
         shown = url if url.isprintable() else repr(url)
         raise RobotError(f"cannot open the port {shown}: {_reason(url, error)}") from error
     return cast(Port, port)

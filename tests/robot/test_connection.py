@@ -198,6 +198,10 @@ def test_a_recorder_that_breaks_is_reported_and_not_taken_for_an_unplugged_robot
         ("sim:cubeling?fly=1", "'fly' is no option of a simulator"),
         ("sim:cubeling?seed=x", "the seed must be a whole number"),
         (__file__, "cannot open the port"),
+        ("sim", "'sim' names no simulated robot: say which, as in sim:cubeling"),
+        ("sim?drop=0.1", "say which, as in sim:cubeling"),
+        ("loop://?x", "cannot open the port loop://?x"),  # pySerial trips over its own message
+        ("hwgrep://(", "cannot open the port hwgrep://("),
     ],
 )
 def test_a_bad_port_is_refused_in_one_line(url, says):
