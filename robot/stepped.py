@@ -1,5 +1,6 @@
 """A simulated robot in step with whoever owns it: virtual time, no thread and no wait."""
 
+import math
 from pathlib import Path
 
 from robot.connection import INTRODUCTION, Robot, protocol_of
@@ -75,7 +76,9 @@ class SteppedRobot(Robot):
     ) -> None:
         port, protocol = protocol_of(url, None)
         if not port.startswith("sim:"):
-            raise RobotError(f"{url!r} is no simulated robot, whose time could be told")
+            raise RobotError(
+                f"{url!r} is no simulated robot, whose time could be told: say sim:cubeling"
+            )
         kind = DRIVERS[protocol]
         self.now = 0.0
         """Its time [s]."""
@@ -89,7 +92,20 @@ class SteppedRobot(Robot):
             self.advance(STEP)
 
     def advance(self, seconds: float) -> None:
-        """Let time go on."""
+        """Let time go on.
+
+        Parameters
+        ----------
+        seconds
+            How long, 0 or more [s]; an hour of it takes some 15 s of real time.
+
+        Raises
+        ------
+        ValueError
+            If that is no time, or has no end.
+        """
+        if not 0 <= seconds < math.inf:  # also refuses NaN
+            raise ValueError(f"time goes on by 0 s or more, not by {seconds!r}")
         end = self.now + seconds
         while self.now < end - 1e-9:
             self.now = min(self.now + STEP, end)

@@ -12,7 +12,7 @@ from rich.text import Text
 
 from app.commands.robot_conform import conform
 from app.commands.robot_try import try_
-from robot import SimulatedPort, serial_ports
+from robot import RobotError, SimulatedPort, serial_ports
 from robot.simulators.base import Simulated
 from robot.simulators.memory import simulator_of
 
@@ -67,6 +67,8 @@ def simulate(
     The same words work in every URL: [cyan]--robot "sim:cubeling?drop=0.05"[/].
     """
     console = Console()
+    if seconds is not None and not seconds >= 0:  # also refuses NaN
+        raise RobotError(f"a robot can be simulated for 0 seconds or more, not for {seconds:g}")
     simulator = simulator_of(_with_seed(name, seed))
     with SimulatedPort(simulator) as port:
         protocol = name.removeprefix("sim:").partition("?")[0]

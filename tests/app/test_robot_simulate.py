@@ -25,6 +25,8 @@ def test_the_way_to_it_names_its_protocol(cubeling):
         (["cubeling?drop=2"], "drop must be a chance from 0 to 1, not '2'"),
         (["cubeling?fly=1"], "'fly' is no option of a simulator; there are seed, drop"),
         (["cubeling?seed=1", "--seed", "2"], "seed is given twice"),
+        (["--seconds", "nan"], "0 seconds or more, not for nan"),
+        (["--seconds", "-1"], "0 seconds or more, not for -1"),
     ],
 )
 def test_what_there_is_not_is_refused_in_one_line(cubeling, arguments, named):

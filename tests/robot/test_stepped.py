@@ -37,6 +37,15 @@ def test_time_goes_on_only_when_it_is_told():
     assert after.acknowledged == Emotion(0.8, 0.5)
 
 
+@pytest.mark.parametrize("seconds", [-0.1, float("nan"), float("inf")])
+def test_a_time_that_has_no_end_or_is_none_is_refused(seconds):
+    robot = SteppedRobot("sim:cubeling")
+    now = robot.now
+    with pytest.raises(ValueError, match="0 s or more"):
+        robot.advance(seconds)
+    assert robot.now == now
+
+
 def test_whatever_befalls_the_line_the_last_emotion_is_on_the_robot_in_the_end():
     _, robot = lived(FAULTS)
     robot.express(Emotion(-0.9, 0.7), "angry")
