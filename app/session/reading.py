@@ -2,6 +2,7 @@
 
 import json
 import os
+import stat
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -132,6 +133,8 @@ def whole(path: Path) -> None:
 
 def _begins_well(path: Path) -> None:
     try:
+        if stat.S_ISFIFO(path.stat().st_mode):  # to open one waits for whoever writes to it
+            raise AppError(f"cannot read the session '{path}': it is a pipe, no file")
         with path.open("rb") as file:
             start = file.read(len(MAGIC))
     except OSError as error:

@@ -4,6 +4,8 @@ import csv
 import dataclasses
 import io
 import itertools
+import os
+import sys
 import xml.etree.ElementTree as ElementTree
 
 import numpy as np
@@ -368,6 +370,14 @@ def test_what_is_wrong_is_one_line_and_exit_code_2(
     assert out == ""
     assert says in told
     assert told.count("\n") == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no named pipes")
+def test_a_pipe_is_refused_and_not_waited_for(cubeling, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    code, _, told = cubeling("mood", "plot", "pipe")
+    assert code == 2
+    assert "it is a pipe, no file" in told
 
 
 def test_a_bundled_personality_is_printed_to_make_ones_own_from(cubeling, tmp_path):
