@@ -68,7 +68,7 @@ class RobotLine:
         if url == "none":
             return line
         try:
-            line._real = not url.startswith("sim")
+            line._real = url != "sim" and not url.startswith("sim:")
             if stepped and not line._real:
                 line._steps = Steps(url, clock, on_bytes, settings)
                 line._robot = line._closing.enter_context(line._steps.robot)
