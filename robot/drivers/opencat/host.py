@@ -8,12 +8,12 @@ from types import MappingProxyType
 from typing import Literal
 
 from robot.catalogue import Catalogue
+from robot.drivers.lines import LineReader
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.exchange import LOST_TRIES, Exchange, Flight
 from robot.drivers.opencat.greeting import STARTS, Greeting
 from robot.drivers.opencat.hearsay import Hearsay
 from robot.drivers.opencat.introduction import catalogue_of
-from robot.drivers.opencat.lines import LineReader
 from robot.drivers.opencat.models import model_of
 from robot.drivers.opencat.settings import Settings
 from robot.drivers.opencat.settings_file import load
@@ -21,6 +21,9 @@ from robot.drivers.opencat.wishes import REST, Wishes
 from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.telemetry import LinkCounts, LinkState, Telemetry
+
+LINE_MAX = 200
+"""Longest line that is listened to [bytes]; the longest that matters, 16 angles, has about 90."""
 
 REST_ASK_EVERY = 60.0
 """A robot that lies without power is told to rest again this often [s], as its sign of life: any
@@ -46,7 +49,7 @@ class OpenCatHost:
         """Bits a second on the serial line."""
         self._model = self._settings.model or "other"
         self._phase: Phase = "port"
-        self._reader = LineReader()
+        self._reader = LineReader(LINE_MAX)
         self._greeting = Greeting()
         self._exchange = Exchange()
         self._wishes = Wishes(self._settings, self._settings.behaviours[self._model])

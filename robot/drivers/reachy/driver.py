@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from robot.catalogue import Catalogue
+from robot.drivers.lines import LineReader
 from robot.drivers.reachy import moves
 from robot.emotion import Emotion
 from robot.feeling.words import closest_word
@@ -73,7 +74,7 @@ class ReachyDriver:
         self._targeted: float | None = None
         self._heard: float | None = None
         self._said: dict[str, Any] = {}
-        self._pending = bytearray()
+        self._reader = LineReader(LINE_MAX)
         self._out = bytearray()
         self._counts = {"frames_sent": 0, "frames_received": 0, "skipped": 0, "dropped": 0}
         self._sessions = 0
@@ -110,7 +111,7 @@ class ReachyDriver:
         """Begin, or begin again."""
         self._open, self._heard, self._flight = True, None, None
         self._targeted = None
-        self._pending.clear()
+        self._reader.clear()
 
     def port_lost(self) -> None:
         """Send nothing until the port is back."""
@@ -129,9 +130,7 @@ class ReachyDriver:
 
     def receive(self, data: bytes, now: float) -> None:
         """Take bytes from the line at time `now` [s]."""
-        *lines, rest = (bytes(self._pending) + data).split(b"\n")
-        self._pending = bytearray(rest[:LINE_MAX])
-        for line in lines:
+        for line in self._reader.feed(data):
             said = _understood(line)
             if said is None:
                 self._counts["skipped"] += 1
@@ -183,7 +182,7 @@ class ReachyDriver:
             joints=MappingProxyType(dict(zip(moves.JOINTS, joints, strict=False))),
             motion=playing.name if known and playing is not None else None,
             silence=None if self._heard is None else now - self._heard,
-            counts=LinkCounts(sessions=self._sessions, **self._counts),
+            counts=LinkCounts(crc_errors=self._reader.cut, sessions=self._sessions, **self._counts),
         )
 
     # --- Small things ----------------------------------------------------------------------------
@@ -230,7 +229,7 @@ class ReachyDriver:
         self._counts["frames_sent"] += 1
 
 
-def _understood(line: bytes) -> dict[str, Any] | None:
+def _understood(line: str) -> dict[str, Any] | None:
     """Return what a line says; None if it says nothing."""
     try:
         said = json.loads(line)

@@ -247,7 +247,8 @@ def test_a_complaint_stands_until_another_mood_is_taken(script):
     pleo.run(0.1)
     for _ in ("MOTION SPEED", "MOTION PLAY", "SOUND SPEED"):
         pleo.say(OK)
-    assert pleo.telemetry.complaint is None
+    before = pleo.telemetry
+    assert before.complaint is None
     pleo.say("Error: file not found:\ta:happy.usf" + "." * 99 + "\r\n> ")
     complaint = pleo.telemetry.complaint
     assert complaint == ("Error: file not found: a:happy.usf" + "." * 99)[:80]
@@ -255,7 +256,8 @@ def test_a_complaint_stands_until_another_mood_is_taken(script):
     assert pleo.telemetry.complaint == complaint  # the same mood once more is no news
     pleo.express("neutral")
     pleo.auto(1.0)
-    assert pleo.telemetry.complaint is None
+    after = pleo.telemetry
+    assert after.complaint is None
 
 
 def test_a_complaint_ends_when_what_was_refused_is_taken_and_with_a_stop(script):

@@ -1,15 +1,19 @@
-"""Lines out of what a board says, whatever it says."""
-
-LINE_KEPT = 200
-"""Most bytes of a line that are kept; the longest that matters, 16 angles, has about 90."""
+"""Lines out of what a robot says, whatever it says."""
 
 
 class LineReader:
-    """Cuts a stream into lines; holds at most `LINE_KEPT` bytes, whatever arrives."""
+    """Cuts a stream into lines, and holds no more of it than a line.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    longest
+        Longest line that matters [bytes]; a longer one is thrown away.
+    """
+
+    def __init__(self, longest: int) -> None:
         self.cut = 0
-        """Lines that were longer than `LINE_KEPT`, and so were thrown away."""
+        """Lines that were longer, and so were thrown away."""
+        self._longest = longest
         self._begun = bytearray()
         self._too_long = False
 
@@ -21,7 +25,7 @@ class LineReader:
     def feed(self, data: bytes) -> list[str]:
         r"""Take bytes; return the lines that ended in them, without their ends.
 
-        >>> LineReader().feed(b"Bittle X\r\nB10_241013\r\n?\r\nRea")
+        >>> LineReader(200).feed(b"Bittle X\r\nB10_241013\r\n?\r\nRea")
         ['Bittle X', 'B10_241013', '?']
         """
         *ended, rest = data.split(b"\n")
@@ -40,7 +44,7 @@ class LineReader:
         self._too_long = False
 
     def _add(self, piece: bytes) -> None:
-        if len(self._begun) + len(piece) > LINE_KEPT and not self._too_long:
+        if len(self._begun) + len(piece) > self._longest and not self._too_long:
             self._too_long = True
             self.cut += 1
         if self._too_long:
