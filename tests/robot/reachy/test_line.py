@@ -17,7 +17,8 @@ import serial
 
 import robot
 from robot.drivers import DRIVERS
-from robot.drivers.reachy.line import ReachyLine, head_angles, head_pose, open_reachy
+from robot.drivers.reachy.hand import head_angles, head_pose
+from robot.drivers.reachy.line import ReachyLine, open_reachy
 from robot.emotion import Emotion
 from robot.errors import RobotError
 
