@@ -10,6 +10,10 @@ from robot.emotion import Emotion
 from robot.port import Clock, Opener
 from robot.telemetry import LinkState, Telemetry
 
+ACTIONS_MAX = 4
+"""Motions and sounds that may wait for a robot that plays one after the other; more are refused.
+Our own protocol's robots are quicker, and more may wait (`robot.protocol.timing`)."""
+
 
 class Driver(Protocol):
     """A protocol's host end, without clock, thread or port.

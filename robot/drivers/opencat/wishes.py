@@ -7,6 +7,7 @@ robot of which nobody wants anything is let lie down.
 
 from collections import deque
 
+from robot.driver import ACTIONS_MAX
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.exchange import Command
 from robot.drivers.opencat.order import POSTURE_WITHIN, StandingOrder
@@ -18,9 +19,6 @@ GESTURE_WITHIN = 15.0
 
 MELODY_WITHIN = 3.0
 """A melody is echoed at most so long after its last note [s]."""
-
-ACTIONS_MAX = 4
-"""Motions and sounds that may wait to be sent; more are refused."""
 
 REST = Command("rest", tokens.REST, "", POSTURE_WITHIN)
 """The command to lie down and let go of the servos."""

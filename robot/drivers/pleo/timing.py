@@ -55,6 +55,3 @@ REFUSED_AGAIN = 2.0
 
 REFUSED_MAX = 3
 """Most tries of such a mood; a looping motion is tried at every round."""
-
-ACTIONS_MAX = 4
-"""Motions and sounds that may wait to be sent; more are refused."""

@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
+from robot.driver import ACTIONS_MAX
 from robot.drivers.pleo import commands, timing
 from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.console import Landing
@@ -95,7 +96,7 @@ class Wishes:
 
     def play(self, motion: Clip | None, sound: str) -> bool:
         """Want a motion, or else a sound, once; False if too many wait already."""
-        if len(self._actions) >= timing.ACTIONS_MAX:
+        if len(self._actions) >= ACTIONS_MAX:
             return False
         within = self._settings.play_within
         if motion is not None:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from robot.catalogue import Catalogue
+from robot.driver import ACTIONS_MAX
 from robot.drivers.lines import LineReader
 from robot.drivers.reachy import moves
 from robot.emotion import Emotion
@@ -36,9 +37,6 @@ LOST_AFTER = 2.0
 
 GAP_MAX = 0.2
 """Most time that one target makes up for [s]: no jump after this computer has slept."""
-
-ACTIONS_MAX = 4
-"""Motions that may wait."""
 
 LINE_MAX = 4096
 """Longest line that is listened to [bytes]."""

@@ -1,38 +1,20 @@
 """What the simulated robot is made of: the joints of a Pleo, and what they do in each mood.
 
-Joints, limits and speeds are those of the Pleo Monitor (OliverHoffmann/PleoCommand, 2010). Where no
-top speed was published, 50°/s is assumed. The motions are our own.
+Joints, limits and speeds are those of `robot.drivers.pleo.joints`. The motions are our own.
 """
-
-from math import radians
 
 import numpy as np
 from numpy.typing import NDArray
 
-from robot.catalogue import Catalogue, JointLimits
+from robot.catalogue import Catalogue
+from robot.drivers.pleo.joints import JOINTS as PLEO
 from robot.motions import Motion, Sway
 
 Array = NDArray[np.float64]
 
-_JOINTS_DEG = (
-    ("right shoulder", -30, 55, 30),
-    ("right elbow", 0, 90, 70),
-    ("left shoulder", -30, 55, 30),
-    ("left elbow", 0, 90, 70),
-    ("left hip", -45, 40, 50),
-    ("left knee", -70, 0, 50),
-    ("right hip", -45, 40, 50),
-    ("right knee", -70, 0, 50),
-    ("torso", -15, 15, 20),
-    ("tail sideways", -90, 90, 200),
-    ("tail up", -90, 90, 200),
-    ("neck sideways", -65, 55, 50),
-    ("neck up", -75, 75, 40),
-    ("eyes and mouth", -80, 85, 220),
-)
+_LIMITS = tuple(joint.limits for joint in PLEO)
 
-
-JOINTS = tuple(name for name, *_ in _JOINTS_DEG)
+JOINTS = tuple(joint.name for joint in _LIMITS)
 """Names of the joints, in the order of the catalogue."""
 
 MOOD_LOOPS = (
@@ -112,17 +94,15 @@ SOUNDS = {"breath": 2.0, "purr": 3.0, "growl": 1.5, "chirp": 0.5, "smack": 0.6, 
 MOTIONS = MOOD_LOOPS + ACTIONS
 """Every motion, in the order of the catalogue."""
 
-LOW = np.radians([joint[1] for joint in _JOINTS_DEG])
-HIGH = np.radians([joint[2] for joint in _JOINTS_DEG])
-SPEED = np.radians([joint[3] for joint in _JOINTS_DEG])
+LOW = np.array([joint.low for joint in _LIMITS])
+HIGH = np.array([joint.high for joint in _LIMITS])
+SPEED = np.array([joint.speed for joint in _LIMITS])
+"""Limits [rad] and top speeds [rad/s] of the joints, (joints,) each."""
 
 CATALOGUE = Catalogue(
     name="Dino",
     firmware="simulator 1",
-    joints=tuple(
-        JointLimits(name, radians(low), radians(high), radians(speed))
-        for name, low, high, speed in _JOINTS_DEG
-    ),
+    joints=_LIMITS,
     motions=tuple(motion.name for motion in MOTIONS),
     sounds=tuple(SOUNDS),
     moods=tuple(loop.name for loop in MOOD_LOOPS),
