@@ -52,11 +52,11 @@ class Hearsay:
         if line.startswith("Low power"):
             self._weak_until = now + WEAK_FOR
             return "weak"
-        elif line.startswith("Got ") and line.endswith("power"):
+        if line.startswith("EXCEPTION"):
+            return "fell"
+        if line.startswith("Got ") and line.endswith("power"):
             self._weak_until = now
             self.complaint = None
-        elif line.startswith("EXCEPTION"):
-            return "fell"
         elif _ANGLES.fullmatch(line):
             angles = [int(angle) for angle in re.findall(r"-?\d+", line)]
             self.angles = {

@@ -15,8 +15,9 @@ from robot.drivers.opencat.greeting import STARTS, Greeting
 from robot.drivers.opencat.hearsay import Hearsay
 from robot.drivers.opencat.introduction import catalogue_of
 from robot.drivers.opencat.models import model_of
+from robot.drivers.opencat.outlet import Outlet
 from robot.drivers.opencat.settings import Settings
-from robot.drivers.opencat.settings_file import load
+from robot.drivers.opencat.settings_file import load_settings
 from robot.drivers.opencat.wishes import REST, Wishes
 from robot.emotion import Emotion
 from robot.protocol import messages as m
@@ -44,7 +45,7 @@ class OpenCatHost:
     def __init__(self, settings: Settings | None = None) -> None:
         self.catalogue: Catalogue | None = None
         """What the robot has; None until its model is known."""
-        self._settings = settings or load()
+        self._settings = settings or load_settings()
         self.baud = self._settings.baud
         """Bits a second on the serial line."""
         self._model = self._settings.model or "other"
@@ -53,11 +54,10 @@ class OpenCatHost:
         self._greeting = Greeting()
         self._exchange = Exchange()
         self._wishes = Wishes(self._settings, self._settings.behaviours[self._model])
-        self._out = bytearray()
+        self._outlet = Outlet(self._settings.commands_per_s)
         self._heard: float | None = None
-        self._sent = -math.inf
         self._hearsay = Hearsay()
-        self._lines_sent = self._lines_heard = self._skipped = self._sessions = self._repeats = 0
+        self._lines_heard = self._skipped = self._sessions = self._repeats = 0
 
     # --- What the owner asks for ---------------------------------------------------------------
 
@@ -91,14 +91,13 @@ class OpenCatHost:
         """Send nothing until `port_opened`."""
         self._break_off()
         self._phase = "port"
-        self._out.clear()
+        self._outlet.clear()
 
     def close(self) -> None:
         """Let the robot lie down and take the power from its servos, and never send again."""
         spoken = self._greeting.stage in ("asking", "known")
         if self._phase in ("greeting", "open") and spoken:
-            self._out += tokens.admitted(tokens.REST)  # now, whatever the rates say
-            self._lines_sent += 1
+            self._outlet.send(tokens.REST, math.inf)  # whatever the rates say, and for good
         self._break_off()
         self._phase = "closed"
 
@@ -120,26 +119,24 @@ class OpenCatHost:
         self._greeting.tick(now)
         if self._greeting.stage in ("starting", "asked by it"):
             return
-        if now - self._sent < 1.0 / self._settings.commands_per_s:
+        if not self._outlet.is_free(now):
             return
         exchange = self._exchange
         if exchange.question is not None:
             if exchange.repeat_due(now):
                 self._ask_again(now)
         elif exchange.doubtful or exchange.is_late(now):
-            self._send(exchange.ask(now), now)
+            self._outlet.send(exchange.ask(now), now)
         elif exchange.flight is not None:
             return
         elif self._phase == "greeting":
-            self._send(exchange.ask(now), now)
+            self._outlet.send(exchange.ask(now), now)
         else:
             self._act(now)
 
     def bytes_to_send(self) -> bytes:
         """Return what is to be written to the line, once."""
-        data = bytes(self._out)
-        self._out.clear()
-        return data
+        return self._outlet.bytes_to_send()
 
     # --- What is known -------------------------------------------------------------------------
 
@@ -180,7 +177,7 @@ class OpenCatHost:
 
     def _counts(self) -> LinkCounts:
         return LinkCounts(
-            frames_sent=self._lines_sent,
+            frames_sent=self._outlet.sent,
             frames_received=self._lines_heard,
             retries=self._repeats + self._wishes.repeats,
             crc_errors=self._reader.cut,
@@ -258,11 +255,11 @@ class OpenCatHost:
         command = None if self._hearsay.is_weak(now) else self._wishes.next(now)
         if command is None and self._answer_is_old(now):
             if not self._wishes.resting:
-                self._send(self._exchange.ask(now), now)
+                self._outlet.send(self._exchange.ask(now), now)
                 return
             command = REST
         if command is not None:
-            self._send(self._exchange.launch(command, now), now)
+            self._outlet.send(self._exchange.launch(command, now), now)
 
     def _ask_again(self, now: float) -> None:
         """Repeat a question, and look for a board that is lost."""
@@ -272,13 +269,7 @@ class OpenCatHost:
             self._wishes.order.lose()
             self._greeting.ask_again()
         self._repeats += 1
-        self._send(self._exchange.ask(now), now)
-
-    def _send(self, line: bytes, now: float) -> None:
-        """Let a line go out: the one way that leads there."""
-        self._out += tokens.admitted(line)
-        self._sent = now
-        self._lines_sent += 1
+        self._outlet.send(self._exchange.ask(now), now)
 
     # --- Small things --------------------------------------------------------------------------
 

@@ -21,7 +21,7 @@ GESTURES_APART = 5.0
 """Gestures follow each other no faster [s]."""
 
 
-def load(path: Path | None = None) -> Settings:
+def load_settings(path: Path | None = None) -> Settings:
     """Read a settings file; what it does not say is as in the bundled one.
 
     Raises

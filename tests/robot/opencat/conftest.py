@@ -8,7 +8,7 @@ import pytest
 
 from robot.drivers.opencat.host import OpenCatHost
 from robot.drivers.opencat.settings import Settings
-from robot.drivers.opencat.settings_file import load
+from robot.drivers.opencat.settings_file import load_settings
 from robot.emotion import Emotion
 from robot.simulators.opencat.habits import Habits
 from robot.simulators.opencat.simulator import OpenCatSimulator
@@ -43,7 +43,7 @@ class Desk:
         flip: float = 0.0,
         drop: float = 0.0,
     ) -> None:
-        self.settings = settings or load()
+        self.settings = settings or load_settings()
         self.host = OpenCatHost(self.settings)
         self.robot = robot or OpenCatSimulator(seed, habits=QUIET)
         self.now = 100.0

@@ -8,7 +8,7 @@ import pytest
 
 from robot.drivers.opencat.exchange import LOST_TRIES, QUESTION_WITHIN
 from robot.drivers.opencat.host import REST_ASK_EVERY, OpenCatHost
-from robot.drivers.opencat.settings_file import load, settings_of
+from robot.drivers.opencat.settings_file import load_settings, settings_of
 from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.simulators.opencat.habits import Habits
@@ -126,7 +126,7 @@ def test_of_a_flood_of_moods_the_last_one_wins(desk):
     skills = [at for at, line in d.sent if line[0] == "k"]
     assert len(skills) < 12
     gaps = [after - before for before, after in pairwise(skills)]
-    assert min(gaps) >= load().dwell
+    assert min(gaps) >= load_settings().dwell
 
 
 def test_the_same_mood_again_is_not_sent_again_but_counts_as_taken(desk):
@@ -355,7 +355,7 @@ def test_a_silent_board_is_lost_within_the_stated_time_and_found_again(desk, qui
     d.settle()
     d.run(1.0)
     robot.held = True
-    bound = load().ask_every + LOST_TRIES * QUESTION_WITHIN + 0.5
+    bound = load_settings().ask_every + LOST_TRIES * QUESTION_WITHIN + 0.5
     d.until(lambda: d.state == "degraded", bound)
     d.until(lambda: d.state == "lost", bound)
     assert d.telemetry.acknowledged is None

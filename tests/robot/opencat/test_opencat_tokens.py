@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings_file import load, settings_of
+from robot.drivers.opencat.settings_file import load_settings, settings_of
 from robot.errors import RobotError
 
 ALLOWED = b"kibd?j"
@@ -85,7 +85,7 @@ def test_settings_that_may_not_be_sent_are_refused_in_one_line(mood, tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(f"[bittle.moods.happy]\n{mood}\n")
     with pytest.raises(RobotError) as refusal:
-        load(path)
+        load_settings(path)
     text = str(refusal.value)
     assert BAD[mood] in text
     assert str(path) in text
@@ -145,7 +145,7 @@ def test_poses_are_kept_within_the_joints_limits():
 
 
 def test_the_bundled_settings_may_be_sent_and_all_moods_differ():
-    for behaviour in load().behaviours.values():
+    for behaviour in load_settings().behaviours.values():
         assert next(iter(behaviour.moods)) == "neutral"
         looks = [(mood.posture, str(mood.pose)) for mood in behaviour.moods.values()]
         assert len(set(looks)) == len(looks)
@@ -164,7 +164,7 @@ def test_the_example_in_the_document_loads_and_says_what_the_document_says(tmp_p
     text = (Path(__file__).parents[3] / "docs" / "opencat.md").read_text("utf-8")
     example = tmp_path / "example.toml"
     example.write_text(text.split("```toml\n")[1].split("```")[0], "utf-8")
-    settings, bundled = load(example), load()
+    settings, bundled = load_settings(example), load_settings()
     assert (settings.baud, settings.model) == (57600, "bittle")
     assert settings.behaviours["bittle"].moods["afraid"].sound == "purr"
     assert settings.behaviours["nybble"] == bundled.behaviours["nybble"]
