@@ -78,7 +78,7 @@ def conform(
 ) -> None:
     """Check whether a robot keeps to robot/PROTOCOL.md, and say where it does not.
 
-    Works with any robot: ours, your own firmware, a stranger's. It takes half a minute, a minute
+    Works with any robot: ours, your own firmware, a stranger's. It takes a minute, and more
     with a slow robot. The robot shows its moods and motions meanwhile, and is neutral at the end.
     Use a good cable: every frame counts.
 

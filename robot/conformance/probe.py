@@ -68,6 +68,10 @@ class Probe:
         """How much longer than asked for a wait has lasted: this computer had other work [s]."""
         self.moved = False
         """Whether a check has made all of it move."""
+        self.lengths: dict[int, float] | None = None
+        """How long its last motion and sound take [s], by item; None if no check has seen it."""
+        self.pose: tuple[float, ...] | None = None
+        """The joints after STOP [rad], once a check has seen them rest."""
         self._line = line
         self._splitter = Splitter()
         self._queue: deque[Heard] = deque(maxlen=QUEUE_MAX)
@@ -247,14 +251,14 @@ class Probe:
         self, seconds: float, until: Callable[[m.State], bool] = lambda state: False
     ) -> list[m.State]:
         """Say BEAT every 50 ms and return the STATEs of that time [s]; ends early where it may."""
-        states = []
+        states: list[m.State] = []
         end = self.now + seconds
-        while self.now < end:
+        while not states or self.now < end:
             due = self.now + timing.BEAT_EVERY
             states.append(self.beat("others"))
             if until(states[-1]):
                 break
-            self.hear(max(due - self.now, 0))
+            self.hear(max(min(due, end) - self.now, 0))
         return states
 
     def reaction(self, *said: bytes, after: str = "it") -> list[Heard]:

@@ -3,7 +3,7 @@
 from robot.conformance.check import Chapter
 from robot.conformance.checks.strangers import see_gone
 from robot.conformance.heard import Heard
-from robot.conformance.probe import AT_ONCE, Probe, told
+from robot.conformance.probe import AT_ONCE, SHOWN_WITHIN, SLACK, Probe, told
 from robot.conformance.verdicts import UnmetError
 from robot.protocol import messages as m
 from robot.protocol import timing
@@ -16,6 +16,9 @@ GREETINGS = 40
 
 GREETING_EVERY = 0.005
 """Time between two of them [s]; the answers take 4 ms each at 115200 baud."""
+
+FELT = 0.15
+"""An emotion that has come so far was not taken back."""
 
 
 @SESSIONS.must
@@ -32,7 +35,11 @@ def greeting_repeated(robot: Probe) -> None:
     robot.fresh()
     first = robot.greet()
     number = robot.express(0.0, 0.0)
+    count = robot.beat("WELCOME").beat
     second = robot.greet()
+    state = robot.expect(m.State, "a repeated HELLO", timing.STATE_EVERY + SLACK)
+    if state.beat != count:
+        raise UnmetError(f"STATE(beat={count}) after a repeated HELLO", f"beat={state.beat}")
     taken = robot.beat("a repeated HELLO").taken
     if second.taken != number or taken != number:
         raise UnmetError(
@@ -55,6 +62,22 @@ def session_zero_refused(robot: Probe) -> None:
     for message in (m.Hello(2, robot.host), m.Beat(0x0707), m.Express(9, 0.5, 0.5)):
         robot.say(message, session=0)
         _only_gone(robot.hear(AT_ONCE), f"nothing but GONE to {message} in session 0")
+
+
+@SESSIONS.must
+def session_zero_changes_nothing(robot: Probe) -> None:
+    """HELLO in session 0, of another host too, does nothing: no emotion, no number is lost."""
+    robot.calm()
+    before = robot.beat("HELLO").valence
+    number = robot.express(0.8, 0.6)
+    robot.say(m.Hello(timing.VERSION, robot.host ^ 0x40404040), session=0)
+    after = "EXPRESS and HELLO of another host in session 0"
+    states = robot.live(SHOWN_WITHIN, lambda state: state.valence > before + FELT)
+    if states[-1].valence <= before + FELT:
+        raise UnmetError(f"valence on its way to 0.8 after {after}", f"{states[-1].valence}")
+    if states[-1].taken != number:
+        raise UnmetError(f"STATE(taken={number}) after {after}", f"taken={states[-1].taken}")
+    _taken(robot, robot.again(), number, number, after)
 
 
 @SESSIONS.must
@@ -139,6 +162,9 @@ def version_agreed(robot: Probe) -> str:
                 f"version={version}",
             )
         robot.beat(f"HELLO (version {offer})")
+        again = robot.greet(offer=1).version
+        if again != 1:
+            raise UnmetError("WELCOME(version=1) when HELLO is repeated with it", f"{again}")
     return f"it speaks version {most}"
 
 

@@ -13,11 +13,14 @@ OTHERS = Chapter("What is not of the session", 5)
 QUIET = 0.4
 """How long a robot without a session is listened to [s]."""
 
-STRANGERS = 60
+STRANGERS = 240
 """Frames of foreign sessions in a row."""
 
 STRANGERS_AT_ONCE = 4
 """So many of them go in one write."""
+
+STRANGERS_EVERY = 0.005
+"""Time between two such writes [s]: about what a line of 115200 baud needs for one."""
 
 _FOREIGN = (
     m.Ask(m.ITEM_JOINT, 0),
@@ -66,7 +69,7 @@ def gone_not_too_often(robot: Probe) -> None:
     gone: list[Heard] = []
     for _ in range(STRANGERS // STRANGERS_AT_ONCE):
         robot.send(frame * STRANGERS_AT_ONCE)
-        gone += _gones(robot.hear(0.002))
+        gone += _gones(robot.hear(STRANGERS_EVERY))
     gone += _gones(robot.hear(AT_ONCE))
     if not gone:
         raise UnmetError(f"GONE after {STRANGERS} BEATs of another session", "none")

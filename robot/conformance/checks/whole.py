@@ -18,6 +18,15 @@ OVER_SPEED = 0.05
 WINDOW = 0.2
 """Shortest time between two STATEs by which a speed is judged [s]."""
 
+MOTIONS_MOST = 12
+"""Motions that are played at most; of more, each second or third and so on."""
+
+MOVES_FOR = 4.0
+"""How long all of them are looked at together [s]."""
+
+MOVES_EACH = 0.3
+"""How long each is looked at, at least [s]."""
+
 
 @WHOLE.must_of(2)
 def sends_valid_frames(robot: Probe) -> None:
@@ -108,13 +117,15 @@ def _moved(robot: Probe) -> list[m.Joint]:
     if robot.moved:
         return joints
     welcome = robot.fresh()
-    for emotion in ((1.0, 1.0), (-1.0, -1.0)):
+    motions = [*range(welcome.motions)][:: -(-welcome.motions // MOTIONS_MOST) or 1]
+    half = len(motions) // 2
+    each = max(MOVES_FOR / (2 + len(motions)), MOVES_EACH)
+    for emotion, some in (((1.0, 1.0), motions[:half]), ((-1.0, -1.0), motions[half:])):
         robot.express(*emotion)
-        robot.live(0.6)
-        if welcome.motions:
-            last = m.Play(robot.next_number(), m.ITEM_MOTION, welcome.motions - 1)
-            robot.command(last)
-            robot.live(0.6)
+        robot.live(each)
+        for motion in some:
+            robot.command(m.Play(robot.next_number(), m.ITEM_MOTION, motion))
+            robot.live(each)
     robot.moved = True
     return joints
 

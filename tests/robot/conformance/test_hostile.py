@@ -203,7 +203,13 @@ def test_a_robot_of_version_1_conforms():
     assert report.conforms
     assert report.welcome.version == 1
     skipped = [one.check.name for one in report.results if one.verdict == "skipped"]
-    assert skipped == ["express of version 2 used", "unknown mood refused"]
+    assert skipped == [
+        "express of version 2 used",
+        "unknown mood refused",
+        "named mood shown at once",
+        "mood 255 leaves the choice",
+        "stop ends a named mood",
+    ]
 
 
 def test_our_simulated_robot_conforms():

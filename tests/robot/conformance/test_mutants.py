@@ -2,9 +2,11 @@
 
 import pytest
 
+import tests.robot.conformance.mutants.alone
 import tests.robot.conformance.mutants.commands
 import tests.robot.conformance.mutants.frames
 import tests.robot.conformance.mutants.heartbeat
+import tests.robot.conformance.mutants.playing
 import tests.robot.conformance.mutants.sessions  # noqa: F401 # these enter themselves
 from robot.conformance import SimulatedLine, all_checks, chosen, examine
 from tests.robot.conformance.mutants.base import MUTANTS, Mutant
