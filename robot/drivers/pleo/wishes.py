@@ -7,7 +7,6 @@ motion anew, at worst. A sound, and a motion asked for by `play`, is sent once a
 
 from collections import deque
 from collections.abc import Iterator
-from typing import Literal, NamedTuple
 
 from robot.driver import ACTIONS_MAX
 from robot.drivers.pleo import commands, timing
@@ -15,25 +14,12 @@ from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.console import Landing
 from robot.drivers.pleo.known import Known
 from robot.drivers.pleo.settings import Clip, Mood, Settings
+from robot.drivers.pleo.steps import Step, body_steps, sound_steps
 from robot.emotion import Emotion
 from robot.feeling.words import closest_word
 
 STOP = ""
 """Stands for the neutral pose where else a mood's name stands; no mood has an empty name."""
-
-
-class Step(NamedTuple):
-    """One command, and what it is for."""
-
-    command: Command
-    """What is sent."""
-
-    part: Literal["tone", "body", "sound", "action"]
-    """tone: the motion's speed. body: what shows a mood. sound: what goes with it. action: what
-    `play` asked for."""
-
-    length: float = 0.0
-    """How long a motion that it starts lasts [s]; 0 if it starts none."""
 
 
 class Wishes:
@@ -189,13 +175,8 @@ class Wishes:
         self._doing, self._feeling, self._since = self._wanted, self.commanded, now
         self._cut, self._flawed, self._tries, self._repeat_at = False, False, 1, None
         self._action_ends = float("-inf")
-        self._steps = deque(self._showing())
-        mood = self._mood
-        if mood is not None and mood.sound is not None:
-            within = self._settings.play_within
-            tones = commands.sound_speed(mood.sound_speed), commands.sound_volume(mood.volume)
-            self._steps.extend(Step(tone, "sound") for tone in tones if self._is_new(tone))
-            self._steps.append(Step(commands.sound_play(mood.sound, within), "sound"))
+        within = self._settings.play_within
+        self._steps = deque([*self._showing(), *sound_steps(self._mood, self._known, within)])
 
     @property
     def _mood(self) -> Mood | None:
@@ -203,21 +184,7 @@ class Wishes:
         return self._settings.moods.get(self._doing or STOP)
 
     def _showing(self) -> Iterator[Step]:
-        """Yield what makes the body show what it should, without a sound."""
-        mood = self._mood
-        if mood is None:
-            yield Step(commands.JOINT_NEUTRAL, "body")
-        elif mood.motion is None:
-            yield from (Step(command, "body") for command in self._known.way_to(mood.joints))
-        else:
-            speed = commands.motion_speed(mood.motion_speed)
-            if self._is_new(speed):
-                yield Step(speed, "tone")
-            command = commands.motion_play(mood.motion.file, self._settings.play_within)
-            yield Step(command, "body", mood.round)
-
-    def _is_new(self, command: Command) -> bool:
-        return not self._known.holds(command)
+        return body_steps(self._mood, self._known, self._settings.play_within)
 
     # --- What came of it -----------------------------------------------------------------------
 
