@@ -67,7 +67,7 @@ PLACES = {"neutral": (0.0, 0.0), "happy": (0.7, 0.6), "angry": (-0.7, 0.6), "sad
 @pytest.mark.parametrize("kind", BOARDS)
 @pytest.mark.parametrize("seed", range(2))
 def test_an_hour_with_an_ugly_board(kind, seed, desk):
-    d = desk(BOARDS[kind](seed), step=0.1)
+    d = desk(BOARDS[kind](seed), step=0.2)
     random = np.random.default_rng(seed)
     watch = Watch(d)
     while d.now < 3700.0:
@@ -115,7 +115,7 @@ def test_a_line_that_loses_and_flips_bytes_only_delays(seed, desk):
 
 
 def test_a_day_leaves_nothing_behind(desk):
-    d = desk(OpenCatSimulator(3), step=0.5)
+    d = desk(OpenCatSimulator(3), step=1.0)
     random = np.random.default_rng(3)
     sizes = []
     for _ in range(24):
