@@ -150,3 +150,14 @@ def test_the_catalogue_fits_the_protocol():
     names = catalogue.motions + catalogue.sounds
     assert len(set(names)) == len(names)  # `play` knows them apart
     assert {loop.sound for loop in dinosaur.MOOD_LOOPS} <= set(catalogue.sounds)
+
+
+def test_a_moods_own_motion_that_is_played_ends_like_any_other():
+    body = DinosaurBody()
+    body.advance(0.0)
+    body.play(m.ITEM_MOTION, dinosaur.CATALOGUE.motions.index("happy"))
+    body.advance(1.0)
+    assert body.state().motion == dinosaur.CATALOGUE.motions.index("happy")
+    for second in range(2, 7):
+        body.advance(float(second))
+    assert body.state().motion == dinosaur.CATALOGUE.motions.index("neutral")

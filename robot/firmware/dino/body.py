@@ -59,6 +59,7 @@ class Body:
         self._told = NOTHING
         self._motion = _NEUTRAL
         self._time = 0
+        self._once = False
         self._now = -1
         self._alone = 0
         self._wanted = [0] * len(joints.angles)
@@ -80,7 +81,7 @@ class Body:
     def play_motion(self, index: int) -> None:
         """Play a motion once."""
         self.still = False
-        self._start(index)
+        self._start(index, True)
 
     def play_sound(self, index: int) -> None:
         """Play a sound."""
@@ -147,7 +148,7 @@ class Body:
         before = self.mood
         self.mood = self._next_mood() if self._told == NOTHING else self._told
         if self.mood != before:
-            if self._motion < MOODS:
+            if not self._once:
                 self._start(self.mood)
             if not self.still:
                 self._sound_of(self.mood)
@@ -172,7 +173,7 @@ class Body:
         self._time += elapsed
         period = MOTIONS[self._motion][1]
         if self._time >= period:
-            if self._motion < MOODS:
+            if not self._once:
                 self._time -= period
             else:
                 self._start(self.mood)
@@ -186,5 +187,5 @@ class Body:
                 wanted[joint] = offset + amplitude * _SINE[part % TURN] // _UNIT
         self.joints.move(wanted, elapsed)
 
-    def _start(self, motion: int) -> None:
-        self._motion, self._time = motion, 0
+    def _start(self, motion: int, once: bool = False) -> None:
+        self._motion, self._time, self._once = motion, 0, once

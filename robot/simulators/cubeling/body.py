@@ -54,6 +54,7 @@ class DinosaurBody:
         self._angles = np.zeros(len(dinosaur.LOW))
         self._motion: Motion = dinosaur.MOOD_LOOPS[0]
         self._motion_time = 0.0
+        self._once = False
         self._sound: str | None = None
         self._sound_left = 0.0
         self._still = False
@@ -74,7 +75,7 @@ class DinosaurBody:
         if item == m.ITEM_SOUND:
             self._start_sound(self.catalogue.sounds[index])
         else:
-            self._start_motion(dinosaur.MOTIONS[index])
+            self._start_motion(dinosaur.MOTIONS[index], once=True)
 
     def stop(self) -> None:
         """End everything and hold the neutral pose."""
@@ -112,13 +113,13 @@ class DinosaurBody:
         way = self._target - self._feeling
         length = hypot(*way.tolist())
         self._feeling = self._feeling + way * min(1.0, FEELING_SPEED * STEP / max(length, 1e-9))
-        before, looping = self._label, self._motion in dinosaur.MOOD_LOOPS
+        before = self._label
         if self._told == m.NOTHING:
             self._label = next_label(before, float(self._feeling[0]))
         else:
             self._label = LABELS[self._told]
         if self._label != before:
-            if looping:
+            if not self._once:
                 self._start_motion(self._loop)
             if self._loop.sound and not self._still:
                 self._start_sound(self._loop.sound)
@@ -126,7 +127,7 @@ class DinosaurBody:
     def _move(self) -> None:
         """Turn every joint towards where the motion wants it, no faster than its servo can."""
         self._motion_time += STEP
-        if self._motion not in dinosaur.MOOD_LOOPS and self._motion_time > self._motion.period:
+        if self._once and self._motion_time > self._motion.period:
             self._start_motion(self._loop)
         wanted = np.zeros_like(self._angles)
         if not self._still:
@@ -190,8 +191,8 @@ class DinosaurBody:
     def _loop(self) -> Motion:
         return dinosaur.MOOD_LOOPS[LABELS.index(self._label)]
 
-    def _start_motion(self, motion: Motion) -> None:
-        self._motion, self._motion_time = motion, 0.0
+    def _start_motion(self, motion: Motion, once: bool = False) -> None:
+        self._motion, self._motion_time, self._once = motion, 0.0, once
 
     def _start_sound(self, name: str) -> None:
         self._sound, self._sound_left = name, dinosaur.SOUNDS[name]
