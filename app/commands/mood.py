@@ -74,6 +74,8 @@ def table(
     Example: [cyan]cubeling mood table today.mcap -o today.csv[/]
     """
     output = output or Path(f"{session.stem}-mood.csv")
+    if output.suffix.lower() != ".csv":  # the session itself, it may be
+        raise AppError(f"moods are tabled as .csv, not as '{output}'")
     who = None if personality is None else Personality.load(personality)
     history = read_history(session, salvage=salvage)
     felt = history.felt if who is None else felt_by(history, who)

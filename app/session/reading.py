@@ -12,6 +12,7 @@ from mcap.exceptions import McapError
 from mcap.reader import NonSeekingReader, SeekingReader
 from mcap.records import Chunk, DataEnd, Metadata
 from mcap.stream_reader import StreamReader
+from zstandard import ZstdError
 
 from app.errors import AppError
 
@@ -20,8 +21,9 @@ START_OVER = "start over"
 
 MAGIC = b"\x89MCAP0\r\n"
 
-BROKEN = (McapError, EOFError, ValueError, struct.error)
-"""What the reader raises where a file ends in the middle of something."""
+BROKEN = (McapError, EOFError, ValueError, struct.error, LookupError, OSError, ZstdError)
+"""What the reader raises where a file ends in the middle of something, or has a wrong bit: an index
+that leads to no channel (KeyError) or before the file (OSError), a chunk that does not unpack."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ def about(path: Path) -> About:
     try:
         with path.open("rb") as file:
             summary = SeekingReader(file).get_summary()
-    except (OSError, *BROKEN) as error:
+    except BROKEN as error:
         raise AppError(f"cannot read the session '{path}': {error}") from error
     if summary is None or summary.statistics is None:
         raise AppError(f"cannot read the session '{path}': it has no index")

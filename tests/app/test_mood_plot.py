@@ -1,5 +1,6 @@
 """Moods of a session: read, felt again, drawn and tabled as they were."""
 
+import contextlib
 import csv
 import dataclasses
 import io
@@ -350,6 +351,7 @@ def test_table_has_a_row_a_frame_and_nothing_where_nothing_is_known(
         (("plot", "{session}", "-o", "m.gif"), "moods are drawn as .svg, .pdf, .png, not as"),
         (("plot", "{session}", "-o", "no/m.svg"), "cannot write 'no/m.svg'"),
         (("table", "{session}", "-o", "no/m.csv"), "cannot write 'no/m.csv'"),
+        (("table", "{session}", "-o", "{session}"), "moods are tabled as .csv"),
         (("plot", "nothing.mcap"), "cannot read the session 'nothing.mcap'"),
         (("plot", __file__), "is not a session"),
         (("plot", "{session}", "--personality", "rude"), "there is no personality 'rude'"),
@@ -370,6 +372,20 @@ def test_what_is_wrong_is_one_line_and_exit_code_2(
     assert out == ""
     assert says in told
     assert told.count("\n") == 1
+
+
+def test_a_session_with_wrong_bits_is_read_as_far_as_it_goes_or_refused(talking_session, tmp_path):
+    draws, whole = np.random.default_rng(5), talking_session.read_bytes()
+    path = tmp_path / "wrong.mcap"
+    for attempt in range(60):
+        wrong = bytearray(whole)
+        first = len(wrong) // 2 if attempt % 2 else 8  # every other one: at the end, in the index
+        for place in draws.integers(first, len(wrong) - 8, 30):
+            wrong[place] ^= 1 << int(draws.integers(8))
+        path.write_bytes(wrong)
+        with contextlib.suppress(AppError):
+            read_history(path)
+            read_wire(path)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no named pipes")
