@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from app.errors import AppError
 from robot.conformance import Check, PortLine, Report, Result, all_checks, chosen, examine
 from robot.errors import RobotError
 from robot.transport import opener
@@ -92,7 +93,7 @@ def conform(
         return
     for path in (output, picture):
         if path is not None:  # what cannot be written is better known before than after
-            path.open("a").close()
+            _writable(path)
     console = Console(highlight=False, record=picture is not None)
     if picture is not None:
         console.width = PICTURE_WIDTH
@@ -105,6 +106,13 @@ def conform(
         console.save_svg(str(picture), title="cubeling robot conform", code_format=SVG)
     if not report.conforms:
         raise typer.Exit(1)
+
+
+def _writable(path: Path) -> None:
+    """Refuse what cannot be written, or would be waited for."""
+    if path.is_fifo():
+        raise AppError(f"cannot write '{path}': it is a pipe, no file")
+    path.open("a").close()
 
 
 def _examined(port: str, checks: list[Check], console: Console) -> Report:

@@ -1,6 +1,7 @@
 """`cubeling robot conform`, as a person calls it."""
 
 import json
+import os
 import sys
 
 import pytest
@@ -79,6 +80,14 @@ def test_what_cannot_be_tried_is_said_in_one_line(conform, arguments, told):
     assert (code, out) == (2, "")
     assert told in err
     assert err.count("\n") == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no named pipes")
+def test_a_pipe_is_not_waited_for(conform, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    code, out, err = conform("sim:cubeling", "--json", str(tmp_path / "pipe"))
+    assert (code, out) == (2, "")
+    assert "it is a pipe, no file" in err
 
 
 def test_the_list_names_every_check_and_what_it_requires(conform):
