@@ -1,5 +1,6 @@
 """`cubeling`: the command line."""
 
+import signal
 import sys
 import warnings
 from typing import Annotated, TextIO
@@ -51,6 +52,7 @@ def common(
 def main() -> None:
     """Run a command; bad input ends in one line and exit code 2."""
     debug = "--debug" in sys.argv
+    say_goodbye()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("default", CharacterWarning)
@@ -73,6 +75,17 @@ def main() -> None:
     except (KeyboardInterrupt, typer.Abort):
         code = 130
     sys.exit(code if isinstance(code, int) else 0)
+
+
+def say_goodbye() -> None:
+    """Let a closed terminal and `kill` end a command as Ctrl-C does.
+
+    A robot that has no failsafe of its own keeps its servos on if nobody says goodbye to it.
+    """
+    for name in ("SIGTERM", "SIGHUP"):  # Windows lacks the second
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
+            signal.signal(number, signal.default_int_handler)
 
 
 def usage(error: typer.exceptions.TyperException) -> str:

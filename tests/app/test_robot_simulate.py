@@ -1,5 +1,9 @@
 """`cubeling robot simulate`: any robot, with any faults, and one line for what there is not."""
 
+import signal
+import subprocess
+import sys
+
 import pytest
 
 from robot.simulators import SIMULATORS
@@ -40,3 +44,18 @@ def test_the_help_explains_every_fault(cubeling):
     _, out, _ = cubeling("robot", "simulate", "--help")
     for option in (*OPTIONS, "seed"):
         assert f"{option}=" in out
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
+def test_a_closed_terminal_and_kill_end_it_in_order():
+    program = "from app.cli import main; main()"
+    command = [sys.executable, "-c", program, "robot", "simulate", "--seconds", "60"]
+    for number in (signal.SIGHUP, signal.SIGTERM):
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as child:
+            assert child.stdout is not None
+            try:
+                assert "A robot listens" in child.stdout.readline()
+                child.send_signal(number)
+                assert child.wait(20) in (0, 130)  # as Ctrl-C does; killed, it would be < 0
+            finally:
+                child.kill()
