@@ -201,8 +201,9 @@ def test_the_picture_says_what_it_shows_and_in_which_units(history, bundled_sess
     words = words_of(svg(draw(history, (), read_wire(bundled_session), LABEL_SETS["thesis"])))
     for expected in ("valence [1]", "arousal [1]", "time [s]", "neutral", "happy", "angry"):
         assert expected in words
-    for expected in ("kiss", "shout", "idle", "acknowledged", "observed on the robot"):
+    for expected in ("kiss", "shout", "idle", "observed on the robot"):
         assert expected in words
+    assert any(each.startswith("acknowledged") for each in words)  # and how much later
     assert "Moods of companion.mcap" in words
     assert any("scenario companion" in each for each in words)
 
