@@ -101,7 +101,10 @@ def conform(
     console.print()
     console.print(verdict(report), soft_wrap=picture is None)
     if output is not None:
-        output.write_text(json.dumps(as_json(report, port), indent=1) + "\n", "utf-8")
+        try:
+            output.write_text(json.dumps(as_json(report, port), indent=1) + "\n", "utf-8")
+        except OSError as error:
+            raise AppError(f"cannot write '{output}': {error.strerror}") from error
     if picture is not None:
         console.save_svg(str(picture), title="cubeling robot conform", code_format=SVG)
     if not report.conforms:

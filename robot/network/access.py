@@ -1,7 +1,9 @@
 """Where a broker is, and how to get in: address, user and password, certificates."""
 
 import os
+import select
 import ssl
+import stat
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import SplitResult, unquote, urlsplit
@@ -16,6 +18,9 @@ PASSWORD_VARIABLE = "CUBELING_MQTT_PASSWORD"
 
 PASSWORD_BYTES = 1024
 """Longest password file that is read [bytes]."""
+
+PASSWORD_WITHIN = 5.0
+"""Longest wait for a password that comes through a pipe, from a password manager say [s]."""
 
 
 @dataclass(frozen=True)
@@ -110,13 +115,23 @@ def _password(given: Credentials) -> str | None:
     if given.password_file is None:
         return os.environ.get(PASSWORD_VARIABLE)
     try:
-        with given.password_file.open("rb") as file:
-            lines = file.read(PASSWORD_BYTES).decode().splitlines()
+        lines = _first_bytes(given.password_file).decode().splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise RobotError(f"cannot read the password file {given.password_file}") from error
-    if not lines or not lines[0]:
+    if not lines or not lines[0] or not lines[0].isprintable():
         raise RobotError(f"the first line of {given.password_file} must be the password")
     return lines[0]
+
+
+def _first_bytes(path: Path) -> bytes:
+    """Read a file's beginning; of a pipe what comes within `PASSWORD_WITHIN`."""
+    file = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
+    try:
+        if stat.S_ISFIFO(os.fstat(file).st_mode):
+            select.select([file], [], [], PASSWORD_WITHIN)
+        return os.read(file, PASSWORD_BYTES)
+    finally:
+        os.close(file)
 
 
 def _tls(scheme: str, given: Credentials) -> ssl.SSLContext | None:
@@ -124,6 +139,9 @@ def _tls(scheme: str, given: Credentials) -> ssl.SSLContext | None:
         if given.ca or given.certificate or given.key:
             raise RobotError("certificates are for TLS: write mqtts:// for mqtt://")
         return None
+    for path in (given.ca, given.certificate, given.key):
+        if path is not None and path.exists() and not path.is_file():
+            raise RobotError(f"cannot read {path}: it is no file")  # OpenSSL would wait for a pipe
     if given.key is not None and given.certificate is None:
         raise RobotError(f"the key {given.key} needs the certificate that belongs to it")
     try:

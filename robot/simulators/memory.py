@@ -72,7 +72,7 @@ def simulator_of(url: str) -> Simulated:
         options[option] = text
     seed_text = options.pop("seed", "0")
     if not re.fullmatch(r"[0-9]{1,18}", seed_text):
-        raise RobotError(f"{url!r}: the seed must be a whole number from 0, not {seed_text!r}")
+        raise RobotError(f"{url!r}: the seed must be a whole number from 0, not {seed_text[:30]!r}")
     seed = int(seed_text)
     faults = faults_of(url, options)
     robot = SIMULATORS[name](seed)

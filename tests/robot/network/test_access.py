@@ -1,5 +1,7 @@
 """How to get into a broker: URLs, passwords, certificates; no message shows a password."""
 
+import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -65,3 +67,27 @@ def test_an_empty_password_file_and_one_that_is_no_certificate_are_refused(tmp_p
         Address.of("mqtt://h", Credentials(user="ann", password_file=file))
     with pytest.raises(RobotError, match="no certificate"):
         Address.of("mqtts://h", Credentials(ca=file))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no named pipes")
+def test_a_password_may_come_through_a_pipe_and_no_pipe_is_waited_for_for_ever(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    given = Credentials(user="ann", password_file=pipe)
+    with pytest.raises(RobotError, match="must be the password"):
+        Address.of("mqtt://h", given)  # nobody writes
+    writer = os.open(pipe, os.O_RDWR)
+    os.write(writer, b"secret\n")
+    assert Address.of("mqtt://h", given).password == "secret"
+    os.close(writer)
+    for option in ("ca", "certificate", "key"):
+        wrong = Credentials(**{option: pipe})
+        with pytest.raises(RobotError, match="it is no file"):
+            Address.of("mqtts://h", wrong)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="there is no /dev/zero")
+def test_a_device_is_no_password():
+    given = Credentials(user="ann", password_file=Path("/dev/zero"))
+    with pytest.raises(RobotError, match="must be the password"):
+        Address.of("mqtt://h", given)
