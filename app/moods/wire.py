@@ -12,7 +12,8 @@ from app.errors import AppError
 from app.session import messages
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.schema import MessageError, Sender, unpack
+from robot.protocol.fields import MessageError
+from robot.protocol.schema import Sender, unpack
 from robot.protocol.wire import FrameReader
 
 Array = NDArray[np.float64]

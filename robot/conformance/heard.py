@@ -5,7 +5,8 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from robot.protocol import messages as m
-from robot.protocol.schema import FORMS, HEADER, MessageError, form_of, unpack
+from robot.protocol.fields import MessageError
+from robot.protocol.schema import FORMS, HEADER, form_of, unpack
 from robot.protocol.wire import MAX_FRAME, FrameError, decode_frame
 
 STATES_KEPT = 20_000

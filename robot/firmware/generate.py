@@ -10,7 +10,8 @@ from robot.emotion import ANGRY_BELOW, HAPPY_ABOVE
 from robot.motions import Motion, Sway
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.schema import FORMS, HEADER, FieldForm, MessageForm, form_of
+from robot.protocol.fields import FieldForm
+from robot.protocol.schema import FORMS, HEADER, MessageForm, form_of
 from robot.protocol.wire import MAX_BODY, MAX_FRAME
 from robot.simulators.cubeling import dinosaur
 

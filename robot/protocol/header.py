@@ -1,8 +1,9 @@
 """The messages as a C header, drawn from the one table: structs, and functions there and back."""
 
 from robot.protocol import timing
+from robot.protocol.fields import LIMITS, FieldForm
 from robot.protocol.messages import JOINTS_MAX, NOTHING
-from robot.protocol.schema import FORMS, HEADER, LIMITS, FieldForm, MessageForm, Part
+from robot.protocol.schema import FORMS, HEADER, MessageForm, Part
 
 _TYPES = {"u8": "uint8_t", "u16": "uint16_t", "u32": "uint32_t", "i16": "int16_t"}
 _TEXT, _ROW = 16, 16  # elements of a text16 and of an i16x16

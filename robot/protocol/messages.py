@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import Final
 
-from robot.protocol.schema import message, wire
+from robot.protocol.fields import wire
+from robot.protocol.schema import message
 
 NOTHING: Final = 255
 """An index that points at nothing: no motion, no sound."""

@@ -9,8 +9,9 @@ from pathlib import Path
 
 from robot.protocol import messages as m
 from robot.protocol import timing
+from robot.protocol.fields import FieldForm
 from robot.protocol.header import header
-from robot.protocol.schema import FORMS, HEADER, FieldForm, MessageForm
+from robot.protocol.schema import FORMS, HEADER, MessageForm
 from robot.protocol.vectors import VECTORS, vectors_file
 from robot.protocol.wire import MAX_BODY, MAX_FRAME
 

@@ -19,7 +19,8 @@ from robot.errors import RobotError
 from robot.feeling import personality_file
 from robot.network.messages import KINDS
 from robot.network.schema import MalformedError, decode, encode
-from robot.protocol.schema import MessageError, Sender, pack, unpack
+from robot.protocol.fields import MessageError
+from robot.protocol.schema import Sender, pack, unpack
 from robot.protocol.wire import (
     MAX_BODY,
     MAX_FRAME,

@@ -8,8 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from robot.protocol.fields import MessageError
 from robot.protocol.reference import HEADER_FILE, VECTORS_FILE
-from robot.protocol.schema import FORMS, MessageError, pack, unpack
+from robot.protocol.schema import FORMS, pack, unpack
 from robot.protocol.vectors import VECTORS
 from robot.protocol.wire import FrameReader, encode_frame
 

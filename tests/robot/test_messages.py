@@ -9,16 +9,8 @@ from hypothesis import strategies as st
 
 from robot.protocol import messages as m
 from robot.protocol import wire
-from robot.protocol.schema import (
-    FORMS,
-    HEADER,
-    FieldForm,
-    MessageError,
-    MessageForm,
-    Sender,
-    pack,
-    unpack,
-)
+from robot.protocol.fields import FieldForm, MessageError
+from robot.protocol.schema import FORMS, HEADER, MessageForm, Sender, pack, unpack
 from robot.protocol.timing import VERSION
 
 forms = st.sampled_from(sorted(FORMS.values(), key=lambda form: form.number))

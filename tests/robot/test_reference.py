@@ -6,8 +6,9 @@ import re
 import pytest
 
 from robot.protocol import wire
+from robot.protocol.fields import MessageError
 from robot.protocol.reference import DOCUMENT, VECTORS_FILE, drawn, renewed
-from robot.protocol.schema import FORMS, MessageError, unpack
+from robot.protocol.schema import FORMS, unpack
 from robot.protocol.vectors import VECTORS
 from robot.protocol.wire import FrameReader
 

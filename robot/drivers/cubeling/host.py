@@ -17,7 +17,8 @@ from robot.drivers.cubeling.view import view_of
 from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.schema import MessageError, pack, unpack
+from robot.protocol.fields import MessageError
+from robot.protocol.schema import pack, unpack
 from robot.protocol.wire import FrameReader, encode_frame
 from robot.telemetry import LinkCounts, LinkState, Telemetry
 

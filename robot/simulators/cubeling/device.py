@@ -10,7 +10,8 @@ from robot.catalogue import Catalogue
 from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.schema import MessageError, pack, unpack
+from robot.protocol.fields import MessageError
+from robot.protocol.schema import pack, unpack
 from robot.protocol.wire import FrameReader, crc16, encode_frame
 
 

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 import robot.protocol
 from robot.firmware.dino import codec, frames, messages
 from robot.protocol import messages as m
-from robot.protocol.schema import MessageError, form_of, pack, unpack
+from robot.protocol.fields import MessageError
+from robot.protocol.schema import form_of, pack, unpack
 from robot.protocol.wire import MAX_BODY, MAX_FRAME, FrameReader, encode_frame
 
 VECTORS = json.loads((Path(robot.protocol.__file__).parent / "vectors.json").read_text("utf-8"))

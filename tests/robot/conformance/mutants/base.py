@@ -5,7 +5,8 @@ from contextlib import suppress
 from typing import Any
 
 from robot.protocol import messages as m
-from robot.protocol.schema import MessageError, pack, unpack
+from robot.protocol.fields import MessageError
+from robot.protocol.schema import pack, unpack
 from robot.protocol.wire import MAX_BODY, MAX_FRAME, FrameError, decode_frame, encode_frame
 from robot.simulators.cubeling.simulator import Simulator
 
