@@ -147,11 +147,12 @@ class _Play:
         given = next(plan.given, None) if plan.given is not None else None
         prepared = self._prepare(frame) if self._prepare else frame
         step = plan.playground.step(prepared, inputs, given)
+        # First the look: right after a wish the link's thread is busy with it.
+        view = self._robot.view()
         self._robot.feel(step.emotion)
         if plan.player is not None:
             plan.player.tell(step.command, step.emotion)
         seconds = time.perf_counter() - began
-        view = self._robot.view()
         if self._recorder is not None:
             if inputs.clear:
                 self._recorder.event(START_OVER, frame.timestamp)

@@ -132,6 +132,7 @@ class Robot(Closing):
         self._driver = driver
         self._clock = clock
         self._exchange = exchange
+        self._wish: tuple[Emotion, str | None] | None = None
 
     # --- What to do ----------------------------------------------------------------------------
 
@@ -146,7 +147,10 @@ class Robot(Closing):
             The mood's word, "happy", so that the robot shows the same as everyone else; the one of
             its own words that is closest is taken. None: the robot chooses.
         """
+        if self._wish == (emotion, label):
+            return  # every frame of a session asks; only a new wish is worth waking the link
         with self._exchange.lock:
+            self._wish = emotion, label
             self._driver.express(emotion, label)
         self._exchange.wake()
 
@@ -178,6 +182,7 @@ class Robot(Closing):
     def stop(self) -> None:
         """Let the robot end everything and hold its neutral pose, until it is asked for more."""
         with self._exchange.lock:
+            self._wish = None
             self._driver.stop()
         self._exchange.wake()
 
@@ -188,8 +193,10 @@ class Robot(Closing):
         """What is known now."""
         with self._exchange.lock:
             known = self._driver.telemetry(self._clock())
-        counts = replace(known.counts, discarded=self._exchange.discarded)
-        return replace(known, counts=counts)
+        discarded = self._exchange.discarded
+        if not discarded:
+            return known
+        return replace(known, counts=replace(known.counts, discarded=discarded))
 
     @property
     def catalogue(self) -> Catalogue:

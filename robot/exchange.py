@@ -25,10 +25,6 @@ REOPEN_EVERY = 0.25
 READ_AT_ONCE = 1024
 """Most bytes taken from the port in one go."""
 
-READS_THROWN_AWAY = 16
-"""Most reads whose bytes are dropped in one go. pySerial's own way to empty a buffer never ends on
-a socket that babbles (`test_a_line_that_babbles_is_given_up_in_time_and_stops_nobody`)."""
-
 
 class Exchange:
     """Moves bytes between a port and a driver, a turn at a time.
@@ -77,7 +73,7 @@ class Exchange:
     def _turn(self, port: Port, read: Callable[[Port], bytes]) -> bool:
         """Read what is there, let the driver think, write what it says.
 
-        Returns whether the robot has said more than it may: then the rest is thrown away.
+        Returns whether the robot has said more than it may: the rest was thrown away, undecoded.
         """
         try:
             data = read(port)
@@ -85,8 +81,9 @@ class Exchange:
             self._unplug(port)
             return False
         now = self._clock()
+        granted = self._budget.grant(len(data), now)
         with self.heard:
-            self._driver.receive(data, now)
+            self._driver.receive(data[:granted], now)
             self._driver.tick(now)
             answer = self._driver.bytes_to_send()
             if data:
@@ -95,20 +92,8 @@ class Exchange:
         if answer:
             self._write(port, answer)
             self._tell("tx", answer, now)
-        if not self._budget.spend(len(data), now):
-            return False
-        self._throw_away(port)
-        return True
-
-    def _throw_away(self, port: Port) -> None:
-        """Drop what a babbling robot has sent beyond its budget, undecoded."""
-        try:
-            for _ in range(READS_THROWN_AWAY):
-                if not port.in_waiting:
-                    break
-                self.discarded += len(port.read(READ_AT_ONCE))
-        except OSError:
-            self._unplug(port)
+        self.discarded += len(data) - granted
+        return granted < len(data)
 
     def _write(self, port: Port, data: bytes) -> None:
         try:

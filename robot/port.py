@@ -6,7 +6,7 @@ from typing import Protocol
 Clock = Callable[[], float]
 """The time [s]."""
 
-READ_TIMEOUT = 0.010
+READ_TIMEOUT = 0.020
 """Longest wait in one read [s]: how late a beat or a repeat may be, and a close be noticed."""
 
 
