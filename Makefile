@@ -18,10 +18,10 @@ test: .venv/ready-dev  ## the whole test suite, on all cores
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 # Longer than a test suite may take, and of another kind: nothing here has an expected value.
-campaign: .venv/ready-dev  ## a million exchanges on the robot's wire, what its check lets pass, hours without growth
+campaign: .venv/ready-dev  ## a million exchanges on the robot's wire, what its check lets pass, a day without growth
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
 	$(BIN)/python -m tests.campaigns.crc
-	$(BIN)/python -m tests.campaigns.soak --hours 2
+	$(BIN)/python -m tests.campaigns.soak --hours 24
 
 check: .venv/ready-dev  ## formatting, lint and types
 	$(BIN)/ruff format --check .
