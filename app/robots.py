@@ -8,6 +8,7 @@ from typing import Self
 from app.scenarios import EmotionTarget
 from app.show.overlay import RobotView
 from robot import Emotion, Robot, RobotError, SimulatedPort, SteppedRobot, connect
+from robot.closing import Closing
 from robot.feeling.words import closest_word
 
 OnBytes = Callable[[str, bytes, float], None]
@@ -17,7 +18,7 @@ REMEMBERED = 1000
 """So many emotions are remembered with their words; a robot takes none that is older [frames]."""
 
 
-class RobotLine:
+class RobotLine(Closing):
     """Hands the emotions of a session to a robot and tells how it is.
 
     `open` it before the session, `close` it after; a second `close` does nothing. Nothing here
@@ -81,12 +82,6 @@ class RobotLine:
             line.close()
             raise
         return line
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def feel(self, target: EmotionTarget) -> None:
         """Ask the robot to feel; returns at once."""

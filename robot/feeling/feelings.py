@@ -3,8 +3,7 @@
 import math
 
 from robot.emotion import Emotion
-from robot.errors import RobotError
-from robot.feeling.mood import GAP_MAX, Mood
+from robot.feeling.mood import Mood, time_counted
 from robot.feeling.personality import Personality, in_range
 
 TOP_SPEED = 5.0
@@ -116,14 +115,9 @@ class Feelings:
         self._since = now
 
     def _elapsed(self, timestamp: float) -> float:
-        last = timestamp if self._timestamp is None else self._timestamp
-        if not last <= timestamp < math.inf:  # also refuses NaN
-            raise RobotError(
-                f"feelings at {last} s cannot go back to {timestamp} s: "
-                "give each recording its own Feelings"
-            )
+        elapsed = time_counted(self._timestamp, timestamp, "feelings", "Feelings")
         self._timestamp = timestamp
-        return min(timestamp - last, GAP_MAX)
+        return elapsed
 
 
 def _moved(value: float, home: float, rate: float, half_life: float, elapsed: float) -> float:

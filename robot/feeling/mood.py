@@ -65,6 +65,22 @@ class Mood:
     """When [s]."""
 
 
+def time_counted(last: float | None, now: float, what: str, kind: str) -> float:
+    """Return how much time [s] an update accounts for: none the first time, at most `GAP_MAX`.
+
+    Raises
+    ------
+    RobotError
+        If time runs backwards; the line names what was updated, and the class to make anew.
+    """
+    last = now if last is None else last
+    if not last <= now < math.inf:  # also refuses NaN
+        raise RobotError(
+            f"{what} at {last} s cannot go back to {now} s: give each recording its own {kind}"
+        )
+    return min(now - last, GAP_MAX)
+
+
 class MoodLine:
     """Moves a mood along the line.
 
@@ -132,11 +148,6 @@ class MoodLine:
         return Mood(self._value, self._label, emotion, timestamp)
 
     def _elapsed(self, timestamp: float) -> float:
-        last = timestamp if self._timestamp is None else self._timestamp
-        if not last <= timestamp < math.inf:  # also refuses NaN
-            raise RobotError(
-                f"a mood at {last} s cannot go back to {timestamp} s: "
-                "give each recording its own MoodLine"
-            )
+        elapsed = time_counted(self._timestamp, timestamp, "a mood", "MoodLine")
         self._timestamp = timestamp
-        return min(timestamp - last, GAP_MAX)
+        return elapsed
