@@ -23,9 +23,10 @@ campaign: .venv/ready-dev  ## a million exchanges on the robot's wire, what its 
 	$(BIN)/python -m tests.campaigns.crc
 	$(BIN)/python -m tests.campaigns.soak --hours 24
 
-check: .venv/ready-dev  ## formatting, lint and types
+check: .venv/ready-dev  ## formatting, lint, the floors of the rooms, and types
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
+	$(BIN)/lint-imports
 	$(BIN)/mypy
 
 bench: .venv/ready-dev  ## every figure that the documents name
@@ -49,18 +50,18 @@ bench-tracking: .venv/ready-dev  ## the cube's tracker and its rivals, on the sa
 	$(BIN)/python -m tests.bench.tracking --readme tracking/README.md
 
 recordings: .venv/ready-dev  ## draw the bundled recordings anew
-	$(BIN)/python -m app.recordings
+	$(BIN)/python -m tools.recordings
 
 assets: .venv/ready-dev  ## author the bundled characters anew
-	$(BIN)/python -m characters.authoring all
+	$(BIN)/python -m tools.authoring all
 
 pictures: .venv/ready-dev  ## draw the pictures of the documents anew
-	$(BIN)/python -m app.pictures
-	$(BIN)/python -m robot.firmware.wiring
+	$(BIN)/python -m tools.pictures
+	$(BIN)/python -m tools.wiring
 	$(BIN)/python -m tests.robot.conformance.picture
 
 cast: .venv/ready  ## draw the bundled characters from all sides, and their clips, to look at
-	$(BIN)/python -m app.cast
+	$(BIN)/python -m tools.cast
 
 .venv/ready: pyproject.toml constraints.txt
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Cubeling needs Python 3.11 or newer; choose one with: make PYTHON=python3.12')"

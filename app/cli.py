@@ -9,6 +9,7 @@ import typer
 import typer.exceptions
 from rich.console import Console
 
+from affect import AffectError
 from app.commands import bridge, calibrate, character, cube, demo, doctor, mood, play, replay, robot
 from app.errors import AppError
 from characters import CharacterError
@@ -62,7 +63,7 @@ def main() -> None:
         told = usage(error)
         complain(told)
         code = BAD_INPUT if told else 0  # a bare `cubeling` shows its help, which is no mistake
-    except (AppError, TrackingError, CharacterError, RobotError) as error:
+    except (AppError, AffectError, TrackingError, CharacterError, RobotError) as error:
         if debug:
             raise
         complain(str(error))

@@ -4,24 +4,26 @@ Commands come in, posed characters and their pictures go out; this room knows no
 and no robot. Start with `Character.load` and `Animator`.
 """
 
-from characters.animator import Animator
-from characters.blend import Blend, BlendSpace1D, BlendSpace2D
-from characters.character import Character
-from characters.clip import Clip
-from characters.command import CharacterCommand, PosedCharacter
-from characters.crossfade import CrossFade
-from characters.curves import Adsr, Curve, FadeCurve, Keyed, Product
+from characters import formats as formats  # registers the files that characters are read from
+from characters.control.animator import Animator
+from characters.control.command import CharacterCommand, PosedCharacter
 from characters.errors import CharacterError, CharacterWarning
-from characters.layers import Added, Layered
-from characters.machine import StateMachine
-from characters.masks import Mask, mask_of
-from characters.mesh import Material, Mesh, Morph
-from characters.mirror import Mirror, Mirrored
-from characters.modifiers import Displaced, Loop, Stretch, TimeCurve, Warped, Window
-from characters.motion import Motion, Step
-from characters.path import ClosedPath
-from characters.pose import Pose, Skeleton
-from characters.schedule import Action, LiveSchedule, Schedule
+from characters.locomotion.paths import ClosedPath
+from characters.model.character import Character
+from characters.model.mesh import Material, Mesh, Morph
+from characters.model.mirroring import mirror_of
+from characters.motion.blend import Blend, BlendSpace1D, BlendSpace2D
+from characters.motion.clip import Clip
+from characters.motion.crossfade import CrossFade
+from characters.motion.curves import Adsr, Curve, FadeCurve, Keyed, Product
+from characters.motion.layers import Added, Layered
+from characters.motion.mirror import Mirror, Mirrored
+from characters.motion.modifiers import Displaced, Loop, Stretch, TimeCurve, Warped, Window
+from characters.motion.motion import Motion, Step
+from characters.motion.schedule import Action, LiveSchedule, Schedule
+from characters.motion.state_machine import StateMachine
+from characters.skeleton.masks import Mask, mask_of
+from characters.skeleton.pose import Pose, Skeleton
 
 __all__ = [
     "Action",
@@ -64,4 +66,5 @@ __all__ = [
     "Warped",
     "Window",
     "mask_of",
+    "mirror_of",
 ]

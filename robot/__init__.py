@@ -7,31 +7,27 @@
 'happy'
 """
 
-from robot.catalogue import Catalogue, JointLimits
-from robot.connection import Robot, connect
-from robot.emotion import Emotion
+from affect import Emotion
+from robot import drivers as drivers  # registers the protocols
+from robot.contract.catalogue import Catalogue, JointLimits
+from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.errors import RobotError
-from robot.feeling.feelings import Feelings
-from robot.feeling.labels import LABEL_SETS
-from robot.feeling.mood import Mood, MoodLine
-from robot.feeling.personality import Personality
-from robot.ports import SerialPort, serial_ports
+from robot.link.connection import Robot, connect
+from robot.link.ports import SerialPort, serial_ports
+from robot.link.transport import SCHEMES
 from robot.simulators.cubeling.simulator import Simulator
+from robot.simulators.memory import open_simulated
 from robot.simulators.port import SimulatedPort
-from robot.stepped import SteppedRobot
-from robot.telemetry import LinkCounts, LinkState, Telemetry
+from robot.simulators.stepped import SteppedRobot
+
+SCHEMES["sim"] = open_simulated
 
 __all__ = [
-    "LABEL_SETS",
     "Catalogue",
     "Emotion",
-    "Feelings",
     "JointLimits",
     "LinkCounts",
     "LinkState",
-    "Mood",
-    "MoodLine",
-    "Personality",
     "Robot",
     "RobotError",
     "SerialPort",

@@ -1,18 +1,18 @@
 """Camera frames in; where the cube is, and what the hand does with it, out."""
 
 from tracking.calibration import Calibration, calibrate_camera
-from tracking.cube import CubeModel, Face
-from tracking.cube_file import write_cube
+from tracking.cube.file import write_cube
+from tracking.cube.icons import icon_mask, icon_paths
+from tracking.cube.model import CubeModel, Face
+from tracking.cube.printing.sheet import write_sheet
 from tracking.errors import TrackingError
-from tracking.frame import Frame
-from tracking.gestures import CubeGestures
-from tracking.icons import icon_mask, icon_paths
-from tracking.intrinsics import Intrinsics
-from tracking.several import CubesTracker
-from tracking.sheet import write_sheet
+from tracking.geometry.frame import Frame
+from tracking.geometry.intrinsics import Intrinsics
+from tracking.geometry.state import CubeControls, CubeState
+from tracking.gestures.gestures import CubeGestures
 from tracking.sources import FrameSource, Health, LiveFrames, open_source
-from tracking.state import CubeControls, CubeState
-from tracking.tracker import CubeTracker
+from tracking.tracker.several import CubesTracker
+from tracking.tracker.tracker import CubeTracker
 
 __all__ = [
     "Calibration",

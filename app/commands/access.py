@@ -8,8 +8,8 @@ import typer
 from rich.console import Console
 
 from app.errors import AppError
-from app.network import Access, Network
-from app.players import PlayerLine
+from app.running.network import Access, Network
+from app.running.players import PlayerLine
 from robot.network import Credentials
 
 Broker = Annotated[

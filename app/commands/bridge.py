@@ -11,11 +11,11 @@ import typer
 from rich.console import Console
 from rich.live import Live
 
-from app.bridge import Bridge, Order
 from app.commands.access import Broker, Ca, PasswordFile, Site
 from app.errors import AppError
-from app.network import SITE, Access, Network
-from app.show.roster import line, table
+from app.running.bridge import Bridge, Order
+from app.running.network import SITE, Access, Network
+from app.ui.roster import line, table
 from robot.network import Credentials, Member
 from robot.network.following import HOLD
 from robot.network.messages import Status

@@ -8,12 +8,12 @@ import numpy as np
 import typer
 from rich.console import Console
 
-from app.calibrating import Lesson, Teller
 from app.commands.play import CAMERA, Cube
 from app.errors import AppError
-from app.opening import fitting
-from app.show.coach_lines import FORMATS, CoachLines, write_coverage
-from app.show.display import has_display
+from app.running.opening import fitting
+from app.ui.calibration.coach_lines import FORMATS, CoachLines, write_coverage
+from app.ui.calibration.session import Lesson, Teller
+from app.ui.display import has_display
 from tracking import CubeModel, FrameSource, Intrinsics, open_source
 from tracking.calibration import (
     Board,
@@ -25,8 +25,8 @@ from tracking.calibration import (
     measured_cube,
     write_board,
 )
-from tracking.cube import bundled, face_corners
-from tracking.cube_file import write_cube
+from tracking.cube.file import write_cube
+from tracking.cube.model import bundled, face_corners
 
 CAMERA_FILE = Path("camera.yaml")
 
@@ -140,7 +140,7 @@ def _taught(
     with ExitStack() as closing, suppress(KeyboardInterrupt):
         teller: Teller = CoachLines(Console(soft_wrap=True, highlight=False), target)
         if shown:
-            from app.show.coach_window import CoachWindow  # needs a display's libraries
+            from app.ui.calibration.coach_window import CoachWindow  # needs a display's libraries
 
             teller = closing.enter_context(CoachWindow(frames.size, target))
         lesson.run(frames, teller, seconds)

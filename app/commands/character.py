@@ -14,16 +14,16 @@ from rich.markup import escape
 from rich.table import Table
 from rich.tree import Tree
 
-from app.album import Album, save
 from app.commands import character_graph, character_locomotion
 from app.errors import AppError
+from app.ui.album import Album, save
 from characters import Character, Skeleton
 from characters.errors import CharacterWarning
-from characters.facts import ClipFacts, Footing
 from characters.formats import Performance, load_motion
-from characters.inspection import Inspection, inspect
+from characters.model.facts import ClipFacts, Footing
+from characters.model.inspection import Inspection, inspect
+from characters.model.stick_figure import stick_figure
 from characters.rendering import create_context
-from characters.rendering.sticks import stick_figure
 
 app = typer.Typer(
     help="Look at characters and motions.", no_args_is_help=True, rich_markup_mode="rich"

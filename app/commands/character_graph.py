@@ -10,11 +10,11 @@ from rich.tree import Tree
 
 from app.errors import AppError
 from characters import Animator, Character
-from characters.trees import Node, Plan
-from characters.trees.builtin import built_in
-from characters.trees.diagram import draw
-from characters.trees.layout import described, plain
-from characters.trees.plan import Change
+from characters.control.builtin_tree import built_in
+from characters.motion.trees import Node, Plan
+from characters.motion.trees.diagram import draw
+from characters.motion.trees.layout import described, plain
+from characters.motion.trees.plan import Change
 
 
 def graph(

@@ -9,10 +9,10 @@ from rich.console import Console
 
 from app.commands.play import CAMERA, Personality
 from app.commands.progress import finished_video, play_to_end, tell_guess
-from app.commands.replay import bundled
-from app.opening import Wish, open_session
+from app.running.opening import Wish, open_session
 from app.scenarios import scenario_cube
-from app.show.display import has_display
+from app.session.bundled import bundled
+from app.ui.display import has_display
 from tracking import FrameSource, TrackingError, open_source
 
 VIDEO = Path("demo.mp4")

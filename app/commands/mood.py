@@ -7,12 +7,12 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
+from affect import LABEL_SETS, Personality
+from affect.labels import LabelSet
+from affect.personality_file import bundled, bundled_text
 from app.errors import AppError
 from app.moods import draw, felt_by, read_history, read_wire, write_table
 from app.moods.formats import checked, save
-from robot import LABEL_SETS, Personality
-from robot.feeling.labels import LabelSet
-from robot.feeling.personality_file import bundled, text_of
 
 app = typer.Typer(
     help="Moods of recorded sessions, and the personalities that have them.",
@@ -94,7 +94,7 @@ def personality_(
     Example: [cyan]cubeling mood personality lively > my.toml[/]
     """
     if name is not None:
-        typer.echo(text_of(name), nl=False)
+        typer.echo(bundled_text(name), nl=False)
         return
     for each in bundled():
         typer.echo(f"{each:8} {Personality.load(each).description}")

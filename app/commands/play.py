@@ -10,10 +10,10 @@ from rich.console import Console
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.progress import finished_video, play_to_end, tell_guess
-from app.network import SITE
-from app.opening import Wish, open_session
+from app.running.network import SITE
+from app.running.opening import Wish, open_session
 from app.scenarios import scenario_cube
-from app.show.display import require_display
+from app.ui.display import require_display
 from robot.network import Credentials
 
 CAMERA = "camera:0"

@@ -6,11 +6,11 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from app.errors import AppError
-from app.opening import Wish, guessed
-from app.playground import Step
-from app.runner import Plan, run
-from app.show.screen import VideoFile
-from app.summary import Summary
+from app.pipeline.step import Step
+from app.running.opening import Wish, guessed
+from app.running.runner import Plan, run
+from app.running.summary import Summary
+from app.ui.screen import VideoFile
 from tracking import FrameSource
 
 

@@ -8,7 +8,6 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.checking import check_session
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.play import (
     Actor,
@@ -21,11 +20,11 @@ from app.commands.play import (
     RobotUrl,
 )
 from app.commands.progress import finished_video, play_to_end, tell_guess
-from app.errors import AppError
-from app.network import SITE
-from app.opening import Wish, open_session
+from app.running.network import SITE
+from app.running.opening import Wish, open_session
+from app.running.replay_check import check_session
 from app.session import about, salvaged
-from app.show.display import has_display
+from app.ui.display import has_display
 from robot.network import Credentials
 
 
@@ -104,14 +103,3 @@ def replay(
     if output is not None:
         console.print(finished_video(output))
     summary.check()
-
-
-def bundled(name: str) -> Path:
-    """Return the session in `recordings/` that belongs to a scenario."""
-    import recordings
-
-    for folder in recordings.__path__:
-        path = Path(folder) / f"{name}.mcap"
-        if path.is_file():
-            return path
-    raise AppError(f"the bundled recording '{name}.mcap' is missing: clone the repository again")

@@ -16,7 +16,7 @@ from rich.text import Text
 from app.errors import AppError
 from robot.conformance import Check, PortLine, Report, Result, all_checks, chosen, examine
 from robot.errors import RobotError
-from robot.transport import opener
+from robot.link.transport import opener
 
 MARKS = {"ok": ("ok", "green"), "failed": ("FAILED", "bold red"), "skipped": ("skipped", "dim")}
 POOR = ("poor", "yellow")

@@ -12,8 +12,9 @@ from rich.live import Live
 from rich.markup import escape
 from rich.table import Table
 
-from robot import Emotion, Robot, RobotError, Telemetry, connect
-from robot.feeling.words import PLACES
+from affect import Emotion
+from affect.words import PLACES
+from robot import Robot, RobotError, Telemetry, connect
 
 LOOK_EVERY = 0.05
 """How often the robot is looked at [s]."""

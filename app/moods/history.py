@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from affect import Personality
 from app.errors import AppError
-from app.scenarios import EmotionTarget
+from app.pipeline.scenario import EmotionTarget
+from app.scenarios.affect import Temper
 from app.scenarios.follow import gait
-from app.scenarios.temper import Temper
 from app.session import About, about, cues, messages, salvaged
-from app.session.arrows import decode
+from app.session.encoding import decode
 from characters import CharacterCommand
-from robot import Personality
 from tracking import CubeControls
 
 Array = NDArray[np.float64]

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from affect.labels import LabelSet
 from app.moods.captions import heading, legend, shares
 from app.moods.curves import Curve, curves_of, spans
 from app.moods.drawing import Array, Drawing, text_width
@@ -11,7 +12,6 @@ from app.moods.history import Felt, History
 from app.moods.plane import draw_plane
 from app.moods.tints import FAINT, INK, LINES, OBSERVED, QUIET, RULE, action_tint, tint
 from app.moods.wire import Trace, Wire
-from robot.feeling.labels import LabelSet
 
 WIDTH, HEIGHT = 1120.0, 668.0
 LEFT, RIGHT = 70.0, 710.0

@@ -5,11 +5,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from affect.emotion import ANGRY_BELOW, HAPPY_ABOVE
+from affect.labels import LabelSet
 from app.moods.drawing import Array, Drawing
 from app.moods.history import Felt
 from app.moods.tints import FAINT, INK, QUIET, RULE, tint
-from robot.emotion import ANGRY_BELOW, HAPPY_ABOVE
-from robot.feeling.labels import LabelSet
 
 Way = tuple[Felt, str, tuple[float, ...], float]
 """A feeling, and the colour, dashes and width of its line."""

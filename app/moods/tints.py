@@ -1,7 +1,7 @@
 """Colours of the pictures of moods: the screen's own, pale enough to write on."""
 
-from app.show.palette import ACTION, Color, between, bgr, mood_color
-from robot.feeling.labels import LabelSet
+from affect.labels import LabelSet
+from app.ui.palette import ACTION, Color, between, bgr, mood_color
 
 WHITE = bgr("#ffffff")
 INK, QUIET, FAINT, RULE = "#2b3345", "#6d7385", "#a9aebb", "#dcdfe6"

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.scenarios.base import Inputs, Outcome
+from affect import Personality
+from app.pipeline.scenario import Inputs, Outcome
+from app.scenarios.affect import Temper
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
-from app.scenarios.temper import Temper
 from characters import CharacterCommand, PosedCharacter, Step
-from robot import Personality
 from tracking import CubeControls
 
 Point = NDArray[np.float64]

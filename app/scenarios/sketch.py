@@ -3,14 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from app.scenarios.base import Inputs, Outcome
+from affect import Personality
+from app.pipeline.scenario import Inputs, Outcome
+from app.scenarios.affect import Temper
 from app.scenarios.follow import CAMERA, IDLE_BELOW, gait
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
-from app.scenarios.temper import Temper
 from characters import CharacterCommand, ClosedPath, PosedCharacter, Step
 from characters.rendering import FloorPath
-from robot import Personality
 from tracking import CubeControls
 
 MOST_POINTS = 8

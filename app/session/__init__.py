@@ -1,6 +1,6 @@
 """A session on disk: one .mcap file with the camera's frames and every arrow after them."""
 
-from app.session.pictures import Preparation, preparation
+from app.session.frames import Preparation, preparation
 from app.session.reading import START_OVER, About, about, cues, events, messages, salvaged
 from app.session.recorder import Recorder
 

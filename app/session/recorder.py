@@ -15,8 +15,8 @@ from mcap.writer import Writer
 from mcap_protobuf.schema import register_schema
 
 from app.errors import AppError
-from app.playground import Step
-from app.session.arrows import ARROWS, encode, schema
+from app.pipeline.step import Step
+from app.session.encoding import ARROWS, encode, schema
 from tracking import Frame, Intrinsics
 from tracking.sources.base import nanoseconds_of
 

@@ -7,12 +7,12 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.anatomy import Anatomy
 from characters.errors import CharacterError
-from characters.pose import Array, Pose
-from characters.rendering.geometry import Geometry
-from characters.rendering.morphing import Morphing
-from characters.rendering.view import Drawable
+from characters.rendering.geometry.buffers import Geometry
+from characters.rendering.geometry.morphing import Morphing
+from characters.rendering.scene import Drawable
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Array, Pose
 
 FIELD = math.radians(24.0)
 """Of view, along the picture's shorter side: long lenses flatter."""

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from characters.rendering.light import DECODED, LUMA
 from characters.rendering.projection import NEAR, is_rigid
-from characters.rendering.view import Box, View
+from characters.rendering.scene import Box, View
 
 Array = NDArray[np.float64]
 

@@ -8,15 +8,15 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from characters import rotations
-from characters.anatomy import Anatomy
-from characters.character import Character
-from characters.clip import Clip
-from characters.command import PosedCharacter
-from characters.pose import Array, Pose
+from characters.control.command import PosedCharacter
+from characters.model.character import Character
+from characters.motion.clip import Clip
 from characters.rendering.framing import Extent, Framing, joints_of
+from characters.rendering.scene import Actor, View
 from characters.rendering.stage import Stage
-from characters.rendering.view import Actor, View
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Array, Pose
 
 Image = NDArray[np.uint8]
 Focus = str | tuple[Array, float] | None

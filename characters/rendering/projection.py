@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.view import Rectangle
+from characters.rendering.scene import Rectangle
 
 Array = NDArray[np.float64]
 

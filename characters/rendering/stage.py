@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.rendering.background import Background
-from characters.rendering.cubes import Cubes, Outlines, that_show
-from characters.rendering.figures import Cast, Figures
-from characters.rendering.floor import FloorMarks
 from characters.rendering.light import Light, LightEstimate
 from characters.rendering.paper import paper_of
+from characters.rendering.passes.background import Background
+from characters.rendering.passes.characters import Cast, Figures
+from characters.rendering.passes.cubes import Cubes, Outlines, that_show
+from characters.rendering.passes.floor import FloorMarks
 from characters.rendering.programs import Programs, assign
 from characters.rendering.projection import (
     clip_from_camera,
@@ -22,8 +22,8 @@ from characters.rendering.projection import (
     merged,
     part_that_shows,
 )
+from characters.rendering.scene import Actor, Box, FloorPath, Rectangle, View
 from characters.rendering.target import FINER, Patches, Target, Targets, widened
-from characters.rendering.view import Actor, Box, FloorPath, Rectangle, View
 
 Array = NDArray[np.float64]
 Image = NDArray[np.uint8]

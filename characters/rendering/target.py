@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.rendering.programs import Programs, assign
-from characters.rendering.view import Rectangle
+from characters.rendering.scene import Rectangle
 
 Image = NDArray[np.uint8]
 

@@ -4,7 +4,7 @@
 character needs to walk and run where it is sent.
 """
 
-from characters.retargeting.locomotion import Found, Locomotion, make_locomotion
+from characters.retargeting.locomotion.locomotion import Found, Locomotion, make_locomotion
 from characters.retargeting.recording import Recording, load_recording
 from characters.retargeting.retarget import retarget
 

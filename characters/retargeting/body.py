@@ -6,10 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from characters import rotations
-from characters.anatomy import SIDES, Anatomy
 from characters.errors import CharacterError
-from characters.pose import Array, Skeleton
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import SIDES, Anatomy
+from characters.skeleton.pose import Array, Skeleton
 
 _STANDS = (-0.02, 0.12)  # heights of the lowest joint, in body sizes, of one who stands at rest
 _SPREAD = 0.2  # [rad]: legs farther apart at rest do not stand; their soles are square to them

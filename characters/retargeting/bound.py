@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters import rotations
-from characters.character import Character
-from characters.pose import Array, Pose, Skeleton
+from characters.model.character import Character
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose, Skeleton
 
 _EXACT = 1e-6  # of what counts as no difference
 _SAME = 0.01  # of the body's size: bound so near to its rest pose, a body is bound there

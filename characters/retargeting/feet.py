@@ -14,15 +14,15 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from characters import rotations
-from characters.clip import Clip
-from characters.contacts import find_contacts, spans
-from characters.pose import Array, Pose
+from characters.motion.clip import Clip
+from characters.motion.contacts import find_contacts, spans
 from characters.retargeting.body import Body, Leg, turns_of
 from characters.retargeting.ground import Way
 from characters.retargeting.limb import bend
 from characters.retargeting.root import smoothed
 from characters.retargeting.transfer import ankle, place, upright_clip
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose
 
 _LIFTED = 0.02  # leg lengths that the ball of a standing foot is above its lowest
 _ROLL = 0.25  # [s] that a foot takes at most from its heel onto its ball

@@ -11,11 +11,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from characters import rotations
-from characters.clip import Clip
-from characters.pose import Array
+from characters.motion.clip import Clip
 from characters.retargeting.body import Body, Leg
 from characters.retargeting.transfer import upright_clip
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array
 
 _TREADMILL = 0.1  # leg lengths a second: standing feet that go faster stand on one,
 _AWAY = 1.0  # leg lengths: unless the body itself goes so far

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters import rotations
-from characters.pose import Array, Pose
 from characters.retargeting.body import Body, Leg, turns_of
 from characters.retargeting.transfer import ankle, place
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose
 
 _STRAIGHTEST = 0.9995  # part of a leg's length that it may reach: beyond, the knee would snap
 _FOLDED = 0.35  # likewise: the least, unless the clip folds it more

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters import rotations
 from characters.errors import CharacterError
-from characters.pose import Array
 from characters.retargeting.body import Body
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array
 
 _LIMB = (
     (("UpperArm", "LowerArm"), ("LowerArm", "Hand")),

@@ -3,14 +3,14 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from characters.anatomy import Anatomy
-from characters.character import Character
-from characters.clip import Clip
 from characters.errors import CharacterError
 from characters.formats import load_motion
-from characters.pose import Skeleton
+from characters.model.character import Character
+from characters.model.sidecar import read_sidecar
+from characters.motion.clip import Clip
 from characters.retargeting.bound import bound_skeleton
-from characters.sidecar import read_sidecar
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Skeleton
 
 _CAPTURED = (".bvh", ".amc", ".asf")
 

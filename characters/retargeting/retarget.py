@@ -2,17 +2,17 @@
 
 import numpy as np
 
-from characters import rotations
-from characters.anatomy import Anatomy
-from characters.clip import Clip
 from characters.errors import CharacterError
-from characters.pose import Array, Skeleton
+from characters.motion.clip import Clip
 from characters.retargeting.body import Body, Leg
 from characters.retargeting.feet import find_footing, hold
 from characters.retargeting.ground import way_of
 from characters.retargeting.mapping import map_joints
 from characters.retargeting.root import root_way
 from characters.retargeting.transfer import ankle_heights, hips_way, posed, turned
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Array, Skeleton
 
 _STRETCH, _LOWER = 0.99, 0.06  # parts of a leg's length: how far it reaches, and hips may come down
 

@@ -5,10 +5,10 @@ Hips sway with every step; a root does not. It follows the hips, smoothed over a
 
 import numpy as np
 
-from characters import rotations
-from characters.clip import Clip
-from characters.pose import Array
+from characters.motion.clip import Clip
 from characters.retargeting.body import Body
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array
 
 _BREADTH = 0.3  # [s]: standard deviation of the smoothing, which a stride's sway does not survive
 

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from characters import rotations
-from characters.anatomy import Anatomy
-from characters.character import Character
-from characters.clip import Clip
-from characters.pose import Array, Pose, Skeleton
+from characters.model.character import Character
+from characters.motion.clip import Clip
 from characters.retargeting.body import Body
 from characters.retargeting.root import root_way
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Array, Pose, Skeleton
 
 
 def is_rooted(skeleton: Skeleton, anatomy: Anatomy) -> bool:

@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from characters import rotations
-from characters.clip import Clip
-from characters.contacts import find_contacts
-from characters.pose import Array, Pose
+from characters.motion.clip import Clip
+from characters.motion.contacts import find_contacts
 from characters.retargeting.body import Body, Leg, turns_of
 from characters.retargeting.mapping import Mapping
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose
 
 
 def turned(clip: Clip, source: Body, target: Body, mapping: Mapping) -> Array:

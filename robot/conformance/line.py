@@ -5,8 +5,8 @@ from typing import Protocol
 import serial
 
 from robot.conformance.verdicts import UnmetError
+from robot.contract.port import Clock, Port
 from robot.errors import RobotError
-from robot.port import Clock, Port
 from robot.simulators.base import Simulated
 
 READ_AT_ONCE = 4096

@@ -1,8 +1,8 @@
-"""The protocols: one package for each, and the table by which `connect` finds them."""
+"""The protocols: one package for each, registered here so that `connect` finds them."""
 
 from pathlib import Path
 
-from robot.driver import Driver, DriverKind
+from robot.contract.driver import DRIVERS, Driver, DriverKind
 from robot.drivers.cubeling.host import HostLink
 from robot.drivers.opencat.host import OpenCatHost
 from robot.drivers.opencat.settings_file import load_settings as opencat_settings
@@ -44,7 +44,9 @@ _OPENCAT = DriverKind(
     spacing=0.1,  # what is written within a few milliseconds is read as one line
 )
 
-DRIVERS: dict[str, DriverKind] = {
+__all__ = ["DRIVERS"]
+
+DRIVERS |= {
     "cubeling": DriverKind(_cubeling, timing.BAUD, timing.ANSWER_WITHIN),
     "opencat": _OPENCAT,
     "nybble": _OPENCAT,  # so that "sim:nybble" needs no protocol named
@@ -52,4 +54,3 @@ DRIVERS: dict[str, DriverKind] = {
     # It has no serial port of its own; its daemon is reached over the network, and it gets up.
     "reachy": DriverKind(_reachy, 0, 10.0, open_reachy),
 }
-"""The protocols by name."""

@@ -12,11 +12,11 @@
 >>> station.close()
 """
 
-from robot.network.access import Address, Credentials
 from robot.network.bus import Bus, BusState, Letter
 from robot.network.endpoint import Endpoint
 from robot.network.memory import MemoryBroker, MemoryBus
-from robot.network.mqtt import MqttBus
+from robot.network.mqtt.access import Address, Credentials
+from robot.network.mqtt.bus import MqttBus
 from robot.network.node import RobotNode
 from robot.network.player import Player
 from robot.network.roster import Roster, Seen

@@ -4,8 +4,9 @@ import math
 from dataclasses import replace
 from typing import Protocol
 
-from robot.catalogue import Catalogue
-from robot.emotion import Emotion
+from affect.emotion import Emotion
+from robot.contract.catalogue import Catalogue
+from robot.contract.telemetry import Telemetry
 from robot.errors import RobotError
 from robot.network import messages as m
 from robot.network.bus import Letter
@@ -14,7 +15,6 @@ from robot.network.following import HOLD, Followed, Following
 from robot.network.schema import MalformedError, decode, encode
 from robot.network.telling import Telling
 from robot.network.topics import Member, Pattern, member_of
-from robot.telemetry import Telemetry
 
 NEUTRAL = Emotion(0.0, 0.0)
 

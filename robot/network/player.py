@@ -9,7 +9,7 @@ import math
 from collections import deque
 from dataclasses import dataclass, replace
 
-from robot.emotion import Emotion
+from affect.emotion import Emotion
 from robot.network import messages as m
 from robot.network.bus import Letter
 from robot.network.endpoint import BEAT_EVERY, REPLACED, Run

@@ -4,10 +4,10 @@ import threading
 from collections import deque
 from typing import Generic, Self, TypeVar
 
-from robot.closing import Closing
+from robot.contract.closing import Closing
+from robot.contract.port import Clock
 from robot.network.bus import Bus, BusState, Letter
 from robot.network.endpoint import Endpoint
-from robot.port import Clock
 
 TURN_EVERY = 0.05
 """A member thinks at least this often [s], and at once when something has come."""

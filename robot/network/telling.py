@@ -4,10 +4,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from robot.emotion import Emotion
+from affect.emotion import Emotion
+from robot.contract.telemetry import Telemetry
 from robot.network import messages as m
 from robot.network.topics import Member
-from robot.telemetry import Telemetry
 
 STATE_EVERY = 0.2
 """The robot's state is published at most this often [s], and only when it has changed."""

@@ -6,8 +6,8 @@ from urllib.parse import parse_qsl
 
 import serial
 
+from robot.contract.port import READ_TIMEOUT, Clock, Opener
 from robot.errors import RobotError
-from robot.port import READ_TIMEOUT, Clock
 from robot.simulators import SIMULATORS
 from robot.simulators.base import Simulated
 from robot.simulators.faults import Faults, faults_of
@@ -45,6 +45,11 @@ class SimulatedWire:
                 raise RobotError(f"cannot open the port {self._url}: its plug is out")
             robot.bytes_to_send()  # a port that nobody had open has lost what came
         return MemoryPort(robot, self._clock)
+
+
+def open_simulated(url: str, clock: Clock) -> Opener:
+    """Return what opens a simulated robot, now and after every unplugging."""
+    return SimulatedWire(url, clock).open
 
 
 def simulator_of(url: str) -> Simulated:

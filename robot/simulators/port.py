@@ -10,9 +10,9 @@ import threading
 import time
 from typing import Literal, Protocol
 
-from robot.closing import Closing
+from robot.contract.closing import Closing
+from robot.contract.port import Clock
 from robot.errors import RobotError
-from robot.port import Clock
 from robot.simulators.base import Simulated
 from robot.simulators.cubeling.simulator import Simulator
 

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 
 from app import cli
-from app.opening import fitting
-from app.playground import Playground, Step
+from app.pipeline.playground import Playground
+from app.pipeline.step import Step
+from app.running.opening import fitting
 from app.session import Recorder
 from tracking import CubeControls, open_source
 
@@ -85,7 +86,7 @@ def hand() -> Hand:
 @pytest.fixture(scope="session")
 def bundled_session() -> Path:
     """A whole session that comes with the program."""
-    from app.commands.replay import bundled
+    from app.session.bundled import bundled
 
     return bundled("companion")
 

@@ -4,12 +4,12 @@ import itertools
 
 import pytest
 
-from app.clock import SessionClock
-from app.opening import fitting
-from app.playground import Playground
-from app.runner import Plan, WireTap, run
+from app.pipeline.playground import Playground
+from app.running.clock import SessionClock
+from app.running.opening import fitting
+from app.running.runner import Plan, WireTap, run
 from app.session import about, messages
-from app.show.screen import Nowhere
+from app.ui.screen import Nowhere
 from tracking import TrackingError, open_source
 
 

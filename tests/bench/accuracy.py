@@ -11,10 +11,10 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from tracking import se3
-from tracking.state import CubeState
+from tracking.geometry import se3
+from tracking.geometry.state import CubeState
 from tracking.synthetic import SyntheticSource, open_synthetic
-from tracking.tracker import CubeTracker
+from tracking.tracker.tracker import CubeTracker
 
 SCENES = (
     "poses",

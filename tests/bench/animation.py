@@ -16,7 +16,7 @@ from rich.console import Console
 from rich.table import Table
 
 from characters import Animator, Character, CharacterCommand, mask_of
-from characters.layers import overlaid
+from characters.motion.layers import overlaid
 
 FRAMES = 600
 

@@ -18,7 +18,7 @@ from rich.console import Console
 from rich.table import Table
 
 from tests.bench.tracking.sequences import Sequence, sequence
-from tests.tracking.waved import aligned
+from tests.tracking.calibration.waved import aligned
 from tracking import CubeModel, Frame
 from tracking.calibration import Collector, CubeFinder, View, calibrate, measured_cube
 from tracking.synthetic import open_synthetic

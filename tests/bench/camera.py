@@ -16,7 +16,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.doctor import camera_words, watch
+from app.commands.doctor_checks import camera_words, watch
 from tracking import Frame, TrackingError, open_source
 from tracking.sources.live import LiveSource
 

@@ -14,9 +14,9 @@ from rich.console import Console
 from rich.table import Table
 
 from characters import Character
-from characters.bank import Bank
-from characters.blend import mix
-from characters.crowd import crowd_globals
+from characters.motion.batch.bank import Bank
+from characters.motion.batch.crowd import crowd_globals
+from characters.motion.blend import mix
 
 CROWD, VOICES, ROUNDS = 256, 3, 300
 

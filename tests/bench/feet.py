@@ -20,11 +20,12 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character, CharacterCommand, Pose, rotations
-from characters.contacts import feet_of, spans
-from characters.motion import Step
-from characters.steering import Course
-from characters.walker import Walker
+from characters import Character, CharacterCommand, Pose
+from characters.control.walker import Walker
+from characters.locomotion.steering import Course
+from characters.motion.contacts import feet_of, spans
+from characters.motion.motion import Step
+from characters.skeleton import rotations
 
 Array = NDArray[np.float64]
 

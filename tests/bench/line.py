@@ -13,12 +13,14 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.commands.replay import bundled
-from app.opening import fitting
-from app.playground import Playground, Step
-from app.scenarios import CUBES, Inputs
-from app.show.likeness import Likeness
-from app.show.overlay import RobotView, likeness_side, overlay
+from app.pipeline.playground import Playground
+from app.pipeline.scenario import Inputs
+from app.pipeline.step import RobotView, Step
+from app.running.opening import fitting
+from app.scenarios import SCENARIOS
+from app.session.bundled import bundled
+from app.ui.overlay import likeness_side, overlay
+from app.ui.virtual_robot import Likeness
 from characters.rendering import create_context
 from tracking import open_source
 
@@ -77,7 +79,7 @@ def main() -> None:
     parser.add_argument("--frames", type=int, default=600, help="frames of each recording")
     frames = parser.parse_args().frames
     table = Table("scenario", "part", "median ms", "p95 ms", "share")
-    for name in CUBES:
+    for name in SCENARIOS:
         parts = measure(name, frames)
         whole = float(np.median(parts["the line"]))
         for part, times in parts.items():

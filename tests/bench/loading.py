@@ -15,7 +15,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character, Clip, Mesh, rotations
+from characters import Character, Clip, Mesh
+from characters.skeleton import rotations
 
 SIZE = 5_000_000
 BAR = 0.5

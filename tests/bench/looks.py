@@ -15,8 +15,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.character import Character
-from characters.mesh import Material, Mesh, Morph
+from characters.model.character import Character
+from characters.model.mesh import Material, Mesh, Morph
 from characters.rendering import Actor, Stage, create_context
 from tests.bench.picture import SIZE, scene
 

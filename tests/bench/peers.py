@@ -22,11 +22,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.commands.replay import bundled
-from app.opening import fitting
-from app.playground import Playground
-from app.robots import RobotLine
-from app.scenarios import Inputs
+from app.pipeline.playground import Playground
+from app.pipeline.scenario import Inputs
+from app.running.opening import fitting
+from app.running.robots import RobotLine
+from app.session.bundled import bundled
 from characters.rendering import create_context
 from robot.protocol import messages as m
 from robot.protocol.schema import pack

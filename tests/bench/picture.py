@@ -19,16 +19,16 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters.character import Character
-from characters.command import PosedCharacter
+from characters.control.command import PosedCharacter
+from characters.model.character import Character
 from characters.rendering import Actor, Box, FloorPath, Stage, View, create_context
-from characters.rendering.background import Background
-from characters.rendering.cubes import Cubes
-from characters.rendering.figures import Figures
-from characters.rendering.floor import FloorMarks
+from characters.rendering.geometry.skinning import SkinnedCharacter
 from characters.rendering.light import LightEstimate
-from characters.rendering.shadow import Shadow
-from characters.rendering.skinning import SkinnedCharacter
+from characters.rendering.passes.background import Background
+from characters.rendering.passes.characters import Figures
+from characters.rendering.passes.cubes import Cubes
+from characters.rendering.passes.floor import FloorMarks
+from characters.rendering.passes.shadow import Shadow
 from characters.rendering.target import Target
 
 SIZE = (1280, 720)

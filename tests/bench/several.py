@@ -15,10 +15,10 @@ from rich.console import Console
 from rich.table import Table
 
 from tests.tracking.drawn import WIDE, held, photograph, scene
-from tracking import se3
-from tracking.cube import FACE_AXES, CubeModel
-from tracking.frame import Frame
-from tracking.several import CubesTracker
+from tracking.cube.model import FACE_AXES, CubeModel
+from tracking.geometry import se3
+from tracking.geometry.frame import Frame
+from tracking.tracker.several import CubesTracker
 
 Array = NDArray[np.float64]
 

@@ -12,8 +12,8 @@ from rich.console import Console
 from rich.table import Table
 
 import robot
+from affect.emotion import Emotion
 from robot.drivers.cubeling.host import HostLink
-from robot.emotion import Emotion
 from robot.protocol.messages import Beat
 from robot.protocol.schema import pack, unpack
 from robot.protocol.wire import FrameReader, encode_frame

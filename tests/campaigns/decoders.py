@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from robot.driver import Driver
+from affect import AffectError, Personality
+from affect.emotion import Emotion
+from robot.contract.driver import Driver
 from robot.drivers import DRIVERS
 from robot.drivers.cubeling.host import HostLink
-from robot.emotion import Emotion
 from robot.errors import RobotError
-from robot.feeling import personality_file
 from robot.network.messages import KINDS
 from robot.network.schema import MalformedError, decode, encode
 from robot.protocol.fields import MessageError
@@ -182,8 +182,8 @@ def settings_of(name: str) -> Target:
 
 def personality(data: bytes) -> None:
     """Read a personality's file."""
-    with contextlib.suppress(RobotError):
-        personality_file.parse(data.decode("utf-8", "replace"), "fuzz.toml")
+    with contextlib.suppress(AffectError):
+        Personality.parse(data.decode("utf-8", "replace"), "fuzz.toml")
 
 
 def payload_of(kind: type[Any]) -> Target:

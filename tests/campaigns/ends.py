@@ -5,12 +5,12 @@ They are the product's own; a few of their methods tell the witness what they do
 
 from typing import Any
 
-from robot.catalogue import Catalogue, JointLimits
+from affect.emotion import Emotion
+from robot.contract.catalogue import Catalogue, JointLimits
 from robot.drivers import DRIVERS
 from robot.drivers.cubeling.commands import Command, CommandLane
 from robot.drivers.cubeling.host import HostLink
 from robot.drivers.cubeling.roundtrip import RoundTrip
-from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.protocol.wire import FrameReader
 from robot.simulators.cubeling.device import BodyState, DeviceLink

@@ -20,10 +20,10 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from robot.driver import Driver
+from affect.emotion import Emotion
+from robot.contract.driver import Driver
 from robot.drivers import DRIVERS
-from robot.emotion import Emotion
-from robot.exchange import REOPEN_EVERY
+from robot.link.exchange import REOPEN_EVERY
 from robot.protocol import messages as m
 from robot.simulators import SIMULATORS
 from robot.simulators.faults import Faults, Spell

@@ -3,8 +3,8 @@
 from collections import Counter
 from typing import Any, Protocol
 
+from affect.emotion import Emotion
 from robot.drivers.cubeling.commands import Command
-from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.simulators.faulty import FaultyRobot

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from robot.exchange import REOPEN_EVERY
-from robot.port import READ_TIMEOUT
+from robot.contract.port import READ_TIMEOUT
+from robot.link.exchange import REOPEN_EVERY
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.wire import MAX_FRAME

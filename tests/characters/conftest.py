@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import settings
 
-from characters import Character, Clip, Mesh, Pose, Skeleton, rotations
-from characters.motion import Step
+from characters import Character, Clip, Mesh, Pose, Skeleton
+from characters.motion.motion import Step
+from characters.skeleton import rotations
 
 # A suite that runs by the same examples everywhere, however busy the machine is.
 settings.register_profile("suite", derandomize=True, deadline=None)

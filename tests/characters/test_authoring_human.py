@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from characters import rotations
-from characters.authoring.human import build_human
-from characters.authoring.human_limbs import FOOT, turned
-from characters.authoring.human_rig import JOINTS
-from characters.character import Character, skin
-from characters.clip import Clip
-from characters.mesh import Mesh
-from characters.pose import Array, Pose, Skeleton
+from characters.model.character import Character, skin
+from characters.model.mesh import Mesh
+from characters.motion.clip import Clip
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose, Skeleton
+from tools.authoring.human.character import build_human
+from tools.authoring.human.limbs import FOOT, turned
+from tools.authoring.human.rig import JOINTS
 
 WALKS = [f"Walk{side}{size}" for side in ("Left", "Right") for size in ("Short", "Medium", "Wide")]
 RUNS = [f"Run{side}{size}" for side in ("Left", "Right") for size in ("Medium", "Wide")]

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from characters.authoring.morphs import morphed
-from characters.authoring.reflect import reflected
-from characters.authoring.rig import build_skeleton
-from characters.authoring.rings import ringed
-from characters.authoring.sculpt import join
-from characters.character import skin
-from characters.mesh import Mesh
-from characters.pose import Skeleton
+from characters.model.character import skin
+from characters.model.mesh import Mesh
+from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.morphs import morphed
+from tools.authoring.modelling.reflect import reflected
+from tools.authoring.modelling.rig import build_skeleton
+from tools.authoring.modelling.rings import ringed
+from tools.authoring.modelling.sculpt import join
 
 
 @pytest.fixture(scope="module")

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from characters import rotations
-from characters.authoring.robot import build_robot
-from characters.authoring.robot_expressions import EXPRESSIONS
-from characters.authoring.robot_rig import FEET, LAMPS, MOODS, skeleton
-from characters.blend import mix
-from characters.character import Character, skin
+from characters.model.character import Character, skin
+from characters.motion.blend import mix
+from characters.skeleton import rotations
+from tools.authoring.robot.character import build_robot
+from tools.authoring.robot.expressions import EXPRESSIONS
+from tools.authoring.robot.rig import FEET, LAMPS, MOODS, skeleton
 
 LEVELS = ("head", "legs", "tail")
 CLIPS = ("idle", *(f"{mood}_{level}" for mood in MOODS for level in LEVELS))

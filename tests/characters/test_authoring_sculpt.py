@@ -5,15 +5,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters import rotations
-from characters.authoring.cord import cord
-from characters.authoring.gait import Foot, Path, Steps, foot_motion
-from characters.authoring.ik import bend
-from characters.authoring.rig import Puppet, build_skeleton, mirrored
-from characters.authoring.sculpt import Part, lathe, sculpt
-from characters.authoring.shapes import Cone, Cut, Ellipsoid, HalfSpace, Shape, Union, rgb
-from characters.mesh import Mesh
-from characters.pose import Skeleton
+from characters.model.mesh import Mesh
+from characters.skeleton import rotations
+from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.cord import cord
+from tools.authoring.modelling.gait import Foot, Path, Steps, foot_motion
+from tools.authoring.modelling.ik import bend
+from tools.authoring.modelling.rig import Puppet, build_skeleton, mirrored
+from tools.authoring.modelling.sculpt import Part, lathe, sculpt
+from tools.authoring.modelling.shapes import Cone, Cut, Ellipsoid, HalfSpace, Shape, Union, rgb
 
 LEGS = build_skeleton(
     {

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from characters import rotations
-from characters.authoring.loops import follow, keys, later, wave
-from characters.authoring.vleo import build_vleo
-from characters.authoring.vleo_head import EYE_RADIUS, SIGHT
-from characters.authoring.vleo_rig import BURSTS, EYE, FEET, HEARTS
-from characters.blend import mix
-from characters.character import Character, skin
-from characters.pose import Pose
+from characters.model.character import Character, skin
+from characters.motion.blend import mix
+from characters.skeleton import rotations
+from characters.skeleton.pose import Pose
+from tools.authoring.modelling.loops import follow, keys, later, wave
+from tools.authoring.vleo.character import build_vleo
+from tools.authoring.vleo.head import EYE_RADIUS, SIGHT
+from tools.authoring.vleo.rig import BURSTS, EYE, FEET, HEARTS
 
 KISSES = ("kiss_head", "kiss_legs", "kiss_tail")
 SHOUTS = ("shout_head", "shout_legs", "shout_tail")

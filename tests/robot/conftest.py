@@ -6,8 +6,8 @@ from collections.abc import Callable
 import pytest
 from hypothesis import settings
 
+from affect.emotion import Emotion
 from robot.drivers.cubeling.host import HostLink
-from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.faults import Faults

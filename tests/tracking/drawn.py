@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking import se3
-from tracking.cube import CubeModel, Face
-from tracking.intrinsics import Intrinsics
-from tracking.marker import marker_cells
+from tracking.cube.marker import marker_cells
+from tracking.cube.model import CubeModel, Face
+from tracking.geometry import se3
+from tracking.geometry.intrinsics import Intrinsics
 
 Array = NDArray[np.float64]
 Light = NDArray[np.float32]

@@ -11,19 +11,25 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking import se3
-from tracking.covered import CoveredMarkerDetector
-from tracking.cube import FACE_AXES, CubeModel, Face, aruco_dictionary
-from tracking.frame import Frame
-from tracking.intrinsics import Intrinsics
-from tracking.state import CubeState
-from tracking.tracker import CubeTracker
+from tracking.cube.model import FACE_AXES, CubeModel, Face, aruco_dictionary
+from tracking.detection.partly_hidden_markers import CoveredMarkerDetector
+from tracking.geometry import se3
+from tracking.geometry.frame import Frame
+from tracking.geometry.intrinsics import Intrinsics
+from tracking.geometry.state import CubeState
+from tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
 PHOTOGRAPHS = Path(__file__).parents[3] / "shared" / "data" / "photographs"
-ALL = sorted([*PHOTOGRAPHS.glob("*/*.jpg"), *PHOTOGRAPHS.glob("*/*.png")])
+ALL = sorted(
+    [
+        *PHOTOGRAPHS.glob("aruco/*.*g"),
+        *PHOTOGRAPHS.glob("chessboard/*.jpg"),
+        *sorted(PHOTOGRAPHS.glob("dodecahedron/*.jpg"))[::12],
+    ]
+)
 SINGLES, BOARD = (PHOTOGRAPHS / "aruco" / f"{name}original.jpg" for name in ("singlemarkers", "ch"))
 DICTIONARY = "DICT_6X6_250"
 
@@ -69,11 +75,13 @@ def one_marker(number: int, marker_mm: float) -> CubeModel:
 @pytest.mark.parametrize("path", ALL, ids=lambda path: path.stem)
 def test_no_bundled_cube_is_seen_in_any_photograph(path: Path) -> None:
     picture = photograph(path)
+    size = (picture.shape[1], picture.shape[0])
+    lens = camera("charuco") if size == (640, 480) else Intrinsics.guess(size)
     views = [picture, picture[:, ::-1], picture[::-1], picture[::-1, ::-1]]
     for name in ("locomotion", "companion"):
         for view in views:
             whole = np.ascontiguousarray(view)
-            states = watched(whole, CubeModel.load(name), camera("charuco"), 3)
+            states = watched(whole, CubeModel.load(name), lens, 3)
             assert not any(state.visible for state in states)
 
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking import se3
-from tracking.cube import CubeModel
-from tracking.faces import face_frame
-from tracking.frame import Frame
-from tracking.intrinsics import Intrinsics
-from tracking.marker import marker_cells
-from tracking.state import CubeState
-from tracking.tracker import CubeTracker
+from tracking.cube.faces import face_frame
+from tracking.cube.marker import marker_cells
+from tracking.cube.model import CubeModel
+from tracking.geometry import se3
+from tracking.geometry.frame import Frame
+from tracking.geometry.intrinsics import Intrinsics
+from tracking.geometry.state import CubeState
+from tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -8,10 +8,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.cube import aruco_dictionary
+from tracking.cube.marker import marker_loops
+from tracking.cube.model import aruco_dictionary
+from tracking.cube.printing.pen import Pen
 from tracking.errors import TrackingError
-from tracking.marker import marker_loops
-from tracking.pen import Pen
 
 Array = NDArray[np.float64]
 

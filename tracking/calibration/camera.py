@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from tracking.calibration.collecting import Collector
 from tracking.calibration.finders import CubeFinder
 from tracking.calibration.solving import Calibration, calibrate, measured_cube
-from tracking.cube import CubeModel
+from tracking.cube.model import CubeModel
 from tracking.errors import TrackingError
-from tracking.frame import Frame
+from tracking.geometry.frame import Frame
 
 
 def calibrate_camera(frames: Iterable[Frame], cube: CubeModel) -> tuple[Calibration, CubeModel]:

@@ -10,7 +10,7 @@ from tracking.calibration import adjustment, lens
 from tracking.calibration.solving import Calibration, solve, started
 from tracking.calibration.unknowns import Setting
 from tracking.calibration.view import View
-from tracking.intrinsics import Intrinsics
+from tracking.geometry.intrinsics import Intrinsics
 
 Array = NDArray[np.float64]
 

@@ -7,13 +7,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking import se3
 from tracking.calibration import lens, start
 from tracking.calibration.coach import Coach, Look
 from tracking.calibration.finders import Finder, Found
 from tracking.calibration.view import View
-from tracking.frame import Frame
-from tracking.intrinsics import Intrinsics
+from tracking.geometry import se3
+from tracking.geometry.frame import Frame
+from tracking.geometry.intrinsics import Intrinsics
 
 Array = NDArray[np.float64]
 

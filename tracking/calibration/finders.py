@@ -12,9 +12,9 @@ from tracking.calibration.markers import EdgeMeter
 from tracking.calibration.solving import target_of
 from tracking.calibration.unknowns import Setting
 from tracking.calibration.view import View, joined, of_corners
-from tracking.cube import CubeModel
-from tracking.detection import MarkerDetector, Observation, observed
-from tracking.patch import Patch
+from tracking.cube.model import CubeModel
+from tracking.detection.markers import MarkerDetector, Observation, observed
+from tracking.geometry.image_region import Patch
 
 Array = NDArray[np.float64]
 Grey = NDArray[np.uint8]

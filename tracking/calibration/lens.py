@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.intrinsics import Intrinsics
+from tracking.geometry.intrinsics import Intrinsics
 
 Array = NDArray[np.float64]
 

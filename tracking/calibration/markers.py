@@ -1,9 +1,9 @@
 """The edges of one marker, measured in a picture whose lens is not known yet.
 
 OpenCV's corners lie a few tenths of a pixel off, by gamma and blur. Here every black and white edge
-of a marker is measured across itself, as in `tracking.refinement`; what says where to look is no
-camera but a smooth map from the marker to the picture: a homography bent by a quadratic, which
-follows any lens over so small a part of the picture.
+of a marker is measured across itself, as in `tracking.refinement.edge_refinement`; what says where
+to look is not a camera but a smooth map from the marker to the picture: a homography bent by a
+quadratic, which follows any lens over so small a part of the picture.
 """
 
 from dataclasses import dataclass, replace
@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.calibration.view import View
-from tracking.cube import CubeModel, Face
-from tracking.detection import Observation
-from tracking.marker import marker_cells
-from tracking.patch import Patch
+from tracking.cube.marker import marker_cells
+from tracking.cube.model import CubeModel, Face
+from tracking.detection.markers import Observation
+from tracking.geometry.image_region import Patch
 
 Array = NDArray[np.float64]
 
@@ -193,7 +193,7 @@ def _bent(places: Array, normals: Array, offset: Array) -> tuple[Array, NDArray[
 def _offsets(
     patch: Patch, pixels: Array, normals: Array, reach: Array, width: float
 ) -> tuple[Array, Array]:
-    """Fit a blurred step across each edge, as `tracking.refinement` does: offset [px], contrast."""
+    """Fit a blurred step across each edge, as `edge_refinement` does: offset [px], contrast."""
     taps = np.linspace(-1, 1, TAPS)[None] * reach[:, None]
     values = patch.at(pixels[:, None] + taps[..., None] * normals[:, None]).astype(np.float64)
     soft = np.minimum(width, reach * 0.45)[:, None]

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from tracking.calibration import adjustment, lens, start
 from tracking.calibration.unknowns import Adjusted, Model, Setting, subset
 from tracking.calibration.view import View
-from tracking.cube import CubeModel
+from tracking.cube.model import CubeModel
 from tracking.errors import TrackingError
-from tracking.intrinsics import Intrinsics
+from tracking.geometry.intrinsics import Intrinsics
 
 Array = NDArray[np.float64]
 

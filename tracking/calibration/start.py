@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking import se3
 from tracking.calibration import lens
 from tracking.calibration.view import View
+from tracking.geometry import se3
 
 Array = NDArray[np.float64]
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from types import TracebackType
 from typing import Protocol, Self, runtime_checkable
 
-from tracking.frame import Frame
-from tracking.intrinsics import Intrinsics
+from tracking.geometry.frame import Frame
+from tracking.geometry.intrinsics import Intrinsics
 from tracking.sources.health import Health
 
 

@@ -14,7 +14,7 @@ from mcap.records import Channel, McapRecord, Message, Schema
 from mcap.stream_reader import MAGIC_SIZE, StreamReader
 
 from tracking.errors import TrackingError
-from tracking.intrinsics import Intrinsics
+from tracking.geometry.intrinsics import Intrinsics
 from tracking.sources.base import seconds_of
 from tracking.sources.pictures import EncodedPicture
 

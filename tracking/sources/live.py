@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable, Iterator
 
 from tracking.errors import TrackingError
-from tracking.frame import Frame
+from tracking.geometry.frame import Frame
 from tracking.sources.base import FrameSource, Timeline
 from tracking.sources.capture import (
     FIRST_S,

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from tracking.errors import TrackingError
-from tracking.frame import Frame
+from tracking.geometry.frame import Frame
 from tracking.sources.base import FrameSource, Timeline
 from tracking.sources.channels import IMAGE_TOPIC, BrokenFileError, CameraChannels
 from tracking.sources.pictures import EncodedPicture, Picture, PictureDecoder, UndecodableError

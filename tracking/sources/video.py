@@ -7,7 +7,7 @@ import av
 from av.container import InputContainer
 
 from tracking.errors import TrackingError
-from tracking.frame import Frame
+from tracking.geometry.frame import Frame
 from tracking.sources.base import FrameSource, Timeline
 from tracking.sources.pictures import from_video_frame
 

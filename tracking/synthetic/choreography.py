@@ -7,8 +7,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking import se3
-from tracking.cube import FACE_AXES
+from tracking.cube.model import FACE_AXES
+from tracking.geometry import se3
 
 Array = NDArray[np.float64]
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking import se3
-from tracking.cube import CubeModel, face_corners
+from tracking.cube.model import CubeModel, face_corners
+from tracking.geometry import se3
 
 Array = NDArray[np.float64]
 

@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.intrinsics import Intrinsics
-from tracking.projection import Projection
+from tracking.geometry.intrinsics import Intrinsics
+from tracking.geometry.projection import Projection
 
 Array = NDArray[np.float64]
 Rays = NDArray[np.float32]

@@ -4,9 +4,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.cube import FACE_AXES, CubeModel, Face
-from tracking.icons import ICONS, INK, icon_mask
-from tracking.marker import marker_cells
+from tracking.cube.icons import ICONS, INK, icon_mask
+from tracking.cube.marker import marker_cells
+from tracking.cube.model import FACE_AXES, CubeModel, Face
 from tracking.synthetic.folding import placements
 from tracking.synthetic.lens import Lens, Region, averaged
 

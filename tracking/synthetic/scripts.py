@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking import se3
-from tracking.cube import FACE_AXES
+from tracking.cube.model import FACE_AXES
+from tracking.geometry import se3
 from tracking.synthetic.choreography import Choreography, Moment, eased
 from tracking.synthetic.options import Options
 

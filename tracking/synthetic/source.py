@@ -7,11 +7,11 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking import se3
-from tracking.cube import CubeModel
+from tracking.cube.model import CubeModel
 from tracking.errors import TrackingError
-from tracking.frame import Frame
-from tracking.intrinsics import Intrinsics
+from tracking.geometry import se3
+from tracking.geometry.frame import Frame
+from tracking.geometry.intrinsics import Intrinsics
 from tracking.synthetic.choreography import Moment
 from tracking.synthetic.exposure import Exposure, moments_of
 from tracking.synthetic.folding import folded

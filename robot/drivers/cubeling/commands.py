@@ -9,8 +9,8 @@ from collections import deque
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from robot.emotion import Emotion
-from robot.feeling.words import closest_word
+from affect.emotion import Emotion
+from affect.words import closest_word
 from robot.protocol import messages as m
 from robot.protocol import timing
 

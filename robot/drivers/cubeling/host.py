@@ -9,18 +9,18 @@ is never acknowledged makes it greet again, under the next session number, for a
 from dataclasses import replace
 from typing import Any, Literal
 
-from robot.catalogue import Catalogue
+from affect.emotion import Emotion
+from robot.contract.catalogue import Catalogue
+from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.cubeling.commands import CommandLane
 from robot.drivers.cubeling.introduction import Introduction
 from robot.drivers.cubeling.roundtrip import RoundTrip
 from robot.drivers.cubeling.view import view_of
-from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.fields import MessageError
 from robot.protocol.schema import pack, unpack
 from robot.protocol.wire import FrameReader, encode_frame
-from robot.telemetry import LinkCounts, LinkState, Telemetry
 
 Phase = Literal["port", "greeting", "asking", "open", "closed"]
 

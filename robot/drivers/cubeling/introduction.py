@@ -1,6 +1,6 @@
 """How the host learns what a robot has: one question at a time, until the catalogue is whole."""
 
-from robot.catalogue import Catalogue, JointLimits
+from robot.contract.catalogue import Catalogue, JointLimits
 from robot.protocol import messages as m
 
 

@@ -3,10 +3,10 @@
 from dataclasses import replace
 from types import MappingProxyType
 
-from robot.catalogue import Catalogue
-from robot.emotion import Emotion
+from affect.emotion import Emotion
+from robot.contract.catalogue import Catalogue
+from robot.contract.telemetry import Telemetry
 from robot.protocol import messages as m
-from robot.telemetry import Telemetry
 
 
 def view_of(link: Telemetry, state: m.State | None, catalogue: Catalogue | None) -> Telemetry:

@@ -7,7 +7,9 @@ import math
 from types import MappingProxyType
 from typing import Literal
 
-from robot.catalogue import Catalogue
+from affect.emotion import Emotion
+from robot.contract.catalogue import Catalogue
+from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.lines import LineReader
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.exchange import LOST_TRIES, Exchange, Flight
@@ -19,9 +21,7 @@ from robot.drivers.opencat.outlet import Outlet
 from robot.drivers.opencat.settings import Settings
 from robot.drivers.opencat.settings_file import load_settings
 from robot.drivers.opencat.wishes import REST, Wishes
-from robot.emotion import Emotion
 from robot.protocol import messages as m
-from robot.telemetry import LinkCounts, LinkState, Telemetry
 
 LINE_MAX = 200
 """Longest line that is listened to [bytes]; the longest that matters, 16 angles, has about 90."""

@@ -1,6 +1,6 @@
 """What a robot has, as its model and its settings say; the board itself tells only two words."""
 
-from robot.catalogue import NAME_MAX, Catalogue
+from robot.contract.catalogue import NAME_MAX, Catalogue
 from robot.drivers.opencat.models import MODELS
 from robot.drivers.opencat.settings import Behaviour
 

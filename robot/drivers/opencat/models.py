@@ -7,7 +7,7 @@ four shoulders, four knees; the four go clockwise from the front left one, seen 
 import math
 from dataclasses import dataclass
 
-from robot.catalogue import JointLimits
+from robot.contract.catalogue import JointLimits
 from robot.drivers.opencat.tokens import ANGLE_MAX
 
 TOP_SPEED = math.radians(240.0)

@@ -2,11 +2,11 @@
 
 from collections import deque
 
+from affect.emotion import Emotion
+from affect.words import closest_word
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.exchange import Command
 from robot.drivers.opencat.settings import Behaviour, Mood
-from robot.emotion import Emotion
-from robot.feeling.words import closest_word
 
 POSTURE_WITHIN = 5.0
 """A posture takes at most so long [s]; a joint that goes from end to end needs under 2 s."""

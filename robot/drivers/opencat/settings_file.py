@@ -6,13 +6,13 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from robot.catalogue import NAME_MAX
+from affect.settings import Table, read, shown
+from affect.words import PLACES
+from robot.contract.catalogue import NAME_MAX
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.models import MODELS
 from robot.drivers.opencat.settings import BAUDS, Behaviour, Mood, Notes, Settings
 from robot.errors import RobotError
-from robot.feeling.words import PLACES
-from robot.settings import Table, read, shown
 
 BUNDLED = Path(__file__).with_name("opencat.toml")
 """The settings over which a person's own are laid."""
@@ -31,17 +31,17 @@ def load_settings(path: Path | None = None) -> Settings:
     """
     if path is None:
         return settings_of({}, BUNDLED.name)
-    return settings_of(read(path), str(path))
+    return settings_of(read(path, RobotError), str(path))
 
 
 @cache
 def _bundled() -> Mapping[str, Any]:
-    return read(BUNDLED)
+    return read(BUNDLED, RobotError)
 
 
 def settings_of(said: Mapping[str, Any], source: str) -> Settings:
     """Return the settings that a TOML document says, over the bundled ones."""
-    document = Table(_merged(_bundled(), said), source)
+    document = Table(_merged(_bundled(), said), source, error=RobotError)
     document.only("opencat", *MODELS)
     top = document.table("opencat")
     top.only("baud", "model", "commands_per_s", "dwell_s", "ask_every_s", "rest_after_s")

@@ -7,12 +7,12 @@ robot of which nobody wants anything is let lie down.
 
 from collections import deque
 
-from robot.driver import ACTIONS_MAX
+from affect.emotion import Emotion
+from robot.contract.driver import ACTIONS_MAX
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.exchange import Command
 from robot.drivers.opencat.order import POSTURE_WITHIN, StandingOrder
 from robot.drivers.opencat.settings import Behaviour, Settings
-from robot.emotion import Emotion
 
 GESTURE_WITHIN = 15.0
 """A skill takes at most so long [s]; a question asked earlier would break it off on new boards."""

@@ -11,15 +11,15 @@ import math
 from collections import deque
 from typing import Literal
 
-from robot.catalogue import Catalogue
+from affect.emotion import Emotion
+from robot.contract.catalogue import Catalogue
+from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.pleo import commands, timing
 from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.console import Console, Landing
 from robot.drivers.pleo.settings import Settings
 from robot.drivers.pleo.wishes import Wishes
-from robot.emotion import Emotion
 from robot.protocol import messages as m
-from robot.telemetry import LinkCounts, LinkState, Telemetry
 
 Phase = Literal["port", "seeking", "starting", "open", "closed"]
 

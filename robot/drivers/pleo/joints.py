@@ -6,7 +6,7 @@ Source: OliverHoffmann/PleoCommand (2010), firmware 1.1.
 import math
 from dataclasses import dataclass
 
-from robot.catalogue import JointLimits
+from robot.contract.catalogue import JointLimits
 
 ASSUMED_SPEED = 50.0
 """Top speed where none was published [°/s]: about that of the joints beside it."""

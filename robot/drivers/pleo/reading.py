@@ -13,8 +13,8 @@ that nobody asked for may cut into it anywhere, and a read may end anywhere. The
 import re
 from dataclasses import dataclass
 
+from robot.contract.telemetry import complaint_of
 from robot.drivers.pleo import timing
-from robot.telemetry import complaint_of
 
 LINE_MAX = 512
 """Only so many characters of a line are kept, the last ones."""

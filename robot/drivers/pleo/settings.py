@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from robot.catalogue import Catalogue
+from robot.contract.catalogue import Catalogue
 from robot.drivers.pleo import timing
 from robot.drivers.pleo.joints import JOINTS
 

@@ -2,11 +2,12 @@
 
 from pathlib import Path
 
-from robot.catalogue import NAME_MAX
+from affect.settings import Table, read
+from robot.contract.catalogue import NAME_MAX
 from robot.drivers.pleo import timing
 from robot.drivers.pleo.joints import JOINT_NUMBERS, JOINTS
 from robot.drivers.pleo.settings import BUNDLED, Clip, Mood, Settings
-from robot.settings import Table, read
+from robot.errors import RobotError
 
 FILE_MAX = 64
 """Longest name of a file on Pleo [characters]."""
@@ -26,7 +27,7 @@ def load_settings(path: Path | None = None) -> Settings:
         If it cannot be read, is not TOML, or says something that cannot be.
     """
     path = BUNDLED if path is None else path
-    top = Table(read(path), str(path))
+    top = Table(read(path, RobotError), str(path), error=RobotError)
     top.only("console", "moods", "motions", "sounds")
     console = top.table("console")
     console.only("volume", "battery_every_s", "mood_every_s", "play_within_s", "boot_text")

@@ -8,15 +8,15 @@ motion anew, at worst. A sound, and a motion asked for by `play`, is sent once a
 from collections import deque
 from collections.abc import Iterator
 
-from robot.driver import ACTIONS_MAX
+from affect.emotion import Emotion
+from affect.words import closest_word
+from robot.contract.driver import ACTIONS_MAX
 from robot.drivers.pleo import commands, timing
 from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.console import Landing
 from robot.drivers.pleo.known import Known
 from robot.drivers.pleo.settings import Clip, Mood, Settings
 from robot.drivers.pleo.steps import Step, body_steps, sound_steps
-from robot.emotion import Emotion
-from robot.feeling.words import closest_word
 
 STOP = ""
 """Stands for the neutral pose where else a mood's name stands; no mood has an empty name."""

@@ -13,15 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from robot.catalogue import Catalogue
-from robot.driver import ACTIONS_MAX
+from affect.emotion import Emotion
+from affect.words import closest_word
+from robot.contract.catalogue import Catalogue
+from robot.contract.driver import ACTIONS_MAX
+from robot.contract.motions import Array, Motion
+from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.lines import LineReader
 from robot.drivers.reachy import moves
-from robot.emotion import Emotion
-from robot.feeling.words import closest_word
-from robot.motions import Array, Motion
 from robot.protocol import messages as m
-from robot.telemetry import LinkCounts, LinkState, Telemetry
 
 TARGET_EVERY = 0.040
 """Time between two targets [s]; the robot's own loop runs at 50 Hz."""
@@ -53,7 +53,7 @@ class _Flight:
 
 
 class ReachyDriver:
-    """Drives a Reachy Mini; see `robot.driver.Driver`."""
+    """Drives a Reachy Mini; see `robot.contract.driver.Driver`."""
 
     def __init__(self) -> None:
         self.catalogue: Catalogue | None = None

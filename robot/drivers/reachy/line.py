@@ -14,9 +14,9 @@ from typing import Any
 
 import serial
 
+from robot.contract.port import READ_TIMEOUT, Clock, Port
 from robot.drivers.reachy.hand import CONNECT_WITHIN, Hand
 from robot.errors import RobotError
-from robot.port import READ_TIMEOUT, Clock, Port
 
 PORT = 8000
 """Where the daemon listens, if the URL does not say."""

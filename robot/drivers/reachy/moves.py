@@ -4,8 +4,8 @@ from math import radians
 
 import numpy as np
 
-from robot.catalogue import Catalogue, JointLimits
-from robot.motions import Array, Motion, Sway
+from robot.contract.catalogue import Catalogue, JointLimits
+from robot.contract.motions import Array, Motion, Sway
 
 _LIMITS_DEG = (
     ("head roll", -25, 25, 60),

@@ -1,4 +1,4 @@
-"""The protocol in numbers, drawn from robot/protocol by robot.firmware.generate."""
+"""The protocol in numbers, drawn from robot/protocol by tools.firmware_tables."""
 
 # Do not edit: a test compares. Times are in ms.
 # fmt: off

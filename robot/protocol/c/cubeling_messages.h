@@ -1,6 +1,6 @@
 /* Messages of the protocol "cubeling" in C99; see robot/PROTOCOL.md.
  *
- * Drawn from robot/protocol/messages.py by `python -m robot.protocol.reference`: change it there.
+ * Drawn from robot/protocol/messages.py by `python -m tools.protocol_reference`: change it there.
  *
  * Values stand in the structs as on the wire: whole numbers, in the unit that the comment names.
  * cubeling_pack_NAME writes a body into CUBELING_MAX_BODY bytes, as `version` has it, and returns

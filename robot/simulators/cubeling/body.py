@@ -4,9 +4,9 @@ from math import hypot
 
 import numpy as np
 
-from robot.emotion import Emotion
-from robot.feeling.mood import LABELS, next_label
-from robot.motions import Motion
+from affect.emotion import Emotion
+from affect.mood_line import LABELS, next_label
+from robot.contract.motions import Motion
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
 from robot.simulators.cubeling.device import BodyState

@@ -6,8 +6,8 @@ No clock, no thread, no port: whoever owns those calls `receive` and `tick` with
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from robot.catalogue import Catalogue
-from robot.emotion import Emotion
+from affect.emotion import Emotion
+from robot.contract.catalogue import Catalogue
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.fields import MessageError

@@ -6,9 +6,9 @@ Joints, limits and speeds are those of `robot.drivers.pleo.joints`. The motions 
 import numpy as np
 from numpy.typing import NDArray
 
-from robot.catalogue import Catalogue
+from robot.contract.catalogue import Catalogue
+from robot.contract.motions import Motion, Sway
 from robot.drivers.pleo.joints import JOINTS as PLEO
-from robot.motions import Motion, Sway
 
 Array = NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from zlib import crc32
 
 import numpy as np
 
+from affect.words import PLACES
 from robot.drivers.pleo.joints import JOINTS, Joint
-from robot.feeling.words import PLACES
 
 MOTION_LASTS = (2.0, 5.0)
 """A motion's file lasts between these [s], the same one always as long."""

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from robot.feeling.words import PLACES
+from affect.words import PLACES
 from robot.simulators.pleo.body import PleoBody
 from robot.simulators.pleo.monitor import Monitor
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from characters.command import PosedCharacter
-from characters.mesh import Material, Mesh
-from characters.pose import Pose, Skeleton
+from characters.control.command import PosedCharacter
+from characters.model.mesh import Material, Mesh
 from characters.rendering import Actor, Box, Stage, View, create_context
+from characters.skeleton.pose import Pose, Skeleton
 
 Array = NDArray[np.float64]
 SIZE = (320, 180)

@@ -6,10 +6,10 @@ import cv2
 import numpy as np
 import pytest
 
-from characters.rendering.background import Background
 from characters.rendering.context import create_context
 from characters.rendering.light import LightEstimate
 from characters.rendering.paper import paper_of
+from characters.rendering.passes.background import Background
 
 BENT = np.array([0.12, -0.2, 0.001, -0.002, 0.05])
 

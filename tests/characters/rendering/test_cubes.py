@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters.rendering import Box
-from characters.rendering.cubes import MOST, SIDES, UNIT_CUBE, Outlines
-from characters.rendering.view import Rectangle
+from characters.rendering.passes.cubes import MOST, SIDES, UNIT_CUBE, Outlines
+from characters.rendering.scene import Rectangle
 
 MATRIX = np.array([[300.0, 0, 159.5], [0, 300.0, 89.5], [0, 0, 1]])
 PART = Rectangle(40, 20, 200, 120)

@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.character import skin
 from characters.errors import CharacterError
-from characters.mesh import Material, Morph
+from characters.model.character import skin
+from characters.model.mesh import Material, Morph
 from characters.rendering import Actor
-from characters.rendering.geometry import Geometry
-from characters.rendering.morphing import Morphing
+from characters.rendering.geometry.buffers import Geometry
+from characters.rendering.geometry.morphing import Morphing
+from characters.rendering.geometry.skinning import SkinnedCharacter
 from characters.rendering.programs import Programs
-from characters.rendering.skinning import SkinnedCharacter
 
 NAMES = ("grin", "absent", "tall")
 

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from characters.mesh import Material
+from characters.model.mesh import Material
 from characters.rendering import Actor, Stage
 from characters.rendering.projection import clip_from_camera, is_rigid, merged, part_that_shows
-from characters.rendering.view import Rectangle
+from characters.rendering.scene import Rectangle
 
 MATRIX = np.array([[310.0, 0.7, 158.2], [0.0, 305.0, 92.4], [0.0, 0.0, 1.0]])
 

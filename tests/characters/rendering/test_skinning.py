@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters.mesh import Material
-from characters.rendering.geometry import Geometry
+from characters.model.mesh import Material
+from characters.rendering.geometry.buffers import Geometry
+from characters.rendering.geometry.skinning import SkinnedCharacter
 from characters.rendering.programs import Programs
-from characters.rendering.skinning import SkinnedCharacter
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from characters import Character, Pose, Skeleton
-from characters.character import skin
-from characters.rendering.sticks import LEFT, RIGHT, stick_figure
+from characters.model.character import skin
+from characters.model.stick_figure import LEFT, RIGHT, stick_figure
 
 
 @pytest.fixture(scope="module")

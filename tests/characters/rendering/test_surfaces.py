@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from characters.mesh import Material, Mesh
+from characters.model.mesh import Material, Mesh
 from characters.rendering import Actor
-from characters.rendering.geometry import Geometry
-from characters.rendering.surfaces import looks_of
+from characters.rendering.geometry.buffers import Geometry
+from characters.rendering.geometry.surfaces import looks_of
 
 RED = Material(base_color=(0.6, 0.1, 0.08, 1.0), roughness=0.5)
 

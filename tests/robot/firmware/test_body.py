@@ -10,8 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot.feeling.mood import Label, next_label
-from robot.firmware import generate, wiring
+from affect.mood_line import Label, next_label
 from robot.firmware.dino import body, motions, servos, sounds
 from robot.firmware.dino.joints import RETRY, STAGGER
 from robot.firmware.dino.robot import live, run
@@ -19,6 +18,8 @@ from robot.firmware.dino.table import Table
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
 from tests.robot.firmware.conftest import Dino, Pulse, VirtualBoard
+from tools import firmware_tables as generate
+from tools import wiring
 
 SERVOS = {servo.pin: servo for servo in Table(servos).servos}
 

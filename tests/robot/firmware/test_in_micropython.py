@@ -17,8 +17,8 @@ import pytest
 
 import robot.firmware
 import robot.protocol
+from affect.emotion import Emotion
 from robot.conformance import SimulatedLine, all_checks, examine
-from robot.emotion import Emotion
 
 FOLDER = Path(robot.firmware.__file__).parent
 FILES = [FOLDER / "main.py", *sorted((FOLDER / "dino").glob("*.py"))]

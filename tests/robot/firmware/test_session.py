@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from affect.emotion import Emotion
 from robot.conformance import SimulatedLine, all_checks, examine
-from robot.emotion import Emotion
 from robot.firmware.dino import servos
 from robot.protocol import messages as m
 from robot.protocol.schema import pack, unpack

@@ -15,7 +15,7 @@ from robot.simulators import SIMULATORS
 from tests.campaigns.decoders import GROWTH_MAX, HELD_MAX, TARGETS
 from tests.campaigns.soak import weight
 
-ROOT = Path(__file__).parents[3] / "robot"
+ROOT = Path(__file__).parents[3]
 
 WORDS = [
     b"\0", b"\x81\1\0", b"\x84", b"\x90", b"\x9f", b"> ", b"\r\n", b"\n", b"k", b"ksit", b"?", b"~",
@@ -34,9 +34,9 @@ def texts_for(name: str) -> list[bytes]:
     """Return what a settings file of this kind looks like when it is right."""
     kind, _, driver = name.partition(":")
     if kind == "personality":
-        found = sorted((ROOT / "feeling" / "personalities").glob("*.toml"))
+        found = sorted((ROOT / "affect" / "personalities").glob("*.toml"))
     else:
-        found = sorted((ROOT / "drivers" / driver).glob("*.toml"))
+        found = sorted((ROOT / "robot" / "drivers" / driver).glob("*.toml"))
     return [path.read_bytes() for path in found] or [b"a = 1\n"]
 
 

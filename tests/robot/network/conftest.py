@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from robot.catalogue import Catalogue
-from robot.emotion import Emotion
+from affect.emotion import Emotion
+from robot.contract.catalogue import Catalogue
+from robot.contract.telemetry import LinkState, Telemetry
 from robot.errors import RobotError
 from robot.network import Member, MemoryBroker, MemoryBus, Pattern, Player, RobotNode, Station
 from robot.network.bus import Handler
-from robot.telemetry import LinkState, Telemetry
 from tests.robot.network.mosquitto import Mosquitto
 
 NAMES = tuple(f"{player}{number}" for player in "abc" for number in range(1, 100))

@@ -2,7 +2,7 @@
 
 import pytest
 
-from robot.emotion import Emotion
+from affect.emotion import Emotion
 from robot.errors import RobotError
 from robot.network import Member, Pattern, RobotNode
 from robot.network.endpoint import SILENT_AFTER

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from robot.network import messages as m
 from robot.network import schema
-from robot.network.reference import DOCUMENT, renewed
 from robot.network.schema import MalformedError, decode, encode
 from robot.network.topics import Member, fits, is_name, member_of
+from tools.network_reference import DOCUMENT, renewed
 
 KINDS = list(dict.fromkeys(m.KINDS.values()))
 COUNTS = st.integers(1, schema.COUNT_MAX)
@@ -91,7 +91,7 @@ def test_the_largest_messages_fit():
 
 def test_the_document_says_what_the_code_says():
     text = DOCUMENT.read_text("utf-8")
-    assert renewed(text) == text, "run python -m robot.network.reference"
+    assert renewed(text) == text, "run python -m tools.network_reference"
     for form in KINDS:
         for field in dataclasses.fields(form):
             assert f"| `{field.name}` |" in text

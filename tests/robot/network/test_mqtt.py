@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 import robot
-from robot.emotion import Emotion
+from affect.emotion import Emotion
 from robot.errors import RobotError
 from robot.network import (
     Address,
@@ -30,7 +30,7 @@ from robot.network import (
     Roster,
     Station,
 )
-from robot.network.mqtt import RETRY_LAST, WAITING_MAX
+from robot.network.mqtt.bus import RETRY_LAST, WAITING_MAX
 from robot.protocol import messages as m
 from robot.simulators import SIMULATORS
 from robot.simulators.cubeling.simulator import Simulator
@@ -393,7 +393,7 @@ def test_a_broker_that_hangs_fills_no_memory_and_delays_no_publisher(mosquitto):
 
 
 def test_a_port_where_nobody_speaks_mqtt_is_left_in_bounded_time(monkeypatch, soon):
-    monkeypatch.setattr("robot.network.mqtt.ANSWER_WITHIN", 0.3)
+    monkeypatch.setattr("robot.network.mqtt.bus.ANSWER_WITHIN", 0.3)
     with socket.create_server(("127.0.0.1", 0)) as mute:
         bus = MqttBus(Address.of(f"mqtt://127.0.0.1:{mute.getsockname()[1]}"), "ann")
         bus.open()

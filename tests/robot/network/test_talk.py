@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot.emotion import Emotion
+from affect.emotion import Emotion
 from robot.network import Member, Player
 from robot.network.endpoint import SILENT_AFTER
 from robot.network.followers import Followers

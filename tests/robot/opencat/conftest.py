@@ -6,10 +6,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from affect.emotion import Emotion
 from robot.drivers.opencat.host import OpenCatHost
 from robot.drivers.opencat.settings import Settings
 from robot.drivers.opencat.settings_file import load_settings
-from robot.emotion import Emotion
 from robot.simulators.opencat.habits import Habits
 from robot.simulators.opencat.simulator import OpenCatSimulator
 

@@ -6,10 +6,10 @@ from itertools import pairwise
 
 import pytest
 
+from affect.emotion import Emotion
 from robot.drivers.opencat.exchange import LOST_TRIES, QUESTION_WITHIN
 from robot.drivers.opencat.host import REST_ASK_EVERY, OpenCatHost
 from robot.drivers.opencat.settings_file import load_settings, settings_of
-from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.simulators.opencat.habits import Habits
 from robot.simulators.opencat.simulator import OpenCatSimulator, nybble

@@ -11,16 +11,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import robot
+from affect.emotion import Emotion
 from robot.drivers import DRIVERS
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.host import OpenCatHost
 from robot.drivers.opencat.settings_file import load_settings
-from robot.emotion import Emotion
 from robot.errors import RobotError
+from robot.link.spacing import SpacedPort
 from robot.protocol import messages as m
 from robot.simulators.opencat.habits import Habits
 from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
-from robot.spacing import SpacedPort
 
 UGLY = Habits(slow=0.1, mangled=0.03, brown_outs=0.05, restless=8.0, battery_lasts=900.0)
 BOARDS = {
@@ -271,7 +271,7 @@ def test_settings_choose_the_baud_rate(tmp_path, monkeypatch):
         asked.append(baud)
         raise RobotError("no port")
 
-    monkeypatch.setattr("robot.connection.opener", no_port)
+    monkeypatch.setattr("robot.link.connection.opener", no_port)
     for settings_file in (None, path):
         with pytest.raises(RobotError, match="no port"):
             robot.connect("/dev/nothing", "opencat", settings=settings_file)

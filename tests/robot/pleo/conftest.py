@@ -6,9 +6,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from affect.emotion import Emotion
 from robot.drivers.pleo.driver import PleoDriver
 from robot.drivers.pleo.settings_file import load_settings
-from robot.emotion import Emotion
 from robot.simulators.pleo.simulator import PleoSimulator
 
 STEP = 0.005

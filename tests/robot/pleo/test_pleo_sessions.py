@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from affect.emotion import Emotion
 from robot.drivers.pleo import timing
 from robot.drivers.pleo.driver import PleoDriver
 from robot.drivers.pleo.settings_file import load_settings
-from robot.emotion import Emotion
 from robot.protocol import messages as m
 from robot.simulators.memory import simulator_of
 

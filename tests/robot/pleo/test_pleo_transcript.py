@@ -1,6 +1,6 @@
 """The very bytes of a start and of a mood change, and what the link says of itself meanwhile."""
 
-from robot.emotion import Emotion
+from affect.emotion import Emotion
 
 HAPPY = Emotion(0.8, 0.5)
 

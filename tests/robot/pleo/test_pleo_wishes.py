@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import robot.drivers.pleo
-from robot.driver import ACTIONS_MAX
+from robot.contract.driver import ACTIONS_MAX
 from robot.drivers.pleo import commands, timing
 from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.settings import BUNDLED

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from affect.emotion import Emotion
 from robot.drivers.reachy import moves
 from robot.drivers.reachy.driver import (
     LINE_MAX,
@@ -15,7 +16,6 @@ from robot.drivers.reachy.driver import (
     TARGET_WITHIN,
     ReachyDriver,
 )
-from robot.emotion import Emotion
 from robot.protocol import messages as m
 
 HAPPY = Emotion(0.8, 0.6)

@@ -16,10 +16,10 @@ import pytest
 import serial
 
 import robot
+from affect.emotion import Emotion
 from robot.drivers import DRIVERS
 from robot.drivers.reachy.hand import head_angles, head_pose
 from robot.drivers.reachy.line import ReachyLine, open_reachy
-from robot.emotion import Emotion
 from robot.errors import RobotError
 
 HAPPY = Emotion(0.8, 0.6)

@@ -15,8 +15,8 @@ import pytest
 
 import robot
 from robot.conformance import PortLine, SimulatedLine, all_checks, chosen, examine
-from robot.protocol.reference import HEADER_FILE
-from robot.transport import opener
+from robot.link.transport import opener
+from tools.protocol_reference import HEADER_FILE
 
 HERE = Path(__file__).parent
 COMPILER = shutil.which("gcc") or shutil.which("cc") or shutil.which("clang")

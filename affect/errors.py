@@ -1,0 +1,8 @@
+"""What goes wrong in this room, said in one line."""
+
+
+class AffectError(Exception):
+    """Bad input to `affect`: the message is one line for a person.
+
+    It says what was wrong, where, and what to do.
+    """

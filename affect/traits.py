@@ -1,0 +1,74 @@
+"""Impulses in the plane of valence and arousal, and the five traits that scale them."""
+
+from dataclasses import dataclass
+
+from affect.emotion import Emotion
+
+
+@dataclass(frozen=True)
+class Push:
+    """A way in the plane: of an action [1/s], or of an event, at once."""
+
+    valence: float = 0.0
+    """Towards pleasant; negative towards unpleasant."""
+
+    arousal: float = 0.0
+    """Towards excited; negative towards calm."""
+
+    def times(self, factor: float) -> "Push":
+        """Return a push so many times as strong."""
+        return Push(self.valence * factor, self.arousal * factor)
+
+
+@dataclass(frozen=True)
+class Ocean:
+    """The five traits of a personality, each 0…1 (specification S17: its example has all five)."""
+
+    openness: float = 0.5
+    """Imaginative rather than unimaginative."""
+
+    conscientiousness: float = 0.5
+    """Organised rather than careless."""
+
+    extraversion: float = 0.5
+    """Outgoing rather than reserved."""
+
+    agreeableness: float = 0.5
+    """Kind rather than hostile."""
+
+    neuroticism: float = 0.5
+    """Moody and nervous rather than even-tempered."""
+
+    @property
+    def responses(self) -> tuple[float, float]:
+        """How strongly it takes what pleases and what displeases, (u₊, u₋), each 0…1.
+
+        u = P₀ p (Egges, as in specification S17, which gives the rows of P₀).
+
+        >>> Ocean(0.8, 0.1, 0.7, 0.5, 0.05).responses  # the thesis' example
+        (0.62, 0.175)
+        """
+        o, c, e, a, n = (
+            self.openness,
+            self.conscientiousness,
+            self.extraversion,
+            self.agreeableness,
+            self.neuroticism,
+        )
+        good = 0.15 * o + 0.45 * e + 0.40 * a - 0.30 * n
+        bad = 0.10 * o + 0.10 * c + 0.10 * a + 0.70 * n
+        return round(min(max(good, 0.0), 1.0), 9), round(min(max(bad, 0.0), 1.0), 9)
+
+    @property
+    def temperament(self) -> Emotion:
+        """Where it is at home: pleasure and arousal by Mehrabian (1996), a third of the way out.
+
+        A third, so that the ordinary word at rest is still "neutral" (ours).
+        """
+        o, e, a = (
+            2.0 * trait - 1.0 for trait in (self.openness, self.extraversion, self.agreeableness)
+        )
+        stable = 1.0 - 2.0 * self.neuroticism
+        pleasure = 0.21 * e + 0.59 * a + 0.19 * stable
+        arousal = 0.15 * o + 0.30 * a - 0.57 * stable
+        return Emotion(pleasure / 3.0, arousal / 3.0)

@@ -1,0 +1,1 @@
+"""Running a session: what it is made of, and its loop over the frames."""

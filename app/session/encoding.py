@@ -1,0 +1,123 @@
+"""The arrows of the line as JSON: frozen dataclasses there and back, and their schemas."""
+
+import dataclasses
+import json
+import types
+import typing
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.pipeline.scenario import EmotionTarget
+from characters import CharacterCommand, Pose, PosedCharacter
+from tracking import CubeControls, CubeState
+
+T = TypeVar("T")
+
+ARROWS: dict[str, type[Any]] = {
+    "/cube/state": CubeState,
+    "/cube/controls": CubeControls,
+    "/character/command": CharacterCommand,
+    "/character/pose": PosedCharacter,
+    "/robot/emotion": EmotionTarget,
+}
+"""The channel of every arrow between the camera and the picture."""
+
+
+def encode(arrow: object) -> bytes:
+    """Return a dataclass as JSON; numbers keep every bit, and null stands for NaN.
+
+    Joints (`Pose`) are rounded to single precision, as the graphics card has them.
+    """
+    return json.dumps(_plain(arrow), separators=(",", ":"), allow_nan=False).encode()
+
+
+def decode(kind: type[T], document: bytes) -> T:
+    """Return the dataclass of type `kind` that `encode` wrote.
+
+    Raises
+    ------
+    ValueError
+        The document is no JSON, or not of that type.
+    """
+    try:
+        value = _typed(kind, json.loads(document))
+    except (KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"not a {kind.__name__}: {error}") from error
+    return typing.cast(T, value)
+
+
+def schema(kind: type[Any]) -> bytes:
+    """Return the JSON Schema of a dataclass."""
+    return json.dumps({"title": kind.__name__, **_schema(kind)}, separators=(",", ":")).encode()
+
+
+def _plain(value: object) -> object:
+    if isinstance(value, Pose):
+        fields = dataclasses.fields(value)
+        return {field.name: _single(getattr(value, field.name)) for field in fields}
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        fields = dataclasses.fields(value)
+        return {field.name: _plain(getattr(value, field.name)) for field in fields}
+    if isinstance(value, np.ndarray):
+        return value.tolist() if np.isfinite(value).all() else _with_gaps(value)
+    if isinstance(value, tuple | list):
+        return [_plain(item) for item in value]
+    if isinstance(value, float | np.floating):
+        return float(value) if np.isfinite(value) else None
+    if isinstance(value, np.bool_ | np.integer):
+        return value.item()
+    return value
+
+
+def _with_gaps(array: NDArray[Any]) -> object:
+    """Return nested lists with None where a number is not finite."""
+    numbers = array.astype(object)
+    numbers[~np.isfinite(array)] = None
+    return numbers.tolist()
+
+
+def _single(array: NDArray[Any] | None) -> object:
+    """Return the shortest decimals that give the same single-precision numbers."""
+    if array is None:
+        return None
+    # Adding zero turns −0 into 0, which is the same joint and one character less.
+    flat = [float(f"{number!s}") for number in (array.astype(np.float32) + np.float32(0)).ravel()]
+    return np.array(flat).reshape(array.shape).tolist()
+
+
+def _typed(kind: Any, value: Any) -> Any:
+    if dataclasses.is_dataclass(kind):
+        hints = typing.get_type_hints(kind)
+        names = [field.name for field in dataclasses.fields(kind) if field.name in value]
+        return typing.cast(Any, kind)(**{name: _typed(hints[name], value[name]) for name in names})
+    origin = typing.get_origin(kind)
+    if origin in (typing.Union, types.UnionType):
+        choices = [choice for choice in typing.get_args(kind) if choice is not type(None)]
+        return None if value is None else _typed(choices[0], value)
+    if origin is np.ndarray:
+        return np.array(value, float)
+    if origin is tuple:
+        return tuple(_typed(typing.get_args(kind)[0], item) for item in value)
+    if kind is float:
+        return float("nan") if value is None else float(value)
+    return value
+
+
+def _schema(kind: Any) -> dict[str, Any]:
+    if dataclasses.is_dataclass(kind):
+        hints = typing.get_type_hints(kind)
+        fields = {field.name: _schema(hints[field.name]) for field in dataclasses.fields(kind)}
+        return {"type": "object", "properties": fields}
+    origin = typing.get_origin(kind)
+    if origin in (typing.Union, types.UnionType):
+        return {"anyOf": [_schema(choice) for choice in typing.get_args(kind)]}
+    if origin is np.ndarray:
+        return {"type": "array"}
+    if origin is tuple:
+        return {"type": "array", "items": _schema(typing.get_args(kind)[0])}
+    if origin is typing.Literal:
+        return {"enum": list(typing.get_args(kind))}
+    names = {bool: "boolean", int: "integer", float: "number", str: "string", type(None): "null"}
+    return {"type": names[kind]}

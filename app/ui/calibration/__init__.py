@@ -1,0 +1,1 @@
+"""The coach that leads a person through a calibration."""

@@ -1,0 +1,35 @@
+"""The coach in a window."""
+
+import glfw
+import numpy as np
+from numpy.typing import NDArray
+
+from app.ui.calibration.coach import CoachView
+from app.ui.calibration.session import Advice
+from app.ui.window import Window
+
+Picture = NDArray[np.uint8]
+
+
+class CoachWindow(Window):
+    """A window with the live picture and the coach over it; Esc ends the lesson.
+
+    Parameters
+    ----------
+    size
+        Width and height of the pictures [px].
+    target
+        "cube" or "board".
+    """
+
+    def __init__(self, size: tuple[int, int], target: str) -> None:
+        super().__init__(size, "Cubeling: calibrate")
+        self._coach = CoachView(target)
+
+    def tell(self, picture: Picture, timestamp: float, advice: Advice) -> None:
+        """Show the picture with the advice over it."""
+        if self.closed:
+            return
+        self._paint(self._coach.draw(picture, timestamp, advice))
+        glfw.swap_buffers(self._window)
+        glfw.poll_events()

@@ -1,0 +1,165 @@
+"""Where the finished pictures go."""
+
+import os
+from contextlib import suppress
+from fractions import Fraction
+from pathlib import Path
+from typing import Protocol, Self
+
+import av
+import numpy as np
+from numpy.typing import NDArray
+
+from app.errors import AppError
+from app.pipeline.scenario import Inputs
+from app.pipeline.step import RobotView, Step
+from app.ui.notice import Notice
+from app.ui.overlay import overlay
+from app.ui.virtual_robot import Likeness
+
+
+class Screen(Protocol):
+    """Shows one picture a frame. Who makes it closes it; a second `close` does nothing."""
+
+    def show(self, step: Step, robot: RobotView) -> Inputs:
+        """Show a step; returns what the player asks for."""
+        ...
+
+    def wait(self, notice: Notice | None) -> None:
+        """Stay alive while no frame comes; tell the player why, where there is something to tell.
+
+        What the player pressed meanwhile is returned by the next `show`.
+        """
+        ...
+
+    @property
+    def closed(self) -> bool:
+        """Whether the player has had enough."""
+        ...
+
+    def close(self) -> None:
+        """Finish."""
+        ...
+
+
+class Nowhere:
+    """Shows nothing: for measuring and for recording without pictures."""
+
+    closed = False
+
+    def show(self, step: Step, robot: RobotView) -> Inputs:
+        """Do nothing."""
+        return Inputs()
+
+    def wait(self, notice: Notice | None) -> None:
+        """Do nothing."""
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+class VideoFile:
+    """Writes the pictures to an MP4 file that every player opens (H.264).
+
+    The file appears when it is whole: until `close` it is `PATH.partial`; `discard` removes that.
+
+    Parameters
+    ----------
+    path
+        The file.
+    size
+        Width and height of the pictures [px].
+    rate
+        Pictures a second.
+    likeness
+        Stands in for a robot that is not there; None to draw its face. The caller closes it.
+    """
+
+    closed = False
+
+    def __init__(
+        self, path: Path, size: tuple[int, int], rate: float, likeness: Likeness | None = None
+    ) -> None:
+        self._path = path
+        self._partial = path.with_name(path.name + ".partial")
+        self._rate = rate
+        self._likeness = likeness
+        self._start: float | None = None
+        self._last = -1
+        try:
+            self._partial.touch()
+            self._file = av.open(
+                str(self._partial), "w", format="mp4", options={"movflags": "faststart"}
+            )
+        except OSError as error:
+            raise AppError(f"cannot write the video '{path}': {error.strerror}") from error
+        stream = self._file.add_stream("libx264", rate=Fraction(round(rate)), options=QUALITY)
+        stream.width, stream.height = (side - side % 2 for side in size)
+        stream.pix_fmt = "yuv420p"
+        # In the encoder too: in steps of 1/rate, two frames of a live camera become one.
+        stream.time_base = stream.codec_context.time_base = Fraction(1, TICKS)
+        self._stream = stream
+        self._open = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is None:
+            self.close()
+        else:
+            self.discard()
+
+    def show(self, step: Step, robot: RobotView) -> Inputs:
+        """Write a step's picture, with the cards over it."""
+        if step.picture is not None:
+            self.write(overlay(step.picture, step, robot, self._likeness), step.frame.timestamp)
+        return Inputs()
+
+    def wait(self, notice: Notice | None) -> None:
+        """Write nothing: the last picture stands until the next one's time."""
+
+    def write(self, picture: NDArray[np.uint8], timestamp: float) -> None:
+        """Write one picture (H, W, 3) BGR at a time [s]."""
+        if self._start is None:
+            self._start = timestamp
+        tick = max(self._last + 1, round((timestamp - self._start) * TICKS))
+        self._last = tick
+        even = picture[: self._stream.height, : self._stream.width]
+        frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(even), format="bgr24")
+        frame.pts, frame.time_base = tick, Fraction(1, TICKS)
+        try:
+            self._file.mux(self._stream.encode(frame))
+        except OSError as error:
+            raise self._failed(error) from error
+
+    def close(self) -> None:
+        """Finish the file and give it its name."""
+        if not self._open:
+            return
+        try:
+            self._file.mux(self._stream.encode())
+            self._file.close()
+            os.replace(self._partial, self._path)
+        except OSError as error:
+            self.discard()
+            raise self._failed(error) from error
+        self._open = False
+
+    def discard(self) -> None:
+        """Leave nothing behind."""
+        if self._open:
+            self._open = False
+            with suppress(OSError):  # a full disk, which is why it is discarded
+                self._file.close()
+            self._partial.unlink(missing_ok=True)
+
+    def _failed(self, error: OSError) -> AppError:
+        return AppError(f"writing the video '{self._path}' failed: {error.strerror}")
+
+
+QUALITY = {"preset": "veryfast", "crf": "19"}
+"""Good for a table and a character; veryfast leaves the processor to the picture."""
+
+TICKS = 1000
+"""Time steps of a video in a second: the camera's own times to the millisecond."""

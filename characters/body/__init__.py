@@ -1,0 +1,1 @@
+"""Head and trunk: gaze, breath, sway and posture."""

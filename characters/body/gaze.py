@@ -1,0 +1,300 @@
+"""Head and eyes that look at a point, as far as a body can.
+
+Eyes jump, the head follows, and while it follows the eyes turn back by as much: the gaze stays
+where it is. The head leaves small turns to the eyes (Stahl, "Amplitude of human head movements
+associated with horizontal saccades", 1999; Guitton and Volle, "Gaze control in humans", 1987).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Array, Pose, Skeleton
+from characters.skeleton.rotations import from_matrix
+from characters.skeleton.scalar_quaternions import (
+    STILL,
+    Quaternion,
+    Vector,
+    conjugate,
+    from_vector,
+    less,
+    multiply,
+    to_vector,
+    turn,
+)
+from characters.smoothing import sprung
+
+
+@dataclass(frozen=True)
+class Limits:
+    """How far a body can look, from where its chest faces."""
+
+    head_yaw: float = math.radians(72)
+    """Of the head to either side [rad]."""
+
+    head_up: float = math.radians(42)
+    """Of the head upwards [rad]."""
+
+    head_down: float = math.radians(48)
+    """Of the head downwards [rad]."""
+
+    eye_yaw: float = math.radians(24)
+    """Of the eyes to either side in the head [rad]."""
+
+    eye_pitch: float = math.radians(15)
+    """Of the eyes up and down in the head [rad]."""
+
+    given_up: float = math.radians(130)
+    """What is farther round than this is not looked at: the head stays as it is [rad]."""
+
+
+HUMAN = Limits()
+"""Ranges of motion of a healthy adult's neck, a little within (Youdas et al., 1992); of the eyes,
+what is used without effort, since drawn lids hide no more."""
+
+_EYES_ALONE = math.radians(9)  # the head leaves turns up to this to the eyes
+_HEAD_SHARE = 0.92  # of what is beyond it, the head takes this part
+_HEAD_LAG, _EYE_LAG = 0.34, 0.035  # [s]
+_AHEAD: Vector = (0.0, 0.0, 1.0)
+
+
+@dataclass
+class _Joint:
+    """A joint on the way from the root to the head or an eye."""
+
+    number: int
+    """In the skeleton."""
+
+    parent: int
+    """Place of its parent among such joints; −1 for none."""
+
+    rest: Quaternion
+    """Its rotation at rest, in the character."""
+
+    turn: Quaternion = STILL
+    """Its rotation now, in the character."""
+
+    place: Vector = (0.0, 0.0, 0.0)
+    """Where it is now."""
+
+    scale: Vector = (1.0, 1.0, 1.0)
+    """How its children's shifts are stretched now."""
+
+    @property
+    def facing(self) -> Quaternion:
+        """How the body's axes lie as this joint carries them."""
+        return multiply(self.turn, conjugate(self.rest))
+
+
+class Gaze:
+    """Turns neck, head and eyes of one character.
+
+    Parameters
+    ----------
+    skeleton, anatomy
+        Whose.
+    limits
+        How far they turn.
+    """
+
+    def __init__(self, skeleton: Skeleton, anatomy: Anatomy, limits: Limits = HUMAN) -> None:
+        head = anatomy.joint("head")
+        self.able = head is not None
+        """Whether there is a head to turn."""
+        self._limits = limits
+        self._yaw = self._pitch = self._yaw_speed = self._pitch_speed = 0.0
+        self.jumped = 0.0
+        """How far the eyes' aim went in the last update [rad]."""
+        self._aim: tuple[float, float] | None = None
+        if head is None:
+            return
+        line = _line(head, anatomy.joint("neck"), skeleton)
+        eyes = [j for side in ("left", "right") if (j := anatomy.joint(f"{side}Eye")) is not None]
+        self._joints = _carriers(skeleton, [*line, *eyes])
+        places = {joint.number: place for place, joint in enumerate(self._joints)}
+        self._numbers = np.array([joint.number for joint in self._joints], np.intp)
+        self._line = [self._joints[places[joint]] for joint in line]
+        self._eyes = [self._joints[places[joint]] for joint in eyes]
+        self._eye_turns = [(0.0, 0.0)] * len(eyes)
+
+    def update(
+        self,
+        pose: Pose,
+        target: Array | None,
+        elapsed: float,
+        head_share: float = 1.0,
+        *,
+        pace: float = 1.0,
+        bow: float = 0.0,
+    ) -> Pose:
+        """Advance by a time [s] and return the pose with head and eyes turned.
+
+        Parameters
+        ----------
+        pose
+            As the body holds it.
+        target
+            What is looked at, (3,) in the character frame [m]; None for nothing.
+        elapsed
+            Since the last call.
+        head_share
+            How much of its part the head takes, 0…1; the eyes look anyway.
+        pace
+            How much quicker the head turns than usual.
+        bow
+            How far the head hangs beside [rad]; the eyes look up from it.
+        """
+        if not self.able:
+            return pose
+        self._place(pose)
+        body, head = self._body(), self._line[-1]
+        held = _angles(turn(conjugate(body), turn(head.facing, _AHEAD)))
+        point: Vector | None = None
+        if target is not None:
+            x, y, z = target.tolist()
+            point = (x, y, z)
+        aim = self._aimed(body, point)
+        self.jumped = 0.0 if aim is None or self._aim is None else math.dist(aim, self._aim)
+        self._aim = aim
+        wish = (0.0, 0.0) if aim is None else self._head_wish(aim, held, head_share)
+        lag = _HEAD_LAG / pace
+        self._yaw, self._yaw_speed = sprung(self._yaw, self._yaw_speed, wish[0], elapsed, lag)
+        self._pitch, self._pitch_speed = sprung(
+            self._pitch, self._pitch_speed, wish[1], elapsed, lag
+        )
+        aimed = held[0] + self._yaw, held[1] + self._pitch - bow
+        turned = turn(body, _turn_between(held, aimed))
+        local = pose.rotations.copy()
+        self._turn_line(local, turned)
+        if self._eyes:
+            self._turn_eyes(local, turned, point if aim is not None else None, elapsed)
+        return Pose(pose.translations, local, pose.scales, pose.morphs)
+
+    def _place(self, pose: Pose) -> None:
+        """Work out where the joints are in a pose."""
+        turns = pose.rotations[self._numbers].tolist()
+        shifts = pose.translations[self._numbers].tolist()
+        scales = None if pose.scales is None else pose.scales[self._numbers].tolist()
+        for number, (joint, own, shift) in enumerate(zip(self._joints, turns, shifts, strict=True)):
+            joint.turn, joint.place = own, shift
+            if joint.parent >= 0:
+                above = self._joints[joint.parent]
+                if scales is not None:
+                    shift = [a * b for a, b in zip(shift, above.scale, strict=True)]
+                x, y, z = turn(above.turn, shift)
+                px, py, pz = above.place
+                joint.turn, joint.place = multiply(above.turn, own), (x + px, y + py, z + pz)
+            if scales is not None:
+                # Bodies are stretched along their joints' axes or evenly: shear is left out.
+                before = self._joints[joint.parent].scale if joint.parent >= 0 else (1.0, 1.0, 1.0)
+                sx, sy, sz = scales[number]
+                joint.scale = (before[0] * sx, before[1] * sy, before[2] * sz)
+
+    def _body(self) -> Quaternion:
+        """Return which way the chest faces."""
+        base = self._line[0].parent
+        return self._joints[base].facing if base >= 0 else STILL
+
+    def _aimed(self, body: Quaternion, point: Vector | None) -> tuple[float, float] | None:
+        """Return yaw and pitch of a point from where the chest faces; None if it is not seen."""
+        if point is None:
+            return None
+        eyes = self._eyes or self._line[-1:]
+        middle = [sum(eye.place[axis] for eye in eyes) / len(eyes) for axis in range(3)]
+        way = less(point, (middle[0], middle[1], middle[2]))
+        if max(map(abs, way)) < 1e-6:
+            return None
+        aim = _angles(turn(conjugate(body), way))
+        return aim if abs(aim[0]) < self._limits.given_up else None
+
+    def _head_wish(
+        self, aim: tuple[float, float], held: tuple[float, float], share: float
+    ) -> tuple[float, float]:
+        """Return how far the head is to turn beside what the pose does [rad]: yaw, pitch."""
+        limits, wished = self._limits, []
+        ranges = ((-limits.head_yaw, limits.head_yaw), (-limits.head_down, limits.head_up))
+        for angle, now, (low, high) in zip(aim, held, ranges, strict=True):
+            away = angle - now
+            beyond = math.copysign(max(abs(away) - _EYES_ALONE, 0.0) * _HEAD_SHARE, away)
+            at = min(max(now + beyond, low), high)
+            wished.append((at - now) * share)
+        return wished[0], wished[1]
+
+    def _turn_line(self, local: Array, turned: Vector) -> None:
+        """Turn neck and head: each joint of the line by an equal part, so that they bend alike.
+
+        Powers of one rotation commute: each joint's parent has made its part already, so the part
+        of each is the same vector, seen from the parent as it was.
+        """
+        x, y, z = (value / len(self._line) for value in turned)
+        for joint in self._line:
+            part = (x, y, z)
+            if joint.parent >= 0:
+                part = turn(conjugate(self._joints[joint.parent].turn), part)
+            local[joint.number] = multiply(from_vector(part), local[joint.number].tolist())
+
+    def _turn_eyes(
+        self, local: Array, turned: Vector, point: Vector | None, elapsed: float
+    ) -> None:
+        """Turn the eyes in the head that has turned, each to the point by itself."""
+        head, whole = self._line[-1], from_vector(turned)
+        back = conjugate(multiply(whole, head.facing))
+        kept = math.exp(-elapsed / _EYE_LAG)
+        for number, eye in enumerate(self._eyes):
+            wish = (0.0, 0.0)
+            if point is not None:
+                x, y, z = turn(whole, less(eye.place, head.place))
+                place = (x + head.place[0], y + head.place[1], z + head.place[2])
+                yaw, pitch = _angles(turn(back, less(point, place)))
+                yaw_most, pitch_most = self._limits.eye_yaw, self._limits.eye_pitch
+                wish = (
+                    min(max(yaw, -yaw_most), yaw_most),
+                    min(max(pitch, -pitch_most), pitch_most),
+                )
+            before = self._eye_turns[number]
+            yaw, pitch = (w + (b - w) * kept for w, b in zip(wish, before, strict=True))
+            self._eye_turns[number] = yaw, pitch
+            # About the body's up, and about its left downwards, in the frame of the eye.
+            own = turn(conjugate(eye.rest), (-pitch, yaw, 0.0))
+            local[eye.number] = multiply(local[eye.number].tolist(), from_vector(own))
+
+
+def _carriers(skeleton: Skeleton, joints: list[int]) -> list[_Joint]:
+    """Return some joints with all that carry them, parents first."""
+    order = skeleton.carrying(joints)
+    place = {joint: number for number, joint in enumerate(order)} | {-1: -1}
+    matrices = skeleton.rest.globals(skeleton)[order, :3, :3]
+    sizes = np.linalg.norm(matrices, axis=1, keepdims=True)
+    rest = from_matrix(matrices / np.where(sizes > 0, sizes, 1.0)).tolist()
+    return [
+        _Joint(joint, place[skeleton.parents[joint]], tuple(turned))
+        for joint, turned in zip(order, rest, strict=True)
+    ]
+
+
+def _line(head: int, neck: int | None, skeleton: Skeleton) -> list[int]:
+    """Return the joints from the neck to the head; the head alone where there is no neck."""
+    line = [head]
+    while neck is not None and line[-1] not in (neck, -1):
+        line.append(skeleton.parents[line[-1]])
+    return line[::-1] if line[-1] == neck else [head]
+
+
+def _angles(direction: Vector) -> tuple[float, float]:
+    """Return yaw to the left and pitch upwards [rad] of a direction: left, up, forward."""
+    x, y, z = direction
+    return math.atan2(x, z), math.atan2(y, math.hypot(x, z))
+
+
+def _turn_between(start: tuple[float, float], end: tuple[float, float]) -> Vector:
+    """Return what turns one direction to another, level to level, as a rotation vector [rad].
+
+    The directions are yaws to the left and pitches upwards: first back to straight ahead by
+    the yaw of one, then by the difference of the pitches, then by the yaw of the other.
+    """
+    half = (end[0] / 2, (start[1] - end[1]) / 2, -start[0] / 2)
+    (sa, sb, sc), (ca, cb, cc) = map(math.sin, half), map(math.cos, half)
+    first = (ca * sb, sa * cb, -sa * sb, ca * cb)
+    return to_vector(multiply(first, (0.0, sc, 0.0, cc)))

@@ -1,0 +1,1 @@
+"""From commands to a posed character."""

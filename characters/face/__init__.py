@@ -1,0 +1,1 @@
+"""Faces: expressions, lids, blinks, and the display of emotion."""

@@ -1,0 +1,123 @@
+"""Which morphs close the eyes: there is no one name for them."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.model.mesh import Mesh
+from characters.skeleton.pose import Array
+
+# Without capitals, marks and what stands before a dot. VRM, ARKit and Mixamo, Ready Player Me,
+# VRoid, Character Creator and MikuMikuDance (whose names are Japanese) call it so.
+_BOTH = ("blink", "eyeblink", "eyesblink", "eyesclosed", "eyeclosed", "eyesclose", "eyeclose",
+         "closeeyes", "fcleyeclose", "まばたき")  # fmt: skip
+_PAIRS = (*_BOTH, "blinkeye", "closeeye")
+_SIDES = (("left", "right"), ("l", "r"))
+
+_LEAST_CLOSED = 0.1  # so much of the lids may be closed less than `blinks_in` says
+
+
+@dataclass(frozen=True)
+class Lids:
+    """Morphs that close the eyes."""
+
+    both: int | None
+    """That of both eyes at once."""
+
+    sides: NDArray[np.intp]
+    """Those of the left and the right eye, two or none."""
+
+    @staticmethod
+    def of(morphs: Sequence[str]) -> "Lids":
+        """Find them among the names of a character's morphs.
+
+        >>> Lids.of(["jawOpen", "eyeBlinkLeft", "eyeBlinkRight"]).sides.tolist()
+        [1, 2]
+        """
+        found: dict[str, int] = {}
+        for number, name in enumerate(morphs):
+            for form in (name, name.rpartition(".")[2]):
+                found.setdefault(plain(form), number)
+        both = next((found[name] for name in _BOTH if name in found), None)
+        pairs = (
+            (found[stem + left], found[stem + right])
+            for stem in _PAIRS
+            for left, right in _SIDES
+            if stem + left in found and stem + right in found
+        )
+        return Lids(both, np.array(next(pairs, ()), np.intp))
+
+    def __bool__(self) -> bool:
+        """Whether there are any."""
+        return self.both is not None or self.sides.size > 0
+
+    def closed(self, weights: Array | None) -> float:
+        """Return how far weights of morphs (morphs,) close the eyes by the lids' own morphs."""
+        if weights is None or not self:
+            return 0.0
+        apart = float(weights[self.sides].max()) if self.sides.size else 0.0
+        return apart if self.both is None else max(apart, float(weights[self.both]))
+
+    def close(self, weights: Array, closed: float) -> None:
+        """Close the eyes at least so far, 0…1, in weights of morphs (morphs,).
+
+        A lid that is closed already, whether by the one morph or by the other, is not closed twice.
+        """
+        if closed <= 0.0:
+            return
+        if self.both is None:
+            weights[self.sides] = np.maximum(weights[self.sides], closed)
+            return
+        apart = float(weights[self.sides].max()) if self.sides.size else 0.0
+        weights[self.both] = max(float(weights[self.both]), min(closed, 1.0 - apart))
+
+    def narrow(self, weights: Array, most: float) -> None:
+        """Close the eyes at most so far, 0…1, in weights of morphs (morphs,)."""
+        for number in self.sides if self.both is None else (self.both, *self.sides):
+            if weights[number] > most:
+                weights[number] = most
+
+
+def plain(name: str) -> str:
+    """Return a morph's name without capitals, blanks and marks.
+
+    >>> plain("Eye Blink_L")
+    'eyeblinkl'
+    """
+    return re.sub(r"[\W_]", "", name).lower()
+
+
+def blinks_in(morphs: Sequence[str], meshes: Iterable[Mesh], lids: Lids) -> Array:
+    """Return how much of a blink there is in each morph, (morphs,), 0…1, from what they move.
+
+    1 is a morph that closes the eyes as a blink does; a blink beside it closes them too far by just
+    this. What counts is the part of the lids that it closes least (`_LEAST_CLOSED`), so that
+    slanted lids leave no gap.
+    """
+    names = [morphs[number] for number in (lids.sides if lids.both is None else [lids.both])]
+    ways, moved = [np.zeros((0, 3))], [np.zeros((len(morphs), 0, 3))]
+    for mesh in meshes:
+        blink = np.zeros(mesh.positions.shape)
+        for morph in mesh.morphs:
+            if morph.name in names:
+                blink[morph.vertices] += morph.shifts
+        lid = np.flatnonzero(blink.any(axis=1))
+        shifts = np.zeros((len(morphs), *blink.shape))
+        for morph in mesh.morphs if lid.size else ():
+            shifts[morphs.index(morph.name), morph.vertices] = morph.shifts
+        ways.append(blink[lid])
+        moved.append(shifts[:, lid])
+    way = np.concatenate(ways)
+    if not len(way):
+        return np.zeros(len(morphs))
+    lengths = np.einsum("va,va->v", way, way)
+    shares = np.einsum("mva,va->mv", np.concatenate(moved, axis=1), way) / lengths
+    # Vertices that a blink moves far count for more than those at the corners of the eye.
+    order = np.argsort(shares, axis=1)
+    up_to = np.cumsum(lengths[order], axis=1) / lengths.sum()
+    least = np.argmax(up_to >= _LEAST_CLOSED, axis=1)
+    found = np.take_along_axis(shares, np.take_along_axis(order, least[:, None], 1), 1)[:, 0]
+    return np.asarray(np.clip(found, 0.0, 1.0))

@@ -1,0 +1,223 @@
+"""From the meshes of a glTF scene to skinned meshes in the character frame."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.formats.gltf.document import DamagedFileError, Json, at, called
+from characters.formats.gltf.file import GltfFile
+from characters.formats.gltf.materials import Look, read_materials
+from characters.formats.gltf.morphs import MorphReader, MorphTable, morph_kept, morph_moved
+from characters.formats.gltf.nodes import NodeTree
+from characters.formats.gltf.skins import Skin, read_skin, rigid_skin
+from characters.model.mesh import Material, Mesh, Morph
+
+Array = NDArray[np.float64]
+_TRIANGLES, _STRIP, _FAN = 4, 5, 6
+_MOST_PARTS = 4096  # that a character is drawn of; small ones cost time, not bytes
+
+
+def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple[int, Mesh]]:
+    """Return every primitive that the skeleton moves, as a mesh of its own, and whose it is.
+
+    The number is that of the node which carries it.
+    """
+    carried = [file.document["nodes"][number]["mesh"] for number in tree.mesh_nodes]
+    parts = sum(len(file.document["meshes"][mesh]["primitives"]) for mesh in carried)
+    if parts > _MOST_PARTS:
+        raise DamagedFileError(f"has {parts} parts, of which {_MOST_PARTS} are read; join them")
+    looks = read_materials(file)
+    rest = tree.skeleton.rest.globals(tree.skeleton)
+    meshes: list[tuple[int, Mesh]] = []
+    for number in tree.mesh_nodes:
+        node = file.document["nodes"][number]
+        mesh = file.document["meshes"][node["mesh"]]
+        name = mesh.get("name") or node.get("name") or "mesh"
+        targets = MorphReader(file, table.of(number))
+        for primitive in mesh["primitives"]:
+            if primitive.get("mode", _TRIANGLES) not in (_TRIANGLES, _STRIP, _FAN):
+                continue  # points and lines are not skin
+            with at(called("mesh", node["mesh"], mesh)):
+                look = looks[primitive["material"]] if "material" in primitive else Look(Material())
+                geometry = _geometry(file, primitive, look)
+                if not len(geometry.triangles):
+                    continue
+                skin = _skin(file, primitive, number, tree, len(geometry.positions), rest)
+                morphs = targets.read(primitive, len(geometry.positions))
+                used = _used(geometry, skin, morphs)
+                placed = _placed(name, *used, look.material, rest)
+                meshes.append((number, placed))
+    return meshes
+
+
+class _Geometry(NamedTuple):
+    """What a vertex is, without what moves it."""
+
+    positions: Array
+    normals: Array
+    triangles: NDArray[np.int64]
+    colors: Array | None
+    uvs: Array | None
+
+
+def _skin(
+    file: GltfFile, primitive: Json, number: int, tree: NodeTree, vertices: int, rest: Array
+) -> Skin:
+    node = file.document["nodes"][number]
+    if "skin" not in node:
+        file.budget.spend(16 * len(rest), "its bind matrices")
+        return rigid_skin(tree.joint_of_node[number], vertices, rest)
+    mesh = called("mesh", node["mesh"], file.document["meshes"][node["mesh"]])
+    where = f"{file.path}: {mesh}"
+    return read_skin(file, primitive["attributes"], node["skin"], tree, vertices, where)
+
+
+def _geometry(file: GltfFile, primitive: Json, look: Look) -> _Geometry:
+    attributes = primitive["attributes"]
+    if "POSITION" not in attributes:
+        raise DamagedFileError("has no positions")
+    positions = file.floats(attributes["POSITION"], 3)
+    if "indices" in primitive:
+        indices = file.integers(primitive["indices"], 1)
+    else:
+        indices = np.arange(len(positions), dtype=np.int64)
+    if indices.size and indices.max() >= len(positions):
+        raise DamagedFileError(f"a triangle names vertex {indices.max()} of {len(positions)}")
+    triangles = _triangles(indices, primitive.get("mode", _TRIANGLES))
+    geometry = _Geometry(
+        positions,
+        _normals(file, attributes.get("NORMAL"), positions, triangles),
+        triangles,
+        _colors(file, attributes.get("COLOR_0")),
+        _uvs(file, attributes, look),
+    )
+    for each in (geometry.normals, geometry.colors, geometry.uvs):
+        if each is not None and len(each) != len(positions):
+            raise DamagedFileError(f"has attributes of {len(each)} and {len(positions)} vertices")
+    return geometry
+
+
+def _triangles(indices: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
+    """Return (triangles, 3) from a list, a strip or a fan."""
+    count = max(len(indices) - 2, 0)
+    if mode == _STRIP:
+        windows = np.stack(
+            [indices[:count], indices[1 : count + 1], indices[2 : count + 2]], axis=1
+        )
+        windows[1::2] = windows[1::2, [1, 0, 2]]
+        return windows
+    if mode == _FAN:
+        first = np.repeat(indices[:1], count)
+        return np.stack([indices[1 : count + 1], indices[2 : count + 2], first], axis=1)
+    return indices[: len(indices) // 3 * 3].reshape(-1, 3)
+
+
+def _normals(
+    file: GltfFile, accessor: int | None, positions: Array, triangles: NDArray[np.int64]
+) -> Array:
+    """Return the file's normals, or the area-weighted mean of the faces around each vertex."""
+    if accessor is not None:
+        return _unit(file.floats(accessor, 3))
+    a, b, c = (positions[triangles[:, corner]] for corner in range(3))
+    faces = np.cross(b - a, c - a)
+    normals = np.zeros_like(positions)
+    for corner in range(3):
+        np.add.at(normals, triangles[:, corner], faces)
+    return _unit(normals)
+
+
+def _unit(vectors: Array) -> Array:
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.where(lengths > 1e-12, vectors / np.maximum(lengths, 1e-12), [0.0, 1.0, 0.0])
+
+
+def _colors(file: GltfFile, accessor: int | None) -> Array | None:
+    if accessor is None:
+        return None
+    colors = file.floats(accessor, file.width(accessor))
+    if colors.ndim != 2 or colors.shape[1] not in (3, 4):
+        raise DamagedFileError("has colours that are neither RGB nor RGBA")
+    if colors.shape[1] == 3:
+        colors = np.concatenate([colors, np.ones((len(colors), 1))], axis=1)
+    return colors
+
+
+def _uvs(file: GltfFile, attributes: Json, look: Look) -> Array | None:
+    """Return the coordinates of the look's textures."""
+    accessor = attributes.get(f"TEXCOORD_{look.uv_set}")
+    if accessor is None:
+        return None
+    uvs = file.floats(accessor, 2)
+    return uvs if look.place is None else uvs @ look.place[:, :2].T + look.place[:, 2]
+
+
+def _used(
+    geometry: _Geometry, skin: Skin, morphs: tuple[Morph, ...]
+) -> tuple[_Geometry, Skin, tuple[Morph, ...]]:
+    """Return the parts of a primitive without the vertices that no triangle has.
+
+    Primitives of one mesh often share all of its vertices and draw some each.
+    """
+    count = len(geometry.positions)
+    kept = np.flatnonzero(np.bincount(geometry.triangles.ravel(), minlength=count))
+    if len(kept) == count:
+        return geometry, skin, morphs
+    new_number = np.full(count, -1)
+    new_number[kept] = np.arange(len(kept))
+    positions, normals, triangles, colors, uvs = geometry
+    return (
+        _Geometry(
+            positions[kept],
+            normals[kept],
+            new_number[triangles],
+            None if colors is None else colors[kept],
+            None if uvs is None else uvs[kept],
+        ),
+        Skin(skin.joints[kept], skin.weights[kept], skin.inverse_bind),
+        tuple(morph_kept(morph, new_number) for morph in morphs),
+    )
+
+
+def _placed(
+    name: str,
+    geometry: _Geometry,
+    skin: Skin,
+    morphs: tuple[Morph, ...],
+    material: Material,
+    rest: Array,
+) -> Mesh:
+    """Return the mesh in the character frame.
+
+    A skin may leave its vertices in any frame. That of the first joint at rest is moved into the
+    vertices, so that a mesh bound at rest, which is nearly every one, lies where it is seen.
+    """
+    joints, weights, inverse_bind = skin
+    first = int(joints[0, 0]) if len(joints) else 0
+    character_from_mesh = rest[first] @ inverse_bind[first]
+    positions, normals = geometry.positions, geometry.normals
+    triangles = geometry.triangles
+    if not np.allclose(character_from_mesh, np.eye(4), atol=1e-5):
+        linear = character_from_mesh[:3, :3]
+        morphs = tuple(morph_moved(morph, normals, linear) for morph in morphs)
+        positions = positions @ linear.T + character_from_mesh[:3, 3]
+        normals = _unit(normals @ np.linalg.inv(linear))
+        used = np.unique(joints)
+        inverse_bind = inverse_bind.copy()
+        inverse_bind[used] = inverse_bind[used] @ np.linalg.inv(character_from_mesh)
+        if np.linalg.det(linear) < 0:  # mirrored: what was outside would be drawn as inside
+            triangles = triangles[:, ::-1]
+    uvs, colors = geometry.uvs, geometry.colors
+    return Mesh(
+        name=name,
+        positions=positions.astype(np.float32),
+        normals=normals.astype(np.float32),
+        triangles=np.ascontiguousarray(triangles, np.uint32),
+        joints=joints.astype(np.uint16),
+        weights=weights.astype(np.float32),
+        inverse_bind=inverse_bind,
+        colors=None if colors is None else colors.astype(np.float32),
+        uvs=None if uvs is None else uvs.astype(np.float32),
+        material=material,
+        morphs=morphs,
+    )

@@ -1,0 +1,156 @@
+"""From the morph targets of a glTF file to morphs with one weight a name."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.formats.gltf.document import DamagedFileError, Json, at, called
+from characters.formats.gltf.file import GltfFile
+from characters.formats.gltf.nodes import NodeTree
+from characters.model.mesh import Morph
+
+Array = NDArray[np.float64]
+
+_STILL = 1e-9  # [of the file's unit]: what shifts less is a zero that was rounded
+
+
+@dataclass(frozen=True)
+class MorphTable:
+    """Which weight turns which morph target on."""
+
+    names: tuple[str, ...]
+    """Names of all morphs; meshes whose targets have the same name share its weight."""
+
+    columns: dict[int, tuple[int, ...]]
+    """Number in `names` of each target, by the number of the node that carries the mesh."""
+
+    rest: Array | None
+    """Weights where nothing is animated, (morphs,), or None for all zero."""
+
+    def of(self, node: int) -> tuple[str, ...]:
+        """Return the names of the targets of the mesh that a node carries."""
+        return tuple(self.names[column] for column in self.columns[node])
+
+
+def read_morph_table(file: GltfFile, tree: NodeTree) -> MorphTable:
+    """Return the names of the morphs that the skeleton's meshes have, and their weights at rest."""
+    of_node: dict[int, tuple[str, ...]] = {}
+    defaults: dict[str, float] = {}
+    for number in tree.mesh_nodes:
+        node = file.document["nodes"][number]
+        mesh = file.document["meshes"][node["mesh"]]
+        with at(called("mesh", node["mesh"], mesh)):
+            of_node[number] = names = target_names(mesh, node["mesh"])
+            weights = node.get("weights") or mesh.get("weights") or [0.0] * len(names)
+            if len(weights) != len(names):
+                raise DamagedFileError(f"has {len(weights)} weights for {len(names)} morph targets")
+            for name, weight in zip(names, weights, strict=True):
+                defaults.setdefault(name, float(weight))
+    order = _order(file, tuple(defaults))
+    column = {name: number for number, name in enumerate(order)}
+    rest = np.array([defaults[name] for name in order])
+    return MorphTable(
+        order,
+        {node: tuple(column[name] for name in names) for node, names in of_node.items()},
+        rest if rest.any() else None,
+    )
+
+
+def target_names(mesh: Json, number: int) -> tuple[str, ...]:
+    """Return the names of a mesh's morph targets; "MESH.0" where the file gives none."""
+    counts = {len(primitive.get("targets", ())) for primitive in mesh["primitives"]}
+    if len(counts) > 1:
+        raise DamagedFileError("has primitives with different numbers of morph targets")
+    extras = mesh.get("extras")
+    stated = extras.get("targetNames") if isinstance(extras, dict) else None
+    stated = stated if isinstance(stated, list) else []
+    names: dict[str, None] = {}
+    for target in range(counts.pop() if counts else 0):
+        name = stated[target] if target < len(stated) else ""
+        if not isinstance(name, str) or not name:
+            name = f"{mesh.get('name') or f'mesh{number}'}.{target}"
+        while name in names:
+            name += f".{target}"
+        names[name] = None
+    return tuple(names)
+
+
+class MorphReader:
+    """Reads the morph targets of one mesh, whose primitives often share their arrays."""
+
+    def __init__(self, file: GltfFile, names: Sequence[str]) -> None:
+        self._file, self._names = file, names
+        self._shared: dict[int, Array] = {}
+
+    def read(self, primitive: Json, vertices: int) -> tuple[Morph, ...]:
+        """Return the morph targets of a primitive, in the frame of its vertices."""
+        return tuple(
+            self._morph(target, name, vertices)
+            for name, target in zip(self._names, primitive.get("targets", ()), strict=True)
+        )
+
+    def _morph(self, target: Json, name: str, vertices: int) -> Morph:
+        shifts = self._shifts(target.get("POSITION"), name, vertices)
+        turns = self._shifts(target["NORMAL"], name, vertices) if "NORMAL" in target else None
+        moved = np.abs(shifts).max(axis=1, initial=0.0) > _STILL
+        if turns is not None:
+            moved |= np.abs(turns).max(axis=1, initial=0.0) > _STILL
+        where = np.flatnonzero(moved)
+        return Morph(
+            name,
+            where.astype(np.uint32),
+            shifts[where].astype(np.float32),
+            None if turns is None else turns[where].astype(np.float32),
+        )
+
+    def _shifts(self, accessor: int | None, name: str, vertices: int) -> Array:
+        if accessor is None:
+            return np.zeros((vertices, 3))
+        if accessor not in self._shared:
+            self._shared[accessor] = self._file.floats(accessor, 3)
+        shifts = self._shared[accessor]
+        if len(shifts) != vertices:
+            raise DamagedFileError(
+                f"morph target {name!r} has {len(shifts)} shifts for {vertices} vertices"
+            )
+        return shifts
+
+
+def morph_kept(morph: Morph, new_number: NDArray[np.int64]) -> Morph:
+    """Return a morph of a mesh that keeps some of its vertices; the new number of others is −1."""
+    numbers = new_number[morph.vertices]
+    kept = numbers >= 0
+    turns = morph.normal_shifts
+    return Morph(
+        morph.name,
+        numbers[kept].astype(np.uint32),
+        morph.shifts[kept],
+        None if turns is None else turns[kept],
+    )
+
+
+def morph_moved(morph: Morph, normals: Array, linear: Array) -> Morph:
+    """Return a morph whose mesh, with these normals (vertices, 3), goes through a matrix (3, 3)."""
+    turned = morph.normal_shifts
+    if turned is not None:
+        inverse = np.linalg.inv(linear)
+        before = normals[morph.vertices]
+        turned = (_unit((before + turned) @ inverse) - _unit(before @ inverse)).astype(np.float32)
+    return Morph(morph.name, morph.vertices, (morph.shifts @ linear.T).astype(np.float32), turned)
+
+
+def _unit(vectors: Array) -> Array:
+    lengths: Array = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.maximum(lengths, 1e-12)
+
+
+def _order(file: GltfFile, found: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the names in the order that our own writer notes in the scene, or as found."""
+    for scene in file.all("scenes"):
+        extras = scene.get("extras")
+        stated = extras.get("morphs") if isinstance(extras, dict) else None
+        if isinstance(stated, list) and sorted(map(str, stated)) == sorted(found):
+            return tuple(stated)
+    return found

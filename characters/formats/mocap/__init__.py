@@ -1,0 +1,1 @@
+"""Motion capture: Biovision (.bvh) and Acclaim (.asf, .amc)."""

@@ -1,0 +1,1 @@
+"""Walking and running: gaits, stride blending, steering, and feet that stay planted."""

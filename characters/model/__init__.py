@@ -1,0 +1,1 @@
+"""The character itself: skeleton, meshes, clips, and the file beside them."""

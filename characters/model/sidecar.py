@@ -1,0 +1,68 @@
+"""The file beside a character that says what its own does not: `fox.toml` beside `fox.glb`."""
+
+import difflib
+import tomllib
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from characters.errors import CharacterError
+from characters.model.files import read_file
+from characters.motion.trees.plan import Plan
+from characters.motion.trees.reading import TABLES, read_plan
+from characters.skeleton.anatomy import PARTS
+
+_LARGEST = 1_000_000  # bytes: more was not written by hand
+
+
+@dataclass(frozen=True)
+class Sidecar:
+    """What such a file says."""
+
+    semantics: Mapping[str, str]
+    """Joint by part of the body, as in `Character.semantics`."""
+
+    plan: Plan | None
+    """How its motions are put together, or None where it does not say."""
+
+
+def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
+    """Read the file; one that does not exist says nothing.
+
+    Parameters
+    ----------
+    path
+        The .toml file.
+    clips
+        Names of the character's clips.
+
+    Raises
+    ------
+    CharacterError
+        If it cannot be read, is not TOML, or says something that cannot be.
+    """
+    document = _document(path)
+    for key in document:
+        if key not in ("joints", *TABLES):
+            raise CharacterError(
+                f"{path}: [{key}] means nothing here; there are joints, {', '.join(TABLES)}"
+            )
+    joints = document.get("joints", {})
+    if not isinstance(joints, dict) or not all(isinstance(j, str) for j in joints.values()):
+        raise CharacterError(f'{path}: joints: write part = "name of a joint"')
+    for part in joints:
+        if part not in PARTS:
+            near = difflib.get_close_matches(part, PARTS, 1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            raise CharacterError(f"{path}: joints.{part}: no part of a body is called that{hint}")
+    return Sidecar(joints, read_plan(document, str(path), clips))
+
+
+def _document(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(read_file(path, _LARGEST).decode("utf-8-sig"))
+    except FileNotFoundError:
+        return {}
+    except (ValueError, RecursionError) as error:  # no TOML, no UTF-8, a number without an end
+        raise CharacterError(f"{path}: not TOML ({error}); mend that line") from None

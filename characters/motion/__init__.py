@@ -1,0 +1,1 @@
+"""Motions: clips, what modifies them, and what combines several of them."""

@@ -1,0 +1,1 @@
+"""Many clips for many characters at once."""

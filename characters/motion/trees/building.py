@@ -1,0 +1,254 @@
+"""From a plan to something that plays."""
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.motion.blend import Blend, BlendSpace1D, BlendSpace2D, Paced, shares
+from characters.motion.clip import Clip
+from characters.motion.crossfade import CrossFade
+from characters.motion.curves import FadeCurve, Product, Weight
+from characters.motion.layers import Added, Layered
+from characters.motion.mirror import Mirror, Mirrored
+from characters.motion.modifiers import Displaced, Loop, Stretch, TimeCurve, Warped, Window
+from characters.motion.motion import Motion, Step
+from characters.motion.phase import Still, in_step, phased
+from characters.motion.schedule import Action, Schedule
+from characters.motion.trees.plan import Node, Plan
+from characters.motion.trees.steered import Steered, SteeredWeight, Steering, Values
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.masks import Mask, mask_of
+from characters.skeleton.pose import Skeleton
+
+
+class Builder:
+    """Builds the motions of a plan for one character.
+
+    Parameters
+    ----------
+    plan
+        What is built.
+    skeleton, clips, anatomy
+        The character's.
+    mirror
+        Gives its mirror; called only if something in the plan is mirrored.
+    """
+
+    def __init__(
+        self,
+        plan: Plan,
+        skeleton: Skeleton,
+        clips: Mapping[str, Clip],
+        anatomy: Anatomy,
+        mirror: Callable[[], Mirror],
+    ) -> None:
+        self._plan = plan
+        self._skeleton = skeleton
+        self._anatomy = anatomy
+        self._mirror = mirror
+        self._clips = {name: phased(clip, skeleton) for name, clip in clips.items()}
+        self._constant: dict[int, Motion] = {}
+
+    def build(self, node: Node, values: Values) -> tuple[Motion, Steering]:
+        """Return what plays a node, and what its parameters change.
+
+        Parameters
+        ----------
+        node
+            Of the plan.
+        values
+            The parameters to begin with.
+
+        Raises
+        ------
+        CharacterError
+            If something in the plan cannot be played; the message names its place in the file.
+        """
+        steering = Steering()
+        motion = self._playing(node, values, steering)
+        steering.restart(values)
+        return motion, steering
+
+    def _playing(self, node: Node, values: Values, steering: Steering) -> Motion:
+        """Return a motion that stays the same object while its parameters change."""
+        if not node.steered:
+            return self._made(node, values)
+        if node.kind in ("layer", "add"):
+            base, over = (
+                self._playing(node.motions[key], values, steering) for key in ("base", "over")
+            )
+            weight = node.said["weight"]
+            if isinstance(weight, str):
+                weight = SteeredWeight(weight, 0.0 if node.kind == "layer" else -1.0)
+                steering.weights.append(weight)
+            return self._laid(node, base, over, weight)
+        self._refuse_layers(node, node)
+        steered = Steered(lambda now: self._made(node, now), values)
+        steering.motions.append(steered)
+        return steered
+
+    def _refuse_layers(self, node: Node, inside: Node) -> None:
+        """Refuse layers with a steered part in what is not a layer: their time is not its own."""
+        for child in inside.children:
+            if child.steered and child.kind in ("layer", "add"):
+                self._refuse(
+                    child,
+                    f"a layer that parameters change cannot be inside the {node.kind} at "
+                    f"{node.place}; put the {node.kind} inside the layer",
+                )
+            self._refuse_layers(node, child)
+
+    def _made(self, node: Node, values: Values) -> Motion:
+        """Return a node's motion for fixed parameters; one without any is made once."""
+        if id(node) in self._constant:
+            return self._constant[id(node)]
+        try:
+            motion = _MAKERS[node.kind](self, node, values)
+            if not node.steered:
+                self._constant[id(node)] = motion
+            return motion
+        except CharacterError as error:
+            if str(error).startswith(self._plan.source):
+                raise
+            self._refuse(node, str(error))
+        raise AssertionError("refused above")
+
+    def _of(self, node: Node, values: Values, key: str = "of") -> Motion:
+        return self._made(node.motions[key], values)
+
+    def _clip(self, node: Node, values: Values) -> Motion:
+        return self._clips[node.said["clip"]]
+
+    def _hold(self, node: Node, values: Values) -> Motion:
+        return Still(self._of(node, values).sample(node.said["at"]), 1.0)
+
+    def _stretch(self, node: Node, values: Values) -> Motion:
+        return Stretch(self._of(node, values), node.said["seconds"])
+
+    def _window(self, node: Node, values: Values) -> Motion:
+        return Window(self._of(node, values), node.said["start"], node.said["end"])
+
+    def _loop(self, node: Node, values: Values) -> Motion:
+        return Loop(self._of(node, values))
+
+    def _mirrored(self, node: Node, values: Values) -> Motion:
+        return Mirrored(self._of(node, values), self._mirror())
+
+    def _displaced(self, node: Node, values: Values) -> Motion:
+        turn = math.radians(node.said["yaw_deg"])
+        roots = tuple(j for j, parent in enumerate(self._skeleton.parents) if parent < 0)
+        step = Step(node.said["x"], node.said["z"], turn)
+        return Displaced(self._of(node, values), step, roots)
+
+    def _warped(self, node: Node, values: Values) -> Motion:
+        return Warped(self._of(node, values), TimeCurve(node.said["times"], node.said["sources"]))
+
+    def _paced(self, node: Node, values: Values) -> Motion:
+        rate, stride = node.said["rate"], node.said["stride"]
+        if rate <= 0.0:
+            self._refuse(node, f"a rate of {rate}; give more than 0")
+        return Paced(in_step(self._of(node, values)), rate, stride)
+
+    def _blend(self, node: Node, values: Values) -> Motion:
+        weights = shares([row.said["weight"] for row in node.rows])
+        return Blend(self._rows(node, values), weights)
+
+    def _space(self, node: Node, values: Values) -> Motion:
+        knots = [row.said["value"] for row in node.rows]
+        order = np.argsort(knots, kind="stable")
+        motions = self._rows(node, values)
+        space = BlendSpace1D(
+            tuple(knots[number] for number in order), tuple(motions[number] for number in order)
+        )
+        return space.at(values[node.said["by"]])
+
+    def _plane(self, node: Node, values: Values) -> Motion:
+        rows = [row.said["value"] for row in node.rows]
+        if any(len(value) != 2 for value in rows):
+            self._refuse(node, "each value must be two numbers, one for each parameter")
+        points = np.array(rows, float)
+        along, across = node.said["by"]
+        space = BlendSpace2D(points, self._rows(node, values))
+        return space.at([values[along], values[across]])
+
+    def _layered(self, node: Node, values: Values) -> Motion:
+        return self._laid(
+            node,
+            self._of(node, values, "base"),
+            self._of(node, values, "over"),
+            node.said["weight"],
+        )
+
+    def _crossfade(self, node: Node, values: Values) -> Motion:
+        return CrossFade(
+            self._of(node, values, "first"),
+            self._of(node, values, "second"),
+            node.said["start"],
+            node.said["seconds"],
+            node.said["shape"],
+        )
+
+    def _schedule(self, node: Node, values: Values) -> Motion:
+        actions = []
+        for row in node.rows:
+            said = row.said
+            fade = FadeCurve(said["fade_in"], said["fade_out"], said["shape"])
+            actions.append(
+                Action(
+                    self._made(row.motion, values),
+                    said["start"],
+                    Product((said["weight"], fade)),
+                    self._mask(said["mask"]),
+                    always=said["always"],
+                )
+            )
+        return Schedule(tuple(actions), self._skeleton.rest)
+
+    def _laid(self, node: Node, base: Motion, over: Motion, weight: Weight) -> Motion:
+        mask = self._mask(node.said["mask"])
+        try:
+            if node.kind == "layer":
+                return Layered(base, over, mask, weight)
+            return Added(base, over, None, weight, mask)
+        except CharacterError as error:
+            self._refuse(node, str(error))
+        raise AssertionError("refused above")
+
+    def _rows(self, node: Node, values: Values) -> tuple[Motion, ...]:
+        return tuple(self._made(row.motion, values) for row in node.rows)
+
+    def _mask(self, name: str) -> Mask | None:
+        if not name:
+            return None
+        mask = self._plan.masks[name]
+        try:
+            return mask_of(
+                self._skeleton, mask.subtrees, mask.joints, mask.default, self._anatomy.joints
+            )
+        except CharacterError as error:
+            raise CharacterError(f"{self._plan.source}: masks.{name}: {error}") from None
+
+    def _refuse(self, node: Node, what: str) -> None:
+        raise CharacterError(f"{self._plan.source}: {node.place}: {what}")
+
+
+_MAKERS: Mapping[str, Callable[[Builder, Node, Values], Motion]] = {
+    "clip": Builder._clip,
+    "hold": Builder._hold,
+    "stretch": Builder._stretch,
+    "window": Builder._window,
+    "loop": Builder._loop,
+    "mirror": Builder._mirrored,
+    "displace": Builder._displaced,
+    "warp": Builder._warped,
+    "pace": Builder._paced,
+    "blend": Builder._blend,
+    "space": Builder._space,
+    "plane": Builder._plane,
+    "layer": Builder._layered,
+    "add": Builder._layered,
+    "crossfade": Builder._crossfade,
+    "schedule": Builder._schedule,
+}

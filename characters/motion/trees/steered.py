@@ -1,0 +1,82 @@
+"""Motions and weights that parameters change while they play."""
+
+from collections.abc import Callable, Mapping
+
+from characters.motion.motion import Motion, Step
+from characters.motion.phase import in_step
+from characters.motion.retimed import Live
+from characters.skeleton.pose import Pose
+
+Values = Mapping[str, float]
+"""Parameters by name."""
+
+Maker = Callable[[Values], Motion]
+"""Gives the motion for some parameters."""
+
+
+class Steered:
+    """A motion that parameters change while it plays, without losing its phase; a `Motion`."""
+
+    def __init__(self, make: Maker, values: Values) -> None:
+        self._make = make
+        self._live = Live(in_step(make(values)))
+
+    @property
+    def duration(self) -> float:
+        """Length of one cycle of what plays now [s]."""
+        return self._live.duration
+
+    def steer(self, values: Values, time: float) -> None:
+        """Go on from a time on [s] with other parameters."""
+        self._live.change(in_step(self._make(values)), time)
+
+    def restart(self, values: Values) -> None:
+        """Start over at time 0."""
+        self._live.restart(in_step(self._make(values)), 0.0)
+
+    def sample(self, time: float) -> Pose:
+        """Return the pose at a time [s]."""
+        return self._live.sample(time)
+
+    def travel(self, start: float, end: float) -> Step:
+        """Return how the root moves over the ground between two times [s]."""
+        return self._live.travel(start, end)
+
+
+class SteeredWeight:
+    """A weight that a parameter sets; a `Curve`."""
+
+    def __init__(self, parameter: str, low: float) -> None:
+        self._parameter = parameter
+        self._low = low
+        self._value = 0.0
+
+    def at(self, time: float, duration: float) -> float:
+        """Return what was set last."""
+        return self._value
+
+    def steer(self, values: Values) -> None:
+        """Take the parameter's value."""
+        self._value = min(max(values[self._parameter], self._low), 1.0)
+
+
+class Steering:
+    """All that parameters change in one motion of a plan."""
+
+    def __init__(self) -> None:
+        self.motions: list[Steered] = []
+        self.weights: list[SteeredWeight] = []
+
+    def steer(self, values: Values, time: float) -> None:
+        """Set the parameters from a time [s] of the motion on."""
+        for weight in self.weights:
+            weight.steer(values)
+        for motion in self.motions:
+            motion.steer(values, time)
+
+    def restart(self, values: Values) -> None:
+        """Set the parameters and start over at time 0."""
+        for weight in self.weights:
+            weight.steer(values)
+        for motion in self.motions:
+            motion.restart(values)

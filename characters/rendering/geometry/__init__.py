@@ -1,0 +1,1 @@
+"""Meshes on the graphics card: vertex buffers, skinning and morphs."""

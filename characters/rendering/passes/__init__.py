@@ -1,0 +1,1 @@
+"""The passes that a picture is drawn in, a file each."""

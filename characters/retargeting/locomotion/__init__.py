@@ -1,0 +1,1 @@
+"""From a few recordings of walking and running to clips that can be steered."""

@@ -1,0 +1,1 @@
+"""Skeletons, poses and rotations; which joint is which part of the body."""

@@ -1,0 +1,86 @@
+"""Which joints a layer moves: weights 0…1, one for each joint.
+
+A mask is a plain array (joints,), so masks combine by arithmetic: `1 - mask`, `upper * left`,
+`np.maximum(a, b)`.
+"""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TypeAlias
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.skeleton.pose import Array, Skeleton
+
+Mask: TypeAlias = Array
+"""How much each joint takes part, (joints,), 0…1."""
+
+_NONE: Mapping[str, float] = MappingProxyType({})
+_NAMELESS: Mapping[str, int] = MappingProxyType({})
+
+
+def mask_of(
+    skeleton: Skeleton,
+    subtrees: Mapping[str, float] = _NONE,
+    joints: Mapping[str, float] = _NONE,
+    default: float = 0.0,
+    semantics: Mapping[str, int] = _NAMELESS,
+) -> Mask:
+    """Return the mask with these weights.
+
+    Parameters
+    ----------
+    skeleton
+        Whose joints they are.
+    subtrees
+        Joint to the weight of it and of all below it; a later one overrides an earlier one.
+    joints
+        Joint to the weight of it alone; overrides the subtrees.
+    default
+        Weight of all other joints.
+    semantics
+        Further names of joints, such as `Anatomy.joints`; the skeleton's own names come first.
+
+    Raises
+    ------
+    CharacterError
+        If there is no such joint, or a weight is not 0…1.
+    """
+    mask = np.full(len(skeleton), _weight("default", default))
+    for name, weight in subtrees.items():
+        mask[subtree(skeleton, _joint(skeleton, name, semantics))] = _weight(name, weight)
+    for name, weight in joints.items():
+        mask[_joint(skeleton, name, semantics)] = _weight(name, weight)
+    return mask
+
+
+def subtree(skeleton: Skeleton, joint: int) -> list[int]:
+    """Return a joint and all joints below it."""
+    below = [joint]
+    inside = {joint}
+    for child in range(joint + 1, len(skeleton)):  # parents come before their children
+        if skeleton.parents[child] in inside:
+            inside.add(child)
+            below.append(child)
+    return below
+
+
+def check_mask(what: str, mask: Mask | None) -> None:
+    """Refuse what is no mask."""
+    if mask is None:
+        return
+    if np.ndim(mask) != 1 or not bool(((mask >= 0) & (mask <= 1)).all()):
+        raise CharacterError(f"{what}: a mask that is not one weight 0…1 for each joint")
+
+
+def _weight(name: str, weight: float) -> float:
+    if not 0.0 <= weight <= 1.0:
+        raise CharacterError(f"mask: weight {weight} of {name!r}; give 0 to 1")
+    return weight
+
+
+def _joint(skeleton: Skeleton, name: str, semantics: Mapping[str, int]) -> int:
+    if name not in skeleton.names and name in semantics:
+        return semantics[name]
+    return skeleton.index(name)

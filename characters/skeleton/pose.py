@@ -1,0 +1,131 @@
+"""Skeletons and poses: arrays over joints, never objects a joint."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.errors import CharacterError
+from characters.skeleton import rotations
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where every joint is, relative to its parent."""
+
+    translations: Array
+    """(…, joints, 3) [m]."""
+
+    rotations: Array
+    """Unit quaternions xyzw, (…, joints, 4)."""
+
+    scales: Array | None = None
+    """(…, joints, 3), or None for all ones."""
+
+    morphs: Array | None = None
+    """How far each of the character's morphs is on, (…, morphs), or None for not at all."""
+
+    def locals(self) -> Array:
+        """Return `parent_from_joint` of every joint, (…, joints, 4, 4)."""
+        matrices = np.zeros((*self.rotations.shape[:-1], 4, 4))
+        matrices[..., :3, :3] = rotations.to_matrix(self.rotations)
+        if self.scales is not None:
+            matrices[..., :3, :3] *= self.scales[..., None, :]
+        matrices[..., :3, 3] = self.translations
+        matrices[..., 3, 3] = 1.0
+        return matrices
+
+    def globals(self, skeleton: "Skeleton") -> Array:
+        """Return `character_from_joint` of every joint, (…, joints, 4, 4).
+
+        Pointer doubling instead of a walk down the tree: after round n each matrix reaches 2ⁿ
+        joints up, so a skeleton twelve joints deep takes four products over all joints at once.
+        """
+        locals_ = self.locals()
+        # One more joint, that never moves, above all roots.
+        shape = (*locals_.shape[:-3], len(skeleton.parents) + 1, 4, 4)
+        matrices = np.empty(shape)
+        matrices[..., :-1, :, :] = locals_
+        matrices[..., -1, :, :] = np.eye(4)
+        for ancestors in skeleton.doublings:
+            matrices = matrices[..., ancestors, :, :] @ matrices
+        return matrices[..., :-1, :, :]
+
+    def __getitem__(self, frames: "int | slice | NDArray[np.intp]") -> "Pose":
+        """Return some of the poses along the first of the leading axes."""
+        return Pose(
+            self.translations[frames],
+            self.rotations[frames],
+            None if self.scales is None else self.scales[frames],
+            None if self.morphs is None else self.morphs[frames],
+        )
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """Names, parents and rest pose of a tree of joints."""
+
+    names: tuple[str, ...]
+    """Name of each joint."""
+
+    parents: tuple[int, ...]
+    """Number of each joint's parent, −1 for a root; a parent always comes before its children."""
+
+    rest: Pose
+    """The pose in the file."""
+
+    def __post_init__(self) -> None:
+        """Refuse a tree that cannot be walked."""
+        joints = len(self.names)
+        if len(self.parents) != joints or self.rest.rotations.shape != (joints, 4):
+            raise CharacterError(
+                f"skeleton: {joints} names, {len(self.parents)} parents and a rest pose of shape "
+                f"{self.rest.rotations.shape}; give one of each for every joint"
+            )
+        for joint, parent in enumerate(self.parents):
+            if not -1 <= parent < joint:
+                raise CharacterError(
+                    f"skeleton: joint {self.names[joint]!r} comes before its parent; "
+                    "list parents first"
+                )
+
+    def __len__(self) -> int:
+        """Return the number of joints."""
+        return len(self.names)
+
+    def index(self, name: str) -> int:
+        """Return the number of the joint of that name."""
+        try:
+            return self.names.index(name)
+        except ValueError:
+            raise CharacterError(
+                f"skeleton has no joint {name!r}; it has {', '.join(self.names)}"
+            ) from None
+
+    def carrying(self, joints: Iterable[int]) -> list[int]:
+        """Return some joints with all that carry them, parents first."""
+        wanted = set(joints)
+        for joint in reversed(range(len(self))):
+            if joint in wanted and self.parents[joint] >= 0:
+                wanted.add(self.parents[joint])
+        return sorted(wanted)
+
+    @property
+    def has_root_motion(self) -> bool:
+        """Whether joint 0 carries the planar motion of the body, as in the bundled characters."""
+        return self.names[0] == "root" and self.parents[0] == -1
+
+    @cached_property
+    def doublings(self) -> tuple[NDArray[np.intp], ...]:
+        """The ancestors 1, 2, 4, … joints up, each (joints + 1,); the last joint is the world."""
+        world = len(self.parents)
+        ancestors = np.array([*(p if p >= 0 else world for p in self.parents), world])
+        rounds: list[NDArray[np.intp]] = []
+        while (ancestors != world).any():
+            rounds.append(ancestors)
+            ancestors = ancestors[ancestors]
+        return tuple(rounds)

@@ -1,0 +1,94 @@
+"""Which joints and names of a body are each other's on the left and the right."""
+
+import re
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.errors import CharacterError
+from characters.skeleton.pose import Array, Skeleton
+
+_REFLECTION = np.array([-1.0, 1.0, 1.0])
+_CROOKED = 0.25  # of the way from left to right: how far from symmetric most joints may be
+# Of the body's size: how much farther a joint counts whose name does not fit.
+_MISNAMED, _MISNUMBERED = 0.1, 0.01
+# "LeftFoot", "foot_l", "Foot.R.001", "FootL": words, and letters that stand alone or end a word.
+_SIDES = re.compile(
+    r"[Ll]eft|LEFT|[Rr]ight|RIGHT|(?<![A-Za-z])[LRlr](?![A-Za-z])|(?<=[a-z])[LR](?![a-z])"
+)
+_OTHER = {"left": "right", "Left": "Right", "LEFT": "RIGHT", "l": "r", "L": "R"}
+_OTHER |= {right: left for left, right in _OTHER.items()}
+
+
+def paired_joints(skeleton: Skeleton, places: Array, pairs: Mapping[str, str]) -> NDArray[np.intp]:
+    """Return the partner of each joint, from the roots down: children of partners are partners."""
+    size = max(float(np.ptp(places, axis=0).max()), 1e-9)
+    given = {skeleton.index(a): skeleton.index(b) for a, b in pairs.items()}
+    given |= {b: a for a, b in given.items()}
+    children: dict[int, list[int]] = {}
+    for joint, parent in enumerate(skeleton.parents):
+        children.setdefault(parent, []).append(joint)
+    partners = np.full(len(skeleton), -1, np.intp)
+    for parent in range(-1, len(skeleton)):
+        other = int(partners[parent]) if parent >= 0 else -1
+        ours, theirs = children.get(parent, []), children.get(other, [])
+        apart = {
+            (a, b): float(np.linalg.norm(places[a] * _REFLECTION - places[b])) / size
+            + _misfit(skeleton.names[a], skeleton.names[b])
+            + (0.0 if given.get(a, b) == b and given.get(b, a) == a else np.inf)
+            for a in ours
+            for b in theirs
+        }
+        for a, b in sorted(apart, key=apart.__getitem__):
+            if partners[a] < 0 and partners[b] < 0 and np.isfinite(apart[a, b]):
+                partners[a], partners[b] = b, a
+        for joint in ours:
+            if partners[joint] < 0:
+                raise CharacterError(
+                    f"mirror: joint {skeleton.names[joint]!r} has no partner on the other side; "
+                    "name it in pairs, or mirror another skeleton"
+                )
+    return partners
+
+
+def _misfit(name: str, other: str) -> float:
+    """Return how badly names fit as a pair, as a part of the body's size.
+
+    >>> _misfit("Palm2L", "Palm2R"), _misfit("LeftArm_06", "RightArm_09"), _misfit("ArmL", "LegR")
+    (0.0, 0.01, 0.1)
+    """
+    swapped = _SIDES.sub(_other_side, name)
+    if swapped == other:
+        return 0.0
+    plain, plain_other = (re.sub(r"[_\s\d]+", "", each).lower() for each in (swapped, other))
+    return _MISNUMBERED if plain == plain_other else _MISNAMED
+
+
+def check_symmetry(skeleton: Skeleton, places: Array, partners: NDArray[np.intp]) -> None:
+    """Refuse a pose of which more than half is not symmetric: a body that looks elsewhere."""
+    paired = np.flatnonzero(partners != np.arange(len(partners)))
+    if not len(paired):
+        return
+    apart = places[paired] * _REFLECTION - places[partners[paired]]
+    apart -= np.median(apart, axis=0)  # the plane may lie beside the origin
+    away = np.linalg.norm(apart, axis=-1)
+    across = np.linalg.norm(places[paired] - places[partners[paired]], axis=-1)
+    if np.median(away / np.maximum(across, 1e-9)) > _CROOKED:
+        worst = paired[away.argmax()]
+        raise CharacterError(
+            f"mirror: the pose is not symmetric about x = 0: {skeleton.names[worst]!r} is "
+            f"{away.max():.3f} m from the mirrored {skeleton.names[partners[worst]]!r}; "
+            "give a symmetric one that looks along +z, or name pairs"
+        )
+
+
+def paired_names(names: tuple[str, ...]) -> NDArray[np.intp]:
+    """Return for each name the place of that of the other side; its own where there is none."""
+    swapped = [_SIDES.sub(_other_side, name) for name in names]
+    return np.array([names.index(n) if n in names else i for i, n in enumerate(swapped)], np.intp)
+
+
+def _other_side(match: re.Match[str]) -> str:
+    """Return the other side, in the same letters."""
+    return _OTHER[match[0]]

@@ -1,0 +1,1 @@
+"""What every driver, port and simulator agrees on."""

@@ -1,1 +1,0 @@
-"""What a robot or a character feels, and how that changes."""

@@ -1,0 +1,1 @@
+"""Ports, and the link between a port and a driver."""

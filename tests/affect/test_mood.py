@@ -1,0 +1,138 @@
+"""The mood moves by the law of specification M11, and its label never skips neutral."""
+
+import itertools
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from affect.errors import AffectError
+from affect.mood_line import GAP_MAX, Action, Label, MoodLine, next_label
+
+FRAME = 1 / 30
+
+
+def time_until(
+    line: MoodLine, label: Label, action: Action, weight: float, start: float = 0.0
+) -> float:
+    """Frames of one action until the label is reached [s]; infinite after two minutes."""
+    for frame in range(int(120 / FRAME)):
+        mood = line.update(action, weight, start + frame * FRAME)
+        if mood.label == label:
+            return frame * FRAME
+    return math.inf
+
+
+@pytest.mark.parametrize(
+    ("action", "label", "weight", "seconds"),
+    [
+        ("kiss", "happy", 1.0, 3.3),
+        ("kiss", "happy", 0.0, 6.6),
+        ("kiss", "happy", -1.0, math.inf),
+        ("shout", "angry", 1.0, 3.3),
+        ("shout", "angry", 0.0, 6.6),
+    ],
+)
+def test_the_way_from_neutral_takes_as_long_as_specified(action, label, weight, seconds):
+    assert time_until(MoodLine(), label, action, weight) == pytest.approx(seconds, abs=2 * FRAME)
+
+
+def test_the_way_from_the_angry_extreme_to_happy_takes_13_3_seconds():
+    line = MoodLine()
+    for frame in range(15 * 30):
+        mood = line.update("shout", 1.0, frame * FRAME)
+    assert mood.value == -1.0
+    start = 15.0
+    assert time_until(line, "happy", "kiss", 1.0, start) == pytest.approx(13.3, abs=2 * FRAME)
+
+
+@pytest.mark.parametrize("start", ["happy", "neutral", "angry"])
+@pytest.mark.parametrize(
+    ("action", "reaches"), [("idle", None), ("kiss", "happy"), ("shout", "angry")]
+)
+def test_three_actions_in_three_moods(start, action, reaches):
+    line = MoodLine()
+    ways: dict[str, Action] = {"happy": "kiss", "angry": "shout", "neutral": "idle"}
+    towards = ways[start]
+    mood = [line.update(towards, 1.0, frame * FRAME) for frame in range(150)][-1]
+    assert mood.label == start
+    labels = [mood.label]
+    values = [mood.value]
+    for frame in range(150, 1000):
+        mood = line.update(action, 1.0, frame * FRAME)
+        labels.append(mood.label)
+        values.append(mood.value)
+    assert labels[-1] == (reaches or start)
+    order = [label for label, _ in itertools.groupby(labels)]
+    if {start, reaches} == {"happy", "angry"}:
+        assert order == [start, "neutral", reaches]
+    if action == "idle":
+        assert len(set(values)) == 1
+
+
+actions = st.tuples(st.sampled_from(["idle", "kiss", "shout"]), st.floats(-1, 1), st.floats(0, 3))
+
+
+@given(st.lists(actions, max_size=60), st.floats(0.01, 50))
+def test_whatever_is_done_the_mood_stays_on_its_line_and_passes_neutral(done, gain):
+    line = MoodLine(gain=gain)
+    now, before = 0.0, line.update("idle", 0, 0.0)
+    for action, weight, later in done:
+        now += later
+        mood = line.update(action, weight, now)
+        assert -1 <= mood.value <= 1
+        assert {before.label, mood.label} != {"happy", "angry"}
+        assert mood.emotion.valence == mood.value
+        assert mood.emotion.arousal == abs(mood.value)
+        assert mood.timestamp == now
+        if action == "idle":
+            assert mood.value == before.value
+        before = mood
+
+
+def test_a_label_is_left_only_where_the_value_has_come_back_by_the_hysteresis():
+    label: Label = "neutral"
+    seen = []
+    for value in (0.33, 0.331, 0.30, 0.281, 0.279, 0.30, -0.33, -0.331, -0.281, -0.279):
+        label = next_label(label, value)
+        seen.append(label)
+    assert seen == ["neutral", *["happy"] * 3, *["neutral"] * 3, *["angry"] * 2, "neutral"]
+
+
+def test_a_long_gap_counts_as_a_short_one():
+    line = MoodLine()
+    line.update("kiss", 1, 0.0)
+    assert line.update("kiss", 1, 60.0).value == pytest.approx(0.1 * GAP_MAX)
+
+
+def test_the_first_update_only_starts_the_clock():
+    assert MoodLine().update("kiss", 1, 1e9).value == 0
+
+
+@pytest.mark.parametrize(
+    ("action", "weight", "timestamp", "says"),
+    [
+        ("dance", 0, 1, "'dance' moves no mood"),
+        ("kiss", 1.5, 1, "weight of 'kiss' must be from -1 to 1"),
+        ("kiss", math.nan, 1, "weight"),
+        ("kiss", 0, -1, "cannot go back"),
+        ("kiss", 0, math.nan, "cannot go back"),
+        ("kiss", 0, math.inf, "cannot go back"),
+    ],
+)
+def test_nonsense_is_refused_in_one_line_and_changes_nothing(action, weight, timestamp, says):
+    line = MoodLine()
+    line.update("idle", 0, 0.0)
+    with pytest.raises(AffectError, match=says) as refusal:
+        line.update(action, weight, timestamp)
+    assert "\n" not in str(refusal.value)
+    assert line.update("kiss", 1, 0.1).value == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize(
+    "parameters", [{"gain": 0}, {"happy_above": -0.5}, {"hysteresis": 0.4}, {"hysteresis": -0.1}]
+)
+def test_a_line_that_makes_no_sense_is_refused(parameters):
+    with pytest.raises(AffectError):
+        MoodLine(**parameters)

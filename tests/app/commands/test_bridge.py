@@ -1,0 +1,216 @@
+"""`cubeling bridge`, and play and replay over a broker."""
+
+import os
+import signal
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import recordings
+from affect import Emotion
+from app.errors import AppError
+from app.pipeline.scenario import EmotionTarget
+from app.running.bridge import Bridge, Order, RecordedPlayer
+from app.running.network import Access, Network
+from app.running.players import PlayerLine
+from app.ui.roster import table
+from characters import CharacterCommand
+from robot.network import Member
+from robot.network.roster import Roster
+from tests.robot.network.mosquitto import Mosquitto, needs_mosquitto
+
+COMPANION = Path(recordings.__path__[0]) / "companion.mcap"
+
+
+def soon(condition: Callable[[], Any], within: float = 8.0) -> None:
+    end = time.monotonic() + within
+    while not condition():
+        assert time.monotonic() < end, f"not within {within} s"
+        time.sleep(0.005)
+
+
+@pytest.fixture
+def broker(tmp_path: Path) -> Iterator[Mosquitto]:
+    running = Mosquitto(tmp_path)
+    running.start()
+    yield running
+    running.kill()
+
+
+def command(action: str, **changes: Any) -> CharacterCommand:
+    return CharacterCommand(timestamp=0.0, action=action, **changes)
+
+
+def test_an_action_is_published_when_it_begins_and_only_if_it_is_seen():
+    with Network(Access()) as network:
+        line = PlayerLine(network, "ann")
+        for what in (
+            command("idle"), command("kiss", weight=0.5), command("kiss"), command("move"),
+            command("shout", visible=False), command("shout"), command("idle"), command("kiss"),
+        ):  # fmt: skip
+            line.command(what)
+        assert line.station.endpoint.counts.made == 3
+
+
+def test_a_recorded_session_drives_robots_without_a_broker():
+    order = Order({"rex": "sim", "max": "sim:cubeling?seed=2"}, {"ann": COMPANION})
+    with Network(Access()) as network, Bridge(order, network) as bridge:
+        roster = bridge.roster.endpoint
+        assert bridge.advance(0.0)
+        soon(lambda: len(roster.members) == 3)
+        assert not bridge.advance(1000.0)
+
+        def state(name: str) -> Any:
+            return roster.members[Member("home", "robot", name)].said.get("state")
+
+        def is_done(name: str) -> bool:  # two kisses, and a shout that it has no motion for
+            return (state(name).played, state(name).unknown) == (2, 1)
+
+        soon(lambda: is_done("rex") and is_done("max"))
+        for name in ("rex", "max"):
+            assert (state(name).link, state(name).player) == ("ready", "home/ann")
+        with bridge.roster.lock:
+            assert table(roster, time.monotonic()).row_count == 3
+
+
+def test_a_recorded_session_plays_in_its_own_time():
+    with Network(Access()) as network:
+        line = PlayerLine(network, "ann")
+        player = RecordedPlayer(line, COMPANION)
+        made = []
+        for second in range(60):
+            player.advance(100.0 + second)
+            made.append(line.station.endpoint.counts.made)
+        assert (made[2], made[5], made[-1]) == (0, 1, 3)
+
+
+def wrong_inputs() -> dict[str, tuple[list[str], str]]:
+    return {
+        "alone": (["bridge"], "--mqtt"),
+        "no name": (["bridge", "--mqtt", "mqtt://h", "--robot", "sim"], "--robot rex=sim"),
+        "twice": (["bridge", "--robot", "a=sim", "--robot", "a=sim", "--play", "x=y"], "twice"),
+        "bad name": (["bridge", "--robot", "a/b=sim", "--play", f"x={COMPANION}"], "'a/b'"),
+        "bad site": (["bridge", "--mqtt", "mqtt://h", "--site", "+"], "'+'"),
+        "no broker": (["bridge", "--mqtt", "http://h"], "mqtt://HOST"),
+        "no session": (["bridge", "--robot", "a=sim", "--play", "x=absent.mcap"], "absent.mcap"),
+        "no robot": (["bridge", "--mqtt", "mqtt://127.0.0.1:1", "--robot", "a=sim:cat"], "sim:cat"),
+        "no player": (
+            ["replay", str(COMPANION), "--no-pictures", "--mqtt", "mqtt://h"], "--player NAME",
+        ),
+        "no mqtt": (["replay", str(COMPANION), "--no-pictures", "--player", "ann"], "--mqtt URL"),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("what", wrong_inputs())
+def test_what_is_wrong_ends_in_one_line(cubeling, what):
+    words, says = wrong_inputs()[what]
+    code, _, err = cubeling(*words)
+    assert (code, err.count("\n")) == (2, 1)
+    assert says in err
+
+
+def test_the_help_has_an_example(cubeling):
+    code, out, _ = cubeling("bridge", "--help")
+    assert code == 0
+    assert "Example: cubeling bridge --mqtt" in out
+
+
+def test_a_session_that_is_none_is_refused_and_leaves_nothing_open(tmp_path):
+    text = tmp_path / "text.mcap"
+    text.write_text("no session")
+    with Network(Access()) as network, pytest.raises(AppError, match="not a session"):
+        Bridge(Order({"rex": "sim"}, {"ann": text}), network)
+
+
+def test_a_broker_that_is_away_is_said_in_one_line(cubeling):
+    code, out, _ = cubeling("bridge", "--mqtt", "mqtt://127.0.0.1:1", "--seconds", "0.5")
+    assert code == 0
+    assert out.count("trying again") == 1
+
+
+@needs_mosquitto
+def test_a_wrong_password_ends_in_one_line_that_does_not_show_it(cubeling, tmp_path):
+    passwords = tmp_path / "passwords"
+    passwords.touch()
+    subprocess.run(["mosquitto_passwd", "-b", str(passwords), "ann", "right"], check=True)
+    broker = Mosquitto(tmp_path, f"password_file {passwords}")
+    broker.start()
+    url = broker.url.replace("//", "//ann:sesame@")
+    for words in (
+        ["bridge", "--mqtt", url],
+        ["replay", str(COMPANION), "--no-pictures", "--mqtt", url, "--player", "ann"],
+    ):
+        code, _, err = cubeling(*words)
+        assert (code, err.count("\n")) == (2, 1)
+        assert "does not let us in as 'ann'" in err
+        assert "sesame" not in err
+    broker.kill()
+
+
+@needs_mosquitto
+def test_a_bridge_that_is_killed_is_lost_by_its_last_will(broker):
+    def start() -> subprocess.Popen[bytes]:
+        words = ["bridge", "--mqtt", broker.url, "--robot", "rex=sim"]
+        return subprocess.Popen(
+            [sys.executable, "-c", "from app.cli import main; main()", *words],
+            stdout=subprocess.DEVNULL,
+            cwd=Path(__file__).parents[3],
+        )
+
+    with Network(Access(broker.url)) as network:
+        roster = network.join(Roster(), "onlooker").endpoint
+        rex = Member("home", "robot", "rex")
+
+        def status() -> str:
+            return roster.members[rex].said["status"].status if rex in roster.members else ""
+
+        bridge = start()
+        soon(lambda: status() == "online", within=30.0)
+        bridge.send_signal(signal.SIGKILL)
+        bridge.wait(5.0)
+        soon(lambda: status() == "lost")
+
+
+@needs_mosquitto
+def test_a_player_says_once_that_the_broker_is_gone(broker):
+    said: list[str] = []
+    with Network(Access(broker.url)) as network:
+        line = PlayerLine(network, "ann", say=said.append)
+        calm = EmotionTarget(Emotion(0.0, 0.0), "neutral", 0.0)
+        line.tell(command("idle"), calm)
+        broker.kill()
+        soon(lambda: line.state == "away")
+        for _ in range(3):
+            line.tell(command("kiss"), calm)
+        assert len(said) == 1
+        assert broker.url in said[0]
+        broker.start()
+        soon(lambda: line.state == "connected")
+        line.tell(command("idle"), calm)
+        broker.kill()
+        soon(lambda: line.state == "away")
+        line.tell(command("idle"), calm)
+        assert len(said) == 2
+
+
+@needs_mosquitto
+def test_a_broker_that_hangs_does_not_hold_up_the_picture(broker):
+    with Network(Access(broker.url)) as network:
+        line = PlayerLine(network, "ann")
+        soon(lambda: line.state == "connected")
+        os.kill(broker.pid, signal.SIGSTOP)
+        took = []
+        for frame in range(600):
+            emotion = EmotionTarget(Emotion(frame / 600, 0.0), "neutral", frame / 30)
+            began = time.perf_counter()
+            line.tell(command("kiss" if frame % 2 else "idle"), emotion)
+            took.append(time.perf_counter() - began)
+        os.kill(broker.pid, signal.SIGCONT)
+        assert statistics.median(took) < 0.001  # of 0.033 for a frame
+        assert line.station.endpoint.waiting <= 64

@@ -1,0 +1,199 @@
+"""`cubeling character`: what it tells and draws, and what it refuses."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from app.ui.album import Album, save, trimmed
+from characters import Character
+from characters.formats import load_motion
+from characters.model.stick_figure import stick_figure
+from characters.rendering import create_context
+from characters.rendering.portrait import PAPER
+from tools.cast import draw_cast
+
+BVH = """HIERARCHY
+ROOT Hips
+{
+  OFFSET 0 0 0
+  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+  JOINT LeftUpLeg
+  {
+    OFFSET 0.1 -0.1 0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 -0.8 0
+    }
+  }
+  JOINT Spine
+  {
+    OFFSET 0 0.3 0
+    CHANNELS 3 Zrotation Xrotation Yrotation
+    End Site
+    {
+      OFFSET 0 0.4 0
+    }
+  }
+}
+MOTION
+Frames: 3
+Frame Time: 0.1
+0 0.9 0 0 0 0 0 0 0 0 0 0
+0 0.9 0 0 0 0 0 20 0 0 10 0
+0 0.9 0 0 0 0 0 0 0 0 0 0
+"""
+
+
+@pytest.fixture(scope="module")
+def album():
+    context = create_context()
+    album = Album(context)
+    yield album
+    album.release()
+    context.release()
+
+
+def paper(picture):
+    """Return which pixels nothing is drawn on."""
+    return np.abs(picture.astype(int) - PAPER).max(axis=2) <= 6
+
+
+def test_a_bundled_character_is_told_and_drawn(cubeling):
+    code, out, err = cubeling("character", "inspect", "human", "-o", "seen")
+    assert (code, err) == (0, "")
+    for told in ("human, humanoid", "triangles", "leftLowerArm", "Walk", "left 6", "No problems"):
+        assert told in out
+    picture = cv2.imread("seen/turntable.png")
+    assert picture is not None
+    assert 0.5 < paper(picture).mean() < 0.95
+    assert {path.name for path in Path("seen").iterdir()} == {"turntable.png", "faces.png"}
+    assert "seen/turntable.png" in out
+
+
+def test_a_motion_without_a_body_is_drawn_as_sticks(cubeling):
+    Path("nod.bvh").write_text(BVH)
+    code, out, err = cubeling("character", "inspect", "nod.bvh")
+    assert (code, err) == (0, "")
+    assert "0.20" in out
+    assert "once" in out
+    assert {path.name for path in Path("nod-pictures").iterdir()} == {"turntable.png", "clips.png"}
+
+
+def test_the_unit_of_a_motion_can_be_said(cubeling):
+    Path("nod.bvh").write_text(BVH)
+    for scale, tall in (("1", "1.64 m tall"), ("0.01", "0.0164 m tall")):
+        code, out, _ = cubeling("character", "inspect", "nod.bvh", "--scale", scale, "--up", "y")
+        assert code == 0
+        assert tall in out
+
+
+@pytest.mark.parametrize(
+    ("file", "content", "named"),
+    [
+        ("absent.glb", None, "absent.glb"),
+        ("nobody", None, "nobody"),
+        ("text.glb", "not a model", "text.glb"),
+        ("cut.bvh", BVH[:200], "cut.bvh"),
+        ("alone.amc", ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 0 0 0 0 0\n", "asf"),
+        ("picture.png", "…", "picture.png"),
+    ],
+)
+def test_what_cannot_be_read_is_one_line(cubeling, file, content, named):
+    if content is not None:
+        Path(file).write_text(content)
+    code, _, err = cubeling("character", "inspect", file)
+    assert code == 2
+    assert err.startswith("cubeling: ")
+    assert err.count("\n") == 1
+    assert named in err
+    assert [path.name for path in Path().iterdir()] == ([file] if content is not None else [])
+
+
+def test_a_file_where_the_folder_should_be_is_one_line(cubeling):
+    Path("taken").write_text("")
+    code, _, err = cubeling("character", "inspect", "human", "-o", "taken")
+    assert code == 2
+    assert err.count("\n") == 1
+    assert "taken is a file" in err
+
+
+def test_names_that_look_like_markup_are_told_as_they_are(cubeling, tmp_path):
+    Path("[b]old[.bvh").write_text(BVH.replace("Spine", "[red]Spine"))
+    code, out, _ = cubeling("character", "inspect", "[b]old[.bvh")
+    assert code == 0
+    assert "[red]Spine" in out
+    assert out.startswith("[b]old[, ")
+    assert "[b]old[-pictures/turntable.png" in out
+
+
+def test_rows_of_a_sheet_are_clips_one_below_the_other(album):
+    vleo = Character.load("vleo")
+    clips = list(vleo.clips.values())[:2]
+    one, two = album.clips(vleo, clips[:1]), album.clips(vleo, clips)
+    assert one.shape[1] == two.shape[1]
+    assert two.shape[0] > 1.5 * one.shape[0]
+    assert np.array_equal(one[:150], two[:150])
+
+
+def test_each_morph_has_a_face(album):
+    human = Character.load("human")
+    names = human.morphs[:2]
+    rest = replace(human.skeleton.rest, morphs=None)
+    shy = replace(human, morphs=names, clips={}, skeleton=replace(human.skeleton, rest=rest))
+    faces = np.split(album.faces(shy)[62:-42, 16:-16], 3, axis=1)
+    assert all((paper(face).mean() < 0.8) for face in faces)
+    assert not np.array_equal(faces[0], faces[1])
+
+
+def test_paper_above_and_below_is_trimmed():
+    picture = np.full((100, 20, 3), PAPER, np.uint8)
+    assert trimmed(picture).shape == picture.shape
+    picture[40:50] = 0
+    assert trimmed(picture).shape == (30, 20, 3)
+
+
+def test_pictures_are_written_as_small_as_asked(tmp_path):
+    noise = np.random.default_rng(1).integers(0, 255, (200, 200, 3), np.uint8)
+    save(noise, tmp_path / "large.jpg")
+    save(noise, tmp_path / "small.jpg", 30_000)
+    assert (tmp_path / "small.jpg").stat().st_size <= 30_000 < 40_000
+    assert (tmp_path / "large.jpg").stat().st_size > 30_000
+
+
+def test_the_cast_is_drawn_in_small_files(tmp_path):
+    Path(tmp_path / "nod.bvh").write_text(BVH)
+    motion = load_motion(tmp_path / "nod.bvh")
+    character = stick_figure("nod", motion.skeleton, [motion.clip])
+    files = list(draw_cast([character], tmp_path / "cast"))
+    assert [path.name for path in files] == ["nod.jpg", "nod-clips-1.jpg"]
+    assert all(1_000 < path.stat().st_size < 300_000 for path in files)
+
+
+def a_character_beside(text):
+    """Write a character, and beside it a file of motions."""
+    human = Character.load("human")
+    replace(human, clips={"idle": human.clips["idle"]}).save("one.glb")
+    Path("one.toml").write_text(text, encoding="utf-8")
+
+
+def test_a_graph_shows_names_as_they_are(cubeling):
+    name = "[/red] & <b>"
+    a_character_beside(f"play = 'x'\n[motions]\n\"{name}\" = {{kind = 'loop', of = 'idle'}}\n"
+                       f"x = {{kind = 'loop', of = \"{name}\"}}\n")  # fmt: skip
+    code, out, err = cubeling("character", "graph", "one.glb", "-o", "[x] one.svg")
+    assert (code, err) == (0, "")
+    assert name in out
+    assert "[x] one.svg is drawn" in out
+    assert "&lt;b&gt;" in Path("[x] one.svg").read_text(encoding="utf-8")
+
+
+def test_a_graph_tells_what_cannot_be_played(cubeling):
+    a_character_beside("play = {kind = 'stretch', of = 'idle', seconds = -1}")
+    code, _, err = cubeling("character", "graph", "one.glb", "-o", "one.svg")
+    assert code == 2
+    assert err == "cubeling: one.toml: play: stretch to -1.0 s; give a positive duration\n"
+    assert not Path("one.svg").exists()

@@ -1,0 +1,54 @@
+"""`cubeling character locomotion`: what it makes, tells and refuses."""
+
+import pytest
+
+from characters import Character
+from characters.locomotion.gaits import WALK_CLIPS
+
+
+def test_one_command_makes_a_character_that_walks(cubeling, tmp_path):
+    target = tmp_path / "mine.glb"
+    code, out, _ = cubeling(
+        "character", "locomotion", "human", "--walk", "human#Walk", "-o", target
+    )
+    assert not code
+    assert "1.35 m/s" in out
+    assert "WalkLeftShort" in out
+    assert set(WALK_CLIPS.values()) <= set(Character.load(target).clips)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        (["human"], "give at least one recording with --walk"),
+        (["human", "--walk", "human#Walk", "-o", "mine.fbx"], "not as 'mine.fbx'"),
+        (["human", "--walk", "human#Stroll"], "which clip? write human#CLIP"),
+        (["human", "--walk", "nowhere.bvh"], "nowhere.bvh"),
+        (["vleo", "--walk", "human#Walk"], "take a motion of its kind"),
+        (["human", "--walk", "human#idle"], "goes nowhere"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line(cubeling, arguments, told):
+    code, _, err = cubeling("character", "locomotion", *arguments)
+    assert code == 2
+    assert told in err
+    assert err.count("\n") == 1
+
+
+def test_what_it_is_made_of_is_not_written_over(cubeling, tmp_path):
+    mine = tmp_path / "mine.glb"
+    Character.load("human").save(mine)
+    before = mine.read_bytes()
+    for arguments in ([mine, "--walk", "human#Walk"], ["human", "--walk", f"{mine}#Walk"]):
+        code, _, err = cubeling("character", "locomotion", *arguments, "-o", "mine.glb")
+        assert code == 2
+        assert "written over" in err
+    assert mine.read_bytes() == before
+
+
+def test_a_run_that_is_slower_than_the_walk_is_told(cubeling):
+    code, out, _ = cubeling(
+        "character", "locomotion", "human", "--walk", "human#Run", "--run", "human#Walk"
+    )
+    assert code == 0
+    assert "slower than it walks" in out

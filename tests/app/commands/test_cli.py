@@ -1,0 +1,192 @@
+"""The command line: help that reads well, and one line for everything a person can put right."""
+
+import warnings
+from pathlib import Path
+
+import pytest
+
+from app.commands import doctor_checks as doctor
+from characters import Character, CharacterError
+from characters.errors import CharacterWarning
+
+COMMANDS = [
+    ["demo"],
+    ["play"],
+    ["replay"],
+    ["cube"],
+    ["character", "inspect"],
+    ["robot", "simulate"],
+    ["robot", "list"],
+    ["doctor"],
+]
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+def test_every_help_has_an_example(cubeling, command):
+    code, out, _ = cubeling(*command, "--help")
+    assert code == 0
+    assert "Example: cubeling" in out
+
+
+def test_a_bare_command_shows_the_help(cubeling):
+    code, out, err = cubeling()
+    assert (code, err) == (0, "")
+    assert "companion" in out
+
+
+EQUAL_IDS = """
+dictionary = "DICT_4X4_50"
+edge_mm = 60
+marker_mm = 45
+[[face]]
+name = "top"
+marker_id = 3
+[[face]]
+name = "front"
+marker_id = 3
+"""
+TOO_LARGE = EQUAL_IDS.replace("marker_mm = 45", "marker_mm = 61")
+
+
+def wrong_inputs():
+    """Each bad input of the issue: its command, and what the line must name."""
+    video = ["--output", "out.mp4", "--robot", "none"]
+    return {
+        "no such scenario": (["play", "dance"], "dance"),
+        "no such camera": (["play", "follow", "-s", "camera:97", *video], "camera"),
+        "not a video": (["play", "follow", "-s", "text.mp4", *video], "text.mp4"),
+        "no such file": (["play", "follow", "-s", "absent.mp4", *video], "absent.mp4"),
+        "not a session": (["replay", "text.mcap"], "text.mcap"),
+        "no such session": (["replay", "absent.mcap"], "absent.mcap"),
+        "equal ids": (["cube", "equal.toml"], "marker_id 3"),
+        "marker too large": (["cube", "large.toml"], "61"),
+        "no such cube": (["cube", "teapot"], "teapot"),
+        "no such paper": (["cube", "companion", "--paper", "a9"], "a9"),
+        "no skin": (["play", "follow", "--character", "bare.glb", *video], "skin"),
+        "no such port": (
+            ["replay", "SESSION", "--output", "out.mp4", "--robot", "/dev/absent"],
+            "/dev/absent",
+        ),
+        "recording over a file": (
+            ["play", "follow", "-s", "camera:97", "--record", "text.mcap", *video],
+            "exists",
+        ),
+        "no such folder": (["play", "follow", "-s", "camera:97", "-o", "no/x.mp4"], "folder"),
+        "no display": (["play", "follow"], "display"),
+        "nonsense option": (["play", "follow", "--colour"], "--colour"),
+        "nonsense number": (["play", "companion", "--turns", "many"], "--turns"),
+    }
+
+
+@pytest.mark.parametrize("case", wrong_inputs())
+def test_bad_input_is_one_line_and_exit_code_2(cubeling, case, bundled_session):
+    Path("text.mp4").write_text("not a video")
+    Path("text.mcap").write_text("not a session")
+    Path("equal.toml").write_text(EQUAL_IDS)
+    Path("large.toml").write_text(TOO_LARGE)
+    write_bare_glb(Path("bare.glb"))
+    before = sorted(Path().iterdir())
+    command, named = wrong_inputs()[case]
+    command = [str(bundled_session) if word == "SESSION" else word for word in command]
+    code, _, err = cubeling(*command)
+    assert code == 2
+    assert err.startswith("cubeling: ")
+    assert err.count("\n") == 1
+    assert named in err
+    assert sorted(Path().iterdir()) == before, "something was left behind"
+
+
+def write_bare_glb(path):
+    """A valid .glb that holds a triangle and no skin."""
+    import numpy as np
+    import pygltflib as gltf
+
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32).tobytes()
+    document = gltf.GLTF2(
+        scene=0,
+        scenes=[gltf.Scene(nodes=[0])],
+        nodes=[gltf.Node(mesh=0)],
+        meshes=[gltf.Mesh(primitives=[gltf.Primitive(attributes=gltf.Attributes(POSITION=0))])],
+        accessors=[
+            gltf.Accessor(
+                bufferView=0, componentType=5126, count=3, type="VEC3", max=[1, 1, 0], min=[0, 0, 0]
+            )
+        ],
+        bufferViews=[gltf.BufferView(buffer=0, byteLength=len(points))],
+        buffers=[gltf.Buffer(byteLength=len(points))],
+    )
+    document.set_binary_blob(points)
+    document.save(str(path))
+
+
+def test_a_silent_port_is_one_line(cubeling, bundled_session):
+    import os
+
+    near, far = os.openpty()
+    try:
+        code, _, err = cubeling(
+            "replay", bundled_session, "-o", "out.mp4", "--robot", os.ttyname(far)
+        )
+    finally:
+        os.close(near)
+        os.close(far)
+    assert code == 2
+    assert err.count("\n") == 1
+    assert "answer" in err
+    assert not list(Path().iterdir())
+
+
+def test_the_bundled_characters_are_there():
+    assert {"idle", "Walk", "Run"} <= set(Character.load("human").clips)
+    assert {"idle", "kiss_head", "shout_tail"} <= set(Character.load("vleo").clips)
+
+
+def test_the_doctor_says_what_is_there(cubeling):
+    code, out, _ = cubeling("doctor", "--no-cameras")
+    assert code == 0
+    for name in ("Python", "OpenCV", "drawing", "recordings", "display"):
+        assert name in out
+
+
+def test_the_doctor_names_a_missing_driver_and_its_remedy(cubeling, monkeypatch):
+    def fail():
+        raise CharacterError("cannot draw: the library libEGL is missing")
+
+    monkeypatch.setattr(doctor, "create_context", fail)
+    monkeypatch.setattr("shutil.which", lambda tool: f"/usr/bin/{tool}")
+    code, out, _ = cubeling("doctor", "--no-cameras")
+    assert code == 2
+    assert "libEGL is missing" in out
+    assert "apt-get install -y libegl1" in out
+
+
+def test_what_was_repaired_is_one_line(cubeling, monkeypatch):
+    def repaired():
+        for _ in range(2):
+            with warnings.catch_warnings():  # Python forgets what it has told
+                pass
+            warnings.warn("x.glb: weights\ndid not sum to one", CharacterWarning, stacklevel=1)
+        raise CharacterError("cannot draw")
+
+    monkeypatch.setattr(doctor, "create_context", repaired)
+    _, _, err = cubeling("doctor", "--no-cameras")
+    assert err == "cubeling: x.glb: weights did not sum to one\n"
+
+
+@pytest.mark.parametrize("wrong", [OSError(28, "No space left on device", "x.png"), MemoryError()])
+def test_what_the_system_refuses_is_one_line(cubeling, monkeypatch, wrong):
+    def load(name):
+        raise wrong
+
+    monkeypatch.setattr(Character, "load", load)
+    code, _, err = cubeling("character", "graph", "human")
+    assert code == 2
+    assert err.count("\n") == 1
+    assert "x.png: No space left on device" in err or "memory" in err
+
+
+def test_a_cube_sheet_is_written(cubeling):
+    code, out, _ = cubeling("cube", "companion")
+    assert code == 0
+    assert Path("companion.pdf").read_bytes().startswith(b"%PDF")
+    assert "companion.pdf" in out

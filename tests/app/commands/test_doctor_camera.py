@@ -1,0 +1,57 @@
+"""What the doctor says of a camera that is there."""
+
+from app.commands import doctor_checks as doctor
+from tracking import Frame
+from tracking.sources.health import Health, Setting
+
+
+class Steady:
+    """A camera that gives 30 pictures a second for as long as it is asked."""
+
+    live, duration, intrinsics = True, None, None
+    size, rate = (64, 48), 30.0
+    health = Health(
+        "camera 0",
+        "running",
+        0.0,
+        rate=29.97,
+        latency=0.041,
+        stamped_by="driver",
+        settings=(
+            Setting("exposure", True, "locked at 15.6 ms"),
+            Setting("focus", False, "the camera has no such setting"),
+        ),
+    )
+
+    def __init__(self):
+        self.given = 0
+        self.closed = False
+
+    def __iter__(self):
+        while True:
+            yield Frame(None, self.given / 30, self.given)  # type: ignore[arg-type]  # not seen
+            self.given += 1
+
+    def wait(self, timeout, patience=None):
+        raise AssertionError("the doctor may block")
+
+    def close(self):
+        self.closed = True
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+def test_the_doctor_tells_a_cameras_figures(cubeling, monkeypatch):
+    camera = Steady()
+    monkeypatch.setattr(doctor, "open_source", lambda uri: camera)
+    code, out, err = cubeling("doctor")
+    assert (code, err) == (0, "")
+    assert "camera:0, 64x48, 30.0 pictures/s, 41 ms old (since exposure)" in out
+    assert "exposure locked at 15.6 ms" in out
+    assert "focus the camera has no such setting" in out
+    assert camera.given == 120
+    assert camera.closed

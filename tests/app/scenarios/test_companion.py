@@ -1,0 +1,99 @@
+"""Vleo and Pleo by the rules of the thesis (M11)."""
+
+import pytest
+
+from app.pipeline.scenario import Inputs
+from app.scenarios import Companion
+from tracking import CubeModel
+
+
+@pytest.fixture
+def companion():
+    return Companion(CubeModel.load("companion"))
+
+
+def play(companion, frames):
+    outcome = None
+    for controls in frames:
+        outcome = companion.update(controls, None, Inputs())
+    assert outcome is not None
+    return outcome
+
+
+def test_a_newly_placed_face_starts_in_the_middle(companion, hand):
+    play(companion, [hand.frame(), *hand.tip("front"), *hand.turn(0.8, 1)])
+    outcome = play(companion, hand.tip("right"))
+    assert outcome.command.action == "shout"
+    assert outcome.command.weight == 0.0
+
+
+def test_two_turns_lead_from_one_end_to_the_other(companion, hand):
+    low = play(companion, [hand.frame(), *hand.tip("front"), *hand.turn(-1, 2)])
+    assert low.command.weight == pytest.approx(-1.0)
+    half = play(companion, hand.turn(1, 2))
+    assert half.command.weight == pytest.approx(0.0, abs=1e-9)
+    high = play(companion, hand.turn(1, 2))
+    assert high.command.weight == pytest.approx(1.0)
+
+
+def test_intensity_saturates_and_turning_back_works_at_once(companion, hand):
+    play(companion, [hand.frame(), *hand.tip("front"), *hand.turn(3.5, 4)])
+    outcome = play(companion, hand.turn(-0.25, 1))
+    assert outcome.command.weight == pytest.approx(0.75)
+
+
+def test_the_span_of_turns_can_be_chosen(hand):
+    companion = Companion(CubeModel.load("companion"), turns=1.0)
+    outcome = play(companion, [hand.frame(), *hand.tip("front"), *hand.turn(0.25, 1)])
+    assert outcome.command.weight == pytest.approx(0.5)
+
+
+def test_the_action_changes_only_when_the_cube_rests_again(companion, hand):
+    play(companion, [hand.frame()])
+    frames = hand.tip("front")
+    for controls in frames[:-1]:
+        assert companion.update(controls, None, Inputs()).command.action == "idle"
+    assert companion.update(frames[-1], None, Inputs()).command.action == "kiss"
+
+
+def test_kisses_lead_from_angry_over_neutral_to_happy_and_shouts_back(companion, hand):
+    labels: list[str] = []
+
+    def live(frames):
+        for controls in frames:
+            label = companion.update(controls, None, Inputs()).emotion.label
+            if not labels or labels[-1] != label:
+                labels.append(label)
+
+    live([hand.frame(), *hand.tip("front"), *hand.turn(1, 1), *hand.wait(8)])
+    live([*hand.tip("left"), *hand.turn(1, 1), *hand.wait(20)])
+    live([*hand.tip("back"), *hand.turn(1, 1), *hand.wait(20)])
+    assert labels == ["neutral", "happy", "neutral", "angry", "neutral", "happy"]
+
+
+def test_idle_and_a_hidden_cube_leave_the_mood(companion, hand):
+    play(companion, [hand.frame(), *hand.tip("front"), *hand.wait(3)])
+    before = play(companion, hand.tip("top")).emotion.emotion
+    assert play(companion, hand.wait(10)).emotion.emotion == before
+    before = play(companion, hand.tip("front")).emotion.emotion
+    play(
+        companion, [hand.frame(visible=False) for _ in range(19)]
+    )  # the grace in which it may still act
+    hidden = play(companion, [hand.frame(visible=False) for _ in range(3)]).emotion.emotion
+    later = play(companion, [hand.frame(visible=False) for _ in range(200)])
+    assert later.emotion.emotion == hidden
+    assert not later.command.visible
+
+
+def test_full_intensity_makes_a_neutral_robot_happy_in_about_three_seconds(companion, hand):
+    play(companion, [hand.frame(), *hand.tip("front"), *hand.turn(-1, 1)])
+    assert play(companion, hand.wait(30)).emotion.label == "neutral"  # at −1 it never does
+    before = play(companion, hand.turn(2, 0.1)).emotion.emotion.valence
+    needed = (0.33 - before) / 0.1
+    assert play(companion, hand.wait(needed - 0.2)).emotion.label == "neutral"
+    assert play(companion, hand.wait(0.4)).emotion.label == "happy"
+
+
+def test_a_cube_that_lacks_a_role_idles():
+    model = CubeModel.load("locomotion")
+    assert Companion(model)._roles["front"] == "idle"

@@ -1,0 +1,69 @@
+"""Drawing a path with the cube, then walking it."""
+
+import numpy as np
+import pytest
+
+from app.pipeline.scenario import Inputs
+from app.scenarios import Sketch
+from app.scenarios.sketch import MOST_POINTS
+
+
+@pytest.fixture
+def sketch():
+    return Sketch()
+
+
+def draw(sketch, hand, count, radius=0.15):
+    """Rest at `count` places round a circle; returns the last outcome."""
+    for place in range(count):
+        angle = 2 * np.pi * place / MOST_POINTS
+        point = radius * np.array([np.cos(angle), np.sin(angle)])
+        sketch.update(hand.frame(position=point, resting=False), None, Inputs())
+        outcome = sketch.update(hand.frame(position=point, resting=True), None, Inputs())
+    return outcome
+
+
+def test_a_point_is_left_where_the_cube_rests(sketch, hand):
+    draw(sketch, hand, 3)
+    assert len(sketch.points) == 3
+
+
+def test_resting_longer_or_nearby_leaves_no_second_point(sketch, hand):
+    draw(sketch, hand, 1)
+    for shift in (0.0, 0.01, 0.04):
+        sketch.update(hand.frame(position=np.array([0.15 + shift, 0.0])), None, Inputs())
+    assert len(sketch.points) == 1
+
+
+def test_the_ninth_point_is_refused(sketch, hand):
+    draw(sketch, hand, MOST_POINTS)
+    sketch.update(hand.frame(position=np.array([0.5, 0.5])), None, Inputs())
+    assert len(sketch.points) == MOST_POINTS
+    assert not sketch.may_add(np.array([0.5, 0.5]))
+
+
+def test_eight_points_close_the_loop(sketch, hand):
+    assert not draw(sketch, hand, MOST_POINTS - 1).floor[0].closed
+    assert draw(sketch, hand, MOST_POINTS).floor[0].closed
+
+
+def test_lifting_the_cube_closes_a_shorter_loop(sketch, hand):
+    draw(sketch, hand, 4)
+    outcome = sketch.update(hand.frame(lifted=True, resting=False), None, Inputs())
+    assert outcome.floor[0].closed
+
+
+def test_a_shake_starts_over(sketch, hand):
+    draw(sketch, hand, MOST_POINTS)
+    outcome = sketch.update(hand.frame(shaken=True, resting=False), None, Inputs())
+    assert outcome.floor == ()
+
+
+def test_the_cube_draws_while_the_path_is_open_and_only_then_moves_the_character(sketch, hand):
+    hand.heading(180)
+    assert draw(sketch, hand, 4).command.action == "idle"
+    sketch.update(hand.frame(lifted=True, resting=False), None, Inputs())
+    for _ in range(30):
+        outcome = sketch.update(hand.frame(lifted=False), None, Inputs())
+    assert outcome.command.action == "move"
+    assert outcome.command.speed > 3

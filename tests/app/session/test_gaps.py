@@ -1,0 +1,165 @@
+"""A session whose camera is lost: the screen lives on, and the gap is told and recorded."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.pipeline.playground import Playground
+from app.running.opening import fitting
+from app.running.runner import Plan, run
+from app.running.summary import Summary, camera_line
+from app.session import about, events
+from app.ui.notice import Notice, notice
+from app.ui.overlay import interrupted
+from app.ui.screen import Nowhere
+from tracking import TrackingError, open_source
+from tracking.sources.base import LiveFrames
+from tracking.sources.health import Health, Setting
+
+RUNNING = Health("camera 0", "running", 0.0, rate=30.0, settings=(Setting("focus", True, "30"),))
+LOST = Health("camera 0", "lost", 0.0, "camera 0 gave no picture for 1 s")
+
+
+class Interrupted:
+    """Frames of a session with a gap of so many empty waits after the fifth."""
+
+    def __init__(self, session, waits, patience=8):
+        self._session = open_source(str(session))
+        self._frames = itertools.islice(self._session, 10)
+        self._left, self._patience = waits, patience
+        self._given, self._ended = 0, False
+        self.live, self.duration = True, None
+        self.intrinsics = self._session.intrinsics
+        self.size, self.rate = self._session.size, self._session.rate
+
+    def wait(self, timeout, patience=None):
+        if self._given == 5 and self._left:
+            self._left -= 1
+            self._patience -= 1
+            if self._patience < 0:
+                raise TrackingError(LOST.problem)
+            return None
+        self._given += 1
+        frame = next(self._frames, None)
+        if frame is None:
+            self._ended = True
+            return None
+        return replace(frame, timestamp=frame.timestamp + (3.0 if self._given > 5 else 0.0))
+
+    @property
+    def health(self):
+        if self._ended:
+            return replace(RUNNING, state="closed")
+        return LOST if self._given == 5 and self._left else RUNNING
+
+    def __iter__(self):
+        raise AssertionError("a session asks by `wait`, so that its window lives on")
+
+    def close(self):
+        self._session.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+class Watched(Nowhere):
+    """A screen that remembers what it was told to say."""
+
+    def __init__(self, ends_after=None):
+        self.told: list[Notice | None] = []
+        self._ends_after = ends_after
+
+    def wait(self, notice):
+        self.told.append(notice)
+
+    @property
+    def closed(self):  # type: ignore[override]
+        return self._ends_after is not None and len(self.told) >= self._ends_after
+
+
+@pytest.fixture
+def plan(short_session, tmp_path):
+    opened = []
+
+    def make(waits, screen):
+        source = Interrupted(short_session, waits)
+        assert isinstance(source, LiveFrames)
+        opened.append(source)
+        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        notes = {"scenario": "companion", "cube": "companion"}
+        return Plan(source, playground, screen, "none", tmp_path / "out.mcap", about=notes)
+
+    yield make
+    for source in opened:
+        source.close()
+
+
+def test_a_lost_camera_is_told_on_the_screen_and_the_play_goes_on(plan):
+    screen = Watched()
+    chosen = plan(4, screen)
+    summary = run(chosen)
+    assert summary.frames == 10
+    assert [words.title for words in screen.told if words] == ["Camera lost: plug it in again"] * 3
+    ((start, seconds),) = summary.gaps
+    assert seconds == pytest.approx(3.0 + 1 / 30, abs=0.01)
+    told = [(time, what) for time, what in events(chosen.record) if what.startswith("camera")]
+    assert [what for _, what in told] == ["camera lost", "camera back"]
+    assert [time for time, _ in told] == pytest.approx([start, start + seconds])
+    summary.check()
+
+
+def test_the_window_can_be_closed_while_the_camera_is_lost(plan):
+    summary = run(plan(7, Watched(ends_after=2)))
+    assert summary.frames == 5
+
+
+def test_a_camera_that_does_not_come_back_ends_the_session_and_keeps_the_recording(plan):
+    chosen = plan(20, Nowhere())
+    summary = run(chosen)
+    assert about(chosen.record).frames == 5
+    with pytest.raises(TrackingError, match="gave no picture"):
+        summary.check()
+
+
+@pytest.mark.parametrize(
+    ("health", "title"),
+    [
+        (LOST, "Camera lost"),
+        (replace(LOST, state="recovering"), "Camera lost"),
+        (replace(LOST, state="frozen", still=True), "stands still"),
+        (replace(LOST, name="http://phone:8080/video"), "phone"),
+    ],
+)
+def test_what_the_player_reads_fits_what_is_wrong(health, title):
+    words = notice(health)
+    assert words is not None
+    assert title in words.title
+    assert notice(RUNNING) is None
+
+
+def test_the_last_picture_stays_under_the_card_and_is_not_changed():
+    picture = np.full((360, 640, 3), 100, np.uint8)
+    words = notice(LOST)
+    assert words is not None
+    shown = interrupted(picture, words)
+    assert (picture == 100).all()
+    assert (shown[0, 0] == 45).all()
+    assert shown[180, 320].min() > 200
+
+
+def test_the_summary_names_drops_gaps_and_latency():
+    health = replace(RUNNING, latency=0.0412, dropped=3, deepest=2, stamped_by="driver")
+    summary = Summary("follow", camera=health, gaps=[(1.0, 6.25)])
+    document = summary.document()["camera"]
+    assert isinstance(document, dict)
+    assert (document["latency_ms"], document["dropped"]) == (41.2, 3)
+    assert document["gaps"] == [{"t_s": 1.0, "s": 6.25}]
+    assert document["settings"] == {"focus": "30"}
+    assert camera_line(health) == (
+        "30.0 pictures/s, 41 ms old (since exposure), 3 left out for newer ones, at most 2 waited"
+    )

@@ -1,0 +1,123 @@
+"""A replay walks the same line: the same frames give the same channels."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from app.errors import AppError
+from app.pipeline.playground import Playground
+from app.pipeline.scenario import Inputs
+from app.running.opening import Wish, fitting
+from app.running.replay_check import check_session
+from app.running.runner import Plan, run
+from app.scenarios import SCENARIOS
+from app.session import about, cues, messages
+from app.session.bundled import bundled
+from app.session.encoding import ARROWS, decode, encode
+from app.session.replay_inputs import STARTS, recorded_arrows
+from app.ui.screen import Nowhere
+from tracking import open_source
+
+SHORT = 240
+
+
+def walk(name, count=None):
+    """Every channel of a bundled recording as it comes out now."""
+    with open_source(str(bundled(name))) as source:
+        playground = Playground(name, fitting(source.intrinsics, source.size))
+        for frame in itertools.islice(source, count):
+            step = playground.step(frame)
+            for topic, arrow in step.arrows().items():
+                yield topic, step.frame.timestamp, encode(arrow)
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_a_recording_replayed_twice_gives_identical_channels(name):
+    assert list(walk(name, SHORT)) == list(walk(name, SHORT))
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_a_replay_agrees_with_what_was_recorded(name):
+    """Bit for bit on the machine that recorded; elsewhere to a hair, as processors round."""
+    recorded = itertools.islice(messages(bundled(name), *ARROWS), SHORT * len(ARROWS))
+    for (topic, time, old), (_, _, new) in zip(recorded, walk(name, SHORT), strict=True):
+        if old != new:
+            one, other = decode(ARROWS[topic], old), decode(ARROWS[topic], new)
+            _agree(topic, time, one, other)
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_a_replay_may_start_from_any_arrow(short_session, start):
+    """What comes after the start is worked out again, and comes out the same."""
+    with open_source(str(short_session)) as source:
+        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        given = iter(()) if start == "camera" else recorded_arrows(str(short_session), start)
+        made = [
+            (topic, step.frame.timestamp, encode(arrow))
+            for frame in source
+            for step in (playground.step(frame, given=next(given, None)),)
+            for topic, arrow in step.arrows().items()
+        ]
+    assert made == list(messages(short_session, *ARROWS))
+
+
+def test_a_start_that_is_none_is_refused(short_session):
+    with pytest.raises(AppError, match="choose one of camera"):
+        recorded_arrows(str(short_session), "middle")
+
+
+def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session):
+    class Presses(Nowhere):
+        """Presses C after 20 frames."""
+
+        shown = 0
+
+        def show(self, step, robot):
+            self.shown += 1
+            return Inputs(clear=self.shown == 20)
+
+    path = tmp_path / "cleared.mcap"
+    with open_source(str(short_session)) as source:
+        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        notes = {"scenario": "companion", "cube": "companion"}
+        run(Plan(source, playground, Presses(), record=path, about=notes))
+    assert len(cues(path)) == 1
+    assert check_session(path, Wish("companion", str(path))).identical
+
+
+def _agree(topic, time, one, other):
+    for field in one.__dataclass_fields__:
+        a, b = getattr(one, field), getattr(other, field)
+        if field in ("pose", "emotion"):
+            _agree(topic, time, a, b)
+        elif isinstance(a, np.ndarray) and field != "covariance":
+            np.testing.assert_allclose(a, b, atol=1e-3, err_msg=f"{topic} {field} at {time}")
+        elif isinstance(a, str | bool | tuple):
+            assert a == b, f"{topic} {field} at {time}"
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_bundled_recordings_are_small_and_whole(name):
+    told = about(bundled(name))
+    assert bundled(name).stat().st_size < 6_000_000
+    assert told.scenario == name
+    assert told.frames > 600
+    topics = {topic for topic, _, _ in messages(bundled(name))}
+    assert {*ARROWS, "/camera/image", "/camera/calibration", "/robot/wire", "/events"} <= topics
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_the_cube_is_found_in_nearly_every_frame(name):
+    states = [decode(ARROWS[t], data) for t, _, data in messages(bundled(name), "/cube/state")]
+    assert np.mean([state.visible for state in states]) > 0.97
+
+
+def test_a_replay_takes_the_character_that_was_recorded(cubeling, short_session, tmp_path):
+    code, _, err = cubeling(
+        "replay", short_session, "--character", "human", "--no-pictures", "--record", "human.mcap"
+    )
+    assert (code, err) == (0, "")
+    assert about(tmp_path / "human.mcap").character == "human"
+    code, _, err = cubeling("replay", "human.mcap", "--check")
+    assert (code, err) == (0, "")

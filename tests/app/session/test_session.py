@@ -1,0 +1,133 @@
+"""Sessions on disk: exact, append-only, and honest about what is missing."""
+
+import numpy as np
+import pytest
+
+from app.errors import AppError
+from app.session import Recorder, about, events, messages, preparation, salvaged
+from tracking import Frame, Intrinsics
+
+SIZE = (64, 48)
+
+
+def frames(count=20, rate=30):
+    random = np.random.default_rng(5)
+    for index in range(count):
+        image = random.integers(0, 255, (SIZE[1], SIZE[0], 3), dtype=np.uint8)
+        yield Frame(image, round(index / rate, 9), index)
+
+
+@pytest.mark.parametrize("codec", ["jpeg", "h264"])
+def test_what_is_prepared_is_what_a_replay_decodes(codec, recorded):
+    path, prepared = recorded(codec)
+    from tracking import open_source
+
+    with open_source(str(path)) as source:
+        again = list(source)
+    assert [frame.timestamp for frame in again] == [frame.timestamp for frame in prepared]
+    for one, other in zip(prepared, again, strict=True):
+        np.testing.assert_array_equal(one.image, other.image)
+
+
+def test_frames_that_come_with_bytes_keep_them():
+    frame = next(frames())
+    once = preparation("jpeg", SIZE, 30)(frame)
+    assert preparation("jpeg", SIZE, 30)(once) is once
+
+
+def test_an_unknown_codec_is_refused():
+    with pytest.raises(AppError, match="use jpeg or h264"):
+        preparation("gif", SIZE, 30)
+
+
+def test_a_session_tells_what_it_holds(recorded):
+    path, prepared = recorded("jpeg")
+    told = about(path)
+    assert (told.scenario, told.turns, told.frames) == ("follow", 2.0, len(prepared))
+    assert events(path)[0] == (0.0, "started")
+
+
+def test_a_session_that_was_cut_off_says_how_much_is_whole(recorded):
+    path, prepared = recorded("jpeg", count=60)
+    data = path.read_bytes()
+    path.write_bytes(data[: len(data) * 2 // 3])
+    with pytest.raises(AppError, match=r"cut off: \d+ frames .* --salvage"):
+        about(path)
+    told = salvaged(path)
+    assert 0 < told.frames < len(prepared)
+    assert told.scenario == "follow"
+
+
+@pytest.mark.parametrize("cut", range(0, 2600, 97))
+def test_a_cut_at_any_byte_is_one_line(recorded, cut):
+    path, _ = recorded("jpeg", count=4)
+    path.write_bytes(path.read_bytes()[:cut])
+    with pytest.raises(AppError) as caught:
+        about(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_recording_without_a_frame_leaves_no_file(tmp_path):
+    path = tmp_path / "empty.mcap"
+    Recorder(path, {"scenario": "follow"}).close()
+    assert not path.exists()
+
+
+def test_a_folder_that_is_not_there_is_one_line(tmp_path):
+    with pytest.raises(AppError, match="cannot record"):
+        Recorder(tmp_path / "no" / "x.mcap", {})
+
+
+def test_all_but_the_last_half_second_survives_a_kill(tmp_path, recorder_steps):
+    """What is on disk before `close` is what `kill -9` leaves."""
+    path = tmp_path / "killed.mcap"
+    recorder = Recorder(path, {"scenario": "follow"})
+    recorder_steps(recorder, 120)
+    recorder.flush()
+    left = [time for _, time, _ in messages_of(path.read_bytes(), tmp_path)]
+    assert left[-1] > 119 / 30 - 1.0
+    recorder.close()
+
+
+def messages_of(data, folder):
+    """Read a copy, as a reader after the kill would."""
+    copy = folder / "copy.mcap"
+    copy.write_bytes(data)
+    return list(messages(copy, "/camera/image"))
+
+
+@pytest.fixture
+def recorder_steps(hand):
+    """Write so many steps of a real line, but for the pictures."""
+    import dataclasses
+
+    from app.pipeline.playground import Playground
+
+    def write(recorder, count, codec="jpeg"):
+        playground = Playground("follow", Intrinsics.guess(SIZE))
+        prepare = preparation(codec, SIZE, 30)
+        prepared = []
+        for frame in frames(count):
+            step = playground.step(prepare(frame))
+            prepared.append(step.frame)
+            if frame.index == 0:
+                recorder.camera(playground.intrinsics, 0.0)
+                recorder.event("started", 0.0)
+            recorder.write(dataclasses.replace(step))
+        return prepared
+
+    return write
+
+
+@pytest.fixture
+def recorded(tmp_path, recorder_steps):
+    """A recorded session of noise: its path, and the frames that the tracker saw."""
+
+    def record(codec, count=20):
+        path = tmp_path / "session.mcap"
+        with Recorder(path, {"scenario": "follow", "cube": "locomotion"}) as recorder:
+            prepared = recorder_steps(recorder, count, codec)
+        assert recorder.problem is None
+        return path, prepared
+
+    return record

@@ -1,0 +1,131 @@
+"""Where no real robot is, its likeness feels what the robot is asked to feel."""
+
+import itertools
+from collections.abc import Iterator
+
+import moderngl
+import numpy as np
+import pytest
+
+from affect import Emotion
+from app.pipeline.scenario import EmotionTarget
+from app.pipeline.step import RobotView
+from app.running.robots import RobotLine
+from app.ui.overlay import likeness_side, overlay
+from app.ui.palette import ANGRY, HAPPY
+from app.ui.virtual_robot import SOFTWARE, Likeness, backdrop, intensity
+from characters import CharacterError
+from characters.rendering import create_context
+
+SIDE = 96
+
+
+@pytest.fixture(scope="module")
+def context() -> Iterator[moderngl.Context]:
+    try:
+        made = create_context()
+    except CharacterError as missing:
+        pytest.skip(str(missing))
+    yield made
+    made.release()
+
+
+def felt(valence: float, label: str, time: float) -> EmotionTarget:
+    return EmotionTarget(Emotion(valence, abs(valence)), label, time)
+
+
+def played(context: moderngl.Context, moods: list[tuple[float, str]]) -> list[np.ndarray]:
+    """Return the pictures of moods that follow each other ten times a second."""
+    likeness = Likeness(context, SIDE)
+    pictures = [
+        likeness.portrait(felt(*mood, number / 10)).copy() for number, mood in enumerate(moods)
+    ]
+    likeness.close()
+    return pictures
+
+
+def lit(picture: np.ndarray, color: tuple[int, int, int], by: int) -> int:
+    """Return how many pixels have more of a colour's (BGR) strongest part than of the others."""
+    strongest = int(np.argmax(color))
+    others = np.delete(picture.astype(int), strongest, axis=2).max(axis=2)
+    return int((picture[:, :, strongest] - others > by).sum())
+
+
+def test_the_same_session_gives_the_same_pictures(context):
+    moods = [(0.0, "neutral"), (0.5, "happy"), (0.9, "happy"), (-0.6, "angry")] * 2
+    for one, other in zip(played(context, moods), played(context, moods), strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_it_never_stands_still_and_stays_in_the_picture(context):
+    for mood in ((0.3, "neutral"), (1.0, "happy"), (-1.0, "angry")):
+        pictures = played(context, [mood] * 12)
+        assert all((a != b).any() for a, b in itertools.pairwise(pictures))
+        empty = backdrop(SIDE, mood[0])
+        for picture in pictures:  # its shadow falls to the right
+            np.testing.assert_allclose(picture[0].astype(int), empty[0], atol=2)
+            np.testing.assert_allclose(picture[:, 0].astype(int), empty[:, 0], atol=2)
+
+
+@pytest.mark.parametrize("strength", [0.36, 0.67, 1.0])
+def test_its_lamps_tell_the_mood_at_every_intensity(context, strength):
+    happy = played(context, [(strength, "happy")] * 8)[-1]
+    angry = played(context, [(-strength, "angry")] * 8)[-1]
+    assert lit(happy, HAPPY, 60) > 12 > 4 * lit(angry, HAPPY, 60)
+    assert lit(angry, ANGRY, 120) > 12 > 4 * lit(happy, ANGRY, 120)
+
+
+def test_where_the_processor_draws_every_third_frame_brings_a_new_picture(context):
+    likeness = Likeness(context, SIDE)
+    pictures = [likeness.portrait(felt(0.9, "happy", 5.0 + n / 30)) for n in range(8)]
+    likeness.close()
+    fresh = sum(a is not b for a, b in itertools.pairwise(pictures))
+    software = any(name in context.info["GL_RENDERER"].lower() for name in SOFTWARE)
+    assert fresh == (2 if software else 7)
+
+
+def test_a_session_that_starts_over_in_time_is_followed(context):
+    likeness = Likeness(context, SIDE)
+    late, early = (likeness.portrait(felt(0.0, "neutral", time)) for time in (9.0, 0.0))
+    likeness.close()
+    assert late is not early
+
+
+def test_intensity_rises_with_the_mood_and_never_leaves_its_range():
+    for sign, label in ((1, "happy"), (-1, "angry"), (1, "neutral")):
+        values = [intensity(felt(sign * v, label, 0.0)) for v in np.linspace(0, 1, 21)]
+        assert values == sorted(values)
+        assert (values[0], values[-1]) == (-1.0, 1.0)
+
+
+def test_it_takes_the_place_of_a_robot_that_is_not_real(context, a_step):
+    step = a_step(None)
+    image = np.full((720, 1280, 3), 90, np.uint8)
+    likeness = Likeness(context, likeness_side(720))
+    real = overlay(image.copy(), step, RobotView("ready", 0.5, "happy", real=True), likeness)
+    face = overlay(image.copy(), step, RobotView("ready", 0.5, "happy"))
+    np.testing.assert_array_equal(real, face)
+    for link in ("none", "ready", "lost"):
+        shown = overlay(image.copy(), step, RobotView(link, 0.5, "happy"), likeness)
+        assert (shown[410:580, 1070:1246] != face[410:580, 1070:1246]).all(axis=2).mean() > 0.9
+    likeness.close()
+    likeness.close()
+
+
+@pytest.mark.parametrize("height", [240, 480, 1080])
+def test_its_card_fits_pictures_of_every_size(context, a_step, height):
+    step = a_step(None)
+    image = np.full((height, height * 16 // 9, 3), 90, np.uint8)
+    likeness = Likeness(context, likeness_side(height))
+    shown = overlay(image.copy(), step, RobotView("none", -0.5, "angry"), likeness)
+    likeness.close()
+    rim = np.ones(image.shape[:2], bool)
+    rim[2:-2, 2:-2] = False
+    assert (shown[rim] == 90).all()
+    assert (shown[height // 2 :, image.shape[1] // 2 :] != 90).any()
+
+
+def test_a_robot_that_is_simulated_or_absent_is_not_real():
+    for url in ("none", "sim:cubeling"):
+        with RobotLine.open(url, lambda: 0.0) as line:
+            assert not line.view().real

@@ -1,0 +1,122 @@
+"""Cards over the picture, videos on disk, and the summary."""
+
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+
+from app.commands import demo
+from app.errors import AppError
+from app.pipeline.step import RobotView
+from app.running.summary import Summary
+from app.ui.canvas import Canvas, rounded
+from app.ui.overlay import overlay
+from app.ui.screen import VideoFile
+
+ROBOT = RobotView("ready", 0.4, "happy")
+
+
+def test_a_card_covers_only_its_own_place():
+    picture = np.full((200, 300, 3), 50, np.uint8)
+    Canvas(100, 40, 1.0).card(-20, 180).over(picture)
+    assert (picture[:175] == 50).all()
+    assert (picture[:, 90:] == 50).all()
+    assert picture[190, 30].min() > 200
+
+
+def test_round_corners_are_symmetric():
+    mask = rounded(60, 40, 12, 255)
+    np.testing.assert_array_equal(mask, mask[::-1, ::-1])
+    assert mask[0, 0] == 0
+    assert mask[20, 30] == 255
+
+
+def test_the_same_step_gives_the_same_cards(a_step):
+    step = a_step(None)
+    pictures = [overlay(step.frame.image.copy(), step, ROBOT) for _ in range(2)]
+    np.testing.assert_array_equal(pictures[0], pictures[1])
+    assert (pictures[0] != step.frame.image).any()
+
+
+def test_a_video_appears_only_when_it_is_whole(tmp_path):
+    path = tmp_path / "out.mp4"
+    with VideoFile(path, (64, 48), 30) as video:
+        for index in range(10):
+            video.write(np.full((48, 64, 3), 20 * index, np.uint8), index / 30)
+        assert not path.exists()
+    with av.open(str(path)) as file:
+        times = [frame.time for frame in file.decode(video=0)]
+    assert times == pytest.approx(np.arange(10) / 30, abs=0.002)
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_video_keeps_the_uneven_times_of_a_live_camera(tmp_path):
+    path = tmp_path / "out.mp4"
+    gaps = np.random.default_rng(3).choice([0.001, 0.012, 0.033, 0.034, 0.1, 0.7], 120)
+    times = 5000.0 + np.cumsum(gaps)
+    with VideoFile(path, (64, 48), 30) as video:
+        for time in times:
+            video.write(np.full((48, 64, 3), 90, np.uint8), float(time))
+    with av.open(str(path)) as file:
+        seen = [frame.time for frame in file.decode(video=0)]
+    assert seen == pytest.approx(times - times[0], abs=0.003)
+
+
+def test_a_video_that_fails_leaves_nothing(tmp_path):
+    wrong = np.zeros((48, 64), np.uint8)
+    with (
+        pytest.raises(ValueError, match="ndim"),
+        VideoFile(tmp_path / "out.mp4", (64, 48), 30) as video,
+    ):
+        video.write(wrong, 0.0)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_video_that_cannot_be_written_is_one_line(tmp_path):
+    with pytest.raises(AppError, match="cannot write the video"):
+        VideoFile(tmp_path / "no" / "out.mp4", (64, 48), 30)
+
+
+def test_the_summary_tells_rate_actions_and_moods(a_step):
+    summary = Summary("companion")
+    step = a_step(None)
+    for _ in range(4):
+        summary.add(step, ROBOT, 0.02)
+    document = summary.document()
+    assert document["frames"] == 4
+    assert document["robot"] == [{"t_s": 0.0, "label": "happy"}]
+    assert document["frame_ms"] == {"median": 20.0, "p95": 20.0}
+
+
+def test_the_demo_without_a_display_renders_a_video_and_says_what_happened(
+    cubeling, short_session, monkeypatch
+):
+    monkeypatch.setattr(demo, "bundled", lambda name: short_session)
+    code, out, err = cubeling("demo")
+    assert (code, err) == (0, "")
+    assert str(Path("demo.mp4").resolve()) in out
+    assert "cube found" in out
+    assert "robot felt" in out
+    assert [path.name for path in Path().iterdir()] == ["demo.mp4"]
+    with av.open("demo.mp4") as file:
+        assert sum(1 for _ in file.decode(video=0)) == 60
+
+
+def test_a_replay_can_be_recorded_again_and_checked(cubeling, short_session):
+    code, out, err = cubeling("replay", short_session, "--no-pictures", "--record", "again.mcap")
+    assert (code, err) == (0, "")
+    code, out, err = cubeling("replay", "again.mcap", "--check")
+    assert (code, err) == (0, "")
+    assert "/cube/state" in out
+
+
+def test_what_is_whole_of_a_cut_session_can_be_played(cubeling, short_session):
+    data = short_session.read_bytes()
+    Path("cut.mcap").write_bytes(data[: len(data) // 2])
+    code, _, err = cubeling("replay", "cut.mcap", "--no-pictures")
+    assert code == 2
+    assert "--salvage" in err
+    code, out, err = cubeling("replay", "cut.mcap", "--no-pictures", "--salvage")
+    assert (code, err) == (0, "")
+    assert "cube found" in out

@@ -1,0 +1,55 @@
+"""Opens the window and plays with it: `test_window` runs this in a process of its own."""
+
+import sys
+
+import glfw
+import numpy as np
+
+from app.pipeline.playground import Playground
+from app.pipeline.step import RobotView
+from app.running.opening import fitting
+from app.ui.notice import Notice
+from app.ui.window import Window
+from tracking import open_source
+
+
+def main(session: str) -> None:
+    """Show the first frame of a session, press every key, and quit."""
+    robot = RobotView("ready", 0.5, "happy")
+    with open_source(session) as source, Window(source.size) as window:
+        intrinsics = fitting(source.intrinsics, source.size)
+        playground = Playground("companion", intrinsics, context=window.context)
+        step = playground.step(next(iter(source)))
+        assert step.picture is not None
+        before = step.picture.copy()
+        assert not window.show(step, robot).clear
+        assert (step.picture != before).any(), "no cards lie over the picture"
+
+        # What was swapped away is undefined, so paint once more before looking.
+        window._paint(step.picture)
+        screen = window.context.detect_framebuffer(0)
+        shown = np.frombuffer(screen.read(), np.uint8).reshape(*screen.size[::-1], 3)
+        assert screen.size == source.size
+        np.testing.assert_array_equal(shown[::-1, :, ::-1], step.picture)
+
+        window.wait(None)
+        for _ in range(2):  # both of the buffers that are swapped
+            window.wait(Notice("Camera lost", "Plug it in again."))
+        shown = np.frombuffer(screen.read(), np.uint8)
+        assert shown.mean() < 0.7 * step.picture.mean(), "the last picture is not dimmed"
+        assert shown.max() > 200, "no card lies over it"
+        for key in (glfw.KEY_H, glfw.KEY_C):
+            window._key(window._window, key, 0, glfw.PRESS, 0)
+        assert window.show(step, robot).clear
+        assert not window.show(step, robot).clear
+        quits = [window.closed]
+        window._key(window._window, glfw.KEY_ESCAPE, 0, glfw.PRESS, 0)
+        quits.append(window.closed)
+        assert quits == [False, True]
+        playground.close()
+    window.close()  # again: does nothing
+    assert window.closed
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

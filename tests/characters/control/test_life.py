@@ -1,0 +1,237 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from characters import Animator, Character, CharacterCommand, Pose, Skeleton
+from characters.body.gaze import HUMAN, Gaze
+from characters.control.liveliness import Life
+from characters.face.blink import Blinking, closed
+from characters.face.lids import Lids
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import Anatomy
+
+STEP = 1 / 60
+NAMES = ("hips", "spine", "chest", "neck", "head", "LeftEye", "RightEye", "LeftFoot")
+PARENTS = (-1, 0, 1, 2, 3, 4, 4, 0)
+PLACES = np.array(
+    [[0, 1, 0], [0, 0.1, 0], [0, 0.2, 0], [0, 0.2, 0], [0, 0.1, 0]]
+    + [[0.03, 0.1, 0.08], [-0.03, 0.1, 0.08], [0.1, -0.9, 0]]
+)
+
+
+def bust(seed):
+    """Return a body whose joints' own frames point anywhere; it faces +z all the same."""
+    rng = np.random.default_rng(seed)
+    world = rotations.normalize(rng.normal(size=(len(NAMES), 4)))
+    if seed == 0:
+        world = np.tile(rotations.IDENTITY, (len(NAMES), 1))
+    parents = np.array([world[p] if p >= 0 else rotations.IDENTITY for p in PARENTS])
+    back = rotations.conjugate(parents)
+    rest = Pose(rotations.rotate(back, PLACES), rotations.multiply(back, world))
+    semantics = {"hips": "hips", "spine": "spine", "chest": "chest", "neck": "neck"}
+    semantics |= {"head": "head", "leftEye": "LeftEye", "rightEye": "RightEye"}
+    skeleton = Skeleton(NAMES, PARENTS, rest)
+    return skeleton, Anatomy.guess(skeleton, semantics)
+
+
+def looking(skeleton, pose, joint):
+    """Return which way a joint looks in a pose: what was +z at rest."""
+    rest = skeleton.rest.globals(skeleton)[joint, :3, :3]
+    return pose.globals(skeleton)[joint, :3, :3] @ rest.T @ [0.0, 0.0, 1.0]
+
+
+def angle(a, b):
+    cosine = np.dot(a, b) / np.linalg.norm(a) / np.linalg.norm(b)
+    return math.acos(min(max(float(cosine), -1.0), 1.0))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 9), st.floats(-1.3, 1.3), st.floats(-0.5, 0.5), st.floats(0.6, 5.0))
+def test_eyes_end_on_what_they_look_at(seed, yaw, pitch, distance):
+    skeleton, anatomy = bust(seed)
+    gaze = Gaze(skeleton, anatomy)
+    middle = np.array([0.0, 1.7, 0.08])
+    way = np.array([math.sin(yaw) * math.cos(pitch), math.sin(pitch), math.cos(yaw)])
+    target = middle + distance * way / np.linalg.norm(way)
+    for _ in range(240):
+        pose = gaze.update(skeleton.rest, target, STEP)
+    world = pose.globals(skeleton)
+    for joint in (5, 6):
+        to = target - world[joint, :3, 3]
+        assert angle(looking(skeleton, pose, joint), to) < math.radians(1.0)
+    assert angle(looking(skeleton, pose, 4), target - middle) < math.radians(22)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 9), st.lists(st.floats(-5, 5), min_size=3, max_size=3))
+def test_nothing_turns_farther_than_a_body_can(seed, target):
+    skeleton, anatomy = bust(seed)
+    gaze = Gaze(skeleton, anatomy)
+    for _ in range(90):
+        pose = gaze.update(skeleton.rest, np.array(target), STEP)
+        head = looking(skeleton, pose, 4)
+        assert abs(math.atan2(head[0], head[2])) < HUMAN.head_yaw + math.radians(1)
+        assert -HUMAN.head_down - 0.02 < math.asin(head[1]) < HUMAN.head_up + 0.02
+        for eye in (5, 6):
+            most = math.hypot(HUMAN.eye_yaw, HUMAN.eye_pitch)
+            assert angle(looking(skeleton, pose, eye), head) < most + 1e-6
+
+
+def test_the_head_turns_without_a_jump_and_the_eyes_are_there_first():
+    skeleton, anatomy = bust(0)
+    gaze = Gaze(skeleton, anatomy)
+    target = np.array([2.0, 1.7, 2.0])
+    heads, eyes = [], []
+    for _ in range(90):
+        pose = gaze.update(skeleton.rest, target, STEP)
+        heads.append(angle(looking(skeleton, pose, 4), [0, 0, 1]))
+        eyes.append(angle(looking(skeleton, pose, 5), [0, 0, 1]))
+    assert np.abs(np.diff(heads)).max() < math.radians(400) * STEP
+    assert eyes[6] > math.radians(25) > 3 * heads[3]
+
+
+def test_what_is_behind_is_not_looked_at_and_the_head_comes_back():
+    skeleton, anatomy = bust(0)
+    gaze = Gaze(skeleton, anatomy)
+    for _ in range(60):
+        gaze.update(skeleton.rest, np.array([1.0, 1.7, 1.0]), STEP)
+    for _ in range(240):
+        pose = gaze.update(skeleton.rest, np.array([0.1, 1.7, -2.0]), STEP)
+    assert angle(looking(skeleton, pose, 4), [0, 0, 1]) < math.radians(1)
+
+
+def test_a_body_without_a_head_is_left_alone():
+    rest = Pose(np.zeros((1, 3)), np.array([[0.0, 0, 0, 1]]))
+    skeleton = Skeleton(("box",), (-1,), rest)
+    life = Life(skeleton, Anatomy.guess(skeleton))
+    pose = life.update(rest, STEP, target=np.ones(3))
+    assert np.array_equal(pose.rotations, rest.rotations)
+
+
+def test_blinks_come_as_often_as_peoples_and_never_in_step():
+    blinking, other = Blinking(1), Blinking(2)
+    lids = np.array([blinking.update(STEP) for _ in range(60 * 600)])
+    others = np.array([other.update(STEP) for _ in range(60 * 600)])
+    shut = (lids[1:] > 0.95) & (lids[:-1] <= 0.95)
+    assert 12 <= shut.sum() / 10 <= 22
+    starts = np.flatnonzero(shut)
+    assert np.std(np.diff(starts)) > 0.3 * np.mean(np.diff(starts))
+    assert ((lids > 0.5) & (others > 0.5)).mean() < 0.02
+    assert lids.min() >= 0.0
+    assert lids.max() <= 1.0
+
+
+def test_a_great_turn_of_the_gaze_brings_a_blink():
+    blinking = Blinking(5)
+    assert blinking.update(STEP) == 0.0
+    blinking.update(STEP, turned=1.0)
+    assert max(blinking.update(STEP) for _ in range(12)) == 1.0
+
+
+@given(st.floats(-1, 1))
+def test_lids_move_smoothly(time):
+    assert abs(closed(time + 1e-4) - closed(time)) < 3e-3
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        ["blink"],
+        ["Blink"],
+        ["eyesClosed", "eyeBlinkLeft", "eyeBlinkRight"],
+        ["eyeBlinkLeft", "eyeBlinkRight"],
+        ["eyeBlink_R", "eyeBlink_L"],
+        ["Facial_Blends.Blink_Left", "Facial_Blends.Blink_Right"],
+        ["Fcl_EYE_Close_R", "Fcl_EYE_Close_L", "Fcl_EYE_Close"],
+        ["vrc.blink"],
+        ["Eye Blink.L", "Eye Blink.R"],
+        ["まばたき"],
+    ],
+)
+def test_eyes_blink_whatever_their_morphs_are_called(names):
+    morphs = ("jawOpen", *names, "eyeSquintLeft")
+    skeleton, anatomy = bust(0)
+    life = Life(skeleton, anatomy, morphs)
+    weights = np.array([life.update(skeleton.rest, STEP).morphs for _ in range(900)])
+    shut = weights[:, 1:-1].max(axis=1) > 0.99
+    assert shut.any()
+    assert not weights[:, [0, -1]].any()
+    assert weights[:, 1:-1].sum(axis=1).max() <= (2.0 if len(names) == 2 else 1.0)
+
+
+def test_a_single_lid_of_a_pair_does_not_blink_alone():
+    assert not Lids.of(["eyeBlinkLeft", "smile"])
+
+
+def test_an_eye_that_winks_is_not_closed_twice():
+    lids = Lids.of(["blink", "blinkLeft", "blinkRight"])
+    weights = np.array([0.0, 0.7, 0.0])
+    lids.close(weights, 1.0)
+    assert weights == pytest.approx([0.3, 0.7, 0.0])
+
+
+@pytest.fixture(scope="module", params=["human", "vleo"])
+def someone(request):
+    return Character.load(request.param)
+
+
+def test_standing_still_is_never_quite_still_and_the_feet_stay(someone):
+    clip = someone.clips["idle"]
+    anatomy = Anatomy.guess(someone.skeleton, someone.semantics)
+    life = Life(someone.skeleton, anatomy, someone.morphs)
+    still = clip.sample(0.0)
+    feet = [anatomy.joints["leftFoot"], anatomy.joints["rightFoot"]]
+    heads, soles = [], []
+    for _ in range(240):
+        world = life.update(still, STEP).globals(someone.skeleton)[:, :3, 3]
+        heads.append(world[anatomy.joints["head"]])
+        soles.append(world[feet])
+    assert np.ptp(heads, axis=0).max() > 0.001 * someone.height
+    assert np.ptp(heads, axis=0).max() < 0.05 * someone.height
+    assert np.ptp(soles, axis=0).max() < 1e-9
+
+
+def test_breath_quickens_with_effort_and_calms_down_later(someone):
+    life = Life(someone.skeleton, Anatomy.guess(someone.skeleton, someone.semantics))
+    pose = someone.clips["idle"].sample(0.0)
+
+    def breaths(seconds, effort):
+        full = []
+        for _ in range(seconds * 60):
+            life.update(pose, STEP, effort=effort)
+            full.append(life.breath)
+        crossed = np.diff((np.array(full) > 0.5).astype(int)) > 0
+        return crossed.sum() / seconds
+
+    calm, hard = breaths(20, 0.0), breaths(30, 1.0)
+    assert calm == pytest.approx(0.25, abs=0.06)
+    assert hard > 1.8 * calm
+    breaths(20, 0.0)
+    assert breaths(20, 0.0) < 1.4 * calm
+
+
+def test_an_animator_looks_where_it_is_told(someone):
+    animator = Animator(someone)
+    head = Anatomy.guess(someone.skeleton, someone.semantics).joint("head")
+    turned = []
+    for side in (1.0, -1.0):
+        for number in range(90):
+            time = (number + (90 if side < 0 else 0)) / 30
+            gaze = np.array([0.5 * side, 0.1, 0.5])
+            posed = animator.update(CharacterCommand(time, gaze=gaze))
+        way = looking(someone.skeleton, posed.pose, head)
+        turned.append(math.atan2(way[0], way[2]))
+    assert turned[0] > math.radians(20)
+    assert turned[1] < -math.radians(20)
+
+
+def test_the_same_life_twice(someone):
+    def lived():
+        animator = Animator(someone, seed=3)
+        commands = (CharacterCommand(n / 30, gaze=np.array([0.1, 0.2, 0.3])) for n in range(60))
+        return [animator.update(command).pose.rotations for command in commands]
+
+    assert np.array_equal(lived(), lived())

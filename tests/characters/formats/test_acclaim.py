@@ -1,0 +1,466 @@
+"""Acclaim ASF/AMC: agreement with a walk over 4×4 matrices, odd but legal files, refusals."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from characters import CharacterError
+from characters.formats import Performance, load_clip, load_motion
+from characters.formats.mocap import amc_frames
+from characters.formats.mocap.axes_and_units import CMU_UNIT
+from characters.skeleton import rotations
+
+DATA = Path(__file__).parents[4] / "shared" / "data"
+SAMPLES = sorted((DATA / "cmu-mocap").glob("*/*.amc"))
+
+# Metres a second over the ground, as measured for the data's own README.
+SPEEDS = {
+    "02_01": 1.14,
+    "02_03": 2.56,
+    "16_15": 1.07,
+    "16_22": 1.6,
+    "16_35": 2.75,
+    "16_46": 4.17,
+    "49_01": 0.83,
+}
+
+ASF = """# made by hand
+:version 1.10
+:name hopper
+:units
+  mass 1.0
+  length 0.45
+  angle deg
+:documentation
+   begin anything, :here or not
+:root
+   order TX TY TZ RX RY RZ
+   axis XYZ
+   position 0 0 0
+   orientation 0 0 0
+:bonedata
+  begin
+     id 1
+     name leg
+     direction 0 -1 0
+     length 16
+     axis 0 0 90 XYZ
+    dof rx ry rz
+    limits (-160.0 20.0)
+           (-70.0 70.0)
+           (-60.0 70.0)
+  end
+  begin
+     id 2
+     name foot
+     direction 0 0 1
+     length 4
+     axis 0 0 0 XYZ
+    dof rx
+    limits (-10 10)
+  end
+  begin
+     id 3
+     name head
+     direction 0 1 0
+     length 12
+     axis 0 0 0 XYZ
+  end
+:hierarchy
+  begin
+    root leg head
+    leg foot
+  end
+"""
+
+AMC = """#!OML:ASF hopper.ASF
+:FULLY-SPECIFIED
+:DEGREES
+1
+root 0 16 0 0 0 0
+leg 0 0 0
+foot 0
+2
+root 1 16 2 0 90 0
+leg 30 0 0
+foot -10
+"""
+
+
+def hopper(folder: Path, asf: str = ASF, amc: str = AMC) -> Path:
+    (folder / "hopper.asf").write_text(asf)
+    (folder / "hopper.amc").write_text(amc)
+    return folder / "hopper.amc"
+
+
+def places(performance: Performance) -> np.ndarray:
+    """World positions of every joint, (frames, joints, 3)."""
+    return performance.clip.poses.globals(performance.skeleton)[..., :3, 3]
+
+
+def rotation(degrees: list[float], order: str = "xyz") -> np.ndarray:
+    """4×4: turned about the fixed axes one after the other, written out with sines."""
+    matrix = np.eye(4)
+    for axis, angle in zip(order, degrees, strict=True):
+        c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+        one = {
+            "x": [[1, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1]],
+            "y": [[c, 0, s, 0], [0, 1, 0, 0], [-s, 0, c, 0], [0, 0, 0, 1]],
+            "z": [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+        }[axis]
+        matrix = np.array(one) @ matrix
+    return matrix
+
+
+def shift(x: float, y: float, z: float) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
+def bones_of(asf: str) -> dict[str, dict[str, list[str]]]:
+    """Every bone's words after each keyword, by splitting at begin and end."""
+    bones = {}
+    for part in asf.partition(":bonedata")[2].partition(":hierarchy")[0].split("begin")[1:]:
+        rows = [line.split() for line in part.partition("end")[0].splitlines() if line.strip()]
+        words = {row[0]: row[1:] for row in rows}
+        bones[words["name"][0]] = words
+    return bones
+
+
+def walk(asf: str, frame: dict[str, list[float]]) -> dict[str, np.ndarray]:
+    """Where each bone ends in one frame [file's unit], down the tree, matrix after matrix.
+
+    The published definition: bone_from_parent = T(end of parent) C M C⁻¹, with C the bone's axis
+    and M its motion about the axes of C.
+    """
+    bones, links = bones_of(asf), {}
+    for line in asf.partition(":hierarchy")[2].splitlines():
+        words = line.split()
+        if words and words[0] not in ("begin", "end"):
+            links[words[0]] = words[1:]
+    x, y, z, *angles = frame["root"]
+    ends = {"root": np.array([x, y, z])}
+
+    def descend(name: str, world: np.ndarray) -> None:
+        for child in links.get(name, []):
+            bone = bones[child]
+            frame_of_bone = rotation([float(word) for word in bone["axis"][:3]])
+            turns = dict(zip(bone.get("dof", []), frame.get(child, []), strict=True))
+            motion = rotation([turns.get(f"r{axis}", 0.0) for axis in "xyz"])
+            turned = world @ frame_of_bone @ motion @ np.linalg.inv(frame_of_bone)
+            along = np.array([float(word) for word in bone["direction"]])
+            end = turned @ shift(*(along * float(bone["length"][0])))
+            ends[child] = end[:3, 3]
+            descend(child, end)
+
+    descend("root", shift(x, y, z) @ rotation(angles))
+    return ends
+
+
+def frames_of(amc: str) -> list[dict[str, list[float]]]:
+    frames: list[dict[str, list[float]]] = []
+    for line in amc.splitlines():
+        words = line.split()
+        if words[0].isdigit():
+            frames.append({})
+        elif frames:
+            frames[-1][words[0]] = [float(word) for word in words[1:]]
+    return frames
+
+
+def assert_like_the_walk(path: Path, looks: int) -> None:
+    asf = next(path.parent.glob("*.asf")).read_text()
+    performance = load_motion(path, scale=CMU_UNIT, up="y")
+    assert performance.notes == ()
+    ours, skeleton = places(performance), performance.skeleton
+    frames = frames_of(path.read_text())
+    assert len(frames) == len(performance.clip)
+    for number in np.linspace(0, len(frames) - 1, looks).round().astype(int):
+        ends = walk(asf, frames[number])
+        for joint, (name, parent) in enumerate(zip(skeleton.names, skeleton.parents, strict=True)):
+            # A joint is where its bone starts, which is where its parent's ends.
+            bone = name if parent < 0 else skeleton.names[parent]
+            gap = np.abs(ours[number, joint] - ends[bone] * CMU_UNIT).max()
+            assert gap < 1e-4, f"{name} in frame {number + 1}"
+
+
+@pytest.mark.skipif(not SAMPLES, reason="the real recordings are not here")
+@pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
+def test_joints_are_where_a_walk_over_matrices_has_them(path: Path) -> None:
+    assert_like_the_walk(path, looks=10)
+
+
+@pytest.mark.skipif(not SAMPLES, reason="the real recordings are not here")
+@pytest.mark.parametrize("path", [p for p in SAMPLES if p.stem in SPEEDS], ids=lambda p: p.stem)
+def test_real_people_walk_in_metres_on_the_ground(path: Path) -> None:
+    performance = load_motion(path)
+    assert performance.notes == ()
+    world = places(performance)
+    hips = world[:, 0, [0, 2]]
+    mean = np.linalg.norm(np.diff(hips, axis=0), axis=1).mean() * performance.clip.rate
+    # The way of the hips also sways from side to side.
+    assert mean == pytest.approx(SPEEDS[path.stem], rel=0.08)
+    # Runners are in the air part of the time.
+    assert abs(np.percentile(world[..., 1].min(axis=1), 10)) < 0.03
+    assert 1.5 < np.median(np.ptp(world[..., 1], axis=1)) < 1.7
+    assert (performance.skeleton.rest.rotations == rotations.IDENTITY).all()
+
+
+@pytest.mark.skipif(not SAMPLES, reason="the real recordings are not here")
+def test_the_same_database_is_as_large_in_bvh() -> None:
+    """Thighs of two people of one database, one by each reader: within a tenth."""
+    acclaim = load_motion(SAMPLES[0]).skeleton
+    biovision = load_motion(DATA / "bvh" / "131_01.bvh").skeleton
+    thighs = [
+        np.linalg.norm(skeleton.rest.translations[skeleton.index(knee)])
+        for skeleton, knee in ((acclaim, "ltibia"), (biovision, "LeftKnee"))
+    ]
+    assert thighs[0] == pytest.approx(thighs[1], rel=0.1)
+
+
+def test_bones_tips_rate_and_units(tmp_path: Path) -> None:
+    performance = load_motion(hopper(tmp_path))
+    skeleton, clip = performance.skeleton, performance.clip
+    assert skeleton.names == ("root", "leg", "foot", "head", "foot_end", "head_end")
+    assert skeleton.parents == (-1, 0, 1, 0, 2, 3)
+    assert (clip.name, clip.rate, len(clip)) == ("hopper", 120.0, 2)
+    assert not clip.loop
+    assert not clip.root_motion
+    rest = [[0, 0, 0], [0, 0, 0], [0, -16, 0], [0, 0, 0], [0, 0, 4], [0, 12, 0]]
+    np.testing.assert_allclose(skeleton.rest.translations, np.array(rest) * CMU_UNIT)
+    assert_like_the_walk(tmp_path / "hopper.amc", looks=2)
+
+
+@given(data=st.data())
+@settings(max_examples=25)
+def test_any_axes_and_angles_agree_with_the_walk(
+    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    angle = st.integers(-1800, 1800).map(lambda tenths: tenths / 10)
+    draw = [data.draw(angle) for _ in range(10)]
+    asf = ASF.replace("axis 0 0 90", f"axis {draw[0]} {draw[1]} {draw[2]}", 1)
+    asf = asf.replace("axis 0 0 0 XYZ\n    dof rx", f"axis {draw[3]} {draw[4]} 0 XYZ\n    dof rx")
+    amc = AMC.replace("leg 30 0 0", f"leg {draw[5]} {draw[6]} {draw[7]}")
+    amc = amc.replace("0 90 0", f"{draw[8]} 90 {draw[9]}")
+    assert_like_the_walk(hopper(tmp_path_factory.mktemp("axes"), asf, amc), looks=2)
+
+
+def test_the_first_axis_listed_turns_first(tmp_path: Path) -> None:
+    asf = ASF.replace("dof rx ry rz", "dof rz rx").replace("axis 0 0 90", "axis 0 0 0")
+    amc = AMC.replace("leg 0 0 0", "leg 20 30").replace("leg 30 0 0", "leg 0 0")
+    turned = load_motion(hopper(tmp_path, asf, amc)).clip.poses.rotations[0, 1]
+    expected = rotation([20, 30], "zx")[:3, :3]
+    np.testing.assert_allclose(rotations.to_matrix(turned), expected, atol=1e-12)
+
+
+def test_radians_lengths_and_shifts(tmp_path: Path) -> None:
+    asf = ASF.replace("dof rx\n", "dof rx tz l\n").replace("angle deg", "angle rad")
+    asf = asf.replace("axis 0 0 90", f"axis 0 0 {math.pi / 2}")
+    amc = AMC.replace(":DEGREES", ":RADIANS").replace("foot 0", "foot 0 0 0")
+    amc = amc.replace("0 90 0\n", f"0 {math.pi / 2} 0\n").replace("foot -10", "foot 0 2 3")
+    amc = amc.replace("leg 30", f"leg {math.pi / 6}")
+    performance = load_motion(hopper(tmp_path, asf, amc), scale=1.0, up="y")
+    degrees = load_motion(hopper(tmp_path), scale=1.0, up="y")
+    np.testing.assert_allclose(places(performance)[:, 2][0], places(degrees)[:, 2][0], atol=1e-9)
+    translations = performance.clip.poses.translations[1]
+    np.testing.assert_allclose(translations[2], [0, -16, 2])
+    np.testing.assert_allclose(translations[4], [0, 0, 7])
+    turns = [motion.clip.poses.rotations[1, :2] for motion in (performance, degrees)]
+    np.testing.assert_allclose(turns[0], turns[1], atol=1e-12)
+
+
+def test_frames_may_list_bones_in_any_order_and_hold_comments(tmp_path: Path) -> None:
+    plain = places(load_motion(hopper(tmp_path)))
+    amc = AMC.replace("leg 30 0 0\nfoot -10\n", "foot -10 # down\n\nleg 30 0 0\n")
+    np.testing.assert_array_equal(places(load_motion(hopper(tmp_path, amc=amc))), plain)
+    np.testing.assert_array_equal(
+        places(load_motion(hopper(tmp_path, amc=amc.replace("\n", "\r\n")))), plain
+    )
+
+
+def test_where_a_long_file_is_cut_for_reading_does_not_matter(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    head = AMC.partition("1\n")[0]
+    text = head + "".join(
+        f"{number}\nroot {number / 7} 16 0 0 0 0\nleg {number} 0 0\nfoot 1\n"
+        for number in range(1, 60)
+    )
+    whole = load_clip(hopper(tmp_path, amc=text)).poses
+    for block in (64, 97, 200):
+        monkeypatch.setattr(amc_frames, "_BLOCK", block)
+        pieces = load_clip(tmp_path / "hopper.amc").poses
+        np.testing.assert_array_equal(pieces.rotations, whole.rotations)
+        np.testing.assert_array_equal(pieces.translations, whole.translations)
+    np.testing.assert_allclose(whole.translations[:, 0, 0], np.arange(1, 60) / 7 * CMU_UNIT)
+
+
+def test_what_an_amc_leaves_out_and_skips_is_noted(tmp_path: Path) -> None:
+    amc = AMC.replace("foot 0\n", "").replace("foot -10\n", "").replace("\n2\n", "\n7\n")
+    notes = " ".join(load_motion(hopper(tmp_path, amc=amc)).notes)
+    assert "foot does not move" in notes
+    assert "gaps" in notes
+
+
+def test_an_unlikely_unit_is_recognised_by_size_instead(tmp_path: Path) -> None:
+    performance = load_motion(hopper(tmp_path, ASF.replace("length 0.45", "length 100")))
+    assert any("1 unit is taken as" in note for note in performance.notes)
+    assert 1.0 < np.ptp(places(performance)[0, :, 1]) < 2.5
+
+
+def test_the_skeleton_is_found_by_name_or_alone_or_told(tmp_path: Path) -> None:
+    path = hopper(tmp_path)
+    number = path.rename(tmp_path / "07_01.amc")
+    assert len(load_clip(number)) == 2  # the only .asf there
+    (tmp_path / "other.asf").write_text("nonsense")
+    with pytest.raises(CharacterError, match=r"07_01\.amc: .* 2 \.asf files, none of its name"):
+        load_clip(number)
+    (tmp_path / "hopper.asf").rename(tmp_path / "07.asf")
+    assert len(load_clip(number)) == 2  # the performer's
+    (tmp_path / "07.asf").rename(tmp_path / "elsewhere.asf")
+    assert len(load_motion(number, skeleton=tmp_path / "elsewhere.asf").clip) == 2
+    (tmp_path / "elsewhere.asf").unlink()
+    (tmp_path / "other.asf").unlink()
+    with pytest.raises(CharacterError, match=r"needs its skeleton, .* no \.asf file"):
+        load_clip(number)
+    with pytest.raises(CharacterError, match=r"gone\.asf: cannot be read"):
+        load_motion(number, skeleton=tmp_path / "gone.asf")
+    with pytest.raises(CharacterError, match=r"a skeleton does not move"):
+        load_clip(tmp_path / "hopper.asf")
+
+
+def test_the_rate_is_told_or_stated_or_cmus(tmp_path: Path) -> None:
+    stated = AMC.replace(":DEGREES", ":DEGREES\n:SAMPLES-PER-SECOND 60")
+    assert load_clip(hopper(tmp_path, amc=stated)).rate == 60.0
+    assert load_motion(tmp_path / "hopper.amc", rate=30.0).clip.rate == 30.0
+    with pytest.raises(CharacterError, match="0 frames a second is no rate"):
+        load_motion(tmp_path / "hopper.amc", rate=0.0)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("leg 30 0 0", "leg 30 0", r"line 10: 'leg' has 2 numbers, and in hopper\.asf 3 degrees"),
+        ("leg 0 0 0", "leg 0 0 0 0", r"line 6: 'leg' has 4 numbers"),
+        ("leg 30 0 0", "arm 30 0 0", r"line 10: hopper\.asf has no bone 'arm'"),
+        ("leg 30 0 0", "leg 30 nan 0", "line 10: 'nan' is no sound number"),
+        ("leg 30 0 0", "leg 30 -inf 0", "line 10: '-inf' is no sound number"),
+        ("leg 30 0 0", "leg 30 x 0", "line 10: 'x' stands where a number should"),
+        ("leg 30 0 0\nfoot -10\n", "", "line 8: frame 2 lacks 'leg'"),
+        ("foot 0\n2\n", "foot 0\n", "line 8: frame 1 moves 'root' twice"),
+        ("\n1\n", "\n", "line 4: 'root' stands before the number of the first frame"),
+    ],
+)
+def test_a_damaged_motion_is_refused_with_its_line(
+    old: str, new: str, message: str, tmp_path: Path
+) -> None:
+    assert old in AMC
+    with pytest.raises(CharacterError, match=rf"hopper\.amc, {message}"):
+        load_clip(hopper(tmp_path, amc=AMC.replace(old, new, 1)))
+
+
+@pytest.mark.parametrize("amc", ["", ":DEGREES\n", "# nothing\n\n"])
+def test_a_motion_without_frames_is_refused(amc: str, tmp_path: Path) -> None:
+    with pytest.raises(CharacterError, match=r"hopper\.amc: has no frames"):
+        load_clip(hopper(tmp_path, amc=amc))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("leg foot", "leg foot root", "line 46: 'root' has a parent already"),
+        ("root leg head", "root head", "'leg' does not hang on the root"),
+        (
+            "root leg head\n    leg foot",
+            "root head\n    leg foot\n    foot leg",
+            "'leg' does not h",
+        ),
+        ("leg foot", "leg paw", "line 46: no bone is called 'paw'"),
+        ("root leg head", "root leg head leg", "line 45: 'leg' has a parent already"),
+        ("name foot", "name leg", "line 27: a second bone 'leg'"),
+        ("name foot", "", "line 27: this bone has no name"),
+        ("dof rx\n", "dof rw\n", "line 33: 'rw' is no degree of freedom"),
+        ("dof rx\n", "dof rx rx\n", "line 33: 'rx' is no degree of freedom"),
+        ("axis 0 0 90 XYZ", "axis 0 0 90 XYY", "line 21: 'xyy' is no order of axes"),
+        ("axis 0 0 90 XYZ", "axis 0 0", "line 21: axis has 2 numbers"),
+        ("direction 0 0 1", "direction 0 0 0", "line 27: bone 'foot' has no direction"),
+        ("direction 0 0 1", "direction 0 nan 1", "line 30: 'nan' is no sound number"),
+        ("length 16", "length -16", "line 16: bone 'leg' has no direction or a negative length"),
+        ("length 16", "length", "line 20: '' stands where a number should"),
+        ("length 0.45", "length 0", "line 6: a length of 0 is no unit"),
+        ("angle deg", "angle turns", "line 7: angles in 'turns'"),
+        ("  end\n:hierarchy", ":hierarchy", "line 36: this begin has no end"),
+        ("     id 2", "begin", "line 28: begin inside begin"),
+        (":hierarchy", ":links", "has no :hierarchy"),
+        (":version", "version", "line 2: 'version' stands before any section"),
+        (":units", ":root", "line 10: a second :root"),
+    ],
+)
+def test_a_damaged_skeleton_is_refused_with_its_line(
+    old: str, new: str, message: str, tmp_path: Path
+) -> None:
+    assert old in ASF
+    with pytest.raises(CharacterError, match=rf"hopper\.asf(,|:|: bone) {message}"):
+        load_clip(hopper(tmp_path, ASF.replace(old, new, 1)))
+
+
+ODD = [
+    "",
+    "nan",
+    "1e9",
+    "-1e9",
+    "1e-300",
+    "9" * 20,
+    "1",
+    "begin",
+    "end",
+    "root",
+    ":root",
+    "\n",
+    "l",
+    "é",
+]
+
+
+@given(data=st.data())
+@settings(max_examples=60)
+def test_nothing_but_a_refusal_of_one_line_comes_out(
+    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    texts = {"asf": ASF, "amc": AMC}
+    chosen = data.draw(st.sampled_from(sorted(texts)))
+    words = texts[chosen].replace("\n", " \n ").split(" ")
+    for _ in range(data.draw(st.integers(1, 4))):
+        at, other = (data.draw(st.integers(0, len(words) - 1)) for _ in range(2))
+        change = data.draw(st.sampled_from(["drop", "double", "swap", "odd", "cut"]))
+        if change == "drop" and len(words) > 1:
+            del words[at]
+        elif change == "double":
+            words.insert(at, words[at])
+        elif change == "swap":
+            words[at], words[other] = words[other], words[at]
+        elif change == "odd":
+            words[at] = data.draw(st.sampled_from(ODD))
+        elif len(words) > 1:
+            del words[max(at, 1) :]
+    texts[chosen] = " ".join(words)
+    try:
+        performance = load_motion(hopper(tmp_path_factory.mktemp("fuzz"), **texts))
+    except CharacterError as error:
+        assert len(str(error).splitlines()) == 1  # noqa: PT017
+    else:
+        assert np.isfinite(places(performance)).all()
+
+
+@given(junk=st.binary(max_size=300), kind=st.sampled_from(["asf", "amc"]))
+@settings(max_examples=30)
+def test_junk_is_refused(junk: bytes, kind: str, tmp_path_factory: pytest.TempPathFactory) -> None:
+    path = hopper(tmp_path_factory.mktemp("junk"))
+    path.with_suffix(f".{kind}").write_bytes(junk)
+    with pytest.raises(CharacterError):
+        load_clip(path)

@@ -1,0 +1,49 @@
+"""Files that are no files: pipes and devices, names that cannot be, tables from other editors."""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from characters import Character, CharacterError
+from characters.formats import load_motion
+from characters.model.files import read_file
+from characters.model.sidecar import read_sidecar
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="devices have no path there")
+@pytest.mark.parametrize(
+    ("name", "read"),
+    [
+        ("x.glb", Character.load),
+        ("x.vrm", Character.load),
+        ("x.bvh", load_motion),
+        ("x.toml", lambda path: read_sidecar(path, ())),
+    ],
+)
+def test_what_may_have_no_end_is_not_read(tmp_path: Path, name: str, read) -> None:
+    path = tmp_path / name
+    path.symlink_to(os.devnull)
+    with pytest.raises(CharacterError, match="a pipe or a device"):
+        read(path)
+
+
+@pytest.mark.parametrize("name", ["a\0b.glb", "x" * 5000 + ".glb", "a\0b.bvh"])
+def test_a_name_that_cannot_be_is_refused_in_one_line(name: str) -> None:
+    with pytest.raises(CharacterError, match="cannot be read"):
+        load_motion(name)
+
+
+def test_more_than_can_be_meant_is_not_read(tmp_path: Path) -> None:
+    path = tmp_path / "x.glb"
+    path.write_bytes(b"12345")
+    assert read_file(path, 5) == b"12345"
+    with pytest.raises(CharacterError, match="cut it"):
+        read_file(path, 4)
+
+
+def test_a_table_that_an_editor_marked_as_utf_8_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "x.toml"
+    path.write_text('[joints]\nhead = "Kopf"\n', encoding="utf-8-sig")
+    assert read_sidecar(path, ()).semantics == {"head": "Kopf"}

@@ -1,0 +1,166 @@
+import io
+import struct
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from characters import Character, CharacterWarning
+from characters.model.mesh import Material
+from tests.characters.formats.built_gltf import build_arm
+
+RNG = np.random.default_rng(3)
+
+
+def pixels(channels):
+    return RNG.integers(0, 256, (4, 6, channels), dtype=np.uint8)
+
+
+def load(tmp_path, build, name="arm.glb"):
+    (tmp_path / name).write_bytes(build.bytes())
+    return Character.load(tmp_path / name).meshes[0]
+
+
+def encoded(array, kind="PNG", **options):
+    data = io.BytesIO()
+    Image.fromarray(array).save(data, kind, **options)
+    return data.getvalue()
+
+
+def dressed(material, *pictures):
+    """The arm in a material with these pictures."""
+    build = build_arm()
+    primitive = build.document["meshes"][0]["primitives"][0]
+    primitive["material"] = 0
+    primitive["attributes"]["TEXCOORD_0"] = build.floats([[0, 0], [1, 0], [0, 1]], "VEC2")
+    primitive["attributes"]["TEXCOORD_1"] = build.floats([[9, 9], [9, 9], [9, 9]], "VEC2")
+    build.document["materials"] = [material]
+    build.document["images"] = [{"bufferView": build.view(each)} for each in pictures]
+    build.document["textures"] = [{"source": number} for number in range(len(pictures))]
+    return build
+
+
+def test_textures_of_colour_surface_and_relief_are_read(tmp_path):
+    color, surface, bumps = pixels(4), pixels(3), pixels(3)
+    material = {
+        "pbrMetallicRoughness": {
+            "baseColorTexture": {"index": 0},
+            "metallicRoughnessTexture": {"index": 1},
+        },
+        "normalTexture": {"index": 2, "scale": 0.5},
+        "alphaMode": "MASK",
+        "alphaCutoff": 0.3,
+    }
+    mesh = load(tmp_path, dressed(material, encoded(color), encoded(surface), encoded(bumps)))
+    assert np.array_equal(mesh.material.texture, color)
+    assert np.array_equal(mesh.material.surface, surface)
+    assert np.array_equal(mesh.material.bumps, bumps)
+    assert (mesh.material.bump_scale, mesh.material.cutoff) == (0.5, 0.3)
+    assert (mesh.material.metallic, mesh.material.roughness) == (1.0, 1.0)
+
+
+@pytest.mark.parametrize("mode", ["L", "P", "1", "LA", "RGBA", "I;16"])
+def test_pictures_of_any_kind_become_colours(tmp_path, mode):
+    grey = np.array([[0, 255], [255, 0]], np.uint8)
+    picture = Image.fromarray(grey)
+    if mode == "I;16":
+        picture = Image.fromarray(grey.astype(np.uint16) * 257)
+    elif mode != "L":
+        picture = picture.convert(mode)
+    data = io.BytesIO()
+    picture.save(data, "PNG")
+    build = dressed({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}, data.getvalue())
+    texture = load(tmp_path, build).material.texture
+    assert texture is not None
+    assert np.array_equal(texture, np.dstack([grey, grey, grey, np.full((2, 2), 255)]))
+
+
+def test_jpegs_and_files_beside_are_read(tmp_path):
+    flat = np.full((8, 8, 3), (200, 30, 60), np.uint8)
+    build = dressed({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})
+    build.document["images"] = [{"uri": "my%20skin.jpg"}]
+    build.document["textures"] = [{"source": 0}]
+    (tmp_path / "my skin.jpg").write_bytes(encoded(flat, "JPEG", quality=95))
+    texture = load(tmp_path, build).material.texture
+    assert texture is not None
+    assert np.abs(texture[..., :3].astype(int) - flat).max() < 6
+
+
+def test_coordinates_are_moved_turned_and_scaled_with_their_texture(tmp_path):
+    place = {"offset": [0.5, 0.25], "rotation": np.pi / 2, "scale": [2, 3]}
+    texture = {"index": 0, "extensions": {"KHR_texture_transform": place}}
+    build = dressed({"pbrMetallicRoughness": {"baseColorTexture": texture}}, encoded(pixels(3)))
+    uvs = load(tmp_path, build).uvs
+    # Counter-clockwise as seen, with v down: what went along u goes towards −v.
+    assert uvs == pytest.approx(np.array([[0.5, 0.25], [0.5, -1.75], [3.5, 0.25]]), abs=1e-6)
+    place["texCoord"] = 1
+    place.update(rotation=0, scale=[1, 1])
+    assert load(tmp_path, build).uvs == pytest.approx(np.tile([9.5, 9.25], (3, 1)))
+
+
+def test_textures_that_lie_differently_are_left_out_with_a_warning(tmp_path):
+    material = {
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+        "normalTexture": {"index": 1, "texCoord": 1},
+    }
+    build = dressed(material, encoded(pixels(3)), encoded(pixels(3)))
+    with pytest.warns(CharacterWarning, match="material 0 has textures that lie differently"):
+        read = load(tmp_path, build).material
+    assert read.texture is not None
+    assert read.bumps is None
+
+
+def test_emission_is_its_factor_times_its_texture(tmp_path):
+    strength = {"KHR_materials_emissive_strength": {"emissiveStrength": 4.0}}
+    material = {"emissiveFactor": [1, 0.5, 0], "extensions": strength}
+    assert load(tmp_path, dressed(material)).material.glow == (4.0, 2.0, 0.0)
+    dark = encoded(np.zeros((2, 2, 3), np.uint8))
+    material["emissiveTexture"] = {"index": 0}
+    assert load(tmp_path, dressed(material, dark)).material.glow == (0.0, 0.0, 0.0)
+
+
+def test_what_is_not_lit_is_chalk_and_what_is_blended_is_cut(tmp_path):
+    material = {"extensions": {"KHR_materials_unlit": {}}, "alphaMode": "BLEND"}
+    read = load(tmp_path, dressed(material)).material
+    assert (read.metallic, read.roughness, read.cutoff) == (0.0, 1.0, 0.5)
+
+
+def test_whole_numbers_are_read_as_they_are_meant(tmp_path):
+    build = build_arm()
+    attributes = build.document["meshes"][0]["primitives"][0]["attributes"]
+    plain = load(tmp_path, build)
+    corners = np.zeros((3, 4), np.int16)  # KHR_mesh_quantization, padded to four
+    corners[:, :3] = [[0, 0, 0], [10, 0, 0], [0, 0, 600]]
+    attributes["POSITION"] = build.add(corners, "VEC3", 5122)
+    build.document["bufferViews"][-1]["byteStride"] = 8
+    corners = np.array([[0, 0], [255, 0], [51, 255]], np.uint8)
+    attributes["TEXCOORD_0"] = build.add(corners, "VEC2", 5121, normalized=True)
+    build.document["extensionsRequired"] = ["KHR_mesh_quantization"]
+    packed = load(tmp_path, build)
+    assert np.allclose(packed.positions, plain.positions)
+    assert packed.uvs == pytest.approx(np.array([[0, 0], [1, 0], [0.2, 1]]))
+
+
+def test_a_material_survives_saving_and_loading(tmp_path, walker):
+    material = Material(
+        base_color=(0.5, 0.25, 1.0, 1.0),
+        metallic=0.75,
+        roughness=0.5,
+        texture=pixels(4),
+        surface=pixels(3),
+        bumps=pixels(3),
+        bump_scale=0.5,
+        glow=(3.0, 0.75, 0.0),
+        cutoff=0.25,
+        double_sided=True,
+    )
+    mesh = replace(walker.meshes[0], material=material, uvs=np.zeros((8, 2), np.float32))
+    twice = replace(mesh, name="twin")
+    Character("m", walker.skeleton, {}, (mesh, twice)).save(tmp_path / "m.glb")
+    again = Character.load(tmp_path / "m.glb").meshes[0].material
+    for field, value in vars(material).items():
+        assert np.array_equal(getattr(again, field), value), field
+    data = (tmp_path / "m.glb").read_bytes()
+    assert data.count(b"\x89PNG") == 3  # each picture once, though two meshes wear it
+    assert struct.unpack_from("<I", data, 8)[0] == len(data)

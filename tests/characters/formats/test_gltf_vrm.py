@@ -1,0 +1,173 @@
+import json
+import struct
+
+import numpy as np
+import pytest
+
+from characters import Character, CharacterError
+from characters.model.character import skin
+from tests.characters.formats.built_gltf import build_arm, glb
+
+BONES = {"hips": "hips", "head": "head", "leftUpperArm": "LeftArm", "rightFoot": "RightFoot"}
+
+
+@pytest.fixture(scope="module")
+def human(tmp_path_factory):
+    """The bundled human as a file: its JSON and its binary."""
+    path = tmp_path_factory.mktemp("human") / "human.glb"
+    character = Character.load("human")
+    Character("human", character.skeleton, {}, character.meshes, character.morphs).save(path)
+    data = path.read_bytes()
+    length = struct.unpack_from("<I", data, 12)[0]
+    return json.loads(data[20 : 20 + length]), data[28 + length :]
+
+
+def vrm(human, extension):
+    """A VRM made of the human: `extension` gets its nodes by name and what carries its morphs."""
+    document, blob = human
+    nodes = {node["name"]: number for number, node in enumerate(document["nodes"])}
+    targets = [m.get("extras", {}).get("targetNames", []) for m in document["meshes"]]
+    mesh = next(number for number, names in enumerate(targets) if names)
+    carrier = next(n for n, node in enumerate(document["nodes"]) if node.get("mesh") == mesh)
+    name, content = extension(nodes, carrier, mesh, targets[mesh])
+    return glb(document | {"extensionsUsed": [name], "extensions": {name: content}}, blob)
+
+
+def vrm_1(nodes, carrier, mesh, targets):
+    def binds(**weights):
+        return {
+            "morphTargetBinds": [
+                {"node": carrier, "index": targets.index(name), "weight": weight}
+                for name, weight in weights.items()
+            ]
+        }
+
+    preset = {
+        "blink": binds(blinkLeft=1.0, blinkRight=0.5),
+        "happy": binds(happy=0.8),
+        "neutral": {},
+    }
+    return "VRMC_vrm", {
+        "specVersion": "1.0",
+        "meta": {},
+        "humanoid": {"humanBones": {bone: {"node": nodes[name]} for bone, name in BONES.items()}},
+        "expressions": {"preset": preset, "custom": {"gasp": binds(oh=1.0, surprised=0.5)}},
+    }
+
+
+def vrm_0(nodes, carrier, mesh, targets):
+    bones = BONES | {"leftThumbProximal": "LeftHandThumb1"}
+    groups = [
+        {
+            "name": "Joy",
+            "presetName": "joy",
+            "binds": [{"mesh": mesh, "index": targets.index("happy"), "weight": 80}],
+        },
+        {
+            "name": "Wink",
+            "presetName": "unknown",
+            "binds": [{"mesh": mesh, "index": targets.index("blinkLeft"), "weight": 100}],
+        },
+    ]
+    return "VRM", {
+        "humanoid": {"humanBones": [{"bone": b, "node": nodes[n]} for b, n in bones.items()]},
+        "blendShapeMaster": {"blendShapeGroups": groups},
+    }
+
+
+def load(tmp_path, data, name="person.vrm"):
+    (tmp_path / name).write_bytes(data)
+    return Character.load(tmp_path / name)
+
+
+def moved(character, weights):
+    """How far each vertex is from where it is at rest, all meshes together."""
+    rest = character.skeleton.rest.globals(character.skeleton)
+    return np.concatenate(
+        [skin(mesh, rest, weights) - skin(mesh, rest) for mesh in character.meshes]
+    )
+
+
+def test_vrm_says_which_joint_is_what(tmp_path, human):
+    character = load(tmp_path, vrm(human, vrm_1))
+    assert dict(character.semantics) == BONES
+    arm = character.anatomy.joint("leftUpperArm")
+    assert arm is not None
+    assert character.skeleton.names[arm] == "LeftArm"
+
+
+def test_expressions_are_the_sums_of_what_they_bind(tmp_path, human):
+    character, plain = load(tmp_path, vrm(human, vrm_1)), Character.load("human")
+    assert character.morphs == ("blink", "happy", "gasp")  # neutral binds nothing
+    pairs = [
+        ({"blink": 1.0}, {"blinkLeft": 1.0, "blinkRight": 0.5}),
+        ({"happy": 0.5}, {"happy": 0.4}),
+        ({"gasp": 1.0}, {"oh": 1.0, "surprised": 0.5}),
+    ]
+    for expression, targets in pairs:
+        shifts = moved(character, expression)
+        assert np.abs(shifts).max() > 1e-3
+        assert np.allclose(shifts, moved(plain, targets), atol=1e-6)
+
+
+def test_an_old_vrm_is_turned_to_face_forward(tmp_path, human):
+    character, plain = load(tmp_path, vrm(human, vrm_0)), Character.load("human")
+    assert character.morphs == ("happy", "Wink")
+    assert character.semantics["leftThumbMetacarpal"] == "LeftHandThumb1"
+    assert character.semantics["hips"] == "hips"
+    turned = plain.bounds[::-1] * [-1, 1, -1]
+    turned[:, 1] = plain.bounds[:, 1]
+    assert np.allclose(character.bounds, turned, atol=1e-5)
+    assert np.allclose(
+        moved(character, {"happy": 1.0}),
+        moved(plain, {"happy": 0.8}) * [-1, 1, -1],
+        atol=1e-6,
+    )
+
+
+def test_what_vrm_said_survives_saving_as_glb(tmp_path, human):
+    character = load(tmp_path, vrm(human, vrm_1))
+    character.save(tmp_path / "person.glb")
+    again = Character.load(tmp_path / "person.glb")
+    assert dict(again.semantics) == BONES
+    assert again.morphs == character.morphs
+
+
+def test_bones_that_move_no_vertex_are_joints_too(tmp_path):
+    build = build_arm()
+    build.document["nodes"][2]["children"] = [4]
+    build.document["nodes"].append({"name": "eye"})
+    humanoid = {"humanBones": {"hips": {"node": 1}, "leftEye": {"node": 4}}}
+    build.document["extensions"] = {"VRMC_vrm": {"specVersion": "1.0", "humanoid": humanoid}}
+    assert load(tmp_path, build.bytes()).semantics["leftEye"] == "eye"
+
+
+@pytest.mark.parametrize(
+    ("extension", "reason"),
+    [
+        ({"specVersion": "2.0"}, r"VRMC_vrm: is version '2\.0'; export it as VRM 1\.0"),
+        (
+            {"specVersion": "1.0", "humanoid": {"humanBones": {"hips": {"node": 9}}}},
+            r"humanBones\.hips\.node is 9, but there are 4 nodes",
+        ),
+        (
+            {
+                "specVersion": "1.0",
+                "expressions": {
+                    "preset": {"aa": {"morphTargetBinds": [{"node": 3, "index": 5, "weight": 1}]}}
+                },
+            },
+            "expression 'aa' binds morph target 5 of node 3, which has 0",
+        ),
+    ],
+)
+def test_a_vrm_that_contradicts_itself_is_refused(tmp_path, extension, reason):
+    build = build_arm()
+    build.document["extensions"] = {"VRMC_vrm": extension}
+    with pytest.raises(CharacterError, match=reason):
+        load(tmp_path, build.bytes())
+
+
+def test_a_vrm_without_its_extension_is_refused(tmp_path):
+    with pytest.raises(CharacterError, match=r"holds no VRM; call it \.glb"):
+        load(tmp_path, build_arm().bytes())

@@ -1,0 +1,119 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from characters import Character, Pose, Skeleton
+from characters.ik.legs import find_legs
+from characters.locomotion.gaits import Gaits
+from characters.motion.blend import Blend, mix
+from characters.motion.motion import Step
+from characters.motion.phase import phased
+from characters.skeleton import rotations
+
+NAMES = (
+    "root", "hips",
+    "LeftUpLeg", "LeftLeg", "LeftFoot", "LeftToe",
+    "RightUpLeg", "RightLeg", "RightFoot", "RightToe",
+)  # fmt: skip
+PARENTS = (-1, 0, 1, 2, 3, 4, 1, 6, 7, 8)
+
+
+@pytest.fixture(scope="module")
+def body():
+    offsets = np.zeros((10, 3))
+    offsets[1] = [0, 0.9, 0]
+    for first, side in ((2, 1), (6, -1)):
+        offsets[first : first + 4] = [
+            [side * 0.1, 0, 0],
+            [0, -0.4, 0.02],
+            [0, -0.4, -0.02],
+            [0, -0.06, 0.1],
+        ]
+    return Skeleton(NAMES, PARENTS, Pose(offsets, np.tile(rotations.IDENTITY, (10, 1))))
+
+
+@pytest.fixture(scope="module")
+def human():
+    return Character.load("human")
+
+
+def planted(body, poses, weights):
+    legs = find_legs(body)
+    assert legs is not None
+    return legs.plant(mix(poses, weights), poses, weights)
+
+
+def bent(body, angles):
+    """A pose with hips, knees and ankles bent; knees only backward."""
+    hip, knee, ankle, hip2, knee2, ankle2 = angles
+    turns = body.rest.rotations.copy()
+    bends = [-hip, knee, -ankle, 0.0, -hip2, knee2, -ankle2, 0.0]
+    turns[2:] = rotations.about("x", np.array(bends))
+    return Pose(body.rest.translations, turns)
+
+
+bends = st.tuples(*[st.floats(-0.5, 0.9), st.floats(0.1, 1.2), st.floats(-0.4, 0.4)] * 2)
+
+
+@given(bends, bends, st.floats(0, 1))
+def test_the_feet_of_a_mix_are_the_mean_of_the_feet(body, one, other, share):
+    poses, weights = [bent(body, one), bent(body, other)], [1 - share, share]
+    shown = planted(body, poses, weights)
+    feet, single = shown.globals(body), [pose.globals(body) for pose in poses]
+    mean = (1 - share) * single[0] + share * single[1]
+    for hip, ankle, toes in ((2, 4, 5), (6, 8, 9)):
+        wanted = mean[toes, :3, 3]
+        reach = np.linalg.norm(feet[ankle, :3, 3] - feet[hip, :3, 3])
+        if reach < 0.79:  # otherwise the leg is too short to get there
+            assert np.allclose(feet[toes, :3, 3], wanted, atol=1e-4)
+
+
+@given(bends)
+def test_a_pose_mixed_with_itself_is_left_as_it_is(body, one):
+    pose = bent(body, one)
+    shown = planted(body, [pose, pose], [0.5, 0.5])
+    moved = shown.globals(body)[:, :3, 3] - pose.globals(body)[:, :3, 3]
+    assert np.abs(moved).max() < 2e-3
+
+
+def test_legs_are_found_from_pelvis_to_toes(human):
+    legs = find_legs(human.skeleton)
+    assert legs is not None
+    names = [[legs.skeleton.names[joint] for joint in line] for line in legs.joints]
+    for side, line in zip(("Left", "Right"), names, strict=True):
+        assert line == ["hips", *(f"{side}{part}" for part in ("UpLeg", "Leg", "Foot", "Toe"))]
+
+
+def test_without_knees_there_are_no_legs_to_bend(skeleton):
+    assert find_legs(skeleton) is None
+
+
+@pytest.mark.parametrize("weight", [0.25, 0.5, 0.75])
+def test_a_foot_that_stands_in_walk_and_in_run_stands_in_the_mix(human, weight):
+    members = tuple(phased(human.clips[name], human.skeleton) for name in ("Walk", "Run"))
+    blend = Blend(members, (1 - weight, weight), find_legs(human.skeleton))
+    toes = human.skeleton.index("LeftToe")
+    phases = np.linspace(0.1, 0.25, 16)  # the left foot is flat on the ground in both
+    places = []
+    for phase in phases:
+        x, _, z = blend.at(phase).globals(human.skeleton)[toes, :3, 3]
+        at = blend.between(0.0, phase).then(Step(x, z))
+        places.append((at.x, at.z))
+    assert np.ptp(places, axis=0).max() < 5e-3  # [m]; joints alone let it slide by centimetres
+
+
+@pytest.mark.parametrize("speed", [0.5, 1.0, 2.0, 3.0, 5.0])
+def test_no_foot_dips_into_the_ground(human, speed):
+    gaits = Gaits(human.clips, human.skeleton, human.clips["idle"].sample(0.0))
+    joints = [
+        human.skeleton.index(f"{side}{part}")
+        for side in ("Left", "Right")
+        for part in ("Foot", "Toe")
+    ]
+    rest = human.skeleton.rest.globals(human.skeleton)[joints, 1, 3]
+    motion = gaits.at(speed, 0.7)
+    heights = [
+        motion.at(phase).globals(human.skeleton)[joints, 1, 3] for phase in np.arange(40) / 40
+    ]
+    assert (np.array(heights) - rest).min() > -0.006  # [m] of a person 1.7 m tall

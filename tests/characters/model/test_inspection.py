@@ -1,0 +1,118 @@
+"""What an inspection finds, and that it finds nothing wrong with the bundled characters."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from characters import Character, Clip, Skeleton
+from characters.model.inspection import inspect
+
+
+@pytest.fixture(scope="module")
+def sound(walker, gait):
+    """Return a character of which only the joints are too few to be a person's."""
+    clips = {name: walker.clips[name] for name in ("idle", "Walk", "Run")}
+    return replace(walker, clips=clips)
+
+
+def problems(character, **changes):
+    return "\n".join(inspect(replace(character, **changes)).problems)
+
+
+DATA = Path(__file__).parents[4] / "shared" / "data"
+
+
+@pytest.mark.skipif(not DATA.is_dir(), reason="the real data is not here")
+def test_a_fox_of_79_metres_that_walks_in_place_is_told():
+    found = inspect(Character.load(DATA / "gltf" / "Fox.glb"))
+    assert found.character.anatomy.kind == "quadruped"
+    assert [facts.in_place for facts in found.clips] == [False, True, True]
+    assert "79 m tall" in found.problems[0]
+    assert "'Walk', 'Run' are in place" in found.problems[1]
+    assert len(found.problems) == 2
+
+
+@pytest.mark.parametrize("name", Character.bundled())
+def test_nothing_is_wrong_with_a_bundled_character(name):
+    found = inspect(Character.load(name))
+    assert found.problems == ()
+    assert found.sizes.triangles > 1000
+    assert len(found.clips) == len(found.character.clips)
+
+
+def test_a_walk_goes_as_fast_as_it_goes_and_steps_once_a_cycle(sound):
+    facts = {found.clip.name: found for found in inspect(sound).clips}
+    assert facts["Walk"].speed == pytest.approx(1.35, abs=0.01)
+    assert facts["Walk"].opening == pytest.approx(0.0, abs=1e-6)
+    assert [foot.foot for foot in facts["Walk"].footing] == ["leftFoot", "rightFoot"]
+    for foot in facts["Walk"].footing:
+        assert foot.times == 1
+        assert foot.share == pytest.approx(0.6, abs=0.12)
+    assert [foot.share for foot in facts["idle"].footing] == [1.0, 1.0]
+
+
+def test_a_walk_in_place_is_known_by_its_feet(sound):
+    walk = sound.clips["Walk"]
+    in_place = Clip("Walk", walk.rate, walk.in_place, loop=True, root_motion=False)
+    found = inspect(replace(sound, clips={"Walk": in_place}))
+    assert found.clips[0].in_place
+    assert found.clips[0].speed == pytest.approx(1.35, rel=0.15)
+    assert any("in place" in problem for problem in found.problems)
+
+
+def test_what_was_noted_while_reading_comes_first(sound):
+    assert inspect(sound, ["The weights were repaired."]).problems[0] == (
+        "The weights were repaired."
+    )
+
+
+def test_bodies_of_an_odd_size_or_place_are_told(sound):
+    mesh = sound.meshes[0]
+
+    def moved(scale, rise, aside=0.0):
+        positions = (scale * mesh.positions + [aside, rise, 0.0]).astype(np.float32)
+        return problems(sound, meshes=(replace(mesh, positions=positions),))
+
+    assert "tall" not in moved(1.0, 0.0)
+    assert "170 m tall" in moved(100.0, 0.0)
+    assert "0.5 m above the ground" in moved(1.0, 0.5)
+    assert "0.5 m below the ground" in moved(1.0, -0.5)
+    assert "beside x" not in moved(1.0, 0.0, 0.1)
+    assert "1.8 m beside x = z = 0" in moved(1.0, 0.0, 2.0)
+    assert "1.8 m beside x = z = 0" in moved(1.0, 0.0, -2.0)
+
+
+def test_weights_textures_and_crowds_are_told(sound):
+    mesh = sound.meshes[0]
+    heavy = replace(mesh, weights=1.2 * mesh.weights)
+    assert "off by 0.2" in problems(sound, meshes=(heavy,))
+    crowd = replace(mesh, triangles=np.tile(mesh.triangles, (30_000, 1)))
+    assert "120,000 triangles" in problems(sound, meshes=(crowd,))
+    large = replace(mesh.material, bumps=np.zeros((2, 5000, 3), np.uint8))
+    assert "5000 pixels" in problems(sound, meshes=(replace(mesh, material=large),))
+
+
+def test_joints_that_tell_nothing_are_told(sound):
+    skeleton = sound.skeleton
+    names = tuple("abcde")
+    strange = Skeleton(names, skeleton.parents, skeleton.rest)
+    found = problems(sound, skeleton=strange, clips={})
+    assert "not recognised" in found
+    assert "No feet were found" in found
+    assert "no clips" in found
+
+
+def test_a_gait_that_does_not_close_is_told(sound):
+    walk = sound.clips["Walk"]
+    half = Clip("Walk", walk.rate, walk.poses[: len(walk) // 2], loop=False, root_motion=True)
+    found = problems(sound, clips={"Walk": half})
+    assert "does not loop" in found
+    once = Clip("wave", walk.rate, half.poses, loop=False, root_motion=True)
+    assert "loop" not in problems(sound, clips={"wave": once})
+
+
+def test_clips_of_one_frame_are_told(sound):
+    walk = sound.clips["Walk"]
+    assert "one frame" in problems(sound, clips={"pose": Clip("pose", 30.0, walk.poses[:1])})

@@ -1,0 +1,147 @@
+"""Contacts found in clips against what their authors put there, and against real recordings."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from characters import Character, Clip, Pose
+from characters.formats.loading import load_motion
+from characters.motion.contacts import feet_of, find_contacts, spans
+from characters.motion.ground import find_ground, track
+from tools.authoring.human.limbs import FOOT
+from tools.authoring.human.motion import GAITS
+from tools.authoring.modelling.gait import Path as Arc
+from tools.authoring.modelling.gait import foot_motion
+
+DATA = Path(__file__).parents[4] / "shared" / "data"
+
+
+@pytest.fixture(scope="module")
+def human():
+    return Character.load("human")
+
+
+def truth(gait):
+    """When the authored feet are down, (frames, 2)."""
+    arc = Arc(gait.speed, float(np.radians(gait.yaw_rate)))
+    phase = np.arange(gait.frames + 1) / gait.frames
+    return np.stack([foot_motion(arc, gait.steps, FOOT, s, phase).down for s in (1, -1)], axis=1)
+
+
+@pytest.fixture(scope="module", params=sorted(GAITS))
+def authored(request, human):
+    clip = human.clips[request.param.replace("Turn", "Left")]
+    return clip, truth(GAITS[request.param])
+
+
+def off(found, down):
+    """How many frames are wrong, of each foot."""
+    return (found != down)[:-1].sum(axis=0)
+
+
+def test_contacts_of_the_authored_gaits_are_found_to_a_frame_or_two(human, authored):
+    clip, down = authored
+    assert (off(find_contacts(clip, human.skeleton, feet_of(human.skeleton)), down) <= 3).all()
+
+
+@pytest.mark.parametrize("rooted", [True, False])
+def test_contacts_are_found_in_place_too_even_in_curves(human, authored, rooted):
+    clip, down = authored
+    still = Clip(clip.name, clip.rate, clip.in_place, loop=True, root_motion=rooted)
+    found = find_contacts(still, human.skeleton, feet_of(human.skeleton))
+    assert (off(found, down) <= 0.1 * clip.rate).all()  # 0.1 s
+
+
+def test_the_treadmill_of_a_walk_in_place_runs_as_fast_as_the_walk(human, authored):
+    clip, _ = authored
+    still = Clip(clip.name, clip.rate, clip.in_place, loop=True)
+    feet = np.array([joint for foot in feet_of(human.skeleton) for joint in foot])
+    ground = find_ground(still, track(still, human.skeleton), feet)
+    gait = GAITS[clip.name.replace("Left", "Turn")]
+    assert ground.velocity[1] == pytest.approx(-gait.speed, rel=0.15)
+    assert np.degrees(ground.yaw_rate) == pytest.approx(-gait.yaw_rate, rel=0.15, abs=3)
+
+
+@settings(max_examples=15)
+@given(shift=st.integers(1, 61), size=st.floats(0.05, 40), lift=st.floats(-1, 1))
+def test_neither_size_nor_start_nor_floor_matter(human, shift, size, lift):
+    clip = human.clips["Walk"]
+    frames = np.append((np.arange(62) + shift) % 62, shift)
+    poses, rest = clip.in_place[frames], human.skeleton.rest
+    translations = poses.translations.copy()
+    translations[:, 1, 1] += lift
+    moved = Clip("moved", clip.rate, Pose(translations * size, poses.rotations))
+    skeleton = type(human.skeleton)(
+        human.skeleton.names,
+        human.skeleton.parents,
+        Pose(rest.translations * size, rest.rotations),
+    )
+    down = truth(GAITS["Walk"])[frames]
+    assert (off(find_contacts(moved, skeleton, feet_of(skeleton)), down) <= 5).all()
+
+
+def test_who_stands_stands_on_both_feet(human):
+    assert find_contacts(human.clips["idle"], human.skeleton, feet_of(human.skeleton)).all()
+
+
+def test_flickers_are_no_contacts_and_no_gaps(gait, skeleton):
+    clip = gait("walk", 1.3, 0.0, 1.0)
+    translations = clip.poses.translations.copy()
+    translations[10, 3, 1] += 0.2  # a standing foot is off its place for one frame
+    translations[50, 3, 1] -= 0.1  # a swinging foot dips for one
+    rough = Clip("rough", clip.rate, Pose(translations, clip.poses.rotations), True, True)
+    found = find_contacts(rough, skeleton, ((3,), (4,)))
+    assert [len(spans(found[:, foot], loop=True)) for foot in (0, 1)] == [1, 1]
+    assert found[10, 0]
+
+
+@given(st.lists(st.booleans(), min_size=2, max_size=30), st.booleans())
+def test_spans_cover_the_contacts_and_nothing_else(flags, loop):
+    down = np.array([*flags, flags[0]] if loop else flags)
+    count = len(down) - 1 if loop else len(down)
+    covered = np.zeros(count, bool)
+    for first, length in spans(down, loop):
+        covered[np.arange(first, first + length) % count] = True
+    assert np.array_equal(covered, down[:count])
+
+
+@pytest.mark.parametrize(
+    ("name", "clip", "steps"),
+    [
+        ("Fox.glb", "Walk", [1, 1, 1, 1]),
+        ("RobotExpressive.glb", "Walking", [1, 1]),
+        ("RobotExpressive.glb", "Running", [1, 1]),
+        ("dino_t-rex.glb", "Armature|TRex_Walk", [1, 1]),
+        ("dino_apatosaurus.glb", "Armature|Apatosaurus_Run", [1, 1, 1, 1]),
+    ],
+)
+def test_each_foot_of_a_strangers_cycle_lands_once(name, clip, steps):
+    path = DATA / "gltf" / name
+    if not path.exists():
+        pytest.skip("no shared data")
+    character = Character.load(path)
+    feet = feet_of(character.skeleton)
+    found = find_contacts(character.clips[clip], character.skeleton, feet)
+    assert [len(spans(found[:, foot], True)) for foot in range(len(feet))] == steps
+    assert (found.mean(0) > 0.1).all()
+    assert (found.mean(0) < 0.75).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "share"), [("16_15", (0.55, 0.7)), ("16_21", (0.5, 0.65)), ("16_35", (0.25, 0.5))]
+)
+def test_people_stand_as_much_of_the_time_as_they_do(name, share):
+    path = DATA / "cmu-mocap" / "16" / f"{name}.amc"  # a slow and a long walk, and a jog
+    if not path.exists():
+        pytest.skip("no shared data")
+    person = load_motion(path)
+    feet = feet_of(person.skeleton)
+    found = find_contacts(person.clip, person.skeleton, feet)
+    assert len(feet) == 2
+    assert share[0] < found.mean() < share[1]
+    toes = np.array([foot[1] for foot in feet])
+    speeds = np.linalg.norm(track(person.clip, person.skeleton).speeds[:, toes], axis=-1)
+    assert np.median(speeds[found]) < 0.1 * np.median(speeds[~found])

@@ -1,0 +1,213 @@
+"""A user's recordings become a locomotion space."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from characters import Animator, Character, CharacterCommand, CharacterError, Pose
+from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
+from characters.retargeting import Recording, load_recording, make_locomotion
+from characters.retargeting.locomotion.arcs import Course
+from characters.retargeting.rooted import rooted_clip, with_root
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import Anatomy
+
+SHARED = Path(__file__).parents[4] / "shared" / "data"
+
+
+@pytest.fixture(scope="module")
+def human():
+    return Character.load("human")
+
+
+def exported(human, name, cycles=2.5, clip=None):
+    """A clip of the human as motion capture gives it: no loop, no root, the hips go where they go.
+
+    It starts somewhere in the stride.
+    """
+    clip = clip or human.clips[name]
+    skeleton = human.skeleton
+    times = np.arange(int(cycles * clip.duration * 60)) / 60 + 0.23
+    poses = [clip.sample(float(time)) for time in times]
+    steps = [clip.travel(0.0, float(time)) for time in times]
+    turns = np.stack([pose.rotations for pose in poses])
+    translations = np.stack([pose.translations for pose in poses])
+    yaw = rotations.about("y", np.array([step.yaw for step in steps]))
+    at = np.array([[step.x, 0.0, step.z] for step in steps])
+    below = [j for j, parent in enumerate(skeleton.parents) if parent == 0]
+    translations[:, below] = rotations.rotate(yaw[:, None], translations[:, below]) + at[:, None]
+    turns[:, below] = rotations.multiply(yaw[:, None], turns[:, below])
+    turns[:, 0] = rotations.IDENTITY
+    # The rig of the recording has another name for its origin, so it has no root.
+    there = replace(skeleton, names=("world", *skeleton.names[1:]))
+    recorded = replace(
+        clip, name=name, poses=Pose(translations, turns), rate=60.0, loop=False, root_motion=False
+    )
+    return Recording(name, recorded, there, Anatomy.guess(there))
+
+
+@pytest.fixture(scope="module")
+def taught(human):
+    """A human that knows nothing but one recorded walk and one recorded run."""
+    bare = replace(human, clips={})
+    return make_locomotion(bare, [exported(human, "Walk")], [exported(human, "Run", 3.2)])
+
+
+def test_the_cycle_of_a_recording_is_found_again(human, taught):
+    for found, name in zip(taught.recordings, ("Walk", "Run"), strict=True):
+        clip = human.clips[name]
+        assert found.duration == pytest.approx(clip.duration, rel=0.03)
+        assert found.speed == pytest.approx(clip.cycle.length / clip.duration, rel=0.03)
+        assert abs(found.angular) < 2
+        assert found.seam < 0.01
+
+
+def test_one_walk_and_one_run_fill_the_whole_tree(taught):
+    names = {*WALK_CLIPS.values(), *RUN_CLIPS.values()}
+    assert {found.name for found in taught.clips} == names
+    assert names | {"idle"} <= set(taught.character.clips)
+
+
+@pytest.mark.parametrize("tree", [WALK_CLIPS, RUN_CLIPS])
+def test_every_clip_turns_as_the_tree_wants_it(taught, tree):
+    for knot, name in tree.items():
+        clip = taught.character.clips[name]
+        turned = -math.degrees(clip.cycle.yaw) / clip.duration
+        assert turned == pytest.approx(1.5 * knot, abs=0.5)
+        assert clip.loop
+        assert clip.root_motion
+
+
+def test_what_is_made_loops_without_a_jump(taught):
+    for found in taught.clips:
+        clip = taught.character.clips[found.name]
+        pose = clip.in_place
+        ends = np.abs(pose.translations[0] - pose.translations[-1]).max()
+        dots = np.abs((pose.rotations[0] * pose.rotations[-1]).sum(-1))
+        assert ends < 1e-6
+        assert dots.min() > 1 - 1e-9
+        steps = 1 - np.abs((pose.rotations[1:] * pose.rotations[:-1]).sum(-1))
+        assert steps.max() < 0.03
+
+
+def test_standing_feet_stand_in_every_curve(taught):
+    assert max(found.slide for found in taught.clips) < 0.01
+
+
+def test_the_ground_is_not_stepped_through(human, taught):
+    skeleton = taught.character.skeleton
+    toes = [human.anatomy.joints[side + "Toes"] for side in ("left", "right")]
+    rest = skeleton.rest.globals(skeleton)[toes, 1, 3]
+    for found in taught.clips:
+        clip = taught.character.clips[found.name]
+        heights = clip.poses.globals(skeleton)[:, toes, 1, 3]
+        assert (heights > rest - 2e-3).all()
+
+
+def test_left_and_right_are_mirror_images(taught):
+    clips = taught.character.clips
+    for left, right in (("WalkLeftShort", "WalkRightShort"), ("RunLeftWide", "RunRightWide")):
+        ours, theirs = clips[left].cycle, clips[right].cycle
+        assert (ours.x, ours.z, ours.yaw) == pytest.approx((-theirs.x, theirs.z, -theirs.yaw))
+
+
+def test_it_goes_where_it_is_sent(taught):
+    animator = Animator(taught.character)
+    for frame in range(100):
+        command = CharacterCommand(frame / 12, "move", speed=2.0, target=np.array([0.25, -0.2]))
+        posed = animator.update(command)
+    x, _, z = posed.table_from_character[:3, 3]
+    assert math.hypot(x - 0.25, z + 0.2) < 0.07
+
+
+def test_a_recorded_curve_is_kept_for_its_side_and_mirrored_for_the_other(human):
+    made = make_locomotion(
+        replace(human, clips={}),
+        [exported(human, "Walk"), exported(human, "WalkLeftMedium", 2.5)],
+    )
+    origins = {found.name: found.origin for found in made.clips}
+    assert made.recordings[1].angular == pytest.approx(-60, abs=3)
+    assert origins["WalkLeftMedium"] == "WalkLeftMedium"
+    assert origins["WalkRightMedium"] == "WalkLeftMedium, mirrored"
+    assert origins["Walk"] == "Walk"
+    assert "Run" not in origins
+
+
+def test_walking_in_place_gets_on(human):
+    walk = human.clips["Walk"]
+    treadmill = replace(walk, poses=walk.in_place)
+    own = Recording("treadmill", treadmill, human.skeleton, human.anatomy)
+    made = make_locomotion(replace(human, clips={}), [own])
+    assert made.recordings[0].speed == pytest.approx(walk.cycle.length / walk.duration, rel=0.03)
+
+
+def test_standing_is_no_walk(human):
+    own = Recording("idle", human.clips["idle"], human.skeleton, human.anatomy)
+    with pytest.raises(CharacterError, match="idle: goes nowhere"):
+        make_locomotion(human, [own])
+
+
+def test_half_a_step_is_no_cycle(human):
+    with pytest.raises(CharacterError, match="no whole cycle found"):
+        make_locomotion(human, [exported(human, "Walk", 0.6)])
+
+
+def test_a_clip_must_be_named_where_there_are_many():
+    with pytest.raises(CharacterError, match=r"which clip\? write human#CLIP.*Walk"):
+        load_recording("human")
+    assert load_recording("human#Walk").clip.name == "Walk"
+
+
+def test_a_root_is_put_under_a_character_without_moving_it(human):
+    names = ("pelvis_parent", *human.skeleton.names[1:])
+    bare = replace(human, skeleton=replace(human.skeleton, names=names), semantics={})
+    rooted = with_root(bare)
+    assert rooted.skeleton.has_root_motion
+    assert with_root(rooted) is rooted
+    recording = exported(human, "WalkLeftMedium")
+    clip = rooted_clip(recording.clip, recording.skeleton, recording.anatomy)
+    there = clip.poses.globals(rooted.skeleton)[:, 1:, :3, 3]
+    assert np.allclose(there, recording.clip.poses.globals(recording.skeleton)[..., :3, 3])
+    assert np.ptp(clip.track[:, 2]) > 1.0
+    for mesh, old in zip(rooted.meshes, bare.meshes, strict=True):
+        assert (mesh.joints == old.joints + 1).all()
+
+
+@settings(max_examples=30)
+@given(
+    st.floats(0.3, 4), st.floats(-2.5, 2.5), st.floats(-0.5, 0.5), st.floats(0, 2), st.floats(0, 1)
+)
+def test_a_place_beside_an_arc_is_told_and_found_again(speed, yaw_rate, left, time, height):
+    course = Course(speed, yaw_rate)
+    if abs(left * course.curvature) > 0.9:
+        return
+    times = np.array([time])
+    place = course.places(np.array([[speed * time + 0.2, height, left]]))
+    beside = course.beside(place, times)
+    assert np.allclose(beside, [[speed * time + 0.2, height, left]], atol=1e-6)
+
+
+def captured(name):
+    path = SHARED / "cmu-mocap" / f"{name}.amc"
+    if not path.exists():
+        pytest.skip("no shared data")
+    return load_recording(str(path))
+
+
+def test_captured_people_lend_their_walk_and_run(tmp_path):
+    walk, run = captured("16/16_15"), captured("16/16_35")
+    made = make_locomotion(Character.load(SHARED / "gltf" / "CesiumMan.glb"), [walk], [run])
+    assert max(found.slide for found in made.clips) < 0.01
+    assert all(found.seam < 0.02 for found in made.recordings)
+    made.character.save(tmp_path / "walks.glb")
+    walker = Animator(Character.load(tmp_path / "walks.glb"))
+    for frame in range(20):
+        command = CharacterCommand(frame / 10, "move", speed=2.0, target=np.array([0.0, 2.0]))
+        posed = walker.update(command)
+    assert posed.state == "walk"
+    assert posed.table_from_character[2, 3] > 0.1

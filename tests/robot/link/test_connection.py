@@ -1,0 +1,283 @@
+"""The thread at the port: real pseudo-terminals, real sockets, ports that are bad."""
+
+import contextlib
+import os
+import socket
+import subprocess
+import sys
+import threading
+import time
+from typing import Literal
+
+import pytest
+
+import robot
+from affect.emotion import Emotion
+from robot.errors import RobotError
+from robot.protocol.timing import FAILSAFE_PROMISE
+from robot.protocol.wire import FrameReader
+from robot.simulators.cubeling.simulator import Simulator
+from robot.simulators.port import SimulatedPort
+
+HAPPY = Emotion(0.8, 0.5)
+
+KINDS: list[Literal["pty", "tcp"]] = ["tcp"] if sys.platform == "win32" else ["pty", "tcp"]
+
+
+class SilencedSimulator(Simulator):
+    """A robot that can be told to hang: it hears nothing and says nothing."""
+
+    hung = False
+
+    def receive(self, data: bytes, now: float) -> None:
+        if not self.hung:
+            super().receive(data, now)
+
+    def bytes_to_send(self) -> bytes:
+        return b"" if self.hung else super().bytes_to_send()
+
+
+@pytest.fixture(params=KINDS)
+def port(request):
+    with SimulatedPort(SilencedSimulator(seed=3), kind=request.param) as port:
+        yield port
+
+
+def descriptors() -> int:
+    return len(os.listdir("/dev/fd")) if os.path.isdir("/dev/fd") else 0
+
+
+def threads() -> int:
+    return sum(thread.name.startswith("robot") for thread in threading.enumerate())
+
+
+def test_an_emotion_travels_to_the_robot_and_back_over_a_real_port(port, soon):
+    with robot.connect(port.url) as dino:
+        assert dino.telemetry.state == "ready"
+        dino.express(HAPPY)
+        assert dino.telemetry.commanded == HAPPY
+        soon(lambda: dino.telemetry.acknowledged == HAPPY)
+        soon(lambda: dino.telemetry.label == "happy")
+        assert set(dino.telemetry.joints) == {joint.name for joint in dino.catalogue.joints}
+        assert 0.7 < (dino.telemetry.battery or 0) <= 1
+        assert 0 < (dino.telemetry.round_trip or 0) < 1
+        dino.play("nod")
+        soon(lambda: dino.telemetry.motion == "nod")
+        dino.stop()
+        soon(lambda: dino.telemetry.stopped)
+
+
+def test_the_simulated_robot_is_behind_the_same_interface_without_a_port(soon):
+    with robot.connect("sim:cubeling?seed=7") as dino:
+        dino.express(HAPPY)
+        soon(lambda: dino.telemetry.label == "happy")
+
+
+def test_a_client_may_leave_and_another_one_come(port, soon):
+    for _ in range(3):
+        with robot.connect(port.url) as dino:
+            dino.express(HAPPY)
+            soon(lambda dino=dino: dino.telemetry.acknowledged == HAPPY)
+            assert dino.telemetry.counts.crc_errors == 0
+
+
+def test_both_directions_can_be_recorded(port, soon):
+    taken = {"tx": b"", "rx": b""}
+
+    def note(direction, data, now):
+        taken[direction] += data
+
+    with robot.connect(port.url, on_bytes=note) as dino:
+        soon(lambda: dino.telemetry.label is not None)
+        counts = dino.telemetry.counts
+    for direction, at_least in (("tx", counts.frames_sent), ("rx", counts.frames_received)):
+        reader = FrameReader()
+        assert len(reader.feed(taken[direction])) >= at_least > 0
+        assert reader.errors == 0
+
+
+def test_a_robot_that_falls_silent_stops_nobody_and_is_found_again(soon):
+    simulator = SilencedSimulator()
+    with SimulatedPort(simulator) as port, robot.connect(port.url) as dino:
+        dino.check()
+        simulator.hung = True
+        soon(lambda: dino.telemetry.state == "lost")
+        dino.express(HAPPY)
+        with pytest.raises(RobotError, match=r"fallen silent \(last heard \d+\.\d s ago\)"):
+            dino.check()
+        simulator.hung = False
+        soon(lambda: dino.telemetry.acknowledged == HAPPY)
+        dino.check()
+        assert dino.telemetry.counts.sessions == 2
+
+
+def test_a_port_that_is_unplugged_is_lost_and_when_it_is_back_so_is_the_robot(soon):
+    first = SimulatedPort(kind="tcp")
+    number = int(first.url.rpartition(":")[2])
+    with robot.connect(first.url) as dino:
+        dino.express(HAPPY)
+        soon(lambda: dino.telemetry.acknowledged == HAPPY)
+        first.close()
+        soon(lambda: dino.telemetry.state == "lost")
+        with SimulatedPort(kind="tcp", tcp_port=number):
+            soon(lambda: dino.telemetry.acknowledged == HAPPY)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are not on Windows")
+def test_a_pseudo_terminal_that_is_gone_is_lost_and_not_looked_for_again(soon):
+    # Its name may be a person's shell by then.
+    port = SimulatedPort()
+    with robot.connect(port.url) as dino:
+        port.close()
+        soon(lambda: dino.telemetry.state == "lost")
+        dino.express(HAPPY)
+
+
+def test_a_program_that_is_killed_leaves_a_neutral_robot_behind(soon):
+    program = (
+        "import sys, robot; dino = robot.connect(sys.argv[1]);"
+        "dino.express(robot.Emotion(0.8, 0.5)); sys.stdin.read()"
+    )
+    simulator = Simulator()
+    with SimulatedPort(simulator) as port:
+        command = [sys.executable, "-c", program, port.url]
+        with subprocess.Popen(command, stdin=subprocess.PIPE) as child:
+            soon(lambda: simulator.body.target == HAPPY, within=20)
+            child.kill()
+            child.wait()
+            killed = time.monotonic()
+            soon(lambda: simulator.body.target == Emotion(0, 0))
+            assert time.monotonic() - killed < FAILSAFE_PROMISE + 0.5  # on a busy machine
+
+
+def test_closing_twice_is_closing_once_and_nothing_is_left_open(port, soon):
+    before, running = descriptors(), threads()
+    dino = robot.connect(port.url)
+    dino.close()
+    dino.close()
+    assert dino.telemetry.state == "closed"
+    dino.express(HAPPY)
+    with pytest.raises(RobotError, match="was closed"):
+        dino.check()
+    soon(lambda: descriptors() <= before + 1)  # the far end of a socket that has just been left
+    assert threads() == running
+
+
+def test_a_simulated_port_leaves_nothing_open():
+    before, running = descriptors(), threads()
+    for kind in KINDS:
+        port = SimulatedPort(kind=kind)
+        port.close()
+        port.close()
+    assert (descriptors(), threads()) == (before, running)
+
+
+def test_an_unknown_motion_is_refused_and_the_known_ones_named():
+    with (
+        robot.connect("sim:cubeling") as dino,
+        pytest.raises(RobotError, match="Dino cannot play 'fly'; it knows neutral, happy, angry"),
+    ):
+        dino.play("fly")
+
+
+def test_a_recorder_that_breaks_is_reported_and_not_taken_for_an_unplugged_robot(soon):
+    def full(direction, data, now):
+        raise OSError("disk full")
+
+    with pytest.raises(RobotError, match="disk full"):
+        robot.connect("sim:cubeling", on_bytes=full)
+
+
+@pytest.mark.parametrize(
+    ("url", "says"),
+    [
+        ("/dev/nowhere", "cannot open the port /dev/nowhere: there is no such port"),
+        ("nonsense://x", "cannot open the port nonsense://x: invalid URL"),
+        ("", "a port must be named"),
+        ("sim:cat", "there is no simulated robot 'sim:cat'; there is sim:cubeling"),
+        ("sim:cubeling?fly=1", "'fly' is no option of a simulator"),
+        ("sim:cubeling?seed=x", "the seed must be a whole number"),
+        (__file__, "cannot open the port"),
+        ("sim", "'sim' names no simulated robot: say which, as in sim:cubeling"),
+        ("sim?drop=0.1", "say which, as in sim:cubeling"),
+        ("loop://?x", "cannot open the port loop://?x"),  # pySerial trips over its own message
+        ("hwgrep://(", "cannot open the port hwgrep://("),
+    ],
+)
+def test_a_bad_port_is_refused_in_one_line(url, says):
+    with pytest.raises(RobotError) as refusal:
+        robot.connect(url)
+    assert says in str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_socket_where_nobody_listens_is_refused():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        number = server.getsockname()[1]
+    with pytest.raises(RobotError, match="cannot open the port socket://"):
+        robot.connect(f"socket://127.0.0.1:{number}")
+
+
+def test_an_unknown_protocol_is_refused():
+    with pytest.raises(RobotError, match="known are: cubeling"):
+        robot.connect("sim:cubeling", "klingon")
+
+
+def test_a_line_that_only_echoes_is_not_taken_for_a_robot():
+    running = threads()
+    with pytest.raises(RobotError, match=r"nobody on loop:// answers .* within 0\.2 s"):
+        robot.connect("loop://", answer_within=0.2)
+    assert threads() == running
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are not on Windows")
+def test_a_port_that_another_program_uses_is_refused():
+    with (
+        SimulatedPort() as port,
+        robot.connect(port.url),
+        pytest.raises(RobotError, match="another program is using it"),
+    ):
+        robot.connect(port.url)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are not on Windows")
+def test_a_robot_that_does_not_read_its_line_stops_nobody(soon):
+    near, far = os.openpty()
+    try:
+        with pytest.raises(RobotError, match="nobody on"):
+            robot.connect(os.ttyname(far), answer_within=0.3)
+    finally:
+        os.close(near)
+        os.close(far)
+
+
+def test_a_line_that_babbles_is_given_up_in_time_and_stops_nobody():
+    # Somebody sends garbage as fast as the line takes it.
+    ending = threading.Event()
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def babble() -> None:
+            client, _ = server.accept()
+            with client, contextlib.suppress(OSError):
+                client.settimeout(0.05)
+                while not ending.is_set():
+                    with contextlib.suppress(TimeoutError):
+                        client.send(bytes(range(256)) * 16)
+
+        babbler = threading.Thread(target=babble)
+        babbler.start()
+        start = time.monotonic()
+        try:
+            with pytest.raises(RobotError, match="nobody on"):
+                robot.connect(f"socket://127.0.0.1:{server.getsockname()[1]}", answer_within=0.3)
+            assert time.monotonic() - start < 2
+        finally:
+            ending.set()
+            babbler.join()
+
+
+def test_a_robot_that_answers_over_a_bad_line_has_longer_to_introduce_itself():
+    url = "sim:cubeling?drop=0.25&delay=20ms&seed=4"
+    with robot.connect(url, answer_within=0.3) as dino:
+        assert dino.telemetry.state == "ready"
+        assert len(dino.catalogue.joints) == 14

@@ -1,0 +1,30 @@
+"""Every wait that the README names is as long as it says."""
+
+import re
+from pathlib import Path
+
+import robot
+from robot.contract import port
+from robot.link import budget, connection, exchange, transport
+from robot.link import io_thread as pump
+from robot.protocol import timing
+
+README = Path(robot.__file__).with_name("README.md").read_text("utf-8")
+ROW = re.compile(r"^\| .* \| (\d+) ms \| `([A-Z_]+)` \|$", re.MULTILINE)
+
+
+def test_the_waits_of_the_readme_are_those_of_the_code():
+    rows = ROW.findall(README)
+    assert len(rows) >= 9
+    for milliseconds, name in rows:
+        home = next(
+            one
+            for one in (timing, connection, port, transport, exchange, pump, budget)
+            if hasattr(one, name)
+        )
+        assert getattr(home, name) * 1000 == int(milliseconds), name
+
+
+def test_a_command_is_given_up_after_the_time_that_the_readme_names():
+    assert timing.TRIES_MAX * timing.RETRY_MAX == 5.0
+    assert "sent 20 times (`TRIES_MAX`), so for 5 s at most" in " ".join(README.split())

@@ -1,0 +1,80 @@
+"""Rigid motions keep their promises for every rotation, near zero and near π too."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from tracking.geometry import se3
+from tracking.gestures.turning import TurnCounter, wrapped
+
+Array = NDArray[np.float64]
+
+coordinates = st.floats(-1, 1, allow_subnormal=False)
+directions = (
+    st.tuples(coordinates, coordinates, coordinates)
+    .map(np.array)
+    .filter(lambda v: np.linalg.norm(v) > 1e-3)
+)
+angles = st.one_of(st.floats(0, np.pi - 1e-4), st.sampled_from([0.0, 1e-9, 1e-7, 1e-5, 3.1414]))
+
+
+def vector(direction: Array, angle: float) -> Array:
+    return direction / np.linalg.norm(direction) * angle
+
+
+@given(directions, angles)
+def test_rotation_agrees_with_scipy(direction: Array, angle: float) -> None:
+    expected = Rotation.from_rotvec(vector(direction, angle)).as_matrix()
+    assert np.allclose(se3.rotation(vector(direction, angle)), expected, atol=1e-12)
+
+
+@given(directions, angles)
+def test_the_logarithm_undoes_the_exponential(direction: Array, angle: float) -> None:
+    turn = vector(direction, angle)
+    assert np.allclose(se3.rotation_vector(se3.rotation(turn)), turn, atol=1e-9)
+
+
+@given(directions)
+def test_half_a_turn_has_an_axis(direction: Array) -> None:
+    axis = vector(direction, 1)
+    found = se3.rotation_vector(se3.rotation(axis * np.pi))
+    assert np.linalg.norm(found) == pytest.approx(np.pi)
+    assert abs(found @ axis) == pytest.approx(np.pi)
+
+
+@given(directions, angles, directions, directions, angles)
+def test_motion_is_what_moved_applies(
+    first: Array, angle: float, shift: Array, second: Array, other: float
+) -> None:
+    start = se3.pose(se3.rotation(vector(first, angle)), shift)
+    step = np.concatenate([shift * 2, vector(second, other)])
+    end = se3.moved(start, step)
+    assert np.allclose(se3.moved(start, se3.motion(start, end)), end, atol=1e-9)
+    assert np.allclose(se3.inverse(start) @ start, np.eye(4), atol=1e-12)
+
+
+@given(st.floats(-1e3, 1e3))
+def test_wrapping_keeps_the_direction(angle: float) -> None:
+    assert -np.pi <= wrapped(angle) <= np.pi
+    assert np.cos(wrapped(angle)) == pytest.approx(np.cos(angle), abs=1e-9)
+    assert np.sin(wrapped(angle)) == pytest.approx(np.sin(angle), abs=1e-9)
+
+
+@given(st.floats(-10, 10), st.lists(st.floats(-3.1, 3.1), min_size=1, max_size=50))
+def test_turns_add_up_whatever_the_way(start: float, steps: list[float]) -> None:
+    counter = TurnCounter()
+    counter.restart(wrapped(start))
+    angle = start
+    for step in steps:
+        angle += step
+        counter.add(wrapped(angle))
+    assert counter.turns == pytest.approx(sum(steps) / (2 * np.pi), abs=1e-9)
+
+
+def test_a_counter_without_a_start_counts_nothing() -> None:
+    counter = TurnCounter()
+    counter.add(1.0)
+    assert counter.turns == 0.0

@@ -1,0 +1,84 @@
+"""Edges say where the cube is to a hundredth of a pixel, and say nothing where there are none."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tracking.cube.edges import EdgeModel
+from tracking.cube.marker import marker_cells
+from tracking.cube.model import CubeModel
+from tracking.geometry import se3
+from tracking.geometry.image_region import Patch
+from tracking.geometry.projection import Projection
+from tracking.refinement.edge_refinement import EdgeRefiner
+from tracking.synthetic import open_synthetic
+
+Array = NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def scene() -> tuple[EdgeRefiner, Patch, Array]:
+    """A refiner, a picture of a cube at rest, and the truth."""
+    source = open_synthetic("static?frames=1")
+    assert source.intrinsics is not None
+    refiner = EdgeRefiner(source.cube, Projection(source.intrinsics))
+    return refiner, Patch.of(source.frame(0).image), source.truth(0)
+
+
+def test_edges_lie_between_black_and_white() -> None:
+    cube = CubeModel.load("companion")
+    model = EdgeModel.of(cube)
+    for number, face in enumerate(cube.faces):
+        cells = np.pad(~marker_cells(cube.dictionary, face.marker_id), 1, constant_values=True)
+        side = len(cells) - 2
+        axes = np.stack([face.corners[1] - face.corners[0], face.corners[3] - face.corners[0]])
+        of_face = model.face == number
+        for sign, white in ((0.5, True), (-0.5, False)):
+            points = model.points[of_face] + sign * model.across[of_face] - face.corners[0]
+            places = points @ axes.T / (cube.marker_size**2) * side
+            column, row = np.floor(places).astype(int).T + 1
+            assert (cells[row, column] == white).all()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_rough_start_ends_at_the_truth(
+    scene: tuple[EdgeRefiner, Patch, Array], seed: int
+) -> None:
+    refiner, patch, truth = scene
+    offset = np.random.default_rng(seed).uniform(-1, 1, 6) * ([1e-3] * 3 + [0.015] * 3)
+    result = refiner.refine(patch, se3.moved(truth, offset))
+    assert result is not None
+    step = se3.motion(result.camera_from_cube, truth)
+    assert np.linalg.norm(step[:3]) < 1e-4
+    assert np.linalg.norm(step[3:]) < np.deg2rad(0.05)
+    assert result.support > 0.8
+
+
+def test_a_wide_search_comes_from_a_whole_cell_away(
+    scene: tuple[EdgeRefiner, Patch, Array],
+) -> None:
+    refiner, patch, truth = scene
+    result = refiner.refine(patch, se3.moved(truth, np.array([5e-3, 0, 0, 0, 0, 0.03])), wide=True)
+    assert result is not None
+    assert np.linalg.norm(se3.motion(result.camera_from_cube, truth)[:3]) < 1e-4
+
+
+def test_other_markers_are_not_taken_for_the_cube(
+    scene: tuple[EdgeRefiner, Patch, Array],
+) -> None:
+    """A cube of the same shape whose markers differ: outlines fit, insides do not."""
+    _, patch, truth = scene
+    source = open_synthetic("static?frames=1")
+    assert source.intrinsics is not None
+    other = EdgeRefiner(CubeModel.load("companion"), Projection(source.intrinsics))
+    result = other.refine(patch, truth)
+    assert result is None or result.inner < 0.6
+
+
+def test_a_picture_without_edges_refines_nothing(
+    scene: tuple[EdgeRefiner, Patch, Array],
+) -> None:
+    refiner, patch, truth = scene
+    assert refiner.refine(Patch(np.full_like(patch.grey, 120), 0, 0), truth) is None
+    behind = se3.pose(truth[:3, :3], -truth[:3, 3])
+    assert refiner.refine(patch, behind) is None

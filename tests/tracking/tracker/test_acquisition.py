@@ -1,0 +1,159 @@
+"""A cube is found anywhere in a picture: cheaply where it can be, thoroughly where it must be."""
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tests.tracking.drawn import WIDE, held, off, photograph, scene
+from tracking.cube.faces import Faces
+from tracking.cube.model import CubeModel
+from tracking.detection.markers import MarkerDetector, observed
+from tracking.geometry.frame import Frame
+from tracking.geometry.intrinsics import Intrinsics
+from tracking.geometry.projection import Projection
+from tracking.synthetic import open_synthetic
+from tracking.tracker.global_search import Acquirer, Search
+from tracking.tracker.local_search import Follower
+from tracking.tracker.tracker import CubeTracker
+
+Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+
+CUBE = CubeModel.load("locomotion")
+DETECTORS = {CUBE.dictionary: MarkerDetector(CUBE.dictionary)}
+SKIN = (105, 135, 185)
+
+
+class Counting(MarkerDetector):
+    """Counts how often a picture is read, by its number of rows."""
+
+    def __init__(self, dictionary: str) -> None:
+        super().__init__(dictionary)
+        self.rows: list[int] = []
+
+    def detect(self, grey: Picture):
+        self.rows.append(len(grey))
+        return super().detect(grey)
+
+
+def corners_of(cube: CubeModel, pose: Array, camera: Intrinsics) -> dict[str, Array]:
+    """Where the markers that look at the camera have their corners, (4, 2) [px]."""
+    projection = Projection(camera)
+    faces = [cube.faces[number] for number in Faces(cube).facing(pose, 0.15)]
+    return {
+        face.name: projection.pixels(face.corners @ pose[:3, :3].T + pose[:3, 3]) for face in faces
+    }
+
+
+def patched(image: Picture, markers: dict[str, Array], seed: int) -> Picture:
+    """Lay a round patch over one corner of every marker."""
+    random = np.random.default_rng(seed)
+    picture = image.copy()
+    for corners in markers.values():
+        x, y = corners[int(random.integers(4))]
+        side = np.sqrt(cv2.contourArea(corners.astype(np.float32)))
+        place = (round(16 * x), round(16 * y))
+        cv2.circle(picture, place, round(16 * 0.17 * side), SKIN, -1, cv2.LINE_AA, 4)
+    return picture
+
+
+@pytest.fixture(scope="module")
+def static() -> tuple[Frame, Array, CubeModel, Intrinsics]:
+    """A cube at rest on a desk: the frame, its pose, the cube and the camera."""
+    source = open_synthetic("static?frames=1")
+    assert source.intrinsics is not None
+    return source.frame(0), source.truth(0), source.cube, source.intrinsics
+
+
+def test_corners_found_at_half_size_are_those_of_the_whole_picture(
+    static: tuple[Frame, Array, CubeModel, Intrinsics],
+) -> None:
+    drawn = scene((CUBE, held(0.8, -0.5, 0.4, at=(0.1, 0.05, 0.45))), camera=WIDE)
+    for frame in (static[0], Frame(photograph(drawn), 0.0, 0)):
+        search = Search(frame, DETECTORS)
+        large, small = (
+            {each.face.name: each.corners for each in observed(CUBE, markers)}
+            for markers in (
+                search.markers(CUBE.dictionary, halved=False),
+                search.markers(CUBE.dictionary, halved=True),
+            )
+        )
+        assert len(large) >= 2
+        assert set(small) == set(large)
+        for name, corners in large.items():
+            apart = np.linalg.norm(small[name] - corners, axis=1)
+            assert apart.max() < 1
+            # Nor are all of them off to one side, as they were if pixels were counted by corners.
+            assert np.linalg.norm((small[name] - corners).mean(axis=0)) < 0.35
+
+
+def test_a_picture_is_read_once_for_all_cubes(
+    static: tuple[Frame, Array, CubeModel, Intrinsics],
+) -> None:
+    detector = Counting(CUBE.dictionary)
+    search = Search(static[0], {CUBE.dictionary: detector})
+    for halved in (True, False, True, False):
+        search.markers(CUBE.dictionary, halved)
+    assert detector.rows == [360, 720]
+
+
+def test_half_size_is_enough_where_the_cube_is_near(
+    static: tuple[Frame, Array, CubeModel, Intrinsics],
+) -> None:
+    frame, truth, cube, camera = static
+    projection = Projection(camera)
+    detector = Counting(cube.dictionary)
+    acquirer = Acquirer(cube, projection, Follower(cube, projection))
+    found = acquirer.find(Search(frame, {cube.dictionary: detector}), None, True)
+    assert detector.rows == [360]
+    assert any(each.certain and off(each.camera_from_cube, truth)[0] < 0.2 for each in found)
+
+
+def test_the_whole_picture_is_read_where_the_cube_is_far() -> None:
+    """Its markers are 20 px wide, and 10 px at half size."""
+    pose = held(0.3, 0.5, 0.2, at=(0.1, 0.05, 1.7))
+    frame = Frame(photograph(scene((CUBE, pose), camera=WIDE), noise=0.5), 0.0, 0)
+    projection, detector = Projection(WIDE), Counting(CUBE.dictionary)
+    acquirer = Acquirer(CUBE, projection, Follower(CUBE, projection))
+    found = acquirer.find(Search(frame, {CUBE.dictionary: detector}), None, False)
+    assert detector.rows == [360, 720]
+    assert min(off(each.camera_from_cube, pose)[0] for each in found) < 5
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_cube_with_a_covered_corner_on_every_marker_is_found(
+    static: tuple[Frame, Array, CubeModel, Intrinsics], seed: int
+) -> None:
+    frame, truth, cube, camera = static
+    picture = patched(frame.image, corners_of(cube, truth, camera), seed)
+    covered = Frame(picture, 0.0, 0)
+    search = Search(covered, DETECTORS)
+    for halved in (True, False):
+        # Or the patches would prove nothing.
+        assert observed(cube, search.markers(cube.dictionary, halved)) == []
+    state = CubeTracker(cube, camera).update(covered)
+    assert state.visible
+    millimetres, degrees = off(state.camera_from_cube, truth)
+    assert millimetres < 0.5
+    assert degrees < 0.2
+
+
+def test_covered_markers_are_not_sought_where_that_is_not_asked_for(
+    static: tuple[Frame, Array, CubeModel, Intrinsics],
+) -> None:
+    frame, truth, cube, camera = static
+    picture = patched(frame.image, corners_of(cube, truth, camera), 0)
+    projection = Projection(camera)
+    acquirer = Acquirer(cube, projection, Follower(cube, projection))
+    search = Search(Frame(picture, 0.0, 0), DETECTORS)
+    assert acquirer.find(search, None, thorough=False) == []
+    assert any(each.certain for each in acquirer.find(search, None, thorough=True))
+
+
+def test_a_picture_without_the_cube_proposes_nothing() -> None:
+    other = CubeModel.load("companion")
+    frame = Frame(photograph(scene((other, held()), camera=WIDE)), 0.0, 0)
+    projection = Projection(WIDE)
+    acquirer = Acquirer(CUBE, projection, Follower(CUBE, projection))
+    assert not any(each.certain for each in acquirer.find(Search(frame, DETECTORS), None, True))

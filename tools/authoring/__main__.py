@@ -1,0 +1,36 @@
+"""Write the bundled characters: ``python -m tools.authoring [human|vleo|robot|all]``."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from characters.model.character import Character
+from tools.authoring.human.character import build_human
+from tools.authoring.robot.character import build_robot
+from tools.authoring.vleo.character import build_vleo
+
+BUILDERS: dict[str, Callable[[], Character]] = {
+    "human": build_human,
+    "vleo": build_vleo,
+    "robot": build_robot,
+}
+ASSETS = Path(__file__).parents[2] / "characters" / "assets"
+
+
+def main(arguments: list[str]) -> int:
+    """Write what is named, or everything; return an exit code."""
+    wanted = arguments or ["all"]
+    names = list(BUILDERS) if wanted == ["all"] else wanted
+    unknown = [name for name in names if name not in BUILDERS]
+    if unknown:
+        sys.stderr.write(f"no character {unknown[0]!r} to make; there are {', '.join(BUILDERS)}\n")
+        return 2
+    for name in names:
+        path = ASSETS / f"{name}.glb"
+        BUILDERS[name]().save(path)
+        sys.stdout.write(f"{path}: {path.stat().st_size / 1024:.0f} KiB\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

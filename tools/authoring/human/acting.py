@@ -1,0 +1,205 @@
+"""How the bundled explorer acts on the spot: a score of curves, played by the whole body.
+
+What an animator decides, where the weight is, where the eyes go, how far an arm is up, is a curve
+each. What follows from it, the counterpoise of the trunk, the late head, hands and backpack, is
+worked out here, so that every clip moves by the same body.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from characters.motion.clip import Clip
+from characters.skeleton import rotations
+from characters.skeleton.pose import Pose, Skeleton
+from tools.authoring.human.face import EXPRESSIONS
+from tools.authoring.human.limbs import (
+    FOOT,
+    SIDES,
+    Reach,
+    bent_elbow,
+    curl,
+    hang_arm,
+    reach,
+    turned,
+)
+from tools.authoring.human.loose import drag
+from tools.authoring.modelling.loops import follow
+from tools.authoring.modelling.rig import Puppet
+from tools.authoring.modelling.shapes import Array
+
+RATE = 30.0
+TOE_OUT = 0.14
+UPWARD = -9.0
+"""Pitch of the level gaze [degrees]: who looks on does so from above the table."""
+
+STANCE = 0.118
+"""From the middle to a foot [m]."""
+
+Curve = Array | float
+
+
+@dataclass(frozen=True)
+class Score:
+    """What happens, as curves over the frames of a clip, or numbers that stay."""
+
+    weight: Curve = 0.0
+    """Where the weight is, −1 on the right leg … 1 on the left."""
+
+    crouch: Curve = 0.0
+    """How far the pelvis is down [m]."""
+
+    air: Curve = 0.0
+    """How high the feet are above the ground [m]."""
+
+    heels: Curve = 0.0
+    """How far both heels are up over the balls of the feet [degrees]."""
+
+    lean: Curve = 0.0
+    """Of the trunk, forward [degrees]."""
+
+    twist: Curve = 0.0
+    """Of the shoulders, to the left [degrees]."""
+
+    side: Curve = 0.0
+    """Of the trunk, to the right [degrees]."""
+
+    look: tuple[Curve, Curve] = (0.0, 0.0)
+    """Where it looks: to the left and down [degrees]; the eyes lead, the head comes after."""
+
+    head: tuple[Curve, Curve] = (0.0, 0.0)
+    """Turn of the head to the left and down, against which the eyes hold their aim [degrees]."""
+
+    tilt: Curve = 0.0
+    """Of the head, to the right [degrees]."""
+
+    breath: Curve = 0.0
+    """Slow swell of chest and shoulders, −1…1."""
+
+    shrug: Curve = 0.0
+    """How far both shoulders are raised [degrees]."""
+
+    swing: tuple[Curve, Curve] = (3.0, 3.0)
+    """Of the left and the right upper arm, forward [degrees]."""
+
+    spread: tuple[Curve, Curve] = (0.0, 0.0)
+    """Of the arms, away from the body [degrees]."""
+
+    bend: tuple[Curve, Curve] = (19.0, 19.0)
+    """Of the elbows [degrees]."""
+
+    fist: tuple[Curve, Curve] = (18.0, 18.0)
+    """How far the fingers are bent [degrees]."""
+
+    hands: Mapping[str, Reach] = field(default_factory=dict)
+    """Where a hand goes instead, by "Left" or "Right"."""
+
+    mood: Mapping[str, Curve] = field(default_factory=dict)
+    """What the face says: morphs."""
+
+
+def perform(name: str, skeleton: Skeleton, seconds: float, score: Score, loop: bool) -> Clip:
+    """Return the clip of a score, whose curves end as they begin, (frames + 1,) each."""
+    frames = round(seconds * RATE)
+    puppet = Puppet(skeleton, frames + 1)
+    still = np.zeros(frames + 1)
+    _stand(puppet, score, still)
+    _hold_trunk(puppet, score, still, seconds)
+    _hold_arms(puppet, score, still, seconds)
+    drag(puppet, seconds)
+    return Clip(name, RATE, posed(puppet, score.mood), loop=loop, root_motion=True)
+
+
+def posed(puppet: Puppet, mood: Mapping[str, Curve]) -> Pose:
+    """Return the poses of a puppet with its face."""
+    pose = puppet.pose
+    morphs = np.zeros((len(pose.rotations), len(EXPRESSIONS)))
+    for name, curve in mood.items():
+        morphs[:, list(EXPRESSIONS).index(name)] = np.clip(curve, 0.0, 1.0)
+    return Pose(pose.translations, pose.rotations, None, morphs)
+
+
+def _stand(puppet: Puppet, score: Score, still: Array) -> None:
+    """Carry the pelvis over the standing leg, the other hip dropped, and place both feet."""
+    weight, air, pitch = score.weight + still, score.air + still, np.radians(score.heels + still)
+    drop = -0.016 + 0.006 * np.abs(weight) + 0.002 * score.breath - score.crouch + air
+    ahead = -0.008 - 0.12 * np.maximum(score.crouch + still, 0.0)
+    puppet.shift("hips", np.stack([0.042 * weight, drop, ahead], axis=-1))
+    pitched = 90 * np.maximum(score.crouch + still, 0.0) + 0.35 * (score.lean + still)
+    puppet.turn("hips", turned(1 + pitched, -4 * weight, 3.6 * weight))
+    flat = air <= 0.0
+    for name, sign in SIDES:
+        facing = rotations.about("y", sign * TOE_OUT + still)
+        heel = FOOT.ankle - FOOT.ball[0], -FOOT.ball[1]
+        up = FOOT.ball[0] + np.cos(pitch) * heel[0] - np.sin(pitch) * heel[1]
+        back = FOOT.ball[1] + np.sin(pitch) * heel[0] + np.cos(pitch) * heel[1]
+        ankle = np.stack([sign * STANCE + still, up + air, -0.012 + 0.014 * sign + still], axis=-1)
+        ankle += rotations.rotate(facing, back[:, None] * [0.0, 0.0, 1.0])
+        foot = rotations.multiply(facing, rotations.about("x", pitch))
+        puppet.place_foot(name, ankle, foot, np.where(flat, pitch, 0.5 * pitch))
+
+
+def _hold_trunk(puppet: Puppet, score: Score, still: Array, seconds: float) -> None:
+    """Balance over the pelvis; the chest follows the head a little, and the head the eyes."""
+    weight, breath = score.weight + still, score.breath + still
+    look, nod = (_eased(curve + still, seconds, 2.2, 0.75) for curve in score.look)
+    follows = _eased(look, seconds, 1.3, 0.8)
+    lean, side = 0.65 * (score.lean + still), score.side + still
+    twist = score.twist + still
+    puppet.turn(
+        "spine1",
+        turned(0.3 * lean - 0.6 * breath, 1.5 * weight + 0.05 * follows + 0.3 * twist,
+               0.35 * side - 2.4 * weight),
+    )  # fmt: skip
+    puppet.turn(
+        "spine2",
+        turned(1.0 + 0.35 * lean - 0.9 * breath, 1.5 * weight + 0.07 * follows + 0.35 * twist,
+               0.35 * side - 2.4 * weight),
+    )  # fmt: skip
+    puppet.turn(
+        "chest",
+        turned(1.5 + 0.35 * lean - 1.3 * breath, 0.08 * follows + 0.35 * twist,
+               0.3 * side - 0.8 * weight),
+    )  # fmt: skip
+    tilt = _eased(score.tilt + still, seconds, 2.0, 0.6) + 2.2 * weight - 0.10 * look
+    own = [curve + still for curve in score.head]
+    gaze = turned(UPWARD + nod + own[1] + 0.5 * breath, look + own[0], tilt)
+    above = rotations.multiply(rotations.conjugate(puppet.facing("chest")), gaze)
+    puppet.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.4))
+    puppet.face("head", gaze)
+    across = _within(score.look[0] - look - 0.8 * own[0], 17)
+    down = _within(score.look[1] - nod - 0.8 * own[1], 13)
+    for side_name, _ in SIDES:
+        puppet.turn(f"{side_name}Eye", turned(down, across))
+
+
+def _hold_arms(puppet: Puppet, score: Score, still: Array, seconds: float) -> None:
+    """Let the arms hang, swaying after the trunk, and bring the hands where they go."""
+    late = _eased(score.weight + still, seconds, 0.9, 0.6)
+    lift = _eased(score.breath + still, seconds, 1.2, 0.9)
+    for number, (side, sign) in enumerate(SIDES):
+        spread, bend = (curve[number] + still for curve in (score.spread, score.bend))
+        swing = score.swing[number] + still
+        raised = score.shrug + 1.6 * score.breath + 1.0
+        puppet.turn(f"{side}Shoulder", turned(0 * still, 0, sign * raised))
+        lower = 24 - spread + 2.2 * sign * late - 1.2 * lift
+        hang_arm(puppet, side, sign, swing - 2 * lift, lower)
+        bend = bend + 2.5 * lift
+        puppet.turn(f"{side}ForeArm", bent_elbow(puppet, side, sign, bend, 12 + 0.3 * (bend - 19)))
+        flop = _eased(swing, seconds, 2.0, 0.5) - swing  # the hand comes after the arm
+        puppet.turn(f"{side}Hand", turned(-4 - 0.5 * flop, 0, -sign * (3 + 1.5 * lift)))
+        if side in score.hands:
+            reach(puppet, side, sign, score.hands[side])
+        curl(puppet, side, score.fist[number] + still, 0.45 * (score.fist[number] + still))
+
+
+def _eased(curve: Array, seconds: float, hertz: float, damping: float) -> Array:
+    """Return how a spring follows a curve whose last value is its first."""
+    eased = follow(curve[:-1], seconds, hertz, damping)
+    return np.append(eased, eased[0])
+
+
+def _within(angle: Array, limit: float) -> Array:
+    """Return an angle that nears a limit instead of passing it."""
+    return np.asarray(limit * np.tanh(angle / limit))

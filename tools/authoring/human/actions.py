@@ -1,0 +1,240 @@
+"""What the bundled explorer does once when asked: it waves, cheers, jumps, nods, shakes its head.
+
+Every action winds up against its direction first and settles past its end. All begin and end as
+it stands when idle.
+"""
+
+import numpy as np
+
+from characters.motion.clip import Clip
+from characters.skeleton.pose import Skeleton
+from tools.authoring.human.acting import RATE, Score, perform
+from tools.authoring.human.idle import idle_weight
+from tools.authoring.human.limbs import Reach
+from tools.authoring.modelling.loops import keys
+from tools.authoring.modelling.shapes import Array
+
+GRAVITY = 9.81
+REST = float(idle_weight(np.zeros(1))[0])
+"""Where the weight is when it begins to wait."""
+
+
+def actions(skeleton: Skeleton) -> dict[str, Clip]:
+    """Return all of them by name."""
+    clips = (wave(skeleton), cheer(skeleton), jump(skeleton), nod(skeleton), shake(skeleton))
+    return {clip.name: clip for clip in clips}
+
+
+def curve(seconds: float, *poses: tuple[float, float]) -> Array:
+    """Return a smooth curve through times [s] and values; the last frame is as the first."""
+    values = keys(round(seconds * RATE), *((time / seconds, value) for time, value in poses))
+    return np.append(values, values[0])
+
+
+def wave(skeleton: Skeleton) -> Clip:
+    """Return a greeting with the right hand, high up, three times to and fro."""
+    seconds = 2.6
+    up = curve(seconds, (0.0, 0), (0.22, -0.10), (0.62, 1.07), (0.78, 1), (1.95, 1), (2.38, -0.03))
+    to = curve(
+        seconds,
+        (0.45, 0), (0.66, 1), (0.88, -1), (1.1, 1), (1.32, -1), (1.54, 1), (1.76, -0.8),
+        (1.98, 0.2), (2.1, 0), (2.59, 0),
+    )  # fmt: skip
+    late = curve(
+        seconds,
+        (0.5, 0), (0.73, 1), (0.95, -1), (1.17, 1), (1.39, -1), (1.61, 1), (1.83, -0.8),
+        (2.04, 0.2), (2.16, 0), (2.59, 0),
+    )  # fmt: skip
+    raised = np.clip(up, 0.0, 1.0)
+    still, one = 0 * to, 1 + 0 * to
+    hand = Reach(
+        wrist=np.stack([0.405 + 0.05 * to, 1.375 - 0.012 * to * to, 0.12 * one], axis=-1),
+        fingers=np.stack([0.10 + 0.42 * late, one, 0.08 + still], axis=-1),
+        thumb=np.stack([-one, 0.2 * one, 0.25 * one], axis=-1),
+        elbow=np.array([0.55, -0.75, -0.35]),
+        share=up,
+    )
+    score = Score(
+        weight=REST + curve(seconds, (0, 0), (0.25, -0.1), (0.7, 1.4), (1.9, 1.35), (2.45, 0)),
+        crouch=curve(seconds, (0, 0), (0.24, 0.022), (0.6, -0.006), (0.9, 0), (2.2, 0.006)),
+        side=curve(seconds, (0, 0), (0.25, 3), (0.72, -5), (1.9, -4), (2.5, 0)) + 0.8 * to,
+        twist=curve(seconds, (0, 0), (0.25, -6), (0.7, 7), (1.9, 5), (2.45, 0)),
+        look=(still, curve(seconds, (0, 0), (0.22, 6), (0.6, -4), (1.9, -2), (2.4, 0))),
+        tilt=curve(seconds, (0, 0), (0.25, -3), (0.8, 9), (1.9, 8), (2.5, 0)) - 2 * to,
+        bend=(19 + 12 * raised, 19 + still),
+        spread=(curve(seconds, (0, 0), (0.25, -3), (0.75, 9), (1.9, 7), (2.4, 0)), still),
+        fist=(18 + 8 * raised, 18 - 16 * raised),
+        hands={"Right": hand},
+        mood={
+            "happy": curve(seconds, (0, 0.06), (0.2, 0.1), (0.6, 0.95), (2.0, 0.85), (2.59, 0.06)),
+            "surprised": curve(seconds, (0, 0), (0.3, 0), (0.5, 0.25), (0.85, 0), (2.5, 0)),
+        },
+    )
+    return perform("wave", skeleton, seconds, score, loop=False)
+
+
+def cheer(skeleton: Skeleton) -> Clip:
+    """Return joy: down, then both fists in the air and two hops on the spot."""
+    seconds = 2.4
+    hops = ((0.50, 0.36), (0.98, 0.30))
+    air, crouch, heels = _hops(seconds, hops, squat=0.10)
+    up = curve(
+        seconds,
+        (0, 0), (0.30, -0.22), (0.58, 1.05), (0.80, 0.94), (0.93, 0.80), (1.10, 1.04), (1.32, 0.97),
+        (1.72, 1), (2.15, -0.03), (2.39, 0),
+    )  # fmt: skip
+    pump = curve(
+        seconds, (0.4, 0), (0.62, 1), (0.92, -1), (1.14, 1), (1.4, -0.3), (1.6, 0.2), (2.3, 0)
+    )
+    still, one = 0 * up, 1 + 0 * up
+    fists = Reach(
+        wrist=np.stack([0.345 - 0.01 * pump, 1.515 + 0.03 * pump, 0.06 + 0.02 * pump], axis=-1),
+        fingers=np.stack([0.12 * one, one, -0.1 + 0.2 * pump], axis=-1),
+        thumb=np.stack([-0.5 * one, 0 * one, 0.8 * one], axis=-1),
+        elbow=np.array([0.8, -0.3, -0.3]),
+        share=up,
+    )
+    score = Score(
+        weight=REST + curve(seconds, (0, 0), (0.3, -REST), (1.8, -REST), (2.39, 0)),
+        crouch=crouch,
+        air=air,
+        heels=heels,
+        lean=curve(
+            seconds, (0, 0), (0.30, 17), (0.60, -9), (0.88, 1), (1.1, -8), (1.45, 2), (2, 0)
+        ),
+        look=(
+            still,
+            curve(
+                seconds, (0, 0), (0.28, 16), (0.6, -20), (0.9, -8), (1.12, -17), (1.7, -8), (2.2, 2)
+            ),
+        ),
+        tilt=curve(seconds, (0.4, 0), (0.65, 7), (1.1, -7), (1.6, 4), (2.2, 0)),
+        shrug=8 * np.clip(up, 0, 1),
+        swing=(3 - 60 * np.clip(-up, 0, 1), 3 - 60 * np.clip(-up, 0, 1)),
+        bend=(19 + 60 * np.clip(-up, 0, 1), 19 + 60 * np.clip(-up, 0, 1)),
+        fist=(18 + 60 * np.clip(up, 0, 1), 18 + 60 * np.clip(up, 0, 1)),
+        hands={"Left": fists, "Right": fists},
+        mood={
+            "happy": curve(seconds, (0, 0.06), (0.28, 0.3), (0.55, 1.0), (1.8, 0.9), (2.39, 0.06)),
+            "aa": curve(
+                seconds, (0.3, 0), (0.56, 0.55), (0.85, 0.25), (1.1, 0.5), (1.5, 0), (2.3, 0)
+            ),
+        },
+    )
+    return perform("cheer", skeleton, seconds, score, loop=False)
+
+
+def jump(skeleton: Skeleton) -> Clip:
+    """Return a jump on the spot, arms thrown up, landing deep in the knees."""
+    seconds = 1.9
+    air, crouch, heels = _hops(seconds, ((0.52, 0.46),), squat=0.17)
+    arms = curve(
+        seconds,
+        (0, 3), (0.34, -62), (0.60, 118), (0.78, 104), (1.06, 14), (1.22, -12), (1.5, 8), (1.8, 3),
+    )  # fmt: skip
+    spread = curve(seconds, (0, 0), (0.34, 4), (0.7, 30), (1.06, 22), (1.3, 6), (1.7, 0))
+    bend = curve(seconds, (0, 19), (0.34, 26), (0.62, 10), (1.05, 40), (1.3, 26), (1.8, 19))
+    score = Score(
+        weight=REST + curve(seconds, (0, 0), (0.3, -REST), (1.3, -REST), (1.85, 0)),
+        crouch=crouch,
+        air=air,
+        heels=heels,
+        lean=curve(
+            seconds, (0, 0), (0.34, 26), (0.62, -8), (0.9, 4), (1.1, 20), (1.45, -2), (1.8, 0)
+        ),
+        look=(
+            0.0,
+            curve(
+                seconds, (0, 0), (0.3, 10), (0.58, -16), (0.85, 6), (1.1, 16), (1.5, -3), (1.8, 0)
+            ),
+        ),
+        shrug=curve(seconds, (0, 0), (0.34, -3), (0.65, 10), (1.08, -5), (1.5, 0)),
+        swing=(arms, arms),
+        spread=(spread, spread),
+        bend=(bend, bend),
+        fist=(curve(seconds, (0, 18), (0.34, 60), (0.7, 2), (1.1, 34), (1.8, 18)),) * 2,
+        mood={
+            "happy": curve(seconds, (0, 0.06), (0.45, 0.1), (0.68, 0.8), (1.3, 0.7), (1.89, 0.06)),
+            "surprised": curve(seconds, (0.2, 0), (0.62, 0.4), (0.95, 0.1), (1.1, 0), (1.8, 0)),
+            "angry": curve(seconds, (0, 0), (0.32, 0.35), (0.55, 0), (1.8, 0)),  # effort
+        },
+    )
+    return perform("jump", skeleton, seconds, score, loop=False)
+
+
+def nod(skeleton: Skeleton) -> Clip:
+    """Return a yes: a breath up, then two nods, the second one smaller."""
+    seconds = 1.6
+    down = curve(
+        seconds,
+        (0, 0), (0.18, -9), (0.44, 22), (0.66, -5), (0.90, 15), (1.12, -3), (1.32, 1), (1.55, 0),
+    )  # fmt: skip
+    score = Score(
+        weight=REST,
+        crouch=curve(
+            seconds, (0, 0), (0.18, -0.004), (0.46, 0.012), (0.7, 0), (0.92, 0.007), (1.3, 0)
+        ),
+        lean=curve(seconds, (0, 0), (0.2, -2), (0.5, 4.5), (0.74, 0), (0.98, 3), (1.35, 0)),
+        head=(0.0, down),
+        swing=(curve(seconds, (0, 3), (0.25, 1), (0.55, 6), (1.0, 5), (1.5, 3)),) * 2,
+        mood={
+            "happy": curve(seconds, (0, 0.06), (0.3, 0.45), (1.1, 0.5), (1.59, 0.06)),
+            "surprised": curve(
+                seconds, (0, 0), (0.18, 0.22), (0.42, 0), (0.66, 0.12), (0.9, 0), (1.5, 0)
+            ),
+        },
+    )
+    return perform("nod", skeleton, seconds, score, loop=False)
+
+
+def shake(skeleton: Skeleton) -> Clip:
+    """Return a no: the head turned to and fro, the shoulders after it."""
+    seconds = 1.9
+    aside = curve(
+        seconds,
+        (0, 0), (0.16, -8), (0.44, 30), (0.72, -28), (0.98, 22), (1.22, -13), (1.44, 4), (1.8, 0),
+    )  # fmt: skip
+    late = curve(
+        seconds, (0.1, 0), (0.26, -2), (0.52, 5), (0.80, -5), (1.06, 4), (1.3, -2), (1.55, 0)
+    )
+    score = Score(
+        weight=REST + 0.05 * late,
+        lean=curve(seconds, (0, 0), (0.4, -2.5), (1.3, -2), (1.8, 0)),
+        twist=late,
+        head=(aside, curve(seconds, (0, 0), (0.3, 7), (1.2, 6), (1.7, 0))),
+        tilt=curve(seconds, (0, 0), (0.4, 4), (0.72, -4), (1.0, 3), (1.3, 0)),
+        shrug=curve(seconds, (0, 0), (0.4, 5), (1.2, 4), (1.7, 0)),
+        spread=(curve(seconds, (0, 0), (0.45, 7), (1.2, 6), (1.7, 0)),) * 2,
+        mood={
+            "sad": curve(seconds, (0, 0), (0.35, 0.65), (1.2, 0.65), (1.75, 0)),
+            "happy": curve(seconds, (0, 0.06), (0.25, 0), (1.5, 0), (1.89, 0.06)),
+        },
+    )
+    return perform("shake", skeleton, seconds, score, loop=False)
+
+
+def _hops(
+    seconds: float, flights: tuple[tuple[float, float], ...], squat: float
+) -> tuple[Array, Array, Array]:
+    """Return height of the feet, crouch and lift of the heels for flights (start, duration) [s].
+
+    In the air it falls freely. Before, it winds up; before leaving it stretches over its toes;
+    after, it takes the landing with its knees.
+    """
+    time = np.arange(round(seconds * RATE) + 1) / RATE
+    air = 0 * time
+    crouched, lifted = [(0.0, 0.0)], [(0.0, 0.0)]
+    for number, (start, duration) in enumerate(flights):
+        since = np.clip(time - start, 0.0, duration)
+        air += GRAVITY / 2 * since * (duration - since)
+        deep = squat if number == 0 else 0.6 * squat
+        if number == 0:
+            crouched += [(start - 0.18, deep)]
+            lifted += [(start - 0.12, 0.0)]
+        end = start + duration
+        crouched += [(start, -0.045), (start + 0.5 * duration, 0.015), (end, 0.0)]
+        crouched += [(end + 0.11, 0.85 * deep)]
+        lifted += [(start, 38.0), (start + 0.4 * duration, 34.0), (end, 14.0), (end + 0.06, 0.0)]
+    rest = flights[-1][0] + flights[-1][1]
+    crouched += [(rest + 0.34, -0.01), (rest + 0.5, 0.0)]
+    return air, curve(seconds, *crouched), curve(seconds, *lifted)

@@ -1,0 +1,177 @@
+"""The bundled explorer's eyes: balls that turn, and lids that close over them."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.model.mesh import Mesh
+from characters.skeleton.pose import Skeleton
+from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, Face, carried
+from tools.authoring.human.rig import JOINTS
+from tools.authoring.human.skull import EYE_WHITE, MAROON, SKIN, complexion, face_normals, on_face
+from tools.authoring.modelling.morphs import morphed
+from tools.authoring.modelling.rings import ringed, with_normals
+from tools.authoring.modelling.sculpt import coated, lathe
+from tools.authoring.modelling.shapes import Array, rgb
+
+INK = rgb("#1b1020")
+BROWN, AMBER = rgb("#5d2c0e"), rgb("#b5702a")
+FOLD = rgb("#d98f68")
+
+CURVATURE = 0.138
+"""Radius of the front of an eyeball, which turns about a point nearer than its centre: so it can
+be large and flat without the iris running away [m]."""
+
+SIGHT = np.array([0.37, 0.055, 1.0]) / np.linalg.norm([0.37, 0.055, 1.0])
+"""From the middle of that sphere to the middle of the left iris."""
+
+MIDDLE = np.array([0.087, 1.437])
+"""x and y of the middle between the left lids [m]."""
+
+OPENING = (0.056, 0.064, 0.052)
+"""Of the lids: half its width, and how far it reaches up and down [m]."""
+
+SAG = 0.034
+"""How far the line of the closed eye hangs below its corners [m]."""
+
+COLUMNS = 36
+"""Points around an eye."""
+
+LOFT = (0.0040, 0.0095)
+"""How far lower and upper lids are above the ball: they move on straight lines over it [m]."""
+
+_FRONT = 0.122  # from the joint to the front of the ball [m]
+
+
+def eyeballs(skeleton: Skeleton) -> list[Mesh]:
+    """Return both eyeballs with iris, pupil and highlights."""
+    return [piece for sign in (1.0, -1.0) for piece in _eyeball(sign, skeleton)]
+
+
+def eyelids(skeleton: Skeleton) -> list[Mesh]:
+    """Return the lids of both eyes with all that they can express."""
+    return [
+        morphed(partial(_lids, sign=sign, skeleton=skeleton), NEUTRAL, EXPRESSIONS)
+        for sign in (1.0, -1.0)
+    ]
+
+
+def _centre(sign: float) -> Array:
+    """Return the middle of the sphere that is the front of an eyeball, (3,) [m]."""
+    flip = np.array([sign, 1.0, 1.0])
+    return np.asarray((np.array(JOINTS["LeftEye"][1]) + (_FRONT - CURVATURE) * SIGHT) * flip)
+
+
+def _eyeball(sign: float, skeleton: Skeleton) -> list[Mesh]:
+    joint = "LeftEye" if sign > 0 else "RightEye"
+    sight = SIGHT * [sign, 1.0, 1.0]
+    place = np.column_stack([_axes(sight), _centre(sign)])
+    tilt = np.array([0.92, 0.72, 0.5, 0.325, 0.305, 0.282, 0.21, 0.158, 0.15, 0.07, 0.0])
+    ball = np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
+    rings = CURVATURE * np.vstack([[0.0, 0.5], ball])
+    bands = [EYE_WHITE] * 4 + [INK] * 2 + [BROWN] * 2 + [INK] * 3
+    whole = lathe(rings, bands, place, joint, skeleton, 26)
+    whole = replace(whole, colors=_lit_from_below(whole, _centre(sign)[1]))
+    lights = [((-0.10, 0.13), 0.112), ((0.11, -0.13), 0.05)]  # on one side: there is one sun
+    return [whole, *(_light(sign, at, wide, joint, skeleton) for at, wide in lights)]
+
+
+def _lit_from_below(ball: Mesh, middle: float) -> NDArray[np.float32]:
+    """Return the colours of an eyeball with its iris lighter towards the bottom, (n, 4)."""
+    colors = np.array(ball.colors)
+    iris = np.abs(colors[:, :3] - BROWN).max(axis=1) < 1e-4
+    below = np.clip(0.5 - (ball.positions[iris, 1] - middle - 0.007) / 0.06, 0.0, 1.0)
+    colors[iris, :3] += below[:, None] * np.subtract(AMBER, BROWN)
+    return colors.astype(np.float32)
+
+
+def _light(
+    sign: float, at: tuple[float, float], wide: float, joint: str, skeleton: Skeleton
+) -> Mesh:
+    """Return a highlight, so far across and up from the iris's middle and so wide [rad]."""
+    axes = _axes(SIGHT * [sign, 1.0, 1.0])
+    toward = axes @ [at[0], at[1], 1.0]
+    place = np.column_stack([_axes(toward / np.linalg.norm(toward)), _centre(sign)])
+    tilt = wide * np.array([0.0, 1.0, 0.55, 0.0])
+    rings = CURVATURE * 1.003 * np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
+    rings[:2, 1] -= 0.004
+    return lathe(rings, [(1.0, 1.0, 1.0)] * 3, place, joint, skeleton, 12)
+
+
+def _axes(toward: Array) -> Array:
+    """Return axes to the left, up and along a direction, as columns, (3, 3)."""
+    left = np.cross([0.0, 1.0, 0.0], toward)
+    left /= np.linalg.norm(left)
+    return np.column_stack([left, np.cross(toward, left), toward])
+
+
+def _lids(face: Face, sign: float, skeleton: Skeleton) -> Mesh:
+    """Return the ring of skin around an eye, from behind the face to inside the ball."""
+    angle = np.linspace(0, 2 * np.pi, COLUMNS, endpoint=False)
+    rings = _lid_rings(angle, face, sign)
+    up = np.sin(angle) >= 0
+    if sign < 0:  # built for the left eye, and mirrored
+        rings, up = rings[:, ::-1] * [-1.0, 1.0, 1.0], up[::-1]
+    mesh = ringed(rings, _lid_colors(rings, up), "head", skeleton)
+    of_the_face = np.repeat(np.array([0, 0, 1.0, 0.75, 0.3, *[0] * 6]), COLUMNS)
+    return with_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
+
+
+def _lid_rings(angle: Array, face: Face, sign: float) -> Array:
+    """Return pole, rim under the skin, skin, lashes twice, edge, edge in the ball, pole."""
+    height = np.sin(angle)
+    edge = _edge(angle, face, sign)
+    reach = np.where(height >= 0, OPENING[1] + 0.038, OPENING[2] + 0.022)
+    outer = MIDDLE + np.stack([(OPENING[0] + 0.028) * np.cos(angle), reach * height], axis=-1)
+    away = outer - edge
+    thick = np.where(height >= 0, 0.0085 + 0.003 * np.cos(angle), 0.0025)  # more at the temple
+    lash = edge + away * (thick / np.linalg.norm(away, axis=1))[:, None]
+    loft = LOFT[0] + (LOFT[1] - LOFT[0]) * np.clip(height, 0, 1) ** 0.7
+    flat = [*(lash + (outer - lash) * s for s in (1.0, 0.8, 0.55, 0.28)), lash, lash, edge, edge]
+    lofts = [loft, loft, loft, loft + 0.001, loft + 0.0025, loft + 0.0025, loft, 0 * loft - 0.004]
+    share = np.repeat([1.0, 0.9, 0.55, 0.22, 0.0, 0.0, 0.0, 0.0], COLUMNS)
+    rows = _on_eye(np.concatenate(flat), np.concatenate(lofts), share, face)
+    rows = rows.reshape(len(flat), COLUMNS, 3)
+    behind, inside = (np.tile([*MIDDLE, z], (COLUMNS, 1)) for z in (0.10, 0.14))
+    return np.stack([behind, rows[0] - [0.0, 0.0, 0.006], *rows, inside])
+
+
+def _edge(angle: Array, face: Face, sign: float) -> Array:
+    """Return the rim of the lids, x and y, (columns, 2) [m]."""
+    x, height = np.cos(angle), np.sin(angle)
+    open_ = 1.0 - face.shut[0 if sign > 0 else 1]
+    bow = np.abs(height) ** 0.86  # a little boxier than an ellipse
+    closed = -SAG * (1 - x * x) ** 0.8
+    upper = np.clip(face.upper - face.upper_tilt * x * 0.5, 0.0, 1.4) * open_
+    upper -= 0.06 * (1 - open_)  # a little over the lower lid
+    lower = face.lower * open_
+    wide = np.where(height >= 0, OPENING[1] * bow, -OPENING[2] * bow)
+    y = closed + (wide - closed) * np.where(height >= 0, upper, lower)
+    return MIDDLE + np.stack([OPENING[0] * x, y], axis=-1)
+
+
+def _on_eye(flat: Array, loft: Array, share: Array, face: Face) -> Array:
+    """Return points over the eyeball, (n, 3), of which `share` lies on the face instead."""
+    centre = _centre(1.0)
+    apart = flat - centre[:2]
+    skin = on_face(flat[:, 0], flat[:, 1])
+    # The rim dips under the face, so that one surface runs into the other without a step.
+    skin += np.where(share < 1, 0.001, -0.0015)[:, None] * face_normals(skin)
+    height = centre[2] + np.sqrt((CURVATURE + loft) ** 2 - np.sum(apart**2, axis=1))
+    height = np.where(loft > 0, np.maximum(height, skin[:, 2] + 0.002), height)
+    ball = np.column_stack([flat, height])
+    skin += carried(skin, face)
+    return np.asarray(ball + (skin - ball) * share[:, None])
+
+
+def _lid_colors(rings: Array, up: NDArray[np.bool_]) -> Array:
+    """Return the colour of each point of the lids: lashes above, a fold below."""
+    colors = np.tile(SKIN, (*rings.shape[:2], 1))
+    flat = colors.reshape(-1, 3)
+    colors = coated(rings.reshape(-1, 3), flat, complexion()).reshape(colors.shape)
+    rim = np.where(up[:, None], INK, FOLD)
+    colors[-4:] = rim  # the last ring but the pole lies in the ball
+    colors[-1] = MAROON
+    return np.asarray(colors)

@@ -1,0 +1,129 @@
+"""What the bundled explorer's face can do: one set of numbers an expression.
+
+Exaggerated on purpose: on a table the whole face is forty pixels high.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tools.authoring.modelling.shapes import Array
+
+
+@dataclass(frozen=True)
+class Face:
+    """The numbers of one expression; lengths in metres, forward and upward positive."""
+
+    shut: tuple[float, float] = (0.0, 0.0)
+    """How far the left and the right eye is closed, 0…1."""
+
+    upper: float = 0.9
+    """How far the upper lids are up: 0 on the line of the closed eye."""
+
+    upper_tilt: float = 0.0
+    """How much further up they are at the inner corner than at the outer."""
+
+    lower: float = 1.0
+    """How far the lower lids are down; negative where they are pushed up over that line."""
+
+    brow: float = 0.0
+    """Height of the brows."""
+
+    brow_inner: float = 0.0
+    """Height of their inner ends beyond that."""
+
+    brow_arch: float = 0.0
+    """Height of their middles beyond that."""
+
+    knit: float = 0.0
+    """How far the brows are drawn together."""
+
+    width: float = 0.066
+    """Half the width of the mouth."""
+
+    smile: float = 0.024
+    """Height of the corners of the mouth above its middle."""
+
+    rise: float = 0.0003
+    """How far the upper lip is up from the line of the closed mouth."""
+
+    drop: float = 0.0003
+    """How far the lower lip is down."""
+
+    square: float = 1.0
+    """Power of the sine that shapes the opening: 1 round, 0.5 rather a box."""
+
+    pout: float = 0.0
+    """How far the lips are pushed forward."""
+
+    teeth: float = 0.0
+    """How much of the upper teeth is seen below the lip."""
+
+    tongue: float = 0.4
+    """How far up in the open mouth the tongue lies, 0…1."""
+
+    jaw: float = 0.0
+    """How far the chin goes down."""
+
+    cheeks: float = 0.0
+    """How far the cheeks are raised."""
+
+
+NEUTRAL = Face()
+
+EXPRESSIONS = {
+    "blink": Face(shut=(1.0, 1.0)),
+    "blinkLeft": Face(shut=(1.0, 0.0)),
+    "blinkRight": Face(shut=(0.0, 1.0)),
+    "happy": Face(
+        upper=0.78, lower=-0.55, brow=0.012, brow_inner=0.006, brow_arch=0.008,
+        width=0.090, smile=0.052, rise=0.006, drop=0.040, square=0.8, teeth=0.016, jaw=0.014,
+        cheeks=0.014,
+    ),
+    "angry": Face(
+        upper=0.66, upper_tilt=-0.62, lower=0.45, brow=-0.014, brow_inner=-0.036, knit=0.016,
+        width=0.062, smile=-0.032, rise=0.010, drop=0.013, square=0.5, teeth=0.022,
+    ),
+    "sad": Face(
+        upper=0.62, upper_tilt=0.36, lower=0.8, brow=-0.002, brow_inner=0.034, brow_arch=-0.01,
+        knit=0.008, width=0.052, smile=-0.040, drop=0.003, pout=0.006,
+    ),
+    "surprised": Face(
+        upper=1.13, lower=1.08, brow=0.024, brow_inner=0.006, brow_arch=0.008,
+        width=0.034, smile=0.0, rise=0.022, drop=0.050, jaw=0.026, pout=0.005,
+    ),
+    "relaxed": Face(
+        upper=0.10, lower=0.30, brow=0.003, brow_inner=0.012, width=0.074, smile=0.046,
+        cheeks=0.010,
+    ),
+    "aa": Face(width=0.060, smile=0.010, rise=0.012, drop=0.052, jaw=0.028, teeth=0.013),
+    "ih": Face(
+        width=0.070, smile=0.018, rise=0.010, drop=0.020, square=0.6, teeth=0.016, jaw=0.006,
+    ),
+    "ou": Face(width=0.027, smile=0.0, rise=0.014, drop=0.018, pout=0.022, jaw=0.006),
+    "ee": Face(
+        width=0.088, smile=0.028, rise=0.009, drop=0.022, square=0.5, teeth=0.026, jaw=0.004,
+    ),
+    "oh": Face(width=0.042, smile=0.002, rise=0.024, drop=0.042, pout=0.014, jaw=0.020),
+}  # fmt: skip
+"""By VRM's names."""
+
+MOUTH = np.array([0.0, 1.327])
+"""x and y of the middle of the closed mouth [m]."""
+
+
+def carried(points: Array, face: Face) -> Array:
+    """Return how far jaw and cheeks carry points of the skin, (n, 3) [m]."""
+    x, y, z = points.T
+    front = _smooth(z / 0.11)
+    chin = _smooth((MOUTH[1] + 0.004 - y) / 0.04) * front
+    apart = ((np.abs(x) - 0.115) / 0.05) ** 2 + ((y - 1.362) / 0.04) ** 2
+    cheek = np.exp(-apart) * front
+    jaw = chin[:, None] * [0.0, -face.jaw, -0.25 * face.jaw]
+    outward = np.stack([0.5 * np.sign(x), np.ones_like(x), 0.8 * np.ones_like(x)], axis=-1)
+    return np.asarray(jaw + cheek[:, None] * outward * face.cheeks)
+
+
+def _smooth(u: Array) -> Array:
+    t = np.clip(u, 0.0, 1.0)
+    return np.asarray(t * t * (3 - 2 * t))

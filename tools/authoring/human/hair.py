@@ -1,0 +1,48 @@
+"""The bundled explorer's hair: a cap with a fringe, tufts at the back, and a cowlick."""
+
+from characters.model.mesh import Mesh
+from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.cord import cord
+from tools.authoring.modelling.sculpt import Part
+from tools.authoring.modelling.shapes import Cone, Cut, Ellipsoid, Union, Vector, rgb
+
+HAIR = rgb("#7c391d")
+
+COWLICK: tuple[list[Vector], ...] = (
+    [(0.0, 1.63, -0.035), (0.0, 1.70, -0.052), (-0.035, 1.748, -0.068), (-0.082, 1.766, -0.074)],
+    [(0.046, 1.63, 0.0), (0.063, 1.695, 0.0), (0.07, 1.74, 0.023), (0.05, 1.768, 0.063)],
+)
+"""Lines of the two locks on the crown [m]."""
+
+
+def hair() -> list[Part]:
+    """Return what is carved of it."""
+    cap = Ellipsoid((0, 1.513, -0.031), (0.231, 0.214, 0.221), bones=("head",), color=HAIR)
+    nape = Ellipsoid((0, 1.389, -0.106), (0.168, 0.130, 0.124), bones=("head",), color=HAIR)
+    brow_line = Ellipsoid((0, 1.392, 0.211), (0.214, 0.214, 0.248))
+    whole = Cut(Union((cap, nape), 0.062), brow_line, 0.025)
+    fringe = [
+        _lock((-0.062, 1.686, 0.097), (0.106, 1.622, 0.186), 0.062, 0.025),
+        _lock((0.0, 1.680, 0.109), (0.186, 1.585, 0.118), 0.060, 0.022),
+        _lock((-0.087, 1.680, 0.097), (-0.124, 1.598, 0.170), 0.056, 0.020),
+        _lock((-0.124, 1.650, 0.062), (-0.196, 1.545, 0.104), 0.056, 0.020),
+    ]
+    tufts = [
+        _lock((0.0, 1.625, -0.161), (0.025, 1.650, -0.280), 0.074, 0.020),
+        _lock((0.099, 1.501, -0.161), (0.137, 1.451, -0.255), 0.074, 0.020),
+        _lock((-0.099, 1.501, -0.161), (-0.124, 1.427, -0.248), 0.074, 0.020),
+        _lock((0.192, 1.476, 0.020), (0.214, 1.372, 0.052), 0.042, 0.018),
+        _lock((-0.192, 1.476, 0.020), (-0.214, 1.372, 0.052), 0.042, 0.018),
+    ]
+    return [Part(Union((whole, *fringe, *tufts), 0.025), 0.026)]
+
+
+def cowlick(skeleton: Skeleton) -> list[Mesh]:
+    """Return the pointed locks on the crown."""
+    radii = [0.082, 0.055, 0.030, 0.003]
+    joints = ["head", "Cowlick", "Cowlick", "Cowlick"]
+    return [cord(line, radii, HAIR, joints, skeleton, 9, 9) for line in COWLICK]
+
+
+def _lock(a: Vector, b: Vector, ra: float, rb: float) -> Cone:
+    return Cone(a, b, ra, rb, bones=("head",), color=HAIR)

@@ -1,0 +1,85 @@
+"""What hangs loosely on the bundled explorer and follows late: backpack, hood, strings, cowlick.
+
+Each is a damped spring on an accelerated mount, whose response over a repeating motion has a
+closed form (`loops.follow`); so loops stay loops.
+"""
+
+import numpy as np
+
+from characters.skeleton import rotations
+from tools.authoring.human.limbs import SIDES, turned
+from tools.authoring.modelling.loops import follow
+from tools.authoring.modelling.rig import Puppet
+from tools.authoring.modelling.shapes import Array
+
+GRAVITY = 9.81
+
+
+def drag(puppet: Puppet, seconds: float, aside: float = 0.0) -> None:
+    """Let all that is loose follow a body whose last frame is its first.
+
+    Parameters
+    ----------
+    seconds : duration of the motion
+    aside : acceleration of the way itself, to the left: that of a turn [m/s²]
+    """
+    back = _pull(puppet, "chest", (0.0, 1.03, -0.2), seconds, aside)
+    _swing_backpack(puppet, back, seconds)
+    flop = _bounded(-0.9 * follow(back[:, 1] - 0.5 * back[:, 2], seconds, 2.6, 0.35), 14)
+    puppet.turn("Hood", turned(x=_closed(-_off(flop, 4.0))))
+    front = _pull(puppet, "chest", (0.0, 1.09, 0.13), seconds, aside)
+    _swing_strings(puppet, front, seconds)
+    crown = _pull(puppet, "head", (0.0, 1.74, -0.04), seconds, aside)
+    pitch = _bounded(-follow(crown[:, 2] - 0.4 * crown[:, 1], seconds, 3.2, 0.22) * 0.55, 24)
+    roll = _bounded(follow(crown[:, 0], seconds, 3.2, 0.22) * 0.55, 20)
+    puppet.turn("Cowlick", turned(x=_closed(pitch), z=_closed(roll)))
+
+
+def _swing_backpack(puppet: Puppet, pull: Array, seconds: float) -> None:
+    """Let it bounce on the back and swing off it; it cannot swing far into it."""
+    bounce = _bounded(-follow(pull[:, 1], seconds, 3.4, 0.3) * 0.0009, 0.018)
+    away = _bounded(follow(1.2 * pull[:, 2] - 0.5 * pull[:, 1], seconds, 2.8, 0.3), 9)
+    sway = _bounded(follow(pull[:, 0], seconds, 2.4, 0.3) * -0.6, 6)
+    puppet.shift("Backpack", _closed(bounce)[:, None] * [0.0, 1.0, 0.0])
+    puppet.turn("Backpack", turned(x=_closed(_off(away, 2.0)), z=_closed(sway)))
+
+
+def _swing_strings(puppet: Puppet, pull: Array, seconds: float) -> None:
+    """Swing the strings off the chest; they cannot swing into it."""
+    for number, (side, _) in enumerate(SIDES):
+        hertz = 2.1 + 0.3 * number  # no two strings are of one length
+        off = -follow(4.0 * pull[:, 2] + 1.2 * pull[:, 1], seconds, hertz, 0.2)
+        aside = _bounded(follow(pull[:, 0], seconds, hertz, 0.2) * -1.4, 18)
+        off = _off(_bounded(off, 40), 4.0)
+        puppet.turn(f"{side}String", turned(x=-_closed(off), z=_closed(aside)))
+
+
+def _off(angle: Array, soft: float) -> Array:
+    """Return an angle that is hardly ever negative, with a rounded kink [degrees]."""
+    return np.asarray((angle + np.hypot(angle, soft)) / 2 - soft / 2)
+
+
+def _pull(
+    puppet: Puppet, joint: str, point: tuple[float, float, float], seconds: float, aside: float
+) -> Array:
+    """Return the acceleration of a point of a joint in the joint's axes, (frames − 1, 3) [m/s²].
+
+    And, as if it were one, the part of gravity that the joint's lean lets loose.
+    """
+    facing = puppet.facing(joint)
+    place = puppet.places(joint) + rotations.rotate(facing, point - puppet.rest(joint))
+    place, facing = place[:-1], facing[:-1]
+    step = seconds / len(place)
+    change = np.roll(place, -1, axis=0) - 2 * place + np.roll(place, 1, axis=0)
+    felt = change / step**2 + [aside, GRAVITY, 0.0]
+    felt = rotations.rotate(rotations.conjugate(facing), felt)
+    return np.asarray(felt - [0.0, GRAVITY, 0.0])
+
+
+def _bounded(curve: Array, limit: float) -> Array:
+    """Return a curve that nears a limit instead of passing it."""
+    return np.asarray(limit * np.tanh(curve / limit))
+
+
+def _closed(curve: Array) -> Array:
+    return np.append(curve, curve[0])

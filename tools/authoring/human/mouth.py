@@ -1,0 +1,114 @@
+"""The bundled explorer's mouth: lips, teeth, tongue and what is dark behind them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.model.mesh import Mesh
+from characters.skeleton.pose import Skeleton
+from tools.authoring.human.face import EXPRESSIONS, MOUTH, NEUTRAL, Face, carried
+from tools.authoring.human.skull import MAROON, SKIN, complexion, face_normals, on_face
+from tools.authoring.modelling.morphs import morphed
+from tools.authoring.modelling.rings import ringed, with_normals
+from tools.authoring.modelling.sculpt import coated
+from tools.authoring.modelling.shapes import Array, rgb
+
+LIP = rgb("#a8443c")
+LINE = rgb("#64201f")
+TONGUE = rgb("#d9636a")
+TEETH = rgb("#fbf7ee")
+
+COLUMNS = 40
+"""Points around the mouth."""
+
+REACH = (0.112, 0.038, 0.054)
+"""Of the skin around the mouth: half its width, and how far it reaches up and down [m]."""
+
+_LIPS = 0.0085  # how broad they are [m]
+
+
+def mouth(skeleton: Skeleton) -> Mesh:
+    """Return the mouth with all that it can express and say."""
+    return morphed(lambda face: _mouth(face, skeleton), NEUTRAL, EXPRESSIONS)
+
+
+def _mouth(face: Face, skeleton: Skeleton) -> Mesh:
+    """Return a bag in the face: from a pole in the head over the skin and the lips to its end."""
+    angle = np.linspace(0, 2 * np.pi, COLUMNS, endpoint=False)
+    edge, lips, *skin = _skin_rings(angle, face)
+    under = skin[-1] - [0.0, 0.0, 0.006]
+    behind = np.tile([0.0, MOUTH[1], 0.05], (COLUMNS, 1))
+    rings = np.stack([behind, under, *skin[::-1], lips, lips, edge, *_cavity(edge, angle, face)])
+    mesh = ringed(rings, _colors(rings, np.sin(angle) >= 0), "head", skeleton)
+    of_the_face = np.repeat([0, 0, 1.0, 0.9, 0.5, 0.15, *[0] * (len(rings) - 6)], COLUMNS)
+    return with_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
+
+
+def _skin_rings(angle: Array, face: Face) -> list[Array]:
+    """Return the edge of the lips, their border, and the skin around out to the rim."""
+    height = np.sin(angle)
+    line, edge = _lip_lines(angle, face)
+    reach = np.where(height >= 0, REACH[1], REACH[2])
+    outer = MOUTH + np.stack([REACH[0] * np.cos(angle), reach * height], axis=-1)
+    away = outer - edge
+    lips = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * _LIPS
+    full = np.abs(height) ** 0.5
+    rings = [
+        _on_skin(edge, line, 0.002 + 0.002 * full + face.pout, face, 0.0),
+        _on_skin(lips, line, 0.0015 + 0.005 * full + face.pout, face, 0.0),
+    ]
+    for s in (0.25, 0.5, 0.75, 1.0):  # the rim dips under the face: no step is seen
+        flat, rest = lips + (outer - lips) * s, line + (outer - line) * s
+        lift = (0.0015 if s < 1 else -0.0015) + face.pout * (1 - s) ** 2 + 0 * full
+        rings.append(_on_skin(flat, rest, lift, face, s))
+    return rings
+
+
+def _lip_lines(angle: Array, face: Face) -> tuple[Array, Array]:
+    """Return where the lips meet when closed, and where their edges are, (columns, 2) each."""
+    x, height = np.cos(angle), np.sin(angle)
+    line = MOUTH[1] + face.smile * (x * x - 0.4)
+    bow = np.abs(height) ** face.square
+    y = line + np.where(height >= 0, face.rise, -face.drop) * bow
+    across = MOUTH[0] + face.width * x
+    return np.stack([across, line], axis=-1), np.stack([across, y], axis=-1)
+
+
+def _on_skin(flat: Array, rest: Array, lift: Array, face: Face, share: float) -> Array:
+    """Return points of the skin, whose depth is that of where they rest; `share` of the jaw."""
+    points = on_face(flat[:, 0], rest[:, 1])
+    normals = face_normals(points)
+    points += lift[:, None] * (normals + [0.0, 0.0, 1.0]) / 2 + share * carried(points, face)
+    points[:, 1] += flat[:, 1] - rest[:, 1]
+    return points
+
+
+def _cavity(edge: Array, angle: Array, face: Face) -> list[Array]:
+    """Return the rings behind the lips: teeth or tongue, the throat, and the end."""
+    up = np.sin(angle) >= 0
+    bow = np.abs(np.sin(angle)) ** 0.8
+    middle = np.array([0.0, edge[:, 1].mean(), 0.0])
+    opening = face.rise + face.drop
+    teeth = np.minimum(face.teeth, 0.8 * opening) * bow
+    tongue = 0.5 * face.tongue * face.drop * bow
+    inner = (edge - middle) * [0.94, 1.0, 1.0] + middle - [0.0, 0.0, 0.011]
+    inner[:, 1] += np.where(up, -teeth, tongue)
+    throat = (edge - middle) * [0.75, 0.8, 1.0] + middle - [0.0, 0.0, 0.034]
+    end = np.tile([0.0, edge[:, 1].mean(), edge[:, 2].max() - 0.046], (len(edge), 1))
+    gum = edge - [0.0, 0.0, 0.005]
+    return [gum, gum, inner, inner, throat, end]
+
+
+def _colors(rings: Array, up: NDArray[np.bool_]) -> Array:
+    """Return the colour of each point: skin, lips, the line between them, and the inside."""
+    colors = np.tile(SKIN, (*rings.shape[:2], 1))
+    coats = coated(rings.reshape(-1, 3), colors.reshape(-1, 3), complexion())
+    colors = np.asarray(coats).reshape(colors.shape)
+    throat, tongue, teeth, gum, rim, edge, lip = range(-2, -9, -1)
+    above = up[:, None]
+    colors[throat:] = MAROON
+    colors[tongue] = np.where(above, MAROON, TONGUE)
+    colors[teeth] = np.where(above, TEETH, TONGUE)
+    colors[gum] = np.where(above, TEETH, MAROON)
+    colors[[rim, edge]] = LINE
+    colors[lip] = LIP
+    return np.asarray(colors)

@@ -1,0 +1,106 @@
+"""The bundled explorer's shoes: a sole that bends at the ball, an upper with a cap, and laces."""
+
+from functools import cache
+
+import numpy as np
+
+from characters.model.mesh import Mesh
+from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.cord import cord
+from tools.authoring.modelling.rings import ringed
+from tools.authoring.modelling.sculpt import Part
+from tools.authoring.modelling.shapes import (
+    Cone,
+    Cut,
+    Ellipsoid,
+    HalfSpace,
+    Shape,
+    Union,
+    Vector,
+    rgb,
+)
+from tools.authoring.modelling.surface import project
+
+CREAM = rgb("#fff3dc")
+CORAL = rgb("#f75c43")
+RUBBER = rgb("#e9d9bd")
+
+MIDDLE = (0.117, 0.053)
+"""x and z of the middle of the left sole [m]."""
+
+HALF = (0.064, 0.155)
+"""Half its width and length [m]."""
+
+PROFILE = ((0.80, 0.004), (0.95, 0.0), (1.0, 0.010), (1.0, 0.026), (0.985, 0.034), (0.90, 0.042))
+"""Size of its outline and height at each ring from below [m]."""
+
+BALL = (0.060, 0.104)
+"""From where to where along z the toes take over from the foot [m]."""
+
+
+@cache
+def _upper() -> Shape:
+    bones = ("LeftToe", "LeftFoot")  # in this order: what lies ahead of the ball is the toe's
+    heel = Ellipsoid(
+        (0.113, 0.068, -0.022), (0.051, 0.062, 0.069), power=2.4, bones=bones, color=CORAL
+    )
+    ankle = Cone(
+        (0.111, 0.1, -0.018), (0.11, 0.145, -0.016), 0.053, 0.057, bones=("LeftFoot",), color=CORAL
+    )
+    return Union((_toes(0.0, CORAL, bones), heel, ankle), 0.035)
+
+
+def _toes(more: float, color: Vector, bones: tuple[str, ...]) -> Ellipsoid:
+    radii = 0.056 + more, 0.050 + more, 0.097 + more
+    return Ellipsoid((0.118, 0.056, 0.095), radii, power=2.4, bones=bones, color=color)
+
+
+def shoe() -> list[Part]:
+    """Return the left upper and its cap."""
+    floor = HalfSpace((0, 0.022, 0), (0, 1, 0))
+    behind = HalfSpace((0.118, 0.056, 0.142), (0, -0.45, 1))
+    cap = Cut(Cut(_toes(0.0055, CREAM, ("LeftToe",)), behind, 0.008), floor, 0.01)
+    return [
+        Part(Cut(_upper(), floor, 0.01), 0.024, soft_skin=0.025),
+        Part(cap, 0.020, soft_skin=0.0),
+    ]
+
+
+def soles_and_laces(skeleton: Skeleton) -> list[Mesh]:
+    """Return both soles and the laces."""
+    meshes = []
+    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+        meshes.append(_sole(side, sign, skeleton))
+        for i in range(3):
+            x = np.linspace(-0.030, 0.030, 5)
+            high = np.stack(
+                [0.115 + x, 0.112 + 0.02 * i - 14 * x * x, 0.112 - 0.028 * i - 3 * x * x], axis=-1
+            )
+            lace = project(lambda p: _upper().distance(p) - 0.0035, high, 0.06, 8)
+            joint = f"{side}Foot"
+            meshes.append(cord(lace * [sign, 1, 1], 0.0085, CREAM, joint, skeleton, 6, 7))
+    return meshes
+
+
+def _sole(side: str, sign: float, skeleton: Skeleton) -> Mesh:
+    angle = np.linspace(0, 2 * np.pi, 32, endpoint=False)
+    # About the upward axis, to the left seen from above: from +z over +x.
+    outline = np.stack([np.sin(angle), np.cos(angle)], axis=-1)
+    outline = np.sign(outline) * np.abs(outline) ** 0.72 * HALF
+    outline[:, 0] *= 1 - 0.10 * np.clip(-outline[:, 1] / HALF[1], 0, 1)  # a narrower heel
+    profile = np.array([(0.0, 0.004), *PROFILE, (0.0, 0.042)])
+    flat = profile[:, 0, None, None] * outline + MIDDLE
+    spring = 0.014 * np.clip((flat[..., 1] - 0.135) / 0.075, 0, 1) ** 2
+    heel = 0.42 * np.clip(-0.064 - flat[..., 1], 0, None)  # it lands on a rounded heel
+    height = profile[:, 1, None] + spring + heel
+    rings = np.stack([flat[..., 0], height, flat[..., 1]], axis=-1) * [sign, 1.0, 1.0]
+    u = np.clip((rings[..., 2] - BALL[0]) / (BALL[1] - BALL[0]), 0, 1)
+    toes = u * u * (3 - 2 * u)
+    weights = np.zeros((*toes.shape, len(skeleton.names)))
+    weights[..., skeleton.names.index(f"{side}Foot")] = 1 - toes
+    weights[..., skeleton.names.index(f"{side}Toe")] = toes
+    if sign < 0:
+        rings, weights = rings[:, ::-1], weights[:, ::-1]
+    colors = np.tile(CREAM, (*toes.shape, 1))
+    colors[:2] = RUBBER
+    return ringed(rings, colors, weights, skeleton)

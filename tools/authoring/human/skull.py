@@ -1,0 +1,71 @@
+"""The bundled explorer's head under hair and features: the surface on which the face is drawn."""
+
+from functools import cache
+
+import numpy as np
+
+from tools.authoring.modelling.sculpt import Paint
+from tools.authoring.modelling.shapes import Array, Cut, Ellipsoid, Shape, Union, rgb
+from tools.authoring.modelling.surface import normals_of
+
+SKIN = rgb("#f4b98c")
+BLUSH = rgb("#ea7560")
+MAROON = rgb("#5a1420")
+EYE_WHITE = rgb("#f6f4f2")
+
+SOCKET = Ellipsoid((0.085, 1.452, 0.185), (0.060, 0.077, 0.046), (0.0, 0.35, 0.0))
+"""Where the left eye sits."""
+
+HOLLOW = Ellipsoid((0, 1.304, 0.18), (0.07, 0.036, 0.06))
+"""Where the mouth sits."""
+
+_BONES = ("head",)
+
+
+@cache
+def bare_skull() -> Shape:
+    """Return the face without nose, ears and hollows: what lids and lips lie on."""
+    skull = Ellipsoid((0, 1.482, -0.006), (0.207, 0.199, 0.197), bones=_BONES, color=SKIN)
+    jowls = Ellipsoid((0, 1.366, 0.037), (0.178, 0.122, 0.152), bones=_BONES, color=SKIN)
+    return Union((skull, jowls), 0.09)
+
+
+def head_shape() -> Shape:
+    """Return the head with nose and ears, hollow where eyes and mouth sit."""
+    nose = Ellipsoid((0, 1.391, 0.206), (0.024, 0.0195, 0.023), bones=_BONES, color=SKIN)
+    ear = Ellipsoid((0.209, 1.41, -0.012), (0.030, 0.052, 0.040), bones=_BONES, color=SKIN)
+    whole = Union((Union((bare_skull(), nose), 0.022), ear, ear.mirrored()), 0.017)
+    return Cut(whole, Union((SOCKET, SOCKET.mirrored(), HOLLOW)), 0.008)
+
+
+def complexion() -> tuple[Paint, ...]:
+    """Return the red of the cheeks."""
+    blush = Ellipsoid((0.125, 1.362, 0.15), (0.045, 0.03, 0.062))
+    return (Paint(Union((blush, blush.mirrored())), BLUSH, 0.035, 0.55),)
+
+
+def lining() -> tuple[Paint, ...]:
+    """Return the colours of the hollows behind the eyes and the lips, should they be seen."""
+    eyes = Union((SOCKET, SOCKET.mirrored()))
+    return (Paint(eyes, EYE_WHITE, 0.008), Paint(HOLLOW, MAROON, 0.008))
+
+
+def on_face(x: Array, y: Array) -> Array:
+    """Return the points on the front of the bare face at x, y, (…, 3)."""
+    x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+    flat = np.stack([x.ravel(), y.ravel()], axis=-1)
+    low, high = np.zeros(len(flat)), np.full(len(flat), 0.4)
+    for _ in range(9):
+        middle = (low + high) / 2
+        inside = bare_skull().distance(np.column_stack([flat, middle])) < 0
+        low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+    # The surface is all but straight over the millimetre that is left.
+    inner, outer = (bare_skull().distance(np.column_stack([flat, z])) for z in (low, high))
+    share = np.clip(-inner / np.maximum(outer - inner, 1e-9), 0.0, 1.0)
+    low = low + (high - low) * share
+    return np.asarray(np.column_stack([flat, low]).reshape(*x.shape, 3))
+
+
+def face_normals(points: Array) -> Array:
+    """Return the normals of the bare face at points (n, 3)."""
+    return normals_of(bare_skull().distance, points, 0.02)

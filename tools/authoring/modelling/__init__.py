@@ -1,0 +1,1 @@
+"""Modelling, rigging and animating by code: what the bundled characters share."""

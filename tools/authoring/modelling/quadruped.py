@@ -1,0 +1,159 @@
+"""From what an animator says of a quadruped to its poses: joints turn, feet stay planted."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from characters.motion.clip import Clip
+from characters.skeleton import rotations
+from characters.skeleton.pose import Pose, Skeleton
+from tools.authoring.modelling.ik import aim, bend
+from tools.authoring.modelling.shapes import Array
+
+DEGREE = np.pi / 180
+RATE = 30.0
+"""Frames a second [Hz]."""
+NEARLY_STRAIGHT = 0.985
+"""Reach of a leg over the length of its bones from which on it stretches instead."""
+
+
+@dataclass
+class Performance:
+    """What an animator says: how joints turn and move, and where the feet are."""
+
+    frames: int
+    """Number of frames of the loop."""
+
+    turns: dict[str, Array] = field(default_factory=dict)
+    """Joint to (frames, 3): nose up, to its left, tilted to its right [rad]."""
+
+    moves: dict[str, Array] = field(default_factory=dict)
+    """Joint to its offset from rest, (frames, 3) [m]."""
+
+    scales: dict[str, Array] = field(default_factory=dict)
+    """Joint to its scale, (frames,) or (frames, 3); others keep that of the rest pose."""
+
+    morphs: dict[str, Array] = field(default_factory=dict)
+    """Morph to how far it is on, (frames,); others are off."""
+
+    feet: dict[str, Array] = field(default_factory=dict)
+    """Foot to (frames, 4): offset from rest x, y, z [m] and toes up [rad]; else it is planted."""
+
+    @property
+    def seconds(self) -> float:
+        """Duration of the loop [s]."""
+        return self.frames / RATE
+
+    def turn(
+        self, joint: str, up: Array | float = 0, left: Array | float = 0, tilt: Array | float = 0
+    ) -> None:
+        """Add a turn to a joint; each argument is (frames,) or a number [rad]."""
+        self.turns[joint] = self.turns.get(joint, 0.0) + self._columns(up, left, tilt)
+
+    def move(
+        self, joint: str, x: Array | float = 0, y: Array | float = 0, z: Array | float = 0
+    ) -> None:
+        """Add an offset to a joint; each argument is (frames,) or a number [m]."""
+        self.moves[joint] = self.moves.get(joint, 0.0) + self._columns(x, y, z)
+
+    def show(self, morph: str, on: Array | float) -> None:
+        """Turn a morph further on; `on` is (frames,) or a number."""
+        self.morphs[morph] = self.morphs.get(morph, 0.0) + self._columns(on)[:, 0]
+
+    def step(
+        self,
+        foot: str,
+        x: Array | float = 0,
+        y: Array | float = 0,
+        z: Array | float = 0,
+        toes: Array | float = 0,
+    ) -> None:
+        """Add an offset to a foot on or above the ground [m] and a turn of its toes [rad]."""
+        self.feet[foot] = self.feet.get(foot, 0.0) + self._columns(x, y, z, toes)
+
+    def _columns(self, *values: Array | float) -> Array:
+        return np.stack([np.broadcast_to(value, self.frames) for value in values], axis=-1)
+
+
+def poses(performance: Performance, bound: Skeleton, feet: Sequence[str]) -> Pose:
+    """Return the poses of a performance, (frames, joints, …); the legs follow from the feet.
+
+    Parameters
+    ----------
+    performance : what the animator says
+    bound : the skeleton at rest, its joints unturned but for those of the face
+    feet : the last joint of every leg, which has two bones more above it
+    """
+    frames, rest = performance.frames, bound.rest
+    translations = np.tile(rest.translations, (frames, 1, 1))
+    turns = np.zeros((frames, len(bound), 3))
+    still = np.ones((len(bound), 3)) if rest.scales is None else rest.scales
+    scales = np.tile(still, (frames, 1, 1))
+    for name, move in performance.moves.items():
+        translations[:, bound.index(name)] += move
+    for name, turn in performance.turns.items():
+        turns[:, bound.index(name)] = turn
+    for name, scale in performance.scales.items():
+        scales[:, bound.index(name)] = np.reshape(scale, (frames, -1))
+    # Yaw, then pitch, then roll; nose up is a negative turn about x.
+    turned = rotations.from_euler("yxz", turns[..., [1, 0, 2]] * np.array([1.0, -1.0, 1.0]))
+    local = rotations.multiply(rest.rotations, turned)
+    body = Pose(translations, local).globals(bound)
+    for foot in feet:
+        steps = performance.feet.get(foot, np.zeros((frames, 4)))
+        stretch = _place_leg(bound.index(foot), steps, body, local, bound)
+        knee = bound.parents[bound.index(foot)]
+        translations[:, [knee, bound.index(foot)]] *= stretch[:, None]
+    return Pose(translations, rotations.continuous(local), scales)
+
+
+def _place_leg(ankle: int, offset: Array, body: Array, local: Array, bound: Skeleton) -> Array:
+    """Turn the three joints of a leg so that its foot is where it should.
+
+    Returns how much longer than at rest its bones must be, (frames, 1): a leg gives a little
+    before its foot leaves the ground.
+    """
+    knee = bound.parents[ankle]
+    hip = bound.parents[knee]
+    rest = bound.rest.globals(bound)[:, :3, 3]
+    parent = rotations.from_matrix(body[:, bound.parents[hip], :3, :3])
+    start, target = body[:, hip, :3, 3], rest[ankle] + offset[:, :3]
+    thigh, shin = rest[knee] - rest[hip], rest[ankle] - rest[knee]
+    upper, lower = float(np.linalg.norm(thigh)), float(np.linalg.norm(shin))
+    reach = np.linalg.norm(target - start, axis=1, keepdims=True)
+    stretch = np.maximum(1.0, reach / (NEARLY_STRAIGHT * (upper + lower)))
+    straight = (thigh + shin) / np.linalg.norm(thigh + shin)
+    pole = rotations.rotate(parent, thigh - straight * float(straight @ thigh))
+    bent = stretch * bend(start / stretch, target / stretch, pole, upper, lower)
+    hinge, rest_hinge = np.cross(target - start, pole), np.cross(thigh + shin, thigh)
+    thigh_turn = aim(thigh, rest_hinge, bent - start, hinge)
+    shin_turn = aim(shin, rest_hinge, target - bent, hinge)
+    sole = rotations.about("x", -offset[:, 3])
+    local[:, hip] = rotations.multiply(rotations.conjugate(parent), thigh_turn)
+    local[:, knee] = rotations.multiply(rotations.conjugate(thigh_turn), shin_turn)
+    local[:, ankle] = rotations.multiply(rotations.conjugate(shin_turn), sole)
+    return np.asarray(stretch)
+
+
+def clip(
+    name: str,
+    performance: Performance,
+    bound: Skeleton,
+    feet: Sequence[str],
+    morphs: Sequence[str] = (),
+) -> Clip:
+    """Return a performance as a loop: its last frame is its first.
+
+    Parameters
+    ----------
+    morphs : names of the character's morphs, if the clip is to set them
+    """
+    pose = poses(performance, bound, feet)
+    again = np.append(np.arange(performance.frames), 0)
+    scales = None if pose.scales is None else pose.scales[again]
+    turns = rotations.continuous(pose.rotations[again])
+    off = np.zeros(performance.frames)
+    shown = [performance.morphs.get(morph, off)[again] for morph in morphs]
+    face = np.stack(shown, axis=1) if morphs else None
+    return Clip(name, RATE, Pose(pose.translations[again], turns, scales, face))

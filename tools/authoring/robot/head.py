@@ -1,0 +1,250 @@
+"""The robot's head: a big skull on a blunt snout, a jaw like a drawer, eyes like lenses."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters.model.mesh import Mesh
+from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.rig import joint_places
+from tools.authoring.modelling.sculpt import Part, bound_mesh, lathe, sculpt
+from tools.authoring.modelling.shapes import (
+    WHITE,
+    Array,
+    Cut,
+    Ellipsoid,
+    Shape,
+    Solid,
+    Union,
+    Vector,
+    rgb,
+)
+from tools.authoring.modelling.surface import normals_of, project
+from tools.authoring.robot.parts import (
+    GLASS,
+    MAROON,
+    PANEL,
+    ROSE,
+    RUBBER,
+    SHELL,
+    TRIM,
+    Outside,
+    lens,
+    panel,
+    socket,
+    toward,
+)
+from tools.authoring.robot.rig import EYE, LID_YAW
+
+SKULL = Ellipsoid(
+    (0.0, 0.2470, 0.1460), (0.0600, 0.0480, 0.0570), power=2.3, bones=("head",), color=SHELL
+)
+SNOUT = Ellipsoid(
+    (0.0, 0.2235, 0.1940), (0.0430, 0.0270, 0.0390), power=2.5, bones=("head",), color=SHELL
+)
+LAMP = 0.0195
+"""Radius of the lamps at the temples [m]."""
+HEAD = Union((SKULL, SNOUT), 0.030)
+PUPIL, CELL = rgb("#0b0e16"), 0.0088
+GAZE = np.array([0.16, 0.12, 1.0]) / np.linalg.norm([0.16, 0.12, 1.0])
+RADIUS = 0.0222
+"""Of an eye [m]."""
+LID_OPEN, LOWER_LID_OPEN = 1.22, 1.20
+"""Elevation of the rim of an open lid above and below straight ahead [rad]."""
+
+
+@dataclass(frozen=True)
+class BelowLips(Solid):
+    """The room of the jaw: under the line of the lips, and ahead of its hinge."""
+
+    gap: float = 0.0
+    """How far under the line it begins [m]."""
+
+    def distance(self, points: Array) -> Array:
+        """Return the signed distance, about, (n,) [m]."""
+        return np.maximum(points[:, 1] - lip_height(points[:, 2]) + self.gap, 0.150 - points[:, 2])
+
+    def mirrored(self) -> "BelowLips":
+        """Return itself."""
+        return self
+
+
+def lip_height(forward: Array) -> Array:
+    """Return the height of the line between the lips, so far forward, (n,) [m]."""
+    return np.asarray(0.2105 + 0.10 * np.maximum(0.0, 0.205 - forward))
+
+
+def head(bound: Skeleton) -> list[Mesh]:
+    """Return the head without the lamps that are on and without its glossy eyes."""
+    upper = Cut(HEAD, BelowLips(-0.0006), 0.003)
+    # The jaw is the part of the head that the upper half leaves, held by its own joint.
+    lower = Cut(_held(HEAD, "jaw"), Outside(BelowLips(0.0006)), 0.003)
+    return [
+        sculpt("", [Part(upper, CELL, soft_skin=0.0)], bound),
+        sculpt("", [Part(lower, CELL, soft_skin=0.0)], bound),
+        _tongue(bound),
+        panel(HEAD, _along((0.0, 0.320, 0.150)), (0.021, 0.050), PANEL, "head", bound),
+        _lip(bound),
+        _lining("jaw", 0.0004, bound),
+        _lining("head", -0.0004, bound),
+        *_nostrils(bound),
+        *(piece for side in (1.0, -1.0) for piece in _sides(side, bound)),
+    ]
+
+
+def _held(shape: Union, bone: str) -> Shape:
+    """Return the same shape held by another joint."""
+    solids = [each for each in shape.shapes if isinstance(each, Ellipsoid)]
+    moved = (
+        Ellipsoid(s.center, s.radii, s.turn, s.power, bones=(bone,), color=s.color) for s in solids
+    )
+    return Union(tuple(moved), shape.blend)
+
+
+def _lip(bound: Skeleton) -> Mesh:
+    """Return the dark line of the mouth: its middle and its two corners pull at it."""
+    across = np.linspace(-1.0, 1.0, 33)
+    line = _around(across * 1.95)
+    corner = np.clip((np.abs(across) - 0.06) / 0.60, 0, 1) ** 1.6
+    bones = np.zeros((len(across), len(bound)))
+    bones[:, bound.index("lips")] = 1 - corner
+    bones[:, bound.index("LeftMouthCorner")] = corner * (across > 0)
+    bones[:, bound.index("RightMouthCorner")] = corner * (across < 0)
+    thick = 0.0021 * np.minimum(1.0, 3.2 * (1.02 - np.abs(across)))
+    return _tube(line, thick, bones, bound)
+
+
+def _lining(joint: str, proud: float, bound: Skeleton) -> Mesh:
+    """Return the floor of the mouth on the jaw, facing up, or its roof on the head, facing down."""
+    rim = _around(np.linspace(-1.95, 1.95, 27))
+    middle = rim.mean(axis=0)
+    out = rim - middle
+    out *= 1 - 0.0030 / np.linalg.norm(out, axis=1, keepdims=True)
+    points = middle + np.vstack([np.zeros((1, 3)), 0.5 * out, out])
+    points[:, 1] = lip_height(points[:, 2]) + proud
+    up = 1.0 if proud > 0 else -1.0
+    ring, after = np.arange(27) + 1, (np.arange(27) + 1) % 27 + 1
+    fan = np.stack([0 * ring, ring, after], axis=1)
+    rest = np.stack([ring, ring + 27, after + 27, ring, after + 27, after], axis=1)
+    triangles = np.vstack([fan, rest.reshape(-1, 3)])
+    bones = np.zeros((len(points), len(bound)))
+    bones[:, bound.index(joint)] = 1.0
+    normals = np.tile([0.0, up, 0.0], (len(points), 1))
+    colors = np.tile(np.array(MAROON), (len(points), 1))
+    return bound_mesh(points, normals, triangles[:, :: int(up)], bones, colors, bound)
+
+
+def _tongue(bound: Skeleton) -> Mesh:
+    profile = np.array([[0, -0.6], [0.86, -0.5], [1, 0], [0.86, 0.6], [0.5, 0.92], [0, 1]])
+    place = toward((0.0, 1.0, 0.10), joint_places(bound)["tongue"])
+    place[:3, :3] = place[:3, :3] @ np.diag([0.0185, 0.0225, 0.0044])
+    return lathe(profile, [ROSE] * 5, place, "tongue", bound, 18)
+
+
+def _around(turn: Array) -> Array:
+    """Return where the line of the lips is on the snout, so far around it [rad], (n, 3)."""
+    way = np.stack([np.sin(turn), 0 * turn, np.cos(turn)], axis=1) * [0.72, 1.0, 1.0]
+    near, far = np.full(len(turn), 0.01), np.full(len(turn), 0.09)
+    points = np.zeros((len(turn), 3))
+    for _ in range(40):  # bisection outwards
+        middle = 0.5 * (near + far)
+        points = np.array([0.0, 0.0, 0.170]) + middle[:, None] * way
+        points[:, 1] = lip_height(points[:, 2]) + 0.0004
+        within = HEAD.distance(points) < 0
+        near, far = np.where(within, middle, near), np.where(within, far, middle)
+    return points
+
+
+def _tube(line: Array, radius: Array, bones: Array, bound: Skeleton, sides: int = 5) -> Mesh:
+    """Return a dark tube along points (n, 3) on the head, with one row of weights each."""
+    along = np.gradient(line, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    out = normals_of(HEAD.distance, line, 0.006)
+    angle = np.linspace(0, 2 * np.pi, sides, endpoint=False)[None, :, None]
+    ring = np.cos(angle) * out[:, None] + np.sin(angle) * np.cross(along, out)[:, None]
+    points = (line[:, None] + radius[:, None, None] * ring).reshape(-1, 3)
+    i, k = np.meshgrid(np.arange(len(line) - 1), np.arange(sides), indexing="ij")
+    k2 = (k + 1) % sides
+    a, b, c, d = i * sides + k, i * sides + k2, (i + 1) * sides + k2, (i + 1) * sides + k
+    triangles = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1, 3)
+    weights, colors = np.repeat(bones, sides, axis=0), np.tile(np.array(RUBBER), (len(points), 1))
+    return bound_mesh(points, ring.reshape(-1, 3), triangles, weights, colors, bound)
+
+
+def _on_head(near: Vector | Array, sunk: float = 0.0) -> Array:
+    """Return the frame on the head next to a place, its +z away from it."""
+    place = project(HEAD.distance, np.asarray([near], float), 0.05, 8)
+    normal = normals_of(HEAD.distance, place, 0.005)[0]
+    return toward(normal, place[0] - sunk * normal)
+
+
+def _along(near: Vector) -> Array:
+    """Return the frame on the head next to a place, its +z away from it, its +y forward."""
+    frame = _on_head(near)
+    frame[:3, 0] = [1.0, 0.0, 0.0]  # it lies on the middle of the head
+    frame[:3, 1] = np.cross(frame[:3, 2], frame[:3, 0])
+    return frame
+
+
+def _nostrils(bound: Skeleton) -> list[Mesh]:
+    rings = np.array([[0, -2], [4.2, -1.5], [4.6, 0.3], [2.6, 0.9], [0, 0.7]]) * 1e-3
+    places = [_on_head((side * 0.0150, 0.2400, 0.2260)) for side in (1.0, -1.0)]
+    return [lathe(rings, [RUBBER] * 4, place, "head", bound, 12) for place in places]
+
+
+def _sides(side: float, bound: Skeleton) -> list[Mesh]:
+    """Return what is twice: the bezel of an eye, its lids, and the dark lamp at the temple."""
+    name = "Left" if side > 0 else "Right"
+    center, gaze = np.array(EYE) * [side, 1, 1], GAZE * [side * 1.5, 1, 1]
+    bezel = np.array([[0, 0], [25.6, 0], [26.6, 5], [25.2, 8.2], [22.6, 8.6], [0, 7]]) * 1e-3
+    ring = toward(gaze, center - 0.0050 * gaze)
+    upper = _lid(LID_OPEN + np.pi / 2, 1.075, f"{name}UpperLid", center, bound)
+    lower = _lid(-LOWER_LID_OPEN - np.pi / 2, 1.050, f"{name}LowerLid", center, bound)
+    bezel_mesh = lathe(bezel, [TRIM, TRIM, TRIM, RUBBER, RUBBER], ring, "head", bound, 28)
+    return [bezel_mesh, upper, lower, socket(temple(side), LAMP, "head", bound)]
+
+
+def _lid(elevation: float, size: float, joint: str, center: Array, bound: Skeleton) -> Mesh:
+    """Return half a shell around an eye with a dark rim; `elevation` is that of its pole."""
+    angle = np.radians([90, 79, 60, 40, 20, 0])
+    dome = np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    rings = RADIUS * size * np.vstack([[0.0, 0.0], dome])
+    yaw = LID_YAW * (1 if joint.startswith("Left") else -1)
+    ahead = np.cos(elevation)
+    pole = np.array([ahead * np.sin(yaw), np.sin(elevation), ahead * np.cos(yaw)])
+    return lathe(rings, [RUBBER, RUBBER, *[PANEL] * 4], toward(pole, center), joint, bound, 24)
+
+
+def eyes(bound: Skeleton) -> list[Mesh]:
+    """Return the two eyeballs: black glass with a ring of light, and two highlights on each."""
+    pieces = []
+    for side, name in ((1.0, "LeftEye"), (-1.0, "RightEye")):
+        center, gaze = np.array(EYE) * [side, 1, 1], GAZE * [side, 1, 1]
+        angle = np.radians([180, 120, 90, 70, 66, 48, 24, 0])
+        rings = RADIUS * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+        bands = [GLASS, GLASS, WHITE, RUBBER, GLASS, PUPIL, PUPIL]
+        pieces.append(lathe(rings, bands, toward(gaze, center), name, bound, 28))
+        for across, up, radius in ((-0.30, 0.40, 0.0064), (0.26, -0.30, 0.0030)):
+            shine = gaze + np.array([across, up, 0.0])  # on the same side in both: one sun
+            wide = radius / RADIUS * np.array([0.0, 1.0, 0.5, 0.0])
+            cap = RADIUS * 1.022 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
+            cap[0, 1] *= 0.95
+            pieces.append(lathe(cap, [WHITE] * 3, toward(shine, center), "head", bound, 14))
+    return pieces
+
+
+def temple(side: float) -> Array:
+    """Return where the lamp at a temple sits, its +z away from the head."""
+    return _on_head((side * 0.08, 0.2330, 0.1420), 0.001)
+
+
+def lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
+    """Return the lamps at the temples and the rings of the eyes as they are when they are on."""
+    pieces = [lens(temple(side), LAMP, color, f"head_{mood}", bound) for side in (1.0, -1.0)]
+    angle = np.radians([180, 66, 60, 53, 48, 0])
+    size = RADIUS * np.array([0.90, 0.99, 1.018, 1.018, 0.99, 0.90])[:, None]
+    rings = size * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    for side, name in ((1.0, "LeftIris"), (-1.0, "RightIris")):
+        place = toward(GAZE * [side, 1, 1], np.array(EYE) * [side, 1, 1])
+        pieces.append(lathe(rings, [color] * 5, place, f"{name}_{mood}", bound, 28))
+    return pieces

@@ -1,0 +1,163 @@
+"""What the robot is put together from: shells, cups, hubs, lenses, and their colours."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters.model.mesh import Mesh
+from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.sculpt import bound_mesh, lathe
+from tools.authoring.modelling.shapes import Array, Shape, Solid, Vector, rgb
+from tools.authoring.modelling.surface import normals_of, project
+
+SHELL, PANEL, TRIM = rgb("#f3efe6"), rgb("#6d84c4"), rgb("#4a5f9e")
+RUBBER, GLASS, STEEL = rgb("#272d3d"), rgb("#3d4454"), rgb("#aab2c2")
+MAROON, ROSE = rgb("#5d1830"), rgb("#ef7d8e")
+_PLATE = 22
+"""Corners of a plate."""
+
+
+@dataclass(frozen=True)
+class Grown(Solid):
+    """A shape that is thicker all round, or thinner: the panel on a shell, the wall of a mouth."""
+
+    shape: Shape
+    """What grows."""
+
+    by: float
+    """How much [m]; negative to shrink."""
+
+    def distance(self, points: Array) -> Array:
+        """Return the signed distance, (n,) [m]."""
+        return self.shape.distance(points) - self.by
+
+    def mirrored(self) -> "Grown":
+        """Return its image in the plane x = 0."""
+        return Grown(self.shape.mirrored(), self.by, bones=self._other_bones(), color=self.color)
+
+
+@dataclass(frozen=True)
+class Outside(Solid):
+    """Everything that a shape is not; cutting it away keeps what is inside the shape."""
+
+    shape: Shape
+    """What is left out."""
+
+    def distance(self, points: Array) -> Array:
+        """Return the signed distance, (n,) [m]."""
+        return -self.shape.distance(points)
+
+    def solids(self) -> Iterator[Solid]:
+        """Yield nothing: it is a tool."""
+        return iter(())
+
+    def mirrored(self) -> "Outside":
+        """Return its image in the plane x = 0."""
+        return Outside(self.shape.mirrored())
+
+
+def toward(axis: Sequence[float] | Array, place: Sequence[float] | Array) -> Array:
+    """Return the (4, 4) frame at a place whose +z is the axis and whose +y is as high as can be."""
+    z = np.asarray(axis, float) / np.linalg.norm(axis)
+    hint = np.array([0.0, 1.0, 0.0]) if abs(z[1]) < 0.95 else np.array([0.0, 0.0, -1.0])
+    x = np.cross(hint, z)
+    x /= np.linalg.norm(x)
+    frame = np.eye(4)
+    frame[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
+    frame[:3, 3] = place
+    return frame
+
+
+def cup(
+    a: Sequence[float] | Array,
+    b: Sequence[float] | Array,
+    radii: tuple[float, float],
+    color: Vector,
+    joint: str,
+    bound: Skeleton,
+    segments: int = 16,
+    dome: bool = False,
+) -> Mesh:
+    """Return a rigid piece of a limb from a to b: one link of a chain.
+
+    Its rims are rounded; with `dome` it ends at b in half a ball.
+    """
+    start, end = np.asarray(a, float), np.asarray(b, float)
+    length, bevel = float(np.linalg.norm(end - start)), 0.0026
+    low, high = radii
+    middle = 0.5 * (low + high) + 0.0008
+    profile = [[0, 0], [low - bevel, 0], [low, bevel], [middle, length / 2]]
+    profile += [[high, length - bevel], [high - bevel, length], [0, length]]
+    if dome:
+        profile[4:] = [[high, length], [0.78 * high, length + 0.7 * high], [0, length + high]]
+    place = toward(end - start, start)
+    return lathe(np.array(profile), [color] * 6, place, joint, bound, segments)
+
+
+def panel(
+    shape: Shape,
+    place: Array,
+    half: tuple[float, float],
+    color: Vector,
+    joint: str,
+    bound: Skeleton,
+    lift: float = 0.0018,
+) -> Mesh:
+    """Return a raised plate with round corners on a shape, whose seam is crisp at any distance.
+
+    Parameters
+    ----------
+    shape : what it lies on
+    place : (4, 4), its middle, +z away from the shape, +y along it
+    half : half its extent along x and y [m]
+    color : linear RGB
+    joint : the joint that moves it
+    bound : the skeleton
+    lift : how far it stands proud [m]
+    """
+    angle = np.linspace(0, 2 * np.pi, _PLATE, endpoint=False)
+    round_ = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    square = round_ / np.sum(np.abs(round_) ** 3.4, axis=1, keepdims=True) ** (1 / 3.4)
+    rings = np.array([[0.0, 1], [0.33, 1], [0.66, 1], [0.95, 1], [1.0, 0.6], [1.02, -1.2]])
+    flat = (rings[:, :1, None] * square * half).reshape(-1, 2)
+    near = place[:3, 3] + flat @ place[:3, :2].T
+    points = project(shape.distance, near, 0.05, 10)
+    normals = normals_of(shape.distance, points, 0.004)
+    out = points + lift * np.repeat(rings[:, 1], _PLATE)[:, None] * normals
+    edge = np.repeat([0.0, 0.0, 0.0, 0.5, 1.6, 1.6], _PLATE)[:, None]
+    leaning = normals + edge * np.tile(square @ place[:3, :2].T, (len(rings), 1))
+    leaning /= np.linalg.norm(leaning, axis=1, keepdims=True)
+    bones = np.zeros((len(out), len(bound)))
+    bones[:, bound.index(joint)] = 1.0
+    paint = np.tile(np.array(color), (len(out), 1))
+    paint[-2 * _PLATE :] = RUBBER  # the seam
+    i = np.arange(_PLATE)
+    j = (i + 1) % _PLATE
+    quads = np.stack([i, i + _PLATE, j + _PLATE, i, j + _PLATE, j], axis=1).reshape(-1, 3)
+    triangles = np.concatenate([quads + _PLATE * ring for ring in range(len(rings) - 1)])
+    return bound_mesh(out, leaning, triangles, bones, paint, bound)
+
+
+def hub(place: Array, radius: float, joint: str, bound: Skeleton, face: Vector = STEEL) -> Mesh:
+    """Return the cap of a servo: a dark ring about a plate with a screw in it, facing +z."""
+    profile = np.array([[0, -8], [10, -8], [10, 2.2], [7.6, 2.6], [7.6, 2.2], [2.4, 2.2], [0, 1.2]])
+    scaled = profile * [radius / 10, 1.0] * [1.0, 1e-3]
+    return lathe(scaled, [RUBBER, RUBBER, RUBBER, face, face, RUBBER], place, joint, bound, 16)
+
+
+def socket(place: Array, radius: float, joint: str, bound: Skeleton) -> Mesh:
+    """Return the dark ring and the dull glass of a lamp that is off, facing +z."""
+    ring = [[0, -6], [12, -6], [12, 1.4], [10.6, 2.6], [9.2, 1.6]]
+    glass = [[7.6, 2.0], [4.6, 2.8], [0, 3.2]]
+    profile = np.array(ring + glass) * [radius / 12, 1.0] * [1.0, 1e-3]
+    return lathe(profile, [RUBBER] * 4 + [GLASS] * 3, place, joint, bound, 20)
+
+
+def lens(place: Array, radius: float, color: Vector, joint: str, bound: Skeleton) -> Mesh:
+    """Return the domed glass of a lamp that is on, with a bright middle, facing +z."""
+    profile = np.array([[0, 0], [9.5, 1.2], [6.6, 4.0], [3.6, 5.0], [0, 5.3]])
+    scaled = profile * [radius / 12, 1.0] * [1.0, 1e-3]
+    core = tuple(np.clip(0.16 + 0.95 * np.array(color), 0, 1).tolist())
+    bright = (core[0], core[1], core[2])
+    return lathe(scaled, [color, color, bright, bright], place, joint, bound, 20)

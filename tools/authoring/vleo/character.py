@@ -1,0 +1,90 @@
+"""Vleo, a baby sauropod that throws kisses and shouts: its mesh, skeleton and clips."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.model.character import Character
+from characters.model.mesh import Material, Mesh, Morph
+from characters.motion.clip import Clip
+from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.sculpt import join
+from tools.authoring.vleo.clips import clip
+from tools.authoring.vleo.effects import effects
+from tools.authoring.vleo.expressions import EXPRESSIONS
+from tools.authoring.vleo.face import face, with_expressions
+from tools.authoring.vleo.gestures import gestures
+from tools.authoring.vleo.idle import idle
+from tools.authoring.vleo.kiss import kiss
+from tools.authoring.vleo.marks import marks
+from tools.authoring.vleo.pieces import skin_mesh
+from tools.authoring.vleo.rig import resting, skeleton
+from tools.authoring.vleo.shout import shout
+from tools.authoring.vleo.skin import body
+
+LEVELS = ("head", "legs", "tail")
+"""What joins in at intensities −1, 0 and 1."""
+
+
+def build_vleo() -> Character:
+    """Return Vleo, 0.45 m from nose to tail, as it is shipped."""
+    bound = skeleton()
+    rest = resting(bound)
+    return Character("vleo", rest, clips(rest), (mesh(bound),), morphs=tuple(EXPRESSIONS))
+
+
+def clips(bound: Skeleton) -> dict[str, Clip]:
+    """Return all clips by name."""
+    made = [clip("idle", idle(), bound)]
+    for level, name in enumerate(LEVELS):
+        made.append(clip(f"kiss_{name}", kiss(level, bound), bound))
+        made.append(clip(f"shout_{name}", shout(level, bound), bound))
+    made += gestures(bound)
+    return {each.name: each for each in made}
+
+
+def mesh(bound: Skeleton) -> Mesh:
+    """Return Vleo's one mesh, bound to the skeleton's pose."""
+    skin = body(bound)
+    outside = [with_expressions(m, bound) for m in (skin_mesh(skin, bound), *marks(skin, bound))]
+    pieces = [*outside, *face(bound), *effects(bound)]
+    return _welded(join("Vleo", pieces, Material(roughness=0.55)))
+
+
+def _welded(mesh: Mesh) -> Mesh:
+    """Return the mesh with equal vertices merged and triangles without area left out."""
+    colors = np.ones((len(mesh.positions), 4)) if mesh.colors is None else mesh.colors
+    shifts = np.zeros((len(mesh.morphs), len(mesh.positions), 3))
+    for row, morph in zip(shifts, mesh.morphs, strict=True):
+        row[morph.vertices] = morph.shifts
+    moved = shifts.swapaxes(0, 1).reshape(len(mesh.positions), -1)
+    columns = (mesh.positions, mesh.normals, mesh.joints, mesh.weights, colors, moved)
+    rows = np.hstack([np.asarray(column, np.float64) for column in columns])
+    _, first, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    order = np.sort(first)  # as they came
+    rank = np.searchsorted(order, first)[number.reshape(-1)]
+    triangles = rank[mesh.triangles].astype(np.uint32)
+    a, b, c = triangles.T
+    return replace(
+        mesh,
+        positions=mesh.positions[order],
+        normals=mesh.normals[order],
+        triangles=triangles[(a != b) & (b != c) & (c != a)],
+        joints=mesh.joints[order],
+        weights=mesh.weights[order],
+        colors=colors[order].astype(np.float32),
+        morphs=tuple(_kept(morph, order) for morph in mesh.morphs),
+    )
+
+
+def _kept(morph: Morph, order: NDArray[np.intp]) -> Morph:
+    """Return a morph of the vertices that remain, in their order."""
+    there = np.isin(morph.vertices, order)
+    turned = morph.normal_shifts
+    return replace(
+        morph,
+        vertices=np.searchsorted(order, morph.vertices[there]).astype(np.uint32),
+        shifts=morph.shifts[there],
+        normal_shifts=None if turned is None else turned[there],
+    )

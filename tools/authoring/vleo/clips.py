@@ -1,0 +1,103 @@
+"""What Vleo's clips have in common: its face, its tail that drags behind, and what flies away."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from characters.motion.clip import Clip
+from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.loops import Array, follow, phases
+from tools.authoring.modelling.quadruped import RATE, Performance, poses
+from tools.authoring.modelling.quadruped import clip as looped
+from tools.authoring.vleo.expressions import EXPRESSIONS
+from tools.authoring.vleo.rig import FEET, HIDDEN, TAIL
+
+
+def clip(name: str, performance: Performance, bound: Skeleton) -> Clip:
+    """Return a performance as a loop: its last frame is its first."""
+    return looped(name, performance, bound, FEET, tuple(EXPRESSIONS))
+
+
+def tail(act: Performance, up: Array, left: Array, tip: float = 1.6, drag: float = 1.0) -> None:
+    """Swing the tail from its root; every joint hangs behind the one before it.
+
+    Parameters
+    ----------
+    up, left : turn of the first joint (frames,) [rad]; up lifts the tail
+    tip : turn of the last joint over that of the first
+    drag : how late the joints are; 1 is the natural tail
+    """
+    seconds = act.frames / RATE
+    for number, joint in enumerate(TAIL):
+        share = 1 + (tip - 1) * number / (len(TAIL) - 1)
+        if number:
+            hertz = 4.2 / (drag * (1 + 0.12 * number))
+            up, left = follow(up, seconds, hertz, 0.55), follow(left, seconds, hertz, 0.55)
+        act.turn(joint, up=-share * up, left=-share * left)
+
+
+def breathe(act: Performance, cycles: int, depth: float = 0.035) -> None:
+    """Let the belly fill and the chest rise a little."""
+    breath = 0.5 - 0.5 * np.cos(2 * np.pi * cycles * phases(act.frames))
+    act.scales["belly"] = 1 + depth * breath[:, None] * np.array([1.0, 1.0, 0.5])
+    act.turn("chest", up=0.25 * depth * breath)
+    act.turn("neck1", up=-0.3 * depth * breath)
+
+
+@dataclass(frozen=True)
+class Flight:
+    """The way of one heart or one burst."""
+
+    start: float
+    """Phase at which it leaves the mouth."""
+
+    life: float
+    """Part of the loop that it lives."""
+
+    way: tuple[float, float, float]
+    """Where it gets to, from the mouth [m]."""
+
+    size: float
+    """Its scale when fully grown; 0 for one that only goes along, so that blends agree."""
+
+    swirl: float = 0.0
+    """How far it swings to the side on its way [m]."""
+
+    facing: float = 0.0
+    """Where it faces half way, to the left of ahead [rad]."""
+
+    spin: float = 0.0
+    """How far it turns about the upright [rad]."""
+
+
+def fly(
+    act: Performance, joints: Sequence[str], flights: Sequence[Flight], bound: Skeleton
+) -> None:
+    """Send effects out of the mouth as it is when each leaves."""
+    pose = poses(act, bound, FEET)
+    mouth = pose.globals(bound)[:, bound.index("lips"), :3, 3]
+    home = bound.rest.translations
+    for joint, flight in zip(joints, flights, strict=True):
+        leaves = mouth[round(flight.start * act.frames) % act.frames]
+        age = ((phases(act.frames) - flight.start) % 1.0) / flight.life
+        alive = age < 1
+        age = np.minimum(age, 1.0)
+        out = 1 - (1 - age) ** 3
+        sideways = flight.swirl * np.sin(2 * np.pi * age)
+        rise = np.stack([out, age**1.3, out], axis=1) * np.array(flight.way)
+        offset = leaves - home[bound.index(joint)] + rise + sideways[:, None] * np.array([1, 0, 0])
+        act.moves[joint] = np.where(alive[:, None], offset, leaves - home[bound.index(joint)])
+        act.scales[joint] = np.where(alive, np.maximum(flight.size * _pop(age), HIDDEN), HIDDEN)
+        act.turn(
+            joint,
+            left=(flight.facing + flight.spin * (age - 0.5)) * alive,
+            tilt=0.3 * np.sin(6 * age) * alive,
+        )
+
+
+def _pop(age: Array) -> Array:
+    """Return the size over a life: quickly past full size, then full, then gone."""
+    grown = 1.18 * np.sin(np.pi / 2 * np.clip(age / 0.22, 0, 1))
+    settle = 0.18 * np.clip((age - 0.22) / 0.2, 0, 1)
+    return np.asarray((grown - settle) * np.clip((1 - age) / 0.25, 0, 1) ** 0.5)

@@ -1,0 +1,40 @@
+"""Vleo's face: eyes, lids, brows and mouth, and what of it the skin goes along with."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from characters.model.mesh import Mesh
+from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.morphs import difference
+from tools.authoring.vleo.expressions import EXPRESSIONS, Face, cheeks, dropped
+from tools.authoring.vleo.eyes import eyes
+from tools.authoring.vleo.mouth import mouth
+from tools.authoring.vleo.skin import jaw_share
+
+
+def face(bound: Skeleton) -> list[Mesh]:
+    """Return all pieces of the face with their morphs, bound to the skeleton."""
+    return [*eyes(bound), *mouth(bound)]
+
+
+def with_expressions(mesh: Mesh, bound: Skeleton) -> Mesh:
+    """Return a piece of the skin, or of what sticks to it, that goes along with the face."""
+    head = [bound.index(joint) for joint in ("head", "jaw")]
+    share = (mesh.weights * np.isin(mesh.joints, head)).sum(axis=1)
+    made = ((name, _carried(mesh, expression, share)) for name, expression in EXPRESSIONS.items())
+    morphs = [morph for name, other in made if (morph := difference(name, mesh, other))]
+    return replace(mesh, morphs=tuple(morphs))
+
+
+def _carried(mesh: Mesh, expression: Face, share: np.ndarray) -> Mesh:
+    """Return the piece as jaw and cheeks carry it, each vertex by its share of them."""
+    points = mesh.positions.astype(float)
+    raised = points + cheeks(points, expression) * share[:, None]
+    moved = dropped(raised, share * jaw_share(points), expression)
+    needles = dropped(raised + mesh.normals, share * jaw_share(points), expression)
+    return replace(
+        mesh,
+        positions=moved.astype(np.float32),
+        normals=(needles - moved).astype(np.float32),
+    )

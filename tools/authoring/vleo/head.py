@@ -1,0 +1,118 @@
+"""The clay of Vleo's head, and the room in it where eyes and mouth are put in."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from tools.authoring.modelling.shapes import Array, Ellipsoid, Shape, Solid, Union
+from tools.authoring.vleo.rig import EYE
+
+EYE_RADIUS = 0.0255
+"""Of an eyeball [m]."""
+SIGHT = np.array([0.28, 0.09, 1.0]) / np.linalg.norm([0.28, 0.09, 1.0])
+"""Where the left eye looks at rest."""
+_LEFT = np.cross([0.0, 1.0, 0.0], SIGHT) / np.linalg.norm(np.cross([0.0, 1.0, 0.0], SIGHT))
+EYE_AXES = np.stack([_LEFT, np.cross(SIGHT, _LEFT), SIGHT], axis=1)
+"""Of the left eye: to its left, up and along its sight, as columns."""
+OPENING = np.radians([46.0, 42.0, 38.0])
+"""Of the lids, seen from the middle of the ball: half the width, up and down [rad]."""
+
+
+@dataclass(frozen=True)
+class Mirrored(Solid):
+    """A shape of the left half together with its image on the right, for the price of one."""
+
+    left: Shape
+    """The half at x > 0."""
+
+    def distance(self, points: Array) -> Array:
+        """Return the signed distance to the nearer of both, (n,) [m]."""
+        return self.left.distance(np.abs(points) * [1, 0, 0] + points * [0, 1, 1])
+
+    def solids(self) -> Iterator[Solid]:
+        """Yield the solids of both sides."""
+        yield from self.left.solids()
+        yield from self.left.mirrored().solids()
+
+    def mirrored(self) -> "Mirrored":
+        """Return itself."""
+        return self
+
+
+@dataclass(frozen=True)
+class Hollow(Solid):
+    """The room behind the mouth; its rim lies hidden under the skin about the lips."""
+
+    def distance(self, points: Array) -> Array:
+        """Return the signed distance, about, (n,) [m]."""
+        side = around(points)
+        height = points[:, 1] - lip_line(side)
+        ahead = 1 - np.clip(np.abs(side) / 0.55, 0, 1) ** 2
+        room = np.where(height > 0, 0.0042 + 0.0034 * ahead, 0.0086)
+        up = room * (1 - np.clip(np.abs(side) / 0.86, 0, 1) ** 4)
+        slot = np.maximum(np.abs(height) - up, 0.132 - points[:, 2])
+        return np.asarray(slot)
+
+    def mirrored(self) -> "Hollow":
+        """Return itself."""
+        return self
+
+
+@dataclass(frozen=True)
+class Socket(Solid):
+    """What the left eyeball takes the place of: a cone from its middle, but for what is deep."""
+
+    def distance(self, points: Array) -> Array:
+        """Return the signed distance, about, (n,) [m]."""
+        off = points - EYE
+        away = np.maximum(np.linalg.norm(off, axis=1), 1e-6)
+        wide = np.linalg.norm(eye_angles(off) / (1.16 * OPENING[:2]), axis=1)
+        shell = np.maximum(0.94 * EYE_RADIUS - away, away - 1.15 * EYE_RADIUS)
+        return np.asarray(np.maximum((wide - 1) * 0.8 * away, shell))
+
+    def mirrored(self) -> "Socket":
+        """Return itself: it is never drawn."""
+        return self
+
+
+def eye_angles(off: Array) -> Array:
+    """Return how far to the left and up of its sight points (n, 3) from the left eye are [rad]."""
+    x, y, z = (off @ EYE_AXES).T
+    angle = np.arctan2(np.hypot(x, y), z)
+    flat = np.maximum(np.hypot(x, y), 1e-9)
+    return np.stack([x / flat * angle, y / flat * angle], axis=-1)
+
+
+MIDDLE = 0.118
+"""How far forward the upright through the head is from which its front is seen [m]."""
+
+
+def around(points: Array) -> Array:
+    """Return how far to the left of straight ahead points (n, 3) of the head are, (n,) [rad]."""
+    return np.asarray(np.arctan2(points[:, 0], points[:, 2] - MIDDLE))
+
+
+def lip_line(side: Array, smile: float = 0.0105, width: float = 0.70) -> Array:
+    """Return the height between the closed lips, so far to the side [rad], (n,) [m].
+
+    Parameters
+    ----------
+    smile : height of the corners above the middle [m]
+    width : where the corners are [rad]
+    """
+    bent = np.minimum((side / width) ** 2, 1.0) + 0.8 * np.clip(np.abs(side) / width - 1, 0, 1)
+    return np.asarray(0.2150 + smile * bent)
+
+
+@cache
+def head() -> Shape:
+    """Return the head: a big skull, a soft snout, cheeks and two nostrils."""
+    skull = Ellipsoid((0.0, 0.2530, 0.110), (0.0600, 0.0535, 0.0545), bones=("head",))
+    snout = Ellipsoid((0.0, 0.2225, 0.149), (0.0400, 0.0275, 0.0395), bones=("head",))
+    cheek = Ellipsoid((0.030, 0.2190, 0.138), (0.0225, 0.0215, 0.0225), bones=("head",))
+    nostril = Ellipsoid((0.0125, 0.2385, 0.1800), (0.0075, 0.0065, 0.0075), bones=("head",))
+    mound = Ellipsoid((EYE[0], EYE[1], EYE[2]), (1.01 * EYE_RADIUS,) * 3, bones=("head",))
+    front = Union((Union((skull, snout), 0.018), Mirrored(cheek), Mirrored(nostril)), 0.014)
+    return Union((front, Mirrored(mound)), 0.012)

@@ -1,0 +1,148 @@
+"""The skin of Vleo as a mesh: finer where the face is, held by its joints, and painted."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.sculpt import skin_weights
+from tools.authoring.modelling.shapes import Array, Ellipsoid, Vector
+from tools.authoring.modelling.surface import normals_of, polygonise
+from tools.authoring.vleo.body import BACK_TEAL, CREAM, MAROON, TEAL, skin, spine_line, whole
+from tools.authoring.vleo.head import EYE_RADIUS, Hollow, around, lip_line
+from tools.authoring.vleo.rig import EYE
+
+TRUNK_CELL, FACE_CELL = (0.0084, 0.0101, 0.0100), (0.0056, 0.0044, 0.0047)
+"""Edges of a grid cell far from the mouth and about it, along x, y, z [m]."""
+FORWARD, TAIL_END = 2, -0.19
+"""The axis along which the tail points back, and where it is so thin that cells are short [m]."""
+MOUTH_BOX = ((-0.044, 0.044), (0.192, 0.246), (0.134, 0.300))
+"""Where the cells are small, along x, y, z [m]."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """The skin as a mesh, in arrays."""
+
+    points: Array
+    """(n, 3) [m]."""
+
+    normals: Array
+    """(n, 3)."""
+
+    triangles: NDArray[np.int64]
+    """(m, 3)."""
+
+    weights: Array
+    """Of every joint, (n, joints)."""
+
+    colors: Array
+    """Linear RGB, (n, 3)."""
+
+
+def body(bound: Skeleton) -> Body:
+    """Return the skin with its weights and colours."""
+    points, triangles = _surface()
+    solids = list(skin().solids())
+    distances = np.stack([solid.distance(points) for solid in solids], axis=1)
+    weights = skin_weights(points, triangles, solids, distances, bound, 0.022)
+    weights = _with_face(points, _with_firm_feet(points, weights, bound), bound)
+    normals = normals_of(skin().distance, points, 0.003)
+    eye = np.linalg.norm(np.abs(points) * [1, 0, 0] + points * [0, 1, 1] - EYE, axis=1)
+    # The light knows nothing of rims that are hidden under lids and lips.
+    outside = (whole().distance(points) > -0.0012) | (eye < 1.5 * EYE_RADIUS)
+    normals[outside] = normals_of(whole().distance, points[outside], 0.003)
+    return Body(points, normals, triangles, weights, painted(points, normals))
+
+
+def _surface() -> tuple[Array, NDArray[np.int64]]:
+    """Return the mesh, its grid stretched so that the cells are small on the face."""
+    spans = {0: (-0.09, 0.09), 1: (-0.012, 0.32), 2: (-0.285, 0.215)}
+    lines = []
+    for axis, (low, high) in spans.items():
+        line = np.linspace(low, high, 2000)
+        near_low, near_high = MOUTH_BOX[axis]
+        small = eased((line - near_low) / 0.02 + 1) * eased((near_high - line) / 0.02 + 1)
+        edge = TRUNK_CELL[axis] + (FACE_CELL[axis] - TRUNK_CELL[axis]) * small
+        if axis == FORWARD:
+            edge = edge * (1 - 0.42 * eased((TAIL_END - line) / 0.03))
+        lines.append((line, np.concatenate([[0.0], np.cumsum(np.diff(line) / edge[1:])])))
+
+    def unstretched(cells: Array) -> Array:
+        columns = [np.interp(cells[:, i], lines[i][1], lines[i][0]) for i in range(3)]
+        return np.stack(columns, axis=1)
+
+    end = np.array([counted[-1] for _, counted in lines])
+    points, triangles = polygonise(
+        lambda cells: skin().distance(unstretched(cells)), np.zeros(3), end, 1.0
+    )
+    return unstretched(points), triangles
+
+
+def _with_firm_feet(points: Array, weights: Array, bound: Skeleton) -> Array:
+    """Return the weights with soles that belong to their feet alone, so that they do not slide."""
+    sole = eased((0.034 - points[:, 1]) / 0.020)[:, None]
+    own = np.zeros_like(weights)
+    front, left = points[:, 2] > 0.0, points[:, 0] > 0
+    for which, is_front in (("Front", True), ("Hind", False)):
+        for side, is_left in (("Left", True), ("Right", False)):
+            mine = (front == is_front) & (left == is_left)
+            own[mine, bound.index(f"{side}{which}Foot")] = 1.0
+    return weights * (1 - sole) + own * sole
+
+
+def jaw_share(points: Array) -> Array:
+    """Return how much of the head's hold on points (n, 3) is the jaw's, (n,), 0…1."""
+    side = around(points)
+    below = lip_line(side) - points[:, 1]
+    soft = 0.0022 + 0.016 * np.clip((np.abs(side) - 0.68) / 0.45, 0, 1)
+    ahead = (points[:, 2] - 0.096 + 0.35 * (points[:, 1] - 0.2235)) / 0.036
+    return eased(0.5 + 0.5 * below / soft) * eased(ahead)
+
+
+def _with_face(points: Array, weights: Array, bound: Skeleton) -> Array:
+    """Return the weights with the head's share divided between head and jaw."""
+    head, jaw = bound.index("head"), bound.index("jaw")
+    both, share = weights[:, head] + weights[:, jaw], jaw_share(points)
+    weights = weights.copy()
+    weights[:, head], weights[:, jaw] = both * (1 - share), both * share
+    return weights
+
+
+def painted(points: Array, normals: Array) -> Array:
+    """Return the colours of the skin, (n, 3): teal, darker above, cream below, and a red mouth."""
+    colors = np.tile(TEAL, (len(points), 1))
+    colors = _coat(colors, BACK_TEAL, 0.7 * eased((normals[:, 1] - 0.1) / 0.8))
+    legs = whole().solids()
+    leg = np.min([s.distance(points) for s in legs if s.bones[0][-3:] in ("Leg", "oot")], axis=0)
+    under = eased((_underside(points) - 0.26) / 0.30) * eased((0.208 - points[:, 1]) / 0.012)
+    under = under * eased((points[:, 2] + 0.215) / 0.08)  # the tip of the tail is teal all round
+    colors = _coat(colors, CREAM, under * eased((leg + 0.001) / 0.014))
+    chin = Ellipsoid((0.0, 0.200, 0.150), (0.052, 0.030, 0.046)).distance(points)
+    lower = eased((lip_line(around(points)) - 0.0035 - points[:, 1]) / 0.005)
+    lower = lower * eased((0.85 - np.abs(around(points))) / 0.35)  # not about its corners
+    colors = _coat(colors, CREAM, lower * eased(0.5 - chin / 0.012))
+    inside = -np.maximum(whole().distance(points) + 0.0007, Hollow().distance(points) - 0.0020)
+    return _coat(colors, MAROON, eased(0.5 + inside / 0.0010))
+
+
+def _underside(points: Array) -> Array:
+    """Return the cosine between the direction from the spine and straight under it, (n,)."""
+    line = spine_line(160)[:, :3]
+    along = np.gradient(line, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    nearest = np.argmin(np.linalg.norm(points[:, None] - line, axis=2), axis=1)
+    out = points - line[nearest]
+    down = np.stack([np.zeros(160), -along[:, 2], along[:, 1]], axis=1)[nearest]
+    return np.asarray(np.sum(out * down, axis=1) / np.linalg.norm(out, axis=1))
+
+
+def _coat(colors: Array, color: Vector, cover: Array) -> Array:
+    return colors + (np.array(color) - colors) * cover[:, None]
+
+
+def eased(u: Array | float) -> Array:
+    """Return a smooth step of u from 0 to 1."""
+    u = np.clip(np.asarray(u, float), 0.0, 1.0)
+    return np.asarray(u * u * (3 - 2 * u))

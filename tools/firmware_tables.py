@@ -1,0 +1,160 @@
+"""What the firmware shares with the rest of the project, drawn from the one place that says it.
+
+`python -m tools.firmware_tables` renews `dino/messages.py` (from `robot.protocol`) and
+`dino/motions.py` (from the simulated dinosaur). A test compares them, so neither can drift.
+"""
+
+from pathlib import Path
+
+from affect.emotion import ANGRY_BELOW, HAPPY_ABOVE
+from robot.contract.motions import Motion, Sway
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.fields import FieldForm
+from robot.protocol.schema import FORMS, HEADER, MessageForm, form_of
+from robot.protocol.wire import MAX_BODY, MAX_FRAME
+from robot.simulators.cubeling import dinosaur
+
+BOARD = Path(__file__).parents[1] / "robot" / "firmware" / "dino"
+"""The folder that is copied to the board."""
+
+HYSTERESIS = 0.05
+"""How far back a mood must come before its word changes; a test compares it with `next_label`."""
+
+TURN = 1024
+"""Parts of a cycle by which the firmware's sine is read; a power of two."""
+
+_TIMES = ("STATE_EVERY", "FAILSAFE_AFTER", "GONE_EVERY")
+_NAMES = (
+    "NOTHING", "JOINTS_MAX", "ITEM_JOINT", "ITEM_MOTION", "ITEM_SOUND", "ITEM_MOOD",
+    "TAKEN", "UNKNOWN", "CHARGING", "STILL", "LIMP", "RECKONED",
+)  # fmt: skip
+
+
+def messages() -> str:
+    """Return the text of `messages.py`: numbers, layouts, limits and times."""
+    forms = [FORMS[number] for number in sorted(FORMS)]
+    lines = [
+        '"""The protocol in numbers, drawn from robot/protocol by tools.firmware_tables."""',
+        "",
+        "# Do not edit: a test compares. Times are in ms.",
+        "# fmt: off",
+        f"VERSION = {timing.VERSION}",
+        f"MAX_BODY = {MAX_BODY}",
+        f"MAX_FRAME = {MAX_FRAME}",
+        *(f"{name} = {round(1000 * getattr(timing, name))}" for name in _TIMES),
+        *(f"{name} = {getattr(m, name)}" for name in _NAMES),
+        *(f"{form.name} = 0x{form.number:02X}" for form in forms),
+        "",
+        "# number: (layout, bytes in version 1, (bytes, defaults) of what each later version",
+        "#          added, (place, lowest, highest) of what is not free)",
+        "FROM_HOST: dict[",
+        "    int, tuple[str, int, tuple[tuple[int, bytes], ...], tuple[tuple[int, int, int], ...]]",
+        "] = {",
+        *(_host_row(form) for form in forms if form.sender == "host"),
+        "}",
+        "",
+        "# number: (layout, (version, bytes) of each version that added to it)",
+        "FROM_ROBOT: dict[int, tuple[str, tuple[tuple[int, int], ...]]] = {",
+        *(_robot_row(form) for form in forms if form.sender == "robot"),
+        "}",
+        "",
+        *_count_lines(),
+    ]
+    return "\n".join(lines)
+
+
+def motions() -> str:
+    """Return the text of `motions.py`: what each mood and each action does with the joints."""
+    lines = [
+        '"""What the robot does in each mood, drawn from the simulated one by '
+        'tools.firmware_tables."""',
+        "",
+        "# Do not edit: a test compares.",
+        "# fmt: off",
+        f"TURN = {TURN}",
+        f"MOODS = {len(dinosaur.MOOD_LOOPS)}",
+        f"HAPPY_ABOVE = {round(1e4 * HAPPY_ABOVE)}",
+        f"ANGRY_BELOW = {round(1e4 * ANGRY_BELOW)}",
+        f"HYSTERESIS = {round(1e4 * HYSTERESIS)}",
+        "",
+        "# (name, ms of one round, sound of a mood or None, (joint, offset and amplitude in",
+        "# 1/100 degree, cycles in a round, start in 1/1024 cycle)); the moods' loops come first.",
+        "MOTIONS: tuple[",
+        "    tuple[str, int, str | None, tuple[tuple[str, int, int, int, int], ...]], ...",
+        "] = (",
+        *(line for motion in dinosaur.MOTIONS for line in _motion_lines(motion)),
+        ")",
+        "",
+    ]
+    return "\n".join(lines)
+
+
+def _host_row(form: MessageForm) -> str:
+    places = [(place, field) for place, field in enumerate(form.fields, start=2)]
+    limits = [
+        f"({place}, {_count(field, field.low, 0)}, {_count(field, field.high, 1)})"
+        for place, field in places
+        if field.low is not None or field.high is not None
+    ]
+    later = [f"({part.end}, {_defaults(form, part.since)!r})" for part in form.parts[1:]]
+    layout = f'"{_layout(form)}", {form.size}, {_tuple(later)}'
+    return f"    0x{form.number:02X}: ({layout},\n           {_tuple(limits)}),"
+
+
+def _robot_row(form: MessageForm) -> str:
+    sizes = [f"({part.since}, {part.end})" for part in form.parts]
+    return f'    0x{form.number:02X}: ("{_layout(form)}", {_tuple(sizes)}),'
+
+
+def _layout(form: MessageForm) -> str:
+    return HEADER.format + "".join(part.layout.format[1:] for part in form.parts)
+
+
+def _defaults(form: MessageForm, since: int) -> bytes:
+    (part,) = [part for part in form.parts if part.since == since]
+    defaults = {name: field.default for name, field in form.kind.__dataclass_fields__.items()}
+    counts = [one for field in part.fields for one in field.to_wire(defaults[field.name])]
+    return part.layout.pack(*counts)
+
+
+def _count(field: FieldForm, limit: float | None, highest: int) -> int:
+    """Return a limit as it stands on the wire; where there is none, what the form can hold."""
+    if limit is not None:
+        return round(limit / field.scale)
+    return {"u8": (0, 255), "u16": (0, 65535), "u32": (0, 2**32 - 1), "i16": (-32768, 32767)}[
+        field.form
+    ][highest]
+
+
+def _tuple(items: list[str]) -> str:
+    return f"({', '.join(items)}{',' if len(items) == 1 else ''})"
+
+
+def _count_lines() -> list[str]:
+    """Most of each kind in a catalogue."""
+    limits = {field.name: field.high for field in form_of(m.Welcome).fields}
+    kinds = ("motions", "sounds", "moods")
+    highest = {limits[kind] for kind in kinds}
+    (most,) = highest
+    assert most is not None
+    return [f"ENTRIES_MAX = {most:.0f}", f"NAME_BYTES = {form_of(m.Name).fields[-1].size}", ""]
+
+
+def _motion_lines(motion: Motion) -> list[str]:
+    sound = "None" if motion.sound is None else f'"{motion.sound}"'
+    return [
+        f'    ("{motion.name}", {round(1000 * motion.period)}, {sound}, (',
+        *(f"        {_sway(joint, sway)}," for joint, sway in motion.sways.items()),
+        "    )),",
+    ]
+
+
+def _sway(joint: str, sway: Sway) -> str:
+    offset, amplitude = round(100 * sway.offset), round(100 * sway.amplitude)
+    return f'("{joint}", {offset}, {amplitude}, {sway.times}, {round(TURN * sway.phase) % TURN})'
+
+
+if __name__ == "__main__":
+    (BOARD / "messages.py").write_text(messages(), "utf-8")
+    (BOARD / "motions.py").write_text(motions(), "utf-8")

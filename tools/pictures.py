@@ -1,0 +1,150 @@
+"""Draws the pictures of the documents: `python -m tools.pictures`.
+
+Every picture is a moment of a bundled recording, as the program shows it, or a page that it prints.
+"""
+
+import tempfile
+from contextlib import ExitStack
+from pathlib import Path
+
+import cv2
+import numpy as np
+from rich.console import Console
+
+from app.commands.mood import plot
+from app.pipeline.playground import Playground
+from app.pipeline.step import RobotView
+from app.running.opening import Wish, fitting, open_session
+from app.running.runner import run
+from app.session.bundled import bundled
+from app.ui.calibration.coach import PERIOD, CoachView
+from app.ui.calibration.coach_lines import write_coverage
+from app.ui.calibration.session import Advice, Lesson, Picture
+from app.ui.overlay import likeness_side, overlay
+from app.ui.virtual_robot import Likeness
+from characters.rendering import create_context
+from tracking import CubeModel, open_source, write_sheet
+from tracking.calibration import CubeFinder
+from tracking.synthetic import open_synthetic
+
+FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
+
+MOMENTS: dict[str, dict[str, float]] = {
+    "companion": {"kiss": 12.2, "shout": 27.3},
+    "follow": {"walk": 6.2, "run": 12.6},
+    "sketch": {"path": 22.6},
+}
+"""For every recording, the pictures taken from it and when [s]."""
+
+
+def draw(scenario: str, moments: dict[str, float]) -> None:
+    """Play one recording and keep some of its pictures."""
+    waiting = sorted((time, name) for name, time in moments.items())
+    with ExitStack() as closing:
+        source = closing.enter_context(open_source(str(bundled(scenario))))
+        context = create_context()
+        closing.callback(context.release)
+        intrinsics = fitting(source.intrinsics, source.size)
+        playground = Playground(scenario, intrinsics, context=context)
+        closing.callback(playground.close)
+        likeness = Likeness(context, likeness_side(source.size[1]))
+        closing.callback(likeness.close)
+        for frame in source:
+            step = playground.step(frame)
+            if not waiting or step.picture is None:
+                break
+            emotion = step.emotion
+            view = RobotView("ready", emotion.emotion.valence, emotion.label)
+            picture = overlay(
+                step.picture, step, view, likeness
+            )  # each time: the likeness is alive
+            if frame.timestamp < waiting[0][0]:
+                continue
+            _, name = waiting.pop(0)
+            path = FOLDER / f"{scenario}-{name}.jpg"
+            cv2.imwrite(str(path), picture, (cv2.IMWRITE_JPEG_QUALITY, 88))
+            Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")
+
+
+def draw_sheet(name: str) -> None:
+    """Draw a cube's sheet as a picture."""
+    import pypdfium2  # comes with the tools of the tests; the program itself reads no PDF
+
+    with tempfile.TemporaryDirectory() as folder:
+        pdf = Path(folder) / "sheet.pdf"
+        write_sheet(CubeModel.load(name), pdf)
+        page = pypdfium2.PdfDocument(pdf)[0]
+        page.render(scale=1.5).to_pil().save(FOLDER / f"sheet-{name}.png", optimize=True)
+
+
+LESSON = {"tip": "tilt up", "near": "near"}
+"""For which wishes of the coach a picture is taken."""
+
+SHOWN = (0.6, 1.2)
+"""How long the wish has been shown by then [s]: half way through the coach's little drawing."""
+
+FREE = 0.74
+"""The cube is above this share of the picture's height by then, where no card lies."""
+
+
+class _Album:
+    """Keeps some pictures of a lesson."""
+
+    closed = False
+
+    def __init__(self) -> None:
+        self._coach = CoachView("cube")
+        self._waiting = {wish: name for name, wish in LESSON.items()}
+        self._since = ("", 0.0)
+
+    def tell(self, picture: Picture, timestamp: float, advice: Advice) -> None:
+        """Draw the coach, and keep the picture if its time has come."""
+        shown = self._coach.draw(picture, timestamp, advice)
+        if advice.wish != self._since[0]:
+            self._since = advice.wish, timestamp
+        held = SHOWN[0] <= (timestamp - self._since[1]) % PERIOD <= SHOWN[1]
+        lowest = max((outline[:, 1].max() for outline in advice.outlines), default=np.inf)
+        seen = lowest < FREE * picture.shape[0]
+        if advice.wish in self._waiting and held and seen:
+            path = FOLDER / f"calibrate-{self._waiting.pop(advice.wish)}.jpg"
+            cv2.imwrite(str(path), shown, (cv2.IMWRITE_JPEG_QUALITY, 88))
+
+
+def draw_lesson() -> None:
+    """Wave a drawn cube before the drawn camera, and keep what the coach shows."""
+    source = open_synthetic("wave?fold=0.8&seed=1&rate=15")
+    lesson = Lesson([CubeFinder(CubeModel.load("locomotion"))], source.size)
+    lesson.run(source, _Album(), 60.0)
+    write_coverage(FOLDER / "calibrate-coverage.jpg", lesson)
+
+
+UNPLUGGED = "sim:cubeling?unplug=12s/1s&seed=3"
+"""The robot whose plug is pulled in the picture of a mood: twice while the session plays."""
+
+
+def draw_moods() -> None:
+    """Plot how a bundled session is felt by three, and one whose robot was unplugged."""
+    felt = FOLDER / "mood-personalities.svg"
+    plot(bundled("companion"), felt, ["thesis", "shy", "grumpy"])
+    with tempfile.TemporaryDirectory() as folder:
+        session = Path(folder) / "today.mcap"
+        wish = Wish(
+            "companion",
+            str(bundled("companion")),
+            personality="lively",
+            robot=UNPLUGGED,
+            record=session,
+            pictures=False,
+        )
+        with ExitStack() as closing:
+            run(open_session(wish, closing))
+        plot(session, FOLDER / "mood-robot.svg", None)
+
+
+if __name__ == "__main__":
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    for recording, pictures in MOMENTS.items():
+        draw(recording, pictures)
+    draw_sheet("companion")
+    draw_lesson()
+    draw_moods()

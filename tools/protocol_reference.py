@@ -1,0 +1,129 @@
+"""What is drawn from the code: parts of PROTOCOL.md, the C header, the test vectors.
+
+`python -m tools.protocol_reference` renews them.
+A test compares them with the code, so neither can drift.
+"""
+
+import re
+from pathlib import Path
+
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.fields import FieldForm
+from robot.protocol.header import header
+from robot.protocol.schema import FORMS, HEADER, MessageForm
+from robot.protocol.vectors import VECTORS, vectors_file
+from robot.protocol.wire import MAX_BODY, MAX_FRAME
+
+DOCUMENT = Path(__file__).parents[1] / "robot" / "PROTOCOL.md"
+"""The protocol's document."""
+
+HEADER_FILE = Path(__file__).parents[1] / "robot" / "protocol" / "c" / "cubeling_messages.h"
+"""The messages for C."""
+
+VECTORS_FILE = Path(__file__).parents[1] / "robot" / "protocol" / "vectors.json"
+"""The test vectors for programs."""
+
+
+def message_tables() -> str:
+    """Return a section for every message, with a table of its fields."""
+    return "\n\n".join(_section(FORMS[number]) for number in sorted(FORMS))
+
+
+def timing_table() -> str:
+    """Return the table of all times."""
+    rows = [
+        f"| {1000 * getattr(timing, name):.0f} | {rule} |" for name, rule in timing.RULES.items()
+    ]
+    return "\n".join(["| ms | what |", "|---:|---|", *rows])
+
+
+def limits_table() -> str:
+    """Return the table of all sizes and counts."""
+    rows = {
+        "version described here": timing.VERSION,
+        "bytes of a body": MAX_BODY,
+        "bytes of a frame between its edges": MAX_FRAME,
+        "bytes of a name": 16,
+        "joints": m.JOINTS_MAX,
+        "motions, sounds, moods, each": 254,
+        "sends of one command": timing.TRIES_MAX,
+        "actions waiting in the host": timing.ACTIONS_MAX,
+    }
+    lines = [f"| {what} | {value} |" for what, value in rows.items()]
+    return "\n".join(["| at most | |", "|---|---:|", *lines])
+
+
+def vectors() -> str:
+    """Return every test vector: the message and the bytes of its frame."""
+    lines = []
+    for vector in VECTORS:
+        older = "" if vector.version == timing.VERSION else f", version {vector.version}"
+        title = f"{vector.content} in session {vector.session}{older}"
+        lines += [title, f"    {vector.frame.hex(' ')}", ""]
+    return "```\n" + "\n".join(lines).rstrip() + "\n```"
+
+
+def renewed(document: str) -> str:
+    """Return the document with every part between its marks drawn anew."""
+    parts = {
+        "messages": message_tables(),
+        "timing": timing_table(),
+        "limits": limits_table(),
+        "vectors": vectors(),
+    }
+    for name, text in parts.items():
+        begin, end = f"<!-- {name}: drawn from the code -->", f"<!-- end of {name} -->"
+        pattern = re.compile(re.escape(begin) + ".*?" + re.escape(end), re.DOTALL)
+        count = len(pattern.findall(document))
+        if count != 1:
+            raise ValueError(f"{DOCUMENT.name} must have one part marked {name!r}, not {count}")
+        document = pattern.sub(f"{begin}\n{text}\n{end}", document)
+    return document
+
+
+def _section(form: MessageForm) -> str:
+    sizes = [f"{form.size} bytes"]
+    sizes += [f"{part.end} since version {part.since}" for part in form.parts[1:]]
+    head = f"#### `{form.number:02X}` {form.name}, from the {form.sender}, {', '.join(sizes)}"
+    lines = [head, "", form.meaning]
+    if form.fields:
+        lines += [
+            "",
+            "| offset | type | field | unit | allowed | meaning |",
+            "|---:|---|---|---|---|---|",
+        ]
+        offset = HEADER.size
+        for field in form.fields:
+            lines.append(_row(offset, field))
+            offset += field.size
+    return "\n".join(lines)
+
+
+def _row(offset: int, field: FieldForm) -> str:
+    unit = {1: field.unit, 1e-3: f"m{field.unit}", 1e-4: "1/10000"}[field.scale]
+    low, high = field.low, field.high
+    allowed = ""
+    if low is not None and high is not None:
+        allowed = f"{low / field.scale:.0f} … {high / field.scale:.0f}"
+    elif low is not None:
+        allowed = f"≥ {low:g}"
+    elif high is not None:
+        allowed = f"≤ {high:g}"
+    since = "" if field.since == 1 else f" (since version {field.since})"
+    meaning = field.meaning + since
+    return f"| {offset} | {field.form} | {field.name} | {unit} | {allowed} | {meaning} |"
+
+
+def drawn() -> dict[Path, str]:
+    """Return every file that is drawn from the code, whole or in parts, and what it should hold."""
+    return {
+        DOCUMENT: renewed(DOCUMENT.read_text("utf-8")),
+        HEADER_FILE: header(),
+        VECTORS_FILE: vectors_file(),
+    }
+
+
+if __name__ == "__main__":
+    for path, text in drawn().items():
+        path.write_text(text, "utf-8")

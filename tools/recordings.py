@@ -1,0 +1,45 @@
+"""Makes the bundled recordings: `python -m tools.recordings [NAME …]`.
+
+The pictures come from the synthetic camera, so that they can be made again by anyone, and so that
+the truth is known; everything after the camera is what the program itself did with them.
+"""
+
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+
+from rich.console import Console
+
+from app.commands.progress import play_to_end
+from app.running.opening import Wish, open_session
+from app.scenarios import SCENARIOS
+
+FOLDER = Path(__file__).parent.parent / "recordings"
+
+LIMIT = 6_000_000
+"""Greatest size of a bundled recording [B]."""
+
+
+def make(name: str, console: Console) -> None:
+    """Record one scenario from its synthetic script, and refuse a file that is too large."""
+    path = FOLDER / f"{name}.mcap"
+    fresh = path.with_suffix(".mcap.partial")
+    fresh.unlink(missing_ok=True)
+    wish = Wish(name, f"synthetic:{name}", record=fresh, codec="h264", robot="sim", pictures=False)
+    with ExitStack() as closing:
+        plan = open_session(wish, closing)
+        summary = play_to_end(plan, console, f"recording {path.name}")
+    size = fresh.stat().st_size
+    if size > LIMIT:
+        fresh.unlink()
+        raise SystemExit(
+            f"{path.name} would be {size / 1e6:.1f} MB; the limit is {LIMIT / 1e6:.0f}"
+        )
+    fresh.replace(path)
+    console.print(summary)
+    console.print(f"{path.name}: {size / 1e6:.1f} MB")
+
+
+if __name__ == "__main__":
+    for chosen in sys.argv[1:] or SCENARIOS:
+        make(chosen, Console())

@@ -1,0 +1,1 @@
+"""The cube: its model and file, its markers, edges and faces."""

@@ -1,0 +1,71 @@
+"""Which faces of the cube look at the camera."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.cube.model import CubeModel, Face
+from tracking.geometry import se3
+
+Array = NDArray[np.float64]
+
+
+class Faces:
+    """The planes of the cube's faces, measured corners and all.
+
+    Parameters
+    ----------
+    cube
+        The cube, as printed.
+    """
+
+    def __init__(self, cube: CubeModel) -> None:
+        self.names = tuple(face.name for face in cube.faces)
+        self.normals = np.stack([plane_normal(face) for face in cube.faces])
+        """Outward unit normals, (faces, 3)."""
+        self.centres = np.stack([face.corners.mean(axis=0) for face in cube.faces])
+        """Centres of the markers, (faces, 3) [m]."""
+
+    def cosines(self, camera_from_cube: Array) -> Array:
+        """Cosines between each face's normal and its line of sight, (faces,): 1 is square on."""
+        turn, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
+        sights = self.centres @ turn.T + origin
+        towards = -((self.normals @ turn.T) * sights).sum(axis=1)
+        return np.asarray(towards / np.sqrt((sights * sights).sum(axis=1)), np.float64)
+
+    def facing(self, camera_from_cube: Array, least: float) -> tuple[int, ...]:
+        """Numbers of the faces whose cosine is greater than `least`."""
+        return tuple(np.flatnonzero(self.cosines(camera_from_cube) > least).tolist())
+
+    def mirrored(self, camera_from_cube: Array, face: int) -> Array:
+        """Pose of the cube if one face leans to the other side of its line of sight, (4, 4).
+
+        The centre of the face stays where it is.
+        """
+        turn = camera_from_cube[:3, :3]
+        centre = turn @ self.centres[face] + camera_from_cube[:3, 3]
+        normal, back = turn @ self.normals[face], -centre / np.linalg.norm(centre)
+        axis = np.cross(normal, back)
+        sine = float(np.linalg.norm(axis))
+        angle = 2 * float(np.arctan2(sine, normal @ back))
+        turned = se3.rotation(axis / max(sine, 1e-9) * angle) @ turn
+        return se3.pose(turned, centre - turned @ self.centres[face])
+
+
+def plane_normal(face: Face) -> Array:
+    """Outward unit normal of the plane through a face's four corners, (3,)."""
+    top_left, top_right, bottom_right, bottom_left = face.corners
+    normal = np.cross(top_right - bottom_left, top_left - bottom_right)
+    return np.asarray(normal / np.linalg.norm(normal), np.float64)
+
+
+def face_frame(face: Face) -> Array:
+    """Frame of a face, `cube_from_face` (4, 4): x to the marker's right, y down, z inward."""
+    top_left, top_right, bottom_right, bottom_left = face.corners
+    inward = -plane_normal(face)
+    right = (top_right - top_left) + (bottom_right - bottom_left)
+    right -= inward * (inward @ right)
+    right /= np.linalg.norm(right)
+    frame = np.eye(4)
+    frame[:3, :3] = np.stack([right, np.cross(inward, right), inward], axis=1)
+    frame[:3, 3] = face.corners.mean(axis=0)
+    return frame

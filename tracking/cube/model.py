@@ -1,0 +1,261 @@
+"""The cube as a TOML file describes it, and its markers in space."""
+
+import tomllib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Self
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.cube.icons import INK
+from tracking.cube.measured_corners import measured_corners
+from tracking.errors import TrackingError
+
+FACE_AXES: dict[str, tuple[tuple[int, int, int], tuple[int, int, int]]] = {
+    "front": ((1, 0, 0), (0, 1, 0)),
+    "right": ((0, 0, -1), (0, 1, 0)),
+    "back": ((-1, 0, 0), (0, 1, 0)),
+    "left": ((0, 0, 1), (0, 1, 0)),
+    "top": ((1, 0, 0), (0, 0, -1)),
+    "bottom": ((1, 0, 0), (0, 0, 1)),
+}
+"""For each face, seen from outside: the directions (right, up) in the cube frame.
+
+The faces unfold to a cross around `front`, so `top` and `bottom` continue its edges.
+"""
+
+
+@dataclass(frozen=True)
+class Face:
+    """One face of the cube and the marker printed on it."""
+
+    name: str
+    """One of `FACE_AXES`."""
+
+    marker_id: int
+    """Number of the marker in the cube's dictionary."""
+
+    corners: NDArray[np.float64]
+    """Corners of the black square in the cube frame, (4, 3) in metres.
+
+    Top-left, top-right, bottom-right, bottom-left of the marker, seen from outside: where they
+    should be, or where `cubeling calibrate` found them on the cube as it was folded (`corners_mm`).
+    """
+
+    role: str = ""
+    """What the face means to a scenario: "idle", "walk", "kiss" … or ""."""
+
+    icon: str = ""
+    """Name of the icon printed beside the marker, or ""."""
+
+    roll_deg: int = 0
+    """How the marker is turned on its face: 0, 90, 180 or 270, clockwise from outside."""
+
+    @property
+    def normal(self) -> NDArray[np.float64]:
+        """Outward unit normal in the cube frame, (3,); that of the corners where they are askew."""
+        right, up = FACE_AXES[self.name]
+        square = np.cross(right, up).astype(np.float64)
+        first, second = self.corners[2] - self.corners[0], self.corners[1] - self.corners[3]
+        normal = np.cross(first, second)
+        normal /= np.linalg.norm(normal)
+        # An axis to the last bit, or recorded sessions would replay in other bits.
+        return square if np.abs(normal - square).max() < 1e-9 else normal
+
+
+@dataclass(frozen=True)
+class CubeModel:
+    """A cube with a marker on each of its faces.
+
+    The cube frame has its origin in the centre, +y through `top`, +z through `front`, +x through
+    `right`.
+    """
+
+    name: str
+    """Name of the cube, as printed on its sheet."""
+
+    dictionary: str
+    """Name of the OpenCV dictionary, "DICT_4X4_50" …"""
+
+    edge: float
+    """Edge of the cube in metres."""
+
+    marker_size: float
+    """Side of the black square in metres."""
+
+    faces: tuple[Face, ...]
+    """The faces that carry a marker."""
+
+    hint: str = ""
+    """One sentence for the person who holds the cube, or ""."""
+
+    @classmethod
+    def load(cls, name_or_path: str | Path) -> Self:
+        """Read a cube from a bundled name or a TOML file.
+
+        Parameters
+        ----------
+        name_or_path
+            "locomotion", "companion", or the path of a TOML file.
+
+        Raises
+        ------
+        TrackingError
+            The file is absent, is not TOML, or describes no printable cube.
+        """
+        path = Path(name_or_path)
+        if path.suffix != ".toml":
+            path = CUBES / f"{name_or_path}.toml"
+            if not path.is_file():
+                known = ", ".join(bundled())
+                raise TrackingError(
+                    f"no cube is called '{name_or_path}': choose {known}, or give a .toml file"
+                )
+        try:
+            document = tomllib.loads(path.read_text(encoding="utf-8"))
+        except OSError as error:
+            raise TrackingError(f"cannot read the cube '{path}': {error.strerror}") from error
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise TrackingError(f"the cube '{path}' is not TOML: {error}") from error
+        return cls.from_document(document, str(path), path.stem)
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any], where: str, name: str) -> Self:
+        """Make a cube from the tables of its TOML file, (`where` names it in errors)."""
+        edge_mm, marker_mm = (_length(document, key, where) for key in ("edge_mm", "marker_mm"))
+        if marker_mm >= edge_mm:
+            raise TrackingError(
+                f"{where}: the marker ({marker_mm:g} mm) does not fit its face ({edge_mm:g} mm); "
+                "leave a white border of at least one marker cell"
+            )
+        dictionary = document.get("dictionary")
+        capacity = _capacity(dictionary, where)
+        tables = document.get("face")
+        if not isinstance(tables, list) or not tables:
+            raise TrackingError(f"{where}: a cube needs at least one [[face]] table")
+        faces = tuple(_face(table, marker_mm / 1000, edge_mm / 1000, where) for table in tables)
+        _check_each_once([face.name for face in faces], "name", where)
+        _check_each_once([face.marker_id for face in faces], "marker_id", where)
+        for face in faces:
+            if not 0 <= face.marker_id < capacity:
+                raise TrackingError(
+                    f"{where}: face '{face.name}' has marker_id {face.marker_id}, "
+                    f"but {dictionary} holds 0 to {capacity - 1}"
+                )
+        return cls(
+            _text(document, "name", where) or name,
+            str(dictionary),
+            edge_mm / 1000,
+            marker_mm / 1000,
+            faces,
+            _text(document, "hint", where),
+        )
+
+    def scaled(self, edge: float) -> Self:
+        """Return the same cube in another size, its markers grown or shrunk with it.
+
+        Parameters
+        ----------
+        edge
+            Edge of the new cube [m].
+
+        Raises
+        ------
+        TrackingError
+            Nobody can hold a cube of that size: 10 to 1000 mm can be.
+        """
+        if not 0.01 <= edge <= 1:
+            raise TrackingError(f"the edge must be 10 to 1000 mm, not {edge * 1000:g} mm")
+        factor = edge / self.edge
+        faces = tuple(replace(face, corners=face.corners * factor) for face in self.faces)
+        return replace(self, edge=edge, marker_size=self.marker_size * factor, faces=faces)
+
+    def face(self, name: str) -> Face:
+        """Return the face called `name`; a `KeyError` where the cube has none."""
+        for face in self.faces:
+            if face.name == name:
+                return face
+        raise KeyError(name)
+
+
+CUBES = Path(__file__).parents[1] / "cubes"
+
+
+def bundled() -> tuple[str, ...]:
+    """Names of the cubes that come with Cubeling."""
+    return tuple(sorted(path.stem for path in CUBES.glob("*.toml")))
+
+
+def aruco_dictionary(name: str) -> cv2.aruco.Dictionary:
+    """Return OpenCV's dictionary of that name, ("DICT_4X4_50" …)."""
+    number: int = getattr(cv2.aruco, name)
+    return cv2.aruco.getPredefinedDictionary(number)
+
+
+def face_corners(name: str, roll_deg: int, marker: float, edge: float) -> NDArray[np.float64]:
+    """Corners of a marker in the cube frame, (4, 3), in the order of `Face.corners`.
+
+    >>> face_corners("front", 0, 0.04, 0.06)[0].tolist()
+    [-0.02, 0.02, 0.03]
+    >>> face_corners("front", 90, 0.04, 0.06)[0].tolist()
+    [0.02, 0.02, 0.03]
+    """
+    right, up = (np.array(axis, float) for axis in FACE_AXES[name])
+    square = np.array([(-1, 1), (1, 1), (1, -1), (-1, -1)]) * (marker / 2)
+    square = np.roll(square, -(roll_deg // 90), axis=0)
+    corners = square[:, :1] * right + square[:, 1:] * up + np.cross(right, up) * (edge / 2)
+    return np.asarray(corners, np.float64)
+
+
+def _length(document: dict[str, Any], key: str, where: str) -> float:
+    value = document.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not 1 <= value <= 1000:
+        raise TrackingError(f"{where}: '{key}' must be a length from 1 to 1000 mm, not {value!r}")
+    return float(value)
+
+
+def _text(document: dict[str, Any], key: str, where: str, owner: str = "") -> str:
+    value = document.get(key, "")
+    if not isinstance(value, str) or not value.isprintable():
+        raise TrackingError(f"{where}: {owner}'{key}' must be one line of text, not {value!r}")
+    return value
+
+
+def _check_each_once(values: Sequence[object], what: str, where: str) -> None:
+    twice = [value for value in values if values.count(value) > 1]
+    if twice:
+        raise TrackingError(f"{where}: two faces have the {what} {twice[0]!r}; each must differ")
+
+
+def _capacity(dictionary: object, where: str) -> int:
+    if not isinstance(dictionary, str) or not dictionary.startswith("DICT_"):
+        raise TrackingError(
+            f"{where}: 'dictionary' must be a name such as DICT_4X4_50, not {dictionary!r}"
+        )
+    if not isinstance(getattr(cv2.aruco, dictionary, None), int):
+        raise TrackingError(f"{where}: OpenCV has no dictionary {dictionary}; try DICT_4X4_50")
+    return len(aruco_dictionary(dictionary).bytesList)
+
+
+def _face(table: object, marker: float, edge: float, where: str) -> Face:
+    if not isinstance(table, dict):
+        raise TrackingError(f"{where}: [[face]] must be a table")
+    name, marker_id, roll = table.get("name"), table.get("marker_id"), table.get("roll_deg", 0)
+    if not isinstance(name, str) or name not in FACE_AXES:
+        known = ", ".join(FACE_AXES)
+        raise TrackingError(f"{where}: a face is called {name!r}; use one of {known}")
+    of_face = f"{where}: face '{name}'"
+    if not isinstance(marker_id, int) or isinstance(marker_id, bool):
+        raise TrackingError(f"{of_face} needs a whole number as marker_id, not {marker_id!r}")
+    if isinstance(roll, bool) or roll not in (0, 90, 180, 270):
+        raise TrackingError(f"{of_face} has roll_deg {roll!r}; use 0, 90, 180 or 270")
+    role, icon = (_text(table, key, where, f"face '{name}': ") for key in ("role", "icon"))
+    if icon and icon not in INK:
+        raise TrackingError(f"{of_face} has the icon '{icon}'; use one of {', '.join(INK)}")
+    corners = face_corners(name, int(roll), marker, edge)
+    if "corners_mm" in table:
+        corners = measured_corners(table["corners_mm"], corners, marker, of_face)
+    return Face(name, marker_id, corners, role, icon, int(roll))

@@ -1,0 +1,94 @@
+"""Where everything stands on the sheet."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracking.cube.model import CubeModel, Face
+from tracking.cube.printing.unfolding import TAB_DEPTH, Net
+from tracking.errors import TrackingError
+
+Array = NDArray[np.float64]
+
+PAPERS = {"a4": (297.0, 210.0), "letter": (279.4, 215.9), "a3": (420.0, 297.0)}
+"""Width and height, lying [mm]."""
+
+UNPRINTED_MM = 5.0
+"""What most home printers leave white around the page."""
+
+
+@dataclass(frozen=True)
+class Box:
+    """Part of the page [mm from the top left]."""
+
+    left: float
+    """Its left side."""
+
+    top: float
+    """Its upper side."""
+
+    right: float
+    """Its right side."""
+
+    bottom: float
+    """Its lower side."""
+
+
+class Sheet:
+    """Where everything stands on the page: the one place that turns metres into millimetres."""
+
+    def __init__(self, cube: CubeModel, paper: str) -> None:
+        if paper not in PAPERS:
+            raise TrackingError(f"paper '{paper}' is not known; use {', '.join(PAPERS)}")
+        if cube.marker_size >= cube.edge:
+            raise TrackingError(
+                f"the markers of the {cube.name} cube ({cube.marker_size * 1000:g} mm) "
+                f"do not fit its faces ({cube.edge * 1000:g} mm)"
+            )
+        self.cube = cube
+        self.net = Net(cube.edge)
+        self.page = PAPERS[paper]
+        _check_fits(cube.edge, paper)
+        corners = self.net.outline() * (1000, -1000)
+        middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
+        self._origin = np.array(self.page) / 2 - middle
+
+    def place(self, points: ArrayLike) -> Array:
+        """From the net's paper frame [m] to the page [mm from the top left], (…, 2)."""
+        return np.asarray(np.asarray(points, float) * (1000.0, -1000.0) + self._origin)
+
+    def corner(self, row: str, column: str) -> "Box":
+        """Free space beside the cross: row "top" or "bottom", column "left" or "right"."""
+        inset = UNPRINTED_MM + 4
+        (right, upper), (left, lower) = self.place(self.net.square("front"))[[1, 3]]
+        tab = TAB_DEPTH * self.cube.edge * 1000
+        x = (inset, left - 7) if column == "left" else (right + 8, self.page[0] - inset)
+        y = (inset, upper - tab - 3) if row == "top" else (lower + tab + 4, self.page[1] - inset)
+        return Box(float(x[0]), float(y[0]), float(x[1]), float(y[1]))
+
+    def marker_corners(self, face: Face) -> Array:
+        """Corners of a face's marker on the page, (4, 2) [mm], by unfolding those of the cube."""
+        face_from_cube = np.linalg.inv(self.net.cube_from_face(face.name))
+        flat = face.corners @ face_from_cube[:3, :3].T + face_from_cube[:3, 3]
+        return self.place(flat[:, :2] + self.net.centre(face.name))
+
+
+def _check_fits(edge: float, paper: str) -> None:
+    if edge * 1000 <= largest_edge_mm(paper) + 1e-6:
+        return
+    bigger = [
+        f"--paper {name} takes {largest_edge_mm(name):g} mm"
+        for name in PAPERS
+        if largest_edge_mm(name) >= max(edge * 1000, largest_edge_mm(paper) + 1)
+    ]
+    raise TrackingError(
+        f"a cube of {edge * 1000:g} mm does not fit on {paper}, which takes at most "
+        f"{largest_edge_mm(paper):g} mm" + (f"; {bigger[0]}" if bigger else "")
+    )
+
+
+def largest_edge_mm(paper: str) -> float:
+    """Edge of the largest cube whose net fits a paper, in whole millimetres."""
+    room = np.array(PAPERS[paper]) - 2 * UNPRINTED_MM
+    return float(np.floor(np.min(room / Net(1.0).size()) + 1e-9))

@@ -1,0 +1,1 @@
+"""Markers and quadrilaterals in a picture, and the pose that their corners agree on."""

@@ -1,0 +1,92 @@
+"""Reading the markers where a pose says that they are, to tell whether this is the cube."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.cube.faces import Faces
+from tracking.cube.marker import marker_cells
+from tracking.cube.model import CubeModel
+from tracking.geometry.image_region import Floats, Patch
+from tracking.geometry.projection import Projection
+from tracking.geometry.robust_statistics import quantile
+
+Array = NDArray[np.float64]
+
+GRAZING = 0.2
+"""Cosine of the viewing angle below which a marker's cells are too foreshortened to be read."""
+
+LEAST = 3.0
+"""A marker with less contrast than this [grey levels] is not read."""
+
+DOUBT = 0.12
+"""A cell nearer than this share of the contrast to the middle between black and white is unread."""
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What the markers say at a pose."""
+
+    agreement: dict[str, float]
+    """Share of the cells of each face in view that are black or white as they should be, 0…1."""
+
+    @property
+    def best(self) -> float:
+        """The greatest share of any face; 0 where no face is in view."""
+        return max(self.agreement.values(), default=0.0)
+
+    @property
+    def read(self) -> tuple[str, ...]:
+        """Names of the faces of which at most one cell in twenty is wrong."""
+        return tuple(name for name, share in self.agreement.items() if share >= 0.95)
+
+
+class CellReader:
+    """Reads the markers of one cube seen by one camera."""
+
+    def __init__(self, cube: CubeModel, projection: Projection) -> None:
+        self._faces = Faces(cube)
+        self._projection = projection
+        patterns = [marker_cells(cube.dictionary, face.marker_id) for face in cube.faces]
+        self._white = np.stack([~pattern.ravel() for pattern in patterns])
+        count = len(patterns[0])
+        steps = (np.arange(count) + 0.5) / count
+        x, y = (axis.ravel()[:, None] for axis in np.meshgrid(steps, steps))
+        self._centres = np.stack(
+            [
+                corners[0] + x * (corners[1] - corners[0]) + y * (corners[3] - corners[0])
+                for corners in (face.corners for face in cube.faces)
+            ]
+        )
+
+    def read(self, patch: Patch, camera_from_cube: Array) -> Reading:
+        """Read all markers that look at the camera."""
+        facing = list(self._faces.facing(camera_from_cube, GRAZING))
+        if not facing:
+            return Reading({})
+        points = self._centres[facing].reshape(-1, 3)
+        points = points @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
+        pixels = self._projection.pixels(points)
+        count = len(self._white[0])
+        values = patch.at(pixels[:, None])[:, 0].reshape(-1, count)
+        inside = (patch.room(pixels) > 0).reshape(-1, count)
+        return Reading(
+            {
+                self._faces.names[number]: _agreement(value[seen], self._white[number][seen])
+                for number, value, seen in zip(facing, values, inside, strict=True)
+                if np.count_nonzero(seen) > count // 2
+            }
+        )
+
+
+def _agreement(value: Floats, white: NDArray[np.bool_]) -> float:
+    bright, dark = value[white], value[~white]
+    if not len(bright) or not len(dark):
+        return 0.0
+    high, low = quantile(bright, 0.5), quantile(dark, 0.5)
+    middle, unsure = (high + low) / 2, DOUBT * (high - low)
+    if high - low < LEAST:
+        return 0.0
+    right = np.count_nonzero(bright > middle + unsure) + np.count_nonzero(dark < middle - unsure)
+    return right / len(value)

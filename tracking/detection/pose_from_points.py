@@ -1,0 +1,206 @@
+"""The pose that the corners of all seen markers agree on."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.cube.model import CubeModel, Face
+from tracking.detection.markers import Observation
+from tracking.geometry import se3
+from tracking.geometry.projection import NEAREST, Projection
+from tracking.geometry.robust_statistics import quantile
+
+Array = NDArray[np.float64]
+
+GRAZING = 0.05
+"""Cosine between a face's normal and the line of sight below which its marker cannot be read."""
+
+LOOSE, STRICT = 0.15, 0.06
+"""A marker agrees with a proposed pose, and with a refined one, within this share of its side."""
+
+
+@dataclass(frozen=True)
+class CornerSolution:
+    """A pose with the markers that support it."""
+
+    camera_from_cube: Array
+    """Pose of the cube, (4, 4) [m]."""
+
+    observations: tuple[Observation, ...]
+    """The markers that agree with it, at most one for each face."""
+
+    error: float
+    """Root mean square distance of their corners from where the pose puts them [px]."""
+
+    covariance: Array
+    """Of a shift-turn, (6, 6)."""
+
+
+@dataclass(frozen=True)
+class _FaceGeometry:
+    centre: Array
+    normal: Array
+    marker_from_cube: Array
+    side: float
+
+    @classmethod
+    def of(cls, face: Face) -> "_FaceGeometry":
+        """Frame of the marker: x to its right, y to its top, z outward."""
+        top_left, top_right, _, bottom_left = face.corners
+        side = float(np.linalg.norm(top_right - top_left))
+        axes = [(top_right - top_left) / side, (top_left - bottom_left) / side, face.normal]
+        centre = face.corners.mean(axis=0)
+        frame = se3.pose(np.stack(axes, axis=1), centre)
+        return cls(centre, face.normal, se3.inverse(frame), side)
+
+
+class CornerSolver:
+    """Solves for poses of one rigid cube seen by one camera."""
+
+    def __init__(self, cube: CubeModel, projection: Projection) -> None:
+        self._projection = projection
+        self._geometry = {face.name: _FaceGeometry.of(face) for face in cube.faces}
+
+    def solve(
+        self, observations: Sequence[Observation], expected: Array | None = None
+    ) -> list[CornerSolution]:
+        """Find the poses that explain the seen markers, the best first.
+
+        Every marker alone proposes its two poses; the proposal that most other markers agree with
+        is refined on all of them together. Markers that disagree with it are left out: a second
+        cube, a picture of a marker, a misread id.
+
+        Parameters
+        ----------
+        observations
+            What the detector saw; the same face may be there twice.
+        expected
+            Where the cube should be by its past, (4, 4): a first proposal, and the choice between
+            two cubes that are seen equally well.
+
+        Returns
+        -------
+        The best pose and, where another with the same support exists, (the second pose of a single
+        face seen from afar, a second cube), that one too. Empty where there is none with its faces
+        towards the camera.
+        """
+        if expected is not None and len(observations) > 1:
+            solution = self._grow(expected, observations)
+            if solution and len(solution.observations) == len(observations):
+                return [solution]
+        solutions: list[CornerSolution] = []
+        for start in self._proposals(observations):
+            solution = self._grow(start, observations)
+            if solution and 1 < len(observations) == len(solution.observations):
+                return [solution]
+            if solution and not any(_same(solution, other) for other in solutions):
+                solutions.append(solution)
+        solutions.sort(key=lambda solution: _rank(solution, expected))
+        most = len(solutions[0].observations) if solutions else 0
+        return [solution for solution in solutions if len(solution.observations) == most][:2]
+
+    def looks_at_camera(self, face: str, camera_from_cube: Array) -> bool:
+        """Whether the outside of a face is seen, and not at a grazing angle."""
+        turn, geometry = camera_from_cube[:3, :3], self._geometry[face]
+        centre = turn @ geometry.centre + camera_from_cube[:3, 3]
+        cosine = -(turn @ geometry.normal) @ centre
+        return bool(centre[2] > NEAREST and cosine > GRAZING * np.sqrt(centre @ centre))
+
+    def error(self, camera_from_cube: Array, observations: Sequence[Observation]) -> float:
+        """Root mean square distance of the corners from where a pose puts them [px]."""
+        points = np.concatenate([seen.face.corners for seen in observations])
+        corners = np.concatenate([seen.corners for seen in observations])
+        in_camera = points @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
+        if in_camera[:, 2].min() < NEAREST:
+            return np.inf
+        away = self._projection.pixels(in_camera) - corners
+        return float(np.sqrt((away**2).sum(axis=1).mean()))
+
+    def _proposals(self, observations: Sequence[Observation]) -> Iterator[Array]:
+        """Poses of the cube from each marker alone: both of IPPE (Collins and Bartoli, 2014)."""
+        for seen in observations:
+            geometry = self._geometry[seen.face.name]
+            square = np.array([(-1, 1, 0), (1, 1, 0), (1, -1, 0), (-1, -1, 0)]) * geometry.side / 2
+            rays = self._projection.rays(seen.corners).reshape(-1, 1, 2)
+            found, turns, origins = cv2.solvePnPGeneric(
+                square, rays, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE_SQUARE
+            )[:3]
+            for turn, origin in zip(turns, origins, strict=True) if found else ():
+                vectors = np.array([turn, origin], np.float64).reshape(2, 3)
+                if np.isfinite(vectors).all():
+                    marker = se3.pose(se3.rotation(vectors[0]), vectors[1])
+                    yield marker @ geometry.marker_from_cube
+
+    def _grow(self, start: Array, observations: Sequence[Observation]) -> CornerSolution | None:
+        """Refine a proposal on all markers that agree with it, until no other joins or leaves."""
+        agreeing = self._agreeing(start, observations, LOOSE)
+        for _ in range(3):
+            if not agreeing:
+                return None
+            solution = self._refine(start, agreeing)
+            start = solution.camera_from_cube
+            before, agreeing = agreeing, self._agreeing(start, observations, STRICT)
+            if [id(seen) for seen in agreeing] == [id(seen) for seen in before]:
+                return solution
+        return None
+
+    def _agreeing(
+        self, pose: Array, observations: Sequence[Observation], tolerance: float
+    ) -> list[Observation]:
+        """Return the best observation of each face that lies within a share of its own side."""
+        best: dict[str, tuple[float, Observation]] = {}
+        for seen in observations:
+            name = seen.face.name
+            if not self.looks_at_camera(name, pose):
+                continue
+            error = self.error(pose, [seen])
+            if error < max(2.0, tolerance * seen.size) and error < best.get(name, (np.inf,))[0]:
+                best[name] = error, seen
+        return [seen for _, seen in best.values()]
+
+    def _refine(self, start: Array, observations: Sequence[Observation]) -> CornerSolution:
+        """Minimise the reprojection error by Gauss-Newton with Huber weights."""
+        points = np.concatenate([seen.face.corners for seen in observations])
+        corners = np.concatenate([seen.corners for seen in observations])
+        current = start
+        for _ in range(6):
+            residuals, rows = self._linearised(current, points, corners)
+            lengths = np.sqrt((residuals**2).sum(axis=1))
+            weights = 1 / np.maximum(1, lengths / max(0.5, 2 * quantile(lengths, 0.5)))
+            weighted = (rows * weights[:, None, None]).reshape(-1, 6)
+            flat = rows.reshape(-1, 6)
+            step = np.linalg.solve(weighted.T @ flat, weighted.T @ residuals.ravel())
+            current = se3.moved(current, step)
+            if np.abs(step).max() < 1e-6:
+                break
+        residuals, rows = self._linearised(current, points, corners)
+        squares = float((residuals**2).sum())
+        # One face leaves two degrees of freedom, too few to judge by: assume 0.3 px at least.
+        spread = max(0.3**2, squares / max(1, residuals.size - 6))
+        flat = rows.reshape(-1, 6)
+        covariance = np.asarray(np.linalg.inv(flat.T @ flat), np.float64) * spread
+        error = float(np.sqrt(squares / len(residuals)))
+        return CornerSolution(current, tuple(observations), error, covariance)
+
+    def _linearised(self, pose: Array, points: Array, corners: Array) -> tuple[Array, Array]:
+        """Residuals, (N, 2) [px], and their slopes by a shift-turn, (N, 2, 6)."""
+        turned = points @ pose[:3, :3].T
+        pixels, slopes = self._projection.pixels_and_slopes(turned + pose[:3, 3])
+        return corners - pixels, np.concatenate([slopes, -slopes @ se3.hat(turned)], axis=2)
+
+
+def _rank(solution: CornerSolution, expected: Array | None) -> tuple[float, ...]:
+    """Sort by support, then by nearness to where the cube was expected, then by error."""
+    far = 0.0
+    if expected is not None:
+        away = solution.camera_from_cube[:3, 3] - expected[:3, 3]
+        far = float(np.linalg.norm(away) > 0.1)
+    return -len(solution.observations), far, solution.error
+
+
+def _same(a: CornerSolution, b: CornerSolution) -> bool:
+    step = se3.motion(a.camera_from_cube, b.camera_from_cube)
+    return bool(np.linalg.norm(step[:3]) < 0.005 and np.linalg.norm(step[3:]) < np.deg2rad(4))

@@ -1,0 +1,145 @@
+"""Dark squares in a picture of which parts are hidden: where their corners are."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.detection.borders import Sides, find_sides, quadrilaterals
+
+Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+
+SMALLEST = 14.0
+"""Shortest side of a square that is used [px]."""
+
+SHOWN = 0.45
+"""Share of a square's outline that must be seen."""
+
+SHOWN_SIDE = 0.15
+"""The same of each side."""
+
+STRETCHED = 3.0
+"""Greatest ratio of opposite sides: more is no marker that could be read."""
+
+REACH = 3.0
+"""How far from an outline the edge is sought [px]."""
+
+
+@dataclass(frozen=True)
+class Squares:
+    """Squares, seen in perspective."""
+
+    corners: Array
+    """Their corners clockwise as seen (y down), (N, 4, 2) [px]; a hidden one is where its two sides
+    would meet."""
+
+    gaps: Array
+    """What is hidden of the sides at each corner, as a share of their length, (N, 4)."""
+
+    shown: Array
+    """Share of their outlines that is seen, (N,)."""
+
+    def __len__(self) -> int:
+        return len(self.corners)
+
+    def at(self, places: Array) -> Array:
+        """Map places in the unit square, (M, 2), to the picture, (N, M, 2) [px].
+
+        The first three corners lie at (0, 0), (1, 0), (1, 1). Heckbert 1989, "Fundamentals of
+        texture mapping and image warping", section 2.2.3.
+        """
+        first, second, third, fourth = np.moveaxis(self.corners, 1, 0)
+        skew = first - second + third - fourth
+        one, two = second - third, fourth - third
+        area = cross(one, two)
+        g, h = cross(skew, two) / area, cross(one, skew) / area
+        along_u = second - first + g[:, None] * second
+        along_v = fourth - first + h[:, None] * fourth
+        u, v = places.T
+        above = u[:, None] * along_u[:, None] + v[:, None] * along_v[:, None] + first[:, None]
+        return np.asarray(above / (g[:, None] * u + h[:, None] * v + 1.0)[..., None], np.float64)
+
+
+def find_squares(grey: Picture) -> Squares:
+    """Find dark squares in a picture, (H, W) grey, slightly blurred."""
+    sides = find_sides(grey)
+    chosen, corners = quadrilaterals(sides)
+    length = _side_lengths(corners)
+    share = sides.length[chosen] / np.maximum(length, 1.0)
+    keep = (length.min(axis=1, initial=np.inf) > SMALLEST) & (share.mean(axis=1) > SHOWN)
+    keep &= (share.min(axis=1, initial=1.0) > SHOWN_SIDE) & (share < 1.3).all(axis=1)
+    keep &= (length < STRETCHED * length[:, [2, 3, 0, 1]]).all(axis=1)
+    used = sides.of(chosen[keep].ravel())
+    if not len(used):
+        return Squares(np.zeros((0, 4, 2)), np.zeros((0, 4)), np.zeros(0))
+    corners = _sharpened(grey, used)
+    return Squares(corners, _gaps(used, corners), share[keep].mean(axis=1))
+
+
+def sampled(grey: Picture, places: Array) -> Array:
+    """Grey values between pixel centres, bilinear, places (N, M, 2) [px] → (N, M)."""
+    x, y = np.moveaxis(places.astype(np.float32), -1, 0)
+    border = cv2.BORDER_REPLICATE
+    return np.asarray(cv2.remap(grey, x, y, cv2.INTER_LINEAR, borderMode=border), np.float64)
+
+
+def cross(a: Array, b: Array) -> Array:
+    """Cross product of vectors in the plane, (…, 2)."""
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0], np.float64)
+
+
+def _side_lengths(corners: Array) -> Array:
+    edges = np.roll(corners, -1, axis=1) - corners
+    return np.asarray(np.hypot(edges[..., 0], edges[..., 1]), np.float64)
+
+
+def _sharpened(grey: Picture, used: Sides) -> Array:
+    """Lay sides, four by four, along the greatest slope of the grey values; return corners."""
+    way = (used.end - used.start) / used.length[:, None]
+    across = np.stack([way[:, 1], -way[:, 0]], axis=1)  # towards the bright side
+    along = np.linspace(0.1, 0.9, 13)
+    reach = np.arange(-REACH, REACH + 1.25, 0.5)  # outlines lie on the dark pixels
+    middle = used.start[:, None] + along[:, None] * (used.end - used.start)[:, None]
+    places = middle[:, :, None] + reach[:, None] * across[:, None, None]
+    values = sampled(grey, places.reshape(-1, len(reach), 2)).reshape(places.shape[:-1])
+    slope = np.maximum(values[..., 2:] - values[..., :-2], 0.0) ** 2 + 1e-3
+    offset = (slope * reach[1:-1]).sum(axis=-1) / slope.sum(axis=-1)
+    middle_off, lean = _line(along - 0.5, offset)
+    start = used.start + (middle_off - lean / 2)[:, None] * across
+    end = used.end + (middle_off + lean / 2)[:, None] * across
+    return _meetings(start.reshape(-1, 4, 2), end.reshape(-1, 4, 2))
+
+
+def _line(x: Array, y: Array) -> tuple[Array, Array]:
+    """Fit a line to each row of y, (N, M), at x, (M,): value at 0 and slope, (N,) each.
+
+    Points that lie far off a first fit are left out of the second.
+    """
+    weight = np.ones_like(y)
+    for _ in range(2):
+        total = weight.sum(axis=1)
+        mean_x, mean_y = (weight @ x) / total, (weight * y).sum(axis=1) / total
+        dx, dy = x - mean_x[:, None], y - mean_y[:, None]
+        slope = (weight * dx * dy).sum(axis=1) / (weight * dx * dx).sum(axis=1)
+        miss = np.abs(dy - slope[:, None] * dx)
+        weight = (miss <= 2.0 * np.median(miss, axis=1)[:, None] + 0.05).astype(np.float64)
+    return mean_y - slope * mean_x, slope
+
+
+def _meetings(start: Array, end: Array) -> Array:
+    """Corners between each side and the one before it, sides (N, 4, 2)."""
+    way = end - start
+    before, way_before = np.roll(start, 1, axis=1), np.roll(way, 1, axis=1)
+    share = cross(start - before, way) / cross(way_before, way)
+    return np.asarray(before + share[..., None] * way_before, np.float64)
+
+
+def _gaps(used: Sides, corners: Array) -> Array:
+    """How much of its two sides is hidden at each corner, the greater share of the two."""
+    start, end = used.start.reshape(-1, 4, 2), used.end.reshape(-1, 4, 2)
+    length = _side_lengths(corners)
+    after = np.linalg.norm(start - corners, axis=-1) / length
+    before = np.linalg.norm(end - np.roll(corners, -1, axis=1), axis=-1) / length
+    return np.asarray(np.maximum(after, np.roll(before, 1, axis=1)), np.float64)

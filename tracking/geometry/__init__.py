@@ -1,0 +1,1 @@
+"""Rigid motions, cameras, and the values that travel between the stages of tracking."""

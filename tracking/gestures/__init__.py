@@ -1,0 +1,1 @@
+"""From where the cube is to what the hand does with it."""

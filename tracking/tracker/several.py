@@ -1,0 +1,70 @@
+"""Several cubes in one picture, each with markers of its own."""
+
+from collections.abc import Sequence
+
+from tracking.cube.model import CubeModel
+from tracking.detection.markers import MarkerDetector
+from tracking.errors import TrackingError
+from tracking.geometry.frame import Frame
+from tracking.geometry.intrinsics import Intrinsics
+from tracking.geometry.state import CubeState
+from tracking.tracker.global_search import Search
+from tracking.tracker.tracker import CubeTracker
+
+
+class CubesTracker:
+    """Follows several cubes through the frames of one camera.
+
+    Each is followed by itself. Where some are out of sight, the picture is searched once for the
+    markers of all of them.
+
+    Parameters
+    ----------
+    cubes
+        The cubes; no two of one dictionary may share a marker.
+    intrinsics
+        The camera; every frame must have its size.
+
+    Raises
+    ------
+    TrackingError
+        Two cubes share a marker, or there is no cube.
+    """
+
+    def __init__(self, cubes: Sequence[CubeModel], intrinsics: Intrinsics) -> None:
+        if not cubes:
+            raise TrackingError("there is no cube to track: name at least one")
+        owners: dict[tuple[str, int], str] = {}
+        for cube in cubes:
+            for face in cube.faces:
+                key = (cube.dictionary, face.marker_id)
+                if key in owners:
+                    raise TrackingError(
+                        f"the cubes '{owners[key]}' and '{cube.name}' both have marker "
+                        f"{face.marker_id} of {cube.dictionary}: give each cube markers of its own"
+                    )
+                owners[key] = cube.name
+        self.trackers = tuple(CubeTracker(cube, intrinsics) for cube in cubes)
+        """One for each cube, in the order given."""
+        self._detectors = {name: MarkerDetector(name) for name, _ in owners}
+
+    def update(self, frame: Frame) -> tuple[CubeState, ...]:
+        """Find every cube in the next frame, in the order in which the cubes were given.
+
+        Raises
+        ------
+        TrackingError
+            The frame has not the size that the intrinsics hold for.
+        """
+        self.trackers[0].check(frame)
+        states = [tracker.follow(frame) for tracker in self.trackers]
+        lost = [number for number, state in enumerate(states) if state is None]
+        if lost:
+            search = Search(frame, self._detectors)
+            for number in lost:
+                states[number] = self.trackers[number].acquire(frame, search)
+        return tuple(state for state in states if state is not None)
+
+    def predict(self, timestamp: float) -> tuple[CubeState, ...]:
+        """Say where each cube will be at a time near that of the last frame."""
+        return tuple(tracker.predict(timestamp) for tracker in self.trackers)
