@@ -16,10 +16,10 @@ from characters.motion.blend import Blend, BlendSpace1D, BlendSpace2D
 from characters.motion.clip import Clip
 from characters.motion.crossfade import CrossFade
 from characters.motion.curves import Adsr, Curve, FadeCurve, Keyed, Product
-from characters.motion.layers import Added, Layered
+from characters.motion.layers import AdditiveLayer, MaskedLayer
 from characters.motion.mirror import Mirror, Mirrored
-from characters.motion.modifiers import Displaced, Loop, Stretch, TimeCurve, Warped, Window
-from characters.motion.motion import Motion, Step
+from characters.motion.modifiers import Loop, RootOffset, Stretch, TimeCurve, Warped, Window
+from characters.motion.motion import Motion, RootDelta
 from characters.motion.schedule import Action, LiveSchedule, Schedule
 from characters.motion.state_machine import StateMachine
 from characters.skeleton.masks import Mask, mask_of
@@ -27,7 +27,7 @@ from characters.skeleton.pose import Pose, Skeleton
 
 __all__ = [
     "Action",
-    "Added",
+    "AdditiveLayer",
     "Adsr",
     "Animator",
     "Blend",
@@ -41,13 +41,12 @@ __all__ = [
     "ClosedPath",
     "CrossFade",
     "Curve",
-    "Displaced",
     "FadeCurve",
     "Keyed",
-    "Layered",
     "LiveSchedule",
     "Loop",
     "Mask",
+    "MaskedLayer",
     "Material",
     "Mesh",
     "Mirror",
@@ -57,10 +56,11 @@ __all__ = [
     "Pose",
     "PosedCharacter",
     "Product",
+    "RootDelta",
+    "RootOffset",
     "Schedule",
     "Skeleton",
     "StateMachine",
-    "Step",
     "Stretch",
     "TimeCurve",
     "Warped",

@@ -5,19 +5,19 @@ from bisect import bisect_right
 from collections.abc import Sequence
 
 
-def eased(value: float, wish: float, elapsed: float, lag: float) -> float:
+def low_pass(value: float, wish: float, elapsed: float, lag: float) -> float:
     """Return a value after a time under a wish that it follows with a first-order lag.
 
     Two half steps end where one whole step does.
 
-    >>> half = eased(0.0, 1.0, 0.05, 0.15)
-    >>> math.isclose(eased(half, 1.0, 0.05, 0.15), eased(0.0, 1.0, 0.1, 0.15))
+    >>> half = low_pass(0.0, 1.0, 0.05, 0.15)
+    >>> math.isclose(low_pass(half, 1.0, 0.05, 0.15), low_pass(0.0, 1.0, 0.1, 0.15))
     True
     """
     return wish + (value - wish) * math.exp(-elapsed / lag)
 
 
-def along(value: float, knots: Sequence[float], values: Sequence[float]) -> float:
+def interpolate(value: float, knots: Sequence[float], values: Sequence[float]) -> float:
     """Return what lies at a value on straight lines between knots, which ascend; held beyond them.
 
     What `np.interp` does, for one number in a fraction of the time.
@@ -32,14 +32,14 @@ def along(value: float, knots: Sequence[float], values: Sequence[float]) -> floa
     return a + (values[after] - a) * (value - low) / (knots[after] - low)
 
 
-def sprung(
+def damped_spring(
     value: float, speed: float, wish: float, elapsed: float, lag: float
 ) -> tuple[float, float]:
     """Return value and speed of a critically damped spring with its rest at `wish`.
 
     Exact for a constant wish, so it is stable for any time step.
 
-    >>> sprung(1.0, 0.0, 1.0, 0.1, 0.2)
+    >>> damped_spring(1.0, 0.0, 1.0, 0.1, 0.2)
     (1.0, 0.0)
     """
     rate = 2.0 / lag

@@ -15,7 +15,7 @@ from rich.console import Console
 from affect import Emotion
 from affect.words import PLACES, closest_word
 from app.ui.album import Album, Image, save, stacked
-from characters import Animator, Character, CharacterCommand, Pose, PosedCharacter, Step
+from characters import Animator, Character, CharacterCommand, Pose, PosedCharacter, RootDelta
 from characters.face.lids import Lids
 from characters.rendering import Actor, Stage, View, create_context
 from characters.rendering.framing import Extent, Framing
@@ -44,10 +44,10 @@ def draw_cast(cast: Iterable[Character], folder: Path = FOLDER) -> Iterator[Path
                 yield path
 
 
-GROUP: tuple[tuple[str, str, float, Step], ...] = (
-    ("vleo", "kiss", 1.7, Step(-0.15, 0.0, 0.55)),
-    ("human", "wave", 1.25, Step(0.0, 0.02, 0.1)),
-    ("robot", "happy", 0.5, Step(0.15, 0.0, -0.55)),
+GROUP: tuple[tuple[str, str, float, RootDelta], ...] = (
+    ("vleo", "kiss", 1.7, RootDelta(-0.15, 0.0, 0.55)),
+    ("human", "wave", 1.25, RootDelta(0.0, 0.02, 0.1)),
+    ("robot", "happy", 0.5, RootDelta(0.15, 0.0, -0.55)),
 )
 """Who is in the picture of all: what they do, how long they have done it [s], where they stand."""
 
@@ -86,7 +86,7 @@ def draw_moods(album: Album, cast: Iterable[Character]) -> Image:
 
 def _moody(character: Character, word: str) -> Pose:
     """Return how a character stands that has felt so for a while, with its eyes open."""
-    animator = Animator(character, place=Step())
+    animator = Animator(character, place=RootDelta())
     known = closest_word(animator.actions, Emotion(*PLACES[word]), word)
     action = known if known in PLACES and known is not None else "idle"
     feeling, gaze = np.array(PLACES[word]), np.array([0.1, 0.16, 1.0])

@@ -8,7 +8,7 @@ import numpy as np
 
 from affect import Emotion, Personality
 from app.errors import AppError
-from characters import CharacterCommand, PosedCharacter, Step
+from characters import CharacterCommand, PosedCharacter, RootDelta
 from characters.rendering import FloorPath
 from tracking import CubeControls, CubeModel
 
@@ -78,7 +78,7 @@ class Scenario(Protocol):
     personality: str
     """Name of the bundled personality that it is played with."""
 
-    start: Step
+    start: RootDelta
     """Where the character first stands on the table [m], and which way it looks [rad]."""
 
     def update(

@@ -10,7 +10,7 @@ from affect import Personality
 from app.pipeline.scenario import Inputs, Outcome
 from app.scenarios.affect import Temper
 from app.scenarios.presence import Presence
-from characters import CharacterCommand, PosedCharacter, Step
+from characters import CharacterCommand, PosedCharacter, RootDelta
 from tracking import CubeControls, CubeModel
 
 Action = Literal["idle", "kiss", "shout"]
@@ -45,7 +45,7 @@ class Companion:
     cube = "companion"
     character = "vleo"
     personality = "thesis"
-    start = Step(float(BESIDE[0]), float(BESIDE[1]), 0.2)
+    start = RootDelta(float(BESIDE[0]), float(BESIDE[1]), 0.2)
 
     def __init__(
         self, cube: CubeModel, turns: float = 2.0, personality: Personality | None = None

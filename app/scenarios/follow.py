@@ -8,7 +8,7 @@ from app.pipeline.scenario import Inputs, Outcome
 from app.scenarios.affect import Temper
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
-from characters import CharacterCommand, PosedCharacter, Step
+from characters import CharacterCommand, PosedCharacter, RootDelta
 from tracking import CubeControls
 
 Point = NDArray[np.float64]
@@ -40,7 +40,7 @@ class Follow:
     cube = "locomotion"
     character = "human"
     personality = "lively"
-    start = Step(-0.15, 0.03, 0.0)
+    start = RootDelta(-0.15, 0.03, 0.0)
 
     def __init__(
         self, speed_map: str = "corrected", personality: Personality | None = None

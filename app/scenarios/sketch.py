@@ -9,7 +9,7 @@ from app.scenarios.affect import Temper
 from app.scenarios.follow import CAMERA, IDLE_BELOW, gait
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
-from characters import CharacterCommand, ClosedPath, PosedCharacter, Step
+from characters import CharacterCommand, ClosedPath, PosedCharacter, RootDelta
 from characters.rendering import FloorPath
 from tracking import CubeControls
 
@@ -40,7 +40,7 @@ class Sketch:
     cube = "locomotion"
     character = "human"
     personality = "lively"
-    start = Step(0.14, 0.0, 0.0)
+    start = RootDelta(0.14, 0.0, 0.0)
 
     def __init__(
         self, speed_map: str = "corrected", personality: Personality | None = None

@@ -11,7 +11,7 @@ from affect.emotion import HAPPY_ABOVE
 from affect.words import closest_word
 from app.pipeline.scenario import EmotionTarget
 from app.ui.palette import PAPER, between, mood_color
-from characters import Animator, Character, CharacterCommand, Step
+from characters import Animator, Character, CharacterCommand, RootDelta
 from characters.rendering import Actor, Stage, View
 
 LARGEST = 216
@@ -53,7 +53,7 @@ class Likeness:
         """Width and height of its pictures [px]."""
         self._drawn = min(self.side, LARGEST)
         self._character = Character.load("robot")
-        self._animator = Animator(self._character, place=Step(yaw=FACING))
+        self._animator = Animator(self._character, place=RootDelta(yaw=FACING))
         self._stage: Stage | None = Stage(context, (self._drawn, self._drawn))
         self._matrix, self._camera_from_table = _camera(self._drawn)
         renderer = str(context.info["GL_RENDERER"]).lower()

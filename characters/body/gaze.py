@@ -14,17 +14,17 @@ from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.rotations import from_matrix
 from characters.skeleton.scalar_quaternions import (
-    STILL,
+    IDENTITY,
     Quaternion,
     Vector,
     conjugate,
-    from_vector,
-    less,
+    from_rotation_vector,
     multiply,
-    to_vector,
-    turn,
+    rotate,
+    subtract,
+    to_rotation_vector,
 )
-from characters.smoothing import sprung
+from characters.smoothing import damped_spring
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class _Joint:
     rest: Quaternion
     """Its rotation at rest, in the character."""
 
-    turn: Quaternion = STILL
+    turn: Quaternion = IDENTITY
     """Its rotation now, in the character."""
 
     place: Vector = (0.0, 0.0, 0.0)
@@ -150,7 +150,7 @@ class Gaze:
             return pose
         self._place(pose)
         body, head = self._body(), self._line[-1]
-        held = _angles(turn(conjugate(body), turn(head.facing, _AHEAD)))
+        held = _angles(rotate(conjugate(body), rotate(head.facing, _AHEAD)))
         point: Vector | None = None
         if target is not None:
             x, y, z = target.tolist()
@@ -160,12 +160,14 @@ class Gaze:
         self._aim = aim
         wish = (0.0, 0.0) if aim is None else self._head_wish(aim, held, head_share)
         lag = _HEAD_LAG / pace
-        self._yaw, self._yaw_speed = sprung(self._yaw, self._yaw_speed, wish[0], elapsed, lag)
-        self._pitch, self._pitch_speed = sprung(
+        self._yaw, self._yaw_speed = damped_spring(
+            self._yaw, self._yaw_speed, wish[0], elapsed, lag
+        )
+        self._pitch, self._pitch_speed = damped_spring(
             self._pitch, self._pitch_speed, wish[1], elapsed, lag
         )
         aimed = held[0] + self._yaw, held[1] + self._pitch - bow
-        turned = turn(body, _turn_between(held, aimed))
+        turned = rotate(body, _turn_between(held, aimed))
         local = pose.rotations.copy()
         self._turn_line(local, turned)
         if self._eyes:
@@ -183,7 +185,7 @@ class Gaze:
                 above = self._joints[joint.parent]
                 if scales is not None:
                     shift = [a * b for a, b in zip(shift, above.scale, strict=True)]
-                x, y, z = turn(above.turn, shift)
+                x, y, z = rotate(above.turn, shift)
                 px, py, pz = above.place
                 joint.turn, joint.place = multiply(above.turn, own), (x + px, y + py, z + pz)
             if scales is not None:
@@ -195,7 +197,7 @@ class Gaze:
     def _body(self) -> Quaternion:
         """Return which way the chest faces."""
         base = self._line[0].parent
-        return self._joints[base].facing if base >= 0 else STILL
+        return self._joints[base].facing if base >= 0 else IDENTITY
 
     def _aimed(self, body: Quaternion, point: Vector | None) -> tuple[float, float] | None:
         """Return yaw and pitch of a point from where the chest faces; None if it is not seen."""
@@ -203,10 +205,10 @@ class Gaze:
             return None
         eyes = self._eyes or self._line[-1:]
         middle = [sum(eye.place[axis] for eye in eyes) / len(eyes) for axis in range(3)]
-        way = less(point, (middle[0], middle[1], middle[2]))
+        way = subtract(point, (middle[0], middle[1], middle[2]))
         if max(map(abs, way)) < 1e-6:
             return None
-        aim = _angles(turn(conjugate(body), way))
+        aim = _angles(rotate(conjugate(body), way))
         return aim if abs(aim[0]) < self._limits.given_up else None
 
     def _head_wish(
@@ -232,22 +234,22 @@ class Gaze:
         for joint in self._line:
             part = (x, y, z)
             if joint.parent >= 0:
-                part = turn(conjugate(self._joints[joint.parent].turn), part)
-            local[joint.number] = multiply(from_vector(part), local[joint.number].tolist())
+                part = rotate(conjugate(self._joints[joint.parent].turn), part)
+            local[joint.number] = multiply(from_rotation_vector(part), local[joint.number].tolist())
 
     def _turn_eyes(
         self, local: Array, turned: Vector, point: Vector | None, elapsed: float
     ) -> None:
         """Turn the eyes in the head that has turned, each to the point by itself."""
-        head, whole = self._line[-1], from_vector(turned)
+        head, whole = self._line[-1], from_rotation_vector(turned)
         back = conjugate(multiply(whole, head.facing))
         kept = math.exp(-elapsed / _EYE_LAG)
         for number, eye in enumerate(self._eyes):
             wish = (0.0, 0.0)
             if point is not None:
-                x, y, z = turn(whole, less(eye.place, head.place))
+                x, y, z = rotate(whole, subtract(eye.place, head.place))
                 place = (x + head.place[0], y + head.place[1], z + head.place[2])
-                yaw, pitch = _angles(turn(back, less(point, place)))
+                yaw, pitch = _angles(rotate(back, subtract(point, place)))
                 yaw_most, pitch_most = self._limits.eye_yaw, self._limits.eye_pitch
                 wish = (
                     min(max(yaw, -yaw_most), yaw_most),
@@ -257,8 +259,8 @@ class Gaze:
             yaw, pitch = (w + (b - w) * kept for w, b in zip(wish, before, strict=True))
             self._eye_turns[number] = yaw, pitch
             # About the body's up, and about its left downwards, in the frame of the eye.
-            own = turn(conjugate(eye.rest), (-pitch, yaw, 0.0))
-            local[eye.number] = multiply(local[eye.number].tolist(), from_vector(own))
+            own = rotate(conjugate(eye.rest), (-pitch, yaw, 0.0))
+            local[eye.number] = multiply(local[eye.number].tolist(), from_rotation_vector(own))
 
 
 def _carriers(skeleton: Skeleton, joints: list[int]) -> list[_Joint]:
@@ -297,4 +299,4 @@ def _turn_between(start: tuple[float, float], end: tuple[float, float]) -> Vecto
     half = (end[0] / 2, (start[1] - end[1]) / 2, -start[0] / 2)
     (sa, sb, sc), (ca, cb, cc) = map(math.sin, half), map(math.cos, half)
     first = (ca * sb, sa * cb, -sa * sb, ca * cb)
-    return to_vector(multiply(first, (0.0, sc, 0.0, cc)))
+    return to_rotation_vector(multiply(first, (0.0, sc, 0.0, cc)))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from characters.body.axes import body_axes, turned
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Skeleton
-from characters.smoothing import sprung
+from characters.smoothing import damped_spring
 
 LAG = 0.9
 """How slowly a body follows a feeling [s]; the face is faster."""
@@ -121,8 +121,8 @@ class Bearing:
         valence, arousal = feeling or (0.0, 0.0)
         if self.manner is PLAIN and valence == arousal == 0.0:
             return PLAIN
-        self._valence = sprung(*self._valence, valence, elapsed, LAG)
-        self._arousal = sprung(*self._arousal, arousal, elapsed, LAG)
+        self._valence = damped_spring(*self._valence, valence, elapsed, LAG)
+        self._arousal = damped_spring(*self._arousal, arousal, elapsed, LAG)
         moving = (*self._valence, *self._arousal)
         if valence == arousal == 0.0 and max(map(abs, moving)) < 1e-4:
             self._valence = self._arousal = (0.0, 0.0)

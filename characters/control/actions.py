@@ -7,8 +7,8 @@ from characters.model.character import Character
 from characters.motion.blend import BlendSpace1D
 from characters.motion.clip import Clip
 from characters.motion.contacts import Feet, find_contacts
-from characters.motion.motion import Step
-from characters.motion.phase import Phased
+from characters.motion.motion import RootDelta
+from characters.motion.phase import PhasedMotion
 from characters.motion.state_machine import StateMachine
 from characters.skeleton.pose import Pose, Skeleton
 
@@ -79,7 +79,7 @@ class Act:
         """Return the pose at a time [s]."""
         return self._motion.at(self.phase(time))
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self._motion.between(self.phase(start), self.phase(end))
 
@@ -88,7 +88,7 @@ class Act:
         """Its clip of middle intensity, or the one nearest to it."""
         motions = self._space.motions
         middle = motions[min(len(motions) // 2, len(motions) - 1)]
-        assert isinstance(middle, Phased)
+        assert isinstance(middle, PhasedMotion)
         assert isinstance(middle.motion, Clip)
         return middle.motion
 
@@ -134,7 +134,7 @@ def acts_of(character: Character, besides: Iterable[str] = ()) -> dict[str, Act]
     acts: dict[str, Act] = {}
     for action, names in clips_of_acts(character.clips, besides).items():
         clips = [character.clips[name] for name in names.values()]
-        space = BlendSpace1D(tuple(names), tuple(Phased(clip) for clip in clips))
+        space = BlendSpace1D(tuple(names), tuple(PhasedMotion(clip) for clip in clips))
         acts[action] = Act(space, once=not any(clip.loop for clip in clips))
     return acts
 

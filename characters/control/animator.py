@@ -14,7 +14,7 @@ from characters.errors import CharacterError
 from characters.face.affect_display import RECIPES
 from characters.locomotion.gaits import TOP_SPEED
 from characters.model.character import Character
-from characters.motion.motion import Step
+from characters.motion.motion import RootDelta
 from characters.skeleton.pose import Array, Pose
 
 LONGEST_STEP = 0.25
@@ -42,7 +42,7 @@ class Performer(Protocol):
     weight: float
     """The intensity in use, −1…1."""
 
-    place: Step
+    place: RootDelta
     """Where it stands on the table [m] and where it looks [rad]."""
 
     height: float
@@ -85,7 +85,7 @@ class Animator:
         self,
         character: Character,
         scale: float | None = None,
-        place: Step | None = None,
+        place: RootDelta | None = None,
         seed: int = 0,
         alive: bool = True,
     ) -> None:
@@ -180,7 +180,7 @@ def _felt(command: CharacterCommand) -> tuple[float, float] | None:
     return min(max(valence, -1.0), 1.0), min(max(arousal, -1.0), 1.0)
 
 
-def _placed(place: Step, height: float, scale: float) -> Array:
+def _placed(place: RootDelta, height: float, scale: float) -> Array:
     """Return `table_from_character`: scaled, turned about +y, and put down."""
     sine, cosine = math.sin(place.yaw) * scale, math.cos(place.yaw) * scale
     return np.array(

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from characters.control.actions import clips_of_acts
 from characters.control.walker import NO_ACTS, Walker
-from characters.locomotion.gaits import BAND, RUN_CLIPS, WALK_CLIPS
+from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS, WALK_RUN_SPEEDS
 from characters.model.character import Character
 from characters.motion.trees.conditions import Condition
 from characters.motion.trees.plan import PARAMETERS, Change, Machine, Node, Plan, Row
@@ -42,7 +42,7 @@ def _walker(character: Character) -> dict[str, Node]:
     trees = [
         Row(_space(name, "angular", there), {"value": at})
         for name, knots, at in zip(
-            ("walking", "running"), (WALK_CLIPS, RUN_CLIPS), BAND, strict=True
+            ("walking", "running"), (WALK_CLIPS, RUN_CLIPS), WALK_RUN_SPEEDS, strict=True
         )
         if (there := {knot: clip for knot, clip in knots.items() if clip in character.clips})
     ]

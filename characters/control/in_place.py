@@ -7,12 +7,12 @@ from characters.control.actions import WEIGHT_LAG, acts_of, proceed
 from characters.control.command import CharacterCommand
 from characters.errors import CharacterError
 from characters.model.character import Character
-from characters.motion.motion import STANDING, Motion, Step
-from characters.motion.phase import Still
+from characters.motion.motion import Motion, RootDelta
+from characters.motion.phase import StaticPose
 from characters.motion.state_machine import StateMachine
 from characters.skeleton.pose import Pose
 from characters.skeleton.rotations import wrap
-from characters.smoothing import eased, sprung
+from characters.smoothing import damped_spring, low_pass
 
 _GAZE_LAG = 0.9  # [s]: how slowly it turns on the spot where it need not hop
 _HOP_FROM = 0.015  # [m]: nearer targets are not worth a hop
@@ -26,17 +26,17 @@ _HOP_TIME = 0.3  # [s]
 class _Hop:
     """A jump over the table."""
 
-    start: Step
-    end: Step
+    start: RootDelta
+    end: RootDelta
     time: float
     """Since take-off [s]."""
 
-    def at(self) -> tuple[Step, float]:
+    def at(self) -> tuple[RootDelta, float]:
         """Return where it is on the table and how high [m]."""
         u = min(self.time / _HOP_TIME, 1.0)
         ease = u * u * (3 - 2 * u)
         a, b = self.start, self.end
-        place = Step(
+        place = RootDelta(
             a.x + (b.x - a.x) * ease, a.z + (b.z - a.z) * ease, a.yaw + (b.yaw - a.yaw) * ease
         )
         top = 0.006 + 0.25 * math.hypot(b.x - a.x, b.z - a.z)
@@ -50,8 +50,8 @@ class Actor:
     until another is asked for.
     """
 
-    def __init__(self, character: Character, scale: float, place: Step | None) -> None:
-        self.place = place or STANDING
+    def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
+        self.place = place or RootDelta()
         self.state, self.speed, self.angular, self.weight, self.height = "idle", 0.0, 0.0, 0.0, 0.0
         self.tempo = 1.0
         """How much faster it idles than its clip; a mood changes it."""
@@ -85,7 +85,7 @@ class Actor:
                 f"the character does not know {action!r}; it knows "
                 f"{', '.join(['idle', *self._acts])}"
             )
-        self.weight = eased(self.weight, wish, elapsed, WEIGHT_LAG)
+        self.weight = low_pass(self.weight, wish, elapsed, WEIGHT_LAG)
         action, self._done = proceed(self._machine, self._acts, action, self._done, now)
         if action != self._machine.state and action != "idle":
             self.weight = wish
@@ -99,11 +99,11 @@ class Actor:
         """Hop to the target and turn to what is to be looked at."""
         target = self.place
         if command.target is not None:
-            target = Step(float(command.target[0]), float(command.target[1]), self.place.yaw)
+            target = RootDelta(float(command.target[0]), float(command.target[1]), self.place.yaw)
         if not self._placed and command.target is not None:
             self.place, self._placed = target, True
             if command.look_at is not None:
-                self.place = Step(target.x, target.z, target.yaw + _bearing(target, command))
+                self.place = RootDelta(target.x, target.z, target.yaw + _bearing(target, command))
         if self._hop is None:
             self._hop = self._start_hop(target, command)
         if self._hop is not None:
@@ -112,14 +112,14 @@ class Actor:
             if self._hop.time >= _HOP_TIME:
                 self._hop = None
             return
-        turn, self._turn_speed = sprung(
+        turn, self._turn_speed = damped_spring(
             -_bearing(self.place, command), self._turn_speed, 0.0, elapsed, _GAZE_LAG
         )
-        self.place = Step(
+        self.place = RootDelta(
             self.place.x, self.place.z, self.place.yaw + _bearing(self.place, command) + turn
         )
 
-    def _start_hop(self, target: Step, command: CharacterCommand) -> _Hop | None:
+    def _start_hop(self, target: RootDelta, command: CharacterCommand) -> _Hop | None:
         distance = math.hypot(target.x - self.place.x, target.z - self.place.z)
         turn = _bearing(self.place, command)
         if distance < _HOP_FROM and abs(turn) < _HOP_TURN:
@@ -129,7 +129,7 @@ class Actor:
         self._turn_speed = 0.0
         return _Hop(
             self.place,
-            Step(
+            RootDelta(
                 self.place.x + part * (target.x - self.place.x),
                 self.place.z + part * (target.z - self.place.z),
                 self.place.yaw + part * turn,
@@ -138,7 +138,7 @@ class Actor:
         )
 
 
-def _bearing(place: Step, command: CharacterCommand) -> float:
+def _bearing(place: RootDelta, command: CharacterCommand) -> float:
     """Return how far to turn to look where it is to look [rad]."""
     if command.look_at is None:
         return 0.0
@@ -152,4 +152,4 @@ def _idle(character: Character) -> Motion:
             return clip
     if character.clips:
         return next(iter(character.clips.values()))
-    return Still(character.skeleton.rest, 1.0)
+    return StaticPose(character.skeleton.rest, 1.0)

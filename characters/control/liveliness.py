@@ -15,7 +15,7 @@ from characters.model.mesh import Mesh
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.smoothing import eased
+from characters.smoothing import low_pass
 
 _CALM_LAG = 0.5  # [s]
 _HELD_IN_ACTION = 0.5  # so much of a bearing stays in the midst of an action
@@ -104,7 +104,9 @@ class Life:
         played
             Whether the clips are those of a mood, so that the face need not show one.
         """
-        self._calm = eased(self._calm, 1.0 - max(busy, min(2.0 * effort, 1.0)), elapsed, _CALM_LAG)
+        self._calm = low_pass(
+            self._calm, 1.0 - max(busy, min(2.0 * effort, 1.0)), elapsed, _CALM_LAG
+        )
         manner = self._bearing.update(elapsed, feeling)
         self._face.update(elapsed, None if played else feeling, mood)
         share = _HELD_IN_ACTION + (1.0 - _HELD_IN_ACTION) * self._calm

@@ -3,16 +3,16 @@
 import math
 
 from characters.control.command import CharacterCommand
-from characters.locomotion.steering import ARRIVED, LEFT_AGAIN
+from characters.locomotion.steering import ARRIVAL_DISTANCE_M, DEPARTURE_DISTANCE_M
 from characters.model.character import Character
 from characters.model.mirroring import mirror_of
-from characters.motion.motion import STANDING, Motion, Step
+from characters.motion.motion import Motion, RootDelta
 from characters.motion.state_machine import StateMachine
 from characters.motion.trees.building import Builder
+from characters.motion.trees.parametric import ParameterBindings
 from characters.motion.trees.plan import PARAMETERS, Change, Plan
-from characters.motion.trees.steered import Steering
 from characters.skeleton.pose import Pose
-from characters.smoothing import eased
+from characters.smoothing import low_pass
 
 LAGS = {"speed": 0.15, "angular": 0.15, "weight": 0.12}
 """How slowly parameters follow where the file does not say [s]: a wish that jumps is no pop."""
@@ -38,11 +38,11 @@ class TreePlayer:
         Where it first stands on the table.
     """
 
-    def __init__(self, character: Character, scale: float, place: Step | None) -> None:
+    def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
         if character.plan is None:
             raise ValueError(f"{character.name} has no plan")
         self._plan: Plan = character.plan
-        self.place = place or STANDING
+        self.place = place or RootDelta()
         self.state, self.speed, self.angular, self.weight, self.height = "idle", 0.0, 0.0, 0.0, 0.0
         self._scale = scale
         self._time = 0.0
@@ -59,7 +59,9 @@ class TreePlayer:
         nodes = {"": self._plan.root} if machine is None else machine.states
         built = {n: builder.build(node, self._values) for n, node in nodes.items() if node}
         self._motions: dict[str, Motion] = {name: motion for name, (motion, _) in built.items()}
-        self._steering: dict[str, Steering] = {name: steer for name, (_, steer) in built.items()}
+        self._steering: dict[str, ParameterBindings] = {
+            name: steer for name, (_, steer) in built.items()
+        }
         self._machine = StateMachine(self._motions, "" if machine is None else machine.start)
 
     @property
@@ -81,7 +83,9 @@ class TreePlayer:
         self._steering[state].steer(self._values, now - self._machine.entered)
         self._report(command)
         step = self._machine.travel(now, self._time)
-        self.place = self.place.then(Step(step.x * self._scale, step.z * self._scale, step.yaw))
+        self.place = self.place.then(
+            RootDelta(step.x * self._scale, step.z * self._scale, step.yaw)
+        )
         return self._machine.sample(self._time)
 
     def _read(self, command: CharacterCommand, elapsed: float) -> None:
@@ -93,12 +97,14 @@ class TreePlayer:
         if command.action == "move" and command.target is not None:
             x, z = map(float, command.target)
             away = math.hypot(x - self.place.x, z - self.place.z)
-            self._arrived = command.stop and away < (LEFT_AGAIN if self._arrived else ARRIVED)
+            self._arrived = command.stop and away < (
+                DEPARTURE_DISTANCE_M if self._arrived else ARRIVAL_DISTANCE_M
+            )
             if not self._arrived:
                 wish |= self._course(command, (x, z), away)
         for name, value in wish.items():
             lag = self._plan.lags.get(name, LAGS.get(name, 0.0))
-            self._values[name] = eased(self._values[name], value, elapsed, lag) if lag else value
+            self._values[name] = low_pass(self._values[name], value, elapsed, lag) if lag else value
 
     def _course(
         self, command: CharacterCommand, target: tuple[float, float], away: float
@@ -107,7 +113,7 @@ class TreePlayer:
         right = -self.place.bearing(*target)
         speed = min(max(command.speed, 0.0), 5.0)
         if command.stop:
-            speed = min(speed, 0.6 + _BRAKING * max(away - ARRIVED, 0.0))
+            speed = min(speed, 0.6 + _BRAKING * max(away - ARRIVAL_DISTANCE_M, 0.0))
         if abs(right) > _SLOW_TURN:
             speed = min(speed, _TURNING_SPEED)
         angular = min(max(2.0 * math.degrees(right), -90.0), 90.0)

@@ -10,22 +10,22 @@ from characters.errors import CharacterError
 from characters.locomotion.foot_lock import FootLock
 from characters.locomotion.gaits import (
     IDLE_SPEED,
+    MAX_ANGULAR_RAD,
     RUN_CLIPS,
     RUN_SPEED,
-    STEEPEST,
     TOP_SPEED,
     WALK_CLIPS,
     Gaits,
 )
-from characters.locomotion.steering import STAY, Course, Pilot
-from characters.locomotion.stride_blending import Strides
+from characters.locomotion.steering import STANDSTILL, Steering, SteeringOutput
+from characters.locomotion.stride_blending import StrideBlend
 from characters.model.character import Character
-from characters.motion.motion import STANDING, Motion, Step
+from characters.motion.motion import Motion, RootDelta
 from characters.motion.phase import Cyclic
-from characters.motion.retimed import Live
+from characters.motion.retimed import RetimedMotion
 from characters.motion.state_machine import StateMachine
 from characters.skeleton.pose import Pose, Skeleton
-from characters.smoothing import eased
+from characters.smoothing import low_pass
 
 _SPEED_LAG = 0.15  # [s]
 _ANGULAR_LAG = 0.15  # [s]
@@ -45,19 +45,19 @@ class Walker:
     `characters.control.actions`.
     """
 
-    def __init__(self, character: Character, scale: float, place: Step | None) -> None:
+    def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
         clips, skeleton = character.clips, character.skeleton
         idle: Motion = clips.get("idle", clips["Walk"])
         self.gaits = Gaits(clips, skeleton, idle.sample(0.0))
-        self.place = place or STANDING
+        self.place = place or RootDelta()
         self.state, self.speed, self.angular = "idle", 0.0, 0.0
         self.weight, self.height = 0.0, 0.0
         self._scale = scale
-        self._course_in_use = STAY
+        self._course_in_use = STANDSTILL
         self._turning = False
-        self._pilot = Pilot(self.gaits, scale)
+        self._steering = Steering(self.gaits, scale)
         self._motion = self.gaits.at(IDLE_SPEED, 0.0)
-        self._steps = Live(self._motion)
+        self._steps = RetimedMotion(self._motion)
         self._first = _likest(idle.sample(0.0), self.gaits.at(IDLE_SPEED, 0.0), skeleton)
         self._acts = acts_of(character, NO_ACTS)
         self._done = ""  # what was asked for, and has ended
@@ -96,10 +96,12 @@ class Walker:
             )
         act, self._done = proceed(self._machine, self._acts, wish, self._done, self._time)
         if act != "idle":
-            return self.go(STAY, elapsed, act, min(max(command.weight, -1.0), 1.0))
+            return self.go(STANDSTILL, elapsed, act, min(max(command.weight, -1.0), 1.0))
         return self.go(self._course(command), elapsed)
 
-    def go(self, course: Course, elapsed: float, act: str = "idle", weight: float = 0.0) -> Pose:
+    def go(
+        self, course: SteeringOutput, elapsed: float, act: str = "idle", weight: float = 0.0
+    ) -> Pose:
         """Advance by a time [s] on a course and return the pose, with the root in place.
 
         Standing, it plays an action at an intensity −1…1.
@@ -109,13 +111,15 @@ class Walker:
         self._play(used, "move" if course.speed > 0.0 else act, weight, now)
         self._report(used, course.speed > 0.0 and not self._turning)
         step = self._machine.travel(now, self._time)
-        self.place = self.place.then(Step(step.x * self._scale, step.z * self._scale, step.yaw))
+        self.place = self.place.then(
+            RootDelta(step.x * self._scale, step.z * self._scale, step.yaw)
+        )
         pose = self._machine.sample(self._time)
         if self.lock is None:
             return pose
         return self.lock.apply(
             pose,
-            Step(self.place.x / self._scale, self.place.z / self._scale, self.place.yaw),
+            RootDelta(self.place.x / self._scale, self.place.z / self._scale, self.place.yaw),
             self._down(),
             self._machine.state == "idle",
             elapsed,
@@ -128,47 +132,49 @@ class Walker:
             return self._footing[state].at(
                 self._acts[state].phase(self._time - self._machine.entered)
             )
-        if state == "idle" or not isinstance(self._motion, Strides):
+        if state == "idle" or not isinstance(self._motion, StrideBlend):
             return [True] * count
         phase = self._steps.phase(self._time - self._machine.entered)
         return [part > 0.5 for part in self._motion.contacts(phase)]
 
-    def _course(self, command: CharacterCommand) -> Course:
+    def _course(self, command: CharacterCommand) -> SteeringOutput:
         """Return where to go, or how to turn on the spot."""
-        course = STAY
+        course = STANDSTILL
         if command.action == "move" and command.target is not None and command.speed > IDLE_SPEED:
             x, z = (float(value) for value in command.target)
             speed = min(command.speed, TOP_SPEED)
-            course = self._pilot.course(self.place, (x, z), speed, command.stop)
+            course = self._steering.course(self.place, (x, z), speed, command.stop)
         if course.speed > 0.0:
             self._turning = False
             return course
         return self._look(command)
 
-    def _look(self, command: CharacterCommand) -> Course:
+    def _look(self, command: CharacterCommand) -> SteeringOutput:
         """Return the course of turning on the spot to what it is to look at."""
         if command.look_at is None:
             self._turning = False
-            return STAY
+            return STANDSTILL
         error = -self.place.bearing(*(float(value) for value in command.look_at))
         self._turning = abs(error) > (_TURN_UNTIL if self._turning else _TURN_FROM)
         if not self._turning:
-            return STAY
-        return Course(_TURN_SPEED, min(max(2 * error, -STEEPEST), STEEPEST), 0.0)
+            return STANDSTILL
+        return SteeringOutput(
+            _TURN_SPEED, min(max(2 * error, -MAX_ANGULAR_RAD), MAX_ANGULAR_RAD), 0.0
+        )
 
-    def _follow(self, course: Course, elapsed: float) -> Course:
+    def _follow(self, course: SteeringOutput, elapsed: float) -> SteeringOutput:
         """Let Speed, Angular and stride go after a course and return them."""
         used = self._course_in_use
         if self._machine.state != "move":
             # From standing it sets off in the right way at once; the transition is the easing.
-            used = Course(0.0, course.angular, course.stride)
-        return Course(
-            eased(used.speed, course.speed, elapsed, _SPEED_LAG),
-            eased(used.angular, course.angular, elapsed, _ANGULAR_LAG),
-            eased(used.stride, course.stride, elapsed, _STRIDE_LAG),
+            used = SteeringOutput(0.0, course.angular, course.stride)
+        return SteeringOutput(
+            low_pass(used.speed, course.speed, elapsed, _SPEED_LAG),
+            low_pass(used.angular, course.angular, elapsed, _ANGULAR_LAG),
+            low_pass(used.stride, course.stride, elapsed, _STRIDE_LAG),
         )
 
-    def _play(self, used: Course, state: str, weight: float, now: float) -> None:
+    def _play(self, used: SteeringOutput, state: str, weight: float, now: float) -> None:
         """Keep the right state going with the parameters in use."""
         motion = self._motion = self.gaits.at(used.speed, used.angular, used.stride)
         if self._machine.state == "move":
@@ -185,10 +191,10 @@ class Walker:
             self.weight = weight
             act.begin(weight)
             return
-        self.weight = eased(self.weight, weight, self._time - now, WEIGHT_LAG)
+        self.weight = low_pass(self.weight, weight, self._time - now, WEIGHT_LAG)
         act.change(self.weight, now - self._machine.entered)
 
-    def _report(self, used: Course, going: bool) -> None:
+    def _report(self, used: SteeringOutput, going: bool) -> None:
         """Say what it is doing; to turn on the spot is to stand."""
         state = self._machine.state
         self.state, self.speed, self.angular = "idle", 0.0, 0.0

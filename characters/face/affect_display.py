@@ -10,7 +10,7 @@ from operator import mul
 
 from characters.face.expressions import EXPRESSIONS, Expressions
 from characters.skeleton.pose import Array
-from characters.smoothing import eased
+from characters.smoothing import low_pass
 
 RECIPES: dict[str, tuple[float, ...]] = {
     #            happy angry  sad  surprised relaxed lids
@@ -132,7 +132,7 @@ class Face:
         if not self.felt and not stirred:
             return
         rate = 2.0 / LAG
-        decay = math.exp(-rate * elapsed)  # of a critically damped spring, as in `sprung`
+        decay = math.exp(-rate * elapsed)  # of a critically damped spring, as in `damped_spring`
         for number, to in enumerate(wished):
             away, speed = self._now[number] - to, self._speeds[number]
             push = speed + rate * away
@@ -165,7 +165,7 @@ class Face:
         values = weights.tolist()
         room = self._room_beside(values, acting)
         lag = _GIVES_WAY if room < self._room else _RETURNS
-        self._room = eased(self._room, room, elapsed, lag)
+        self._room = low_pass(self._room, room, elapsed, lag)
         room = self._room
         *shown, hang = [min(max(value * room, 0.0), 1.0) for value in self._now]
         left = 1.0 - min(sum(shown), 1.0)

@@ -20,9 +20,9 @@ from characters.skeleton.scalar_quaternions import (
     Quaternion,
     Vector,
     conjugate,
-    less,
     multiply,
-    turn,
+    rotate,
+    subtract,
 )
 
 
@@ -38,7 +38,7 @@ class Placed:
 
 
 @dataclass(frozen=True)
-class Legs:
+class LegIK:
     """The legs of a skeleton, with all that carries them."""
 
     carriers: NDArray[np.intp]
@@ -102,7 +102,7 @@ class Legs:
             if parent >= 0:
                 above, (x, y, z) = turns[parent], places[parent]
                 turns[joint] = multiply(above, turns[joint])
-                dx, dy, dz = turn(above, places[joint])
+                dx, dy, dz = rotate(above, places[joint])
                 places[joint] = (x + dx, y + dy, z + dz)
         return Placed(turns, places)
 
@@ -120,7 +120,7 @@ class Legs:
         for (*_, ankle, _), offset, ball, facing in zip(
             self._joints, offsets, balls, facings, strict=True
         ):
-            ankles.append(less(ball, turn(facing, offset)))
+            ankles.append(subtract(ball, rotate(facing, offset)))
             turned.append(multiply(facing, conjugate(placed.turns[ankle])))
         return self.bend(pose, placed, ankles, turned)
 
@@ -164,7 +164,7 @@ class Legs:
         parent = self.skeleton.parents[pelvis]
         down: Vector = (0.0, -sink, 0.0)
         if parent >= 0:
-            down = turn(conjugate(placed.turns[parent]), down)
+            down = rotate(conjugate(placed.turns[parent]), down)
         moved = pose.translations.copy()
         moved[self.carriers[pelvis]] += down
         places = list(placed.places)
@@ -207,7 +207,7 @@ class Legs:
         return place, rotations.normalize(np.einsum("p,pli->li", share, facing))
 
 
-def find_legs(skeleton: Skeleton) -> Legs | None:
+def find_legs(skeleton: Skeleton) -> LegIK | None:
     """Return the legs whose feet have ankle and toes under a knee and a hip, or None.
 
     A skeleton that is scaled at rest is left alone.
@@ -223,7 +223,7 @@ def find_legs(skeleton: Skeleton) -> Legs | None:
         skeleton.rest[np.array(order)],
     )
     joints = np.array([[number[joint] for joint in line] for line in lines])
-    return Legs(np.array(order), part, joints)
+    return LegIK(np.array(order), part, joints)
 
 
 def _lines(feet: list[int], skeleton: Skeleton) -> list[list[int]]:

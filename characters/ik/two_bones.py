@@ -13,8 +13,8 @@ from characters.skeleton.scalar_quaternions import (
     cross,
     dot,
     length,
-    less,
-    turn,
+    rotate,
+    subtract,
 )
 
 _STRAIGHTEST = 0.999  # part of a leg's length that a target may need
@@ -32,12 +32,12 @@ def reach(
 
     >>> from characters.skeleton.scalar_quaternions import multiply
     >>> upper, lower = reach((0, 2, 0), (0, 1, 0.1), (0, 0, 0), (0, 0.5, 0))
-    >>> x, y, z = turn(upper, (0.0, -1.0, 0.1))  # where the thigh points now
-    >>> sx, sy, sz = turn(multiply(upper, lower), (0.0, -1.0, -0.1))
+    >>> x, y, z = rotate(upper, (0.0, -1.0, 0.1))  # where the thigh points now
+    >>> sx, sy, sz = rotate(multiply(upper, lower), (0.0, -1.0, -0.1))
     >>> [round(value, 6) + 0.0 for value in (x + sx, 2 + y + sy, z + sz)]
     [0.0, 0.5, 0.0]
     """
-    thigh, shin, way = less(hip, knee), less(ankle, knee), less(target, hip)
+    thigh, shin, way = subtract(hip, knee), subtract(ankle, knee), subtract(target, hip)
     long, short = length(thigh), length(shin)
     wanted = min(max(length(way), abs(long - short) + 1e-6 * long), _STRAIGHTEST * (long + short))
     across = cross(thigh, shin)
@@ -50,5 +50,5 @@ def reach(
     half = (math.acos(min(max(cosine, -1.0), 1.0)) - bend) / 2
     sine = math.sin(half)
     lower = (axis[0] * sine, axis[1] * sine, axis[2] * sine, math.cos(half))
-    x, y, z = turn(lower, shin)
+    x, y, z = rotate(lower, shin)
     return between((x - thigh[0], y - thigh[1], z - thigh[2]), way), lower

@@ -28,7 +28,7 @@ _HASTE = 3.0  # [m/s of a body of 1 m, rad/s]: no offset starts to die away fast
 
 
 @dataclass(frozen=True)
-class Sole:
+class FootPoints:
     """What of a foot meets the ground, in the world, as the motion has it [m]."""
 
     heel: tuple[float, float, float]
@@ -64,7 +64,7 @@ class Shift:
     y: float = 0.0
     """[m]."""
 
-    def moved(self, sole: Sole, heel: bool) -> tuple[float, float]:
+    def moved(self, sole: FootPoints, heel: bool) -> tuple[float, float]:
         """Return x, z where the heel or the ball of a foot is shown."""
         ball = sole.ball[0] + self.x, sole.ball[2] + self.z
         if not heel:
@@ -78,7 +78,7 @@ class Shift:
         return math.hypot(self.x, self.z)
 
 
-class HeldFoot:
+class FootConstraint:
     """One foot: held, or on its way; advanced once a frame."""
 
     def __init__(self, height: float) -> None:
@@ -100,7 +100,7 @@ class HeldFoot:
         self._old, self._drift = [0.0] * 4, [0.0] * 4  # what dies away, as it was, and its pace
         self._age, self._fade_time = _FADE_TIME, _FADE_TIME
 
-    def advance(self, sole: Sole, elapsed: float) -> None:
+    def advance(self, sole: FootPoints, elapsed: float) -> None:
         """Go on as before to where the motion has the foot now."""
         self.stepping = max(self.stepping - elapsed, 0.0)
         self._age += elapsed
@@ -116,7 +116,7 @@ class HeldFoot:
         off = self.shift.length > far * self._height or abs(self.shift.yaw) > askew
         return off or self.too_far
 
-    def hold(self, sole: Sole) -> None:
+    def hold(self, sole: FootPoints) -> None:
         """Hold the foot where it is shown: it lands, or rolls from heel to ball."""
         least = _ON_BALL if self._heel else _ON_HEEL
         heel = sole.heel[1] + least * self._height < sole.ball[1]
@@ -130,7 +130,7 @@ class HeldFoot:
             self._fade([0.0, 0.0, 0.0, self.shift.y + sole.low], [0.0] * 4, _FADE_TIME)
             self.stepping = 0.0
 
-    def release(self, sole: Sole, step: bool) -> None:
+    def release(self, sole: FootPoints, step: bool) -> None:
         """Let the foot go, in a quick step of its own or with the motion."""
         if not self.held:
             return
@@ -142,7 +142,7 @@ class HeldFoot:
         self._stride = self.shift.length
         self.stepping = _STEP_TIME if step else 0.0
 
-    def lift(self, sole: Sole) -> None:
+    def lift(self, sole: FootPoints) -> None:
         """Keep a foot that is on its way clear of the ground, and every foot out of it."""
         least = -sole.low
         if self.stepping > 0.0:
@@ -158,7 +158,7 @@ class HeldFoot:
         if self.shift.y < least:
             self.shift.y = least
 
-    def may_land(self, sole: Sole) -> bool:
+    def may_land(self, sole: FootPoints) -> bool:
         """Whether a foot that is on its way is so near to the ground, and to the end of a step."""
         near = sole.low + self.shift.y < _LANDS * self._height
         if self.stepping == 0.0:
@@ -171,7 +171,7 @@ class HeldFoot:
         self._old, self._drift, self._age, self._fade_time = list(old), drift, 0.0, length
 
     def _rest(self) -> list[float]:
-        """Return what is left of the old shift, by the quintic of `transition.Fade`."""
+        """Return what is left of the old shift, by the quintic of `transition.OffsetDecay`."""
         if self._age >= self._fade_time:
             return [0.0] * 4
         u = self._age / self._fade_time
@@ -179,7 +179,7 @@ class HeldFoot:
         velocity = (u - u**3 * (6 - 8 * u + 3 * u * u)) * self._fade_time
         return [a * position + v * velocity for a, v in zip(self._old, self._drift, strict=True)]
 
-    def _goal(self, sole: Sole) -> list[float]:
+    def _goal(self, sole: FootPoints) -> list[float]:
         """Return the shift that holds the foot exactly, or none if it is not held."""
         if not self.held:
             return [0.0] * 4

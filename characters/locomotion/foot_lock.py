@@ -8,11 +8,11 @@ import math
 
 import numpy as np
 
-from characters.ik.legs import Legs, Placed
-from characters.locomotion.foot_constraint import HeldFoot, Sole, turned
-from characters.motion.motion import Step
+from characters.ik.legs import LegIK, Placed
+from characters.locomotion.foot_constraint import FootConstraint, FootPoints, turned
+from characters.motion.motion import RootDelta
 from characters.skeleton.pose import Pose
-from characters.skeleton.scalar_quaternions import Quaternion, Vector, turn
+from characters.skeleton.scalar_quaternions import Quaternion, Vector, rotate
 
 _STRETCH = 0.997  # part of a leg's length that a held foot may need
 _SINK = 0.02  # body heights: how far the pelvis may be lowered for it
@@ -30,9 +30,9 @@ class FootLock:
         Of the body [m].
     """
 
-    def __init__(self, legs: Legs, height: float) -> None:
+    def __init__(self, legs: LegIK, height: float) -> None:
         self.legs = legs
-        self.feet = tuple(HeldFoot(height) for _ in range(legs.count))
+        self.feet = tuple(FootConstraint(height) for _ in range(legs.count))
         self._height = height
         self._points, self._levels = _soles(legs)
         self._hip, self._ankle, self._toes = legs.joints[:, [1, 3, 4]].T.tolist()
@@ -41,7 +41,7 @@ class FootLock:
         self._fresh = True
 
     def apply(
-        self, pose: Pose, place: Step, down: list[bool], standing: bool, elapsed: float
+        self, pose: Pose, place: RootDelta, down: list[bool], standing: bool, elapsed: float
     ) -> Pose:
         """Return a pose with its standing feet held.
 
@@ -71,7 +71,7 @@ class FootLock:
             foot.lift(sole)
         return self._shown(pose, placed, place, elapsed)
 
-    def _decide(self, foot: HeldFoot, sole: Sole, down: bool, standing: bool) -> None:
+    def _decide(self, foot: FootConstraint, sole: FootPoints, down: bool, standing: bool) -> None:
         """Hold a foot or let it go."""
         others = all(o.held for o in self.feet if o is not foot)
         if not down:
@@ -81,7 +81,7 @@ class FootLock:
         elif foot.held or foot.may_land(sole):
             foot.hold(sole)
 
-    def _soles(self, placed: Placed, place: Step) -> list[Sole]:
+    def _soles(self, placed: Placed, place: RootDelta) -> list[FootPoints]:
         """Return what of each foot meets the ground."""
         sine, cosine = math.sin(place.yaw), math.cos(place.yaw)
         soles = []
@@ -93,12 +93,14 @@ class FootLock:
                     ay + y - level,
                     place.z - sine * (ax + x) + cosine * (az + z),
                 )
-                for (x, y, z), level in zip((turn(facing, p) for p in points), levels, strict=True)
+                for (x, y, z), level in zip(
+                    (rotate(facing, p) for p in points), levels, strict=True
+                )
             )
-            soles.append(Sole(heel, ball))
+            soles.append(FootPoints(heel, ball))
         return soles
 
-    def _shown(self, pose: Pose, placed: Placed, place: Step, elapsed: float) -> Pose:
+    def _shown(self, pose: Pose, placed: Placed, place: RootDelta, elapsed: float) -> Pose:
         """Return the pose with its feet shifted, and the pelvis lowered where they are far."""
         shifts = [foot.shift for foot in self.feet]
         if (
@@ -113,7 +115,7 @@ class FootLock:
             pose, placed = self.legs.lowered(pose, placed, self._sunk)
         return self.legs.bend(pose, placed, ankles, turns)
 
-    def _ankles(self, placed: Placed, place: Step) -> tuple[list[Vector], list[Quaternion]]:
+    def _ankles(self, placed: Placed, place: RootDelta) -> tuple[list[Vector], list[Quaternion]]:
         """Return where the ankles are shown, and how the feet are turned, in the character."""
         sine, cosine = math.sin(place.yaw), math.cos(place.yaw)
         ankles: list[Vector] = []
@@ -143,7 +145,7 @@ class FootLock:
         return needed
 
 
-def _soles(legs: Legs) -> tuple[list[list[Vector]], list[tuple[float, float]]]:
+def _soles(legs: LegIK) -> tuple[list[list[Vector]], list[tuple[float, float]]]:
     """Return heel and ball in the frame of each ankle, and their heights at rest [m].
 
     The heel is under the ankle and half as far behind it as the ball is before it.

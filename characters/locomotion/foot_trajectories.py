@@ -7,12 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from characters.ik.legs import Legs
+from characters.ik.legs import LegIK
 from characters.motion.batch.bank import Bank
 from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts
-from characters.motion.motion import Step
-from characters.motion.phase import Phased
+from characters.motion.motion import RootDelta
+from characters.motion.phase import PhasedMotion
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
 
@@ -31,7 +31,7 @@ class Stance:
     """Ball (3) and facing (4) of each foot, (legs, 7)."""
 
     @staticmethod
-    def of(pose: Pose, legs: Legs) -> "Stance":
+    def of(pose: Pose, legs: LegIK) -> "Stance":
         """Return the stance of a pose."""
         return Stance(pose, _feet(pose, legs))
 
@@ -43,10 +43,10 @@ class Stance:
 
 
 @dataclass(frozen=True)
-class Treads:
-    """Clips, a stance, and where the feet are in each frame; see `Treads.of`."""
+class FootTrajectories:
+    """Clips, a stance, and where the feet are in each frame; see `FootTrajectories.of`."""
 
-    motions: tuple[Phased, ...]
+    motions: tuple[PhasedMotion, ...]
     """The clips by their phases."""
 
     bank: Bank
@@ -57,7 +57,7 @@ class Treads:
     """The middle of where each foot stands, on the ground, and how it faces there,
     (clips, legs, 7)."""
 
-    legs: Legs
+    legs: LegIK
     """Whose feet they are."""
 
     stance: Stance
@@ -72,8 +72,10 @@ class Treads:
     """What was mixed last: voices, phase and contacts, which are asked for after the pose."""
 
     @staticmethod
-    def of(motions: Sequence[Phased], skeleton: Skeleton, legs: Legs, standing: Pose) -> "Treads":
-        """Return the treads of looped clips, with contacts that are found in them.
+    def of(
+        motions: Sequence[PhasedMotion], skeleton: Skeleton, legs: LegIK, standing: Pose
+    ) -> "FootTrajectories":
+        """Return the trajectories of looped clips, with contacts that are found in them.
 
         Feet face on the side of quaternions on which those of the stance do.
         """
@@ -84,7 +86,7 @@ class Treads:
         beside = [*(each.reshape(len(each), -1) for each in feet), np.zeros((1, legs.count * 8))]
         bank = Bank.of(skeleton, [*clips, still], np.float64, beside)
         homes = np.stack([_home(each) for each in feet])
-        return Treads(tuple(motions), bank, homes, legs, stance)
+        return FootTrajectories(tuple(motions), bank, homes, legs, stance)
 
     def mixed(
         self, voices: Sequence[tuple[int, float]], phase: float, share: float
@@ -118,7 +120,7 @@ class Treads:
             time = self._times[key] = self.motions[number].time(phase)
         return time
 
-    def travel(self, number: int, start: float, end: float) -> Step:
+    def travel(self, number: int, start: float, end: float) -> RootDelta:
         """Return how the root of a clip moves over the ground between two phases."""
         motion = self.motions[number].motion
         return motion.travel(self.time(number, start), self.time(number, end))
@@ -153,7 +155,7 @@ class Treads:
         return [beside[low:high, :, 7].tolist() for low, high in pairwise(starts)]
 
 
-def _trodden(clip: Clip, skeleton: Skeleton, legs: Legs, stance: Stance) -> Array:
+def _trodden(clip: Clip, skeleton: Skeleton, legs: LegIK, stance: Stance) -> Array:
     """Return ball, facing and contact of each foot of a clip, (frames, legs, 8)."""
     feet = np.concatenate([_feet(clip.in_place, legs), np.zeros((len(clip), legs.count, 1))], 2)
     feet[..., 3:7] = rotations.align(feet[..., 3:7], stance.feet[:, 3:])
@@ -174,7 +176,7 @@ def _home(feet: Array) -> Array:
     return mean
 
 
-def _feet(poses: Pose, legs: Legs) -> Array:
+def _feet(poses: Pose, legs: LegIK) -> Array:
     """Return the ball and the facing of each foot in poses (…), (…, legs, 7)."""
     placed = legs.globals(poses)
     ankle, toes = legs.joints[:, 3], legs.joints[:, 4]

@@ -8,13 +8,13 @@ import math
 from collections.abc import Mapping
 
 from characters.ik.legs import find_legs
-from characters.locomotion.foot_trajectories import Treads
-from characters.locomotion.stride_blending import Strides
-from characters.motion.blend import Blend, BlendSpace1D, Paced
+from characters.locomotion.foot_trajectories import FootTrajectories
+from characters.locomotion.stride_blending import StrideBlend
+from characters.motion.blend import Blend, BlendSpace1D, TimeScaled
 from characters.motion.clip import Clip
-from characters.motion.phase import Phased, Still, phased
+from characters.motion.phase import PhasedMotion, StaticPose, phased
 from characters.skeleton.pose import Pose, Skeleton
-from characters.smoothing import along
+from characters.smoothing import interpolate
 
 IDLE_SPEED = 0.5
 """AvatAR's Speed up to which a character stands."""
@@ -25,7 +25,7 @@ RUN_SPEED = 3.0
 TOP_SPEED = 5.0
 """AvatAR's greatest Speed."""
 
-STEEPEST = math.pi / 2
+MAX_ANGULAR_RAD = math.pi / 2
 """The greatest Angular [rad]."""
 
 WALK_CLIPS = {
@@ -48,7 +48,7 @@ RUN_CLIPS = {
 }
 """The run tree."""
 
-BAND = (2.75, 3.25)
+WALK_RUN_SPEEDS = (2.75, 3.25)
 """Speeds between which walking is mixed into running."""
 
 # Speeds, and how fast the ground goes by there as a multiple of the walk or the run as recorded.
@@ -77,35 +77,35 @@ class Gaits:
         self._run = _tree(clips, RUN_CLIPS, skeleton) if "Run" in clips else self._walk
         self.legs = find_legs(skeleton)
         """The legs that keep to the ground, or None where there are none to bend."""
-        self._still = Still(standing, self._walk.at(0.0).duration)
-        self._treads: Treads | None = None
+        self._still = StaticPose(standing, self._walk.at(0.0).duration)
+        self._trajectories: FootTrajectories | None = None
         if self.legs is not None:
             motions = [*self._walk.motions, *(() if self._run is self._walk else self._run.motions)]
-            both = [motion for motion in motions if isinstance(motion, Phased)]
-            self._treads = Treads.of(both, skeleton, self.legs, standing)
+            both = [motion for motion in motions if isinstance(motion, PhasedMotion)]
+            self._trajectories = FootTrajectories.of(both, skeleton, self.legs, standing)
             self._numbers = {id(motion): number for number, motion in enumerate(both)}
         straight = [tree.at(0.0) for tree in (self._walk, self._run)]
         self._lengths = [motion.between(0.0, 1.0).length for motion in straight]
         self._cadences = [1.0 / motion.duration for motion in straight]
         walk, run = (x * y for x, y in zip(self._lengths, self._cadences, strict=True))
-        self._speeds = [IDLE_SPEED, *BAND, TOP_SPEED]
+        self._speeds = [IDLE_SPEED, *WALK_RUN_SPEEDS, TOP_SPEED]
         paces = [_STROLL * walk, _BRISK * walk, _JOG * run, _SPRINT * run]
         self._paces = [max(paces[: count + 1]) for count in range(len(paces))]
 
     def pace(self, speed: float) -> float:
         """Return how fast the ground goes by at a Speed, going straight [m/s]; rises with it."""
-        return along(speed, self._speeds, self._paces)
+        return interpolate(speed, self._speeds, self._paces)
 
     def speed(self, pace: float) -> float:
         """Return the Speed at which the ground goes by so fast [m/s]: the inverse of `pace`."""
-        return along(pace, self._paces, self._speeds)
+        return interpolate(pace, self._paces, self._speeds)
 
     def radius(self, speed: float) -> float:
         """Return the radius of the tightest curve at a Speed [m]."""
-        cycle = self.at(speed, STEEPEST).between(0.0, 1.0)
+        cycle = self.at(speed, MAX_ANGULAR_RAD).between(0.0, 1.0)
         return math.hypot(cycle.x, cycle.z) / max(2 * math.sin(abs(cycle.yaw) / 2), 1e-6)
 
-    def at(self, speed: float, angular: float, stride: float = 1.0) -> "Strides | Paced":
+    def at(self, speed: float, angular: float, stride: float = 1.0) -> "StrideBlend | TimeScaled":
         """Return the motion at a Speed and an Angular.
 
         Parameters
@@ -117,20 +117,20 @@ class Gaits:
         stride
             What the way over the ground is multiplied with, to turn tighter than any clip.
         """
-        running = along(speed, BAND, (0.0, 1.0))
+        running = interpolate(speed, WALK_RUN_SPEEDS, (0.0, 1.0))
         # Steps on the spot are small ones.
         smaller = 1.0 - _SMALLER * (1.0 - stride)
         rate, share = self._effort(speed, running)
         share *= smaller
         rate /= math.sqrt(smaller)
         heard = self._heard(running, math.degrees(angular))
-        if self._treads is not None:
+        if self._trajectories is not None:
             voices = [(self._numbers[id(motion)], weight) for motion, weight in heard]
-            return Strides(self._treads, voices, share, stride, rate)
+            return StrideBlend(self._trajectories, voices, share, stride, rate)
         mixed = Blend(tuple(motion for motion, _ in heard), tuple(weight for _, weight in heard))
         if share < 1.0:
             mixed = Blend((mixed, self._still), (share, 1.0 - share))
-        return Paced(mixed, rate, stride)
+        return TimeScaled(mixed, rate, stride)
 
     def _effort(self, speed: float, running: float) -> tuple[float, float]:
         """Return how fast the clips play and how far their steps reach, for the right pace."""
@@ -140,15 +140,15 @@ class Gaits:
         share = rate**_SHORTENING if rate < 1.0 and running == 0.0 else 1.0
         return rate / share, share
 
-    def _heard(self, running: float, degrees: float) -> list[tuple[Phased, float]]:
+    def _heard(self, running: float, degrees: float) -> list[tuple[PhasedMotion, float]]:
         """Return the clips that sound and how much of each."""
-        heard: list[tuple[Phased, float]] = []
+        heard: list[tuple[PhasedMotion, float]] = []
         for tree, part in ((self._walk, 1.0 - running), (self._run, running)):
             weights = tree.weights(degrees) if part > 0.0 else ()
             heard += [
                 (motion, part * weight)
                 for motion, weight in zip(tree.motions, weights, strict=False)
-                if weight > 0.0 and isinstance(motion, Phased)
+                if weight > 0.0 and isinstance(motion, PhasedMotion)
             ]
         return heard
 

@@ -6,14 +6,14 @@ from itertools import accumulate
 
 import numpy as np
 
-from characters.locomotion.gaits import IDLE_SPEED, STEEPEST, TOP_SPEED, Gaits
-from characters.motion.motion import Step
-from characters.smoothing import along
+from characters.locomotion.gaits import IDLE_SPEED, MAX_ANGULAR_RAD, TOP_SPEED, Gaits
+from characters.motion.motion import RootDelta
+from characters.smoothing import interpolate
 
-ARRIVED = 0.05
+ARRIVAL_DISTANCE_M = 0.05
 """Distance at which a target counts as reached [m on the table]."""
 
-LEFT_AGAIN = 0.065
+DEPARTURE_DISTANCE_M = 0.065
 """A target that was reached is left again only beyond this distance [m on the table]."""
 
 _BRAKING = 1.4  # [s]: how long it would take to stop from its fastest run, by the brakes it uses;
@@ -28,7 +28,7 @@ _BEHIND = math.radians(150)  # a target farther behind is turned to the way roun
 
 
 @dataclass(frozen=True)
-class Course:
+class SteeringOutput:
     """What steering asks of the legs."""
 
     speed: float
@@ -41,11 +41,11 @@ class Course:
     """What the way over the ground is to be multiplied with, 0…1."""
 
 
-STAY = Course(0.0, 0.0, 1.0)
+STANDSTILL = SteeringOutput(0.0, 0.0, 1.0)
 """To stand."""
 
 
-class Pilot:
+class Steering:
     """Steers a walker to a target and knows when it is there.
 
     Parameters
@@ -64,7 +64,9 @@ class Pilot:
         self._arrived = False
         self._side = 1.0
 
-    def course(self, place: Step, target: tuple[float, float], speed: float, stop: bool) -> Course:
+    def course(
+        self, place: RootDelta, target: tuple[float, float], speed: float, stop: bool
+    ) -> SteeringOutput:
         """Return the course from a place to a target, both on the table.
 
         Parameters
@@ -79,9 +81,11 @@ class Pilot:
             Whether to stop there, or only to pass.
         """
         distance = math.hypot(target[0] - place.x, target[1] - place.z)
-        self._arrived = stop and distance < (LEFT_AGAIN if self._arrived else ARRIVED)
+        self._arrived = stop and distance < (
+            DEPARTURE_DISTANCE_M if self._arrived else ARRIVAL_DISTANCE_M
+        )
         if self._arrived or distance == 0.0:
-            return STAY
+            return STANDSTILL
         error = -place.bearing(*target)  # positive to the right
         if abs(error) < _BEHIND:
             self._side = math.copysign(1.0, error)
@@ -92,16 +96,16 @@ class Pilot:
         needed = distance / (2 * max(math.sin(abs(error)), 0.05))
         speed = min(speed, self._fastest_within(needed))
         if stop:
-            speed = min(speed, self._fastest_before(distance - ARRIVED))
+            speed = min(speed, self._fastest_before(distance - ARRIVAL_DISTANCE_M))
         speed = max(speed, IDLE_SPEED)
-        circle = along(speed, _SPEEDS, self._circles)
+        circle = interpolate(speed, _SPEEDS, self._circles)
         stride = min(1.0, needed / (_ROOM * circle))
-        angular = min(max(_EAGERNESS * error, -STEEPEST), STEEPEST)
-        return Course(speed, angular, stride)
+        angular = min(max(_EAGERNESS * error, -MAX_ANGULAR_RAD), MAX_ANGULAR_RAD)
+        return SteeringOutput(speed, angular, stride)
 
     def _fastest_within(self, radius: float) -> float:
         """Return the Speed at which a curve of that radius [m on the table] can still be run."""
-        return along(radius / _ROOM, self._radii, _LADDER)
+        return interpolate(radius / _ROOM, self._radii, _LADDER)
 
     def _fastest_before(self, distance: float) -> float:
         """Return the Speed from which it can slow down to a stroll over a distance."""

@@ -11,8 +11,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from characters.locomotion.foot_trajectories import Treads
-from characters.motion.motion import STANDING, Step
+from characters.locomotion.foot_trajectories import FootTrajectories
+from characters.motion.motion import RootDelta
 from characters.skeleton.pose import Pose
 from characters.skeleton.scalar_quaternions import (
     Quaternion,
@@ -28,10 +28,10 @@ _TURNING = 1.0  # … and on the spot by so much more than that, to clear the gr
 
 
 @dataclass(frozen=True)
-class Strides:
+class StrideBlend:
     """Clips mixed in step, with shorter steps and at another pace; `Cyclic`."""
 
-    treads: Treads
+    trajectories: FootTrajectories
     """What there is to mix."""
 
     voices: Sequence[tuple[int, float]]
@@ -49,39 +49,39 @@ class Strides:
     @property
     def duration(self) -> float:
         """Length of one cycle [s]."""
-        motions = self.treads.motions
+        motions = self.trajectories.motions
         return 1.0 / (sum(w / motions[n].duration for n, w in self.voices) * self.rate)
 
     def at(self, phase: float) -> Pose:
         """Return the mixed pose at a phase."""
-        pose, feet = self.treads.mixed(self.voices, phase, self.share)
+        pose, feet = self.trajectories.mixed(self.voices, phase, self.share)
         if len(self.voices) == 1 and self.share == self.stride == 1.0:
             return pose
-        return self.treads.legs.reach(pose, *self._feet(feet))
+        return self.trajectories.legs.reach(pose, *self._feet(feet))
 
     def contacts(self, phase: float) -> list[float]:
         """Return how much of the mix has each foot on the ground, 0…1."""
-        return self.treads.contacts(self.voices, phase)
+        return self.trajectories.contacts(self.voices, phase)
 
-    def between(self, start: float, end: float) -> Step:
+    def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
-        total = STANDING
+        total = RootDelta()
         parts = max(math.ceil((end - start) * _PARTS), 1)
         each = (end - start) / parts
         for low in (start + each * part for part in range(parts)):
             x = z = yaw = 0.0
             for number, weight in self.voices:
-                step = self.treads.travel(number, low, low + each)
+                step = self.trajectories.travel(number, low, low + each)
                 x, z, yaw = x + weight * step.x, z + weight * step.z, yaw + weight * step.yaw
             way = self.share * self.stride
-            total = total.then(Step(x * way, z * way, yaw * self.share))
+            total = total.then(RootDelta(x * way, z * way, yaw * self.share))
         return total
 
     def sample(self, time: float) -> Pose:
         """Return the mixed pose at a time [s] since phase 0."""
         return self.at(time / self.duration)
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         duration = self.duration
         return self.between(start / duration, end / duration)
@@ -93,9 +93,10 @@ class Strides:
         """
         balls: list[Vector] = []
         facings: list[Quaternion] = []
-        for leg, (foot, still) in enumerate(zip(feet, self.treads.stance.plain, strict=True)):
+        for leg, (foot, still) in enumerate(zip(feet, self.trajectories.stance.plain, strict=True)):
             homes = [
-                (self.treads.plain_homes[number][leg], weight) for number, weight in self.voices
+                (self.trajectories.plain_homes[number][leg], weight)
+                for number, weight in self.voices
             ]
             home = [sum(h[k] * weight for h, weight in homes) for k in range(7)]
             x, y, z, *facing = foot[:7]

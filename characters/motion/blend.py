@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from characters.errors import CharacterError
-from characters.motion.motion import STANDING, Motion, Step
-from characters.motion.phase import Cyclic, Endless, in_step, unit
+from characters.motion.motion import Motion, RootDelta
+from characters.motion.phase import Cyclic, UnphasedMotion, as_cyclic, unit
 from characters.motion.travel import mean_step
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
@@ -58,7 +58,7 @@ def _sum(arrays: Sequence[Array], share: Array) -> Array:
 
 
 class FootPlanter(Protocol):
-    """Keeps the feet of mixed poses where those of the members are: `characters.ik.legs.Legs`."""
+    """Keeps the feet of mixed poses where those of the members are: `characters.ik.legs.LegIK`."""
 
     def plant(self, mixed: Pose, poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
         """Return the mixed pose with its feet at the weighted mean of the members' feet."""
@@ -113,10 +113,10 @@ class Blend:
             return mixed
         return self.legs.plant(mixed, poses, weights)
 
-    def between(self, start: float, end: float) -> Step:
+    def between(self, start: float, end: float) -> RootDelta:
         """Return the mean of the members' ways over the ground between two phases."""
         weights = [weight for _, weight in self._heard]
-        total = STANDING
+        total = RootDelta()
         parts = max(math.ceil((end - start) * _PARTS), 1)
         for part in range(parts):
             low, high = (start + (end - start) * p / parts for p in (part, part + 1))
@@ -131,7 +131,7 @@ class Blend:
         """Return the mixed pose at a time [s] since phase 0."""
         return self.at(time / self._cycle)
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         cycle = self._cycle
         return self.between(start / cycle, end / cycle)
@@ -143,11 +143,11 @@ class Blend:
 
     def _rate(self, member: Cyclic) -> float:
         """Return how far a member's own phase goes in a unit of phase."""
-        return self._cycle if isinstance(member, Endless) else 1.0
+        return self._cycle if isinstance(member, UnphasedMotion) else 1.0
 
     @cached_property
     def _endless(self) -> bool:
-        return all(isinstance(member, Endless) for member, _ in self._heard)
+        return all(isinstance(member, UnphasedMotion) for member, _ in self._heard)
 
     @cached_property
     def _heard(self) -> list[tuple[Cyclic, float]]:
@@ -159,7 +159,7 @@ class Blend:
             if isinstance(member, Blend):
                 heard += [(inner, weight * share) for inner, share in member._heard]
             else:
-                heard.append((in_step(member), weight))
+                heard.append((as_cyclic(member), weight))
         return heard
 
 
@@ -181,7 +181,7 @@ def shares(weights: Sequence[float]) -> tuple[float, ...]:
 
 
 @dataclass(frozen=True)
-class Paced:
+class TimeScaled:
     """A cyclic motion at another pace and with another length of step; `Cyclic`."""
 
     motion: Cyclic
@@ -202,16 +202,16 @@ class Paced:
         """Return the pose at a phase."""
         return self.motion.at(phase)
 
-    def between(self, start: float, end: float) -> Step:
+    def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
         step = self.motion.between(start, end)
-        return Step(step.x * self.stride, step.z * self.stride, step.yaw)
+        return RootDelta(step.x * self.stride, step.z * self.stride, step.yaw)
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s] since phase 0."""
         return self.at(time * self.rate / unit(self.motion.duration))
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         cycle = unit(self.motion.duration) / self.rate
         return self.between(start / cycle, end / cycle)

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from characters.errors import CharacterError
-from characters.motion.motion import STANDING, Step
+from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
@@ -74,10 +74,10 @@ class Clip:
             pose.translations, rotations.normalize(pose.rotations), pose.scales, pose.morphs
         )
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s], over any loops."""
         if not self.root_motion:
-            return STANDING
+            return RootDelta()
         if self.loop and self._last > 0:
             # Whole rounds before both are left out.
             rounds = math.floor(start / self.duration)
@@ -130,14 +130,14 @@ class Clip:
         return np.stack([root[:, 0], root[:, 2], yaw], axis=-1)
 
     @cached_property
-    def cycle(self) -> Step:
+    def cycle(self) -> RootDelta:
         """How the root moves over the ground from the first frame to the last."""
         return self._steps[-1]
 
     @cached_property
-    def _steps(self) -> list[Step]:
+    def _steps(self) -> list[RootDelta]:
         """The track from where it starts, as plain numbers, which beat arrays of three."""
-        first, *_ = steps = [Step(*row) for row in self.track.tolist()]
+        first, *_ = steps = [RootDelta(*row) for row in self.track.tolist()]
         return [first.to(step) for step in steps]
 
     @cached_property
@@ -145,8 +145,8 @@ class Clip:
         """Number of the last frame."""
         return len(self) - 1
 
-    def _within(self, time: float) -> Step:
+    def _within(self, time: float) -> RootDelta:
         """Return where the root is at a time, in the round that it is in."""
         frame, u = self.position(time)
         a, b = self._steps[frame], self._steps[min(frame + 1, self._last)]
-        return Step(a.x + (b.x - a.x) * u, a.z + (b.z - a.z) * u, a.yaw + (b.yaw - a.yaw) * u)
+        return RootDelta(a.x + (b.x - a.x) * u, a.z + (b.z - a.z) * u, a.yaw + (b.yaw - a.yaw) * u)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from characters.errors import CharacterError
 from characters.motion.blend import mix
 from characters.motion.curves import Ease, ease
-from characters.motion.motion import Motion, Step
+from characters.motion.motion import Motion, RootDelta
 from characters.motion.travel import accumulated, mean_step
 from characters.skeleton.pose import Pose
 
@@ -61,7 +61,7 @@ class CrossFade:
             return after
         return mix([self.first.sample(time), after], [1.0 - weight, weight])
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         fades = (
             min(max(self.start, start), end),
@@ -72,7 +72,7 @@ class CrossFade:
         after = self.second.travel(fades[1] - self.start, end - self.start)
         return before.then(during).then(after)
 
-    def _moved(self, start: float, end: float, moment: float) -> Step:
+    def _moved(self, start: float, end: float, moment: float) -> RootDelta:
         weight = self.weight(moment)
         first = self.first.travel(start, end)
         second = self.second.travel(start - self.start, end - self.start)

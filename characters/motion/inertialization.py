@@ -17,7 +17,7 @@ _FASTEST = 30.0  # [rad/s]: no joint turns faster; what seems to is a jump in th
 
 
 @dataclass(frozen=True)
-class Fade:
+class OffsetDecay:
     """An offset that dies away: a vector of any shape with its first velocity."""
 
     offset: Array
@@ -34,7 +34,7 @@ class Fade:
 
         Position, velocity and acceleration end at zero.
 
-        >>> fade = Fade(np.array([2.0]), np.array([0.0]), 0.5)
+        >>> fade = OffsetDecay(np.array([2.0]), np.array([0.0]), 0.5)
         >>> fade.at(0.0).tolist(), fade.at(0.25).tolist(), fade.at(0.5).tolist()
         ([2.0], [1.0], [0.0])
         """
@@ -50,7 +50,7 @@ class Fade:
     def integral(self, start: float, end: float) -> Array:
         """Return the offset summed over time from `start` to `end` [s].
 
-        >>> Fade(np.array([2.0]), np.array([0.0]), 0.5).integral(0.0, 9.0).tolist()
+        >>> OffsetDecay(np.array([2.0]), np.array([0.0]), 0.5).integral(0.0, 9.0).tolist()
         [0.5]
         """
         return self._antiderivative(end) - self._antiderivative(start)
@@ -68,25 +68,25 @@ class Fade:
 
 
 @dataclass(frozen=True)
-class Transition:
+class Inertialization:
     """What a new motion's poses differ by from the old one's, dying away."""
 
-    turns: Fade
+    turns: OffsetDecay
     """Rotation vectors in the parent's frame, (joints, 3) [rad]."""
 
-    shifts: Fade
+    shifts: OffsetDecay
     """Translations, (joints, 3) [m]."""
 
-    growth: Fade | None
+    growth: OffsetDecay | None
     """Scales, (joints, 3); None where nothing is scaled."""
 
-    looks: Fade | None = None
+    looks: OffsetDecay | None = None
     """Morphs, (morphs,); None where there are none."""
 
     @staticmethod
     def begin(
         old: tuple[Pose, Pose], new: tuple[Pose, Pose], step: float, length: float
-    ) -> "Transition":
+    ) -> "Inertialization":
         """Return the transition between two motions.
 
         Parameters
@@ -102,9 +102,9 @@ class Transition:
         spin = (_nearer(later, turns) - turns) / step
         spin *= np.minimum(1.0, _FASTEST / np.maximum(_norm(spin), 1e-9))
         shifts, moved = (a.translations - b.translations for a, b in zip(old, new, strict=True))
-        return Transition(
-            Fade(turns, spin, length),
-            Fade(shifts, (moved - shifts) / step, length),
+        return Inertialization(
+            OffsetDecay(turns, spin, length),
+            OffsetDecay(shifts, (moved - shifts) / step, length),
             _growth(old[0], new[0], length),
             _looks(old[0], new[0], length),
         )
@@ -136,22 +136,22 @@ def _turns(old: Pose, new: Pose) -> Array:
     )
 
 
-def _growth(old: Pose, new: Pose, length: float) -> Fade | None:
+def _growth(old: Pose, new: Pose, length: float) -> OffsetDecay | None:
     """Return the fade of the scales; without velocity, so that nothing shrinks below nought."""
     if old.scales is None and new.scales is None:
         return None
     offset = _scales(old) - _scales(new)
-    return Fade(offset, np.zeros_like(offset), length)
+    return OffsetDecay(offset, np.zeros_like(offset), length)
 
 
-def _looks(old: Pose, new: Pose, length: float) -> Fade | None:
+def _looks(old: Pose, new: Pose, length: float) -> OffsetDecay | None:
     """Return the fade of the morphs; without velocity, so that none goes below nought."""
     if old.morphs is None and new.morphs is None:
         return None
     before = np.zeros(1) if old.morphs is None else old.morphs
     after = np.zeros(1) if new.morphs is None else new.morphs
     offset: Array = before - after
-    return Fade(offset, np.zeros_like(offset), length)
+    return OffsetDecay(offset, np.zeros_like(offset), length)
 
 
 def _scales(pose: Pose) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.motion.curves import Weight, value
-from characters.motion.motion import Motion, Step
+from characters.motion.motion import Motion, RootDelta
 from characters.motion.travel import accumulated, mean_step
 from characters.skeleton import rotations
 from characters.skeleton.masks import Mask, check_mask
@@ -15,7 +15,7 @@ from characters.skeleton.pose import Array, Pose
 
 
 @dataclass(frozen=True)
-class Layered:
+class MaskedLayer:
     """A motion over another one, on the joints of a mask: waving while walking."""
 
     base: Motion
@@ -52,7 +52,7 @@ class Layered:
         over = self.over.sample(time)
         return overlaid(base, over, _shares(self.mask, weight, over), weight * self.morphs)
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s].
 
         It is the base's as far as the mask leaves out joint 0.
@@ -61,7 +61,7 @@ class Layered:
             return self._moved(start, end, start)
         return accumulated(start, end, self._moved)
 
-    def _moved(self, start: float, end: float, moment: float) -> Step:
+    def _moved(self, start: float, end: float, moment: float) -> RootDelta:
         share = value(self.weight, moment, self.duration)
         share *= 1.0 if self.mask is None else float(self.mask[0])
         if share <= 0.0:
@@ -73,7 +73,7 @@ class Layered:
 
 
 @dataclass(frozen=True)
-class Added:
+class AdditiveLayer:
     """What a motion does beyond a reference, added to another: breathing in any pose.
 
     Rotations are added in each joint's parent's frame. The root moves as the base's.
@@ -114,7 +114,7 @@ class Added:
         over = self.over.sample(time)
         return added(base, over, self._reference, _shares(self.mask, weight, over), weight)
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root of the base moves over the ground between two times [s]."""
         return self.base.travel(start, end)
 

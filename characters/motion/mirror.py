@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.motion.clip import Clip
-from characters.motion.motion import Motion, Step
-from characters.motion.phase import in_step, takes_steps
+from characters.motion.motion import Motion, RootDelta
+from characters.motion.phase import as_cyclic, takes_steps
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.symmetry import check_symmetry, paired_joints, paired_names
@@ -174,9 +174,9 @@ class Mirror:
         )
 
     @staticmethod
-    def step(step: Step) -> Step:
+    def step(step: RootDelta) -> RootDelta:
         """Return a step mirrored."""
-        return Step(-step.x, step.z, -step.yaw)
+        return RootDelta(-step.x, step.z, -step.yaw)
 
     def clip(self, clip: Clip, name: str = "") -> Clip:
         """Return a clip mirrored; its footfalls are then found anew by `phased`."""
@@ -206,18 +206,18 @@ class Mirrored:
         """Return the pose at a time [s]."""
         return self.mirror.pose(self.motion.sample(time))
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self.mirror.step(self.motion.travel(start, end))
 
     def at(self, phase: float) -> Pose:
         """Return the pose at a phase."""
-        return self.mirror.pose(in_step(self.motion).at(phase + self.lead))
+        return self.mirror.pose(as_cyclic(self.motion).at(phase + self.lead))
 
-    def between(self, start: float, end: float) -> Step:
+    def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
         lead = self.lead
-        return self.mirror.step(in_step(self.motion).between(start + lead, end + lead))
+        return self.mirror.step(as_cyclic(self.motion).between(start + lead, end + lead))
 
     @property
     def lead(self) -> float:

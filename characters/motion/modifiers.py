@@ -1,6 +1,6 @@
 """Motions that change another one's time or place: each takes a motion and is one.
 
-Those that keep a cycle in step (`Stretch`, `Displaced`, and `Mirrored` of
+Those that keep a cycle in step (`Stretch`, `RootOffset`, and `Mirrored` of
 `characters.motion.mirror`) are `Cyclic` as well, so a mirrored walk can be blended with a walk,
 left foot to left foot.
 """
@@ -15,8 +15,8 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.motion.curves import check_knots
-from characters.motion.motion import Motion, Step
-from characters.motion.phase import in_step
+from characters.motion.motion import Motion, RootDelta
+from characters.motion.phase import as_cyclic
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose
 
@@ -41,17 +41,17 @@ class Stretch:
         """Return the pose at a time [s]."""
         return self.motion.sample(time * self._rate)
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self.motion.travel(start * self._rate, end * self._rate)
 
     def at(self, phase: float) -> Pose:
         """Return the pose at a phase."""
-        return in_step(self.motion).at(phase)
+        return as_cyclic(self.motion).at(phase)
 
-    def between(self, start: float, end: float) -> Step:
+    def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
-        return in_step(self.motion).between(start, end)
+        return as_cyclic(self.motion).between(start, end)
 
     @property
     def _rate(self) -> float:
@@ -87,7 +87,7 @@ class Window:
         """Return the pose at a time [s]."""
         return self.motion.sample(self._time(time))
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self.motion.travel(self._time(start), self._time(end))
 
@@ -115,7 +115,7 @@ class Loop:
         """Return the pose at a time [s]."""
         return self.motion.sample(self._round(time)[1])
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         (first, early), (last, late) = self._round(start), self._round(end)
         if first == last:
@@ -133,13 +133,13 @@ class Loop:
 
 
 @dataclass(frozen=True)
-class Displaced:
+class RootOffset:
     """A motion that takes place elsewhere on the ground, all of it; `Cyclic`."""
 
     motion: Motion
     """What is played."""
 
-    step: Step
+    step: RootDelta
     """From its place to the new one."""
 
     roots: tuple[int, ...] = (0,)
@@ -154,17 +154,17 @@ class Displaced:
         """Return the pose at a time [s]."""
         return self._placed(self.motion.sample(time))
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self._seen(self.motion.travel(start, end))
 
     def at(self, phase: float) -> Pose:
         """Return the pose at a phase."""
-        return self._placed(in_step(self.motion).at(phase))
+        return self._placed(as_cyclic(self.motion).at(phase))
 
-    def between(self, start: float, end: float) -> Step:
+    def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
-        return self._seen(in_step(self.motion).between(start, end))
+        return self._seen(as_cyclic(self.motion).between(start, end))
 
     def _placed(self, pose: Pose) -> Pose:
         roots = list(self.roots)
@@ -175,7 +175,7 @@ class Displaced:
         turned[roots] = rotations.multiply(turn, turned[roots])
         return replace(pose, translations=moved, rotations=turned)
 
-    def _seen(self, step: Step) -> Step:
+    def _seen(self, step: RootDelta) -> RootDelta:
         """Return the step as seen from the origin, which the displaced root carries along."""
         return self.step.then(step).then(self.step.inverse())
 
@@ -242,7 +242,7 @@ class Warped:
         """Return the pose at a time [s]."""
         return self.motion.sample(self.curve.at(time))
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]; backwards, too."""
         first, last = self.curve.at(start), self.curve.at(end)
         if last < first:

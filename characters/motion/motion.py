@@ -9,7 +9,7 @@ from characters.skeleton.rotations import wrap
 
 
 @dataclass(frozen=True)
-class Step:
+class RootDelta:
     """A planar motion over the ground, in the frame that it starts from."""
 
     x: float = 0.0
@@ -21,64 +21,66 @@ class Step:
     yaw: float = 0.0
     """About +y, to the left [rad]; not wrapped."""
 
-    def then(self, other: "Step") -> "Step":
+    def then(self, other: "RootDelta") -> "RootDelta":
         """Return this step followed by another, which starts where this one ends.
 
-        >>> quarter = Step(z=1.0, yaw=math.pi / 2)
+        >>> quarter = RootDelta(z=1.0, yaw=math.pi / 2)
         >>> end = quarter.then(quarter)
         >>> round(end.x, 6), round(end.z, 6), round(end.yaw / math.pi, 6)
         (1.0, 1.0, 1.0)
         """
         sine, cosine = math.sin(self.yaw), math.cos(self.yaw)
-        return Step(
+        return RootDelta(
             self.x + cosine * other.x + sine * other.z,
             self.z - sine * other.x + cosine * other.z,
             self.yaw + other.yaw,
         )
 
-    def inverse(self) -> "Step":
+    def inverse(self) -> "RootDelta":
         """Return the step back.
 
-        >>> step = Step(1.0, 2.0, 0.5)
+        >>> step = RootDelta(1.0, 2.0, 0.5)
         >>> back = step.then(step.inverse())
         >>> round(back.x, 9) == round(back.z, 9) == round(back.yaw, 9) == 0
         True
         """
         sine, cosine = math.sin(self.yaw), math.cos(self.yaw)
-        return Step(-cosine * self.x + sine * self.z, -sine * self.x - cosine * self.z, -self.yaw)
+        return RootDelta(
+            -cosine * self.x + sine * self.z, -sine * self.x - cosine * self.z, -self.yaw
+        )
 
-    def to(self, other: "Step") -> "Step":
+    def to(self, other: "RootDelta") -> "RootDelta":
         """Return the step from this place to another, both seen from one frame.
 
-        >>> here, there = Step(1.0, 2.0, 0.5), Step(4.0, 3.0, -0.4)
+        >>> here, there = RootDelta(1.0, 2.0, 0.5), RootDelta(4.0, 3.0, -0.4)
         >>> again = here.then(here.to(there))
         >>> round(again.x, 9), round(again.z, 9), round(again.yaw, 9)
         (4.0, 3.0, -0.4)
         """
         sine, cosine = math.sin(self.yaw), math.cos(self.yaw)
         x, z = other.x - self.x, other.z - self.z
-        return Step(cosine * x - sine * z, sine * x + cosine * z, other.yaw - self.yaw)
+        return RootDelta(cosine * x - sine * z, sine * x + cosine * z, other.yaw - self.yaw)
 
-    def scaled(self, factor: float) -> "Step":
+    def scaled(self, factor: float) -> "RootDelta":
         """Return the step with every component multiplied."""
-        return Step(self.x * factor, self.z * factor, self.yaw * factor)
+        return RootDelta(self.x * factor, self.z * factor, self.yaw * factor)
 
-    def repeated(self, times: int) -> "Step":
+    def repeated(self, times: int) -> "RootDelta":
         """Return the step taken a whole number of times, backwards too, in closed form.
 
-        >>> square = Step(z=1.0, yaw=math.pi / 2).repeated(4)
+        >>> square = RootDelta(z=1.0, yaw=math.pi / 2).repeated(4)
         >>> round(square.length, 9), round(square.yaw / math.pi, 9)
         (0.0, 2.0)
         """
         if times == 0:
-            return STANDING
+            return RootDelta()
         half = self.yaw / 2
         # A chord of a polygon: the ratio of sines, by l'Hôpital where it is straight.
         ratio = times * math.cos(times * half) / math.cos(half)
         if abs(math.sin(half)) > 1e-9:
             ratio = math.sin(times * half) / math.sin(half)
-        turned = Step(yaw=(times - 1) * half).then(Step(self.x * ratio, self.z * ratio))
-        return Step(turned.x, turned.z, times * self.yaw)
+        turned = RootDelta(yaw=(times - 1) * half).then(RootDelta(self.x * ratio, self.z * ratio))
+        return RootDelta(turned.x, turned.z, times * self.yaw)
 
     @property
     def length(self) -> float:
@@ -88,14 +90,10 @@ class Step:
     def bearing(self, x: float, z: float) -> float:
         """Return the angle [rad] from this frame's forward to the point (x, z); left is positive.
 
-        >>> round(Step(yaw=math.pi / 2).bearing(0.0, 5.0) / math.pi, 6)
+        >>> round(RootDelta(yaw=math.pi / 2).bearing(0.0, 5.0) / math.pi, 6)
         -0.5
         """
         return wrap(math.atan2(x - self.x, z - self.z) - self.yaw)
-
-
-STANDING = Step()
-"""No motion over the ground."""
 
 
 @runtime_checkable
@@ -117,6 +115,6 @@ class Motion(Protocol):
         """
         ...
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s], start ≤ end."""
         ...

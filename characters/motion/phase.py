@@ -12,7 +12,7 @@ from typing import Protocol, cast
 
 from characters.motion.clip import Clip
 from characters.motion.contacts import Feet, feet_of, find_contacts, spans
-from characters.motion.motion import STANDING, Motion, Step
+from characters.motion.motion import Motion, RootDelta
 from characters.skeleton.feet import find_feet
 from characters.skeleton.pose import Pose, Skeleton
 
@@ -27,7 +27,7 @@ class Cyclic(Motion, Protocol):
         """Return the pose at a phase; whole numbers are left footfalls."""
         ...
 
-    def between(self, start: float, end: float) -> Step:
+    def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases, start ≤ end."""
         ...
 
@@ -42,7 +42,7 @@ def unit(duration: float) -> float:
 
 
 @dataclass(frozen=True)
-class Phased:
+class PhasedMotion:
     """A looped motion with marks for its phase; `Cyclic`."""
 
     motion: Motion
@@ -63,7 +63,7 @@ class Phased:
         """Return the pose at a phase."""
         return self.motion.sample(self.time(phase))
 
-    def between(self, start: float, end: float) -> Step:
+    def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
         return self.motion.travel(self.time(start), self.time(end))
 
@@ -71,7 +71,7 @@ class Phased:
         """Return the pose at a time [s] after a left footfall."""
         return self.at(time / unit(self.duration))
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         cycle = unit(self.duration)
         return self.between(start / cycle, end / cycle)
@@ -84,7 +84,7 @@ class Phased:
 
         >>> import numpy as np
         >>> clip = Clip("c", 10.0, Pose(np.zeros((11, 1, 3)), np.zeros((11, 1, 4))))
-        >>> Phased(clip, (0.2, 0.6)).time(0.5), Phased(clip, (0.2, 0.6)).time(-1.0)
+        >>> PhasedMotion(clip, (0.2, 0.6)).time(0.5), PhasedMotion(clip, (0.2, 0.6)).time(-1.0)
         (0.6, -0.8)
         """
         if not self.marks:
@@ -111,7 +111,7 @@ class Phased:
 
 
 @dataclass(frozen=True)
-class Still:
+class StaticPose:
     """A pose that is held, as if it had a cycle; `Cyclic`."""
 
     pose: Pose
@@ -124,21 +124,21 @@ class Still:
         """Return the pose."""
         return self.pose
 
-    def between(self, start: float, end: float) -> Step:
+    def between(self, start: float, end: float) -> RootDelta:
         """Return no motion."""
-        return STANDING
+        return RootDelta()
 
     def sample(self, time: float) -> Pose:
         """Return the pose."""
         return self.pose
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return no motion."""
-        return STANDING
+        return RootDelta()
 
 
 @dataclass(frozen=True)
-class Endless:
+class UnphasedMotion:
     """A motion without an end, as if it had cycles of one second; `Cyclic`."""
 
     motion: Motion
@@ -153,7 +153,7 @@ class Endless:
         """Return the pose after so many seconds."""
         return self.motion.sample(phase)
 
-    def between(self, start: float, end: float) -> Step:
+    def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self.motion.travel(start, end)
 
@@ -161,29 +161,29 @@ class Endless:
         """Return the pose at a time [s]."""
         return self.motion.sample(time)
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self.motion.travel(start, end)
 
 
-def in_step(motion: Motion) -> Cyclic:
+def as_cyclic(motion: Motion) -> Cyclic:
     """Return any motion as one with a phase; where it has none of its own, 0 is its start."""
     # Asked for every frame, where an isinstance of a protocol would be ten times as slow.
     if hasattr(motion, "at") and hasattr(motion, "between"):
         return cast(Cyclic, motion)
-    return Phased(motion) if math.isfinite(motion.duration) else Endless(motion)
+    return PhasedMotion(motion) if math.isfinite(motion.duration) else UnphasedMotion(motion)
 
 
 def takes_steps(motion: Motion) -> bool:
     """Return whether phase 0 of a motion is a left footfall and one half a right one."""
-    if isinstance(motion, Phased):
+    if isinstance(motion, PhasedMotion):
         return bool(motion.marks)
     inner: Motion | None = getattr(motion, "motion", None)
     members: tuple[Motion, ...] = getattr(motion, "members", ())
     return any(map(takes_steps, members if inner is None else (inner,)))
 
 
-def phased(clip: Clip, skeleton: Skeleton) -> Phased:
+def phased(clip: Clip, skeleton: Skeleton) -> PhasedMotion:
     """Return a clip with its footfalls as marks, or with none if it takes no regular steps.
 
     On four legs the hind pair tells the phase. Feet that land nearly together, as in a gallop or a
@@ -193,19 +193,19 @@ def phased(clip: Clip, skeleton: Skeleton) -> Phased:
     pair = [_hindmost(skeleton, [f for f in feet if set(f) & set(s)]) for s in find_feet(skeleton)]
     left, right = footfalls(clip, skeleton, pair) if all(pair) else ([], [])
     if not left or len(left) != len(right):
-        return Phased(clip)
+        return PhasedMotion(clip)
     start = left[0]
     marks = [(t - start) % clip.duration + start for t in [*left, *right]]
     order = sorted(range(len(marks)), key=marks.__getitem__)
     if any((number < len(left)) != (place % 2 == 0) for place, number in enumerate(order)):
-        return Phased(clip)  # two steps of one foot in a row: no walk
+        return PhasedMotion(clip)  # two steps of one foot in a row: no walk
     marks.sort()
     gaps = [b - a for a, b in itertools.pairwise([*marks, marks[0] + clip.duration])]
     if min(gaps) < _TOGETHER * clip.duration / len(left):
         lefts = [*marks[::2], marks[0] + clip.duration]
         halves = [(a + b) / 2 for a, b in itertools.pairwise(lefts)]
         marks = [time for both in zip(marks[::2], halves, strict=True) for time in both]
-    return Phased(clip, tuple(marks))
+    return PhasedMotion(clip, tuple(marks))
 
 
 def footfalls(clip: Clip, skeleton: Skeleton, feet: Feet) -> list[list[float]]:

@@ -1,11 +1,11 @@
 """A motion whose parameters change while it plays."""
 
-from characters.motion.motion import Step
+from characters.motion.motion import RootDelta
 from characters.motion.phase import Cyclic, unit
 from characters.skeleton.pose import Pose
 
 
-class Live:
+class RetimedMotion:
     """A cyclic motion that may be exchanged for another one at the same phase; a `Motion`.
 
     What came before the last exchange is forgotten: earlier times show the present motion.
@@ -38,6 +38,6 @@ class Live:
         """Return the pose at a time [s]."""
         return self._motion.at(self.phase(time))
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self._motion.between(self.phase(start), self.phase(end))

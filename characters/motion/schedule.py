@@ -13,7 +13,7 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.motion.curves import Weight, ease, value
-from characters.motion.motion import Motion, Step
+from characters.motion.motion import Motion, RootDelta
 from characters.motion.travel import accumulated, mean_step
 from characters.skeleton import rotations
 from characters.skeleton.masks import Mask, check_mask
@@ -132,7 +132,7 @@ class Schedule:
         voices = self._voices(time)
         return replace(_mixed(voices), morphs=_morphs(voices))
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return accumulated(start, end, self._moved)
 
@@ -197,7 +197,7 @@ class Schedule:
             weights = voice.weights * (loudness * mask)
             yield _Voice(pose, weights, voice.looks * loudness * action.morphs)
 
-    def _moved(self, start: float, end: float, moment: float) -> Step:
+    def _moved(self, start: float, end: float, moment: float) -> RootDelta:
         """Return the mean of the ways of what moves the root."""
         roots: list[tuple[Action, float]] = []
         for action in self.actions:
@@ -243,7 +243,7 @@ class LiveSchedule:
         """Return the pose at a time [s]."""
         return self.schedule.sample(time)
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self.schedule.travel(start, end)
 

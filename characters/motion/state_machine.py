@@ -10,8 +10,8 @@ import numpy as np
 from characters.errors import CharacterError
 from characters.motion.blend import mix
 from characters.motion.curves import ease
-from characters.motion.inertialization import Fade, Transition
-from characters.motion.motion import STANDING, Motion, Step
+from characters.motion.inertialization import Inertialization, OffsetDecay
+from characters.motion.motion import Motion, RootDelta
 from characters.motion.travel import accumulated, mean_step
 from characters.skeleton.pose import Array, Pose
 
@@ -24,8 +24,8 @@ class _Switch:
 
     time: float
     state: str
-    transition: Transition | None
-    drift: Fade | None
+    transition: Inertialization | None
+    drift: OffsetDecay | None
     """What the velocity over the ground (x, z, yaw) differed by."""
 
     below: "_Switch | None" = None
@@ -133,17 +133,17 @@ class StateMachine:
         return _Switch(
             time,
             state,
-            Transition.begin(old, new, _PROBE, self.length),
-            Fade(drift, np.zeros(3), self.length),
+            Inertialization.begin(old, new, _PROBE, self.length),
+            OffsetDecay(drift, np.zeros(3), self.length),
         )
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
         return self._shown(self._switches[self._playing(time)], time)
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        total = STANDING
+        total = RootDelta()
         first, last = self._playing(start), self._playing(end)
         for number in range(first, last + 1):
             stop = end if number == last else self._switches[number + 1].time
@@ -161,12 +161,12 @@ class StateMachine:
             return pose
         return switch.transition.apply(pose, time - switch.time)
 
-    def _moved(self, switch: _Switch, start: float, end: float) -> Step:
+    def _moved(self, switch: _Switch, start: float, end: float) -> RootDelta:
         """Return the way over the ground as if no later state had been entered."""
         below, faded = switch.below, min(max(switch.time + switch.fade, start), end)
         if below is not None and faded > start:
 
-            def mixed(low: float, high: float, moment: float) -> Step:
+            def mixed(low: float, high: float, moment: float) -> RootDelta:
                 weight = switch.weight(moment)
                 steps = [self._moved(below, low, high), self._alone(switch, low, high)]
                 return mean_step(steps, [1.0 - weight, weight])
@@ -174,14 +174,14 @@ class StateMachine:
             return accumulated(start, faded, mixed).then(self._alone(switch, faded, end))
         return self._alone(switch, start, end)
 
-    def _alone(self, switch: _Switch, start: float, end: float) -> Step:
+    def _alone(self, switch: _Switch, start: float, end: float) -> RootDelta:
         """Return the way of one state with what its velocity differed by."""
         start, end = start - switch.time, end - switch.time
         step = self.states[switch.state].travel(start, end)
         if switch.drift is None or start >= switch.drift.length:
             return step
         x, z, yaw = switch.drift.integral(start, end).tolist()
-        return Step(step.x + x, step.z + z, step.yaw + yaw)
+        return RootDelta(step.x + x, step.z + z, step.yaw + yaw)
 
     def _playing(self, time: float) -> int:
         """Return the number of the switch that is in force at a time."""
@@ -192,6 +192,6 @@ class StateMachine:
             raise CharacterError(f"no state {state!r}; there are {', '.join(self.states)}")
 
 
-def _velocity(step: Step) -> Array:
+def _velocity(step: RootDelta) -> Array:
     """Return the velocity (3,) of a step over the probe: x, z [m/s] and yaw [rad/s]."""
     return np.array([step.x, step.z, step.yaw]) / _PROBE

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
-STILL: Quaternion = (0.0, 0.0, 0.0, 1.0)
+IDENTITY: Quaternion = (0.0, 0.0, 0.0, 1.0)
 """The rotation that changes nothing."""
 
 
@@ -43,11 +43,11 @@ def normalize(q: Sequence[float]) -> Quaternion:
     return x / size, y / size, z / size, w / size
 
 
-def turn(q: Sequence[float], vector: Sequence[float]) -> Vector:
+def rotate(q: Sequence[float], vector: Sequence[float]) -> Vector:
     """Return a vector turned.
 
     >>> half = math.sqrt(0.5)
-    >>> [round(value, 6) + 0.0 for value in turn((0.0, half, 0.0, half), (0.0, 2.0, 1.0))]
+    >>> [round(value, 6) + 0.0 for value in rotate((0.0, half, 0.0, half), (0.0, 2.0, 1.0))]
     [1.0, 2.0, 0.0]
     """
     qx, qy, qz, w = q
@@ -67,18 +67,18 @@ def between(start: Vector, end: Vector) -> Quaternion:
     w = length(start) * length(end) + dot(start, end)
     size = math.sqrt(x * x + y * y + z * z + w * w)
     if size < 1e-12:  # opposite, or nothing at all
-        return STILL
+        return IDENTITY
     return x / size, y / size, z / size, w / size
 
 
-def from_vector(vector: Vector) -> Quaternion:
+def from_rotation_vector(vector: Vector) -> Quaternion:
     """Return the rotation about a vector by its length [rad]."""
     angle = length(vector)
     scale = 0.5 if angle < 1e-9 else math.sin(angle / 2) / angle
     return vector[0] * scale, vector[1] * scale, vector[2] * scale, math.cos(angle / 2)
 
 
-def to_vector(q: Sequence[float]) -> Vector:
+def to_rotation_vector(q: Sequence[float]) -> Vector:
     """Return axis times angle [rad], the shorter way round.
 
     >>> [round(value, 6) for value in to_vector(from_vector((0.1, -0.2, 0.3)))]
@@ -106,6 +106,6 @@ def length(a: Vector) -> float:
     return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
-def less(a: Vector, b: Vector) -> Vector:
+def subtract(a: Vector, b: Vector) -> Vector:
     """Return the way from b to a."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]

@@ -22,9 +22,9 @@ from rich.table import Table
 
 from characters import Character, CharacterCommand, Pose
 from characters.control.walker import Walker
-from characters.locomotion.steering import Course
+from characters.locomotion.steering import SteeringOutput
 from characters.motion.contacts import feet_of, spans
-from characters.motion.motion import Step
+from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 
 Array = NDArray[np.float64]
@@ -39,7 +39,7 @@ _SHORTEST, _EDGE = 6, 2  # frames: of a stay, and at either end of it
 _SKATE = 0.025  # [m]
 _SETTLED = 60  # frames that a point of the grid takes to get going
 
-Script = Callable[[int, Walker], Course | CharacterCommand]
+Script = Callable[[int, Walker], SteeringOutput | CharacterCommand]
 """What is asked for in a frame."""
 
 
@@ -89,11 +89,11 @@ def film(character: Character, script: Script, frames: int, hold: bool = True) -
     if not hold:
         walker.release()
     poses: list[Pose] = []
-    places: list[Step] = []
+    places: list[RootDelta] = []
     for number in range(frames):
         wish = script(number, walker)
         elapsed = 1.0 / RATE if number else 0.0
-        if isinstance(wish, Course):
+        if isinstance(wish, SteeringOutput):
             poses.append(walker.go(wish, elapsed))
         else:
             poses.append(walker.update(wish, elapsed))
@@ -143,18 +143,20 @@ def measure(take: Take, start: int = 0) -> Slide:
 
 def points(
     speeds: Iterable[float], degrees: Iterable[float], strides: Iterable[float]
-) -> dict[tuple[float, float, float], Course]:
+) -> dict[tuple[float, float, float], SteeringOutput]:
     """Return the courses of a grid over Speed, Angular [degrees] and stride."""
     angles = list(degrees)
     return {
-        (speed, angle, stride): Course(speed, math.radians(angle), stride)
+        (speed, angle, stride): SteeringOutput(speed, math.radians(angle), stride)
         for speed in speeds
         for angle in angles
         for stride in strides
     }
 
 
-def at_point(character: Character, course: Course, seconds: float, hold: bool = True) -> Slide:
+def at_point(
+    character: Character, course: SteeringOutput, seconds: float, hold: bool = True
+) -> Slide:
     """Return how feet slide at one point of the locomotion space, once under way."""
     frames = _SETTLED + round(seconds * RATE)
     return measure(film(character, lambda _, __: course, frames, hold), _SETTLED)
@@ -184,13 +186,13 @@ def _turn_on_the_spot(number: int, _: Walker) -> CharacterCommand:
     return CharacterCommand(number / RATE, look_at=look)
 
 
-def _slalom(number: int, _: Walker) -> Course:
-    return Course(2.2, 1.3 * math.sin(number / 30), 1.0)
+def _slalom(number: int, _: Walker) -> SteeringOutput:
+    return SteeringOutput(2.2, 1.3 * math.sin(number / 30), 1.0)
 
 
-def _jumps_of_course(number: int, _: Walker) -> Course:
+def _jumps_of_course(number: int, _: Walker) -> SteeringOutput:
     speed = (1.0, 2.5, 4.0, 2.9, 0.6)[number // 60 % 5]
-    return Course(speed, (-1.5, 0.0, 1.5, 0.7)[number // 45 % 4], 1.0)
+    return SteeringOutput(speed, (-1.5, 0.0, 1.5, 0.7)[number // 45 % 4], 1.0)
 
 
 def _follow(number: int, _: Walker) -> CharacterCommand:

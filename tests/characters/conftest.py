@@ -8,7 +8,7 @@ import pytest
 from hypothesis import settings
 
 from characters import Character, Clip, Mesh, Pose, Skeleton
-from characters.motion.motion import Step
+from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 
 # A suite that runs by the same examples everywhere, however busy the machine is.
@@ -20,10 +20,10 @@ SIDES = (("Left", 0.1, 0.0), ("Right", -0.1, 0.5))
 NAMES = ("root", "hips", "head", "LeftFoot", "RightFoot")
 
 
-def _arc(speed: float, yaw_rate: float, time: float) -> Step:
+def _arc(speed: float, yaw_rate: float, time: float) -> RootDelta:
     half = yaw_rate * time / 2
     chord = speed * time * (math.sin(half) / half if abs(half) > 1e-12 else 1.0)
-    return Step(chord * math.sin(half), chord * math.cos(half), 2 * half)
+    return RootDelta(chord * math.sin(half), chord * math.cos(half), 2 * half)
 
 
 def _foot(speed: float, yaw_rate: float, cycle: float, side: float, own: float) -> list[float]:
@@ -31,7 +31,7 @@ def _foot(speed: float, yaw_rate: float, cycle: float, side: float, own: float) 
 
     def planted(part: float) -> tuple[float, float]:
         back = _arc(speed, yaw_rate, (STANCE / 2 - part) * cycle)
-        at = back.then(Step(side, 0.0))
+        at = back.then(RootDelta(side, 0.0))
         return at.x, at.z
 
     if own <= STANCE:

@@ -6,18 +6,23 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from characters.errors import CharacterError
-from characters.motion.blend import Blend, BlendSpace1D, BlendSpace2D, Paced, shares
+from characters.motion.blend import Blend, BlendSpace1D, BlendSpace2D, TimeScaled, shares
 from characters.motion.clip import Clip
 from characters.motion.crossfade import CrossFade
 from characters.motion.curves import FadeCurve, Product, Weight
-from characters.motion.layers import Added, Layered
+from characters.motion.layers import AdditiveLayer, MaskedLayer
 from characters.motion.mirror import Mirror, Mirrored
-from characters.motion.modifiers import Displaced, Loop, Stretch, TimeCurve, Warped, Window
-from characters.motion.motion import Motion, Step
-from characters.motion.phase import Still, in_step, phased
+from characters.motion.modifiers import Loop, RootOffset, Stretch, TimeCurve, Warped, Window
+from characters.motion.motion import Motion, RootDelta
+from characters.motion.phase import StaticPose, as_cyclic, phased
 from characters.motion.schedule import Action, Schedule
+from characters.motion.trees.parametric import (
+    ParameterBindings,
+    ParametricMotion,
+    ParametricWeight,
+    Values,
+)
 from characters.motion.trees.plan import Node, Plan
-from characters.motion.trees.steered import Steered, SteeredWeight, Steering, Values
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.masks import Mask, mask_of
 from characters.skeleton.pose import Skeleton
@@ -51,7 +56,7 @@ class Builder:
         self._clips = {name: phased(clip, skeleton) for name, clip in clips.items()}
         self._constant: dict[int, Motion] = {}
 
-    def build(self, node: Node, values: Values) -> tuple[Motion, Steering]:
+    def build(self, node: Node, values: Values) -> tuple[Motion, ParameterBindings]:
         """Return what plays a node, and what its parameters change.
 
         Parameters
@@ -66,14 +71,14 @@ class Builder:
         CharacterError
             If something in the plan cannot be played; the message names its place in the file.
         """
-        steering = Steering()
+        steering = ParameterBindings()
         motion = self._playing(node, values, steering)
         steering.restart(values)
         return motion, steering
 
-    def _playing(self, node: Node, values: Values, steering: Steering) -> Motion:
+    def _playing(self, node: Node, values: Values, steering: ParameterBindings) -> Motion:
         """Return a motion that stays the same object while its parameters change."""
-        if not node.steered:
+        if not node.parametric:
             return self._made(node, values)
         if node.kind in ("layer", "add"):
             base, over = (
@@ -81,18 +86,18 @@ class Builder:
             )
             weight = node.said["weight"]
             if isinstance(weight, str):
-                weight = SteeredWeight(weight, 0.0 if node.kind == "layer" else -1.0)
+                weight = ParametricWeight(weight, 0.0 if node.kind == "layer" else -1.0)
                 steering.weights.append(weight)
             return self._laid(node, base, over, weight)
         self._refuse_layers(node, node)
-        steered = Steered(lambda now: self._made(node, now), values)
-        steering.motions.append(steered)
-        return steered
+        parametric = ParametricMotion(lambda now: self._made(node, now), values)
+        steering.motions.append(parametric)
+        return parametric
 
     def _refuse_layers(self, node: Node, inside: Node) -> None:
         """Refuse layers with a steered part in what is not a layer: their time is not its own."""
         for child in inside.children:
-            if child.steered and child.kind in ("layer", "add"):
+            if child.parametric and child.kind in ("layer", "add"):
                 self._refuse(
                     child,
                     f"a layer that parameters change cannot be inside the {node.kind} at "
@@ -106,7 +111,7 @@ class Builder:
             return self._constant[id(node)]
         try:
             motion = _MAKERS[node.kind](self, node, values)
-            if not node.steered:
+            if not node.parametric:
                 self._constant[id(node)] = motion
             return motion
         except CharacterError as error:
@@ -122,7 +127,7 @@ class Builder:
         return self._clips[node.said["clip"]]
 
     def _hold(self, node: Node, values: Values) -> Motion:
-        return Still(self._of(node, values).sample(node.said["at"]), 1.0)
+        return StaticPose(self._of(node, values).sample(node.said["at"]), 1.0)
 
     def _stretch(self, node: Node, values: Values) -> Motion:
         return Stretch(self._of(node, values), node.said["seconds"])
@@ -139,8 +144,8 @@ class Builder:
     def _displaced(self, node: Node, values: Values) -> Motion:
         turn = math.radians(node.said["yaw_deg"])
         roots = tuple(j for j, parent in enumerate(self._skeleton.parents) if parent < 0)
-        step = Step(node.said["x"], node.said["z"], turn)
-        return Displaced(self._of(node, values), step, roots)
+        step = RootDelta(node.said["x"], node.said["z"], turn)
+        return RootOffset(self._of(node, values), step, roots)
 
     def _warped(self, node: Node, values: Values) -> Motion:
         return Warped(self._of(node, values), TimeCurve(node.said["times"], node.said["sources"]))
@@ -149,7 +154,7 @@ class Builder:
         rate, stride = node.said["rate"], node.said["stride"]
         if rate <= 0.0:
             self._refuse(node, f"a rate of {rate}; give more than 0")
-        return Paced(in_step(self._of(node, values)), rate, stride)
+        return TimeScaled(as_cyclic(self._of(node, values)), rate, stride)
 
     def _blend(self, node: Node, values: Values) -> Motion:
         weights = shares([row.said["weight"] for row in node.rows])
@@ -210,8 +215,8 @@ class Builder:
         mask = self._mask(node.said["mask"])
         try:
             if node.kind == "layer":
-                return Layered(base, over, mask, weight)
-            return Added(base, over, None, weight, mask)
+                return MaskedLayer(base, over, mask, weight)
+            return AdditiveLayer(base, over, None, weight, mask)
         except CharacterError as error:
             self._refuse(node, str(error))
         raise AssertionError("refused above")

@@ -148,10 +148,10 @@ class Node:
         return 1 + sum(child.size for child in self.children)
 
     @property
-    def steered(self) -> bool:
+    def parametric(self) -> bool:
         """Whether a parameter changes it or something in it."""
         own = self.kind in ("space", "plane") or isinstance(self.said.get("weight"), str)
-        return own or any(child.steered for child in self.children)
+        return own or any(child.parametric for child in self.children)
 
 
 @dataclass(frozen=True)

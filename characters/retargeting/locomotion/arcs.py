@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from characters.motion.motion import Step
+from characters.motion.motion import RootDelta
 from characters.retargeting.ground import arc
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array
@@ -27,10 +27,10 @@ class Course:
     """About +y, to the left [rad/s]."""
 
     @staticmethod
-    def of(step: Step, duration: float) -> "Course":
+    def of(step: RootDelta, duration: float) -> "Course":
         """Return the course that leads along a step in a time [s], if it starts along the arc.
 
-        >>> course = Course.of(Step(2.0, 2.0, np.pi / 2), 1.0)
+        >>> course = Course.of(RootDelta(2.0, 2.0, np.pi / 2), 1.0)
         >>> round(course.speed, 6), round(course.yaw_rate, 6)
         (3.141593, 1.570796)
         """

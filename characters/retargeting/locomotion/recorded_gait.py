@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from characters.errors import CharacterError
 from characters.model.character import Character
 from characters.motion.clip import Clip
-from characters.motion.motion import Step
+from characters.motion.motion import RootDelta
 from characters.retargeting.body import Body
 from characters.retargeting.feet import Footing, find_footing
 from characters.retargeting.ground import way_of
@@ -43,7 +43,7 @@ def gait_of(recording: Recording, character: Character, walker: Character) -> Ga
     cut = Cut(0, len(clip) - 1, 0.0)
     if not clip.loop:
         cut = find_cycle(clip, body, (footing.heel | footing.ball)[:, :2])
-    step = Step(*clip.track[cut.start]).inverse().then(Step(*clip.track[cut.end]))
+    step = RootDelta(*clip.track[cut.start]).inverse().then(RootDelta(*clip.track[cut.end]))
     seconds = (cut.end - cut.start) / clip.rate
     course = Course.of(step, seconds)
     if course.speed < _SLOWEST * body.leg_length:
@@ -104,7 +104,7 @@ def _carried(clip: Clip, body: Body, footing: Footing) -> Clip:
     way = way_of(replace(clip, loop=False), body, legs, footing.ball, 1.0).carried
     if not way.any():
         return clip
-    steps = [Step(*w).then(Step(*t)) for w, t in zip(way, clip.track, strict=True)]
+    steps = [RootDelta(*w).then(RootDelta(*t)) for w, t in zip(way, clip.track, strict=True)]
     track = np.array([[step.x, step.z, step.yaw] for step in steps])
     return replace(clip, poses=on_course(clip.in_place, track))
 

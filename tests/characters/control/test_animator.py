@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from characters import Animator, Character, CharacterCommand, CharacterError
 from characters.locomotion.gaits import Gaits
-from characters.locomotion.steering import ARRIVED
-from characters.motion.motion import Step
+from characters.locomotion.steering import ARRIVAL_DISTANCE_M
+from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 
 RATE = 30
@@ -35,7 +35,7 @@ def arrival(character, speed, target, place=None, seconds=40):
     for number in range(seconds * RATE):
         posed = animator.update(CharacterCommand(number / RATE, "move", speed, target))
         if number and posed.state == "idle":
-            assert np.hypot(*(posed.table_from_character[[0, 2], 3] - target)) < ARRIVED
+            assert np.hypot(*(posed.table_from_character[[0, 2], 3] - target)) < ARRIVAL_DISTANCE_M
             return number / RATE
     return math.inf
 
@@ -67,7 +67,7 @@ def test_a_walker_is_seventeen_centimetres_tall(anyone):
     st.floats(-0.4, 0.4), st.floats(-0.4, 0.4), st.floats(-math.pi, math.pi), st.floats(0.6, 5.0)
 )
 def test_it_always_arrives(walker, x, z, yaw, speed):
-    start = Step(0.0, 0.0, yaw)
+    start = RootDelta(0.0, 0.0, yaw)
     assert arrival(walker, speed, np.array([x, z]), start) < 30
 
 

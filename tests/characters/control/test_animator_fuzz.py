@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from characters import Animator, Character, CharacterCommand, CharacterError
 from characters.control.animator import LONGEST_STEP
-from characters.motion.motion import STANDING
+from characters.motion.motion import RootDelta
 
 DATA = Path(__file__).parents[3].parent / "shared" / "data" / "gltf"
 CAST = ("human", "vleo", "robot", "RobotExpressive.glb", "Fox.glb")
@@ -61,7 +61,7 @@ def stories(draw):
 def played(someone, story):
     """Play a story; what is not known is refused, and time goes on."""
     character, actions = someone
-    animator, time, elapsed = Animator(character, place=STANDING), 0.0, 0.0
+    animator, time, elapsed = Animator(character, place=RootDelta()), 0.0, 0.0
     for gap, count, number, said in story:
         command = CharacterCommand(time, actions[number % len(actions)], **said)
         for _ in range(count):

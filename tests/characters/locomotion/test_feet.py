@@ -7,7 +7,7 @@ import pytest
 
 from characters import Animator, Character, CharacterCommand
 from characters.control.walker import Walker
-from characters.locomotion.steering import Course
+from characters.locomotion.steering import SteeringOutput
 from tests.bench.feet import LIMIT, RATE, SCRIPTS, at_point, film, measure, points
 
 GRID = points((0.6, 2.0, 2.9, 4.5), (-80, 0, 40), (1.0,)) | points((1.2,), (60,), (0.0, 0.5))
@@ -40,7 +40,7 @@ def test_without_the_lock_they_would_slide(human):
 
 
 def test_knees_bend_hardly_harder_for_it(human):
-    course = Course(1.5, math.radians(-75), 1.0)
+    course = SteeringOutput(1.5, math.radians(-75), 1.0)
     free, held = (at_point(human, course, 1.5, hold).jerk for hold in (False, True))
     assert held < 1.5 * free + 100.0
 
@@ -48,16 +48,16 @@ def test_knees_bend_hardly_harder_for_it(human):
 def test_who_has_stopped_comes_to_rest_and_stays(human):
     walker = Walker(human, 0.1, None)
     for number in range(60):
-        walker.go(Course(2.0, 1.0, 1.0), 1 / RATE if number else 0.0)
+        walker.go(SteeringOutput(2.0, 1.0, 1.0), 1 / RATE if number else 0.0)
     for _ in range(120):
-        walker.go(Course(0.0, 0.0, 1.0), 1 / RATE)
+        walker.go(SteeringOutput(0.0, 0.0, 1.0), 1 / RATE)
     lock = walker.lock
     assert lock is not None
     assert all(foot.held for foot in lock.feet)
     assert max(foot.shift.length for foot in lock.feet) < 0.03 * human.height
     anchors = [foot.anchor for foot in lock.feet]
     for _ in range(60):
-        walker.go(Course(0.0, 0.0, 1.0), 1 / RATE)
+        walker.go(SteeringOutput(0.0, 0.0, 1.0), 1 / RATE)
     assert anchors == [foot.anchor for foot in lock.feet]
 
 

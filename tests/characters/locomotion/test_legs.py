@@ -7,7 +7,7 @@ from characters import Character, Pose, Skeleton
 from characters.ik.legs import find_legs
 from characters.locomotion.gaits import Gaits
 from characters.motion.blend import Blend, mix
-from characters.motion.motion import Step
+from characters.motion.motion import RootDelta
 from characters.motion.phase import phased
 from characters.skeleton import rotations
 
@@ -98,7 +98,7 @@ def test_a_foot_that_stands_in_walk_and_in_run_stands_in_the_mix(human, weight):
     places = []
     for phase in phases:
         x, _, z = blend.at(phase).globals(human.skeleton)[toes, :3, 3]
-        at = blend.between(0.0, phase).then(Step(x, z))
+        at = blend.between(0.0, phase).then(RootDelta(x, z))
         places.append((at.x, at.z))
     assert np.ptp(places, axis=0).max() < 5e-3  # [m]; joints alone let it slide by centimetres
 

@@ -9,35 +9,35 @@ from hypothesis import strategies as st
 
 from characters import (
     Action,
-    Added,
+    AdditiveLayer,
     Blend,
     BlendSpace1D,
     BlendSpace2D,
     CharacterError,
     Clip,
     CrossFade,
-    Displaced,
     FadeCurve,
-    Layered,
     LiveSchedule,
     Loop,
+    MaskedLayer,
     Mirror,
     Mirrored,
     Motion,
     Pose,
+    RootDelta,
+    RootOffset,
     Schedule,
     Skeleton,
     StateMachine,
-    Step,
     Stretch,
     TimeCurve,
     Warped,
     Window,
     mask_of,
 )
-from characters.motion.blend import Paced
-from characters.motion.phase import Phased, Still, in_step
-from characters.motion.retimed import Live
+from characters.motion.blend import TimeScaled
+from characters.motion.phase import PhasedMotion, StaticPose, as_cyclic
+from characters.motion.retimed import RetimedMotion
 from characters.skeleton import rotations
 
 NAMES = ("root", "spine", "LeftArm", "RightArm", "LeftHand", "RightHand")
@@ -74,8 +74,8 @@ CLIPS = [arc(seed) for seed in range(4)]
 clips = st.sampled_from(CLIPS)
 leaves = st.one_of(
     clips,
-    clips.map(lambda clip: Phased(clip, (0.2, 0.7))),
-    st.just(Still(REST, 1.0)),
+    clips.map(lambda clip: PhasedMotion(clip, (0.2, 0.7))),
+    st.just(StaticPose(REST, 1.0)),
     clips.map(lambda clip: Clip("once", RATE, clip.poses, False, True)),
 )
 unit, times = st.floats(0.05, 0.95), st.floats(0.0, 3.0)
@@ -109,7 +109,7 @@ def nested(inner: st.SearchStrategy[Motion]) -> st.SearchStrategy[Motion]:
         st.builds(lambda m, a, d: Window(m, a, a + d), inner, times, unit),
         inner.map(lambda m: Loop(finite(m))),
         inner.map(lambda m: Mirrored(m, MIRROR)),
-        st.builds(lambda m, x, yaw: Displaced(m, Step(x, 1.0, yaw)), inner, unit, unit),
+        st.builds(lambda m, x, yaw: RootOffset(m, RootDelta(x, 1.0, yaw)), inner, unit, unit),
         inner.map(lambda m: Warped(m, TimeCurve((0.0, 1.0, 2.0), (0.2, 0.8, 3.0)))),
         st.builds(lambda p, w: Blend(p, (w, 1 - w)), pair, unit),
         st.builds(lambda p, w: BlendSpace1D((0.0, 1.0), p).at(w), pair, unit),
@@ -119,10 +119,12 @@ def nested(inner: st.SearchStrategy[Motion]) -> st.SearchStrategy[Motion]:
             unit,
             unit,
         ),
-        st.builds(lambda m, r: Paced(in_step(finite(m)), r), inner, st.floats(0.5, 2.0)),
-        inner.map(lambda m: Live(in_step(finite(m)), 0.3)),
-        st.builds(lambda p, k, w: Layered(p[0], p[1], mask=k, weight=w), pair, masks, weights),
-        st.builds(lambda p, k, w: Added(p[0], p[1], mask=k, weight=w), pair, masks, weights),
+        st.builds(lambda m, r: TimeScaled(as_cyclic(finite(m)), r), inner, st.floats(0.5, 2.0)),
+        inner.map(lambda m: RetimedMotion(as_cyclic(finite(m)), 0.3)),
+        st.builds(lambda p, k, w: MaskedLayer(p[0], p[1], mask=k, weight=w), pair, masks, weights),
+        st.builds(
+            lambda p, k, w: AdditiveLayer(p[0], p[1], mask=k, weight=w), pair, masks, weights
+        ),
         st.builds(lambda p, t, d: CrossFade(p[0], p[1], t, d), pair, times, unit),
         st.builds(lambda p, t: machine(p[0], p[1], t), pair, times),
         st.lists(actions, max_size=3).map(lambda a: Schedule(tuple(a), REST)),
@@ -157,7 +159,9 @@ def test_the_parts_of_any_way_add_up_to_the_whole(motion, at):
     # Mixed steps are means over an interval, and exact where their members move evenly.
     slack = 0.02 * (1.0 + end - start)
     assert (parts.x, parts.z, parts.yaw) == pytest.approx((whole.x, whole.z, whole.yaw), abs=slack)
-    assert motion.travel(middle, middle) == Step() or motion.travel(middle, middle).length < 1e-12
+    assert (
+        motion.travel(middle, middle) == RootDelta() or motion.travel(middle, middle).length < 1e-12
+    )
 
 
 @given(st.lists(unit, min_size=4, max_size=4), st.lists(times, min_size=3, max_size=3))
@@ -201,13 +205,13 @@ def test_time_may_run_backwards():
 
 
 def test_a_displaced_motion_takes_place_elsewhere():
-    clip, step = CLIPS[0], Step(2.0, -1.0, 0.7)
-    moved = Displaced(clip, step)
+    clip, step = CLIPS[0], RootDelta(2.0, -1.0, 0.7)
+    moved = RootOffset(clip, step)
 
-    def placed(motion: Motion, time: float) -> Step:
+    def placed(motion: Motion, time: float) -> RootDelta:
         pose, way = motion.sample(time), motion.travel(0.0, time)
         x, _, z = pose.translations[0]
-        return way.then(Step(x, z, float(rotations.heading(pose.rotations[0]))))
+        return way.then(RootDelta(x, z, float(rotations.heading(pose.rotations[0]))))
 
     for time in (0.0, 0.4, 1.3):
         a, b = placed(moved, time), step.then(placed(clip, time))
@@ -228,10 +232,13 @@ def test_a_displaced_motion_takes_place_elsewhere():
         (lambda: Blend((), ()), "0 motions"),
         (lambda: BlendSpace1D((0.0, 1.0), (CLIPS[0],) * 2).at(math.nan), "a value of nan"),
         (lambda: BlendSpace2D(np.eye(2), (CLIPS[0],) * 2).at((0.0, math.inf)), "inf"),
-        (lambda: Layered(CLIPS[0], CLIPS[1], weight=1.5), "give 0 to 1"),
-        (lambda: Layered(CLIPS[0], CLIPS[1], mask=np.full(6, 2.0)), "one weight 0…1"),
-        (lambda: Layered(CLIPS[0], CLIPS[1], mask=np.ones(5)).sample(0.0), "5 joints on a pose"),
-        (lambda: Added(CLIPS[0], CLIPS[1], weight=math.nan), "finite"),
+        (lambda: MaskedLayer(CLIPS[0], CLIPS[1], weight=1.5), "give 0 to 1"),
+        (lambda: MaskedLayer(CLIPS[0], CLIPS[1], mask=np.full(6, 2.0)), "one weight 0…1"),
+        (
+            lambda: MaskedLayer(CLIPS[0], CLIPS[1], mask=np.ones(5)).sample(0.0),
+            "5 joints on a pose",
+        ),
+        (lambda: AdditiveLayer(CLIPS[0], CLIPS[1], weight=math.nan), "finite"),
         (lambda: CrossFade(CLIPS[0], CLIPS[1], 0.0, 0.0), "positive length"),
         (lambda: mask_of(SKELETON, {"tail": 1.0}), "no joint 'tail'"),
         (lambda: mask_of(SKELETON, {"spine": -1.0}), "give 0 to 1"),

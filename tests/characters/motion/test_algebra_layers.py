@@ -4,18 +4,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import (
-    Added,
+    AdditiveLayer,
     BlendSpace2D,
     Clip,
     CrossFade,
-    Layered,
+    MaskedLayer,
     Pose,
+    RootDelta,
     Skeleton,
     StateMachine,
-    Step,
     mask_of,
 )
-from characters.motion.phase import Still
+from characters.motion.phase import StaticPose
 from characters.skeleton import rotations
 
 REST = Pose(np.zeros((3, 3)), np.tile(rotations.IDENTITY, (3, 1)))
@@ -38,8 +38,8 @@ class Swing:
         turns = rotations.from_rotation_vector(self.size[0] * np.sin(self.pace * time))
         return Pose(self.size[1] * np.cos(self.pace * time), turns, None, np.array([0.5, 0.2]))
 
-    def travel(self, start: float, end: float) -> Step:
-        return Step(0.0, end - start, 0.1 * (end - start))
+    def travel(self, start: float, end: float) -> RootDelta:
+        return RootDelta(0.0, end - start, 0.1 * (end - start))
 
 
 def same(a: Pose, b: Pose) -> bool:
@@ -52,23 +52,26 @@ def test_a_layer_leaves_other_joints_bit_for_bit():
     base, over = Swing(1), Swing(2)
     mask = mask_of(SKELETON, {"arm": 1.0})
     below, above = base.sample(0.3), over.sample(0.3)
-    pose = Layered(base, over, mask).sample(0.3)
+    pose = MaskedLayer(base, over, mask).sample(0.3)
     assert np.array_equal(pose.rotations[:2], below.rotations[:2])
     assert np.allclose(pose.rotations[2], above.rotations[2])
-    assert Layered(base, over, mask).travel(0.0, 1.0) == base.travel(0.0, 1.0)
+    assert MaskedLayer(base, over, mask).travel(0.0, 1.0) == base.travel(0.0, 1.0)
 
 
 def test_a_layer_goes_the_shorter_way():
-    a = Still(Pose(REST.translations, rotations.about("y", np.full(3, 0.4))), 1.0)
-    b = Still(Pose(REST.translations, -rotations.about("y", np.full(3, 0.8))), 1.0)
-    pose = Layered(a, b, weight=0.5).sample(0.0)
+    a = StaticPose(Pose(REST.translations, rotations.about("y", np.full(3, 0.4))), 1.0)
+    b = StaticPose(Pose(REST.translations, -rotations.about("y", np.full(3, 0.8))), 1.0)
+    pose = MaskedLayer(a, b, weight=0.5).sample(0.0)
     assert np.allclose(pose.rotations, rotations.about("y", 0.6))
 
 
 @given(numbers, numbers)
 def test_adding_nothing_changes_not_one_bit(time, weight):
     base, over = Swing(3), Swing(4).sample(0.7)
-    pose, expected = Added(base, Still(over, 1.0), weight=weight).sample(time), base.sample(time)
+    pose, expected = (
+        AdditiveLayer(base, StaticPose(over, 1.0), weight=weight).sample(time),
+        base.sample(time),
+    )
     assert same(pose, expected)
     assert pose.morphs is not None
     assert expected.morphs is not None
@@ -76,18 +79,18 @@ def test_adding_nothing_changes_not_one_bit(time, weight):
 
 
 def test_an_addition_turns_in_the_parents_frame_and_in_part():
-    base = Still(Pose(REST.translations, rotations.about("x", np.full(3, 1.0))), 1.0)
-    lean = Still(Pose(REST.translations, rotations.about("y", np.full(3, 0.6))), 1.0)
+    base = StaticPose(Pose(REST.translations, rotations.about("x", np.full(3, 1.0))), 1.0)
+    lean = StaticPose(Pose(REST.translations, rotations.about("y", np.full(3, 0.6))), 1.0)
     mask = mask_of(SKELETON, {"spine": 1.0, "arm": 0.5})
-    pose = Added(base, lean, REST, mask=mask).sample(0.0)
+    pose = AdditiveLayer(base, lean, REST, mask=mask).sample(0.0)
     expected = rotations.multiply(rotations.about("y", [0.0, 0.6, 0.3]), base.pose.rotations)
     assert np.allclose(pose.rotations, expected)
 
 
 def test_what_is_added_and_taken_away_again_leaves_the_base():
     base, over = Swing(5), Swing(6)
-    there = Added(base, over, REST)
-    back = Added(there, over, REST, weight=-1.0)
+    there = AdditiveLayer(base, over, REST)
+    back = AdditiveLayer(there, over, REST, weight=-1.0)
     # The inverse is applied on the same side, so it undoes the addition.
     assert np.allclose(back.sample(0.4).rotations, base.sample(0.4).rotations)
     assert np.allclose(back.sample(0.4).translations, base.sample(0.4).translations)
@@ -174,7 +177,7 @@ def test_a_cross_fading_machine_shows_what_a_cross_fade_shows():
 
 
 def test_a_plane_of_any_motions_blends_what_has_no_phase():
-    still = Still(REST, 1.0)
+    still = StaticPose(REST, 1.0)
     clip = Clip("c", 10.0, Pose(np.zeros((11, 3, 3)), np.tile(REST.rotations, (11, 1, 1))))
     machine = StateMachine({"a": Swing(1)}, "a")
     space = BlendSpace2D(np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]), (still, clip, machine))

@@ -6,7 +6,7 @@ import pytest
 
 from characters import Blend, Character, CharacterError, Mirror, Mirrored, Pose, Skeleton
 from characters.model.mirroring import mirror_of
-from characters.motion.phase import Phased, phased
+from characters.motion.phase import PhasedMotion, phased
 from characters.skeleton import rotations
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "gltf"
@@ -94,7 +94,7 @@ def test_a_mirrored_turn_goes_the_other_way_and_blends_to_a_straight_one():
 
 def test_a_motion_without_steps_is_mirrored_in_time():
     vleo = load("vleo")
-    clip = Phased(vleo.clips["kiss_head"])
+    clip = PhasedMotion(vleo.clips["kiss_head"])
     mirror = Mirror.of(vleo.skeleton)
     pose = Mirrored(clip, mirror).at(0.25)
     assert np.allclose(pose.rotations, mirror.pose(clip.at(0.25)).rotations)

@@ -18,13 +18,13 @@ from characters import (
     LiveSchedule,
     Pose,
     Product,
+    RootDelta,
     Schedule,
     Skeleton,
-    Step,
     mask_of,
 )
 from characters.motion.curves import ease
-from characters.motion.phase import Still
+from characters.motion.phase import StaticPose
 from characters.skeleton import rotations
 
 REST = Pose(np.zeros((3, 3)), np.tile(rotations.IDENTITY, (3, 1)))
@@ -36,7 +36,7 @@ IDLE_MASK = mask_of(SKELETON, {"torso": 0.1}, default=1.0)
 def still(x: float, length: float = 1.0, angle: float = 0.0, morphs: list[float] | None = None):
     turns = np.tile(rotations.about("y", angle), (3, 1))
     looks = None if morphs is None else np.array(morphs)
-    return Still(Pose(np.full((3, 3), x), turns, None, looks), length)
+    return StaticPose(Pose(np.full((3, 3), x), turns, None, looks), length)
 
 
 def x_of(schedule: Schedule, time: float) -> list[float]:
@@ -95,7 +95,7 @@ def test_of_many_equal_and_far_poses_the_order_does_not_matter_either():
     rest = Pose(np.zeros((200, 3)), np.tile(rotations.IDENTITY, (200, 1)))
     for spread in (1.0, 3.0):
         turns = rotations.from_rotation_vector(rng.uniform(-spread, spread, (4, 200, 3)))
-        actions = [Action(Still(Pose(rest.translations, turn), 1.0)) for turn in turns]
+        actions = [Action(StaticPose(Pose(rest.translations, turn), 1.0)) for turn in turns]
         a, b = (Schedule(tuple(x), rest).sample(0.0).rotations for x in (actions, actions[::-1]))
         assert np.abs(rotations.align(a, b) - b).max() < 1e-9
 
@@ -208,4 +208,4 @@ def test_the_root_goes_where_the_loudest_of_joint_nought_leads():
     assert alone.travel(0.0, 2.0).z == pytest.approx(2.0)
     half = Schedule((Action(walk, always=True), Action(still(0.0, 5.0))), REST)
     assert half.travel(0.0, 2.0).z == pytest.approx(1.0)
-    assert Schedule((), REST).travel(0.0, 2.0) == Step()
+    assert Schedule((), REST).travel(0.0, 2.0) == RootDelta()

@@ -13,8 +13,8 @@ from characters import (
     Schedule,
     StateMachine,
 )
-from characters.motion.blend import Blend, Paced, mix, shares
-from characters.motion.phase import Cyclic, Phased, Still, in_step, phased
+from characters.motion.blend import Blend, TimeScaled, mix, shares
+from characters.motion.phase import Cyclic, PhasedMotion, StaticPose, as_cyclic, phased
 from characters.skeleton import rotations
 
 coordinates = st.floats(-2, 2)
@@ -28,7 +28,7 @@ points = st.lists(point, min_size=1, max_size=7, unique=True).filter(
 
 def still(angle):
     pose = Pose(np.array([[angle, 0.0, 0.0]]), rotations.about("y", [angle]))
-    return Still(pose, 1.0)
+    return StaticPose(pose, 1.0)
 
 
 def plane(ps):
@@ -119,8 +119,8 @@ def test_a_mix_does_not_depend_on_order_or_on_signs(order):
 def test_blends_nest_and_are_motions(walker, skeleton):
     walk, run = (phased(walker.clips[name], skeleton) for name in ("Walk", "Run"))
     inner = Blend((walk, run), (0.5, 0.5))
-    outer = Paced(Blend((inner, walk), (0.5, 0.5)), 1.5)
-    flat = Paced(Blend((walk, run), (0.75, 0.25)), 1.5)
+    outer = TimeScaled(Blend((inner, walk), (0.5, 0.5)), 1.5)
+    flat = TimeScaled(Blend((walk, run), (0.75, 0.25)), 1.5)
     cyclic: Cyclic = outer
     assert isinstance(cyclic, Motion)
     assert outer.duration == pytest.approx(flat.duration)
@@ -151,15 +151,17 @@ def test_in_any_blend_of_walk_and_run_left_feet_land_together(walker, skeleton, 
 
 def test_clips_without_steps_start_together_at_phase_nought(actor):
     clip = actor.clips["kiss_tail"]
-    assert np.allclose(Phased(clip).at(0.25).rotations, clip.sample(0.25 * clip.duration).rotations)
+    assert np.allclose(
+        PhasedMotion(clip).at(0.25).rotations, clip.sample(0.25 * clip.duration).rotations
+    )
 
 
 def test_what_has_no_cycle_is_paced_by_the_clock():
     rest = Pose(np.zeros((1, 3)), np.array([[0.0, 0.0, 0.0, 1.0]]))
     empty = Schedule((), rest)
-    assert Paced(in_step(empty), 2.0).sample(3.0).rotations.shape == (1, 4)
+    assert TimeScaled(as_cyclic(empty), 2.0).sample(3.0).rotations.shape == (1, 4)
     turns = rotations.about("y", np.linspace(0.0, 1.0, 11))[:, None]
     clip = Clip("turn", 10.0, Pose(np.zeros((11, 1, 3)), turns), loop=False)
     machine = StateMachine({"turn": clip}, "turn")
-    shown = Paced(in_step(machine), 2.0).sample(0.25)
+    shown = TimeScaled(as_cyclic(machine), 2.0).sample(0.25)
     assert shown.rotations == pytest.approx(clip.sample(0.5).rotations)

@@ -6,25 +6,25 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters import CharacterError, Clip, Motion, Pose
-from characters.motion.motion import Step
+from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 
-steps = st.builds(Step, st.floats(-2, 2), st.floats(-2, 2), st.floats(-7, 7))
+steps = st.builds(RootDelta, st.floats(-2, 2), st.floats(-2, 2), st.floats(-7, 7))
 
 
-def close(a: Step, b: Step) -> bool:
+def close(a: RootDelta, b: RootDelta) -> bool:
     return np.allclose((a.x, a.z, a.yaw), (b.x, b.z, b.yaw), atol=1e-6)
 
 
 @given(steps, steps, steps)
 def test_steps_form_a_group(a, b, c):
     assert close(a.then(b).then(c), a.then(b.then(c)))
-    assert close(a.then(a.inverse()), Step())
+    assert close(a.then(a.inverse()), RootDelta())
 
 
 @given(steps, st.integers(0, 12))
 def test_many_cycles_equal_one_after_the_other(step, times):
-    walked = Step()
+    walked = RootDelta()
     for _ in range(times):
         walked = walked.then(step)
     assert close(step.repeated(times), walked)
@@ -63,7 +63,7 @@ def test_sample_and_travel_together_plant_the_foot(walker, skeleton):
     places = []
     for time in lands + np.linspace(0.03, 0.57, 30) * clip.duration:
         foot = clip.sample(time).globals(skeleton)[3, :3, 3]
-        at = clip.travel(0.0, time).then(Step(foot[0], foot[2]))
+        at = clip.travel(0.0, time).then(RootDelta(foot[0], foot[2]))
         places.append([at.x, at.z])
     assert np.ptp(places, axis=0).max() < 2e-3
 
@@ -73,7 +73,7 @@ def test_a_clip_that_does_not_loop_holds_its_ends():
     clip = Clip("turn", 1.0, Pose(np.zeros((2, 1, 3)), turns), loop=False)
     assert np.allclose(clip.sample(-3.0).rotations, turns[0])
     assert np.allclose(clip.sample(9.0).rotations, turns[1])
-    assert clip.travel(0.0, 9.0) == Step()
+    assert clip.travel(0.0, 9.0) == RootDelta()
 
 
 def test_a_clip_without_frames_is_refused():

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters import Character, Clip, Pose, Skeleton
-from characters.motion.phase import Phased, phased
+from characters.motion.phase import PhasedMotion, phased
 from characters.skeleton import rotations
 from characters.skeleton.feet import find_feet
 
@@ -47,7 +47,7 @@ def test_time_runs_with_phase_and_hits_the_marks(gaps, phase, further):
     clip = Clip(
         "c", 1 / duration, Pose(np.zeros((2, 1, 3)), np.tile(rotations.IDENTITY, (2, 1, 1)))
     )
-    motion = Phased(clip, (0.02, 0.02 + gaps[0]))
+    motion = PhasedMotion(clip, (0.02, 0.02 + gaps[0]))
     assert motion.time(0.5) == pytest.approx(0.02 + gaps[0])
     assert motion.time(phase + 1) == pytest.approx(motion.time(phase) + duration)
     assert motion.time(phase + further) >= motion.time(phase) - 1e-9

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Mapping
 
-from characters.motion.motion import Motion, Step
-from characters.motion.phase import in_step
-from characters.motion.retimed import Live
+from characters.motion.motion import Motion, RootDelta
+from characters.motion.phase import as_cyclic
+from characters.motion.retimed import RetimedMotion
 from characters.skeleton.pose import Pose
 
 Values = Mapping[str, float]
@@ -14,12 +14,12 @@ Maker = Callable[[Values], Motion]
 """Gives the motion for some parameters."""
 
 
-class Steered:
+class ParametricMotion:
     """A motion that parameters change while it plays, without losing its phase; a `Motion`."""
 
     def __init__(self, make: Maker, values: Values) -> None:
         self._make = make
-        self._live = Live(in_step(make(values)))
+        self._live = RetimedMotion(as_cyclic(make(values)))
 
     @property
     def duration(self) -> float:
@@ -28,22 +28,22 @@ class Steered:
 
     def steer(self, values: Values, time: float) -> None:
         """Go on from a time on [s] with other parameters."""
-        self._live.change(in_step(self._make(values)), time)
+        self._live.change(as_cyclic(self._make(values)), time)
 
     def restart(self, values: Values) -> None:
         """Start over at time 0."""
-        self._live.restart(in_step(self._make(values)), 0.0)
+        self._live.restart(as_cyclic(self._make(values)), 0.0)
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
         return self._live.sample(time)
 
-    def travel(self, start: float, end: float) -> Step:
+    def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self._live.travel(start, end)
 
 
-class SteeredWeight:
+class ParametricWeight:
     """A weight that a parameter sets; a `Curve`."""
 
     def __init__(self, parameter: str, low: float) -> None:
@@ -60,12 +60,12 @@ class SteeredWeight:
         self._value = min(max(values[self._parameter], self._low), 1.0)
 
 
-class Steering:
+class ParameterBindings:
     """All that parameters change in one motion of a plan."""
 
     def __init__(self) -> None:
-        self.motions: list[Steered] = []
-        self.weights: list[SteeredWeight] = []
+        self.motions: list[ParametricMotion] = []
+        self.weights: list[ParametricWeight] = []
 
     def steer(self, values: Values, time: float) -> None:
         """Set the parameters from a time [s] of the motion on."""

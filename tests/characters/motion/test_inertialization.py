@@ -4,8 +4,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters import CharacterError, Clip, Motion, Pose, StateMachine
-from characters.motion.inertialization import Fade
-from characters.motion.motion import Step
+from characters.motion.inertialization import OffsetDecay
+from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 
 LENGTH = 0.25
@@ -25,7 +25,7 @@ class Spin:
         return Pose(np.array([[self.slide * time, 1.0, 0.0]]), turn)
 
     def travel(self, start, end):
-        return Step(0.0, self.slide * (end - start), 0.0)
+        return RootDelta(0.0, self.slide * (end - start), 0.0)
 
 
 numbers = st.floats(-3, 3)
@@ -87,7 +87,7 @@ def test_a_switch_within_a_transition_does_not_pop_either(first, second, third, 
 
 @given(numbers, numbers)
 def test_a_fade_starts_and_ends_as_promised(offset, speed):
-    fade = Fade(np.array([offset]), np.array([speed]), LENGTH)
+    fade = OffsetDecay(np.array([offset]), np.array([speed]), LENGTH)
     assert fade.at(0.0)[0] == pytest.approx(offset)
     assert (fade.at(TINY) - fade.at(0.0))[0] / TINY == pytest.approx(speed, abs=0.05)
     assert fade.at(LENGTH)[0] == fade.at(9.0)[0] == pytest.approx(0, abs=1e-9)
@@ -98,14 +98,14 @@ def test_a_fade_starts_and_ends_as_promised(offset, speed):
 
 @given(numbers, numbers)
 def test_a_fade_overshoots_by_little(offset, speed):
-    fade = Fade(np.array([offset]), np.array([speed]), LENGTH)
+    fade = OffsetDecay(np.array([offset]), np.array([speed]), LENGTH)
     largest = max(abs(fade.at(t)[0]) for t in np.linspace(0, LENGTH, 50))
     assert largest <= abs(offset) + 0.2 * abs(speed) * LENGTH + 1e-9
 
 
 def test_the_way_over_the_ground_is_whole_across_a_switch():
     machine = switched(Spin("y", 0, 0, 1.0), Spin("y", 0, 0, 3.0))
-    parts = Step()
+    parts = RootDelta()
     for start in np.arange(0.5, 1.5, 0.01):
         parts = parts.then(machine.travel(start, start + 0.01))
     assert parts.z == pytest.approx(machine.travel(0.5, 1.5).z)
