@@ -1,27 +1,106 @@
-"""`cubeling`: the command line."""
+"""`cubeling`: the command line.
+
+The module of a command is imported when the command is called, so the help of `cubeling` needs
+neither OpenCV nor numpy.
+"""
 
 import signal
 import sys
 import warnings
-from typing import Annotated, TextIO
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Annotated, Any, TextIO
 
 import typer
+import typer.core
 import typer.exceptions
+import typer.main
 from rich.console import Console
 
-from affect import AffectError
-from app.commands import bridge, calibrate, character, cube, demo, doctor, mood, play, replay, robot
-from app.errors import AppError
-from characters import CharacterError
-from characters.errors import CharacterWarning
-from robot import RobotError
-from tracking import TrackingError
+BAD_INPUT_EXIT_CODE = 2
+"""Exit code for every error that the user can correct."""
 
-BAD_INPUT = 2
-"""Exit code for anything a person can put right."""
+
+@dataclass(frozen=True)
+class LazyCommand:
+    """A command whose module is not imported yet."""
+
+    module: str
+    """Module that defines it."""
+
+    attribute: str
+    """The command's function, or the `Typer` of a group, in that module."""
+
+    summary: str
+    """The first sentence of its help."""
+
+    def load(self, name: str) -> Any:
+        """Import the module and return the command."""
+        target = getattr(import_module(self.module), self.attribute)
+        if not isinstance(target, typer.Typer):
+            function, target = target, typer.Typer(rich_markup_mode="rich", add_completion=False)
+            target.command(name)(function)
+        return typer.main.get_command(target)
+
+
+COMMANDS = {
+    "demo": LazyCommand(
+        "app.commands.demo",
+        "demo",
+        "See it work: with your camera, or with the bundled recording, or as a video.",
+    ),
+    "play": LazyCommand("app.commands.play", "play", "Play with the cube in front of a camera."),
+    "replay": LazyCommand(
+        "app.commands.replay",
+        "replay",
+        "Play a recorded session: in a window, to a video, or only to its summary.",
+    ),
+    "bridge": LazyCommand(
+        "app.commands.bridge",
+        "bridge",
+        "Let robots follow players in other places, over an MQTT broker; docs/many.md tells how.",
+    ),
+    "cube": LazyCommand(
+        "app.commands.cube", "cube", "Write a cube as a sheet to print, cut, fold and glue."
+    ),
+    "calibrate": LazyCommand(
+        "app.commands.calibrate",
+        "calibrate",
+        "Find the camera's lens by waving the cube before it for about 20 seconds.",
+    ),
+    "character": LazyCommand("app.commands.character", "app", "Look at characters and motions."),
+    "robot": LazyCommand("app.commands.robot", "app", "Simulated robots and real ports."),
+    "mood": LazyCommand(
+        "app.commands.mood",
+        "app",
+        "Moods of recorded sessions, and the personalities that have them.",
+    ),
+    "doctor": LazyCommand(
+        "app.commands.doctor",
+        "doctor",
+        "Say what this computer has, what is missing, and the command that puts it right.",
+    ),
+}
+"""The commands by name, in the order of the help. A new command is registered here."""
+
+
+class LazyGroup(typer.core.TyperGroup):
+    """Lists `COMMANDS` with their summaries, and imports only the one that is called."""
+
+    def __init__(self, **attributes: Any) -> None:
+        super().__init__(**attributes)
+        for name, command in COMMANDS.items():
+            self.add_command(typer.core.TyperCommand(name, help=command.summary))
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
+        """Return the name, the command and the arguments that are left for it."""
+        name, command, rest = super().resolve_command(ctx, args)
+        return name, COMMANDS[name].load(name) if name in COMMANDS else command, rest
+
 
 app = typer.Typer(
     name="cubeling",
+    cls=LazyGroup,
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode="rich",
@@ -29,16 +108,6 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="First time here? [bold]cubeling demo[/], then [bold]cubeling cube companion[/]",
 )
-app.command()(demo.demo)
-app.command()(play.play)
-app.command()(replay.replay)
-app.command()(bridge.bridge)
-app.command()(cube.cube)
-app.command()(calibrate.calibrate)
-app.add_typer(character.app, name="character")
-app.add_typer(robot.app, name="robot")
-app.add_typer(mood.app, name="mood")
-app.command()(doctor.doctor)
 
 
 @app.callback()
@@ -53,66 +122,86 @@ def common(
 def main() -> None:
     """Run a command; bad input ends in one line and exit code 2."""
     debug = "--debug" in sys.argv
-    say_goodbye()
+    end_on_termination_signals()
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("default", CharacterWarning)
-            warnings.showwarning = Mentions()
+            warnings.simplefilter("default", UserWarning)  # CharacterWarning is one
+            warnings.showwarning = WarningPrinter()
             code = app(prog_name="cubeling", standalone_mode=False)
     except typer.exceptions.TyperException as error:
-        told = usage(error)
-        complain(told)
-        code = BAD_INPUT if told else 0  # a bare `cubeling` shows its help, which is no mistake
-    except (AppError, AffectError, TrackingError, CharacterError, RobotError) as error:
-        if debug:
-            raise
-        complain(str(error))
-        code = BAD_INPUT
-    except (OSError, MemoryError) as error:  # a full disk, a file too large: no fault of the code
-        if debug:
-            raise
-        complain(trouble(error))
-        code = BAD_INPUT
+        message = usage_error(error)
+        print_message(message)
+        code = BAD_INPUT_EXIT_CODE if message else 0  # a bare `cubeling` shows its help
     except (KeyboardInterrupt, typer.Abort):
         code = 130
+    except room_errors() as error:
+        if debug:
+            raise
+        print_message(str(error))
+        code = BAD_INPUT_EXIT_CODE
+    except (OSError, MemoryError) as error:  # such as a full disk or a file that is too large
+        if debug:
+            raise
+        print_message(system_error(error))
+        code = BAD_INPUT_EXIT_CODE
     sys.exit(code if isinstance(code, int) else 0)
 
 
-def say_goodbye() -> None:
-    """Let a closed terminal and `kill` end a command as Ctrl-C does.
+def end_on_termination_signals() -> None:
+    """Make SIGTERM and SIGHUP (a closed terminal) end a command as Ctrl-C does.
 
-    A robot that has no failsafe of its own keeps its servos on if nobody says goodbye to it.
+    A robot without a failsafe keeps its servos on if its connection is not closed.
     """
-    for name in ("SIGTERM", "SIGHUP"):  # Windows lacks the second
+    for name in ("SIGTERM", "SIGHUP"):  # Windows has no SIGHUP
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # not under nohup
             signal.signal(number, signal.default_int_handler)
 
 
-def usage(error: typer.exceptions.TyperException) -> str:
-    """Return what is wrong with a command line, and where to read how it should be."""
+ROOM_ERRORS = {
+    "app.errors": "AppError",
+    "affect.errors": "AffectError",
+    "tracking.errors": "TrackingError",
+    "characters.errors": "CharacterError",
+    "robot.errors": "RobotError",
+}
+"""The base exception of each room, by its module."""
+
+
+def room_errors() -> tuple[type[Exception], ...]:
+    """Return the base exceptions of the rooms that are imported; no other room can raise."""
+    return tuple(
+        getattr(sys.modules[module], name)
+        for module, name in ROOM_ERRORS.items()
+        if module in sys.modules
+    )
+
+
+def usage_error(error: typer.exceptions.TyperException) -> str:
+    """Return what is wrong with a command line, and which help describes it."""
     context = getattr(error, "ctx", None)
-    where = context.command_path if context else "cubeling"
+    command = context.command_path if context else "cubeling"
     message = error.format_message() if hasattr(error, "format_message") else str(error)
-    return f"{message.rstrip('.')} (see {where} --help)" if message else ""
+    return f"{message.rstrip('.')} (see {command} --help)" if message else ""
 
 
-def trouble(error: OSError | MemoryError) -> str:
-    """Return what the system refused, and of which file."""
+def system_error(error: OSError | MemoryError) -> str:
+    """Return what the operating system refused, and for which file."""
     if isinstance(error, MemoryError):
         return "there is not enough memory for this; close other programs or take a smaller file"
-    where = f"{error.filename}: " if error.filename else ""
-    return f"{where}{error.strerror or error}"
+    file = f"{error.filename}: " if error.filename else ""
+    return f"{file}{error.strerror or error}"
 
 
-class Mentions:
-    """Prints warnings as one line each, once; one about input does not name the code that gave it.
+class WarningPrinter:
+    """Prints each warning once, as one line.
 
-    A file that is read twice is repaired twice, and Python would tell of it again.
+    A warning about a character's file does not name the line of code that gave it. A file that is
+    read twice is repaired twice; Python alone would print its warning twice.
     """
 
     def __init__(self) -> None:
-        self._told: set[str] = set()
+        self._printed: set[str] = set()
 
     def __call__(
         self,
@@ -123,18 +212,22 @@ class Mentions:
         file: TextIO | None = None,
         line: str | None = None,
     ) -> None:
-        """Take the place of `warnings.showwarning`."""
-        repaired = issubclass(category, CharacterWarning)
-        told = str(message) if repaired else f"{filename}:{lineno}: {category.__name__}: {message}"
-        if told not in self._told:
-            complain(told)
-        self._told.add(told)
+        """Print a warning; the signature is that of `warnings.showwarning`."""
+        text = str(message)
+        if not self._is_about_a_character(category):
+            text = f"{filename}:{lineno}: {category.__name__}: {text}"
+        if text not in self._printed:
+            print_message(text)
+        self._printed.add(text)
+
+    def _is_about_a_character(self, category: type[Warning]) -> bool:
+        errors = sys.modules.get("characters.errors")
+        return errors is not None and issubclass(category, errors.CharacterWarning)
 
 
-def complain(line: str) -> None:
-    """Print one line on standard error; nothing where there is nothing to say."""
-    if not line:
-        return
-    Console(stderr=True, soft_wrap=True, highlight=False, markup=False).print(
-        "cubeling: " + " ".join(line.split())
-    )
+def print_message(message: str) -> None:
+    """Print a message as one line on standard error; print nothing if it is empty."""
+    if message:
+        Console(stderr=True, soft_wrap=True, highlight=False, markup=False).print(
+            "cubeling: " + " ".join(message.split())
+        )

@@ -1,15 +1,18 @@
 """The command line: help that reads well, and one line for everything a person can put right."""
 
+import subprocess
+import sys
 import warnings
 from pathlib import Path
 
 import pytest
 
+from app.cli import COMMANDS
 from app.commands import doctor_checks as doctor
 from characters import Character, CharacterError
 from characters.errors import CharacterWarning
 
-COMMANDS = [
+COMMANDS_WITH_EXAMPLES = [
     ["demo"],
     ["play"],
     ["replay"],
@@ -21,7 +24,7 @@ COMMANDS = [
 ]
 
 
-@pytest.mark.parametrize("command", COMMANDS, ids=" ".join)
+@pytest.mark.parametrize("command", COMMANDS_WITH_EXAMPLES, ids=" ".join)
 def test_every_help_has_an_example(cubeling, command):
     code, out, _ = cubeling(*command, "--help")
     assert code == 0
@@ -32,6 +35,32 @@ def test_a_bare_command_shows_the_help(cubeling):
     code, out, err = cubeling()
     assert (code, err) == (0, "")
     assert "companion" in out
+
+
+def test_the_help_imports_no_other_room_and_no_large_library():
+    program = (
+        "import sys; sys.argv = ['cubeling', '--help']\n"
+        "from app.entry import main\n"
+        "try: main()\n"
+        "except SystemExit as end: code = end.code\n"
+        "large = {'affect', 'tracking', 'characters', 'robot', 'numpy', 'cv2', 'av', 'moderngl'}\n"
+        "sys.exit(f'exit code {code}; imported: {large & sys.modules.keys()}')"
+    )
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert "companion" in run.stdout
+    assert run.stderr.strip() == "exit code 0; imported: set()"
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_list_of_commands_shows_the_first_sentence_of_their_help(name):
+    first_paragraph = COMMANDS[name].load(name).help.partition("\n\n")[0]
+    assert COMMANDS[name].summary == " ".join(first_paragraph.split())
+
+
+def test_an_unknown_command_is_one_line_that_suggests_a_known_one(cubeling):
+    code, _, err = cubeling("docter")
+    assert code == 2
+    assert err.startswith("cubeling: No such command 'docter'. Did you mean 'doctor'?")
 
 
 EQUAL_IDS = """
