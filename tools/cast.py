@@ -17,7 +17,7 @@ from affect.words import PLACES, closest_word
 from app.ui.album import Album, Image, save, stacked
 from characters import Animator, Character, CharacterCommand, Pose, PosedCharacter, RootDelta
 from characters.face.lids import Lids
-from characters.rendering import Actor, Stage, View, create_context
+from characters.rendering import SceneCharacter, Stage, View, create_context
 from characters.rendering.framing import Extent, Framing
 from characters.rendering.portrait import PAPER
 
@@ -61,7 +61,7 @@ def draw_group(context: moderngl.Context, size: tuple[int, int] = (1100, 520)) -
         reach = Extent(character).points(posed.pose)
         matrix = posed.table_from_character
         points.append(reach @ matrix[:3, :3].T + matrix[:3, 3])
-        actors.append(Actor(character, posed))
+        actors.append(SceneCharacter(character, posed))
     framing = Framing.around(np.concatenate(points), 0.2, size, 0.05)
     paper = np.full((size[1], size[0], 3), PAPER, np.uint8)
     stage = Stage(context, size)

@@ -19,9 +19,9 @@ from app.running.runner import run
 from app.session.bundled import bundled
 from app.ui.calibration.coach import PERIOD, CoachView
 from app.ui.calibration.coach_lines import write_coverage
-from app.ui.calibration.session import Advice, Lesson, Picture
-from app.ui.overlay import likeness_side, overlay
-from app.ui.virtual_robot import Likeness
+from app.ui.calibration.session import Advice, CalibrationSession, Picture
+from app.ui.overlay import overlay, virtual_robot_side
+from app.ui.virtual_robot import VirtualRobot
 from characters.rendering import create_context
 from tracking import CubeModel, open_source, write_sheet
 from tracking.calibration import CubeFinder
@@ -47,8 +47,8 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
         intrinsics = fitting(source.intrinsics, source.size)
         playground = Playground(scenario, intrinsics, context=context)
         closing.callback(playground.close)
-        likeness = Likeness(context, likeness_side(source.size[1]))
-        closing.callback(likeness.close)
+        virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
+        closing.callback(virtual_robot.close)
         for frame in source:
             step = playground.step(frame)
             if not waiting or step.picture is None:
@@ -56,8 +56,8 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
             emotion = step.emotion
             view = RobotView("ready", emotion.emotion.valence, emotion.label)
             picture = overlay(
-                step.picture, step, view, likeness
-            )  # each time: the likeness is alive
+                step.picture, step, view, virtual_robot
+            )  # each time: the virtual robot is alive
             if frame.timestamp < waiting[0][0]:
                 continue
             _, name = waiting.pop(0)
@@ -88,7 +88,7 @@ FREE = 0.74
 
 
 class _Album:
-    """Keeps some pictures of a lesson."""
+    """Keeps some pictures of a session."""
 
     closed = False
 
@@ -97,7 +97,7 @@ class _Album:
         self._waiting = {wish: name for name, wish in LESSON.items()}
         self._since = ("", 0.0)
 
-    def tell(self, picture: Picture, timestamp: float, advice: Advice) -> None:
+    def show_advice(self, picture: Picture, timestamp: float, advice: Advice) -> None:
         """Draw the coach, and keep the picture if its time has come."""
         shown = self._coach.draw(picture, timestamp, advice)
         if advice.wish != self._since[0]:
@@ -110,12 +110,12 @@ class _Album:
             cv2.imwrite(str(path), shown, (cv2.IMWRITE_JPEG_QUALITY, 88))
 
 
-def draw_lesson() -> None:
+def draw_calibration() -> None:
     """Wave a drawn cube before the drawn camera, and keep what the coach shows."""
     source = open_synthetic("wave?fold=0.8&seed=1&rate=15")
-    lesson = Lesson([CubeFinder(CubeModel.load("locomotion"))], source.size)
-    lesson.run(source, _Album(), 60.0)
-    write_coverage(FOLDER / "calibrate-coverage.jpg", lesson)
+    session = CalibrationSession([CubeFinder(CubeModel.load("locomotion"))], source.size)
+    session.run(source, _Album(), 60.0)
+    write_coverage(FOLDER / "calibrate-coverage.jpg", session)
 
 
 UNPLUGGED = "sim:cubeling?unplug=12s/1s&seed=3"
@@ -146,5 +146,5 @@ if __name__ == "__main__":
     for recording, pictures in MOMENTS.items():
         draw(recording, pictures)
     draw_sheet("companion")
-    draw_lesson()
+    draw_calibration()
     draw_moods()

@@ -12,7 +12,7 @@ from app.commands.play import CAMERA, Cube
 from app.errors import AppError
 from app.running.opening import fitting
 from app.ui.calibration.coach_lines import FORMATS, CoachLines, write_coverage
-from app.ui.calibration.session import Lesson, Teller
+from app.ui.calibration.session import CalibrationSession, CoachDisplay
 from app.ui.display import has_display
 from tracking import CubeModel, FrameSource, Intrinsics, open_source
 from tracking.calibration import (
@@ -100,16 +100,16 @@ def calibrate(
         frames = closing.enter_context(open_source(source))
         if saved is not None:
             saved = fitting(saved, frames.size)
-        lesson = _taught(finders, frames, "board" if board else "cube", shown, seconds)
+        session = _coached(finders, frames, "board" if board else "cube", shown, seconds)
     if coverage is not None:
-        write_coverage(coverage, lesson)
+        write_coverage(coverage, session)
     if checked is not None and saved is not None:
-        raise typer.Exit(_judge(lesson, checked, saved, frames.size, console))
-    found = lesson.calibrated()
+        raise typer.Exit(_judge(session, checked, saved, frames.size, console))
+    found = session.calibrated()
     found.intrinsics.save(output)
     console.print(told_camera(output, found))
-    if isinstance(lesson.finder, CubeFinder):
-        _tell_cube(lesson.finder.cube, found, output, save_cube, console)
+    if isinstance(session.finder, CubeFinder):
+        _tell_cube(session.finder.cube, found, output, save_cube, console)
 
 
 def finders_of(cube: str | None, board: str) -> list[Finder]:
@@ -132,27 +132,31 @@ def told_camera(path: Path, found: Calibration) -> str:
     )
 
 
-def _taught(
+def _coached(
     finders: list[Finder], frames: FrameSource, target: str, shown: bool, seconds: float
-) -> Lesson:
-    """Teach in a window or on the terminal; Ctrl-C ends the lesson, not the program."""
-    lesson = Lesson(finders, frames.size)
+) -> CalibrationSession:
+    """Teach in a window or on the terminal; Ctrl-C ends the session, not the program."""
+    session = CalibrationSession(finders, frames.size)
     with ExitStack() as closing, suppress(KeyboardInterrupt):
-        teller: Teller = CoachLines(Console(soft_wrap=True, highlight=False), target)
+        display: CoachDisplay = CoachLines(Console(soft_wrap=True, highlight=False), target)
         if shown:
             from app.ui.calibration.coach_window import CoachWindow  # needs a display's libraries
 
-            teller = closing.enter_context(CoachWindow(frames.size, target))
-        lesson.run(frames, teller, seconds)
-    return lesson
+            display = closing.enter_context(CoachWindow(frames.size, target))
+        session.run(frames, display, seconds)
+    return session
 
 
 def _judge(
-    lesson: Lesson, path: Path, saved: Intrinsics, size: tuple[int, int], console: Console
+    session: CalibrationSession,
+    path: Path,
+    saved: Intrinsics,
+    size: tuple[int, int],
+    console: Console,
 ) -> int:
     """Hold a saved camera against the views; gives the exit code."""
-    lesson.check_seen()
-    verdict = check(lesson.collector.views, saved, lesson.finder.target(size))
+    session.check_seen()
+    verdict = check(session.collector.views, saved, session.finder.target(size))
     color = "red" if verdict.degraded else "green"
     x, y = verdict.centre_change
     console.print(

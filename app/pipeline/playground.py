@@ -10,7 +10,7 @@ from app.pipeline.attention import Attention
 from app.pipeline.scenario import Inputs, Outcome, Scenario, make_scenario
 from app.pipeline.step import Given, Step
 from characters import Animator, Character, CharacterCommand, PosedCharacter
-from characters.rendering import Actor, Box, FloorPath, Stage, View
+from characters.rendering import Box, FloorPath, SceneCharacter, Stage, View
 from tracking import (
     CubeControls,
     CubeGestures,
@@ -106,7 +106,7 @@ class Playground:
     def attend(self, state: CubeState, controls: CubeControls, outcome: Outcome) -> Outcome:
         """Add to what a scenario wants where the character looks, and that it shows its mood.
 
-        Nothing else says so: character, likeness and robot show the one emotion of the outcome.
+        Nothing else says so: character, virtual robot and robot show one emotion.
         """
         gaze = self._attention.update(state, controls, outcome.command)
         command = outcome.emotion.shown_by(replace(outcome.command, gaze=gaze))
@@ -136,7 +136,7 @@ class Playground:
         controls: CubeControls,
         outcome: Outcome,
         posed: PosedCharacter,
-    ) -> tuple[View, tuple[Actor, ...], tuple[FloorPath, ...]]:
+    ) -> tuple[View, tuple[SceneCharacter, ...], tuple[FloorPath, ...]]:
         """Return what a stage needs: the view, who is in it, and what is on the floor."""
         boxes: tuple[Box, ...] = ()
         if state.camera_from_cube is not None:
@@ -149,7 +149,7 @@ class Playground:
             boxes,
         )
         seen = posed.visible and controls.camera_from_table is not None
-        actors = (Actor(self.character, posed),) if seen else ()
+        actors = (SceneCharacter(self.character, posed),) if seen else ()
         return view, actors, outcome.floor if seen else ()
 
     def close(self) -> None:

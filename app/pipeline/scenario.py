@@ -26,7 +26,7 @@ class Inputs:
 
 @dataclass(frozen=True)
 class EmotionTarget:
-    """What character, likeness and robot feel, and are asked to show."""
+    """What character, virtual robot and robot feel, and are asked to show."""
 
     emotion: Emotion
     """Valence and arousal."""

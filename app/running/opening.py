@@ -12,9 +12,9 @@ from app.running.runner import PATIENCE_S, Plan
 from app.scenarios import make_scenario, scenario_cube
 from app.session import cues
 from app.session.replay_inputs import recorded_arrows
-from app.ui.overlay import likeness_side
-from app.ui.screen import Nowhere, Screen, VideoFile
-from app.ui.virtual_robot import Likeness
+from app.ui.overlay import virtual_robot_side
+from app.ui.screen import NullScreen, Screen, VideoFile
+from app.ui.virtual_robot import VirtualRobot
 from characters import Character
 from characters.rendering import create_context
 from tracking import CubeModel, FrameSource, Intrinsics, open_source
@@ -130,13 +130,13 @@ def open_screen(
 ) -> tuple[Screen, moderngl.Context | None]:
     """Open the window or the video file, and the context to draw in."""
     if not wish.pictures:
-        return Nowhere(), None
+        return NullScreen(), None
     if wish.output is not None:
         context = create_context()
         closing.callback(context.release)
-        likeness = Likeness(context, likeness_side(source.size[1]))
-        closing.callback(likeness.close)
-        video = VideoFile(wish.output, source.size, source.rate, likeness)
+        virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
+        closing.callback(virtual_robot.close)
+        video = VideoFile(wish.output, source.size, source.rate, virtual_robot)
         return closing.enter_context(video), context
     from app.ui.window import Window  # needs a display's libraries, which a server lacks
 

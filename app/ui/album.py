@@ -13,7 +13,7 @@ from app.errors import AppError
 from app.ui.canvas import Canvas, text_width
 from app.ui.palette import INK, QUIET
 from characters import Character, Clip, Pose
-from characters.rendering.portrait import PAPER, Studio, side_by_side
+from characters.rendering.portrait import PAPER, PortraitRenderer, side_by_side
 
 Image = NDArray[np.uint8]
 
@@ -35,9 +35,9 @@ class Album:
     """
 
     def __init__(self, context: moderngl.Context) -> None:
-        self._large = Studio(context, (240, 280))
-        self._small = Studio(context, (150, 200))
-        self._faces = Studio(context, (230, 230))
+        self._large = PortraitRenderer(context, (240, 280))
+        self._small = PortraitRenderer(context, (150, 200))
+        self._faces = PortraitRenderer(context, (230, 230))
 
     def turntable(self, character: Character) -> Image:
         """Return a character from all sides, standing as it idles, or at rest."""

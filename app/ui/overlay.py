@@ -12,7 +12,7 @@ from app.ui.canvas import Canvas, Card, text_width
 from app.ui.notice import Notice
 from app.ui.palette import ACTION, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
 from app.ui.robot_face import draw_face
-from app.ui.virtual_robot import Likeness
+from app.ui.virtual_robot import VirtualRobot
 
 HEIGHT = 720.0
 """Height of a picture in design units."""
@@ -24,10 +24,10 @@ MOODS_LEFT, MOODS_WIDE = 116.0, 176.0
 """The same of the bar for the robot's mood."""
 
 SIDE, FRAME = 180.0, 8.0
-"""Side of the likeness on its card, and the card's rim about it."""
+"""Side of the virtual robot on its card, and the card's rim about it."""
 
 NARROW = 156.0
-"""Length of the bar under the likeness."""
+"""Length of the bar under the virtual robot."""
 
 UNDER = SIDE + FRAME + 4.0
 """Where the words under it begin."""
@@ -46,35 +46,38 @@ WORDS = {
 
 
 def cards(
-    step: Step, robot: RobotView, size: tuple[int, int], likeness: Likeness | None = None
+    step: Step, robot: RobotView, size: tuple[int, int], virtual_robot: VirtualRobot | None = None
 ) -> list[Card]:
     """Draw all cards for one frame of `size` (width, height); see `overlay`."""
     scale = size[1] / HEIGHT
     width = size[0] / scale
     shown = [_hint(step.outcome.hint, width, scale)]
-    if likeness is None or robot.real:
+    if virtual_robot is None or robot.real:
         shown.append(_robot(robot, width, scale))
     else:
-        shown.append(_absent_robot(robot, likeness.portrait(step.emotion), width, scale))
+        shown.append(_absent_robot(robot, virtual_robot.portrait(step.emotion), width, scale))
     if step.controls.camera_from_table is not None:
         shown.append(_action(step, scale))
     return shown
 
 
 def overlay(
-    picture: NDArray[np.uint8], step: Step, robot: RobotView, likeness: Likeness | None = None
+    picture: NDArray[np.uint8],
+    step: Step,
+    robot: RobotView,
+    virtual_robot: VirtualRobot | None = None,
 ) -> NDArray[np.uint8]:
     """Return the picture (H, W, 3) with all cards laid over it, in place.
 
-    Where no real robot shows what it feels, its likeness does; without one, a drawn face.
+    Where no real robot shows what it feels, the virtual robot does; without one, a drawn face.
     """
-    for card in cards(step, robot, (picture.shape[1], picture.shape[0]), likeness):
+    for card in cards(step, robot, (picture.shape[1], picture.shape[0]), virtual_robot):
         card.over(picture)
     return picture
 
 
-def likeness_side(height: int) -> int:
-    """Return the side of the likeness in pictures of a height, both in pixels."""
+def virtual_robot_side(height: int) -> int:
+    """Return the side of the virtual robot in pictures of a height, both in pixels."""
     return round(SIDE * height / HEIGHT)
 
 
@@ -169,7 +172,7 @@ def _robot(robot: RobotView, width: float, scale: float) -> Card:
 def _absent_robot(
     robot: RobotView, portrait: NDArray[np.uint8], width: float, scale: float
 ) -> Card:
-    """Draw the card on which the robot's likeness feels for it."""
+    """Draw the card of the virtual robot."""
     caption = {"none": "no robot connected", "ready": "simulated robot"}.get(
         robot.link, f"simulated robot {robot.link}"
     )
@@ -198,7 +201,7 @@ def _robot_blank(words: str, scale: float) -> Canvas:
 
 @lru_cache(maxsize=16)
 def _absent_blank(words: str, caption: str, scale: float) -> Canvas:
-    """Draw what stays under the likeness."""
+    """Draw what stays under the virtual robot."""
     canvas = Canvas(SIDE + 2 * FRAME, UNDER + 106, scale)
     size = _fitting(words, 23, SIDE - 12)
     canvas.text(FRAME + SIDE / 2, UNDER + 24, words, size, INK, "middle")

@@ -15,7 +15,7 @@ from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
 from app.ui.notice import Notice
 from app.ui.overlay import overlay
-from app.ui.virtual_robot import Likeness
+from app.ui.virtual_robot import VirtualRobot
 
 
 class Screen(Protocol):
@@ -42,7 +42,7 @@ class Screen(Protocol):
         ...
 
 
-class Nowhere:
+class NullScreen:
     """Shows nothing: for measuring and for recording without pictures."""
 
     closed = False
@@ -71,19 +71,23 @@ class VideoFile:
         Width and height of the pictures [px].
     rate
         Pictures a second.
-    likeness
+    virtual_robot
         Stands in for a robot that is not there; None to draw its face. The caller closes it.
     """
 
     closed = False
 
     def __init__(
-        self, path: Path, size: tuple[int, int], rate: float, likeness: Likeness | None = None
+        self,
+        path: Path,
+        size: tuple[int, int],
+        rate: float,
+        virtual_robot: VirtualRobot | None = None,
     ) -> None:
         self._path = path
         self._partial = path.with_name(path.name + ".partial")
         self._rate = rate
-        self._likeness = likeness
+        self._virtual_robot = virtual_robot
         self._start: float | None = None
         self._last = -1
         try:
@@ -113,7 +117,9 @@ class VideoFile:
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Write a step's picture, with the cards over it."""
         if step.picture is not None:
-            self.write(overlay(step.picture, step, robot, self._likeness), step.frame.timestamp)
+            self.write(
+                overlay(step.picture, step, robot, self._virtual_robot), step.frame.timestamp
+            )
         return Inputs()
 
     def wait(self, notice: Notice | None) -> None:

@@ -1,4 +1,4 @@
-"""The robot's likeness: shows the mood on the screen where no real robot shows it on the desk."""
+"""The virtual robot: it shows the mood on the screen where no real robot shows it on the desk."""
 
 import math
 
@@ -12,7 +12,7 @@ from affect.words import closest_word
 from app.pipeline.scenario import EmotionTarget
 from app.ui.palette import PAPER, between, mood_color
 from characters import Animator, Character, CharacterCommand, RootDelta
-from characters.rendering import Actor, Stage, View
+from characters.rendering import SceneCharacter, Stage, View
 
 LARGEST = 216
 """Side of the picture that is drawn at most [px]; software rendering takes longer for more."""
@@ -34,7 +34,7 @@ FIELD, ABOVE = math.radians(22.0), 0.15
 """The camera's field of view, and how far it looks down [rad]."""
 
 
-class Likeness:
+class VirtualRobot:
     """A small picture of the robot that feels what it is asked to feel.
 
     The same emotions at the same times give the same pictures, on one graphics driver. Who makes
@@ -69,7 +69,7 @@ class Likeness:
         Raises
         ------
         RuntimeError
-            If the likeness is closed.
+            If the virtual robot is closed.
         """
         if self._last is not None and 0.0 <= target.timestamp - self._last[0] < self._pause:
             return self._last[1]
@@ -82,11 +82,11 @@ class Likeness:
 
     def _drawing(self, target: EmotionTarget) -> NDArray[np.uint8]:
         if self._stage is None:
-            raise RuntimeError("the likeness is closed")
+            raise RuntimeError("the virtual robot is closed")
         posed = self._animator.update(self.command(target))
         image = backdrop(self._drawn, target.emotion.valence)
         view = View(image, self._matrix, np.zeros(0), self._camera_from_table)
-        return self._stage.draw(view, [Actor(self._character, posed)])
+        return self._stage.draw(view, [SceneCharacter(self._character, posed)])
 
     def command(self, target: EmotionTarget) -> CharacterCommand:
         """Return how it is asked to show an emotion.

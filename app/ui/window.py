@@ -17,8 +17,8 @@ from app.errors import AppError
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
 from app.ui.notice import Notice
-from app.ui.overlay import interrupted, likeness_side, overlay
-from app.ui.virtual_robot import Likeness
+from app.ui.overlay import interrupted, overlay, virtual_robot_side
+from app.ui.virtual_robot import VirtualRobot
 
 VERTEX = """
 #version 330
@@ -80,7 +80,7 @@ class Window:
         glfw.swap_interval(0)  # a camera's frame must not wait for the screen's
         self.context = moderngl.create_context()
         """Where a `Stage` for this window draws."""
-        self._likeness = Likeness(self.context, likeness_side(size[1]))
+        self._virtual_robot = VirtualRobot(self.context, virtual_robot_side(size[1]))
         self._start_panel()
         self._texture = self.context.texture(size, 3, alignment=1)
         self._program = self.context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
@@ -107,7 +107,7 @@ class Window:
         if self.closed:
             return Inputs()
         if step.picture is not None:
-            self._last = overlay(step.picture, step, robot, self._likeness)
+            self._last = overlay(step.picture, step, robot, self._virtual_robot)
             self._paint(self._last)
         self._shown.append(time.perf_counter())
         self._draw_panel(step, robot)
@@ -133,7 +133,7 @@ class Window:
         imgui.backends.opengl3_shutdown()
         imgui.backends.glfw_shutdown()
         imgui.destroy_context()
-        self._likeness.close()
+        self._virtual_robot.close()
         for thing in (self._quad, self._program, self._texture):
             thing.release()
         self.context.release()

@@ -12,7 +12,7 @@ from characters.control.command import PosedCharacter
 from characters.model.character import Character
 from characters.motion.clip import Clip
 from characters.rendering.framing import Extent, Framing, joints_of
-from characters.rendering.scene import Actor, View
+from characters.rendering.scene import SceneCharacter, View
 from characters.rendering.stage import Stage
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
@@ -34,7 +34,7 @@ _STRAYS = 0.6  # of its height: a clip that goes further over the ground is foll
 _TURNED = 0.5  # [rad]: a clip that looks so far elsewhere is turned to the front
 
 
-class Studio:
+class PortraitRenderer:
     """Takes portraits of one character after the other.
 
     The character turns and the camera stays, so that light and shadow fall the same way in every
@@ -166,7 +166,7 @@ class Studio:
         paper = np.full((height, width, 3), PAPER, np.uint8)
         view = View(paper, framing.matrix, np.zeros(0), framing.camera_from_table)
         posed = PosedCharacter(pose, place, True, "", 0.0, 0.0, 0.0, 0.0)
-        picture = self._stage.draw(view, [Actor(character, posed)])
+        picture = self._stage.draw(view, [SceneCharacter(character, posed)])
         return np.asarray(
             cv2.blendLinear(picture, paper, self._fringe, 1.0 - self._fringe), np.uint8
         )

@@ -62,7 +62,7 @@ class Drawable(Protocol):
 
 
 @dataclass(frozen=True)
-class Actor:
+class SceneCharacter:
     """A character in a pose, on the table."""
 
     character: Drawable

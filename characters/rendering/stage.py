@@ -22,7 +22,7 @@ from characters.rendering.projection import (
     merged,
     part_that_shows,
 )
-from characters.rendering.scene import Actor, Box, FloorPath, Rectangle, View
+from characters.rendering.scene import Box, FloorPath, Rectangle, SceneCharacter, View
 from characters.rendering.target import FINER, Patches, Target, Targets, widened
 
 Array = NDArray[np.float64]
@@ -84,7 +84,9 @@ class Stage:
         self._frame = Patches(context)
         self._copy = context.vertex_array(self._programs.copy, [])
 
-    def draw(self, view: View, actors: Sequence[Actor], floor: Sequence[FloorPath] = ()) -> Image:
+    def draw(
+        self, view: View, actors: Sequence[SceneCharacter], floor: Sequence[FloorPath] = ()
+    ) -> Image:
         """Return the picture, (height, width, 3) uint8 BGR.
 
         Parameters
@@ -113,7 +115,7 @@ class Stage:
         self,
         framebuffer: moderngl.Framebuffer,
         view: View,
-        actors: Sequence[Actor],
+        actors: Sequence[SceneCharacter],
         floor: Sequence[FloorPath] = (),
         viewport: tuple[int, int, int, int] | None = None,
     ) -> None:
@@ -151,7 +153,7 @@ class Stage:
         picture: Image,
         matrix: Array,
         view: View,
-        actors: Sequence[Actor],
+        actors: Sequence[SceneCharacter],
         floor: Sequence[FloorPath],
     ) -> Iterator[tuple[Rectangle, Target]]:
         """Draw the parts of the picture that change, one after the other; a later one is on top.

@@ -9,7 +9,7 @@ from app.running.clock import SessionClock
 from app.running.opening import fitting
 from app.running.runner import Plan, WireTap, run
 from app.session import about, messages
-from app.ui.screen import Nowhere
+from app.ui.screen import NullScreen
 from tracking import TrackingError, open_source
 
 
@@ -48,7 +48,7 @@ def plan(short_session, tmp_path):
         playground = Playground("companion", fitting(source.intrinsics, source.size))
         record = tmp_path / "out.mcap"
         notes = {"scenario": "companion", "cube": "companion"}
-        return Plan(source, playground, Nowhere(), "sim", record, about=notes)
+        return Plan(source, playground, NullScreen(), "sim", record, about=notes)
 
     yield make
     for source in opened:

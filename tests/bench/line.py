@@ -19,8 +19,8 @@ from app.pipeline.step import RobotView, Step
 from app.running.opening import fitting
 from app.scenarios import SCENARIOS
 from app.session.bundled import bundled
-from app.ui.overlay import likeness_side, overlay
-from app.ui.virtual_robot import Likeness
+from app.ui.overlay import overlay, virtual_robot_side
+from app.ui.virtual_robot import VirtualRobot
 from characters.rendering import create_context
 from tracking import open_source
 
@@ -34,7 +34,7 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
     with open_source(str(bundled(name))) as source:
         playground = Playground(name, fitting(source.intrinsics, source.size), context=context)
         robot = RobotView("ready", 0.0, "neutral")
-        likeness = Likeness(context, likeness_side(source.size[1]))
+        virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
         stream = iter(source)
         for _ in range(frames):
             marks = [time.perf_counter()]
@@ -53,7 +53,7 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
             assert picture is not None
             marks.append(time.perf_counter())
             step = Step(frame, state, controls, outcome, posed, picture)
-            overlay(picture, step, robot, likeness)
+            overlay(picture, step, robot, virtual_robot)
             marks.append(time.perf_counter())
             names = (
                 "(decode)",
@@ -65,7 +65,7 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
             )
             for part, span in zip(names, np.diff(marks), strict=True):
                 parts[part].append(1000 * span)
-        likeness.close()
+        virtual_robot.close()
         playground.close()
     context.release()
     counted = [part for part in parts if not part.startswith("(")]

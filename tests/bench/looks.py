@@ -17,7 +17,7 @@ from rich.table import Table
 
 from characters.model.character import Character
 from characters.model.mesh import Material, Mesh, Morph
-from characters.rendering import Actor, Stage, create_context
+from characters.rendering import SceneCharacter, Stage, create_context
 from tests.bench.picture import SIZE, scene
 
 FACE = 3000
@@ -93,7 +93,7 @@ def main() -> None:
             weights = np.zeros(len(who.morphs))
             weights[:on] = rng.uniform(0.1, 1.0, on)
             morphs = weights if len(weights) else None
-            seen = Actor(who, replace(posed, pose=replace(posed.pose, morphs=morphs)))
+            seen = SceneCharacter(who, replace(posed, pose=replace(posed.pose, morphs=morphs)))
             start = time.perf_counter()
             stages[name].draw(view, [seen])
             spent[name].append(1e3 * (time.perf_counter() - start))

@@ -21,7 +21,7 @@ from rich.table import Table
 
 from characters.control.command import PosedCharacter
 from characters.model.character import Character
-from characters.rendering import Actor, Box, FloorPath, Stage, View, create_context
+from characters.rendering import Box, FloorPath, SceneCharacter, Stage, View, create_context
 from characters.rendering.geometry.skinning import SkinnedCharacter
 from characters.rendering.light import LightEstimate
 from characters.rendering.passes.background import Background
@@ -48,7 +48,7 @@ PARTS = (
 )
 
 
-def scene(character: Character) -> tuple[View, Callable[[int], Actor]]:
+def scene(character: Character) -> tuple[View, Callable[[int], SceneCharacter]]:
     """Return a desk with a cube on it, and the actor in each frame."""
     width, height = SIZE
     matrix = np.array([[1108.5, 0, 639.5], [0, 1108.5, 359.5], [0, 0, 1.0]])
@@ -66,11 +66,13 @@ def scene(character: Character) -> tuple[View, Callable[[int], Actor]]:
     clip = character.clips.get("Walk") or next(iter(character.clips.values()))
     scale = 0.18 / character.height
 
-    def actor(frame: int) -> Actor:
+    def actor(frame: int) -> SceneCharacter:
         where = np.diag([scale, scale, scale, 1.0])
         where[0, 3] = 0.05 * np.sin(frame / 10)
         pose = clip.sample(frame / 30 % clip.duration)
-        return Actor(character, PosedCharacter(pose, where, True, "walk", 2.0, 0.0, 0.0, 0.0))
+        return SceneCharacter(
+            character, PosedCharacter(pose, where, True, "walk", 2.0, 0.0, 0.0, 0.0)
+        )
 
     return view, actor
 

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from app.errors import AppError
 from app.ui.calibration.coach import cover, words_of
-from app.ui.calibration.session import Advice, Lesson
+from app.ui.calibration.session import Advice, CalibrationSession
 
 Picture = NDArray[np.uint8]
 
@@ -39,7 +39,7 @@ class CoachLines:
         self._target = target
         self._told = ("", -math.inf)
 
-    def tell(self, picture: Picture, timestamp: float, advice: Advice) -> None:
+    def show_advice(self, picture: Picture, timestamp: float, advice: Advice) -> None:
         """Print what to do if it is something new."""
         words, at = self._told
         new = words_of(advice.wish, self._target)
@@ -50,7 +50,7 @@ class CoachLines:
         self._console.print(f"[dim]{share}[/]  {new}", highlight=False)
 
 
-def write_coverage(path: Path, lesson: Lesson) -> None:
+def write_coverage(path: Path, session: CalibrationSession) -> None:
     """Write a picture of where the target was seen: the last frame, dimmed, and all outlines.
 
     Raises
@@ -58,10 +58,10 @@ def write_coverage(path: Path, lesson: Lesson) -> None:
     AppError
         It cannot be written there.
     """
-    if lesson.last is None:
+    if session.last is None:
         return
-    picture = np.asarray(cv2.addWeighted(lesson.last, 0.45, lesson.last, 0.0, 40), np.uint8)
-    cover(picture, lesson.collector.outlines)
+    picture = np.asarray(cv2.addWeighted(session.last, 0.45, session.last, 0.0, 40), np.uint8)
+    cover(picture, session.collector.outlines)
     good, data = cv2.imencode(path.suffix, picture)
     try:
         path.write_bytes(data.tobytes() if good else b"")

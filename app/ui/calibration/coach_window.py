@@ -12,7 +12,7 @@ Picture = NDArray[np.uint8]
 
 
 class CoachWindow(Window):
-    """A window with the live picture and the coach over it; Esc ends the lesson.
+    """A window with the live picture and the coach over it; Esc ends the session.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ class CoachWindow(Window):
         super().__init__(size, "Cubeling: calibrate")
         self._coach = CoachView(target)
 
-    def tell(self, picture: Picture, timestamp: float, advice: Advice) -> None:
+    def show_advice(self, picture: Picture, timestamp: float, advice: Advice) -> None:
         """Show the picture with the advice over it."""
         if self.closed:
             return

@@ -40,7 +40,7 @@ class Advice:
     """Where the target was seen in all views, each (4, 2) [px]."""
 
 
-class Teller(Protocol):
+class CoachDisplay(Protocol):
     """Shows or prints the advice. Who makes it closes it."""
 
     @property
@@ -48,7 +48,7 @@ class Teller(Protocol):
         """Whether the person wants to end."""
         ...
 
-    def tell(self, picture: Picture, timestamp: float, advice: Advice) -> None:
+    def show_advice(self, picture: Picture, timestamp: float, advice: Advice) -> None:
         """Tell what to do, over the picture (H, W, 3), which may be drawn on."""
         ...
 
@@ -60,18 +60,18 @@ BREATH = 0.05
 """How long the window waits for a frame before it looks whether it is closed [s]."""
 
 
-def _frames(source: FrameSource, teller: Teller) -> Iterator[Frame]:
+def _frames(source: FrameSource, display: CoachDisplay) -> Iterator[Frame]:
     """Yield frames; a camera that is lost does not keep a person from closing the window."""
     if not isinstance(source, LiveFrames):
         yield from source
         return
-    while not teller.closed:
+    while not display.closed:
         frame = source.wait(BREATH, PATIENCE)
         if frame is not None:
             yield frame
 
 
-class Lesson:
+class CalibrationSession:
     """Collects views of whichever target is held up first.
 
     Parameters
@@ -99,10 +99,10 @@ class Lesson:
         """Has the views of it."""
         return self._pairs[0][1]
 
-    def run(self, source: FrameSource, teller: Teller, seconds: float) -> None:
+    def run(self, source: FrameSource, display: CoachDisplay, seconds: float) -> None:
         """Collect until the coach is content and the camera determined, or frames or time end."""
         first: float | None = None
-        for frame in _frames(source, teller):
+        for frame in _frames(source, display):
             first = frame.timestamp if first is None else first
             glance = self._glance(frame)
             # A recording is looked through to its end: it cannot be asked for anything.
@@ -118,9 +118,9 @@ class Lesson:
                 collector.outlines,
             )
             self.last = frame.image
-            teller.tell(frame.image.copy(), frame.timestamp, advice)
+            display.show_advice(frame.image.copy(), frame.timestamp, advice)
             late = source.live and frame.timestamp - first > seconds
-            if done or late or teller.closed:
+            if done or late or display.closed:
                 break
         if first is None:
             raise AppError("the source gave no picture at all")

@@ -13,7 +13,7 @@ from characters.rendering.light import TO_LIGHT, Light
 from characters.rendering.passes.shadow import Shadow
 from characters.rendering.programs import Programs, assign
 from characters.rendering.projection import is_rigid
-from characters.rendering.scene import Actor, Drawable
+from characters.rendering.scene import Drawable, SceneCharacter
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,9 @@ class Figures:
         self._characters: OrderedDict[tuple[int, int], tuple[Drawable, SkinnedCharacter]]
         self._characters = OrderedDict()
 
-    def pose(self, actors: Sequence[Actor], light: Light) -> tuple[list[Cast], Array, Array]:
+    def pose(
+        self, actors: Sequence[SceneCharacter], light: Light
+    ) -> tuple[list[Cast], Array, Array]:
         """Skin the actors that are visible and cast their shadows.
 
         Some framebuffer must be in use: transform feedback asks for one, though it draws nothing.

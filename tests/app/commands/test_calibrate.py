@@ -7,7 +7,7 @@ import pytest
 
 from app.commands import calibrate as command
 from app.ui.calibration.coach import WORDS, CoachView, words_of
-from app.ui.calibration.session import Advice, Lesson
+from app.ui.calibration.session import Advice, CalibrationSession
 from tracking import CubeModel, Frame, Intrinsics
 from tracking.calibration import Coach, CubeFinder
 from tracking.synthetic import open_synthetic
@@ -89,7 +89,7 @@ def test_waving_the_cube_writes_camera_cube_and_coverage(shown, waved, tmp_path)
     assert "DEGRADED  worse.yaml: focal length -2." in out
 
 
-def test_a_live_lesson_ends_by_itself_when_the_coach_is_content(shown, waved):
+def test_a_live_session_ends_by_itself_when_the_coach_is_content(shown, waved):
     endless = [
         Frame(frame.image, 20.0 * round_ + frame.timestamp, n)
         for round_ in range(3)
@@ -101,7 +101,7 @@ def test_a_live_lesson_ends_by_itself_when_the_coach_is_content(shown, waved):
     assert source.given < len(endless)
 
 
-def test_a_live_lesson_ends_after_its_time(shown, waved):
+def test_a_live_session_ends_after_its_time(shown, waved):
     code, _, err, source = shown(waved, "--seconds", 5, live=True)
     assert code in (0, 2)
     assert source.given == pytest.approx(5 / 0.74 * 3, abs=3)
@@ -181,16 +181,16 @@ def test_the_drawing_gives_way_to_the_cube():
 
 def test_the_cube_that_is_held_up_is_recognised(waved):
     finders = [CubeFinder(CubeModel.load(name)) for name in ("companion", "locomotion")]
-    lesson = Lesson(finders, (640, 360))
+    session = CalibrationSession(finders, (640, 360))
     told = []
 
-    class Teller:
+    class SilentDisplay:
         closed = False
 
-        def tell(self, picture, timestamp, advice):
+        def show_advice(self, picture, timestamp, advice):
             told.append(advice)
 
-    lesson.run(Kept(waved[:3]), Teller(), 60.0)
-    assert lesson.finder is finders[1]
+    session.run(Kept(waved[:3]), SilentDisplay(), 60.0)
+    assert session.finder is finders[1]
     assert told[0].wish in ("still", "tilt up")
     assert told[-1].views >= 1

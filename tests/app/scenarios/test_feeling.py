@@ -1,4 +1,4 @@
-"""One feeling: character, likeness and robot show the same mood in every frame."""
+"""One feeling: character, virtual robot and robot show the same mood in every frame."""
 
 import math
 
@@ -14,7 +14,7 @@ from app.running.robots import RobotLine
 from app.scenarios import SCENARIOS, make_scenario
 from app.scenarios.affect import Temper
 from app.session import about
-from app.ui.virtual_robot import Likeness
+from app.ui.virtual_robot import VirtualRobot
 from characters import Animator, Character, CharacterError
 from characters.rendering import create_context
 from robot import Catalogue, Telemetry
@@ -29,13 +29,13 @@ UNSEEN = CubeState(False, None, np.full(6, np.nan), np.eye(6), "predicted", (), 
 
 
 @pytest.fixture(scope="module")
-def likeness():
+def virtual_robot():
     try:
         context = create_context()
     except CharacterError as missing:
         pytest.skip(str(missing))
     assert isinstance(context, moderngl.Context)
-    made = Likeness(context, 64)
+    made = VirtualRobot(context, 64)
     yield made
     made.close()
     context.release()
@@ -129,7 +129,7 @@ def test_what_a_silent_robot_shows_is_told_by_the_word_that_it_was_asked():
     [("companion", None), ("companion", "lively"), ("follow", None), ("follow", "shy"),
      ("sketch", None)],
 )  # fmt: skip
-def test_character_likeness_and_robot_show_one_mood(name, personality, hand, likeness):
+def test_character_likeness_and_robot_show_one_mood(name, personality, hand, virtual_robot):
     pair, words, labels, since = Pair(), list[str](), set[str](), -math.inf
     assert pair.host.catalogue is not None
     moods = pair.host.catalogue.moods
@@ -142,7 +142,7 @@ def test_character_likeness_and_robot_show_one_mood(name, personality, hand, lik
             compared += 1
         pair.host.express(target.emotion, target.label)
         labels.add(target.label)
-        played = likeness.command(target)
+        played = virtual_robot.command(target)
         for shown in (command, played):
             assert shown.mood == target.label
             assert shown.feeling.tolist() == [target.emotion.valence, target.emotion.arousal]

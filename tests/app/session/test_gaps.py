@@ -13,7 +13,7 @@ from app.running.summary import Summary, camera_line
 from app.session import about, events
 from app.ui.notice import Notice, notice
 from app.ui.overlay import interrupted
-from app.ui.screen import Nowhere
+from app.ui.screen import NullScreen
 from tracking import TrackingError, open_source
 from tracking.sources.base import LiveFrames
 from tracking.sources.health import Health, Setting
@@ -67,7 +67,7 @@ class Interrupted:
         self.close()
 
 
-class Watched(Nowhere):
+class Watched(NullScreen):
     """A screen that remembers what it was told to say."""
 
     def __init__(self, ends_after=None):
@@ -119,7 +119,7 @@ def test_the_window_can_be_closed_while_the_camera_is_lost(plan):
 
 
 def test_a_camera_that_does_not_come_back_ends_the_session_and_keeps_the_recording(plan):
-    chosen = plan(20, Nowhere())
+    chosen = plan(20, NullScreen())
     summary = run(chosen)
     assert about(chosen.record).frames == 5
     with pytest.raises(TrackingError, match="gave no picture"):

@@ -16,7 +16,7 @@ from app.session import about, cues, messages
 from app.session.bundled import bundled
 from app.session.encoding import ARROWS, decode, encode
 from app.session.replay_inputs import STARTS, recorded_arrows
-from app.ui.screen import Nowhere
+from app.ui.screen import NullScreen
 from tracking import open_source
 
 SHORT = 240
@@ -68,7 +68,7 @@ def test_a_start_that_is_none_is_refused(short_session):
 
 
 def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session):
-    class Presses(Nowhere):
+    class Presses(NullScreen):
         """Presses C after 20 frames."""
 
         shown = 0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from characters.control.command import PosedCharacter
 from characters.model.mesh import Material, Mesh
-from characters.rendering import Actor, Box, Stage, View, create_context
+from characters.rendering import Box, SceneCharacter, Stage, View, create_context
 from characters.skeleton.pose import Pose, Skeleton
 
 Array = NDArray[np.float64]
@@ -49,13 +49,13 @@ class Pawn:
 
     def posed(
         self, bend: float = 0.0, at: tuple[float, float] = (0.0, 0.0), height: float = 0.12
-    ) -> Actor:
+    ) -> SceneCharacter:
         half = 0.5 * bend
         rotations = np.array([[0, 0, 0, 1], [0, 0, np.sin(half), np.cos(half)]], float)
         place = np.diag([height, height, height, 1.0])
         place[[0, 2], 3] = at
         pose = replace(self.skeleton.rest, rotations=rotations)
-        return Actor(self, PosedCharacter(pose, place, True, "idle", 0.0, 0.0, 0.0, 0.0))
+        return SceneCharacter(self, PosedCharacter(pose, place, True, "idle", 0.0, 0.0, 0.0, 0.0))
 
 
 @pytest.fixture(scope="session")

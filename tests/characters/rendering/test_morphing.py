@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from characters.errors import CharacterError
 from characters.model.character import skin
 from characters.model.mesh import Material, Morph
-from characters.rendering import Actor
+from characters.rendering import SceneCharacter
 from characters.rendering.geometry.buffers import Geometry
 from characters.rendering.geometry.morphing import Morphing
 from characters.rendering.geometry.skinning import SkinnedCharacter
@@ -78,7 +78,7 @@ def test_a_morph_that_is_off_again_leaves_no_trace(stage, view, jester):
     def shown(weights):
         morphs = None if weights is None else np.array(weights, float)
         posed = replace(actor.posed, pose=replace(actor.posed.pose, morphs=morphs))
-        return stage.draw(view, [Actor(jester, posed)])
+        return stage.draw(view, [SceneCharacter(jester, posed)])
 
     without = shown(None)
     on = shown([0.7, 0.0, 1.0])
@@ -105,7 +105,7 @@ def test_weights_of_another_character_are_refused_in_one_line(stage, view, jeste
     actor = jester.posed()
     posed = replace(actor.posed, pose=replace(actor.posed.pose, morphs=np.zeros(2)))
     with pytest.raises(CharacterError, match=r"morphs of shape \(2,\)"):
-        stage.draw(view, [Actor(jester, posed)])
+        stage.draw(view, [SceneCharacter(jester, posed)])
 
 
 @settings(max_examples=20, deadline=None)

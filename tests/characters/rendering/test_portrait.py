@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from characters import Character, CharacterError, Clip, Pose
 from characters.rendering.framing import MARGIN, Framing
-from characters.rendering.portrait import PAPER, Studio
+from characters.rendering.portrait import PAPER, PortraitRenderer
 
 SIZE = (90, 120)
 
 
 @pytest.fixture
 def studio(ctx):
-    studio = Studio(ctx, SIZE)
+    studio = PortraitRenderer(ctx, SIZE)
     yield studio
     studio.release()
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters.model.mesh import Material
-from characters.rendering import Actor, Stage
+from characters.rendering import SceneCharacter, Stage
 from characters.rendering.projection import clip_from_camera, is_rigid, merged, part_that_shows
 from characters.rendering.scene import Rectangle
 
@@ -45,7 +45,7 @@ def test_a_drawn_square_lies_where_opencv_projects_it(ctx, view, pawn, at):
     view = replace(view, image=np.zeros_like(view.image), matrix=MATRIX)
     actor = pawn.posed(at=at, height=0.008)
     stage = Stage(ctx, (320, 180))
-    picture = stage.draw(view, [Actor(replace(pawn, meshes=(mesh,)), actor.posed)])
+    picture = stage.draw(view, [SceneCharacter(replace(pawn, meshes=(mesh,)), actor.posed)])
     stage.release()
     weight = picture.astype(float).sum(axis=2)
     total = weight.sum()

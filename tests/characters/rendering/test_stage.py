@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from characters.errors import CharacterError
-from characters.rendering import Actor, FloorPath, Stage, View
+from characters.rendering import FloorPath, SceneCharacter, Stage, View
 
 GOLDEN = Path(__file__).parent / "golden"
 LOOP = FloorPath(
@@ -127,7 +127,7 @@ def test_a_window_shows_what_is_drawn_off_screen(ctx, view, pawn, cube):
 
 def test_a_character_that_is_not_visible_is_not_drawn(stage, view, pawn):
     actor = pawn.posed()
-    hidden = Actor(pawn, replace(actor.posed, visible=False))
+    hidden = SceneCharacter(pawn, replace(actor.posed, visible=False))
     assert np.array_equal(stage.draw(view, [hidden]), view.image)
 
 
@@ -138,9 +138,9 @@ def test_numbers_that_are_none_never_break_the_picture(stage, view, pawn, cube, 
     broken = np.full((4, 4), value)
     if where == "pose":
         pose = replace(actor.posed.pose, translations=np.full((2, 3), value))
-        actor = Actor(pawn, replace(actor.posed, pose=pose))
+        actor = SceneCharacter(pawn, replace(actor.posed, pose=pose))
     elif where == "place":
-        actor = Actor(pawn, replace(actor.posed, table_from_character=broken))
+        actor = SceneCharacter(pawn, replace(actor.posed, table_from_character=broken))
     elif where == "table":
         view = replace(view, camera_from_table=broken)
     elif where == "matrix":
@@ -177,7 +177,7 @@ def test_an_image_that_is_none_is_refused_in_one_line(stage, view, image):
 
 def test_a_character_without_a_mesh_is_refused_in_one_line(stage, view, pawn):
     with pytest.raises(CharacterError, match="no mesh"):
-        stage.draw(view, [Actor(replace(pawn, meshes=()), pawn.posed().posed)])
+        stage.draw(view, [SceneCharacter(replace(pawn, meshes=()), pawn.posed().posed)])
 
 
 @pytest.mark.parametrize("size", [(0, 10), (1 << 20, 10)])

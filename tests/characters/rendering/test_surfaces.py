@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from characters.model.mesh import Material, Mesh
-from characters.rendering import Actor
+from characters.rendering import SceneCharacter
 from characters.rendering.geometry.buffers import Geometry
 from characters.rendering.geometry.surfaces import looks_of
 
@@ -47,7 +47,7 @@ def shown(stage, view, pawn):
     """Draw a character at a place of its own, as whole numbers with a sign."""
 
     def draw(character):
-        return stage.draw(view, [Actor(character, pawn.posed().posed)]).astype(int)
+        return stage.draw(view, [SceneCharacter(character, pawn.posed().posed)]).astype(int)
 
     return draw
 

@@ -1,4 +1,4 @@
-"""Where no real robot is, its likeness feels what the robot is asked to feel."""
+"""Without a real robot, the virtual robot feels what the robot is asked to feel."""
 
 import itertools
 from collections.abc import Iterator
@@ -11,9 +11,9 @@ from affect import Emotion
 from app.pipeline.scenario import EmotionTarget
 from app.pipeline.step import RobotView
 from app.running.robots import RobotLine
-from app.ui.overlay import likeness_side, overlay
+from app.ui.overlay import overlay, virtual_robot_side
 from app.ui.palette import ANGRY, HAPPY
-from app.ui.virtual_robot import SOFTWARE, Likeness, backdrop, intensity
+from app.ui.virtual_robot import SOFTWARE, VirtualRobot, backdrop, intensity
 from characters import CharacterError
 from characters.rendering import create_context
 
@@ -36,11 +36,11 @@ def felt(valence: float, label: str, time: float) -> EmotionTarget:
 
 def played(context: moderngl.Context, moods: list[tuple[float, str]]) -> list[np.ndarray]:
     """Return the pictures of moods that follow each other ten times a second."""
-    likeness = Likeness(context, SIDE)
+    virtual_robot = VirtualRobot(context, SIDE)
     pictures = [
-        likeness.portrait(felt(*mood, number / 10)).copy() for number, mood in enumerate(moods)
+        virtual_robot.portrait(felt(*mood, number / 10)).copy() for number, mood in enumerate(moods)
     ]
-    likeness.close()
+    virtual_robot.close()
     return pictures
 
 
@@ -76,18 +76,18 @@ def test_its_lamps_tell_the_mood_at_every_intensity(context, strength):
 
 
 def test_where_the_processor_draws_every_third_frame_brings_a_new_picture(context):
-    likeness = Likeness(context, SIDE)
-    pictures = [likeness.portrait(felt(0.9, "happy", 5.0 + n / 30)) for n in range(8)]
-    likeness.close()
+    virtual_robot = VirtualRobot(context, SIDE)
+    pictures = [virtual_robot.portrait(felt(0.9, "happy", 5.0 + n / 30)) for n in range(8)]
+    virtual_robot.close()
     fresh = sum(a is not b for a, b in itertools.pairwise(pictures))
     software = any(name in context.info["GL_RENDERER"].lower() for name in SOFTWARE)
     assert fresh == (2 if software else 7)
 
 
 def test_a_session_that_starts_over_in_time_is_followed(context):
-    likeness = Likeness(context, SIDE)
-    late, early = (likeness.portrait(felt(0.0, "neutral", time)) for time in (9.0, 0.0))
-    likeness.close()
+    virtual_robot = VirtualRobot(context, SIDE)
+    late, early = (virtual_robot.portrait(felt(0.0, "neutral", time)) for time in (9.0, 0.0))
+    virtual_robot.close()
     assert late is not early
 
 
@@ -101,24 +101,24 @@ def test_intensity_rises_with_the_mood_and_never_leaves_its_range():
 def test_it_takes_the_place_of_a_robot_that_is_not_real(context, a_step):
     step = a_step(None)
     image = np.full((720, 1280, 3), 90, np.uint8)
-    likeness = Likeness(context, likeness_side(720))
-    real = overlay(image.copy(), step, RobotView("ready", 0.5, "happy", real=True), likeness)
+    virtual_robot = VirtualRobot(context, virtual_robot_side(720))
+    real = overlay(image.copy(), step, RobotView("ready", 0.5, "happy", real=True), virtual_robot)
     face = overlay(image.copy(), step, RobotView("ready", 0.5, "happy"))
     np.testing.assert_array_equal(real, face)
     for link in ("none", "ready", "lost"):
-        shown = overlay(image.copy(), step, RobotView(link, 0.5, "happy"), likeness)
+        shown = overlay(image.copy(), step, RobotView(link, 0.5, "happy"), virtual_robot)
         assert (shown[410:580, 1070:1246] != face[410:580, 1070:1246]).all(axis=2).mean() > 0.9
-    likeness.close()
-    likeness.close()
+    virtual_robot.close()
+    virtual_robot.close()
 
 
 @pytest.mark.parametrize("height", [240, 480, 1080])
 def test_its_card_fits_pictures_of_every_size(context, a_step, height):
     step = a_step(None)
     image = np.full((height, height * 16 // 9, 3), 90, np.uint8)
-    likeness = Likeness(context, likeness_side(height))
-    shown = overlay(image.copy(), step, RobotView("none", -0.5, "angry"), likeness)
-    likeness.close()
+    virtual_robot = VirtualRobot(context, virtual_robot_side(height))
+    shown = overlay(image.copy(), step, RobotView("none", -0.5, "angry"), virtual_robot)
+    virtual_robot.close()
     rim = np.ones(image.shape[:2], bool)
     rim[2:-2, 2:-2] = False
     assert (shown[rim] == 90).all()
