@@ -4,10 +4,10 @@ Commands come in, posed characters and their pictures go out; this room knows no
 and no robot. Start with `Character.load` and `Animator`.
 """
 
-from characters import formats as formats  # registers the files that characters are read from
 from characters.control.animator import Animator
 from characters.control.command import CharacterCommand, PosedCharacter
 from characters.errors import CharacterError, CharacterWarning
+from characters.formats import load_motion  # importing formats registers the file readers
 from characters.locomotion.paths import ClosedPath
 from characters.model.character import Character
 from characters.model.mesh import Material, Mesh, Morph
@@ -65,6 +65,7 @@ __all__ = [
     "TimeCurve",
     "Warped",
     "Window",
+    "load_motion",
     "mask_of",
     "mirror_of",
 ]

@@ -19,7 +19,7 @@ from app.errors import AppError
 from app.ui.album import Album, save
 from characters import Character, Skeleton
 from characters.errors import CharacterWarning
-from characters.formats import Performance, load_motion
+from characters.formats.loading import Performance, is_motion_only, load_motion
 from characters.model.facts import ClipFacts, Footing
 from characters.model.inspection import Inspection, inspect
 from characters.model.stick_figure import stick_figure
@@ -28,9 +28,6 @@ from characters.rendering import create_context
 app = typer.Typer(
     help="Look at characters and motions.", no_args_is_help=True, rich_markup_mode="rich"
 )
-
-MOTIONS = (".bvh", ".amc", ".asf")
-"""Suffixes of files that hold a motion and no body."""
 
 FOLDED = 4
 """Joints below one another of which none was recognised are shown as one line from so many on."""
@@ -86,7 +83,7 @@ def _load(name: str, read_motion: Callable[[Path], Performance]) -> tuple[Inspec
     """Return what there is to know of a character or motion, and whether it has a body."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        if Path(name).suffix.lower() in MOTIONS:
+        if is_motion_only(name):
             motion = read_motion(Path(name))
             body = stick_figure(Path(name).stem, motion.skeleton, [motion.clip])
             noted, has_body = list(motion.notes), False

@@ -1,11 +1,16 @@
-"""Files that characters and motions are read from and written to."""
+"""File formats of characters and motions.
+
+A format is one module (or folder) with its reader, and one line here.
+"""
 
 from characters.formats.gltf import reading as gltf
-from characters.formats.loading import load_clip, load_motion
+from characters.formats.loading import MOTION_READERS, Performance, load_clip, load_motion
+from characters.formats.mocap import amc, asf, bvh
 from characters.model.character import READERS, WRITERS
-from characters.model.performance import Performance
 
 READERS |= {".glb": gltf.load, ".gltf": gltf.load, ".vrm": gltf.load}
 WRITERS[".glb"] = gltf.save
+MOTION_READERS |= dict.fromkeys(READERS, gltf.load_motion)
+MOTION_READERS |= {".bvh": bvh.load_motion, ".amc": amc.load_motion, ".asf": asf.refuse_motion}
 
 __all__ = ["Performance", "load_clip", "load_motion"]

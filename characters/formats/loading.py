@@ -1,31 +1,61 @@
-"""Single motions from files of any format."""
+"""Reading one motion from a file of any registered format."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from characters.errors import CharacterError
-from characters.formats.gltf import reading as gltf
-from characters.formats.mocap import amc, bvh
-from characters.model.performance import Performance
+from characters.model.character import READERS
 from characters.motion.clip import Clip
+from characters.skeleton.pose import Skeleton
 
-_GLTF = (".glb", ".gltf", ".vrm")
+
+@dataclass(frozen=True)
+class Performance:
+    """A recorded motion with the skeleton that its poses belong to.
+
+    A `Clip` alone says how joints rotate, not which joints they are. Retargeting, contact
+    detection and inspection of a recording need both.
+    """
+
+    skeleton: Skeleton
+    """The performer's joints and rest pose [m], in glTF's axes (+y up)."""
+
+    clip: Clip
+    """The motion, on that skeleton."""
+
+    notes: tuple[str, ...] = ()
+    """Guesses and repairs while reading, one line each, for a person to check."""
+
+
+@dataclass(frozen=True)
+class MotionOptions:
+    """What the caller states about a motion file; None leaves it to the reader."""
+
+    clip: str | None = None
+    """Name of the clip."""
+
+    skeleton: Path | None = None
+    """The file with the skeleton, for formats that keep it apart."""
+
+    rate: float | None = None
+    """Frame rate [Hz], for formats that may not state it."""
+
+    scale: float | None = None
+    """Unit of length [m], for formats that do not state it."""
+
+    up: str | None = None
+    """The vertical axis ("y", "z", "-y", …), for formats that do not state it."""
+
+
+MotionReader = Callable[[Path, MotionOptions], Performance]
+
+MOTION_READERS: dict[str, MotionReader] = {}
+"""Readers of one motion, by the suffix of the file; `characters.formats` registers its own."""
 
 
 def load_clip(path: "str | Path", name: str | None = None) -> Clip:
-    """Read one motion from a .bvh, .amc (with its .asf beside it), .glb, .gltf or .vrm file.
-
-    Parameters
-    ----------
-    path
-        The file.
-    name
-        Which of its clips; may be left out where there is only one.
-
-    Raises
-    ------
-    CharacterError
-        If the file cannot be read, or does not have exactly that clip.
-    """
+    """Read one motion; see `load_motion`."""
     return load_motion(path, name).clip
 
 
@@ -38,24 +68,24 @@ def load_motion(
     scale: float | None = None,
     up: str | None = None,
 ) -> Performance:
-    """Read one motion and the skeleton that it is of; formats as for `load_clip`.
+    """Read one motion from a .bvh, .amc (with its .asf), .glb, .gltf or .vrm file.
 
-    Motion capture comes in metres with +y up, whatever the file is in, with rest rotations that
-    are the identity. Its clips do not loop, and have no root motion: the hips go where they went.
+    Motion capture is returned in metres with +y up, with identity rest rotations. Its clips do
+    not loop and have no root motion: the hips carry the motion over the ground.
 
     Parameters
     ----------
     path
         The file.
     name
-        Which of its clips; may be left out where there is only one.
+        The clip; may be left out if there is only one.
     skeleton
-        The .asf file of an .amc; left out, the one beside it.
+        The .asf file of an .amc; left out, the one in the same folder.
     rate
-        Frames a second of an .amc [Hz]; left out, what it says, or 120.
+        Frame rate of an .amc [Hz]; left out, what it states, or 120.
     scale, up
-        Metres a unit and the axis ("y", "z", "-y", …) that points up in a .bvh or .amc file;
-        left out, they are recognised, and `Performance.notes` says how.
+        Unit [m] and vertical axis ("y", "z", "-y", …) of a .bvh or .amc file; left out, they
+        are recognised, and `Performance.notes` says how.
 
     Raises
     ------
@@ -63,19 +93,12 @@ def load_motion(
         If the file cannot be read, or does not have exactly that clip.
     """
     path = Path(path)
-    kind = path.suffix.lower()
-    if kind == ".bvh":
-        performance = bvh.load(path, scale=scale, up=up)
-    elif kind == ".amc":
-        performance = amc.load(path, skeleton, rate=rate, scale=scale, up=up)
-    elif kind in _GLTF:
-        return _from_gltf(path, name)
-    elif kind == ".asf":
-        raise CharacterError(f"{path}: a skeleton does not move; give the .amc that goes with it")
-    else:
-        raise CharacterError(
-            f"{path}: motions are read from .bvh, .amc, .glb, .gltf and .vrm files; convert it"
-        )
+    reader = MOTION_READERS.get(path.suffix.lower())
+    if reader is None:
+        known = ", ".join(sorted(MOTION_READERS))
+        raise CharacterError(f"{path}: not a motion file; convert it to one of {known}")
+    stated = MotionOptions(name, None if skeleton is None else Path(skeleton), rate, scale, up)
+    performance = reader(path, stated)
     if name not in (None, performance.clip.name):
         raise CharacterError(
             f"{path}: has no clip {name!r}, only {performance.clip.name!r}; leave the name out"
@@ -83,11 +106,7 @@ def load_motion(
     return performance
 
 
-def _from_gltf(path: Path, name: str | None) -> Performance:
-    skeleton, clips = gltf.load_clips(path)
-    if name is None and len(clips) == 1:
-        return Performance(skeleton, next(iter(clips.values())))
-    if name in clips:
-        return Performance(skeleton, clips[name])
-    there = ", ".join(clips) or "no clips at all"
-    raise CharacterError(f"{path}: has {there}; say which one to load")
+def is_motion_only(path: "str | Path") -> bool:
+    """Return whether files of this suffix hold motions and no characters."""
+    suffix = Path(path).suffix.lower()
+    return suffix in MOTION_READERS and suffix not in READERS

@@ -6,11 +6,11 @@ from stat import S_ISDIR, S_ISREG
 
 from characters.errors import CharacterError
 
-LARGEST_FILE = 1 << 30
+MAX_FILE_BYTES = 1 << 30
 """What is read at most [bytes]; two hours of motion capture at 120 Hz take 0.6 GB."""
 
 
-def read_file(path: Path, most: int = LARGEST_FILE) -> bytes:
+def read_file(path: Path, most: int = MAX_FILE_BYTES) -> bytes:
     """Return what is in a file.
 
     A pipe or a device is refused: to open the one may wait for ever, and the other may not end.
@@ -19,7 +19,7 @@ def read_file(path: Path, most: int = LARGEST_FILE) -> bytes:
     ------
     FileNotFoundError
         If there is no such file: for some it is no mistake. All others see a `CharacterError`
-        (`read_given`).
+        (`read_required_file`).
     CharacterError
         If it cannot be read, or has more than `most` bytes.
     """
@@ -40,7 +40,7 @@ def read_file(path: Path, most: int = LARGEST_FILE) -> bytes:
         raise CharacterError(f"{path}: cannot be read ({reason}); check the path") from None
 
 
-def read_given(path: Path, most: int = LARGEST_FILE) -> bytes:
+def read_required_file(path: Path, most: int = MAX_FILE_BYTES) -> bytes:
     """Return what is in a file that somebody named, so that it has to be there.
 
     Raises

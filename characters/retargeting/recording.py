@@ -4,15 +4,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from characters.errors import CharacterError
-from characters.formats import load_motion
+from characters.formats.loading import is_motion_only, load_motion
 from characters.model.character import Character
 from characters.model.sidecar import read_sidecar
 from characters.motion.clip import Clip
 from characters.retargeting.bound import bound_skeleton
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Skeleton
-
-_CAPTURED = (".bvh", ".amc", ".asf")
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,7 @@ def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording
         If there is no such motion.
     """
     file, _, clip = name.partition("#")
-    if Path(file).suffix.lower() in _CAPTURED:
+    if is_motion_only(file):
         motion = load_motion(file, clip or None, skeleton=skeleton)
         beside = Path(file).with_suffix(".toml")
         joints = read_sidecar(beside, (motion.clip.name,)).semantics

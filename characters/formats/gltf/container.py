@@ -7,7 +7,7 @@ from pathlib import Path
 from characters.errors import CharacterError
 from characters.formats.gltf.document import DamagedFileError, at, parse
 from characters.formats.gltf.file import Budget, GltfFile
-from characters.model.files import read_given
+from characters.model.files import read_required_file
 
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
 
@@ -33,7 +33,7 @@ def open_gltf(path: Path) -> GltfFile:
     DamagedFileError
         If its JSON or its buffers contradict themselves.
     """
-    data = read_given(path)
+    data = read_required_file(path)
     text, blob = _unpack(path, data)
     try:
         document = parse(text)

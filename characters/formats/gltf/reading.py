@@ -15,9 +15,9 @@ from characters.formats.gltf.meshes import read_meshes
 from characters.formats.gltf.morphs import read_morph_table
 from characters.formats.gltf.nodes import NodeTree, read_tree
 from characters.formats.gltf.writing import pack
+from characters.formats.loading import MotionOptions, Performance
 from characters.model.character import Character
 from characters.model.mesh import Mesh
-from characters.motion.clip import Clip
 from characters.skeleton.pose import Array, Skeleton
 
 
@@ -46,18 +46,25 @@ def load(path: "str | Path") -> Character:
         return character if humanoid is None else _human(character, humanoid, parts, tree)
 
 
-def load_clips(path: "str | Path") -> tuple[Skeleton, dict[str, Clip]]:
-    """Read the motions of a file and the skeleton they are of; it need not have a mesh.
+def load_motion(path: Path, options: MotionOptions) -> Performance:
+    """Read one clip of a file and its skeleton; the file need not have a mesh.
 
     Raises
     ------
     CharacterError
-        If the file is absent, damaged, not glTF 2.0, or nothing in it can move.
+        If the file is absent, damaged, not glTF 2.0, or does not have exactly that clip.
     """
-    with _refusing(Path(path)) as file:
+    with _refusing(path) as file:
         tree, _ = _jointed(file)
         table = read_morph_table(file, tree)
-        return _at_rest(tree.skeleton, table.rest), read_clips(file, tree, table)
+        skeleton, clips = _at_rest(tree.skeleton, table.rest), read_clips(file, tree, table)
+    name = options.clip
+    if name is None and len(clips) == 1:
+        name = next(iter(clips))
+    if name not in clips:
+        known = ", ".join(clips) or "no clips at all"
+        raise CharacterError(f"{path}: has {known}; say which one to load")
+    return Performance(skeleton, clips[name])
 
 
 @contextmanager

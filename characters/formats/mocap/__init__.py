@@ -1,1 +1,1 @@
-"""Motion capture: Biovision (.bvh) and Acclaim (.asf, .amc)."""
+"""Motion capture text formats: Biovision (.bvh) and Acclaim (.asf with .amc)."""

@@ -1,8 +1,8 @@
-"""Acclaim skeletons (.asf), the half of Acclaim's motion capture that does not move.
+"""Acclaim skeletons (.asf), to which the motions in .amc files refer.
 
 Source of the format: Lander, "Working with motion capture file formats", Game Developer, January
-1998. A bone is a joint at its start, and its direction and the axes that it turns about are given
-in the axes of the file; so are they here, with rest rotations that are the identity.
+1998. A bone is a joint at its start; its direction and its rotation axes are given in the axes of
+the file. Joints keep these axes, so their rest rotations are the identity.
 """
 
 from dataclasses import dataclass
@@ -10,86 +10,92 @@ from pathlib import Path
 
 import numpy as np
 
-from characters.formats.mocap.asf_bones import Bone, read_bones
-from characters.formats.mocap.asf_sections import Line, read_sections
-from characters.formats.mocap.channels import Channels, Slide, Turn
-from characters.formats.mocap.text import number, read_text, refuse, shown
+from characters.errors import CharacterError
+from characters.formats.loading import MotionOptions, Performance
+from characters.formats.mocap.asf_bones import Bone, Line, read_bones, read_sections
+from characters.formats.mocap.channels import AxisChannel, ChannelLayout
+from characters.formats.mocap.text import TextFile, quoted
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
 
-_INCH = 0.0254
+INCH_M = 0.0254
 
 
 @dataclass(frozen=True)
-class Acclaim:
-    """What an .asf file says."""
+class AcclaimSkeleton:
+    """The content of an .asf file."""
 
     path: Path
     """The file."""
 
     skeleton: Skeleton
-    """In the file's axes and units: a joint at the start of every bone, called as the bone is,
-    and one at the end of every last bone, called ``ltoes_end``."""
+    """In the file's axes and units: a joint at the start of every bone, with the bone's name,
+    and one at the end of every last bone, such as ``ltoes_end``."""
 
     bones: tuple[Bone, ...]
     """The root and the bones, parents first: bone i is joint i."""
 
     unit: float
-    """Metres a unit, as it is stated: CMU's `length 0.45` means inches times 0.45."""
+    """Stated unit [m]: CMU's `length 0.45` means inches divided by 0.45."""
 
-    radians: float
-    """How much an angle of 1 is [rad]."""
+    angle_unit: float
+    """Size of an angle of 1 [rad]."""
 
     @property
-    def columns(self) -> "dict[str, slice]":
-        """Which numbers of a frame are each bone's."""
+    def columns(self) -> dict[str, slice]:
+        """Which numbers of a frame belong to each bone."""
         ends = np.cumsum([len(bone.dof) for bone in self.bones]).tolist()
         return {
             bone.name: slice(end - len(bone.dof), end)
             for bone, end in zip(self.bones, ends, strict=True)
         }
 
-    def channels(self, radians: float) -> Channels:
-        """Return how the numbers of a frame move the joints; `radians` is an angle of 1."""
+    def channels(self, angle_unit: float) -> ChannelLayout:
+        """Return how the numbers of a frame, with angles in this unit [rad], move the joints."""
         children: dict[int, list[int]] = {}
         for joint, parent in enumerate(self.skeleton.parents):
             children.setdefault(parent, []).append(joint)
-        turns: list[Turn] = []
-        slides: list[Slide] = []
+        rotating: list[AxisChannel] = []
+        moving: list[AxisChannel] = []
         columns = self.columns
         for joint, bone in enumerate(self.bones):
-            frame = bone.frame(self.radians)
-            start = columns[bone.name].start
-            own: list[Turn] = []
-            for column, dof in enumerate(bone.dof, start=start):
+            frame = bone.file_from_bone(self.angle_unit)
+            own: list[AxisChannel] = []
+            for column, dof in enumerate(bone.dof, start=columns[bone.name].start):
                 if dof == "l":
-                    slides += [
-                        Slide(child, bone.along, column) for child in children.get(joint, ())
+                    moving += [
+                        AxisChannel(child, bone.direction, column)
+                        for child in children.get(joint, ())
                     ]
-                elif dof[0] == "t":
-                    slides.append(Slide(joint, frame[:, "xyz".index(dof[1])], column))
-                else:
-                    own.append(Turn(joint, frame[:, "xyz".index(dof[1])], column))
-            # What is listed first is done first, so it stands last in the product.
-            turns += reversed(own)
-        return Channels(self.skeleton.rest.translations, tuple(turns), tuple(slides), radians)
+                    continue
+                channel = AxisChannel(joint, frame[:, "xyz".index(dof[1])], column)
+                (moving if dof[0] == "t" else own).append(channel)
+            # The first one listed is applied first, so it stands last in the product.
+            rotating += reversed(own)
+        offsets = self.skeleton.rest.translations
+        return ChannelLayout(offsets, tuple(rotating), tuple(moving), angle_unit)
 
 
-def load(path: "str | Path") -> Acclaim:
+def refuse_motion(path: Path, options: MotionOptions) -> Performance:
+    """Refuse an .asf file that is given as a motion."""
+    raise CharacterError(f"{path}: a skeleton without motion; give the .amc that goes with it")
+
+
+def load_skeleton(path: Path) -> AcclaimSkeleton:
     """Read an .asf file.
 
     Raises
     ------
     CharacterError
-        If it cannot be read, with the line that is at fault.
+        If it cannot be read, with the line of the problem.
     """
-    path = Path(path)
-    sections = read_sections(path, read_text(path))
-    unit, radians = _units(path, sections.get("units", []))
-    bones, parents = read_bones(path, sections)
+    file = TextFile.read(path)
+    sections = read_sections(file)
+    unit, angle_unit = _units(file, sections.get("units", []))
+    bones, parents = read_bones(file, sections)
     names = [bone.name for bone in bones]
-    places: list[Array] = [bones[0].position]
-    places += [bones[parent].along * bones[parent].length for parent in parents[1:]]
+    offsets: list[Array] = [bones[0].position]
+    offsets += [bones[parent].direction * bones[parent].length for parent in parents[1:]]
     inner, taken = set(parents), set(names)
     for joint, bone in enumerate(bones):
         if joint and joint not in inner:
@@ -99,24 +105,24 @@ def load(path: "str | Path") -> Acclaim:
             taken.add(end)
             names.append(end)
             parents.append(joint)
-            places.append(bone.along * bone.length)
-    turns = np.tile(rotations.IDENTITY, (len(names), 1))
-    skeleton = Skeleton(tuple(names), tuple(parents), Pose(np.array(places), turns))
-    return Acclaim(path, skeleton, tuple(bones), unit, radians)
+            offsets.append(bone.direction * bone.length)
+    unrotated = np.tile(rotations.IDENTITY, (len(names), 1))
+    skeleton = Skeleton(tuple(names), tuple(parents), Pose(np.array(offsets), unrotated))
+    return AcclaimSkeleton(path, skeleton, tuple(bones), unit, angle_unit)
 
 
-def _units(path: Path, lines: "list[Line]") -> tuple[float, float]:
-    """Return metres a unit and radians an angle of 1."""
-    unit, radians = _INCH, float(np.pi / 180)
+def _units(file: TextFile, lines: list[Line]) -> tuple[float, float]:
+    """Return the length unit [m] and the angle unit [rad]."""
+    unit, angle_unit = INCH_M, float(np.pi / 180)
     for line, words in lines:
         key, value = words[0].lower(), words[1] if len(words) > 1 else ""
         if key == "length":
-            length = number(path, line, value)
+            length = file.number(line, value)
             if not length > 0:
-                raise refuse(path, line, f"a length of {length:g} is no unit", "state one above 0")
-            unit = _INCH / length
+                raise file.error(line, f"a length unit of {length:g}", "state one above 0")
+            unit = INCH_M / length
         elif key == "angle":
             if value.lower()[:3] not in ("deg", "rad"):
-                raise refuse(path, line, f"angles in {shown(value)}", "state deg or rad")
-            radians = 1.0 if value.lower().startswith("rad") else float(np.pi / 180)
-    return unit, radians
+                raise file.error(line, f"angles in {quoted(value)}", "state deg or rad")
+            angle_unit = 1.0 if value.lower().startswith("rad") else float(np.pi / 180)
+    return unit, angle_unit

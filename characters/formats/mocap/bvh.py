@@ -1,126 +1,102 @@
 """Biovision hierarchies (.bvh): a skeleton and a motion in one text file.
 
 Source of the format: Meredith and Maddock, "Motion capture file formats explained", University
-of Sheffield, 2001. Where files in the wild differ, the usual practice of exporters is followed:
-a joint's position channels replace its offset, as they do for the root.
+of Sheffield, 2001. Where files differ, this follows the usual practice of exporters: a joint's
+position channels replace its offset, as they do for the root.
 """
 
 from pathlib import Path
 
-from characters.formats.mocap.axes_and_units import settle
+from characters.formats.loading import MotionOptions, Performance
+from characters.formats.mocap.axes_and_units import to_metres_y_up
 from characters.formats.mocap.bvh_hierarchy import read_hierarchy
-from characters.formats.mocap.text import check_size, number, number_rows, read_text, refuse, shown
-from characters.model.performance import Performance
+from characters.formats.mocap.text import CUT_OFF, TextFile, parse_rows, quoted
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Array
 
-_FRAME_TIMES = (1e-5, 100.0)  # [s]
+_FRAME_TIME_RANGE_S = (1e-5, 100.0)
 
 
-def load(path: "str | Path", *, scale: float | None = None, up: str | None = None) -> Performance:
+def load_motion(path: Path, options: MotionOptions) -> Performance:
     """Read a .bvh file.
 
-    Every joint's rest rotation is the identity. End sites become joints, called after the joint
-    that they end: ``LeftToe_end``. The facing is left as it is.
-
-    Parameters
-    ----------
-    path
-        The file.
-    scale
-        Metres a unit. Left out, it is the unit (m, foot, dm, inch, cm, mm) that makes the
-        performer most nearly 1.7 m tall, or the one of the CMU database if that makes
-        1.2 to 2.0 m; a note says which.
-    up
-        The axis that points up: "y", "z", "-y", …. Left out, it is the one from feet to head.
+    Every joint's rest rotation is the identity. End sites become joints with the name of the
+    joint that they end: ``LeftToe_end``. The facing direction stays as it is.
 
     Raises
     ------
     CharacterError
-        If the file cannot be read, with the line that is at fault.
+        If the file cannot be read, with the line of the problem.
     """
-    path = Path(path)
-    lines = read_text(path).split("\n")
-    hierarchy = read_hierarchy(path, lines)
-    rate, values, notes = _motion(path, lines, hierarchy.end, hierarchy.numbers)
-    check_size(path, len(hierarchy.skeleton), len(values))
+    file = TextFile.read(path)
+    hierarchy = read_hierarchy(file)
+    rate, values, notes = _motion(file, hierarchy.end, hierarchy.channel_count)
+    file.check_size(len(hierarchy.skeleton), len(values))
     poses = hierarchy.channels.poses(values)
-    settled = settle(path, hierarchy.skeleton, poses, scale=scale, up=up)
-    clip = Clip(path.stem, rate, settled.poses, loop=False)
-    return Performance(settled.skeleton, clip, hierarchy.notes + notes + settled.notes)
+    metric = to_metres_y_up(path, hierarchy.skeleton, poses, options)
+    clip = Clip(path.stem, rate, metric.poses, loop=False)
+    return Performance(metric.skeleton, clip, hierarchy.notes + notes + metric.notes)
 
 
-def _motion(
-    path: Path, lines: list[str], start: int, width: int
-) -> tuple[float, Array, tuple[str, ...]]:
-    """Return rate [Hz], values (frames, width) and notes of what follows the hierarchy."""
-    at, stated = _setting(path, lines, start, "frames")
-    at, frame_time = _setting(path, lines, at, "frame time")
-    low, high = _FRAME_TIMES
-    if not low <= frame_time <= high:
-        raise refuse(
-            path, at, f"a frame time of {frame_time:g} s is none", "state the seconds a frame"
-        )
-    rows, where = _rows(path, lines, at, width)
+def _motion(file: TextFile, start: int, width: int) -> tuple[float, Array, tuple[str, ...]]:
+    """Return rate [Hz], values (frames, width) and notes of the MOTION that follows a line."""
+    lines = file.text.split("\n")
+    at, stated = _setting(file, lines, start, "frames")
+    at, frame_time = _setting(file, lines, at, "frame time")
+    shortest, longest = _FRAME_TIME_RANGE_S
+    if not shortest <= frame_time <= longest:
+        raise file.error(at, f"an invalid frame time of {frame_time:g} s", "state seconds a frame")
+    rows, row_lines = _rows(file, lines, at, width)
     if not rows:
-        raise refuse(path, at, "no frames follow", "export the motion, not the skeleton alone")
+        raise file.error(at, "no frames follow", "export the motion, not the skeleton alone")
     if len(rows) < stated:
-        raise refuse(
-            path,
-            where[-1],
-            f"ends after {len(rows)} of {stated:.0f} frames",
-            "the file is cut off: export it again",
-        )
-    values = number_rows(rows)
-    if values is None:  # find the first number that is none, which raises
-        for line, row in zip(where, rows, strict=True):
-            for token in row:
-                number(path, line, token)
-        raise AssertionError("an unsound number was found, and then it was not")
+        problem = f"ends after {len(rows)} of {stated:.0f} frames"
+        raise file.error(row_lines[-1], problem, CUT_OFF)
+    values = parse_rows(rows)
+    if values is None:  # the first invalid number raises
+        for line, row in zip(row_lines, rows, strict=True):
+            for word in row:
+                file.number(line, word)
+        raise AssertionError("parse_rows refused rows of valid numbers")
     notes: tuple[str, ...] = ()
     if len(rows) > stated:
-        notes = (f"{stated:.0f} frames stated, {len(rows)} there: all are read",)
-    return _usual(1.0 / frame_time), values, notes
+        notes = (f"{stated:.0f} frames stated, {len(rows)} found: all are read",)
+    return _nominal_rate(1.0 / frame_time), values, notes
 
 
 def _rows(
-    path: Path, lines: list[str], start: int, width: int
+    file: TextFile, lines: list[str], start: int, width: int
 ) -> tuple[list[list[str]], list[int]]:
-    """Return the words of every frame from a line on, and the lines that they stand on."""
-    rows, where = [], []
+    """Return the words of every frame after a line, and the lines of the frames."""
+    rows, row_lines = [], []
     for line in range(start, len(lines)):
         row = lines[line].split()
         if len(row) == width and row:
             rows.append(row)
-            where.append(line + 1)
+            row_lines.append(line + 1)
         elif row:
-            raise refuse(
-                path,
-                line + 1,
-                f"frame {len(rows) + 1} has {len(row)} numbers where the joints have {width} "
-                "channels",
-                "the file is cut off or edited: export it again",
-            )
-    return rows, where
+            problem = f"frame {len(rows) + 1} has {len(row)} numbers for {width} channels"
+            raise file.error(line + 1, problem, "the file is cut off or edited: export it again")
+    return rows, row_lines
 
 
-def _setting(path: Path, lines: list[str], start: int, key: str) -> tuple[int, float]:
-    """Return where the line `key: value` ends, and its value; lines count from 1."""
+def _setting(file: TextFile, lines: list[str], start: int, key: str) -> tuple[int, float]:
+    """Return the number of the line `key: value`, from 1, and the value."""
     for line in range(start, len(lines)):
         words = lines[line].replace(":", " ").split()
         if not words:
             continue
         if [word.lower() for word in words[:-1]] != key.split():
-            found = shown(lines[line].strip())
-            raise refuse(path, line + 1, f"{found} stands where {key!r} should", "export it again")
-        return line + 1, number(path, line + 1, words[-1])
-    raise refuse(path, len(lines), f"ends without {key!r}", "the file is cut off: export it again")
+            problem = f"expected {key!r}, found {quoted(lines[line].strip())}"
+            raise file.error(line + 1, problem, "export it again")
+        return line + 1, file.number(line + 1, words[-1])
+    raise file.error(len(lines), f"ends without {key!r}", CUT_OFF)
 
 
-def _usual(rate: float) -> float:
-    """Return a whole rate if a rounded frame time, as 0.0083333 s, means it.
+def _nominal_rate(rate: float) -> float:
+    """Return the whole rate that a rounded frame time, as 0.0083333 s, stands for.
 
-    >>> _usual(1 / 0.0083333), round(_usual(1 / 0.008342), 3)
+    >>> _nominal_rate(1 / 0.0083333), round(_nominal_rate(1 / 0.008342), 3)
     (120.0, 119.875)
     """
     whole = float(round(rate))

@@ -1,8 +1,9 @@
-"""From the numbers of a frame to how joints move: what BVH and Acclaim have in common.
+"""From the numbers of a frame to joint poses: what BVH and Acclaim have in common.
 
-In both, a joint turns about a list of fixed axes, one number an axis. In BVH they are the axes of
-the file; in Acclaim those of the bone's own frame C, and since C R(e, a) C⁻¹ = R(C e, a), they are
-fixed directions of the file's axes just as well. So every rest rotation is the identity.
+In both, a joint rotates about a list of fixed axes, one number per axis. In BVH these are the
+axes of the file. In Acclaim they are the axes of the bone's own frame C; since
+C R(e, a) C⁻¹ = R(C e, a), they are fixed directions in the file's axes too. So every rest rotation
+is the identity.
 """
 
 from dataclasses import dataclass
@@ -13,91 +14,79 @@ from numpy.typing import NDArray
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
-_BLOCK = 1024  # frames at once: what is in hand stays in the processor's cache
+_BLOCK_FRAMES = 1024  # computed at once: a block fits in the processor's cache
+
+AxisRound = tuple[NDArray[np.intp], Array, NDArray[np.intp]]
+"""Joints (n,), axes (n, 3) and columns (n,) of rotations of different joints."""
 
 
 @dataclass(frozen=True)
-class Turn:
-    """One rotation of one joint by one number of a frame."""
+class AxisChannel:
+    """One number of a frame that rotates or moves one joint."""
 
     joint: int
-    """Which joint."""
+    """The joint."""
 
     axis: Array
-    """Unit vector in the parent's frame, (3,)."""
+    """In the parent's frame, (3,): the unit axis of a rotation, or what a value of 1 adds to the
+    joint's translation."""
 
     column: int
-    """Which number of the frame is the angle."""
+    """Which number of the frame is the angle or the distance."""
 
 
 @dataclass(frozen=True)
-class Slide:
-    """One translation of one joint by one number of a frame."""
-
-    joint: int
-    """Which joint."""
-
-    direction: Array
-    """What a number of 1 adds to the joint's place in its parent's frame, (3,)."""
-
-    column: int
-    """Which number of the frame is the distance."""
-
-
-@dataclass(frozen=True)
-class Channels:
+class ChannelLayout:
     """How the numbers of a frame move joints."""
 
-    places: Array
-    """Where joints are in their parents' frames when every number is zero, (joints, 3)."""
+    offsets: Array
+    """Joint translations when every number is zero, (joints, 3)."""
 
-    turns: tuple[Turn, ...]
-    """The rotations; of one joint's, the first is applied last."""
+    rotations: tuple[AxisChannel, ...]
+    """Of one joint's rotations, the first is applied last."""
 
-    slides: tuple[Slide, ...]
-    """The translations; they add up."""
+    translations: tuple[AxisChannel, ...]
+    """Of one joint's translations, the sum is applied."""
 
-    radians: float
-    """How much an angle of 1 is [rad]."""
+    angle_unit: float
+    """Size of an angle of 1 [rad]."""
 
     def poses(self, values: Array) -> Pose:
         """Return the poses of frames of numbers, (frames, numbers)."""
-        frames, joints = len(values), len(self.places)
-        translations = np.tile(self.places, (frames, 1, 1))
-        for slide in self.slides:
-            translations[:, slide.joint] += values[:, slide.column, None] * slide.direction
+        frames, joints = len(values), len(self.offsets)
+        translations = np.tile(self.offsets, (frames, 1, 1))
+        for channel in self.translations:
+            translations[:, channel.joint] += values[:, channel.column, None] * channel.axis
         quaternions = np.empty((frames, joints, 4))
         rounds = self._rounds()
-        for start in range(0, frames, _BLOCK):
-            block = slice(start, start + _BLOCK)
-            quaternions[block] = self._turned(values[block], rounds)
+        for start in range(0, frames, _BLOCK_FRAMES):
+            block = slice(start, start + _BLOCK_FRAMES)
+            quaternions[block] = self._rotations(values[block], rounds)
         return Pose(translations, quaternions)
 
-    def _rounds(self) -> "list[tuple[NDArray[np.intp], Array, NDArray[np.intp]]]":
-        """Return joints, axes and columns of every joint's first rotation, second, and so on."""
-        rounds: list[list[Turn]] = []
-        seen: dict[int, int] = {}
-        for turn in self.turns:
-            place = seen.get(turn.joint, 0)
-            seen[turn.joint] = place + 1
-            if place == len(rounds):
+    def _rounds(self) -> list[AxisRound]:
+        """Return every joint's first rotation, then every joint's second one, and so on."""
+        rounds: list[list[AxisChannel]] = []
+        counts: dict[int, int] = {}
+        for channel in self.rotations:
+            number = counts.get(channel.joint, 0)
+            counts[channel.joint] = number + 1
+            if number == len(rounds):
                 rounds.append([])
-            rounds[place].append(turn)
+            rounds[number].append(channel)
         return [
             (
-                np.array([turn.joint for turn in turns]),
-                np.array([turn.axis for turn in turns]),
-                np.array([turn.column for turn in turns]),
+                np.array([channel.joint for channel in channels]),
+                np.array([channel.axis for channel in channels]),
+                np.array([channel.column for channel in channels]),
             )
-            for turns in rounds
+            for channels in rounds
         ]
 
-    def _turned(
-        self, values: Array, rounds: "list[tuple[NDArray[np.intp], Array, NDArray[np.intp]]]"
-    ) -> Array:
+    def _rotations(self, values: Array, rounds: list[AxisRound]) -> Array:
         """Return the rotations of a block of frames, (frames, joints, 4)."""
-        turned = np.tile(rotations.IDENTITY, (len(values), len(self.places), 1))
+        product = np.tile(rotations.IDENTITY, (len(values), len(self.offsets), 1))
         for number, (joints, axes, columns) in enumerate(rounds):
-            q = rotations.about(axes, values[:, columns] * self.radians)
-            turned[:, joints] = rotations.multiply(turned[:, joints], q) if number else q
-        return turned
+            q = rotations.about(axes, values[:, columns] * self.angle_unit)
+            product[:, joints] = rotations.multiply(product[:, joints], q) if number else q
+        return product

@@ -1,88 +1,101 @@
-"""Text files of motion capture: read whole, refused with the number of the line at fault."""
+"""Text files of motion capture; errors name the file and the line."""
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
 import numpy as np
 
 from characters.errors import CharacterError
-from characters.model.files import read_given
+from characters.model.files import read_required_file
 from characters.skeleton.pose import Array
 
-LARGEST_NUMBER = 1e9  # in no unit does a person reach further, and sums of such stay finite
-MOST_POSES = 30_000_000  # joints × frames; two hours of 120 Hz on 35 joints
+MAX_ABS_NUMBER = 1e9  # beyond any recording in any unit, and sums of such numbers stay finite
+MAX_POSED_JOINTS = 30_000_000  # joints × frames; two hours at 120 Hz with 35 joints
+EXPORT_AGAIN = "export the file again"
+CUT_OFF = "the file is cut off: export it again"
 
 
-def refuse(path: Path, line: int, wrong: str, advice: str) -> CharacterError:
-    """Return the error for a line of a file, counted from 1."""
-    return CharacterError(f"{path}, line {line}: {wrong}; {advice}")
+@dataclass(frozen=True)
+class TextFile:
+    """A whole text file in memory."""
+
+    path: Path
+    """The file, for messages."""
+
+    text: str
+    r"""Its content; lines end with ``\n`` alone."""
+
+    @classmethod
+    def read(cls, path: Path) -> "TextFile":
+        """Read a UTF-8 file.
+
+        Raises
+        ------
+        CharacterError
+            If it cannot be read or is not text.
+        """
+        data = read_required_file(path)
+        try:
+            text = data.decode("utf-8-sig")
+        except UnicodeDecodeError as error:
+            line = data.count(b"\n", 0, error.start) + 1
+            problem = f"byte 0x{data[error.start]:02x} is not UTF-8 text"
+            raise cls(path, "").error(line, problem, "save it as UTF-8, or export again") from None
+        file = cls(path, text.replace("\r\n", "\n").replace("\r", "\n"))
+        if "\0" in text:
+            line = text.count("\n", 0, text.index("\0")) + 1
+            raise file.error(line, "holds binary data, not text", "give the exported text file")
+        return file
+
+    def error(self, line: int, problem: str, advice: str) -> CharacterError:
+        """Return the error for a line, counted from 1."""
+        return CharacterError(f"{self.path}, line {line}: {problem}; {advice}")
+
+    def number(self, line: int, word: str) -> float:
+        """Return one finite number, or refuse the line."""
+        try:
+            value = float(word)
+        except ValueError:
+            problem = f"expected a number, found {quoted(word)}"
+            raise self.error(line, problem, EXPORT_AGAIN) from None
+        if not abs(value) <= MAX_ABS_NUMBER:
+            raise self.error(line, f"{quoted(word)} is out of range", EXPORT_AGAIN)
+        return value
+
+    def vector(self, line: int, words: list[str], name: str) -> Array:
+        """Return three finite numbers, or refuse the line."""
+        if len(words) != 3:
+            problem = f"{name} has {len(words)} numbers"
+            raise self.error(line, problem, "give three, or export the file again")
+        return np.array([self.number(line, word) for word in words])
+
+    def check_size(self, joints: int, frames: int) -> None:
+        """Refuse a motion that would not fit in memory as poses."""
+        if joints * frames > MAX_POSED_JOINTS:
+            raise CharacterError(
+                f"{self.path}: {frames} frames of {joints} joints do not fit in memory; "
+                "cut the recording into pieces"
+            )
 
 
-def read_text(path: Path) -> str:
-    r"""Return the text of a file, its lines ended by ``\n`` alone."""
-    data = read_given(path)
+def parse_numbers(words: Iterable[str]) -> Array | None:
+    """Return words as an array of numbers, or None if one is not a number or out of range."""
     try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        byte = data[error.start]
-        raise refuse(
-            path, line, f"byte 0x{byte:02x} is not UTF-8 text", "save it as UTF-8, or export again"
-        ) from None
-    if "\0" in text:
-        line = text.count("\n", 0, text.index("\0")) + 1
-        raise refuse(path, line, "holds binary data, not text", "give the exported text file")
-    return text.replace("\r\n", "\n").replace("\r", "\n")
-
-
-def number(path: Path, line: int, token: str) -> float:
-    """Return one finite number, or refuse the line."""
-    try:
-        value = float(token)
-    except ValueError:
-        raise refuse(
-            path, line, f"{shown(token)} stands where a number should", "export the file again"
-        ) from None
-    if not abs(value) <= LARGEST_NUMBER:
-        raise refuse(path, line, f"{shown(token)} is no sound number", "export the file again")
-    return value
-
-
-def vector(path: Path, line: int, tokens: list[str], what: str) -> Array:
-    """Return three finite numbers, or refuse the line."""
-    if len(tokens) != 3:
-        raise refuse(
-            path, line, f"{what} has {len(tokens)} numbers", "give three, or export the file again"
-        )
-    return np.array([number(path, line, token) for token in tokens])
-
-
-def numbers(tokens: Iterable[str]) -> Array | None:
-    """Return numbers as an array, or None if one of them is none or is not sound."""
-    try:
-        values = np.fromiter(map(float, tokens), float)
+        values = np.fromiter(map(float, words), float)
     except ValueError:
         return None
     # A comparison with NaN is false, so this finds NaN too.
-    return values if bool((np.abs(values) <= LARGEST_NUMBER).all()) else None
+    return values if bool((np.abs(values) <= MAX_ABS_NUMBER).all()) else None
 
 
-def number_rows(rows: list[list[str]]) -> Array | None:
-    """Return rows of numbers, all of one length, as an array; None if one is not sound."""
-    values = numbers(chain.from_iterable(rows))
+def parse_rows(rows: list[list[str]]) -> Array | None:
+    """Return rows of words, all of one length, as an array; None as in `parse_numbers`."""
+    values = parse_numbers(chain.from_iterable(rows))
     return None if values is None else values.reshape(len(rows), -1)
 
 
-def check_size(path: Path, joints: int, frames: int) -> None:
-    """Refuse what would not fit in memory once it is poses."""
-    if joints * frames > MOST_POSES:
-        raise CharacterError(
-            f"{path}: {frames} frames of {joints} joints are more than fit in memory; "
-            "cut the recording into pieces"
-        )
-
-
-def shown(token: str) -> str:
-    """Return a word of a file as it may stand in a message of one line."""
-    return repr(token if len(token) <= 40 else token[:37] + "...")
+def quoted(word: str) -> str:
+    """Return a word of a file, shortened and quoted for a message of one line."""
+    return repr(word if len(word) <= 40 else word[:37] + "...")

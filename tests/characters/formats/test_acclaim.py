@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from characters import CharacterError
 from characters.formats import Performance, load_clip, load_motion
-from characters.formats.mocap import amc_frames
-from characters.formats.mocap.axes_and_units import CMU_UNIT
+from characters.formats.mocap import amc
+from characters.formats.mocap.axes_and_units import CMU_UNIT_M
 from characters.skeleton import rotations
 
 DATA = Path(__file__).parents[4] / "shared" / "data"
@@ -175,7 +175,7 @@ def frames_of(amc: str) -> list[dict[str, list[float]]]:
 
 def assert_like_the_walk(path: Path, looks: int) -> None:
     asf = next(path.parent.glob("*.asf")).read_text()
-    performance = load_motion(path, scale=CMU_UNIT, up="y")
+    performance = load_motion(path, scale=CMU_UNIT_M, up="y")
     assert performance.notes == ()
     ours, skeleton = places(performance), performance.skeleton
     frames = frames_of(path.read_text())
@@ -185,7 +185,7 @@ def assert_like_the_walk(path: Path, looks: int) -> None:
         for joint, (name, parent) in enumerate(zip(skeleton.names, skeleton.parents, strict=True)):
             # A joint is where its bone starts, which is where its parent's ends.
             bone = name if parent < 0 else skeleton.names[parent]
-            gap = np.abs(ours[number, joint] - ends[bone] * CMU_UNIT).max()
+            gap = np.abs(ours[number, joint] - ends[bone] * CMU_UNIT_M).max()
             assert gap < 1e-4, f"{name} in frame {number + 1}"
 
 
@@ -232,7 +232,7 @@ def test_bones_tips_rate_and_units(tmp_path: Path) -> None:
     assert not clip.loop
     assert not clip.root_motion
     rest = [[0, 0, 0], [0, 0, 0], [0, -16, 0], [0, 0, 0], [0, 0, 4], [0, 12, 0]]
-    np.testing.assert_allclose(skeleton.rest.translations, np.array(rest) * CMU_UNIT)
+    np.testing.assert_allclose(skeleton.rest.translations, np.array(rest) * CMU_UNIT_M)
     assert_like_the_walk(tmp_path / "hopper.amc", looks=2)
 
 
@@ -293,11 +293,11 @@ def test_where_a_long_file_is_cut_for_reading_does_not_matter(
     )
     whole = load_clip(hopper(tmp_path, amc=text)).poses
     for block in (64, 97, 200):
-        monkeypatch.setattr(amc_frames, "_BLOCK", block)
+        monkeypatch.setattr(amc, "BLOCK_CHARACTERS", block)
         pieces = load_clip(tmp_path / "hopper.amc").poses
         np.testing.assert_array_equal(pieces.rotations, whole.rotations)
         np.testing.assert_array_equal(pieces.translations, whole.translations)
-    np.testing.assert_allclose(whole.translations[:, 0, 0], np.arange(1, 60) / 7 * CMU_UNIT)
+    np.testing.assert_allclose(whole.translations[:, 0, 0], np.arange(1, 60) / 7 * CMU_UNIT_M)
 
 
 def test_what_an_amc_leaves_out_and_skips_is_noted(tmp_path: Path) -> None:
@@ -330,7 +330,7 @@ def test_the_skeleton_is_found_by_name_or_alone_or_told(tmp_path: Path) -> None:
         load_clip(number)
     with pytest.raises(CharacterError, match=r"gone\.asf: cannot be read"):
         load_motion(number, skeleton=tmp_path / "gone.asf")
-    with pytest.raises(CharacterError, match=r"a skeleton does not move"):
+    with pytest.raises(CharacterError, match=r"a skeleton without motion"):
         load_clip(tmp_path / "hopper.asf")
 
 
@@ -338,22 +338,26 @@ def test_the_rate_is_told_or_stated_or_cmus(tmp_path: Path) -> None:
     stated = AMC.replace(":DEGREES", ":DEGREES\n:SAMPLES-PER-SECOND 60")
     assert load_clip(hopper(tmp_path, amc=stated)).rate == 60.0
     assert load_motion(tmp_path / "hopper.amc", rate=30.0).clip.rate == 30.0
-    with pytest.raises(CharacterError, match="0 frames a second is no rate"):
+    with pytest.raises(CharacterError, match="invalid rate of 0 frames"):
         load_motion(tmp_path / "hopper.amc", rate=0.0)
 
 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("leg 30 0 0", "leg 30 0", r"line 10: 'leg' has 2 numbers, and in hopper\.asf 3 degrees"),
+        (
+            "leg 30 0 0",
+            "leg 30 0",
+            r"line 10: 'leg' has 2 numbers, but 3 degrees of freedom in hopper",
+        ),
         ("leg 0 0 0", "leg 0 0 0 0", r"line 6: 'leg' has 4 numbers"),
         ("leg 30 0 0", "arm 30 0 0", r"line 10: hopper\.asf has no bone 'arm'"),
-        ("leg 30 0 0", "leg 30 nan 0", "line 10: 'nan' is no sound number"),
-        ("leg 30 0 0", "leg 30 -inf 0", "line 10: '-inf' is no sound number"),
-        ("leg 30 0 0", "leg 30 x 0", "line 10: 'x' stands where a number should"),
+        ("leg 30 0 0", "leg 30 nan 0", "line 10: 'nan' is out of range"),
+        ("leg 30 0 0", "leg 30 -inf 0", "line 10: '-inf' is out of range"),
+        ("leg 30 0 0", "leg 30 x 0", "line 10: expected a number, found 'x'"),
         ("leg 30 0 0\nfoot -10\n", "", "line 8: frame 2 lacks 'leg'"),
         ("foot 0\n2\n", "foot 0\n", "line 8: frame 1 moves 'root' twice"),
-        ("\n1\n", "\n", "line 4: 'root' stands before the number of the first frame"),
+        ("\n1\n", "\n", "line 4: 'root' before the number of the first frame"),
     ],
 )
 def test_a_damaged_motion_is_refused_with_its_line(
@@ -374,30 +378,30 @@ def test_a_motion_without_frames_is_refused(amc: str, tmp_path: Path) -> None:
     ("old", "new", "message"),
     [
         ("leg foot", "leg foot root", "line 46: 'root' has a parent already"),
-        ("root leg head", "root head", "'leg' does not hang on the root"),
+        ("root leg head", "root head", "'leg' is not connected to the root"),
         (
             "root leg head\n    leg foot",
             "root head\n    leg foot\n    foot leg",
-            "'leg' does not h",
+            "'leg' is not c",
         ),
-        ("leg foot", "leg paw", "line 46: no bone is called 'paw'"),
+        ("leg foot", "leg paw", "line 46: no bone named 'paw'"),
         ("root leg head", "root leg head leg", "line 45: 'leg' has a parent already"),
         ("name foot", "name leg", "line 27: a second bone 'leg'"),
         ("name foot", "", "line 27: this bone has no name"),
-        ("dof rx\n", "dof rw\n", "line 33: 'rw' is no degree of freedom"),
-        ("dof rx\n", "dof rx rx\n", "line 33: 'rx' is no degree of freedom"),
-        ("axis 0 0 90 XYZ", "axis 0 0 90 XYY", "line 21: 'xyy' is no order of axes"),
+        ("dof rx\n", "dof rw\n", "line 33: 'rw' is not a degree of freedom"),
+        ("dof rx\n", "dof rx rx\n", "line 33: 'rx' is listed twice"),
+        ("axis 0 0 90 XYZ", "axis 0 0 90 XYY", "line 21: 'xyy' is not an order of axes"),
         ("axis 0 0 90 XYZ", "axis 0 0", "line 21: axis has 2 numbers"),
         ("direction 0 0 1", "direction 0 0 0", "line 27: bone 'foot' has no direction"),
-        ("direction 0 0 1", "direction 0 nan 1", "line 30: 'nan' is no sound number"),
+        ("direction 0 0 1", "direction 0 nan 1", "line 30: 'nan' is out of range"),
         ("length 16", "length -16", "line 16: bone 'leg' has no direction or a negative length"),
-        ("length 16", "length", "line 20: '' stands where a number should"),
-        ("length 0.45", "length 0", "line 6: a length of 0 is no unit"),
+        ("length 16", "length", "line 20: expected a number, found ''"),
+        ("length 0.45", "length 0", "line 6: a length unit of 0"),
         ("angle deg", "angle turns", "line 7: angles in 'turns'"),
         ("  end\n:hierarchy", ":hierarchy", "line 36: this begin has no end"),
         ("     id 2", "begin", "line 28: begin inside begin"),
         (":hierarchy", ":links", "has no :hierarchy"),
-        (":version", "version", "line 2: 'version' stands before any section"),
+        (":version", "version", "line 2: 'version' before any section"),
         (":units", ":root", "line 10: a second :root"),
     ],
 )
