@@ -7,7 +7,7 @@
 from pathlib import Path
 
 from affect.emotion import ANGRY_BELOW, HAPPY_ABOVE
-from robot.contract.motions import Motion, Sway
+from robot.contract.motions import JointSine, SineMotion
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.fields import FieldForm
@@ -141,18 +141,18 @@ def _count_lines() -> list[str]:
     return [f"ENTRIES_MAX = {most:.0f}", f"NAME_BYTES = {form_of(m.Name).fields[-1].size}", ""]
 
 
-def _motion_lines(motion: Motion) -> list[str]:
+def _motion_lines(motion: SineMotion) -> list[str]:
     sound = "None" if motion.sound is None else f'"{motion.sound}"'
     return [
         f'    ("{motion.name}", {round(1000 * motion.period)}, {sound}, (',
-        *(f"        {_sway(joint, sway)}," for joint, sway in motion.sways.items()),
+        *(f"        {_sine(joint, sine)}," for joint, sine in motion.joints.items()),
         "    )),",
     ]
 
 
-def _sway(joint: str, sway: Sway) -> str:
-    offset, amplitude = round(100 * sway.offset), round(100 * sway.amplitude)
-    return f'("{joint}", {offset}, {amplitude}, {sway.times}, {round(TURN * sway.phase) % TURN})'
+def _sine(joint: str, sine: JointSine) -> str:
+    offset, amplitude = round(100 * sine.offset), round(100 * sine.amplitude)
+    return f'("{joint}", {offset}, {amplitude}, {sine.cycles}, {round(TURN * sine.phase) % TURN})'
 
 
 if __name__ == "__main__":

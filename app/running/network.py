@@ -5,7 +5,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-from robot.contract.closing import Closing
+from robot.contract.closeable import Closeable
 from robot.network import (
     Address,
     Bus,
@@ -39,7 +39,7 @@ class Access:
     """User, password file, certificates."""
 
 
-class Network(Closing):
+class Network(Closeable):
     """Puts members on a bus. `close` it at the end; a second `close` does nothing.
 
     Parameters

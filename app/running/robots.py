@@ -10,7 +10,7 @@ from affect.words import closest_word
 from app.pipeline.scenario import EmotionTarget
 from app.pipeline.step import RobotView
 from robot import Robot, RobotError, SimulatedPort, SteppedRobot, connect
-from robot.contract.closing import Closing
+from robot.contract.closeable import Closeable
 
 OnBytes = Callable[[str, bytes, float], None]
 Clock = Callable[[], float]
@@ -19,7 +19,7 @@ REMEMBERED = 1000
 """So many emotions are remembered with their words; a robot takes none that is older [frames]."""
 
 
-class RobotLine(Closing):
+class RobotLine(Closeable):
     """Hands the emotions of a session to a robot and tells how it is.
 
     `open` it before the session, `close` it after; a second `close` does nothing. Nothing here

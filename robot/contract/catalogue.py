@@ -1,18 +1,18 @@
-"""What a robot has: joints, motions, sounds and moods, as it says itself at connect."""
+"""What a robot has: joints, motions, sounds and moods. The robot reports it at connect."""
 
 from dataclasses import dataclass
 
-NAME_MAX = 16
-"""Longest name of a robot, a joint, a motion, a sound or a mood [bytes of UTF-8], whatever the
-protocol: our own has no room for more."""
+MAX_NAME_BYTES = 16
+"""Longest name of a robot, joint, motion, sound or mood [bytes of UTF-8] in every protocol; it is
+the limit of the protocol "cubeling"."""
 
 
 @dataclass(frozen=True)
 class JointLimits:
-    """One joint of a robot. Zero is neutral; positive is forward, up or right."""
+    """Limits of one joint. Zero is neutral; positive is forward, up or right."""
 
     name: str
-    """What it is called."""
+    """Its name."""
 
     low: float
     """Smallest angle [rad]."""
@@ -29,19 +29,19 @@ class Catalogue:
     """What a robot has."""
 
     name: str
-    """What the robot is called, at most `NAME_MAX` bytes of UTF-8."""
+    """Its name, at most `MAX_NAME_BYTES`."""
 
     firmware: str
-    """What runs on it, and which version."""
+    """Its firmware and version."""
 
     joints: tuple[JointLimits, ...]
     """Its joints, at most 16."""
 
     motions: tuple[str, ...]
-    """What its body can play."""
+    """Motions that it can play."""
 
     sounds: tuple[str, ...]
-    """What its loudspeaker can play."""
+    """Sounds that it can play."""
 
     moods: tuple[str, ...]
-    """The words for what it feels, the first one being neutral."""
+    """Moods that it can show, neutral first."""

@@ -1,4 +1,4 @@
-"""What every protocol's host end can do."""
+"""The host side of a protocol, as the link sees it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,76 +10,76 @@ from robot.contract.catalogue import Catalogue
 from robot.contract.port import Clock, Opener
 from robot.contract.telemetry import LinkState, Telemetry
 
-ACTIONS_MAX = 4
+MAX_QUEUED_ACTIONS = 4
 """Motions and sounds that may wait for a robot that plays one after the other; more are refused.
-Our own protocol's robots are quicker, and more may wait (`robot.protocol.timing`)."""
+The protocol "cubeling" allows more (`robot.protocol.timing.ACTIONS_MAX`): its robots are faster."""
 
 
 class Driver(Protocol):
-    """A protocol's host end, without clock, thread or port.
+    """The host side of a protocol, without clock, thread or port.
 
-    Whoever owns those calls `receive` and `tick` with the time, and writes `bytes_to_send`. No
-    method waits, and none raises because of what the robot says.
+    The owner calls `receive` and `tick` with the time and writes `bytes_to_send`. No method waits,
+    and none raises because of what the robot sends.
     """
 
     catalogue: Catalogue | None
     """What the robot has; None until it is known."""
 
     def express(self, emotion: Emotion, label: str | None = None) -> None:
-        """Ask for an emotion; only the latest counts. `label` is the mood's word, if it has one."""
+        """Request an emotion; only the latest counts. `label` is the mood's word, if it has one."""
 
     def play(self, item: int, index: int) -> bool:
-        """Ask for a motion or a sound of the catalogue once; False if too many wait."""
+        """Request a motion or a sound of the catalogue once; return False if too many wait."""
 
     def stop(self) -> None:
-        """Ask for the neutral pose."""
+        """Request the neutral pose."""
 
     def port_opened(self, now: float) -> None:
-        """Begin, or begin again."""
+        """Start a session; called at the first opening of the port and at every later one."""
 
     def port_lost(self) -> None:
-        """Send nothing until the port is back."""
+        """Send nothing until `port_opened`."""
 
     def close(self) -> None:
-        """Say goodbye."""
+        """End the session; `bytes_to_send` then returns the last bytes."""
 
     def receive(self, data: bytes, now: float) -> None:
-        """Take bytes from the line."""
+        """Process received bytes."""
 
     def tick(self, now: float) -> None:
         """Do what is due."""
 
     def bytes_to_send(self) -> bytes:
-        """Return what is to be written, once."""
+        """Return the bytes to write, once."""
 
     def state(self, now: float) -> LinkState:
         """Return the state of the link."""
 
     def telemetry(self, now: float) -> Telemetry:
-        """Return all that is known."""
+        """Return everything that is known of the robot."""
 
 
 @dataclass(frozen=True)
 class DriverKind:
-    """A protocol, as `connect` needs to know it."""
+    """What `connect` needs to know of a protocol."""
 
     make: Callable[[int, Path | None], Driver]
-    """Makes a driver from a number that tells this program from others, and a settings file or
-    None; raises RobotError, in one line, for settings that are wrong."""
+    """Makes a driver from a number that identifies this program and a settings file or None; raises
+    RobotError for wrong settings."""
 
     baud: int
-    """Bits a second on a real serial line; a driver's own attribute `baud`, where its settings have
-    made one, goes before it."""
+    """Bits per second on a real serial line; a driver's attribute `baud` overrides it."""
 
     answer_within: float
-    """How long `connect` waits for the robot where its caller does not say [s]."""
+    """Default time that `connect` waits for the robot [s]."""
 
     opener: Callable[[str, Clock], Opener] | None = None
-    """Returns what opens the URL, for a robot that is on no serial port; None for one that is."""
+    """Makes the opener of a URL for a robot without a serial port; None for a serial port."""
 
     spacing: float = 0.0
-    """Least time between two writes [s], for a robot that takes all that has come for one line."""
+    """Minimum time between two writes [s], for robots that take everything that has arrived as one
+    line."""
 
 
 DRIVERS: dict[str, DriverKind] = {}
-"""The protocols by name; `robot.drivers` registers those that come with the program."""
+"""The protocols by name; `robot.drivers` registers those of this program."""

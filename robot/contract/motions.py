@@ -1,4 +1,4 @@
-"""What a body does over time: a sine about an offset for each joint that takes part."""
+"""Motions of a robot: each joint follows a sine about an offset."""
 
 import math
 from collections.abc import Sequence
@@ -11,45 +11,45 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Sway:
-    """One joint of a motion: a sine about an offset."""
+class JointSine:
+    """The sine that one joint follows."""
 
     offset: float = 0.0
-    """Middle of the sway [°]."""
+    """Its mean [°]."""
 
     amplitude: float = 0.0
-    """Half its width [°]."""
+    """Its amplitude [°]."""
 
-    times: int = 1
-    """Whole cycles in one period of the motion, so that a loop closes."""
+    cycles: int = 1
+    """Whole cycles per period of the motion, so that a loop closes."""
 
     phase: float = 0.0
     """Where in its cycle it starts [cycles]."""
 
 
 @dataclass(frozen=True)
-class Motion:
-    """What the body does, and the sound that it starts with."""
+class SineMotion:
+    """A periodic motion of the body, and the sound that starts with it."""
 
     name: str
-    """What it is called."""
+    """Its name in the catalogue."""
 
     period: float
-    """Length of one round [s]."""
+    """Length of one period [s]."""
 
-    sways: dict[str, Sway]
-    """What each joint does; those not named stay neutral."""
+    joints: dict[str, JointSine]
+    """The joints that move, by name; all others stay neutral."""
 
     sound: str | None = None
-    """Name of the sound of a mood's loop."""
+    """The sound of a mood's loop."""
 
     def angles(self, t: float, joints: Sequence[str]) -> Array:
-        """Return the angles that `joints` are to have `t` seconds into it, (joints,) [rad]."""
+        """Return the angles of `joints` at `t` seconds into the motion, (joints,) [rad]."""
         angles = np.zeros(len(joints))
-        for index, joint in enumerate(joints):
-            sway = self.sways.get(joint)
-            if sway is not None:
-                turn = sway.times * t / self.period + sway.phase
-                degrees = sway.offset + sway.amplitude * math.sin(2 * math.pi * turn)
+        for index, name in enumerate(joints):
+            sine = self.joints.get(name)
+            if sine is not None:
+                turn = sine.cycles * t / self.period + sine.phase
+                degrees = sine.offset + sine.amplitude * math.sin(2 * math.pi * turn)
                 angles[index] = math.radians(degrees)
         return angles

@@ -1,13 +1,13 @@
-"""What a link asks of a port, real or simulated."""
+"""What a link needs of a port, real or simulated."""
 
 from collections.abc import Callable
 from typing import Protocol
 
 Clock = Callable[[], float]
-"""The time [s]."""
+"""Returns the time [s]."""
 
-READ_TIMEOUT = 0.020
-"""Longest wait in one read [s]: how late a beat or a repeat may be, and a close be noticed."""
+READ_TIMEOUT_S = 0.020
+"""Longest wait in one read [s]: the delay of a beat, a retry or a close is at most this long."""
 
 
 class Port(Protocol):
@@ -15,16 +15,16 @@ class Port(Protocol):
 
     @property
     def in_waiting(self) -> int:
-        """Bytes that can be read at once."""
+        """Number of bytes that can be read at once."""
 
     def read(self, size: int = 1, /) -> bytes:
-        """Read up to `size` bytes, waiting a bounded time for them."""
+        """Read up to `size` bytes; waits at most `READ_TIMEOUT_S` for the first."""
 
     def write(self, data: bytes, /) -> int | None:
-        """Write all of the bytes, or raise after a bounded time."""
+        """Write all bytes, or raise after a bounded time."""
 
     def close(self) -> None:
-        """Give the port back."""
+        """Release the port."""
 
 
 Opener = Callable[[], Port]

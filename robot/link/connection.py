@@ -1,4 +1,4 @@
-"""A robot on a port: what the rest of the program talks to."""
+"""A robot on a port, as the rest of the program uses it."""
 
 import time
 from dataclasses import replace
@@ -6,19 +6,19 @@ from pathlib import Path
 
 from affect.emotion import Emotion
 from robot.contract.catalogue import Catalogue
-from robot.contract.closing import Closing
+from robot.contract.closeable import Closeable
 from robot.contract.driver import DRIVERS, Driver
 from robot.contract.port import Clock
 from robot.contract.telemetry import Telemetry
 from robot.errors import RobotError
-from robot.link.exchange import ByteHook, Exchange
-from robot.link.io_thread import Pump
+from robot.link.exchange import ByteHook, PortExchange
+from robot.link.io_thread import IoThread
 from robot.link.spacing import spaced
 from robot.link.transport import opener
 from robot.protocol import messages as m
 
-INTRODUCTION = 10.0
-"""A robot that answers, over a line that loses much, has so long to introduce itself [s]."""
+CATALOGUE_TIMEOUT_S = 10.0
+"""Additional time to report its catalogue for a robot that answers over a very lossy line [s]."""
 
 
 def connect(
@@ -30,38 +30,38 @@ def connect(
     answer_within: float | None = None,
     settings: Path | str | None = None,
 ) -> "Robot":
-    """Open a port and wait until the robot on it has introduced itself.
+    """Open a port and wait until the robot on it has reported its catalogue.
 
     Parameters
     ----------
     url
         Any pySerial URL ("/dev/ttyACM0", "COM3", "socket://localhost:5000"), or a simulated robot:
-        "sim:cubeling", "sim:pleo?seed=7". The protocol may stand in front: "pleo:/dev/ttyACM0".
+        "sim:cubeling", "sim:pleo?seed=7". The protocol may be a prefix: "pleo:/dev/ttyACM0".
     protocol
-        What the robot speaks, one of `DRIVERS`; None for what the URL says, or "cubeling".
+        One of `DRIVERS`; None for the one in the URL, or "cubeling".
     clock
-        The time [s] by which the link, and a simulated robot, live.
+        The time [s] of the link and of a simulated robot.
     on_bytes
-        Is given every byte of both directions, from the link's thread. It must be quick.
+        Receives every byte of both directions, in the link's thread. It must be fast.
     answer_within
-        How long to wait for the robot [s]; None for the protocol's own time. A board that reboots
-        when its port is opened needs more.
+        How long to wait for the robot [s]; None for the protocol's default. A board that reboots
+        when its port is opened needs longer.
     settings
-        A TOML file for the driver: which motion stands for which mood …; None for its own.
+        A TOML file for the driver: the motion of each mood …; None for the bundled one.
 
     Returns
     -------
     Robot
-        Ready for `express`. Whoever called this closes it.
+        Ready for `express`. The caller closes it.
 
     Raises
     ------
     RobotError
-        If the port does not open, or nobody on it answers in time. Nothing is left open then.
+        If the port does not open, or nobody on it answers in time. Nothing stays open then.
     """
     url, protocol = protocol_of(url, protocol)
     kind = DRIVERS[protocol]
-    # So that two programs are not taken for one: the microsecond in which this one connects.
+    # The microsecond of the call tells this program from others.
     host = int(clock() * 1e6) % 0xFFFFFFFF + 1
     driver = kind.make(host, None if settings is None else Path(settings))
     if kind.opener is None or url.startswith("sim:"):
@@ -70,7 +70,7 @@ def connect(
         open_port = kind.opener(url, clock)
     if kind.spacing:
         open_port = spaced(open_port, kind.spacing, clock)
-    robot = Robot(url, Pump(url, open_port, driver, clock, on_bytes), driver, clock)
+    robot = Robot(url, IoThread(url, open_port, driver, clock, on_bytes), driver, clock)
     wait = kind.answer_within if answer_within is None else answer_within
     try:
         if robot.wait_until_ready(wait):
@@ -78,16 +78,16 @@ def connect(
         if robot.failed:
             robot.check()
         answers = robot.telemetry.silence is not None
-        if answers and robot.wait_until_ready(INTRODUCTION):
+        if answers and robot.wait_until_ready(CATALOGUE_TIMEOUT_S):
             return robot
-    except BaseException:  # also Ctrl-C while waiting: nothing is left open then either
+    except BaseException:  # also Ctrl-C while waiting: nothing stays open then either
         robot.close()
         raise
     robot.close()
     if answers:
         raise RobotError(
             f"the robot on {url} answers, but has not introduced itself within "
-            f"{wait + INTRODUCTION:g} s: is the line very bad?"
+            f"{wait + CATALOGUE_TIMEOUT_S:g} s: is the line very bad?"
         )
     raise RobotError(
         f"nobody on {url} answers in the protocol {protocol!r} within {wait:g} s: "
@@ -96,7 +96,7 @@ def connect(
 
 
 def protocol_of(url: str, protocol: str | None) -> tuple[str, str]:
-    """Return the port's own URL, and the protocol that is spoken there."""
+    """Return the URL of the port without a protocol prefix, and the protocol."""
     named, colon, rest = url.partition(":")
     if colon and named in DRIVERS:
         if protocol not in (None, named):
@@ -111,29 +111,21 @@ def protocol_of(url: str, protocol: str | None) -> tuple[str, str]:
     return url, protocol
 
 
-class Robot(Closing):
+class Robot(Closeable):
     """A robot on a port. Made by `connect`; close it, or use it in a `with` statement.
 
-    No method waits for the robot, and a robot that dies stops nobody: `telemetry.state` says how
-    the link is, and `check()` raises if it is not well. After an unplugging or a reboot the link
-    comes back by itself and restates the last emotion.
+    No method waits for the robot: `telemetry.state` is the state of the link, and `check()` raises
+    if the robot cannot be reached. After an unplugging or a reboot the link recovers by itself and
+    sends the last emotion again.
     """
 
-    def __init__(
-        self,
-        url: str,
-        exchange: Exchange,
-        driver: Driver,
-        clock: Clock,
-    ) -> None:
+    def __init__(self, url: str, exchange: PortExchange, driver: Driver, clock: Clock) -> None:
         self.url = url
-        """The port it is on."""
+        """Its port."""
         self._driver = driver
         self._clock = clock
         self._exchange = exchange
         self._wish: tuple[Emotion, str | None] | None = None
-
-    # --- What to do ----------------------------------------------------------------------------
 
     def express(self, emotion: Emotion, label: str | None = None) -> None:
         """Let the robot feel this from now on; the latest wins. Never waits and never raises.
@@ -154,15 +146,15 @@ class Robot(Closing):
         self._exchange.wake()
 
     def play(self, name: str) -> None:
-        """Let the robot play one of its motions or sounds once.
+        """Play one of the robot's motions or sounds once.
 
-        It is taken at most once, and not late: if the link is lost now or before the robot takes
-        it, it is dropped and counted.
+        It is played at most once and never late: if the link is lost before the robot takes it, it
+        is dropped and counted.
 
         Raises
         ------
         RobotError
-            If the robot has nothing of that name, or too many wait already.
+            If the robot has nothing of that name, or too many are waiting.
         """
         catalogue = self.catalogue
         if name in catalogue.motions:
@@ -179,23 +171,21 @@ class Robot(Closing):
         self._exchange.wake()
 
     def stop(self) -> None:
-        """Let the robot end everything and hold its neutral pose, until it is asked for more."""
+        """End everything and hold the neutral pose until the next `express` or `play`."""
         with self._exchange.lock:
             self._wish = None
             self._driver.stop()
         self._exchange.wake()
 
-    # --- How it is -----------------------------------------------------------------------------
-
     @property
     def telemetry(self) -> Telemetry:
-        """What is known now."""
+        """What is known of the robot now."""
         with self._exchange.lock:
-            known = self._driver.telemetry(self._clock())
+            telemetry = self._driver.telemetry(self._clock())
         discarded = self._exchange.discarded
         if not discarded:
-            return known
-        return replace(known, counts=replace(known.counts, discarded=discarded))
+            return telemetry
+        return replace(telemetry, counts=replace(telemetry.counts, discarded=discarded))
 
     @property
     def catalogue(self) -> Catalogue:
@@ -206,7 +196,7 @@ class Robot(Closing):
             return self._driver.catalogue
 
     def check(self) -> None:
-        """Raise RobotError, in one line, if the robot cannot be reached now."""
+        """Raise RobotError if the robot cannot be reached now."""
         failure = self._exchange.failure
         if failure is not None:
             raise RobotError(f"the link to {self.url} broke: {failure!r}") from failure
@@ -222,21 +212,20 @@ class Robot(Closing):
 
     @property
     def failed(self) -> bool:
-        """Whether the link's thread has broken down; `check` says why."""
+        """Whether the link's thread has ended with an error; `check` raises it."""
         return self._exchange.failure is not None
 
     def wait_until_ready(self, timeout: float) -> bool:
-        """Wait until the link is ready, for at most `timeout` seconds; whether it is."""
-        heard, closing = self._exchange.heard, self._exchange.closing
-        with heard:
-            return heard.wait_for(self._is_settled, timeout) and not closing.is_set()
+        """Wait at most `timeout` seconds until the link is ready; return whether it is."""
+        received, closing = self._exchange.received, self._exchange.closing
+        with received:
+            return received.wait_for(self._is_decided, timeout) and not closing.is_set()
 
-    def _is_settled(self) -> bool:
+    def _is_decided(self) -> bool:
+        """Return whether the link is ready or has ended."""
         state = self._driver.state(self._clock())
         return self._exchange.closing.is_set() or state in ("ready", "degraded")
 
-    # --- The end -------------------------------------------------------------------------------
-
     def close(self) -> None:
-        """Say goodbye, end the thread and give the port back. A second call does nothing."""
+        """End the session and the thread, and close the port. A second call does nothing."""
         self._exchange.close()

@@ -1,7 +1,6 @@
-"""Bytes between a port and a driver: one turn reads, lets the driver think, and writes.
+"""Moves bytes between a port and a driver, within a rate limit.
 
-Who turns, and how it waits, is another matter: a thread in real time (`robot.link.io_thread`), or
-whoever owns a simulated robot, in virtual time (`robot.simulators.stepped`).
+`robot.link.io_thread` does so in real time, `robot.simulators.stepped` in virtual time.
 """
 
 import contextlib
@@ -14,84 +13,111 @@ import serial
 from robot.contract.driver import Driver
 from robot.contract.port import Clock, Opener, Port
 from robot.errors import RobotError
-from robot.link.budget import Budget
 
 ByteHook = Callable[[Literal["tx", "rx"], bytes, float], None]
-"""Is called by who turns, with a direction, the bytes, and the time [s]."""
+"""Called with a direction, the bytes and the time [s]."""
 
-REOPEN_EVERY = 0.25
-"""A port that is gone is looked for this often [s]."""
+REOPEN_INTERVAL_S = 0.25
+"""Time between two attempts to open a port that is gone [s]."""
 
-READ_AT_ONCE = 1024
-"""Most bytes taken from the port in one go."""
+MAX_READ_BYTES = 1024
+"""Most bytes that one transfer reads."""
+
+MAX_BYTES_PER_S = 12_000
+"""Long-term limit of what is decoded [bytes/s]: slightly more than 115200 baud. A robot of our
+protocol sends about 2 kB/s; without a limit, decoding noise could keep whole cores busy."""
+
+MAX_BURST_BYTES = 16_000
+"""Bytes that may arrive at once: what is waiting after this computer has slept for seconds."""
+
+FLOOD_PAUSE_S = 0.020
+"""Pause after the limit was exceeded [s]. It is less than half a beat, so that beats stay in time;
+and a flood that fills the system's buffers, some 64 kB, is read within two seconds."""
 
 
-class Exchange:
-    """Moves bytes between a port and a driver, a turn at a time.
+class TokenBucket:
+    """Limits received bytes to `MAX_BYTES_PER_S` and `MAX_BURST_BYTES`."""
+
+    def __init__(self) -> None:
+        self._tokens = float(MAX_BURST_BYTES)
+        self._last: float | None = None
+
+    def grant(self, count: int, now: float) -> int:
+        """Return how many of `count` bytes that arrived at `now` [s] are within the limit."""
+        elapsed = 0.0 if self._last is None else max(0.0, now - self._last)
+        self._last = now
+        self._tokens = min(self._tokens + MAX_BYTES_PER_S * elapsed, MAX_BURST_BYTES)
+        granted = min(count, int(self._tokens))
+        self._tokens -= granted
+        return granted
+
+
+class PortExchange:
+    """Moves bytes between a port and a driver, one transfer at a time.
 
     Parameters
     ----------
     open_port
-        Opens the port, now and after an unplugging; the exchange closes it.
+        Opens the port, now and after an unplugging; this object closes it.
     driver
-        Who speaks. Whoever else touches it holds `lock`.
+        The host side of the protocol. Others use it only while they hold `lock`.
     clock
         The time [s].
     on_bytes
-        Is given every byte of both directions.
+        Receives every byte of both directions.
     """
 
     def __init__(
         self, open_port: Opener, driver: Driver, clock: Clock, on_bytes: ByteHook | None
     ) -> None:
         self.lock = threading.Lock()
-        """Guards the driver; never held while the port is waited for."""
-        self.heard = threading.Condition(self.lock)
-        """Is notified after bytes have been received, and at the end."""
+        """Guards the driver; never held during a wait for the port."""
+        self.received = threading.Condition(self.lock)
+        """Notified after bytes have been received, and at the end."""
         self.closing = threading.Event()
         """Set when the end has begun."""
         self.failure: Exception | None = None
-        """What ended it, if that was not `close`."""
+        """The error that ended it, if any."""
         self.discarded = 0
-        """Bytes thrown away unread: the robot said too much."""
+        """Received bytes beyond the rate limit."""
         self._open_port = open_port
         self._port: Port | None = open_port()
         self._driver = driver
         self._clock = clock
         self._on_bytes = on_bytes
-        self._budget = Budget()
+        self._bucket = TokenBucket()
         self._driver.port_opened(clock())
 
     def wake(self) -> None:
-        """End a wait for bytes, if there is one: the driver has been asked for something."""
+        """End a wait for bytes, if there is one: the driver has a new request."""
 
     def close(self) -> None:
-        """Say goodbye and give the port back. A second call does nothing."""
+        """End the session and close the port. A second call does nothing."""
         self.closing.set()
-        self._say_goodbye()
+        self._shut_down()
 
-    def _turn(self, port: Port, read: Callable[[Port], bytes]) -> bool:
-        """Read what is there, let the driver think, write what it says.
+    def _transfer(self, port: Port, read: Callable[[Port], bytes]) -> bool:
+        """Read what has arrived, let the driver process it, and write what it sends.
 
-        Returns whether the robot has said more than it may: the rest was thrown away, undecoded.
+        Returns whether the robot exceeded the rate limit; the excess was discarded.
         """
         try:
             data = read(port)
         except OSError:  # pySerial's own errors are OSErrors too: unplugged
-            self._unplug(port)
+            self._drop_port(port)
             return False
         now = self._clock()
-        granted = self._budget.grant(len(data), now)
-        with self.heard:
+        granted = self._bucket.grant(len(data), now)
+        with self.received:
             self._driver.receive(data[:granted], now)
             self._driver.tick(now)
             answer = self._driver.bytes_to_send()
             if data:
-                self.heard.notify_all()
-        self._tell("rx", data, now)
+                self.received.notify_all()
+        self._report("rx", data, now)
         if answer:
             self._write(port, answer)
-            self._tell("tx", answer, now)
+            self._report("tx", answer, now)
         self.discarded += len(data) - granted
         return granted < len(data)
 
@@ -99,15 +125,15 @@ class Exchange:
         try:
             port.write(data)
         except serial.SerialTimeoutException:
-            pass  # a robot that does not read its line loses these bytes; its silence will tell
+            pass  # a robot that does not read its line loses these bytes; its silence shows it
         except OSError:
-            self._unplug(port)
+            self._drop_port(port)
 
-    def _tell(self, direction: Literal["tx", "rx"], data: bytes, now: float) -> None:
+    def _report(self, direction: Literal["tx", "rx"], data: bytes, now: float) -> None:
         if data and self._on_bytes is not None:
             self._on_bytes(direction, data, now)
 
-    def _unplug(self, port: Port) -> None:
+    def _drop_port(self, port: Port) -> None:
         with self.lock:
             self._port = None
             self._driver.port_lost()
@@ -115,7 +141,7 @@ class Exchange:
             port.close()
 
     def _reopen(self) -> bool:
-        """Look for a port that was unplugged; whether it is back."""
+        """Try to open a port that was unplugged; return whether it is back."""
         try:
             port = self._open_port()
         except RobotError:
@@ -125,18 +151,18 @@ class Exchange:
             self._driver.port_opened(self._clock())
         return True
 
-    def _say_goodbye(self) -> None:
+    def _shut_down(self) -> None:
         self.closing.set()
-        with self.heard:
+        with self.received:
             self._driver.close()
             farewell = self._driver.bytes_to_send()
             port, self._port = self._port, None
-            self.heard.notify_all()
+            self.received.notify_all()
         if port is None:
             return
         with contextlib.suppress(OSError):
             port.write(farewell)
         with contextlib.suppress(OSError):
             port.close()
-        if self.failure is None:  # else it may be the hook itself that failed
-            self._tell("tx", farewell, self._clock())
+        if self.failure is None:  # otherwise the hook itself may have failed
+            self._report("tx", farewell, self._clock())

@@ -1,29 +1,34 @@
-"""The thread between a port and a protocol: the only one of a link, and the only one that waits."""
+"""The I/O thread of a link: the only one that waits for the port."""
 
 import contextlib
 import threading
 
 from robot.contract.driver import Driver
 from robot.contract.port import Clock, Opener, Port
-from robot.link.budget import REST
-from robot.link.exchange import READ_AT_ONCE, REOPEN_EVERY, ByteHook, Exchange
+from robot.link.exchange import (
+    FLOOD_PAUSE_S,
+    MAX_READ_BYTES,
+    REOPEN_INTERVAL_S,
+    ByteHook,
+    PortExchange,
+)
 
-JOIN_WITHIN = 1.0
+JOIN_TIMEOUT_S = 1.0
 """Longest wait for the thread to end [s]."""
 
 PSEUDO_TERMINALS = ("/dev/pts/", "/dev/ttys")
-"""Ports that are not opened again: once gone, the same name may be somebody's shell."""
+"""Ports that are not opened again: once one is gone, the same name may be a person's shell."""
 
 
-class Pump(Exchange):
-    """Moves bytes in a thread of its own, and finds the port again after an unplugging.
+class IoThread(PortExchange):
+    """Moves bytes in its own thread, and reopens the port after an unplugging.
 
     Parameters
     ----------
     url
-        What the port is called.
+        Name of the port.
     open_port, driver, clock, on_bytes
-        See `Exchange`.
+        See `PortExchange`.
     """
 
     def __init__(
@@ -36,46 +41,46 @@ class Pump(Exchange):
         self._thread.start()
 
     def wake(self) -> None:
-        """End the read that waits, where the port can; elsewhere it ends by itself very soon."""
+        """Cancel the read in progress where the port can; elsewhere it ends very soon by itself."""
         with self.lock:  # so that the port is not closed meanwhile
             cancel = getattr(self._port, "cancel_read", None)
             if cancel is not None and not self._woken:
                 self._woken = True
-                with contextlib.suppress(OSError):  # it notices at its next read
+                with contextlib.suppress(OSError):  # the next read reports it
                     cancel()
 
     def close(self) -> None:
-        """Say goodbye, end the thread and give the port back."""
+        """End the session and the thread, and close the port."""
         self.closing.set()
         self.wake()
         if threading.current_thread() is not self._thread:
-            self._thread.join(JOIN_WITHIN)
+            self._thread.join(JOIN_TIMEOUT_S)
 
     def _run(self) -> None:
         try:
             while not self.closing.is_set():
                 if self._port is None:
-                    self._look()
-                elif self._turn(self._port, self._read):
-                    self.closing.wait(REST)
+                    self._wait_for_port()
+                elif self._transfer(self._port, self._read):
+                    self.closing.wait(FLOOD_PAUSE_S)
         except Exception as error:
-            self.failure = error  # `check` tells it; a thread has nobody else to tell
+            self.failure = error  # `Robot.check` raises it
         finally:
-            self._say_goodbye()
+            self._shut_down()
 
-    def _look(self) -> None:
+    def _wait_for_port(self) -> None:
         if self._url.startswith(PSEUDO_TERMINALS):
             self.closing.wait()
         elif not self._reopen():
-            self.closing.wait(REOPEN_EVERY)
+            self.closing.wait(REOPEN_INTERVAL_S)
 
     def _read(self, port: Port) -> bytes:
-        """Wait a moment for a byte, then take all that is there."""
+        """Wait briefly for a byte, then read everything that has arrived."""
         data = port.read(1)
-        while data and len(data) < READ_AT_ONCE:
+        while data and len(data) < MAX_READ_BYTES:
             waiting = port.in_waiting
             if not waiting:
                 break
-            data += port.read(min(waiting, READ_AT_ONCE - len(data)))
+            data += port.read(min(waiting, MAX_READ_BYTES - len(data)))
         self._woken = False
         return data

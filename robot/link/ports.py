@@ -1,4 +1,4 @@
-"""Which serial ports there are, and what is probably plugged into them."""
+"""The serial ports of this computer and what is probably connected to them."""
 
 from dataclasses import dataclass
 
@@ -20,37 +20,37 @@ _GUESSES = {
 
 @dataclass(frozen=True)
 class SerialPort:
-    """A serial port of this machine."""
+    """A serial port of this computer."""
 
     url: str
     """What `connect` opens."""
 
     description: str
-    """What the system says of it."""
+    """Description by the operating system."""
 
     guess: str | None
-    """What is probably plugged in; None where there is no hint."""
+    """The device that is probably connected; None if unknown."""
 
     vendor: int | None
-    """USB vendor id, or None where it is not a USB port."""
+    """USB vendor id; None for a port that is not on USB."""
 
     product: int | None
     """USB product id, or None."""
 
 
-def guess(vendor: int | None) -> str | None:
-    """Say what a USB vendor id hints at.
+def guess_device(vendor: int | None) -> str | None:
+    """Return the device that a USB vendor id suggests, or None.
 
-    >>> guess(0x6962)
+    >>> guess_device(0x6962)
     'a Pleo'
     """
     return None if vendor is None else _GUESSES.get(vendor)
 
 
 def serial_ports() -> list[SerialPort]:
-    """List the serial ports of this machine, USB ones first; opens none of them."""
+    """List the serial ports of this computer, USB ports first; opens none of them."""
     found = [
-        SerialPort(port.device, port.description or "", guess(port.vid), port.vid, port.pid)
+        SerialPort(port.device, port.description or "", guess_device(port.vid), port.vid, port.pid)
         for port in list_ports.comports()
     ]
     return sorted(found, key=lambda port: (port.vendor is None, port.url))

@@ -1,23 +1,26 @@
-"""Ports: what pySerial opens, and simulated robots that read and write like one."""
+"""Opens ports by URL, and finds a USB device again after it was unplugged.
+
+Linux numbers USB ports as they appear: what was /dev/ttyACM0 becomes /dev/ttyACM1 while another
+program still holds the old name. The USB identity tells whether it is the same device.
+"""
 
 import re
 import time
 from collections.abc import Callable
-from typing import cast
+from typing import NamedTuple, cast
 
 import serial
+from serial.tools import list_ports
 
-from robot.contract.port import READ_TIMEOUT, Clock, Opener, Port
+from robot.contract.port import READ_TIMEOUT_S, Clock, Opener, Port
 from robot.errors import RobotError
-from robot.link.plug import Identity, identity_of, name_of
 from robot.protocol import timing
 
 SCHEMES: dict[str, Callable[[str, Clock], Opener]] = {}
-"""What opens URLs that pySerial does not know, by their scheme; `robot` registers "sim"."""
+"""Openers of the URL schemes that pySerial does not know; `robot` registers "sim"."""
 
-WRITE_TIMEOUT = 0.2
-"""Longest wait in one write [s]; a robot that no longer reads makes its line fill up."""
-
+WRITE_TIMEOUT_S = 0.2
+"""Longest wait in one write [s]; the line fills up when a robot no longer reads."""
 
 _NO_PORT = "there is no such port; `cubeling robot list` shows those there are"
 _NOT_SERIAL = "that is no serial port; `cubeling robot list` shows those there are"
@@ -32,26 +35,26 @@ _REASONS = {
     "refused": "nobody listens there",
     "timed out": "nobody answers there",
 }
-"""Signs in the systems' messages, and what they mean."""
+"""Parts of the operating systems' messages, and what they mean."""
 
 
 def opener(url: str, clock: Clock = time.monotonic, baud: int = timing.BAUD) -> Opener:
-    """Return what opens a port, now and after every unplugging.
+    """Return a function that opens a port, now and after every unplugging.
 
     Parameters
     ----------
     url
-        Whatever pySerial opens: "/dev/ttyACM0", "COM3", "socket://localhost:5000"; or a simulated
-        robot, as `SimulatedWire` takes it: "sim:cubeling", "sim:pleo?drop=0.05&seed=7".
+        Any pySerial URL: "/dev/ttyACM0", "COM3", "socket://localhost:5000"; or a simulated robot:
+        "sim:cubeling", "sim:pleo?drop=0.05&seed=7".
     clock
-        The time by which a simulated robot lives.
+        The time of a simulated robot.
     baud
-        Bits a second on a real serial line.
+        Bits per second on a real serial line.
 
     Raises
     ------
     RobotError
-        If the URL can be no port; both this and the opener may, and the line says why.
+        If the URL names no port, with the reason; both this function and the opener raise it.
     """
     if not url:
         raise RobotError("a port must be named; `cubeling robot list` shows those there are")
@@ -60,24 +63,65 @@ def opener(url: str, clock: Clock = time.monotonic, baud: int = timing.BAUD) -> 
     scheme, colon, _ = url.partition(":")
     if colon and scheme in SCHEMES:
         return SCHEMES[scheme](url, clock)
-    return _Plug(url, baud).open
+    return _PluggablePort(url, baud).open
 
 
-class _Plug:
-    """A port of this computer, or a network's, that may be pulled and put in again."""
+class UsbIdentity(NamedTuple):
+    """Identifies a USB device."""
+
+    vendor: int
+    """USB vendor id."""
+
+    product: int
+    """USB product id."""
+
+    serial: str | None
+    """Its serial number; cheap boards have none."""
+
+    socket: str | None
+    """Where it is plugged in, by the operating system; used where there is no serial number."""
+
+    def matches(self, other: "UsbIdentity") -> bool:
+        """Return whether both are the same device."""
+        if self.serial and other.serial:
+            return self[:3] == other[:3]
+        return self == other
+
+
+def usb_identity(name: str) -> UsbIdentity | None:
+    """Return the identity of the USB device at a port; None if there is none."""
+    return next((found for device, found in _usb_devices() if device == name), None)
+
+
+def find_port(identity: UsbIdentity) -> str | None:
+    """Return the port of a USB device; None unless exactly one device matches."""
+    names = [device for device, found in _usb_devices() if found.matches(identity)]
+    return names[0] if len(names) == 1 else None
+
+
+def _usb_devices() -> list[tuple[str, UsbIdentity]]:
+    return [
+        (port.device, UsbIdentity(port.vid, port.pid, port.serial_number, port.location))
+        for port in list_ports.comports()
+        if port.vid is not None
+    ]
+
+
+class _PluggablePort:
+    """A port of this computer or of a network that may be unplugged and plugged in again."""
 
     def __init__(self, url: str, baud: int) -> None:
         self._url = url
         self._baud = baud
-        self._identity: Identity | None = None
+        self._identity: UsbIdentity | None = None
 
     def open(self) -> Port:
         name = self._url
         if self._identity is not None:
-            name = name_of(self._identity) or name
+            name = find_port(self._identity) or name
         port = _open_serial(name, self._baud)
         if self._identity is None and "://" not in name:
-            self._identity = identity_of(name)
+            self._identity = usb_identity(name)
         return port
 
 
@@ -86,18 +130,18 @@ def _open_serial(url: str, baud: int) -> Port:
         port = serial.serial_for_url(
             url,
             baudrate=baud,
-            timeout=READ_TIMEOUT,
-            write_timeout=WRITE_TIMEOUT,
+            timeout=READ_TIMEOUT_S,
+            write_timeout=WRITE_TIMEOUT_S,
             exclusive=True,  # two programs on one port look like a broken robot to both
         )
-    except Exception as error:  # a port that vanishes, a URL that trips pySerial's own parsing
+    except Exception as error:  # a port that vanishes, a URL that pySerial cannot parse
         shown = url if url.isprintable() else repr(url)
         raise RobotError(f"cannot open the port {shown}: {_reason(url, error)}") from error
     return cast(Port, port)
 
 
 def _reason(url: str, error: Exception) -> str:
-    """Say in a person's words why a port does not open; pySerial's own where none is known."""
+    """Return why a port does not open, in plain words where the message is known."""
     text = " ".join(str(error).split())
     for sign, words in _REASONS.items():
         if sign in text:

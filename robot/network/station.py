@@ -4,7 +4,7 @@ import threading
 from collections import deque
 from typing import Generic, Self, TypeVar
 
-from robot.contract.closing import Closing
+from robot.contract.closeable import Closeable
 from robot.contract.port import Clock
 from robot.network.bus import Bus, BusState, Letter
 from robot.network.endpoint import Endpoint
@@ -24,7 +24,7 @@ JOIN_WITHIN = 2.0
 E = TypeVar("E", bound=Endpoint)
 
 
-class Station(Closing, Generic[E]):
+class Station(Closeable, Generic[E]):
     """Puts a member on a bus. Close it, or use it in a `with` statement.
 
     Whoever else touches the member holds `lock`; it is held for moments only.

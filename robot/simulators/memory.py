@@ -6,7 +6,7 @@ from urllib.parse import parse_qsl
 
 import serial
 
-from robot.contract.port import READ_TIMEOUT, Clock, Opener
+from robot.contract.port import READ_TIMEOUT_S, Clock, Opener
 from robot.errors import RobotError
 from robot.simulators import SIMULATORS
 from robot.simulators.base import Simulated
@@ -108,10 +108,10 @@ class MemoryPort:
         return len(self._arrived)
 
     def read(self, size: int = 1, /) -> bytes:
-        """Read up to `size` bytes; waits at most `READ_TIMEOUT` for the first."""
+        """Read up to `size` bytes; waits at most `READ_TIMEOUT_S` for the first."""
         self._live()
         if not self._arrived:
-            self._cancelled.wait(READ_TIMEOUT)
+            self._cancelled.wait(READ_TIMEOUT_S)
             self._cancelled.clear()
             self._live()
         data = bytes(self._arrived[:size])

@@ -10,7 +10,7 @@ import threading
 import time
 from typing import Literal, Protocol
 
-from robot.contract.closing import Closing
+from robot.contract.closeable import Closeable
 from robot.contract.port import Clock
 from robot.errors import RobotError
 from robot.simulators.base import Simulated
@@ -19,7 +19,7 @@ from robot.simulators.cubeling.simulator import Simulator
 WAIT = 0.010
 """Longest wait for bytes [s]; the robot lives in steps of 20 ms."""
 
-READ_AT_ONCE = 4096
+MAX_READ_BYTES = 4096
 """Most bytes taken from the line in one go."""
 
 
@@ -65,7 +65,7 @@ class _PtyLine:
         if self._near not in ready:
             return b""
         try:
-            return os.read(self._near, READ_AT_ONCE)
+            return os.read(self._near, MAX_READ_BYTES)
         except OSError as error:
             if error.errno not in (errno.EIO, errno.EAGAIN):
                 raise
@@ -104,7 +104,7 @@ class _TcpLine:
         if self._client is None or self._client not in ready:
             return b""
         try:
-            data = self._client.recv(READ_AT_ONCE)
+            data = self._client.recv(MAX_READ_BYTES)
         except OSError:
             data = b""
         if not data:
@@ -130,7 +130,7 @@ class _TcpLine:
             self._client = None
 
 
-class SimulatedPort(Closing):
+class SimulatedPort(Closeable):
     """Puts a simulated robot behind a real port, for as long as a `with` statement lasts.
 
     Parameters

@@ -23,7 +23,7 @@ from rich.table import Table
 from affect.emotion import Emotion
 from robot.contract.driver import Driver
 from robot.drivers import DRIVERS
-from robot.link.exchange import REOPEN_EVERY
+from robot.link.exchange import REOPEN_INTERVAL_S
 from robot.protocol import messages as m
 from robot.simulators import SIMULATORS
 from robot.simulators.faults import Faults, Spell
@@ -146,9 +146,9 @@ class Day:
     def _watch_plug(self) -> None:
         if self.port_open and self.robot.pulls != self.pulls:
             self.driver.port_lost()
-            self.port_open, self.reopen_at = False, self.now + REOPEN_EVERY
+            self.port_open, self.reopen_at = False, self.now + REOPEN_INTERVAL_S
         if not self.port_open and self.now >= self.reopen_at:
-            self.port_open, self.reopen_at = self.robot.plugged_in, self.now + REOPEN_EVERY
+            self.port_open, self.reopen_at = self.robot.plugged_in, self.now + REOPEN_INTERVAL_S
             if self.port_open:
                 self.pulls = self.robot.pulls
                 self.driver.port_opened(self.now)

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from robot.contract.port import READ_TIMEOUT
-from robot.link.exchange import REOPEN_EVERY
+from robot.contract.port import READ_TIMEOUT_S
+from robot.link.exchange import REOPEN_INTERVAL_S
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.wire import MAX_FRAME
@@ -120,7 +120,7 @@ class CampaignWorld:
         arrived = faulty.bytes_to_send()  # lost if nobody has the port open
         if self.port_open:
             self._talk(arrived)
-        self.tick_at = now + READ_TIMEOUT
+        self.tick_at = now + READ_TIMEOUT_S
 
     def _talk(self, data: bytes) -> None:
         now = self.now
@@ -138,13 +138,13 @@ class CampaignWorld:
         """Be to the host what its pump is when the port vanishes and comes back."""
         if self.port_open and self.faulty.pulls != self.pulls:
             self.host.port_lost()
-            self.port_open, self.reopen_at = False, self.now + REOPEN_EVERY
+            self.port_open, self.reopen_at = False, self.now + REOPEN_INTERVAL_S
         if not self.port_open and self.now >= self.reopen_at:
             self._open_port()
 
     def _open_port(self) -> None:
         self.port_open = self.faulty.plugged_in
-        self.reopen_at = self.now + REOPEN_EVERY
+        self.reopen_at = self.now + REOPEN_INTERVAL_S
         if self.port_open:
             self.pulls = self.faulty.pulls
             self.host.port_opened(self.now)

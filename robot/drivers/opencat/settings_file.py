@@ -8,7 +8,7 @@ from typing import Any
 
 from affect.settings import Table, read, shown
 from affect.words import PLACES
-from robot.contract.catalogue import NAME_MAX
+from robot.contract.catalogue import MAX_NAME_BYTES
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.models import MODELS
 from robot.drivers.opencat.settings import BAUDS, Behaviour, Mood, Notes, Settings
@@ -65,7 +65,7 @@ def settings_of(said: Mapping[str, Any], source: str) -> Settings:
 def _behaviour(table: Table, model: str) -> Behaviour:
     table.only("stop", "motions", "sounds", "moods")
     told = table.table("sounds")
-    sounds = {name: _melody(told, name) for name in told.names(NAME_MAX)}
+    sounds = {name: _melody(told, name) for name in told.names(MAX_NAME_BYTES)}
     listed = table.table("moods")
     moods = {}
     for word in sorted(listed.names(), key=lambda word: (word != "neutral", word)):

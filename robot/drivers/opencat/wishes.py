@@ -8,7 +8,7 @@ robot of which nobody wants anything is let lie down.
 from collections import deque
 
 from affect.emotion import Emotion
-from robot.contract.driver import ACTIONS_MAX
+from robot.contract.driver import MAX_QUEUED_ACTIONS
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.exchange import Command
 from robot.drivers.opencat.order import POSTURE_WITHIN, StandingOrder
@@ -75,7 +75,7 @@ class Wishes:
 
     def play(self, name: str) -> bool:
         """Ask for a skill or a melody once; False if too many wait already."""
-        if len(self._actions) >= ACTIONS_MAX:
+        if len(self._actions) >= MAX_QUEUED_ACTIONS:
             return False
         self._actions.append(name)
         self._touched = True

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from affect.settings import Table, read
-from robot.contract.catalogue import NAME_MAX
+from robot.contract.catalogue import MAX_NAME_BYTES
 from robot.drivers.pleo import timing
 from robot.drivers.pleo.joints import JOINT_NUMBERS, JOINTS
 from robot.drivers.pleo.settings import BUNDLED, Clip, Mood, Settings
@@ -32,15 +32,15 @@ def load_settings(path: Path | None = None) -> Settings:
     console = top.table("console")
     console.only("volume", "battery_every_s", "mood_every_s", "play_within_s", "boot_text")
     volume = console.whole("volume", 0, 100, 70)
-    moods = top.tables("moods", longest=NAME_MAX)
+    moods = top.tables("moods", longest=MAX_NAME_BYTES)
     if "neutral" not in moods:
         raise top.wrong("moods", "there must be a mood called neutral: write [moods.neutral]")
     named = {name: _mood(table, volume) for name, table in moods.items()}
     motions = {
-        name: _clip(table) for name, table in top.tables("motions", longest=NAME_MAX).items()
+        name: _clip(table) for name, table in top.tables("motions", longest=MAX_NAME_BYTES).items()
     }
     sounds = top.table("sounds")
-    names = sounds.names(NAME_MAX)
+    names = sounds.names(MAX_NAME_BYTES)
     both = set(motions) & set(names)
     if both:
         raise sounds.wrong(min(both), "a motion has this name too; call one of them otherwise")

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from affect.emotion import Emotion
 from affect.words import closest_word
-from robot.contract.driver import ACTIONS_MAX
+from robot.contract.driver import MAX_QUEUED_ACTIONS
 from robot.drivers.pleo import commands, timing
 from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.console import Landing
@@ -82,7 +82,7 @@ class Wishes:
 
     def play(self, motion: Clip | None, sound: str) -> bool:
         """Want a motion, or else a sound, once; False if too many wait already."""
-        if len(self._actions) >= ACTIONS_MAX:
+        if len(self._actions) >= MAX_QUEUED_ACTIONS:
             return False
         within = self._settings.play_within
         if motion is not None:

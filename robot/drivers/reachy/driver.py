@@ -16,8 +16,8 @@ import numpy as np
 from affect.emotion import Emotion
 from affect.words import closest_word
 from robot.contract.catalogue import Catalogue
-from robot.contract.driver import ACTIONS_MAX
-from robot.contract.motions import Array, Motion
+from robot.contract.driver import MAX_QUEUED_ACTIONS
+from robot.contract.motions import Array, SineMotion
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.lines import LineReader
 from robot.drivers.reachy import moves
@@ -63,8 +63,8 @@ class ReachyDriver:
         self._acknowledged: Emotion | None = None
         self._mood = moves.MOODS[0]
         self._still = self._stopped = False  # whether it is to be so, and whether it is
-        self._playing: Motion | None = None
-        self._waiting: deque[Motion] = deque()
+        self._playing: SineMotion | None = None
+        self._waiting: deque[SineMotion] = deque()
         self._motion_time = 0.0
         self._angles = np.zeros(len(moves.JOINTS))
         self._flight: _Flight | None = None
@@ -93,7 +93,7 @@ class ReachyDriver:
         if self.state(self._heard or 0.0) not in ("ready", "degraded"):
             self._counts["dropped"] += 1
             return True
-        if len(self._waiting) >= ACTIONS_MAX:
+        if len(self._waiting) >= MAX_QUEUED_ACTIONS:
             return False
         if item == m.ITEM_MOTION:
             self._waiting.append(moves.MOTIONS[index])

@@ -14,7 +14,7 @@ from typing import Any
 
 import serial
 
-from robot.contract.port import READ_TIMEOUT, Clock, Port
+from robot.contract.port import READ_TIMEOUT_S, Clock, Port
 from robot.drivers.reachy.hand import CONNECT_WITHIN, Hand
 from robot.errors import RobotError
 
@@ -105,10 +105,10 @@ class ReachyLine:
             return len(self._arrived)
 
     def read(self, size: int = 1, /) -> bytes:
-        """Read up to `size` bytes; waits at most `READ_TIMEOUT` for the first."""
+        """Read up to `size` bytes; waits at most `READ_TIMEOUT_S` for the first."""
         with self._lock:
             if not self._arrived and not self._broken:
-                self._lock.wait(READ_TIMEOUT)
+                self._lock.wait(READ_TIMEOUT_S)
             if not self._arrived and self._broken:
                 raise serial.SerialException("the robot's daemon does not answer")
             data = bytes(self._arrived[:size])

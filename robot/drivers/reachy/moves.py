@@ -5,7 +5,7 @@ from math import radians
 import numpy as np
 
 from robot.contract.catalogue import Catalogue, JointLimits
-from robot.contract.motions import Array, Motion, Sway
+from robot.contract.motions import Array, JointSine, SineMotion
 
 _LIMITS_DEG = (
     ("head roll", -25, 25, 60),
@@ -28,75 +28,79 @@ SPEED = np.radians([row[3] for row in _LIMITS_DEG])
 """Fastest turn of each [rad/s]."""
 
 MOODS = (
-    Motion(
+    SineMotion(
         "neutral",
         5.0,
         {
-            "head yaw": Sway(0, 10),
-            "head pitch": Sway(0, 2, 2),
-            "right antenna": Sway(-12, 5, 2),
-            "left antenna": Sway(12, 5, 2, 0.1),
+            "head yaw": JointSine(0, 10),
+            "head pitch": JointSine(0, 2, 2),
+            "right antenna": JointSine(-12, 5, 2),
+            "left antenna": JointSine(12, 5, 2, 0.1),
         },
     ),
-    Motion(
+    SineMotion(
         "happy",
         2.4,
         {
-            "head roll": Sway(0, 11, 2),
-            "head pitch": Sway(-10, 5, 2, 0.25),
-            "body yaw": Sway(0, 12),
-            "right antenna": Sway(-5, 26, 3),
-            "left antenna": Sway(5, 26, 3, 0.5),
+            "head roll": JointSine(0, 11, 2),
+            "head pitch": JointSine(-10, 5, 2, 0.25),
+            "body yaw": JointSine(0, 12),
+            "right antenna": JointSine(-5, 26, 3),
+            "left antenna": JointSine(5, 26, 3, 0.5),
         },
     ),
-    Motion(
+    SineMotion(
         "angry",
         2.0,
         {
-            "head pitch": Sway(15, 3, 4),
-            "head yaw": Sway(0, 12, 2),
-            "right antenna": Sway(-75, 6, 6),
-            "left antenna": Sway(75, 6, 6, 0.5),
+            "head pitch": JointSine(15, 3, 4),
+            "head yaw": JointSine(0, 12, 2),
+            "right antenna": JointSine(-75, 6, 6),
+            "left antenna": JointSine(75, 6, 6, 0.5),
         },
     ),
-    Motion(
+    SineMotion(
         "sad",
         6.0,
         {
-            "head pitch": Sway(22, 3),
-            "head roll": Sway(5, 2, 1, 0.25),
-            "right antenna": Sway(-85, 4),
-            "left antenna": Sway(85, 4, 1, 0.1),
+            "head pitch": JointSine(22, 3),
+            "head roll": JointSine(5, 2, 1, 0.25),
+            "right antenna": JointSine(-85, 4),
+            "left antenna": JointSine(85, 4, 1, 0.1),
         },
     ),
-    Motion(
+    SineMotion(
         "surprised",
         4.0,
         {
-            "head pitch": Sway(-16, 2),
-            "right antenna": Sway(8, 3, 4),
-            "left antenna": Sway(-8, 3, 4),
+            "head pitch": JointSine(-16, 2),
+            "right antenna": JointSine(8, 3, 4),
+            "left antenna": JointSine(-8, 3, 4),
         },
     ),
-    Motion(
+    SineMotion(
         "sleepy",
         7.0,
         {
-            "head pitch": Sway(14, 7),
-            "head roll": Sway(6, 3),
-            "right antenna": Sway(-50, 4),
-            "left antenna": Sway(50, 4),
+            "head pitch": JointSine(14, 7),
+            "head roll": JointSine(6, 3),
+            "right antenna": JointSine(-50, 4),
+            "left antenna": JointSine(50, 4),
         },
     ),
 )
 """One endless motion for each mood, neutral first."""
 
 ACTIONS = (
-    Motion("nod", 1.6, {"head pitch": Sway(2, 10, 2)}),
-    Motion("shake head", 1.8, {"head yaw": Sway(0, 16, 2)}),
-    Motion("wiggle", 1.5, {"right antenna": Sway(0, 30, 3), "left antenna": Sway(0, 30, 3, 0.5)}),
-    Motion("bow", 3.0, {"head pitch": Sway(12, 12, 1, -0.25)}),
-    Motion("kiss", 2.0, {"head pitch": Sway(-4, 9, 2), "head roll": Sway(8, 0)}),
+    SineMotion("nod", 1.6, {"head pitch": JointSine(2, 10, 2)}),
+    SineMotion("shake head", 1.8, {"head yaw": JointSine(0, 16, 2)}),
+    SineMotion(
+        "wiggle",
+        1.5,
+        {"right antenna": JointSine(0, 30, 3), "left antenna": JointSine(0, 30, 3, 0.5)},
+    ),
+    SineMotion("bow", 3.0, {"head pitch": JointSine(12, 12, 1, -0.25)}),
+    SineMotion("kiss", 2.0, {"head pitch": JointSine(-4, 9, 2), "head roll": JointSine(8, 0)}),
 )
 """Motions that are played once and then give way to the mood again."""
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from affect.emotion import Emotion
 from affect.mood_line import LABELS, next_label
-from robot.contract.motions import Motion
+from robot.contract.motions import SineMotion
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
 from robot.simulators.cubeling.device import BodyState
@@ -52,7 +52,7 @@ class DinosaurBody:
         self._told = m.NOTHING
         self._label = LABELS[0]
         self._angles = np.zeros(len(dinosaur.LOW))
-        self._motion: Motion = dinosaur.MOOD_LOOPS[0]
+        self._motion: SineMotion = dinosaur.MOOD_LOOPS[0]
         self._motion_time = 0.0
         self._once = False
         self._sound: str | None = None
@@ -188,10 +188,10 @@ class DinosaurBody:
         return self._angles.copy()
 
     @property
-    def _loop(self) -> Motion:
+    def _loop(self) -> SineMotion:
         return dinosaur.MOOD_LOOPS[LABELS.index(self._label)]
 
-    def _start_motion(self, motion: Motion, once: bool = False) -> None:
+    def _start_motion(self, motion: SineMotion, once: bool = False) -> None:
         self._motion, self._motion_time, self._once = motion, 0.0, once
 
     def _start_sound(self, name: str) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot.contract.catalogue import Catalogue
-from robot.contract.motions import Motion, Sway
+from robot.contract.motions import JointSine, SineMotion
 from robot.drivers.pleo.joints import JOINTS as PLEO
 
 Array = NDArray[np.float64]
@@ -18,47 +18,47 @@ JOINTS = tuple(joint.name for joint in _LIMITS)
 """Names of the joints, in the order of the catalogue."""
 
 MOOD_LOOPS = (
-    Motion(
+    SineMotion(
         "neutral",
         4.0,
         {
-            "torso": Sway(0, 2),
-            "neck up": Sway(5, 4, 1, 0.25),
-            "neck sideways": Sway(0, 10),
-            "tail sideways": Sway(0, 12, 1, 0.5),
-            "eyes and mouth": Sway(50, 8, 2),
+            "torso": JointSine(0, 2),
+            "neck up": JointSine(5, 4, 1, 0.25),
+            "neck sideways": JointSine(0, 10),
+            "tail sideways": JointSine(0, 12, 1, 0.5),
+            "eyes and mouth": JointSine(50, 8, 2),
         },
         "breath",
     ),
-    Motion(
+    SineMotion(
         "happy",
         3.2,
         {
-            "right shoulder": Sway(8, 6, 1),
-            "left shoulder": Sway(8, 6, 1, 0.5),
-            "torso": Sway(0, 6, 1),
-            "neck up": Sway(25, 8, 2),
-            "neck sideways": Sway(0, 20, 1, 0.25),
-            "tail up": Sway(30, 8, 2),
-            "tail sideways": Sway(0, 45, 2),
-            "eyes and mouth": Sway(65, 15, 2),
+            "right shoulder": JointSine(8, 6, 1),
+            "left shoulder": JointSine(8, 6, 1, 0.5),
+            "torso": JointSine(0, 6, 1),
+            "neck up": JointSine(25, 8, 2),
+            "neck sideways": JointSine(0, 20, 1, 0.25),
+            "tail up": JointSine(30, 8, 2),
+            "tail sideways": JointSine(0, 45, 2),
+            "eyes and mouth": JointSine(65, 15, 2),
         },
         "purr",
     ),
-    Motion(
+    SineMotion(
         "angry",
         2.4,
         {
-            "right shoulder": Sway(-15),
-            "left shoulder": Sway(-15),
-            "right elbow": Sway(35, 8, 2),
-            "left elbow": Sway(35, 8, 2, 0.5),
-            "torso": Sway(-6, 3.5, 2),
-            "neck up": Sway(-30, 5, 2),
-            "neck sideways": Sway(0, 15, 1),
-            "tail up": Sway(45, 10, 3),
-            "tail sideways": Sway(0, 25, 3),
-            "eyes and mouth": Sway(-55, 20, 2),
+            "right shoulder": JointSine(-15),
+            "left shoulder": JointSine(-15),
+            "right elbow": JointSine(35, 8, 2),
+            "left elbow": JointSine(35, 8, 2, 0.5),
+            "torso": JointSine(-6, 3.5, 2),
+            "neck up": JointSine(-30, 5, 2),
+            "neck sideways": JointSine(0, 15, 1),
+            "tail up": JointSine(45, 10, 3),
+            "tail sideways": JointSine(0, 25, 3),
+            "eyes and mouth": JointSine(-55, 20, 2),
         },
         "growl",
     ),
@@ -66,24 +66,26 @@ MOOD_LOOPS = (
 """One endless motion with one sound for each mood, in the order of `mood.LABELS`."""
 
 ACTIONS = (
-    Motion("nod", 2.0, {"neck up": Sway(0, 6, 2), "eyes and mouth": Sway(50)}),
-    Motion("shake head", 2.0, {"neck sideways": Sway(0, 7, 2), "eyes and mouth": Sway(50)}),
-    Motion("wag tail", 2.0, {"tail sideways": Sway(0, 30, 2), "tail up": Sway(20)}),
-    Motion(
+    SineMotion("nod", 2.0, {"neck up": JointSine(0, 6, 2), "eyes and mouth": JointSine(50)}),
+    SineMotion(
+        "shake head", 2.0, {"neck sideways": JointSine(0, 7, 2), "eyes and mouth": JointSine(50)}
+    ),
+    SineMotion("wag tail", 2.0, {"tail sideways": JointSine(0, 30, 2), "tail up": JointSine(20)}),
+    SineMotion(
         "bow",
         4.0,
         {
-            "right shoulder": Sway(18, 18, 1, -0.25),
-            "left shoulder": Sway(18, 18, 1, -0.25),
-            "right elbow": Sway(30, 30, 1, -0.25),
-            "left elbow": Sway(30, 30, 1, -0.25),
-            "neck up": Sway(-20, 20, 1, 0.25),
+            "right shoulder": JointSine(18, 18, 1, -0.25),
+            "left shoulder": JointSine(18, 18, 1, -0.25),
+            "right elbow": JointSine(30, 30, 1, -0.25),
+            "left elbow": JointSine(30, 30, 1, -0.25),
+            "neck up": JointSine(-20, 20, 1, 0.25),
         },
     ),
-    Motion(
+    SineMotion(
         "kiss",
         2.4,
-        {"neck up": Sway(12, 8, 1, -0.25), "eyes and mouth": Sway(-50, 30, 2, -0.25)},
+        {"neck up": JointSine(12, 8, 1, -0.25), "eyes and mouth": JointSine(-50, 30, 2, -0.25)},
     ),
 )
 """Motions that are played once and then give way to the mood again."""

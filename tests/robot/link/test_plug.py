@@ -8,7 +8,7 @@ import pytest
 
 import robot
 from affect.emotion import Emotion
-from robot.link.plug import Identity, identity_of, name_of
+from robot.link.transport import UsbIdentity, find_port, usb_identity
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.port import SimulatedPort
 
@@ -26,39 +26,39 @@ def usb(monkeypatch):
             for name, (vid, pid, serial, location) in devices.items()
         ]
 
-    monkeypatch.setattr("robot.link.plug.list_ports.comports", comports)
+    monkeypatch.setattr("robot.link.transport.list_ports.comports", comports)
     return devices
 
 
 def test_a_device_is_known_by_its_serial_number_wherever_it_is_plugged_in(usb):
     usb["/dev/ttyACM0"] = (0x2E8A, 5, "A1", "1-2")
-    known = identity_of("/dev/ttyACM0")
+    known = usb_identity("/dev/ttyACM0")
     usb.clear()
     usb["/dev/ttyACM0"] = (0x2E8A, 5, "B2", "1-2")
     usb["/dev/ttyACM1"] = (0x2E8A, 5, "A1", "1-4")
     assert known is not None
-    assert name_of(known) == "/dev/ttyACM1"
+    assert find_port(known) == "/dev/ttyACM1"
 
 
 def test_a_device_without_a_serial_number_is_known_by_its_socket(usb):
     usb["/dev/ttyUSB0"] = (0x1A86, 7, None, "1-2")
-    known = identity_of("/dev/ttyUSB0")
+    known = usb_identity("/dev/ttyUSB0")
     usb.clear()
     usb["/dev/ttyUSB3"] = (0x1A86, 7, None, "1-2")
     usb["/dev/ttyUSB4"] = (0x1A86, 7, None, "1-3")
     assert known is not None
-    assert name_of(known) == "/dev/ttyUSB3"
+    assert find_port(known) == "/dev/ttyUSB3"
 
 
 def test_two_devices_that_could_be_it_are_not_guessed_between(usb):
     usb["/dev/ttyACM1"] = usb["/dev/ttyACM2"] = (1, 2, "same", "1-1")
-    assert name_of(Identity(1, 2, "same", "1-9")) is None
+    assert find_port(UsbIdentity(1, 2, "same", "1-9")) is None
 
 
 def test_what_is_no_usb_device_has_no_identity(usb):
     usb["/dev/ttyS0"] = (None, None, None, None)
-    assert identity_of("/dev/ttyS0") is None
-    assert identity_of("/dev/nothing") is None
+    assert usb_identity("/dev/ttyS0") is None
+    assert usb_identity("/dev/nothing") is None
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs pseudo-terminals")

@@ -20,4 +20,4 @@ def test_a_pleo_is_recognised_and_usb_comes_first(monkeypatch):
 
 @pytest.mark.parametrize(("vendor", "what"), [(0x303A, "an ESP32"), (0x1234, None), (None, None)])
 def test_only_what_is_known_is_guessed(vendor, what):
-    assert ports.guess(vendor) == what
+    assert ports.guess_device(vendor) == what

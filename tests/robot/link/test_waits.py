@@ -5,8 +5,7 @@ from pathlib import Path
 
 import robot
 from robot.contract import port
-from robot.link import budget, connection, exchange, transport
-from robot.link import io_thread as pump
+from robot.link import connection, exchange, io_thread, transport
 from robot.protocol import timing
 
 README = Path(robot.__file__).with_name("README.md").read_text("utf-8")
@@ -19,7 +18,7 @@ def test_the_waits_of_the_readme_are_those_of_the_code():
     for milliseconds, name in rows:
         home = next(
             one
-            for one in (timing, connection, port, transport, exchange, pump, budget)
+            for one in (timing, connection, port, transport, exchange, io_thread)
             if hasattr(one, name)
         )
         assert getattr(home, name) * 1000 == int(milliseconds), name

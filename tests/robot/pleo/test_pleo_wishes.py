@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import robot.drivers.pleo
-from robot.contract.driver import ACTIONS_MAX
+from robot.contract.driver import MAX_QUEUED_ACTIONS
 from robot.drivers.pleo import commands, timing
 from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.settings import BUNDLED
@@ -189,10 +189,10 @@ def test_too_many_actions_are_refused_and_those_without_a_session_are_dropped(sc
     assert pleo.driver.play(m.ITEM_SOUND, 0)
     assert pleo.telemetry.counts.dropped == 1
     pleo.started()
-    taken = [pleo.driver.play(m.ITEM_MOTION, 1) for _ in range(ACTIONS_MAX + 1)]
-    assert taken == [True] * ACTIONS_MAX + [False]
+    taken = [pleo.driver.play(m.ITEM_MOTION, 1) for _ in range(MAX_QUEUED_ACTIONS + 1)]
+    assert taken == [True] * MAX_QUEUED_ACTIONS + [False]
     pleo.driver.port_lost()
-    assert pleo.telemetry.counts.dropped == 1 + ACTIONS_MAX
+    assert pleo.telemetry.counts.dropped == 1 + MAX_QUEUED_ACTIONS
 
 
 def test_after_an_action_the_moods_loop_returns(script):
