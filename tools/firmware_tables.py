@@ -10,8 +10,8 @@ from affect.emotion import ANGRY_BELOW, HAPPY_ABOVE
 from robot.contract.motions import JointSine, SineMotion
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.fields import FieldForm
-from robot.protocol.schema import FORMS, HEADER, MessageForm, form_of
+from robot.protocol.fields import FieldSpec
+from robot.protocol.schema import HEADER, MESSAGES, MessageSpec, spec_of
 from robot.protocol.wire import MAX_BODY, MAX_FRAME
 from robot.simulators.cubeling import dinosaur
 
@@ -33,7 +33,7 @@ _NAMES = (
 
 def messages() -> str:
     """Return the text of `messages.py`: numbers, layouts, limits and times."""
-    forms = [FORMS[number] for number in sorted(FORMS)]
+    specs = [MESSAGES[number] for number in sorted(MESSAGES)]
     lines = [
         '"""The protocol in numbers, drawn from robot/protocol by tools.firmware_tables."""',
         "",
@@ -44,19 +44,19 @@ def messages() -> str:
         f"MAX_FRAME = {MAX_FRAME}",
         *(f"{name} = {round(1000 * getattr(timing, name))}" for name in _TIMES),
         *(f"{name} = {getattr(m, name)}" for name in _NAMES),
-        *(f"{form.name} = 0x{form.number:02X}" for form in forms),
+        *(f"{spec.name} = 0x{spec.number:02X}" for spec in specs),
         "",
         "# number: (layout, bytes in version 1, (bytes, defaults) of what each later version",
         "#          added, (place, lowest, highest) of what is not free)",
         "FROM_HOST: dict[",
         "    int, tuple[str, int, tuple[tuple[int, bytes], ...], tuple[tuple[int, int, int], ...]]",
         "] = {",
-        *(_host_row(form) for form in forms if form.sender == "host"),
+        *(_host_row(spec) for spec in specs if spec.sender == "host"),
         "}",
         "",
         "# number: (layout, (version, bytes) of each version that added to it)",
         "FROM_ROBOT: dict[int, tuple[str, tuple[tuple[int, int], ...]]] = {",
-        *(_robot_row(form) for form in forms if form.sender == "robot"),
+        *(_robot_row(spec) for spec in specs if spec.sender == "robot"),
         "}",
         "",
         *_count_lines(),
@@ -90,40 +90,40 @@ def motions() -> str:
     return "\n".join(lines)
 
 
-def _host_row(form: MessageForm) -> str:
-    places = [(place, field) for place, field in enumerate(form.fields, start=2)]
+def _host_row(spec: MessageSpec) -> str:
+    places = [(place, field) for place, field in enumerate(spec.fields, start=2)]
     limits = [
         f"({place}, {_count(field, field.low, 0)}, {_count(field, field.high, 1)})"
         for place, field in places
         if field.low is not None or field.high is not None
     ]
-    later = [f"({part.end}, {_defaults(form, part.since)!r})" for part in form.parts[1:]]
-    layout = f'"{_layout(form)}", {form.size}, {_tuple(later)}'
-    return f"    0x{form.number:02X}: ({layout},\n           {_tuple(limits)}),"
+    later = [f"({part.end}, {_defaults(spec, part.since)!r})" for part in spec.parts[1:]]
+    layout = f'"{_layout(spec)}", {spec.size}, {_tuple(later)}'
+    return f"    0x{spec.number:02X}: ({layout},\n           {_tuple(limits)}),"
 
 
-def _robot_row(form: MessageForm) -> str:
-    sizes = [f"({part.since}, {part.end})" for part in form.parts]
-    return f'    0x{form.number:02X}: ("{_layout(form)}", {_tuple(sizes)}),'
+def _robot_row(spec: MessageSpec) -> str:
+    sizes = [f"({part.since}, {part.end})" for part in spec.parts]
+    return f'    0x{spec.number:02X}: ("{_layout(spec)}", {_tuple(sizes)}),'
 
 
-def _layout(form: MessageForm) -> str:
-    return HEADER.format + "".join(part.layout.format[1:] for part in form.parts)
+def _layout(spec: MessageSpec) -> str:
+    return HEADER.format + "".join(part.layout.format[1:] for part in spec.parts)
 
 
-def _defaults(form: MessageForm, since: int) -> bytes:
-    (part,) = [part for part in form.parts if part.since == since]
-    defaults = {name: field.default for name, field in form.kind.__dataclass_fields__.items()}
+def _defaults(spec: MessageSpec, since: int) -> bytes:
+    (part,) = [part for part in spec.parts if part.since == since]
+    defaults = {name: field.default for name, field in spec.kind.__dataclass_fields__.items()}
     counts = [one for field in part.fields for one in field.to_wire(defaults[field.name])]
     return part.layout.pack(*counts)
 
 
-def _count(field: FieldForm, limit: float | None, highest: int) -> int:
-    """Return a limit as it stands on the wire; where there is none, what the form can hold."""
+def _count(field: FieldSpec, limit: float | None, highest: int) -> int:
+    """Return a limit in counts; the limit of the wire type where the field has none."""
     if limit is not None:
         return round(limit / field.scale)
     return {"u8": (0, 255), "u16": (0, 65535), "u32": (0, 2**32 - 1), "i16": (-32768, 32767)}[
-        field.form
+        field.type
     ][highest]
 
 
@@ -133,12 +133,12 @@ def _tuple(items: list[str]) -> str:
 
 def _count_lines() -> list[str]:
     """Most of each kind in a catalogue."""
-    limits = {field.name: field.high for field in form_of(m.Welcome).fields}
+    limits = {field.name: field.high for field in spec_of(m.Welcome).fields}
     kinds = ("motions", "sounds", "moods")
     highest = {limits[kind] for kind in kinds}
     (most,) = highest
     assert most is not None
-    return [f"ENTRIES_MAX = {most:.0f}", f"NAME_BYTES = {form_of(m.Name).fields[-1].size}", ""]
+    return [f"ENTRIES_MAX = {most:.0f}", f"NAME_BYTES = {spec_of(m.Name).fields[-1].size}", ""]
 
 
 def _motion_lines(motion: SineMotion) -> list[str]:

@@ -1,7 +1,6 @@
-"""What is drawn from the code: parts of PROTOCOL.md, the C header, the test vectors.
+"""Generates parts of PROTOCOL.md, the C header and the test vectors from the message table.
 
-`python -m tools.protocol_reference` renews them.
-A test compares them with the code, so neither can drift.
+`python -m tools.protocol_reference` writes them; a test compares them with the code.
 """
 
 import re
@@ -9,11 +8,11 @@ from pathlib import Path
 
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.fields import FieldForm
-from robot.protocol.header import header
-from robot.protocol.schema import FORMS, HEADER, MessageForm
+from robot.protocol.fields import FieldSpec
+from robot.protocol.schema import HEADER, MESSAGES, MessageSpec
 from robot.protocol.vectors import VECTORS, vectors_file
 from robot.protocol.wire import MAX_BODY, MAX_FRAME
+from tools.protocol_c_header import header
 
 DOCUMENT = Path(__file__).parents[1] / "robot" / "PROTOCOL.md"
 """The protocol's document."""
@@ -27,7 +26,7 @@ VECTORS_FILE = Path(__file__).parents[1] / "robot" / "protocol" / "vectors.json"
 
 def message_tables() -> str:
     """Return a section for every message, with a table of its fields."""
-    return "\n\n".join(_section(FORMS[number]) for number in sorted(FORMS))
+    return "\n\n".join(_section(MESSAGES[number]) for number in sorted(MESSAGES))
 
 
 def timing_table() -> str:
@@ -82,25 +81,25 @@ def renewed(document: str) -> str:
     return document
 
 
-def _section(form: MessageForm) -> str:
-    sizes = [f"{form.size} bytes"]
-    sizes += [f"{part.end} since version {part.since}" for part in form.parts[1:]]
-    head = f"#### `{form.number:02X}` {form.name}, from the {form.sender}, {', '.join(sizes)}"
-    lines = [head, "", form.meaning]
-    if form.fields:
+def _section(spec: MessageSpec) -> str:
+    sizes = [f"{spec.size} bytes"]
+    sizes += [f"{part.end} since version {part.since}" for part in spec.parts[1:]]
+    head = f"#### `{spec.number:02X}` {spec.name}, from the {spec.sender}, {', '.join(sizes)}"
+    lines = [head, "", spec.meaning]
+    if spec.fields:
         lines += [
             "",
             "| offset | type | field | unit | allowed | meaning |",
             "|---:|---|---|---|---|---|",
         ]
         offset = HEADER.size
-        for field in form.fields:
+        for field in spec.fields:
             lines.append(_row(offset, field))
             offset += field.size
     return "\n".join(lines)
 
 
-def _row(offset: int, field: FieldForm) -> str:
+def _row(offset: int, field: FieldSpec) -> str:
     unit = {1: field.unit, 1e-3: f"m{field.unit}", 1e-4: "1/10000"}[field.scale]
     low, high = field.low, field.high
     allowed = ""
@@ -112,7 +111,7 @@ def _row(offset: int, field: FieldForm) -> str:
         allowed = f"≤ {high:g}"
     since = "" if field.since == 1 else f" (since version {field.since})"
     meaning = field.meaning + since
-    return f"| {offset} | {field.form} | {field.name} | {unit} | {allowed} | {meaning} |"
+    return f"| {offset} | {field.type} | {field.name} | {unit} | {allowed} | {meaning} |"
 
 
 def drawn() -> dict[Path, str]:

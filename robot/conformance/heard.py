@@ -6,7 +6,7 @@ from typing import Any
 
 from robot.protocol import messages as m
 from robot.protocol.fields import MessageError
-from robot.protocol.schema import FORMS, HEADER, form_of, unpack
+from robot.protocol.schema import HEADER, MESSAGES, spec_of, unpack
 from robot.protocol.wire import MAX_FRAME, FrameError, decode_frame
 
 STATES_KEPT = 20_000
@@ -41,7 +41,7 @@ class Heard:
     @property
     def name(self) -> str:
         """The message's name in the document."""
-        return "a wrong frame" if self.message is None else form_of(type(self.message)).name
+        return "a wrong frame" if self.message is None else spec_of(type(self.message)).name
 
     def __str__(self) -> str:
         if self.message is None:
@@ -86,12 +86,12 @@ def understood(frame: bytes, now: float) -> Heard:
     except (FrameError, MessageError) as error:
         return Heard(now, frame, wrong=str(error))
     if message is None:
-        form = FORMS.get(body[0])
+        form = MESSAGES.get(body[0])
         wrong = f"{body[0]:02X} is no message" if form is None else f"{form.name} is the host's"
         return Heard(now, frame, session, wrong=wrong)
-    size = form_of(type(message)).size
+    size = spec_of(type(message)).size
     if len(body) != size:  # no version up to ours has added to what a robot says
-        name = form_of(type(message)).name
+        name = spec_of(type(message)).name
         return Heard(now, frame, session, wrong=f"{name} has {size} bytes, not {len(body)}")
     return Heard(now, frame, session, message)
 

@@ -10,7 +10,7 @@ from robot.conformance.line import Line
 from robot.conformance.verdicts import SilentError, UnmetError
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.schema import form_of, pack
+from robot.protocol.schema import pack, spec_of
 from robot.protocol.wire import encode_frame
 
 AT_ONCE = 0.100
@@ -176,7 +176,7 @@ class Probe:
         found, before = self.wait_for(wanted, within)
         if found is None:
             words = ", ".join(f"{key}={value}" for key, value in content.items())
-            name = form_of(kind).name + (f"({words})" if words else "")
+            name = spec_of(kind).name + (f"({words})" if words else "")
             expected = f"{name} in session {self.session} within {1000 * within:.0f} ms"
             raise UnmetError(f"{expected} after {after}", told(before))
         answer: Kind = found.message
@@ -238,7 +238,7 @@ class Probe:
     def command(self, command: Any, result: int = m.TAKEN) -> int:
         """Say a command, see its ACK, and return its number."""
         self.say(command)
-        name = form_of(type(command)).name
+        name = spec_of(type(command)).name
         self.expect(m.Ack, f"{name} {command.number}", number=command.number, result=result)
         self._number = max(self._number, command.number)
         return int(command.number)

@@ -1,16 +1,16 @@
-"""Every message of the protocol: the one table from which codec, document and vectors come."""
+"""Every message of the protocol; codec, document, C header and vectors come from this table."""
 
 from dataclasses import dataclass
 from typing import Final
 
-from robot.protocol.fields import wire
+from robot.protocol.fields import wire_field
 from robot.protocol.schema import message
 
 NOTHING: Final = 255
-"""An index that points at nothing: no motion, no sound."""
+"""The index for none: no motion, no sound."""
 
 JOINTS_MAX: Final = 16
-"""Joints that a robot may have in this version."""
+"""Most joints of a robot in this version."""
 
 ITEM_JOINT: Final = 0
 ITEM_MOTION: Final = 1
@@ -27,13 +27,13 @@ STILL: Final = 2
 """Bit of STATE.flags: stopped; the robot holds its neutral pose."""
 
 LIMP: Final = 4
-"""Bit of STATE.flags: the motors have no power; whatever is asked, nothing moves."""
+"""Bit of STATE.flags: the motors have no power; nothing moves."""
 
 RECKONED: Final = 8
-"""Bit of STATE.flags: the joints are where they should be by now; the robot cannot measure them."""
+"""Bit of STATE.flags: the joint angles are calculated, because the robot cannot measure them."""
 
 
-# --- The host speaks ---------------------------------------------------------------------------
+# --- Messages of the host ----------------------------------------------------------------------
 
 
 @message(0x01, "host", "Opens the session named in the header, or asks for its WELCOME again.")
@@ -41,8 +41,8 @@ RECKONED: Final = 8
 class Hello:
     """Opens a session."""
 
-    version: int = wire("u8", "highest version that the host speaks", low=1)
-    host: int = wire("u32", "who speaks: one number for the life of a host program", low=1)
+    version: int = wire_field("u8", "highest version that the host speaks", low=1)
+    host: int = wire_field("u32", "who speaks: one number for the life of a host program", low=1)
 
 
 @message(0x02, "host", "Asks for one entry of the robot's catalogue.")
@@ -50,27 +50,29 @@ class Hello:
 class Ask:
     """Asks for one entry of the catalogue."""
 
-    item: int = wire("u8", "0 joint, 1 motion, 2 sound, 3 mood")
-    index: int = wire("u8", "which one, from 0")
+    item: int = wire_field("u8", "0 joint, 1 motion, 2 sound, 3 mood")
+    index: int = wire_field("u8", "which one, from 0")
 
 
 @message(0x03, "host", "The host is there. Answered by STATE at once.")
 @dataclass(frozen=True)
 class Beat:
-    """The host is there."""
+    """Heartbeat of the host."""
 
-    count: int = wire("u16", "counts up by one, and starts again at 0 after 65535")
+    count: int = wire_field("u16", "counts up by one, and starts again at 0 after 65535")
 
 
 @message(0x10, "host", "A command: feel this from now on.")
 @dataclass(frozen=True)
 class Express:
-    """Feel this from now on."""
+    """Show an emotion."""
 
-    number: int = wire("u32", "number of the command", low=1)
-    valence: float = wire("i16", "unpleasant to pleasant", scale=1e-4, unit="1", low=-1, high=1)
-    arousal: float = wire("i16", "calm to excited", scale=1e-4, unit="1", low=-1, high=1)
-    mood: int = wire(
+    number: int = wire_field("u32", "number of the command", low=1)
+    valence: float = wire_field(
+        "i16", "unpleasant to pleasant", scale=1e-4, unit="1", low=-1, high=1
+    )
+    arousal: float = wire_field("i16", "calm to excited", scale=1e-4, unit="1", low=-1, high=1)
+    mood: int = wire_field(
         "u8", "mood to show, an index; 255: the robot chooses by valence and arousal",
         since=2, default=NOTHING,
     )  # fmt: skip
@@ -81,9 +83,9 @@ class Express:
 class Play:
     """Play a motion or a sound once."""
 
-    number: int = wire("u32", "number of the command", low=1)
-    item: int = wire("u8", "1 motion, 2 sound", low=1, high=2)
-    index: int = wire("u8", "which one, from 0")
+    number: int = wire_field("u32", "number of the command", low=1)
+    item: int = wire_field("u8", "1 motion, 2 sound", low=1, high=2)
+    index: int = wire_field("u8", "which one, from 0")
 
 
 @message(0x12, "host", "A command: end motion and sound, feel neutral, and hold the neutral pose.")
@@ -91,7 +93,7 @@ class Play:
 class Stop:
     """End everything and hold the neutral pose until the next EXPRESS or PLAY."""
 
-    number: int = wire("u32", "number of the command", low=1)
+    number: int = wire_field("u32", "number of the command", low=1)
 
 
 @message(0x1F, "host", "Ends the session. The robot goes to neutral at once; no answer.")
@@ -100,7 +102,7 @@ class Bye:
     """Ends the session."""
 
 
-# --- The robot speaks --------------------------------------------------------------------------
+# --- Messages of the robot ---------------------------------------------------------------------
 
 
 @message(0x81, "robot", "Answers HELLO: the session is open.")
@@ -108,15 +110,15 @@ class Bye:
 class Welcome:
     """The session is open."""
 
-    version: int = wire("u8", "version to be spoken, at most the host's", low=1)
-    taken: int = wire("u32", "last command of this host that is still in force; 0 if none is")
-    catalogue: int = wire("u16", "any number that changes when the catalogue does")
-    joints: int = wire("u8", "joints in the catalogue", high=JOINTS_MAX)
-    motions: int = wire("u8", "motions in the catalogue", high=254)
-    sounds: int = wire("u8", "sounds in the catalogue", high=254)
-    moods: int = wire("u8", "moods in the catalogue", high=254)
-    name: str = wire("text16", "what the robot is called")
-    firmware: str = wire("text16", "what runs on it, and which version")
+    version: int = wire_field("u8", "version to be spoken, at most the host's", low=1)
+    taken: int = wire_field("u32", "last command of this host that is still in force; 0 if none is")
+    catalogue: int = wire_field("u16", "any number that changes when the catalogue does")
+    joints: int = wire_field("u8", "joints in the catalogue", high=JOINTS_MAX)
+    motions: int = wire_field("u8", "motions in the catalogue", high=254)
+    sounds: int = wire_field("u8", "sounds in the catalogue", high=254)
+    moods: int = wire_field("u8", "moods in the catalogue", high=254)
+    name: str = wire_field("text16", "what the robot is called")
+    firmware: str = wire_field("text16", "what runs on it, and which version")
 
 
 @message(0x82, "robot", "Answers ASK for a joint.")
@@ -124,11 +126,11 @@ class Welcome:
 class Joint:
     """One joint of the catalogue."""
 
-    index: int = wire("u8", "which one, from 0")
-    low: float = wire("i16", "smallest angle", scale=1e-3, unit="rad")
-    high: float = wire("i16", "largest angle", scale=1e-3, unit="rad")
-    speed: float = wire("u16", "top speed", scale=1e-3, unit="rad/s")
-    name: str = wire("text16", "what it is called")
+    index: int = wire_field("u8", "which one, from 0")
+    low: float = wire_field("i16", "smallest angle", scale=1e-3, unit="rad")
+    high: float = wire_field("i16", "largest angle", scale=1e-3, unit="rad")
+    speed: float = wire_field("u16", "top speed", scale=1e-3, unit="rad/s")
+    name: str = wire_field("text16", "what it is called")
 
 
 @message(0x83, "robot", "Answers ASK for a motion, a sound or a mood.")
@@ -136,31 +138,33 @@ class Joint:
 class Name:
     """One named entry of the catalogue."""
 
-    item: int = wire("u8", "1 motion, 2 sound, 3 mood", low=1, high=3)
-    index: int = wire("u8", "which one, from 0")
-    name: str = wire("text16", "what it is called")
+    item: int = wire_field("u8", "1 motion, 2 sound, 3 mood", low=1, high=3)
+    index: int = wire_field("u8", "which one, from 0")
+    name: str = wire_field("text16", "what it is called")
 
 
 @message(0x84, "robot", "The robot is there, and this is how it is.")
 @dataclass(frozen=True)
 class State:
-    """The robot is there, and this is how it is."""
+    """State of the robot."""
 
-    beat: int = wire("u16", "count of the last BEAT heard; 0 before the first")
-    taken: int = wire("u32", "number of the last command taken; 0 before the first")
-    flags: int = wire(
+    beat: int = wire_field("u16", "count of the last BEAT heard; 0 before the first")
+    taken: int = wire_field("u32", "number of the last command taken; 0 before the first")
+    flags: int = wire_field(
         "u8", "bit 0: charging; bit 1: stopped; bit 2: motors without power; bit 3: joints are "
         "reckoned from what was commanded, not measured; others 0",
     )  # fmt: skip
-    valence: float = wire(
+    valence: float = wire_field(
         "i16", "shown now, unpleasant to pleasant", scale=1e-4, unit="1", low=-1, high=1
     )
-    arousal: float = wire("i16", "shown now, calm to excited", scale=1e-4, unit="1", low=-1, high=1)
-    battery: float = wire("u16", "empty to full", scale=1e-4, unit="1", low=0, high=1)
-    mood: int = wire("u8", "mood shown now, an index")
-    motion: int = wire("u8", "motion played now, an index; 255 none")
-    sound: int = wire("u8", "sound played now, an index; 255 none")
-    joints: tuple[float, ...] = wire(
+    arousal: float = wire_field(
+        "i16", "shown now, calm to excited", scale=1e-4, unit="1", low=-1, high=1
+    )
+    battery: float = wire_field("u16", "empty to full", scale=1e-4, unit="1", low=0, high=1)
+    mood: int = wire_field("u8", "mood shown now, an index")
+    motion: int = wire_field("u8", "motion played now, an index; 255 none")
+    sound: int = wire_field("u8", "sound played now, an index; 255 none")
+    joints: tuple[float, ...] = wire_field(
         "i16x16", "angles, in catalogue order; 0 for those it does not have",
         scale=1e-3, unit="rad",
     )  # fmt: skip
@@ -171,11 +175,11 @@ class State:
 class Ack:
     """Answers a command."""
 
-    number: int = wire("u32", "the command's number", low=1)
-    result: int = wire("u8", "0 taken; 1 refused, there is no such index")
+    number: int = wire_field("u32", "the command's number", low=1)
+    result: int = wire_field("u8", "0 taken; 1 refused, there is no such index")
 
 
 @message(0x9F, "robot", "The session in the header is not open here: greet again.")
 @dataclass(frozen=True)
 class Gone:
-    """The session in the header is not open here."""
+    """The session in the header is not open at the robot."""

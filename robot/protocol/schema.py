@@ -1,14 +1,14 @@
-"""How a message is written down once and becomes a codec, a table in the document and its vectors.
+"""The schema of messages: codec, document, C header and test vectors come from one declaration.
 
-A message is a frozen dataclass whose fields carry their form on the wire::
+A message is a frozen dataclass whose fields hold their wire form::
 
     @message(0x11, "host", "...")
     @dataclass(frozen=True)
     class Express:
-        valence: float = wire("i16", scale=1e-4, low=-1, high=1, unit="1", meaning="...")
+        valence: float = wire_field("i16", "...", scale=1e-4, low=-1, high=1, unit="1")
 
-A later version adds fields behind the last one, each with the version that brought it and a default
-for those who do not know it.
+A later version appends fields, each with the version that added it and a default for messages of
+earlier versions.
 """
 
 import dataclasses
@@ -18,18 +18,18 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, TypeVar
 
-from robot.protocol.fields import FORMATS, FieldForm, MessageError
+from robot.protocol.fields import STRUCT_CODES, FieldSpec, MessageError
 from robot.protocol.timing import VERSION
 
 Sender = Literal["host", "robot"]
 
 HEADER = struct.Struct("<BH")
-"""Every body begins with the message's number (u8) and the session (u16), little endian."""
+"""Start of every body: the message number (u8) and the session (u16), little endian."""
 
 
 @dataclass(frozen=True)
-class MessageForm:
-    """How one message stands on the wire."""
+class MessageSpec:
+    """The wire form of one message."""
 
     number: int
     """The first byte of its body."""
@@ -41,50 +41,50 @@ class MessageForm:
     """Who may send it."""
 
     meaning: str
-    """What it is for."""
+    """Its description in the document."""
 
-    fields: tuple[FieldForm, ...]
-    """In the order in which they are sent."""
+    fields: tuple[FieldSpec, ...]
+    """In wire order."""
 
     kind: type[Any]
     """The dataclass."""
 
-    parts: tuple["Part", ...]
-    """The fields of the first version that has it, then what each later version added."""
+    parts: tuple["VersionPart", ...]
+    """The fields of its first version, then those that each later version added."""
 
     @property
     def size(self) -> int:
-        """Bytes of the body in its first version, header included."""
+        """Bytes of the body in the first version, header included."""
         return self.parts[0].end
 
-    def known(self, version: int) -> tuple["Part", ...]:
-        """Return the parts that a version has; the first at least."""
+    def parts_of(self, version: int) -> tuple["VersionPart", ...]:
+        """Return the parts of a version; at least the first."""
         return tuple(part for part in self.parts if part.since <= version) or self.parts[:1]
 
 
 @dataclass(frozen=True)
-class Part:
-    """The fields of a message that one version brought; packed without gaps, little endian."""
+class VersionPart:
+    """The fields of a message that one version added; packed without gaps, little endian."""
 
     since: int
-    """That version."""
+    """The version."""
 
-    fields: tuple[FieldForm, ...]
-    """In the order in which they are sent."""
+    fields: tuple[FieldSpec, ...]
+    """In wire order."""
 
     layout: struct.Struct
-    """All of them."""
+    """Their binary layout."""
 
     start: int
-    """Where they begin in the body [bytes]."""
+    """Offset in the body [bytes]."""
 
     @cached_property
     def end(self) -> int:
-        """Where they end in the body [bytes]."""
+        """Offset of their end in the body [bytes]."""
         return self.start + self.layout.size
 
     def unpack(self, body: bytes) -> dict[str, Any]:
-        """Return the values by name; raises MessageError where one is not allowed."""
+        """Return the values by name; raises MessageError if one is not allowed."""
         values = self.layout.unpack_from(body, self.start)
         content = {}
         start = 0
@@ -95,65 +95,65 @@ class Part:
         return content
 
     def pack(self, content: Any) -> bytes:
-        """Return the bytes; raises ValueError where a value does not fit."""
+        """Return the bytes; raises ValueError if a value does not fit."""
         values: list[Any] = []
         for field in self.fields:
             values += field.to_wire(getattr(content, field.name))
         return self.layout.pack(*values)
 
 
-FORMS: dict[int, MessageForm] = {}
-"""Every message by its number: the one table."""
+MESSAGES: dict[int, MessageSpec] = {}
+"""Every message by its number."""
 
-_BY_KIND: dict[type[Any], MessageForm] = {}
+_BY_KIND: dict[type[Any], MessageSpec] = {}
 
 Kind = TypeVar("Kind")
 
 
 def message(number: int, sender: Sender, meaning: str) -> Callable[[type[Kind]], type[Kind]]:
-    """Enter a dataclass into the table of messages."""
+    """Register a dataclass in `MESSAGES`."""
 
-    def enter(kind: type[Kind]) -> type[Kind]:
+    def register(kind: type[Kind]) -> type[Kind]:
         fields = tuple(
-            FieldForm(field.name, *field.metadata["wire"])
+            FieldSpec(field.name, *field.metadata["wire"])
             for field in dataclasses.fields(kind)  # type: ignore[arg-type] # it is a dataclass
         )
         name = kind.__name__.upper()
-        form = MessageForm(number, name, sender, meaning, fields, kind, _parts_of(fields))
-        assert number not in FORMS, f"message number {number:#x} is used twice"
-        FORMS[number] = _BY_KIND[kind] = form
+        spec = MessageSpec(number, name, sender, meaning, fields, kind, _parts_of(fields))
+        assert number not in MESSAGES, f"message number {number:#x} is used twice"
+        MESSAGES[number] = _BY_KIND[kind] = spec
         return kind
 
-    return enter
+    return register
 
 
-def _parts_of(fields: tuple[FieldForm, ...]) -> tuple[Part, ...]:
+def _parts_of(fields: tuple[FieldSpec, ...]) -> tuple[VersionPart, ...]:
     versions = sorted({1, *(field.since for field in fields)})
     assert [field.since for field in fields] == sorted(field.since for field in fields)
-    parts: list[Part] = []
+    parts: list[VersionPart] = []
     for version in versions:
         own = tuple(field for field in fields if field.since == version)
-        layout = struct.Struct("<" + "".join(FORMATS[field.form] for field in own))
-        parts.append(Part(version, own, layout, parts[-1].end if parts else HEADER.size))
+        layout = struct.Struct("<" + "".join(STRUCT_CODES[field.type] for field in own))
+        parts.append(VersionPart(version, own, layout, parts[-1].end if parts else HEADER.size))
     return tuple(parts)
 
 
-def form_of(kind: type[Any]) -> MessageForm:
-    """Return the form of a message class."""
+def spec_of(kind: type[Any]) -> MessageSpec:
+    """Return the wire form of a message class."""
     return _BY_KIND[kind]
 
 
 def pack(content: Any, session: int, version: int = VERSION) -> bytes:
-    """Return the body for one message, as `version` has it.
+    """Return the body of a message in `version` of the protocol.
 
     Raises
     ------
     ValueError
-        If a field is out of its range.
+        If a field is out of range.
     """
-    form = _BY_KIND[type(content)]
-    body = HEADER.pack(form.number, session)
-    for part in form.known(version):
+    spec = _BY_KIND[type(content)]
+    body = HEADER.pack(spec.number, session)
+    for part in spec.parts_of(version):
         body += part.pack(content)
     return body
 
@@ -161,37 +161,36 @@ def pack(content: Any, session: int, version: int = VERSION) -> bytes:
 def unpack(body: bytes, sender: Sender) -> tuple[int, Any]:
     """Return the session and the message of a body.
 
-    Bytes after the last field that this version knows are skipped: a later version put them there.
-    Where the fields that a version added are not all there, they have their defaults: the other end
-    speaks an earlier one.
+    Bytes after the last known field are ignored: a later version added them. The fields that a
+    version added have their defaults unless all of them are there: the peer may be older.
 
     Parameters
     ----------
     body
-        What a frame held.
+        The content of a frame.
     sender
-        Who is at the other end. What only the own side may say is an echo, and no message.
+        The peer. A message that only the own side may send is an echo and is ignored.
 
     Returns
     -------
     tuple
-        The session, and the message or None if this version does not know it.
+        The session, and the message or None if it is unknown.
 
     Raises
     ------
     MessageError
-        If the body is shorter than its message, or a field is out of its range.
+        If the body is shorter than its message, or a field is out of range.
     """
     if len(body) < HEADER.size:
         raise MessageError("shorter than a header")
     number, session = HEADER.unpack_from(body)
-    form = FORMS.get(number)
-    if form is None or form.sender != sender:
+    spec = MESSAGES.get(number)
+    if spec is None or spec.sender != sender:
         return session, None
-    if len(body) < form.size:
-        raise MessageError(f"{form.name} has {form.size} bytes, not {len(body)}")
+    if len(body) < spec.size:
+        raise MessageError(f"{spec.name} has {spec.size} bytes, not {len(body)}")
     content: dict[str, Any] = {}
-    for part in form.parts:
+    for part in spec.parts:
         if part.end <= len(body):
             content |= part.unpack(body)
-    return session, form.kind(**content)
+    return session, spec.kind(**content)

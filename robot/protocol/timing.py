@@ -1,58 +1,58 @@
-"""The protocol's times and limits, each named once; PROTOCOL.md quotes them and a test compares."""
+"""Times and limits of the protocol; PROTOCOL.md quotes them and a test compares."""
 
 VERSION = 2
 """Highest version of the protocol that this code speaks."""
 
 BEAT_EVERY = 0.050
-"""The host says that it is there this often [s]."""
+"""Interval of the host's BEAT [s]."""
 
 STATE_EVERY = 0.100
-"""The robot reports its state at least this often in a session [s]; it also answers every BEAT."""
+"""Longest interval between two STATEs of a session [s]; the robot also answers every BEAT."""
 
 FAILSAFE_AFTER = 0.450
 """Silence of the host after which the robot goes to neutral [s].
 
-The promise is 0.5 s; the rest is for a robot that looks at its clock only every 50 ms.
+The promise is 0.5 s; the difference is for a robot that reads its clock only every 50 ms.
 """
 
 FAILSAFE_PROMISE = 0.500
-"""Longest time from the last frame heard to the neutral state [s]."""
+"""Longest time from the last received frame to the neutral state [s]."""
 
 DEGRADED_AFTER = 0.150
-"""Silence of the robot, three beats, after which the host calls the link degraded [s]."""
+"""Silence of the robot, three beats, after which the link is degraded [s]."""
 
 LOST_AFTER = 0.500
-"""Silence of the robot after which the host gives the session up and greets again [s]."""
+"""Silence of the robot after which the host ends the session and sends HELLO again [s]."""
 
 HELLO_EVERY = 0.100
-"""A greeting that is not answered is repeated this often [s]."""
+"""Interval between two HELLOs without an answer [s]."""
 
 RETRY_FIRST = 0.050
-"""Time to wait for an acknowledgement before the round trip has been measured [s]."""
+"""Retransmission timeout before the round trip has been measured [s]."""
 
 RETRY_MIN = 0.025
-"""Shortest time before a command is sent again [s]; a few frames at 115200 baud."""
+"""Shortest retransmission timeout [s]; a few frames at 115200 baud."""
 
 RETRY_MAX = 0.250
-"""Longest time before a command is sent again [s]."""
+"""Longest retransmission timeout [s]."""
 
 TRIES_MAX = 20
-"""A command not acknowledged after this many sends ends the session."""
+"""Sends of a command without an acknowledgement that end the session."""
 
 DEGRADED_TRIES = 3
-"""A command sent this often and not acknowledged makes the link degraded."""
+"""Sends of a command without an acknowledgement that make the link degraded."""
 
 GONE_EVERY = 0.020
-"""A robot says that a session is gone at most this often [s], whatever it is sent."""
+"""Shortest interval between two GONEs [s]."""
 
 ACTIONS_MAX = 16
-"""Motions and sounds that may wait to be sent; more are refused."""
+"""Motions and sounds that may wait in the host; more are refused."""
 
 ANSWER_WITHIN = 2.0
-"""A robot that has not introduced itself after this long is taken for none [s]."""
+"""Time within which a robot must report its catalogue [s]."""
 
 BAUD = 115200
-"""Bits a second on a real serial line, 8N1, no flow control."""
+"""Bits per second on a real serial line; 8N1, no flow control."""
 
 RULES: dict[str, str] = {
     "BEAT_EVERY": "the host sends BEAT",
@@ -67,4 +67,4 @@ RULES: dict[str, str] = {
     "RETRY_MAX": "before a repeat, at most",
     "GONE_EVERY": "between two GONEs, at least",
 }
-"""The times that both ends keep, and what PROTOCOL.md says of each."""
+"""The times that both ends keep, with their descriptions in PROTOCOL.md."""

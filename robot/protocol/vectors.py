@@ -1,10 +1,10 @@
-"""Test vectors: messages and their bytes, and bytes that are none; for whoever writes a robot."""
+"""Test vectors for authors of robots: messages with their bytes, and bytes without a message."""
 
 import json
 from dataclasses import asdict, dataclass
 
 from robot.protocol import messages as m
-from robot.protocol.schema import form_of, pack
+from robot.protocol.schema import pack, spec_of
 from robot.protocol.timing import VERSION
 from robot.protocol.wire import MAX_BODY, check_bytes, encode_frame
 
@@ -20,16 +20,16 @@ class Vector:
     """The message."""
 
     version: int = VERSION
-    """The version of the protocol in which it is sent."""
+    """The protocol version of its encoding."""
 
     @property
     def body(self) -> bytes:
-        """What its frame holds."""
+        """The content of its frame."""
         return pack(self.content, self.session, self.version)
 
     @property
     def frame(self) -> bytes:
-        """Its bytes on the line, edges included."""
+        """Its bytes on the wire, delimiters included."""
         return encode_frame(self.body)
 
 
@@ -53,11 +53,11 @@ VECTORS = (
     Vector(0xABCD, m.Ack(4, m.TAKEN)),
     Vector(7, m.Gone()),
 )
-"""At least one frame of every message, and one in every version of those that grew."""
+"""At least one frame of every message, and of every version that extended it."""
 
 
 def broken() -> list[tuple[str, bytes]]:
-    """Return bytes that hold no message for a robot, and why."""
+    """Return byte strings without a message for a robot, and the reasons."""
     beat = Vector(0xABCD, m.Beat(513)).frame
     long = encode_frame(bytes([0x03]) * MAX_BODY)
     return [
@@ -92,7 +92,7 @@ def vectors_file() -> str:
 
 def _entry(vector: Vector) -> dict[str, object]:
     return {
-        "message": form_of(type(vector.content)).name,
+        "message": spec_of(type(vector.content)).name,
         "version": vector.version,
         "session": vector.session,
         "fields": asdict(vector.content),  # type: ignore[call-overload] # a message is a dataclass
@@ -106,7 +106,7 @@ def _changed(frame: bytes, at: int, bits: int) -> bytes:
 
 
 def _checked(encoded: bytes) -> bytes:
-    """Return the frame of bytes that COBS never makes, with the check that they would have."""
+    """Return a frame of bytes that COBS never produces, with a valid check."""
     return b"\0" + encoded + check_bytes(encoded) + b"\0"
 
 

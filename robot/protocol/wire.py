@@ -1,37 +1,36 @@
-"""Frames on a serial line: where one begins and ends, and whether it arrived whole.
+"""Framing on a serial line: delimiters and a checksum.
 
 On the wire a frame is::
 
     00 | COBS(body) | three check bytes | 00
 
-COBS (Cheshire & Baker 1999) removes the zero bytes from the body, so a zero on the line is always
-an edge. The edge in front costs one byte and buys this: whatever garbage came before, the next
-frame is received. The check is CRC-16/CCITT-FALSE over the *encoded* bytes, so its guarantee holds
-for the bits on the line and not only for what the decoder made of them; it is spread over three
-bytes, ``1110hhhh 10mmmmmm 10llllll``, so that none of them is zero.
+COBS (Cheshire & Baker 1999) removes the zero bytes from the body, so a zero on the line is always a
+delimiter. The leading delimiter costs one byte; thanks to it the next frame is received whatever
+garbage came before. The check is CRC-16/CCITT-FALSE over the *encoded* bytes, so that its guarantee
+holds for the bits on the line and not only for the decoded ones; it is spread over three bytes,
+``1110hhhh 10mmmmmm 10llllll``, so that none of them is zero.
 """
 
 from binascii import crc_hqx
 
 MAX_BODY = 120
-"""Longest body of a frame [bytes]; one run of COBS, so that encoding adds exactly one byte."""
+"""Longest body of a frame [bytes]; one COBS run, so that encoding adds exactly one byte."""
 
 MAX_FRAME = MAX_BODY + 1 + 3
-"""Longest frame between its edges [bytes]."""
+"""Longest frame between its delimiters [bytes]."""
 
-
-_RUN = tuple(bytes([length + 1]) for length in range(MAX_BODY + 1))
-# What COBS writes in front of a run of each length.
+_RUN_CODES = tuple(bytes([length + 1]) for length in range(MAX_BODY + 1))
+"""The COBS code byte of a run of each length."""
 
 
 class FrameError(ValueError):
-    """Bytes between two edges that are no frame."""
+    """Bytes between two delimiters that are no frame."""
 
 
 def crc16(data: bytes) -> int:
     """CRC-16/CCITT-FALSE: polynomial 0x1021, start 0xFFFF, not reflected.
 
-    Any one, two or three wrong bits are noticed in up to 32751 bits (Koopman & Chakravarty 2004);
+    It detects any one, two or three wrong bits in up to 32751 bits (Koopman & Chakravarty 2004);
     our longest frame has 984.
 
     >>> hex(crc16(b"123456789"))
@@ -46,11 +45,11 @@ def cobs_encode(body: bytes) -> bytes:
     >>> cobs_encode(bytes([7, 0, 8, 9])).hex(" ")
     '02 07 03 08 09'
     """
-    return b"".join([_RUN[len(run)] + run for run in body.split(b"\0")])
+    return b"".join([_RUN_CODES[len(run)] + run for run in body.split(b"\0")])
 
 
 def cobs_decode(encoded: bytes) -> bytes:
-    """Undo `cobs_encode`; raises FrameError where the runs do not fill the bytes exactly."""
+    """Undo `cobs_encode`; raises FrameError unless the runs fill the bytes exactly."""
     if not encoded:
         raise FrameError("empty frame")
     body = bytearray(encoded)
@@ -59,7 +58,7 @@ def cobs_decode(encoded: bytes) -> bytes:
         run = encoded[start]
         if not run:
             raise FrameError("a run of COBS is empty")
-        body[start] = 0  # each run begins where a zero stood; the first one's is nobody's
+        body[start] = 0  # each run replaces a zero; the first replaces none
         start += run
     if start > length:
         raise FrameError("a run of COBS passes the end of the frame")
@@ -67,7 +66,7 @@ def cobs_decode(encoded: bytes) -> bytes:
 
 
 def encode_frame(body: bytes) -> bytes:
-    """Return the bytes on the wire for one body, both edges included.
+    """Return the bytes on the wire of one body, both delimiters included.
 
     Raises
     ------
@@ -81,7 +80,7 @@ def encode_frame(body: bytes) -> bytes:
 
 
 def decode_frame(frame: bytes) -> bytes:
-    """Return the body of what stood between two edges; raises FrameError if it is no frame."""
+    """Return the body of the bytes between two delimiters; raises FrameError if there is none."""
     if not 5 <= len(frame) <= MAX_FRAME:
         raise FrameError("too short or too long for a frame")
     encoded = frame[:-3]
@@ -97,20 +96,22 @@ def check_bytes(encoded: bytes) -> bytes:
 
 
 class FrameReader:
-    """Finds the frames in a stream that may be cut anywhere and hold anything between them.
-
-    It keeps at most `MAX_FRAME` + 1 bytes, whatever it is fed.
-    """
+    """Finds the frames in a stream that may be cut anywhere and hold anything between them."""
 
     def __init__(self) -> None:
         self.frames = 0
-        """Frames received whole."""
+        """Valid frames received."""
         self.errors = 0
-        """Stretches between two edges that were no frame: noise, or a frame with wrong bits."""
+        """Invalid stretches between two delimiters: noise, or frames with wrong bits."""
         self._pending = bytearray()
 
+    @property
+    def buffered(self) -> int:
+        """Number of bytes that it keeps, at most `MAX_FRAME` + 1."""
+        return len(self._pending)
+
     def feed(self, data: bytes) -> list[bytes]:
-        """Take the next bytes of the stream; return the bodies of the frames they complete."""
+        """Process the next bytes of the stream; return the bodies of the frames they complete."""
         bodies = []
         *ended, rest = data.split(b"\0")
         for piece in ended:
@@ -123,7 +124,7 @@ class FrameReader:
         return bodies
 
     def _keep(self, piece: bytes) -> None:
-        # One byte more than a frame can have is enough to know that it is none.
+        # One byte more than the longest frame is enough to know that this is none.
         self._pending += piece[: MAX_FRAME + 1 - len(self._pending)]
 
     def _finish(self) -> bytes | None:

@@ -229,8 +229,8 @@ class CampaignWorld:
     def _measure(self) -> None:
         host, link, faulty = self.host, self.light.link, self.faulty
         sizes = {
-            "frame in host": (len(host._reader._pending), MAX_FRAME + 1),
-            "frame in robot": (len(link._reader._pending), MAX_FRAME + 1),
+            "frame in host": (host._reader.buffered, MAX_FRAME + 1),
+            "frame in robot": (link._reader.buffered, MAX_FRAME + 1),
             "actions": (len(self.lane._actions), timing.ACTIONS_MAX),
             "beats": (len(host._round_trip._sent), 16),
             "inbox": (len(faulty._inbox), INBOX_MAX),

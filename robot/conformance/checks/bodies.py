@@ -7,7 +7,7 @@ from robot.conformance.heard import header
 from robot.conformance.probe import ACTS_WITHIN, Probe
 from robot.conformance.verdicts import NotApplicableError, UnmetError
 from robot.protocol import messages as m
-from robot.protocol.schema import FORMS, form_of, pack
+from robot.protocol.schema import MESSAGES, pack, spec_of
 from robot.protocol.wire import MAX_BODY, encode_frame
 
 BODIES = Chapter("Bodies", 3)
@@ -47,7 +47,7 @@ def echo_skipped(robot: Probe) -> None:
     robot.fresh()
     for echo in _ECHOES:
         for session in (robot.session, robot.session + 0x0101):
-            what = f"an echo of {form_of(type(echo)).name}"
+            what = f"an echo of {spec_of(type(echo)).name}"
             robot.unanswered(robot.frame(echo, session), what)
 
 
@@ -58,7 +58,7 @@ def short_body_skipped(robot: Probe) -> None:
     for length in (1, 2):
         robot.unanswered(encode_frame(b"\x03\x21"[:length]), f"a body of {length} bytes")
     for message in _SPOKEN:
-        form = form_of(type(message))
+        form = spec_of(type(message))
         for length in range(3, form.size):
             body = pack(message, robot.session)[:length]
             what = f"{form.name} of {length} bytes"
@@ -148,4 +148,4 @@ def _untaken(robot: Probe, what: str, number: int = 0) -> None:
         raise UnmetError(f"STATE(taken={number}) after {what}", f"taken={taken}")
 
 
-assert not {*_UNKNOWN} & {*FORMS}
+assert not {*_UNKNOWN} & {*MESSAGES}

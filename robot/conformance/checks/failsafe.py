@@ -6,7 +6,7 @@ from robot.conformance.probe import ACTS_WITHIN, AT_ONCE, NEUTRAL, SLACK, Probe,
 from robot.conformance.verdicts import UnmetError
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.schema import form_of
+from robot.protocol.schema import spec_of
 from robot.protocol.wire import encode_frame
 
 FAILSAFE = Chapter("Failsafe", 7)
@@ -66,7 +66,7 @@ def any_message_counts(robot: Probe) -> None:
         robot.say(message)
         gone = [one for one in robot.hear(SLACK) if isinstance(one.message, m.Gone)]
         if gone:
-            name = form_of(type(message)).name
+            name = spec_of(type(message)).name
             raise UnmetError(f"an open session for {name}, {_EACH} ms after a message", told(gone))
     robot.hear(FED_EVERY)
     robot.beat(f"seven messages that are no BEAT, {_EACH} ms apart")

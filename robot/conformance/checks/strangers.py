@@ -6,7 +6,7 @@ from robot.conformance.probe import AT_ONCE, SLACK, Probe, told
 from robot.conformance.verdicts import UnmetError
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.schema import form_of
+from robot.protocol.schema import spec_of
 
 OTHERS = Chapter("What is not of the session", 5)
 
@@ -40,7 +40,7 @@ def foreign_session_told(robot: Probe) -> None:
         foreign = robot.session ^ 0x1111
         robot.hear(2 * timing.GONE_EVERY)
         robot.say(message, session=foreign)
-        name = form_of(type(message)).name
+        name = spec_of(type(message)).name
         see_gone(robot, foreign, f"{name} in another session")
         taken = robot.beat(f"{name} in another session").taken
         if taken:
@@ -56,7 +56,7 @@ def gone_without_session(robot: Probe) -> None:
     for message in _FOREIGN:
         robot.hear(2 * timing.GONE_EVERY)
         robot.say(message)
-        see_gone(robot, robot.session, f"{form_of(type(message)).name} after BYE")
+        see_gone(robot, robot.session, f"{spec_of(type(message)).name} after BYE")
 
 
 @OTHERS.must

@@ -12,7 +12,7 @@ import robot.protocol
 from robot.firmware.dino import codec, frames, messages
 from robot.protocol import messages as m
 from robot.protocol.fields import MessageError
-from robot.protocol.schema import form_of, pack, unpack
+from robot.protocol.schema import pack, spec_of, unpack
 from robot.protocol.wire import MAX_BODY, MAX_FRAME, FrameReader, encode_frame
 
 VECTORS = json.loads((Path(robot.protocol.__file__).parent / "vectors.json").read_text("utf-8"))
@@ -120,7 +120,7 @@ def test_messages_of_both_versions_and_of_later_ones_are_read(message, session, 
     values = codec.unpack(bytearray(body).ljust(MAX_BODY + 1, b"\x55"), len(body))
     assert values is not None
     _, expected = unpack(body, "host")
-    counts = [one for f in form_of(type(message)).fields for one in f.to_wire(
+    counts = [one for f in spec_of(type(message)).fields for one in f.to_wire(
         getattr(expected, f.name))]  # fmt: skip
     assert values == (body[0], session, *counts)
 

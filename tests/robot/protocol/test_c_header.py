@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from robot.protocol.fields import MessageError
-from robot.protocol.schema import FORMS, pack, unpack
+from robot.protocol.schema import MESSAGES, pack, unpack
 from robot.protocol.vectors import VECTORS
 from robot.protocol.wire import FrameReader, encode_frame
 from tools.protocol_reference import HEADER_FILE, VECTORS_FILE
@@ -52,20 +52,20 @@ int main(void)
 """
 
 
-def case_of(form) -> str:
-    name = form.name.lower()
-    fields = any(part.fields for part in form.parts)
+def case_of(spec) -> str:
+    name = spec.name.lower()
+    fields = any(part.fields for part in spec.parts)
     struct = f"cubeling_{name} m;" if fields else ""
     unpacked = f"cubeling_unpack_{name}(reader.bytes, size{', &m' if fields else ''})"
     packed = f"cubeling_pack_{name}(body, session, CUBELING_VERSION{', &m' if fields else ''})"
-    return f"case CUBELING_{form.name}: {{ {struct} if ({unpacked}) say(body, {packed}); break; }}"
+    return f"case CUBELING_{spec.name}: {{ {struct} if ({unpacked}) say(body, {packed}); break; }}"
 
 
 @pytest.fixture(scope="module")
 def program(tmp_path_factory):
     folder = tmp_path_factory.mktemp("c")
     source, binary = folder / "main.c", folder / "main"
-    source.write_text(MAIN.replace("CASES", "\n".join(map(case_of, FORMS.values()))))
+    source.write_text(MAIN.replace("CASES", "\n".join(map(case_of, MESSAGES.values()))))
     strict = ["-std=c99", "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"]
     checked = ["-fsanitize=undefined,address", "-fno-sanitize-recover=all"]
     include = ["-I", str(HEADER_FILE.parent)]

@@ -9,63 +9,63 @@ from hypothesis import strategies as st
 
 from robot.protocol import messages as m
 from robot.protocol import wire
-from robot.protocol.fields import FieldForm, MessageError
-from robot.protocol.schema import FORMS, HEADER, MessageForm, Sender, pack, unpack
+from robot.protocol.fields import FieldSpec, MessageError
+from robot.protocol.schema import HEADER, MESSAGES, MessageSpec, Sender, pack, unpack
 from robot.protocol.timing import VERSION
 
-forms = st.sampled_from(sorted(FORMS.values(), key=lambda form: form.number))
+specs = st.sampled_from(sorted(MESSAGES.values(), key=lambda spec: spec.number))
 
 
-def values_of(field: FieldForm) -> st.SearchStrategy:
-    if field.form == "text16":
+def values_of(field: FieldSpec) -> st.SearchStrategy:
+    if field.type == "text16":
         return st.text(
             st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=4
         )
     low, high = {"u8": (0, 255), "u16": (0, 65535), "u32": (0, 2**32 - 1)}.get(
-        field.form, (-32768, 32767)
+        field.type, (-32768, 32767)
     )
     low = low if field.low is None else round(field.low / field.scale)
     high = high if field.high is None else round(field.high / field.scale)
     per_unit = round(1 / field.scale)
     one = st.integers(low, high).map(lambda n: n if per_unit == 1 else n / per_unit)
-    return st.tuples(*[one] * 16) if field.form == "i16x16" else one
+    return st.tuples(*[one] * 16) if field.type == "i16x16" else one
 
 
 @st.composite
 def contents(draw):
-    form: MessageForm = draw(forms)
-    return form, form.kind(**{f.name: draw(values_of(f)) for f in form.fields})
+    spec: MessageSpec = draw(specs)
+    return spec, spec.kind(**{f.name: draw(values_of(f)) for f in spec.fields})
 
 
 @given(contents(), st.integers(0, 65535), st.binary(max_size=20))
 def test_a_message_survives_the_wire_exactly_even_with_fields_of_a_later_version(
     sent, session, new
 ):
-    form, content = sent
+    spec, content = sent
     body = pack(content, session)
-    assert len(body) == form.parts[-1].end <= wire.MAX_BODY
-    assert unpack(body + new, form.sender) == (session, content)
+    assert len(body) == spec.parts[-1].end <= wire.MAX_BODY
+    assert unpack(body + new, spec.sender) == (session, content)
 
 
 @given(contents(), st.data())
 def test_a_message_cut_short_is_refused(sent, data):
-    form, content = sent
+    spec, content = sent
     body = pack(content, 1)
-    shorter = data.draw(st.integers(0, form.size - 1))
+    shorter = data.draw(st.integers(0, spec.size - 1))
     with pytest.raises(MessageError):
-        unpack(body[:shorter], form.sender)
+        unpack(body[:shorter], spec.sender)
 
 
 @given(contents(), st.data())
 def test_what_an_earlier_version_does_not_say_has_its_default(sent, data):
-    form, content = sent
+    spec, content = sent
     version = data.draw(st.integers(1, VERSION))
     body = pack(content, 1, version)
-    _, received = unpack(body, form.sender)
-    for part in form.parts:
+    _, received = unpack(body, spec.sender)
+    for part in spec.parts:
         for field in part.fields:
             known = part.since <= version
-            expected = content if known else form.kind
+            expected = content if known else spec.kind
             assert getattr(received, field.name) == getattr(expected, field.name)
     assert pack(received, 1, version) == body
 
@@ -79,12 +79,12 @@ def test_the_first_version_is_still_what_it_was():
 
 @given(contents())
 def test_an_echo_of_the_own_side_is_no_message(sent):
-    form, content = sent
-    other: Sender = "robot" if form.sender == "host" else "host"
+    spec, content = sent
+    other: Sender = "robot" if spec.sender == "host" else "host"
     assert unpack(pack(content, 3), other) == (3, None)
 
 
-@given(st.integers(0, 255).filter(lambda number: number not in FORMS), st.binary(max_size=60))
+@given(st.integers(0, 255).filter(lambda number: number not in MESSAGES), st.binary(max_size=60))
 def test_an_unknown_message_is_skipped(number, rest):
     assert unpack(HEADER.pack(number, 9) + rest, "host") == (9, None)
 

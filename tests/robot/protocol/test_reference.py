@@ -7,7 +7,7 @@ import pytest
 
 from robot.protocol import wire
 from robot.protocol.fields import MessageError
-from robot.protocol.schema import FORMS, unpack
+from robot.protocol.schema import MESSAGES, unpack
 from robot.protocol.vectors import VECTORS
 from robot.protocol.wire import FrameReader
 from tools.protocol_reference import DOCUMENT, VECTORS_FILE, drawn, renewed
@@ -29,12 +29,12 @@ def test_the_vectors_of_the_document_are_read_as_what_it_says():
     assert len(lines) == len(frames) == len(VECTORS)
     for line, frame in zip(lines, frames, strict=True):
         (body,) = FrameReader().feed(frame)
-        session, content = unpack(body, FORMS[body[0]].sender)
+        session, content = unpack(body, MESSAGES[body[0]].sender)
         assert f"{content} in session {session}" == line.removesuffix(", version 1")
 
 
 def test_there_is_a_vector_for_every_message():
-    assert {type(vector.content) for vector in VECTORS} == {form.kind for form in FORMS.values()}
+    assert {type(vector.content) for vector in VECTORS} == {spec.kind for spec in MESSAGES.values()}
 
 
 def test_the_bytes_of_the_file_that_a_robot_skips_say_nothing_to_it():

@@ -82,7 +82,7 @@ def test_a_babbling_line_is_survived_in_bounded_memory(pieces):
     reader = FrameReader()
     for piece in pieces:
         reader.feed(piece)
-        assert len(reader._pending) <= wire.MAX_FRAME + 1
+        assert reader.buffered <= wire.MAX_FRAME + 1
 
 
 @pytest.mark.parametrize("size", [0, wire.MAX_BODY + 1])

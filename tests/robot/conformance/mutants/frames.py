@@ -3,7 +3,7 @@
 from typing import Any
 
 from robot.protocol import messages as m
-from robot.protocol.schema import FORMS, pack
+from robot.protocol.schema import MESSAGES, pack
 from robot.protocol.wire import FrameError, cobs_decode, crc16, decode_frame, encode_frame
 from tests.robot.conformance.mutants.base import Mutant, breaks
 
@@ -157,7 +157,7 @@ class HasABatteryBeyondFull(Mutant):
 @breaks("unknown message skipped")
 class AcknowledgesWhatItDoesNotKnow(Mutant):
     def hear(self, number: int, session: int, body: bytes) -> None:
-        if number not in FORMS:
+        if number not in MESSAGES:
             self.send(session, m.Ack(1, m.UNKNOWN))
         super().hear(number, session, body)
 
@@ -165,7 +165,7 @@ class AcknowledgesWhatItDoesNotKnow(Mutant):
 @breaks("unknown message skipped", "echo skipped")
 class LooksAtTheSessionFirst(Mutant):
     def hear(self, number: int, session: int, body: bytes) -> None:
-        form = FORMS.get(number)
+        form = MESSAGES.get(number)
         if (form is None or form.sender == "robot") and session != self.session:
             self.send(session, m.Gone())
         super().hear(number, session, body)
@@ -174,15 +174,15 @@ class LooksAtTheSessionFirst(Mutant):
 @breaks("short body skipped")
 class FillsShortBodiesUp(Mutant):
     def hear(self, number: int, session: int, body: bytes) -> None:
-        if number in FORMS:
-            body += bytes(max(FORMS[number].size - len(body), 0))
+        if number in MESSAGES:
+            body += bytes(max(MESSAGES[number].size - len(body), 0))
         super().hear(number, session, body)
 
 
 @breaks("longer body used")
 class WantsExactLengths(Mutant):
     def hear(self, number: int, session: int, body: bytes) -> None:
-        if number not in FORMS or len(body) <= FORMS[number].parts[-1].end:
+        if number not in MESSAGES or len(body) <= MESSAGES[number].parts[-1].end:
             super().hear(number, session, body)
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from affect.emotion import Emotion
 from robot.protocol import messages as m
-from robot.protocol.schema import FORMS
+from robot.protocol.schema import MESSAGES
 from tests.robot.conformance.mutants.base import Mutant, breaks
 from tests.robot.conformance.mutants.sessions import Greeter
 
@@ -247,7 +247,7 @@ class CountsAnyByte(Mutant):
 @breaks("failsafe not fed by strangers")
 class CountsAnySession(Mutant):
     def hear(self, number: int, session: int, body: bytes) -> None:
-        if self.session and number in FORMS:
+        if self.session and number in MESSAGES:
             self.keep_alive()
         super().hear(number, session, body)
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from robot.protocol import messages as m
-from robot.protocol.schema import FORMS, pack, unpack
+from robot.protocol.schema import MESSAGES, pack, unpack
 from tests.robot.conformance.mutants.base import Mutant, breaks
 
 
@@ -287,5 +287,5 @@ class AnswersEveryQuestion(Mutant):
         super().hear(number, session, body)
 
 
-assert FORMS[2].kind is m.Ask
+assert MESSAGES[2].kind is m.Ask
 assert pack(m.Bye(), 1)[0] == 0x1F
