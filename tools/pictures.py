@@ -14,7 +14,8 @@ from rich.console import Console
 from app.commands.mood import plot
 from app.pipeline.playground import Playground
 from app.pipeline.step import RobotView
-from app.running.opening import Wish, fitting, open_session
+from app.running.opening import intrinsics_for, open_session
+from app.running.options import SessionOptions
 from app.running.runner import run
 from app.session.bundled import bundled
 from app.ui.calibration.coach import PERIOD, CoachView
@@ -44,7 +45,7 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
         source = closing.enter_context(open_source(str(bundled(scenario))))
         context = create_context()
         closing.callback(context.release)
-        intrinsics = fitting(source.intrinsics, source.size)
+        intrinsics = intrinsics_for(source.intrinsics, source.size)
         playground = Playground(scenario, intrinsics, context=context)
         closing.callback(playground.close)
         virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
@@ -128,16 +129,16 @@ def draw_moods() -> None:
     plot(bundled("companion"), felt, ["thesis", "shy", "grumpy"])
     with tempfile.TemporaryDirectory() as folder:
         session = Path(folder) / "today.mcap"
-        wish = Wish(
-            "companion",
-            str(bundled("companion")),
+        options = SessionOptions(
+            scenario="companion",
+            source=str(bundled("companion")),
             personality="lively",
             robot=UNPLUGGED,
             record=session,
             pictures=False,
         )
-        with ExitStack() as closing:
-            run(open_session(wish, closing))
+        with open_session(options) as opened:
+            run(opened)
         plot(session, FOLDER / "mood-robot.svg", None)
 
 

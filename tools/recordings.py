@@ -5,13 +5,13 @@ the truth is known; everything after the camera is what the program itself did w
 """
 
 import sys
-from contextlib import ExitStack
 from pathlib import Path
 
 from rich.console import Console
 
-from app.commands.progress import play_to_end
-from app.running.opening import Wish, open_session
+from app.commands.progress import run_with_progress
+from app.running.opening import open_session
+from app.running.options import SessionOptions
 from app.scenarios import SCENARIOS
 
 FOLDER = Path(__file__).parent.parent / "recordings"
@@ -25,10 +25,11 @@ def make(name: str, console: Console) -> None:
     path = FOLDER / f"{name}.mcap"
     fresh = path.with_suffix(".mcap.partial")
     fresh.unlink(missing_ok=True)
-    wish = Wish(name, f"synthetic:{name}", record=fresh, codec="h264", robot="sim", pictures=False)
-    with ExitStack() as closing:
-        plan = open_session(wish, closing)
-        summary = play_to_end(plan, console, f"recording {path.name}")
+    options = SessionOptions(
+        scenario=name, source=f"synthetic:{name}", record=fresh, codec="h264", pictures=False
+    )
+    with open_session(options) as session:
+        summary = run_with_progress(session, console, f"recording {path.name}")
     size = fresh.stat().st_size
     if size > LIMIT:
         fresh.unlink()

@@ -10,7 +10,7 @@ from rich.console import Console
 
 from app.commands.play import CAMERA, Cube
 from app.errors import AppError
-from app.running.opening import fitting
+from app.running.opening import intrinsics_for
 from app.ui.calibration.coach_lines import FORMATS, CoachLines, write_coverage
 from app.ui.calibration.session import CalibrationSession, CoachDisplay
 from app.ui.display import has_display
@@ -99,7 +99,7 @@ def calibrate(
     with ExitStack() as closing:
         frames = closing.enter_context(open_source(source))
         if saved is not None:
-            saved = fitting(saved, frames.size)
+            saved = intrinsics_for(saved, frames.size)
         session = _coached(finders, frames, "board" if board else "cube", shown, seconds)
     if coverage is not None:
         write_coverage(coverage, session)

@@ -1,6 +1,7 @@
 """`cubeling demo`."""
 
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -8,8 +9,9 @@ import typer
 from rich.console import Console
 
 from app.commands.play import CAMERA, Personality
-from app.commands.progress import finished_video, play_to_end, tell_guess
-from app.running.opening import Wish, open_session
+from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
+from app.running.opening import open_session
+from app.running.options import SessionOptions
 from app.scenarios import scenario_cube
 from app.session.bundled import bundled
 from app.ui.display import has_display
@@ -43,45 +45,44 @@ def demo(
         render(scenario, output or VIDEO, console, personality)
         return
     with ExitStack() as closing:
-        camera = None if recording else _camera(closing, console)
+        camera = None if recording else _open_camera(closing, console)
         if camera is None:
             console.print(f"Playing the bundled recording of [bold]{scenario}[/]; Esc ends it.")
-            wish = _recorded(scenario, personality=personality)
+            options = _recording_options(scenario, personality)
         else:
             console.print(
                 f"Playing [bold]{scenario}[/] with your camera; Esc ends it. No cube yet? "
                 f"[cyan]cubeling cube {scenario_cube(scenario)}[/], "
                 "or [cyan]cubeling demo --recording[/]"
             )
-            wish = Wish(scenario, CAMERA, personality=personality)
-        plan = open_session(wish, closing, camera)
-        tell_guess(wish, plan.source, console)
-        summary = play_to_end(plan, console, scenario)
+            options = SessionOptions(scenario=scenario, source=CAMERA, personality=personality)
+        session = closing.enter_context(open_session(options, source=camera))
+        report_guessed_lens(session, console)
+        summary = run_with_progress(session, console, scenario)
     console.print(summary)
     summary.check()
 
 
 def render(scenario: str, output: Path, console: Console, personality: str | None = None) -> None:
-    """Render the bundled recording of a scenario to a video and say what happened."""
-    wish = _recorded(scenario, output, personality)
-    with ExitStack() as closing:
-        plan = open_session(wish, closing)
+    """Render the bundled recording of a scenario to a video, and print the summary."""
+    options = replace(_recording_options(scenario, personality), output=output)
+    with open_session(options) as session:
         console.print(
-            f"The bundled recording of [bold]{scenario}[/] ({plan.source.duration or 0:.0f} s) "
+            f"The bundled recording of [bold]{scenario}[/] ({session.source.duration or 0:.0f} s) "
             f"is rendered to [bold]{output}[/], as there is no display or you asked for it."
         )
-        summary = play_to_end(plan, console, f"rendering {output.name}")
+        summary = run_with_progress(session, console, f"rendering {output.name}")
     console.print(summary)
-    console.print(finished_video(output.resolve()))
+    console.print(video_ready(output.resolve()))
     summary.check()
 
 
-def _recorded(scenario: str, output: Path | None = None, personality: str | None = None) -> Wish:
-    scenario_cube(scenario)  # refuses a name that is none
-    return Wish(scenario, str(bundled(scenario)), output=output, personality=personality)
+def _recording_options(scenario: str, personality: str | None) -> SessionOptions:
+    scenario_cube(scenario)  # refuses a misspelt name
+    return SessionOptions(scenario=scenario, source=str(bundled(scenario)), personality=personality)
 
 
-def _camera(closing: ExitStack, console: Console) -> FrameSource | None:
+def _open_camera(closing: ExitStack, console: Console) -> FrameSource | None:
     """Open the first camera, or say in one line why the recording plays instead."""
     try:
         return closing.enter_context(open_source(CAMERA))

@@ -1,7 +1,6 @@
 """`cubeling play`."""
 
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -9,9 +8,10 @@ import typer
 from rich.console import Console
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
-from app.commands.progress import finished_video, play_to_end, tell_guess
+from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
 from app.running.network import SITE
-from app.running.opening import Wish, open_session
+from app.running.opening import open_session
+from app.running.options import SessionOptions
 from app.scenarios import scenario_cube
 from app.ui.display import require_display
 from robot.network import Credentials
@@ -99,32 +99,33 @@ def play(
 
     Example: [cyan]cubeling play companion --source camera:0 --robot /dev/ttyACM0[/]
     """
-    wish = Wish(
-        scenario,
-        source,
-        cube,
-        character,
-        intrinsics,
-        speed_map,
-        turns,
-        personality,
-        look,
-        robot,
-        record,
-        codec,
-        output,
-        pictures,
+    options = SessionOptions(
+        scenario=scenario,
+        source=source,
+        cube=cube,
+        character=character,
+        intrinsics=intrinsics,
+        speed_map=speed_map,
+        turns=turns,
+        personality=personality,
+        look=look,
+        robot=robot,
         robot_settings=robot_settings,
+        record=record,
+        codec=codec,
+        output=output,
+        pictures=pictures,
     )
-    scenario_cube(scenario)  # a wrong name is told before a missing display
-    if pictures and output is None:
+    scenario_cube(scenario)  # refuses a misspelt scenario before a missing display
+    if options.windowed:
         require_display()
+    console = Console()
     with ExitStack() as closing:
         line = publisher(mqtt, player, site, Credentials(None, password_file, ca), closing)
-        plan = replace(open_session(wish, closing), player=line)
-        tell_guess(wish, plan.source, Console())
-        summary = play_to_end(plan, Console(), f"playing {scenario}")
-    Console().print(summary)
+        session = closing.enter_context(open_session(options, player=line))
+        report_guessed_lens(session, console)
+        summary = run_with_progress(session, console, f"playing {scenario}")
+    console.print(summary)
     if output is not None:
-        Console().print(finished_video(output))
+        console.print(video_ready(output))
     summary.check()

@@ -1,4 +1,4 @@
-"""Running a session with a progress bar beside it."""
+"""Running a session with a progress bar, and what is printed about it."""
 
 from pathlib import Path
 
@@ -7,22 +7,19 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from app.errors import AppError
 from app.pipeline.step import Step
-from app.running.opening import Wish, guessed
-from app.running.runner import Plan, run
+from app.running.opening import OpenedSession
+from app.running.runner import run
 from app.running.summary import Summary
-from app.ui.screen import VideoFile
-from tracking import FrameSource
 
 
-def play_to_end(plan: Plan, console: Console, title: str) -> Summary:
-    """Run a session; show how far it is where its length is known and no window shows it.
+def run_with_progress(session: OpenedSession, console: Console, title: str) -> Summary:
+    """Run a session; show a progress bar where its length is known and it has no window.
 
-    A video that Ctrl-C cuts off is not kept.
+    Ctrl-C discards an unfinished video.
     """
-    duration = plan.source.duration
-    drawn = isinstance(plan.screen, VideoFile)
-    if duration is None or plan.paced or not console.is_terminal:
-        summary = run(plan)
+    duration = session.source.duration
+    if duration is None or session.paced or not console.is_terminal:
+        summary = run(session)
     else:
         columns = (
             TextColumn("{task.description}"),
@@ -31,29 +28,32 @@ def play_to_end(plan: Plan, console: Console, title: str) -> Summary:
         )
         with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as bar:
             task = bar.add_task(title, total=duration)
-            first: list[float] = []
+            start: float | None = None
 
             def progress(step: Step) -> None:
-                first[:] = first or [step.frame.timestamp]
-                bar.update(task, completed=step.frame.timestamp - first[0])
+                nonlocal start
+                now = step.frame.timestamp
+                start = now if start is None else start
+                bar.update(task, completed=now - start)
 
-            summary = run(plan, progress)
-    if drawn and summary.interrupted:
+            summary = run(session, progress)
+    writes_video = session.options.pictures and session.options.output is not None
+    if writes_video and summary.interrupted:
         raise KeyboardInterrupt
     if summary.frames == 0 and not summary.interrupted:
         raise AppError("the source gave no picture at all")
     return summary
 
 
-def tell_guess(wish: Wish, source: FrameSource, console: Console) -> None:
-    """Say where lengths rest on a guessed lens, and what to do about it."""
-    if guessed(wish, source):
+def report_guessed_lens(session: OpenedSession, console: Console) -> None:
+    """Say that the lens is guessed, and what to do about it."""
+    if session.options.intrinsics is None and session.source.intrinsics is None:
         console.print(
             "[dim]The camera is not calibrated: a lens of 60° is guessed. "
             "[cyan]cubeling calibrate[/] finds the true one in 20 s.[/]"
         )
 
 
-def finished_video(path: Path) -> str:
-    """One line that says where a video is."""
+def video_ready(path: Path) -> str:
+    """Return one line that says where a video is."""
     return f"[bold]{path}[/] is ready: {path.stat().st_size / 1e6:.1f} MB"

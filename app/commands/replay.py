@@ -1,7 +1,6 @@
 """`cubeling replay`."""
 
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -19,9 +18,10 @@ from app.commands.play import (
     RobotSettings,
     RobotUrl,
 )
-from app.commands.progress import finished_video, play_to_end, tell_guess
+from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
 from app.running.network import SITE
-from app.running.opening import Wish, open_session
+from app.running.opening import open_session
+from app.running.options import SessionOptions
 from app.running.replay_check import check_session
 from app.session import about, salvaged
 from app.ui.display import has_display
@@ -68,38 +68,35 @@ def replay(
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """
     console = Console()
-    told = salvaged(session) if salvage else about(session)
-    drawing = pictures and not check and (output is not None or has_display())
-    wish = Wish(
-        scenario or told.scenario,
-        str(session),
-        cube=told.cube or None,
-        character=character or told.character or None,
-        speed_map=told.speed_map,
-        turns=told.turns,
-        personality=personality or told.personality or None,
-        look=told.look,
+    recorded = salvaged(session) if salvage else about(session)
+    options = SessionOptions(
+        scenario=scenario or recorded.scenario,
+        source=str(session),
+        cube=recorded.cube or None,
+        character=character or recorded.character or None,
+        speed_map=recorded.speed_map,
+        turns=recorded.turns,
+        personality=personality or recorded.personality or None,
+        look=recorded.look,
         robot=robot,
         robot_settings=robot_settings,
         record=record,
         codec=codec,
         output=output,
-        pictures=drawing,
+        pictures=pictures and not check and (output is not None or has_display()),
         salvage=salvage,
         start=start,
     )
     if check:
-        verdict = check_session(session, wish)
-        console.print(verdict)
-        raise typer.Exit(0 if verdict.identical else 1)
+        result = check_session(session, options)
+        console.print(result)
+        raise typer.Exit(0 if result.identical else 1)
     with ExitStack() as closing:
         line = publisher(mqtt, player, site, Credentials(None, password_file, ca), closing)
-        plan = open_session(wish, closing)
-        if line is not None:  # others live in real time
-            plan = replace(plan, player=line, paced=True)
-        tell_guess(wish, plan.source, console)
-        summary = play_to_end(plan, console, f"replaying {session.name}")
+        opened = closing.enter_context(open_session(options, player=line))
+        report_guessed_lens(opened, console)
+        summary = run_with_progress(opened, console, f"replaying {session.name}")
     console.print(summary)
     if output is not None:
-        console.print(finished_video(output))
+        console.print(video_ready(output))
     summary.check()

@@ -1,13 +1,13 @@
-"""The one clock that the program hands down."""
+"""The clock of a session."""
 
 import time
 
 
 class SessionClock:
-    """Follows the wall until it is driven; then it shows the time of the session.
+    """Shows the monotonic time of the computer until `drive` sets it to the time of the frames.
 
-    A recording that is drawn faster or slower than it was taken drives the clock by its frames, so
-    the robot lives through the same seconds as the character.
+    A recording that is processed faster or slower than it was recorded drives the clock by its
+    frames. The robot then lives through the same seconds as the character.
     """
 
     def __init__(self) -> None:
@@ -20,15 +20,15 @@ class SessionClock:
             return self._driven
         return time.monotonic() + self._offset
 
-    def drive(self, seconds: float) -> None:
-        """Take over: from now on the clock shows the session's time, `seconds` after its start."""
+    def drive(self, elapsed: float) -> None:
+        """Set the clock to `elapsed` seconds after the first call of `drive`."""
         if self._driven is None:
             self._start = self()
             self._driven = self._start
-        self._driven = max(self._driven, self._start + seconds)
+        self._driven = max(self._driven, self._start + elapsed)
 
     def release(self) -> None:
-        """Follow the wall again, from the time shown now."""
+        """Run with the computer's time again, from the time shown now."""
         if self._driven is not None:
             self._offset = self._driven - time.monotonic()
             self._driven = None

@@ -6,37 +6,37 @@ from tracking import Frame
 
 CAMERA_LOST = "camera lost"
 CAMERA_BACK = "camera back"
-"""The events of a recording between which no pictures came."""
+"""The events of a recording between which there are no pictures."""
 
 
-class Gaps:
+class CameraGaps:
     """Notes when the camera was lost and when it came back.
 
     Parameters
     ----------
     summary
-        Where the session's gaps are gathered.
+        Collects the gaps of the session.
     recorder
-        Where they are recorded as events, or None.
+        Records their begin and end as events, or None.
     """
 
     def __init__(self, summary: Summary, recorder: Recorder | None) -> None:
         self._summary, self._recorder = summary, recorder
-        self._since: float | None = None
+        self._start: float | None = None
 
-    def lost(self) -> None:
-        """Note that the source is lost, from the last frame on; the first call of a gap counts."""
-        if self._since is None:
-            self._since = self._summary.last
-            self._event(CAMERA_LOST, self._since)
+    def begin(self) -> None:
+        """Begin a gap at the last frame; further calls within the gap do nothing."""
+        if self._start is None:
+            self._start = self._summary.last
+            self._record(CAMERA_LOST, self._start)
 
-    def back(self, frame: Frame) -> None:
-        """Note a frame: it ends a gap, if there was one."""
-        if self._since is not None:
-            self._summary.gaps.append((self._since, frame.timestamp - self._since))
-            self._since = None
-            self._event(CAMERA_BACK, frame.timestamp)
+    def end(self, frame: Frame) -> None:
+        """End the gap, if there is one, at this frame."""
+        if self._start is not None:
+            self._summary.gaps.append((self._start, frame.timestamp - self._start))
+            self._start = None
+            self._record(CAMERA_BACK, frame.timestamp)
 
-    def _event(self, what: str, time: float) -> None:
+    def _record(self, event: str, timestamp: float) -> None:
         if self._recorder is not None:
-            self._recorder.event(what, time)
+            self._recorder.event(event, timestamp)

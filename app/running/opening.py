@@ -1,6 +1,7 @@
-"""From what a person asks for to the parts of a session."""
+"""Opening a session: its source, screen, recorder and robot, from the user's options."""
 
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,9 +9,13 @@ import moderngl
 
 from app.errors import AppError
 from app.pipeline.playground import Playground
-from app.running.runner import PATIENCE_S, Plan
+from app.pipeline.step import Given
+from app.running.clock import SessionClock
+from app.running.options import SessionOptions
+from app.running.players import PlayerLine
+from app.running.robots import RobotLine, WireRecorder
 from app.scenarios import make_scenario, scenario_cube
-from app.session import cues
+from app.session import Recorder, cues
 from app.session.replay_inputs import recorded_arrows
 from app.ui.overlay import virtual_robot_side
 from app.ui.screen import NullScreen, Screen, VideoFile
@@ -19,133 +24,156 @@ from characters import Character
 from characters.rendering import create_context
 from tracking import CubeModel, FrameSource, Intrinsics, open_source
 
-ALONE_S = 3.0
-"""Without a window nobody is told to plug a camera in: only a network's short stalls are borne."""
-
 
 @dataclass(frozen=True)
-class Wish:
-    """What a person asks for."""
+class OpenedSession:
+    """What is opened for a session. `open_session` closes all of it."""
 
-    scenario: str
-    """Name of the scenario."""
+    options: SessionOptions
+    """What the user asked for."""
 
-    source: str
-    """Where the frames come from, as `tracking.open_source` takes it."""
+    source: FrameSource
+    """Where the frames come from."""
 
-    cube: str | None = None
-    """A bundled cube or a .toml file; None for the scenario's own."""
+    playground: Playground
+    """The pipeline that processes them."""
 
-    character: str | None = None
-    """A bundled character or a .glb file; None for the scenario's own."""
+    screen: Screen
+    """Where the pictures go."""
 
-    intrinsics: Path | None = None
-    """The camera's calibration, or None to take the source's own or guess."""
+    robot: RobotLine
+    """The robot that shows the emotions, or a stand-in."""
 
-    speed_map: str = "corrected"
-    """Which Speed map `follow` and `sketch` use."""
+    clock: SessionClock
+    """The time that the robot lives by."""
 
-    turns: float = 2.0
-    """Full turns from the least to the greatest intensity in `companion`."""
+    recorder: Recorder | None
+    """Records the session, or None."""
 
-    personality: str | None = None
-    """Who feels: a bundled personality or a .toml file; None for the scenario's own."""
+    wire: WireRecorder | None
+    """Records the robot's bytes, or None."""
 
-    look: str = "auto"
-    """What the character's eyes follow: one of `LOOKS`."""
+    player: PlayerLine | None
+    """Publishes the character's actions and emotions, or None."""
 
-    robot: str = "sim"
-    """Who feels: see `RobotLine.open`."""
+    paced: bool
+    """Whether a recording is played at the speed at which it was recorded."""
 
-    record: Path | None = None
-    """Where to record the session."""
+    start_overs: frozenset[float]
+    """In a replay, timestamps of the frames in which the player started over [s]."""
 
-    codec: str = "jpeg"
-    """How a recording keeps the pictures."""
-
-    output: Path | None = None
-    """A video to write; None to open a window."""
-
-    pictures: bool = True
-    """Whether to draw at all."""
-
-    salvage: bool = False
-    """Whether a source that breaks off is simply at its end."""
-
-    robot_settings: Path | None = None
-    """Which motion stands for which mood …, for robots that need to be told."""
-
-    start: str = "camera"
-    """From which arrow on a session is replayed: one of `STARTS`."""
+    replay_inputs: Iterator[Given] | None
+    """In a replay that does not start from the camera, the recorded messages of each frame."""
 
 
-def open_session(wish: Wish, closing: ExitStack, source: FrameSource | None = None) -> Plan:
-    """Open all that a session needs; `closing` closes it.
+@contextmanager
+def open_session(
+    options: SessionOptions,
+    *,
+    source: FrameSource | None = None,
+    screen: Screen | None = None,
+    player: PlayerLine | None = None,
+) -> Iterator[OpenedSession]:
+    """Open all that a session needs, and close it in reverse order at the end.
 
-    The cheap and certain things are checked first, so that a wrong name costs no camera.
+    Checks that cost nothing come first, so that a misspelt name does not open a camera.
+
+    Parameters
+    ----------
+    options
+        What the user asked for.
+    source, screen
+        Take the place of those that `options` names; the caller closes them.
+    player
+        Publishes the session; the caller closes it.
 
     Raises
     ------
     TrackingError, CharacterError, RobotError, AppError
-        Something that was asked for is not there or not usable.
+        Something that `options` names is missing or cannot be used.
     """
-    cube = CubeModel.load(wish.cube or scenario_cube(wish.scenario))
+    cube = CubeModel.load(options.cube or scenario_cube(options.scenario))
     scenario = make_scenario(
-        wish.scenario,
+        options.scenario,
         cube,
-        speed_map=wish.speed_map,
-        turns=wish.turns,
-        personality=wish.personality,
+        speed_map=options.speed_map,
+        turns=options.turns,
+        personality=options.personality,
     )
-    character = Character.load(wish.character or scenario.character)
-    calibration = None if wish.intrinsics is None else Intrinsics.load(wish.intrinsics)
-    refuse_overwriting(wish)
-    if source is None:
-        source = closing.enter_context(open_source(wish.source))
-    intrinsics = fitting(calibration or source.intrinsics, source.size)
-    screen, context = open_screen(wish, source, closing)
-    playground = Playground(
-        scenario, intrinsics, cube=cube, character=character, context=context, look=wish.look
-    )
-    closing.callback(playground.close)
-    return Plan(
-        source,
-        playground,
-        screen,
-        robot=wish.robot,
-        robot_settings=wish.robot_settings,
-        record=wish.record,
-        codec=wish.codec,
-        about=describe(wish, cube, source),
-        paced=wish.output is None and wish.pictures,
-        salvage=wish.salvage,
-        cues=cues(Path(wish.source)) if wish.source.endswith(".mcap") else frozenset(),
-        given=None if wish.start == "camera" else recorded_arrows(wish.source, wish.start),
-        patience=PATIENCE_S if wish.output is None and wish.pictures else ALONE_S,
-    )
+    character = Character.load(options.character or scenario.character)
+    calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
+    check_output_paths(options)
+    with ExitStack() as closing:
+        if source is None:
+            source = closing.enter_context(open_source(options.source))
+        intrinsics = intrinsics_for(calibration or source.intrinsics, source.size)
+        context = None
+        if screen is None:
+            screen, context = _open_screen(options, source, closing)
+        playground = Playground(
+            scenario, intrinsics, cube=cube, character=character, context=context, look=options.look
+        )
+        closing.callback(playground.close)
+        is_session = options.source.endswith(".mcap")
+        start_overs = cues(Path(options.source)) if is_session else frozenset[float]()
+        replay_inputs = None
+        if options.start != "camera":
+            replay_inputs = recorded_arrows(options.source, options.start)
+        recorder = wire = None
+        if options.record is not None:
+            about = recording_metadata(options, cube, source)
+            recorder = closing.enter_context(Recorder(options.record, about))
+            wire = WireRecorder(recorder)
+        clock = SessionClock()
+        paced = options.windowed or player is not None  # other players live in real time
+        stepped = not paced and not source.live
+        robot = closing.enter_context(
+            RobotLine.open(options.robot, clock, wire, options.robot_settings, stepped=stepped)
+        )
+        closing.callback(clock.release)  # the robot's connection is closed in real time
+        yield OpenedSession(
+            options,
+            source,
+            playground,
+            screen,
+            robot,
+            clock,
+            recorder,
+            wire,
+            player,
+            paced,
+            start_overs,
+            replay_inputs,
+        )
 
 
-def open_screen(
-    wish: Wish, source: FrameSource, closing: ExitStack
+def _open_screen(
+    options: SessionOptions, source: FrameSource, closing: ExitStack
 ) -> tuple[Screen, moderngl.Context | None]:
     """Open the window or the video file, and the context to draw in."""
-    if not wish.pictures:
+    if not options.pictures:
         return NullScreen(), None
-    if wish.output is not None:
+    if options.output is not None:
         context = create_context()
         closing.callback(context.release)
         virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
         closing.callback(virtual_robot.close)
-        video = VideoFile(wish.output, source.size, source.rate, virtual_robot)
+        video = VideoFile(options.output, source.size, source.rate, virtual_robot)
         return closing.enter_context(video), context
-    from app.ui.window import Window  # needs a display's libraries, which a server lacks
+    from app.ui.window import Window  # imports libraries that a computer without display lacks
 
-    window = closing.enter_context(Window(source.size, f"Cubeling: {wish.scenario}"))
+    window = closing.enter_context(Window(source.size, f"Cubeling: {options.scenario}"))
     return window, window.context
 
 
-def fitting(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:
-    """Return intrinsics for pictures of `size`, guessed where none are known."""
+def intrinsics_for(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:
+    """Return intrinsics for pictures of `size`; guess them where `intrinsics` is None.
+
+    Raises
+    ------
+    AppError
+        The calibration was made at another aspect ratio.
+    """
     if intrinsics is None:
         return Intrinsics.guess(size)
     if intrinsics.size == size:
@@ -158,29 +186,27 @@ def fitting(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:
     return intrinsics.scaled(size)
 
 
-def guessed(wish: Wish, source: FrameSource) -> bool:
-    """Whether nothing is known of the camera's lens."""
-    return wish.intrinsics is None and source.intrinsics is None
-
-
-def describe(wish: Wish, cube: CubeModel, source: FrameSource) -> dict[str, str]:
-    """Return what a recording says of itself."""
+def recording_metadata(
+    options: SessionOptions, cube: CubeModel, source: FrameSource
+) -> dict[str, str]:
+    """Return what a recording says of itself: all that a replay needs to know."""
+    uri = options.source
     return {
-        "scenario": wish.scenario,
-        "cube": wish.cube or cube.name,
-        "character": wish.character or "",
-        "speed_map": wish.speed_map,
-        "turns": f"{wish.turns:g}",
-        "personality": wish.personality or "",
-        "look": wish.look,
-        "source": wish.source.split("://")[0] if "://" in wish.source else Path(wish.source).name,
+        "scenario": options.scenario,
+        "cube": options.cube or cube.name,
+        "character": options.character or "",
+        "speed_map": options.speed_map,
+        "turns": f"{options.turns:g}",
+        "personality": options.personality or "",
+        "look": options.look,
+        "source": uri.split("://")[0] if "://" in uri else Path(uri).name,
         "rate": f"{source.rate:g}",
     }
 
 
-def refuse_overwriting(wish: Wish) -> None:
-    """Refuse to record over a file that exists, or to where nothing can be written."""
-    for path, what in ((wish.record, "recording"), (wish.output, "video")):
+def check_output_paths(options: SessionOptions) -> None:
+    """Refuse to record over a file that exists, or to write into a folder that does not."""
+    for path, what in ((options.record, "recording"), (options.output, "video")):
         if path is None:
             continue
         if not path.parent.is_dir():

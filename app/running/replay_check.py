@@ -1,7 +1,6 @@
-"""Holding a recorded session against what its frames lead to now."""
+"""Comparing a recorded session with what its frames lead to now."""
 
 from collections import Counter
-from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from pathlib import Path
@@ -9,20 +8,21 @@ from pathlib import Path
 from rich.table import Table
 
 from app.pipeline.scenario import Inputs
-from app.running.opening import Wish, open_session
+from app.running.opening import open_session
+from app.running.options import SessionOptions
 from app.session import messages
 from app.session.encoding import ARROWS, encode
 
 
 @dataclass
-class Verdict:
-    """How the channels of a session compare."""
+class ComparisonResult:
+    """The number of messages that agree and differ, by channel."""
 
     counts: Counter[str] = field(default_factory=Counter)
     """Messages of each channel."""
 
     different: Counter[str] = field(default_factory=Counter)
-    """Messages of each channel that are not the same, byte for byte."""
+    """Messages of each channel that differ in any byte."""
 
     first: dict[str, float] = field(default_factory=dict)
     """Time of the first one that differs, by channel [s]."""
@@ -36,28 +36,28 @@ class Verdict:
         table = Table("channel", "messages", "different", "first at")
         for topic in ARROWS:
             first = self.first.get(topic)
-            told = "" if first is None else f"{first:.3f} s"
-            table.add_row(topic, str(self.counts[topic]), str(self.different[topic]), told)
+            first_at = "" if first is None else f"{first:.3f} s"
+            table.add_row(topic, str(self.counts[topic]), str(self.different[topic]), first_at)
         return table
 
 
-def check_session(path: Path, wish: Wish) -> Verdict:
-    """Walk a session's frames down the line again and compare every arrow with the recorded one."""
-    verdict = Verdict()
-    wish = replace(wish, pictures=False, robot="none", record=None, output=None)
+def check_session(path: Path, options: SessionOptions) -> ComparisonResult:
+    """Process a session's frames again and compare every message with the recorded one."""
+    result = ComparisonResult()
+    options = replace(options, pictures=False, robot="none", record=None, output=None)
     recorded = messages(path, *ARROWS)
-    with ExitStack() as closing:
-        plan = open_session(wish, closing)
+    with open_session(options) as session:
         made = (
-            (topic, step.frame.timestamp, encode(arrow))
-            for frame in plan.source
-            for step in (plan.playground.step(frame, Inputs(frame.timestamp in plan.cues)),)
-            for topic, arrow in step.arrows().items()
+            (topic, step.frame.timestamp, encode(message))
+            for frame in session.source
+            for inputs in (Inputs(clear=frame.timestamp in session.start_overs),)
+            for step in (session.playground.step(frame, inputs),)
+            for topic, message in step.arrows().items()
         )
         for old, new in zip_longest(recorded, made):
             topic, time, _ = old or new or ("", 0.0, b"")
-            verdict.counts[topic] += 1
+            result.counts[topic] += 1
             if old != new:
-                verdict.different[topic] += 1
-                verdict.first.setdefault(topic, time)
-    return verdict
+                result.different[topic] += 1
+                result.first.setdefault(topic, time)
+    return result

@@ -1,5 +1,6 @@
-"""The robot at the end of the line: a real one, a simulated one on a real port, or none."""
+"""The robot of a session: a real one, a simulated one on a real port, or none."""
 
+import threading
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
@@ -9,30 +10,34 @@ from affect import Emotion
 from affect.words import closest_word
 from app.pipeline.scenario import EmotionTarget
 from app.pipeline.step import RobotView
+from app.session import Recorder
 from robot import Robot, RobotError, SimulatedPort, SteppedRobot, connect
 from robot.contract.closeable import Closeable
 
 OnBytes = Callable[[str, bytes, float], None]
-Clock = Callable[[], float]
+"""Called with ("tx" | "rx", bytes, time of the session's clock [s]) for all bytes on the wire."""
 
-REMEMBERED = 1000
-"""So many emotions are remembered with their words; a robot takes none that is older [frames]."""
+Clock = Callable[[], float]
+"""Returns the time of the session [s]."""
+
+MAX_REMEMBERED_EMOTIONS = 1000
+"""Emotions whose labels are remembered [frames]; a robot never acknowledges an older one."""
 
 
 class RobotLine(Closeable):
-    """Hands the emotions of a session to a robot and tells how it is.
+    """Sends the emotions of a session to a robot, and reads its state.
 
-    `open` it before the session, `close` it after; a second `close` does nothing. Nothing here
-    waits for the robot once it is connected.
+    `open` it before the session and `close` it after; a second `close` does nothing. Once it is
+    connected, no method waits for the robot.
     """
 
     def __init__(self) -> None:
         self._closing = ExitStack()
         self._robot: Robot | None = None
         self._target: EmotionTarget | None = None
-        self._asked: dict[Emotion, str] = {}
+        self._labels: dict[Emotion, str] = {}
         self._real = False
-        self._steps: Steps | None = None
+        self._stepper: RobotStepper | None = None
 
     @classmethod
     def open(
@@ -54,17 +59,17 @@ class RobotLine(Closeable):
         clock
             The session's time [s].
         on_bytes
-            Called with ("tx" | "rx", bytes, time) for everything on the wire.
+            Receives everything on the wire.
         settings
             A TOML file for the robot's driver, or None.
         stepped
-            Whether a simulated robot lives by the frames' time, for a session that is drawn faster
-            or slower than life: its bytes are then the same every time.
+            Whether a simulated robot advances with the frames, for a session that is processed
+            faster or slower than real time: its bytes are then the same every time.
 
         Raises
         ------
         RobotError
-            The port does not open or nobody answers.
+            The port does not open or no robot answers.
         """
         line = cls()
         if url == "none":
@@ -72,8 +77,8 @@ class RobotLine(Closeable):
         try:
             line._real = url != "sim" and not url.startswith("sim:")
             if stepped and not line._real:
-                line._steps = Steps(url, clock, on_bytes, settings)
-                line._robot = line._closing.enter_context(line._steps.robot)
+                line._stepper = RobotStepper(url, clock, on_bytes, settings)
+                line._robot = line._closing.enter_context(line._stepper.robot)
                 return line
             if url == "sim":
                 url = line._closing.enter_context(SimulatedPort(clock=clock)).url
@@ -85,38 +90,38 @@ class RobotLine(Closeable):
         return line
 
     def feel(self, target: EmotionTarget) -> None:
-        """Ask the robot to feel; returns at once."""
+        """Ask the robot to express an emotion; return at once."""
         self._target = target
-        self._asked.pop(target.emotion, None)  # so that the latest are last
-        self._asked[target.emotion] = target.label
-        if len(self._asked) > REMEMBERED:
-            del self._asked[next(iter(self._asked))]
-        if self._steps is not None:
-            self._steps.reach(target.timestamp)
+        self._labels.pop(target.emotion, None)  # keep the latest last
+        self._labels[target.emotion] = target.label
+        if len(self._labels) > MAX_REMEMBERED_EMOTIONS:
+            del self._labels[next(iter(self._labels))]
+        if self._stepper is not None:
+            self._stepper.advance_to(target.timestamp)
         if self._robot is not None:
             self._robot.express(target.emotion, target.label)
 
     def view(self) -> RobotView:
-        """Return what the robot says of itself, or what it was asked where there is none."""
+        """Return what the robot reports, or the requested emotion where there is no robot."""
         if self._robot is None:
             mood = 0.0 if self._target is None else self._target.emotion.valence
             return RobotView(
                 "none", mood, "neutral" if self._target is None else self._target.label
             )
         telemetry = self._robot.telemetry
-        # Pleo and OpenCat do not tell what they show; what they took is then the nearest truth.
+        # Pleo and OpenCat do not report what they show; what they acknowledged is the best guess.
         shown = telemetry.observed or telemetry.acknowledged or Emotion(0.0, 0.0)
-        label = telemetry.label or self._word_for(shown)
+        label = telemetry.label or self._label_of(shown)
         return RobotView(telemetry.state, shown.valence, label, self._real)
 
-    def _word_for(self, emotion: Emotion) -> str:
-        """Return the mood that a robot shows for what it took: chosen as its driver chooses it."""
+    def _label_of(self, emotion: Emotion) -> str:
+        """Return the mood that the robot shows for an emotion, chosen as its driver chooses it."""
         assert self._robot is not None
         try:
             moods = self._robot.catalogue.moods
-        except RobotError:  # it has not introduced itself yet
+        except RobotError:  # the handshake is not over yet
             return emotion.label
-        return closest_word(moods, emotion, self._asked.get(emotion)) or emotion.label
+        return closest_word(moods, emotion, self._labels.get(emotion)) or emotion.label
 
     def check(self) -> None:
         """Raise `RobotError` if the robot cannot be reached now."""
@@ -124,22 +129,22 @@ class RobotLine(Closeable):
             self._robot.check()
 
     def close(self) -> None:
-        """Let the robot go."""
+        """Disconnect."""
         self._closing.close()
         self._robot = None
 
 
-class Steps:
-    """Keeps a simulated robot's time in step with the frames.
+class RobotStepper:
+    """Advances a simulated robot with the frames.
 
     Parameters
     ----------
     url
         "sim", or what `SteppedRobot` takes.
     clock
-        The session's time, in which `on_bytes` is told [s].
+        The session's time, which `on_bytes` receives [s].
     on_bytes, settings
-        See `RobotLine.open`. What the robot says before the first frame is told with it.
+        See `RobotLine.open`. Bytes from before the first frame are reported with that frame.
     """
 
     def __init__(
@@ -148,24 +153,61 @@ class Steps:
         self._clock = clock
         self._on_bytes = on_bytes
         self._early: list[tuple[str, bytes, float]] = []
-        self._shift = 0.0
-        self._frame: float | None = None
+        self._offset = 0.0
+        self._frame_time: float | None = None
         url = "sim:cubeling" if url == "sim" else url
-        self.robot = SteppedRobot(url, on_bytes=self._tell, settings=settings)
+        self.robot = SteppedRobot(url, on_bytes=self._report, settings=settings)
         """The robot."""
 
-    def reach(self, timestamp: float) -> None:
-        """Let the robot live until the frame with this time [s]."""
-        if self._frame is None:
-            self._frame = timestamp
-            self._shift = self._clock() - self.robot.now
+    def advance_to(self, timestamp: float) -> None:
+        """Advance the robot to the frame with this timestamp [s]."""
+        if self._frame_time is None:
+            self._frame_time = timestamp
+            self._offset = self._clock() - self.robot.now
             for direction, data, time in self._early:
-                self._tell(direction, data, time)
-        self.robot.advance(max(0.0, timestamp - self._frame))
-        self._frame = timestamp
+                self._report(direction, data, time)
+        self.robot.advance(max(0.0, timestamp - self._frame_time))
+        self._frame_time = timestamp
 
-    def _tell(self, direction: str, data: bytes, time: float) -> None:
-        if self._frame is None:
+    def _report(self, direction: str, data: bytes, time: float) -> None:
+        if self._frame_time is None:
             self._early.append((direction, data, time))
         elif self._on_bytes is not None:
-            self._on_bytes(direction, data, time + self._shift)
+            self._on_bytes(direction, data, time + self._offset)
+
+
+class WireRecorder:
+    """Records the robot's bytes with the timestamps of the frames.
+
+    The link's thread calls it. The offset between the two times is known from the first frame on;
+    bytes from before it, such as the handshake, wait until then.
+
+    Parameters
+    ----------
+    recorder
+        Records them.
+    """
+
+    def __init__(self, recorder: Recorder) -> None:
+        self._recorder = recorder
+        self._lock = threading.Lock()
+        self._early: list[tuple[str, bytes, float]] = []
+        self._offset: float | None = None
+
+    def __call__(self, direction: str, data: bytes, time: float) -> None:
+        """Record bytes of one direction at a time of the session's clock [s]."""
+        with self._lock:
+            if self._offset is None:
+                self._early.append((direction, data, time))
+            else:
+                self._recorder.wire(direction, data, max(0.0, time + self._offset))
+
+    def align(self, offset: float) -> None:
+        """Set what to add to the clock's time to get that of the frames; only the first counts."""
+        with self._lock:
+            if self._offset is not None:
+                return
+            self._offset = offset
+            for direction, data, time in self._early:
+                self._recorder.wire(direction, data, max(0.0, time + offset))
+            self._early.clear()

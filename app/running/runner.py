@@ -1,274 +1,172 @@
-"""One session: frames in, pictures and emotions out, everything recorded that is asked for."""
+"""The loop of a session: frames in, pictures and emotions out, all of it recorded if asked for."""
 
-import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
-from pathlib import Path
+from contextlib import contextmanager
 
 from app.errors import AppError
-from app.pipeline.playground import Playground
 from app.pipeline.scenario import Inputs
-from app.pipeline.step import Given, Step
-from app.running.clock import SessionClock
-from app.running.gaps import Gaps
-from app.running.players import PlayerLine
-from app.running.robots import RobotLine
+from app.pipeline.step import Step
+from app.running.gaps import CameraGaps
+from app.running.opening import OpenedSession
 from app.running.summary import Summary
-from app.session import START_OVER, Recorder, preparation
+from app.session import START_OVER, preparation
 from app.ui.notice import notice
-from app.ui.screen import Screen
 from robot import RobotError
-from tracking import Frame, FrameSource, Health, Intrinsics, LiveFrames, TrackingError
+from tracking import Frame, Health, LiveFrames, TrackingError
 
 Progress = Callable[[Step], None]
+"""Called after every frame."""
 
-BREATH_S = 0.05
-"""While no frame comes, the window is served at least so often."""
+SCREEN_UPDATE_INTERVAL_S = 0.05
+"""While no frame comes, the screen is updated at least this often."""
 
-PATIENCE_S = 30.0
-"""So long a lost camera may take to come back while somebody is there to plug it in."""
+ATTENDED_RECONNECT_TIMEOUT_S = 30.0
+"""How long a camera may be lost while a user at the window can plug it in again."""
 
-
-@dataclass(frozen=True)
-class Plan:
-    """What a session is made of."""
-
-    source: FrameSource
-    """Where the frames come from; the caller closes it."""
-
-    playground: Playground
-    """The line that they walk; the caller closes it."""
-
-    screen: Screen
-    """Where the pictures go; the caller closes it."""
-
-    robot: str = "none"
-    """Who feels: see `RobotLine.open`."""
-
-    record: Path | None = None
-    """Where to record the session, or None."""
-
-    codec: str = "jpeg"
-    """How a recording keeps the pictures: "jpeg" or "h264"."""
-
-    about: dict[str, str] | None = None
-    """What the recording says of itself."""
-
-    paced: bool = False
-    """Whether a recording is played at the speed at which it was taken."""
-
-    salvage: bool = False
-    """Whether a source that breaks off is simply at its end."""
-
-    cues: frozenset[float] = frozenset()
-    """Times of the frames in which the player started over, in a replay [s]."""
-
-    given: Iterator[Given] | None = None
-    """Arrows of a replay that are taken as recorded, a frame at a time."""
-
-    patience: float = PATIENCE_S
-    """How long a live source may be lost before the session ends [s]."""
-
-    player: PlayerLine | None = None
-    """Who publishes what the character does and feels; the caller closes it."""
-
-    robot_settings: Path | None = None
-    """A TOML file for the robot's driver, or None."""
+UNATTENDED_RECONNECT_TIMEOUT_S = 3.0
+"""How long it may be lost without a window: long enough for a network's short stalls."""
 
 
-def run(plan: Plan, progress: Progress | None = None) -> Summary:
-    """Play a session to its end, until the player closes it, or until Ctrl-C.
+def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
+    """Run a session to its end, until the player closes the window, or until Ctrl-C.
 
     Raises
     ------
     TrackingError, RobotError, AppError
-        The source, the robot or the disk failed; what was recorded until then is whole.
+        The source, the robot or the disk failed; what was recorded until then is complete.
     """
-    summary = Summary(plan.playground.scenario.name)
-    clock = SessionClock()
-    with ExitStack() as closing:
-        recorder: Recorder | None = None
-        if plan.record is not None:
-            recorder = closing.enter_context(Recorder(plan.record, plan.about or {}))
-        tap = WireTap(recorder) if recorder is not None else None
-        stepped = not plan.paced and not plan.source.live
-        line = RobotLine.open(plan.robot, clock, tap, plan.robot_settings, stepped=stepped)
-        robot = closing.enter_context(line)
-        closing.callback(clock.release)  # a robot says goodbye in real time
-        closing.enter_context(_interruptible(summary))
-        play = _Play(plan, summary, recorder, robot)
-        gaps = Gaps(summary, recorder)
-        for frame in _frames(plan, clock, summary):
+    summary = Summary(session.playground.scenario.name)
+    with _end_on_interrupt(summary):
+        loop = _FrameLoop(session, summary)
+        gaps = CameraGaps(summary, session.recorder)
+        for frame in _frames(session, summary):
             if isinstance(frame, Health):
-                _wait(plan, frame, gaps)
+                message = notice(frame)
+                if message is not None:
+                    gaps.begin()
+                session.screen.wait(message)
             else:
-                gaps.back(frame)
-                if tap is not None:
-                    tap.align(frame.timestamp - clock())
-                step = play.step(frame)
+                gaps.end(frame)
+                if session.wire is not None:
+                    session.wire.align(frame.timestamp - session.clock())
+                step = loop.step(frame)
                 if progress is not None:
                     progress(step)
-            if plan.screen.closed:
+            if session.screen.closed:
                 break
-        # A robot that falls silent stops nobody's play, and the link keeps trying;
-        # whether it came back is told at the end.
+        # A lost robot does not end the session and its link keeps retrying: report it at the end.
         try:
-            robot.check()
-        except RobotError as lost:
-            summary.lost = summary.lost or lost
-    if isinstance(plan.source, LiveFrames):
-        summary.camera = plan.source.health
+            session.robot.check()
+        except RobotError as error:
+            summary.lost = summary.lost or error
+    if isinstance(session.source, LiveFrames):
+        summary.camera = session.source.health
     return summary
 
 
-class _Play:
-    """Takes a session from frame to frame."""
+class _FrameLoop:
+    """Processes, shows and records one frame after the other."""
 
-    def __init__(
-        self,
-        plan: Plan,
-        summary: Summary,
-        recorder: Recorder | None,
-        robot: RobotLine,
-    ) -> None:
-        self._plan, self._summary, self._recorder = plan, summary, recorder
-        self._robot = robot
+    def __init__(self, session: OpenedSession, summary: Summary) -> None:
+        self._session, self._summary = session, summary
         self._inputs = Inputs()
         self._prepare = None
-        if recorder is not None:
-            self._prepare = preparation(plan.codec, plan.source.size, plan.source.rate)
+        if session.recorder is not None:
+            source = session.source
+            self._prepare = preparation(session.options.codec, source.size, source.rate)
 
     def step(self, frame: Frame) -> Step:
-        """Walk a frame down the line, show it, and record it."""
-        plan = self._plan
+        """Process one frame."""
+        session = self._session
         began = time.perf_counter()
-        inputs = Inputs(clear=True) if frame.timestamp in plan.cues else self._inputs
-        given = next(plan.given, None) if plan.given is not None else None
+        inputs = self._inputs
+        if frame.timestamp in session.start_overs:
+            inputs = Inputs(clear=True)
+        replay = None if session.replay_inputs is None else next(session.replay_inputs, None)
         prepared = self._prepare(frame) if self._prepare else frame
-        step = plan.playground.step(prepared, inputs, given)
-        # First the look: right after a wish the link's thread is busy with it.
-        view = self._robot.view()
-        self._robot.feel(step.emotion)
-        if plan.player is not None:
-            plan.player.tell(step.command, step.emotion)
+        step = session.playground.step(prepared, inputs, replay)
+        # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
+        view = session.robot.view()
+        session.robot.feel(step.emotion)
+        if session.player is not None:
+            session.player.tell(step.command, step.emotion)
         seconds = time.perf_counter() - began
-        if self._recorder is not None:
-            if inputs.clear:
-                self._recorder.event(START_OVER, frame.timestamp)
-            first = self._summary.frames == 0
-            _record(self._recorder, plan.playground.intrinsics, step, first=first)
-        self._inputs = plan.screen.show(step, view)
+        self._record(step, inputs)
+        self._inputs = session.screen.show(step, view)
         self._summary.add(step, view, seconds)
         return step
 
-
-def _wait(plan: Plan, health: Health, gaps: Gaps) -> None:
-    """Keep the screen alive while no frame comes."""
-    words = notice(health)
-    if words is not None:
-        gaps.lost()
-    plan.screen.wait(words)
-
-
-class WireTap:
-    """Records what goes over the wire in the time of the frames; called from the link's thread.
-
-    Until the first frame the two times cannot be compared, so the greeting waits for it.
-
-    Parameters
-    ----------
-    recorder
-        Where it is recorded.
-    """
-
-    def __init__(self, recorder: Recorder) -> None:
-        self._recorder = recorder
-        self._lock = threading.Lock()
-        self._early: list[tuple[str, bytes, float]] = []
-        self._shift: float | None = None
-
-    def __call__(self, direction: str, data: bytes, time: float) -> None:
-        """Record bytes of one direction at a time of the session's clock [s]."""
-        with self._lock:
-            if self._shift is None:
-                self._early.append((direction, data, time))
-            else:
-                self._recorder.wire(direction, data, max(0.0, time + self._shift))
-
-    def align(self, shift: float) -> None:
-        """Say what to add to the clock's time for that of the frames; the first call counts."""
-        with self._lock:
-            if self._shift is not None:
-                return
-            self._shift = shift
-            for direction, data, time in self._early:
-                self._recorder.wire(direction, data, max(0.0, time + shift))
-            self._early.clear()
+    def _record(self, step: Step, inputs: Inputs) -> None:
+        recorder = self._session.recorder
+        if recorder is None:
+            return
+        now = step.frame.timestamp
+        if inputs.clear:
+            recorder.event(START_OVER, now)
+        if self._summary.frames == 0:
+            recorder.camera(self._session.playground.intrinsics, now)
+        recorder.write(step)
+        if step.controls.placed:
+            recorder.event(f"placed {step.controls.top_face}", now)
+        if step.controls.shaken:
+            recorder.event("shaken", now)
+        if recorder.problem is not None:
+            raise AppError(recorder.problem)
 
 
-def _frames(plan: Plan, clock: SessionClock, summary: Summary) -> Iterator[Frame | Health]:
-    """Give out the frames: live ones as they come, recorded ones at their pace or at once.
+def _frames(session: OpenedSession, summary: Summary) -> Iterator[Frame | Health]:
+    """Yield the frames: live ones as they come, recorded ones at their pace or at once.
 
-    While a live source has none, how it fares is given out instead, again and again.
+    While a live source has no frame, yield its health instead, again and again.
     """
     start: float | None = None
     began = time.monotonic()
-    for frame in _readable(plan, summary):
+    for frame in _readable_frames(session, summary):
         if isinstance(frame, Health):
             yield frame
             continue
         if start is None:
             start, began = frame.timestamp, time.monotonic()
         since = frame.timestamp - start
-        if plan.paced and not plan.source.live:
-            time.sleep(max(0.0, began + since - time.monotonic()))
-        elif not plan.source.live:
-            clock.drive(since)
+        if not session.source.live:
+            if session.paced:
+                time.sleep(max(0.0, began + since - time.monotonic()))
+            else:
+                session.clock.drive(since)
         yield frame
 
 
-def _readable(plan: Plan, summary: Summary) -> Iterator[Frame | Health]:
-    """Give out what can be read; a camera that breaks off ends the session, and what it made stays.
+def _readable_frames(session: OpenedSession, summary: Summary) -> Iterator[Frame | Health]:
+    """Yield what can be read; a camera that fails ends the session and keeps the recording.
 
     A file that breaks off is an error: it can be played again with `salvage`.
     """
     try:
-        yield from _given_out(plan)
+        yield from _source_frames(session)
     except TrackingError as error:
-        if plan.salvage:
+        if session.options.salvage:
             return
-        if not plan.source.live or not summary.frames:
+        if not session.source.live or not summary.frames:
             raise
         summary.lost = error
 
 
-def _given_out(plan: Plan) -> Iterator[Frame | Health]:
-    if not isinstance(plan.source, LiveFrames):
-        yield from plan.source
+def _source_frames(session: OpenedSession) -> Iterator[Frame | Health]:
+    source = session.source
+    if not isinstance(source, LiveFrames):
+        yield from source
         return
-    while plan.source.health.state != "closed":
-        frame = plan.source.wait(BREATH_S, plan.patience)
-        yield frame or plan.source.health
+    attended = session.options.windowed
+    timeout = ATTENDED_RECONNECT_TIMEOUT_S if attended else UNATTENDED_RECONNECT_TIMEOUT_S
+    while source.health.state != "closed":
+        yield source.wait(SCREEN_UPDATE_INTERVAL_S, timeout) or source.health
 
 
 @contextmanager
-def _interruptible(summary: Summary) -> Iterator[None]:
+def _end_on_interrupt(summary: Summary) -> Iterator[None]:
     """Make Ctrl-C the end of the session rather than an error."""
     try:
         yield
     except KeyboardInterrupt:
         summary.interrupted = True
-
-
-def _record(recorder: Recorder, intrinsics: Intrinsics, step: Step, *, first: bool) -> None:
-    if first:
-        recorder.camera(intrinsics, step.frame.timestamp)
-    recorder.write(step)
-    if step.controls.placed:
-        recorder.event(f"placed {step.controls.top_face}", step.frame.timestamp)
-    if step.controls.shaken:
-        recorder.event("shaken", step.frame.timestamp)
-    if recorder.problem is not None:
-        raise AppError(recorder.problem)

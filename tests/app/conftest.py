@@ -15,7 +15,7 @@ import pytest
 from app import cli
 from app.pipeline.playground import Playground
 from app.pipeline.step import Step
-from app.running.opening import fitting
+from app.running.opening import intrinsics_for
 from app.session import Recorder
 from tracking import CubeControls, open_source
 
@@ -115,7 +115,7 @@ def short_session(tmp_path_factory: pytest.TempPathFactory, bundled_session: Pat
     path = tmp_path_factory.mktemp("sessions") / "short.mcap"
     about = {"scenario": "companion", "cube": "companion"}
     with open_source(str(bundled_session)) as source, Recorder(path, about) as recorder:
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         recorder.camera(playground.intrinsics, 0.0)
         for frame in itertools.islice(source, 60):
             recorder.write(playground.step(frame))
@@ -128,7 +128,7 @@ def a_step(bundled_session: Path) -> Callable[[moderngl.Context | None], Step]:
 
     def make(context: moderngl.Context | None) -> Step:
         with open_source(str(bundled_session)) as source:
-            intrinsics = fitting(source.intrinsics, source.size)
+            intrinsics = intrinsics_for(source.intrinsics, source.size)
             playground = Playground("companion", intrinsics, context=context)
             step = playground.step(next(iter(source)))
             playground.close()

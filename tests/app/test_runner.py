@@ -1,20 +1,20 @@
-"""Sessions that end badly: what was made until then is whole."""
+"""Sessions that end with an error: what was recorded until then is complete."""
 
 import itertools
 
 import pytest
 
-from app.pipeline.playground import Playground
 from app.running.clock import SessionClock
-from app.running.opening import fitting
-from app.running.runner import Plan, WireTap, run
+from app.running.opening import open_session
+from app.running.options import SessionOptions
+from app.running.robots import WireRecorder
+from app.running.runner import run
 from app.session import about, messages
-from app.ui.screen import NullScreen
 from tracking import TrackingError, open_source
 
 
 class Breaking:
-    """Some frames of a session, then an error, as a camera that is unplugged."""
+    """Gives some frames of a session, then an error, like a camera that is unplugged."""
 
     def __init__(self, session, frames, live):
         self._session = open_source(str(session))
@@ -38,49 +38,46 @@ class Breaking:
 
 
 @pytest.fixture
-def plan(short_session, tmp_path):
-    """Make a plan with a source that breaks off, recorded."""
-    opened = []
+def run_recorded(short_session, tmp_path):
+    """Run a session whose source breaks off after so many frames; return its summary."""
 
-    def make(frames, live):
-        source = Breaking(short_session, frames, live)
-        opened.append(source)
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
-        record = tmp_path / "out.mcap"
-        notes = {"scenario": "companion", "cube": "companion"}
-        return Plan(source, playground, NullScreen(), "sim", record, about=notes)
+    def run_session(frames, live):
+        options = SessionOptions(
+            scenario="companion", source="camera:0", record=tmp_path / "out.mcap", pictures=False
+        )
+        with (
+            Breaking(short_session, frames, live) as source,
+            open_session(options, source=source) as session,
+        ):
+            return run(session)
 
-    yield make
-    for source in opened:
-        source.close()
+    return run_session
 
 
-def test_a_camera_that_breaks_off_ends_the_session_and_keeps_the_recording(plan):
-    chosen = plan(5, live=True)
-    summary = run(chosen)
+def test_a_camera_that_fails_ends_the_session_and_keeps_the_recording(run_recorded, tmp_path):
+    summary = run_recorded(5, live=True)
     assert summary.frames == 5
-    assert about(chosen.record).frames == 5
+    assert about(tmp_path / "out.mcap").frames == 5
     with pytest.raises(TrackingError, match="no picture"):
         summary.check()
 
 
-def test_a_camera_that_gives_nothing_leaves_nothing(plan):
-    chosen = plan(0, live=True)
+def test_a_camera_that_gives_no_frame_leaves_no_file(run_recorded, tmp_path):
     with pytest.raises(TrackingError):
-        run(chosen)
-    assert not chosen.record.exists()
+        run_recorded(0, live=True)
+    assert not (tmp_path / "out.mcap").exists()
 
 
-def test_a_file_that_breaks_off_is_an_error(plan):
+def test_a_file_that_breaks_off_is_an_error(run_recorded):
     with pytest.raises(TrackingError):
-        run(plan(5, live=False))
+        run_recorded(5, live=False)
 
 
-def test_the_wire_is_recorded_in_the_time_of_the_frames(plan):
-    chosen = plan(30, live=True)
-    run(chosen)
-    frames = [time for _, time, _ in messages(chosen.record, "/camera/image")]
-    wire = [time for _, time, _ in messages(chosen.record, "/robot/wire")]
+def test_the_wire_is_recorded_with_the_timestamps_of_the_frames(run_recorded, tmp_path):
+    run_recorded(30, live=True)
+    path = tmp_path / "out.mcap"
+    frames = [time for _, time, _ in messages(path, "/camera/image")]
+    wire = [time for _, time, _ in messages(path, "/robot/wire")]
     assert wire
     assert min(wire) >= 0.0
     assert min(wire) < frames[0] + 0.5
@@ -95,11 +92,11 @@ def test_bytes_before_the_first_frame_wait_for_it():
             self.wires.append(what)
 
     recorder = Recorder()
-    tap = WireTap(recorder)  # type: ignore[arg-type]  # it only calls `wire`
-    tap("tx", b"a", 1.0)
+    record = WireRecorder(recorder)  # type: ignore[arg-type]  # it only calls `wire`
+    record("tx", b"a", 1.0)
     assert not recorder.wires
-    tap.align(100.0)
-    tap("rx", b"b", 2.0)
+    record.align(100.0)
+    record("rx", b"b", 2.0)
     assert recorder.wires == [("tx", b"a", 101.0), ("rx", b"b", 102.0)]
 
 

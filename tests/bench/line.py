@@ -16,7 +16,7 @@ from rich.table import Table
 from app.pipeline.playground import Playground
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
-from app.running.opening import fitting
+from app.running.opening import intrinsics_for
 from app.scenarios import SCENARIOS
 from app.session.bundled import bundled
 from app.ui.overlay import overlay, virtual_robot_side
@@ -32,7 +32,8 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
     parts: dict[str, list[float]] = defaultdict(list)
     context = create_context()
     with open_source(str(bundled(name))) as source:
-        playground = Playground(name, fitting(source.intrinsics, source.size), context=context)
+        intrinsics = intrinsics_for(source.intrinsics, source.size)
+        playground = Playground(name, intrinsics, context=context)
         robot = RobotView("ready", 0.0, "neutral")
         virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
         stream = iter(source)

@@ -24,7 +24,7 @@ from rich.table import Table
 
 from app.pipeline.playground import Playground
 from app.pipeline.scenario import Inputs
-from app.running.opening import fitting
+from app.running.opening import intrinsics_for
 from app.running.robots import RobotLine
 from app.session.bundled import bundled
 from characters.rendering import create_context
@@ -155,7 +155,7 @@ def main() -> None:
         return
     context = create_context()
     with open_source(str(bundled("companion"))) as source:
-        intrinsics = fitting(source.intrinsics, source.size)
+        intrinsics = intrinsics_for(source.intrinsics, source.size)
         frames = [frame for frame, _ in zip(source, range(200 + FRAMES), strict=False)][200:]
     block("none", frames, intrinsics, context)  # warm
     took: dict[str, list[list[float]]] = defaultdict(list)

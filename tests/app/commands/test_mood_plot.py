@@ -24,7 +24,7 @@ from app.moods.formats import dashed, pdf, png, save, svg
 from app.moods.picture import ticks
 from app.moods.plane import regions
 from app.pipeline.playground import Playground
-from app.running.opening import fitting
+from app.running.opening import intrinsics_for
 from app.session import START_OVER, Recorder
 from robot.protocol import messages as m
 from robot.protocol.schema import pack
@@ -66,7 +66,7 @@ def talking_session(tmp_path_factory, bundled_session):
     path = tmp_path_factory.mktemp("moods") / "talking.mcap"
     about = {"scenario": "companion", "cube": "companion", "personality": "shy"}
     with open_source(str(bundled_session)) as source, Recorder(path, about) as recorder:
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         for frame in itertools.islice(source, 12):
             recorder.write(playground.step(frame))
         for time, direction, content in SAID:
@@ -103,7 +103,7 @@ def test_who_starts_over_feels_anew(tmp_path, bundled_session):
     path = tmp_path / "over.mcap"
     about = {"scenario": "companion", "cube": "companion"}
     with open_source(str(bundled_session)) as source, Recorder(path, about) as recorder:
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         frames = list(itertools.islice(source, 8))
         recorder.event(START_OVER, frames[5].timestamp)
         for frame in frames:
@@ -143,7 +143,7 @@ def test_a_robot_that_was_away_still_has_what_it_had_taken(tmp_path, talking_ses
     said = [*SAID[:5], (0.2, "rx", m.Welcome(2, 1, 1, 0, 0, 0, 2, "dino", "test"))]
     said += [(0.25, "tx", m.Stop(2)), (0.3, "rx", m.Ack(2, m.TAKEN))]
     with open_source(str(talking_session)) as source, Recorder(path, {"scenario": "x"}) as recorder:
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         recorder.write(playground.step(next(iter(source))))
         for time, direction, content in said:
             recorder.wire(direction, encode_frame(pack(content, 9)), time)
@@ -155,7 +155,7 @@ def test_a_robot_that_is_silent_shows_nothing_that_is_known(tmp_path, talking_se
     path = tmp_path / "silent.mcap"
     said = [*SAID[:7], (0.9, "rx", state(0.0, 0.0))]
     with open_source(str(talking_session)) as source, Recorder(path, {"scenario": "x"}) as recorder:
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         recorder.write(playground.step(next(iter(source))))
         for time, direction, content in said:
             recorder.wire(direction, encode_frame(pack(content, 9)), time)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.pipeline.playground import Playground
-from app.running.opening import fitting
+from app.running.opening import intrinsics_for
 from app.scenarios.speed import MAPS
 from tracking import open_source
 from tracking.synthetic import open_synthetic
@@ -18,7 +18,7 @@ SMALL = "width=640&height=360&rate=15&clutter=0&shadow=0"
 def whole_turn():
     """One turn clockwise and back, tracked: angle of the camera, for every frame."""
     with open_synthetic(f"turn?{SMALL}") as source:
-        playground = Playground("follow", fitting(source.intrinsics, source.size))
+        playground = Playground("follow", intrinsics_for(source.intrinsics, source.size))
         return [(playground.gesture(playground.track(frame)), frame.timestamp) for frame in source]
 
 
@@ -43,7 +43,7 @@ def test_speed_is_the_same_either_way_round(whole_turn):
 def two_turns():
     """A kiss face put down, two turns up, four down, two up: the commands of every frame."""
     with open_synthetic(f"turns?{SMALL}") as source:
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         steps = [playground.step(frame) for frame in source]
     return [(step.command, step.controls) for step in steps if step.command.action == "kiss"]
 
@@ -65,7 +65,7 @@ def test_a_new_face_starts_at_zero_and_two_turns_span_the_intensity(two_turns):
 def companion_session(bundled_session):
     """Every step of the bundled recording, without pictures."""
     with open_source(str(bundled_session)) as source:
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         return [playground.step(frame) for frame in source]
 
 

@@ -1,4 +1,4 @@
-"""A session whose camera is lost: the screen lives on, and the gap is told and recorded."""
+"""A session whose camera is lost: the screen stays alive, and the gap is shown and recorded."""
 
 import itertools
 from dataclasses import replace
@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.pipeline.playground import Playground
-from app.running.opening import fitting
-from app.running.runner import Plan, run
+from app.running.opening import open_session
+from app.running.options import SessionOptions
+from app.running.runner import run
 from app.running.summary import Summary, camera_line
 from app.session import about, events
 from app.ui.notice import Notice, notice
@@ -68,60 +68,60 @@ class Interrupted:
 
 
 class Watched(NullScreen):
-    """A screen that remembers what it was told to say."""
+    """A screen that keeps the notices it was given."""
 
     def __init__(self, ends_after=None):
-        self.told: list[Notice | None] = []
+        self.notices: list[Notice | None] = []
         self._ends_after = ends_after
 
     def wait(self, notice):
-        self.told.append(notice)
+        self.notices.append(notice)
 
     @property
     def closed(self):  # type: ignore[override]
-        return self._ends_after is not None and len(self.told) >= self._ends_after
+        return self._ends_after is not None and len(self.notices) >= self._ends_after
 
 
 @pytest.fixture
-def plan(short_session, tmp_path):
-    opened = []
+def run_with_gap(short_session, tmp_path):
+    """Run and record a session whose camera gives no frame for so many waits."""
 
-    def make(waits, screen):
-        source = Interrupted(short_session, waits)
-        assert isinstance(source, LiveFrames)
-        opened.append(source)
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
-        notes = {"scenario": "companion", "cube": "companion"}
-        return Plan(source, playground, screen, "none", tmp_path / "out.mcap", about=notes)
+    def run_session(waits, screen):
+        path = tmp_path / "out.mcap"
+        options = SessionOptions(
+            scenario="companion", source="camera:0", robot="none", record=path, pictures=False
+        )
+        with Interrupted(short_session, waits) as source:
+            assert isinstance(source, LiveFrames)
+            with open_session(options, source=source, screen=screen) as session:
+                summary = run(session)
+        return summary, path
 
-    yield make
-    for source in opened:
-        source.close()
+    return run_session
 
 
-def test_a_lost_camera_is_told_on_the_screen_and_the_play_goes_on(plan):
+def test_a_lost_camera_is_reported_on_the_screen_and_the_session_continues(run_with_gap):
     screen = Watched()
-    chosen = plan(4, screen)
-    summary = run(chosen)
+    summary, path = run_with_gap(4, screen)
     assert summary.frames == 10
-    assert [words.title for words in screen.told if words] == ["Camera lost: plug it in again"] * 3
+    titles = [notice.title for notice in screen.notices if notice]
+    assert titles == ["Camera lost: plug it in again"] * 3
     ((start, seconds),) = summary.gaps
     assert seconds == pytest.approx(3.0 + 1 / 30, abs=0.01)
-    told = [(time, what) for time, what in events(chosen.record) if what.startswith("camera")]
-    assert [what for _, what in told] == ["camera lost", "camera back"]
-    assert [time for time, _ in told] == pytest.approx([start, start + seconds])
+    recorded = [(time, event) for time, event in events(path) if event.startswith("camera")]
+    assert [event for _, event in recorded] == ["camera lost", "camera back"]
+    assert [time for time, _ in recorded] == pytest.approx([start, start + seconds])
     summary.check()
 
 
-def test_the_window_can_be_closed_while_the_camera_is_lost(plan):
-    summary = run(plan(7, Watched(ends_after=2)))
+def test_the_window_can_be_closed_while_the_camera_is_lost(run_with_gap):
+    summary, _ = run_with_gap(7, Watched(ends_after=2))
     assert summary.frames == 5
 
 
-def test_a_camera_that_does_not_come_back_ends_the_session_and_keeps_the_recording(plan):
-    chosen = plan(20, NullScreen())
-    summary = run(chosen)
-    assert about(chosen.record).frames == 5
+def test_a_camera_that_does_not_come_back_ends_the_session_and_keeps_the_recording(run_with_gap):
+    summary, path = run_with_gap(20, NullScreen())
+    assert about(path).frames == 5
     with pytest.raises(TrackingError, match="gave no picture"):
         summary.check()
 

@@ -1,6 +1,7 @@
 """A replay walks the same line: the same frames give the same channels."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,9 +9,10 @@ import pytest
 from app.errors import AppError
 from app.pipeline.playground import Playground
 from app.pipeline.scenario import Inputs
-from app.running.opening import Wish, fitting
+from app.running.opening import intrinsics_for, open_session
+from app.running.options import SessionOptions
 from app.running.replay_check import check_session
-from app.running.runner import Plan, run
+from app.running.runner import run
 from app.scenarios import SCENARIOS
 from app.session import about, cues, messages
 from app.session.bundled import bundled
@@ -25,7 +27,7 @@ SHORT = 240
 def walk(name, count=None):
     """Every channel of a bundled recording as it comes out now."""
     with open_source(str(bundled(name))) as source:
-        playground = Playground(name, fitting(source.intrinsics, source.size))
+        playground = Playground(name, intrinsics_for(source.intrinsics, source.size))
         for frame in itertools.islice(source, count):
             step = playground.step(frame)
             for topic, arrow in step.arrows().items():
@@ -51,7 +53,7 @@ def test_a_replay_agrees_with_what_was_recorded(name):
 def test_a_replay_may_start_from_any_arrow(short_session, start):
     """What comes after the start is worked out again, and comes out the same."""
     with open_source(str(short_session)) as source:
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
+        playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         given = iter(()) if start == "camera" else recorded_arrows(str(short_session), start)
         made = [
             (topic, step.frame.timestamp, encode(arrow))
@@ -78,12 +80,13 @@ def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session)
             return Inputs(clear=self.shown == 20)
 
     path = tmp_path / "cleared.mcap"
-    with open_source(str(short_session)) as source:
-        playground = Playground("companion", fitting(source.intrinsics, source.size))
-        notes = {"scenario": "companion", "cube": "companion"}
-        run(Plan(source, playground, Presses(), record=path, about=notes))
+    options = SessionOptions(
+        scenario="companion", source=str(short_session), robot="none", record=path, pictures=False
+    )
+    with open_session(options, screen=Presses()) as session:
+        run(session)
     assert len(cues(path)) == 1
-    assert check_session(path, Wish("companion", str(path))).identical
+    assert check_session(path, replace(options, source=str(path))).identical
 
 
 def _agree(topic, time, one, other):

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.pipeline.playground import Playground
 from app.pipeline.step import RobotView
-from app.running.opening import fitting
+from app.running.opening import intrinsics_for
 from app.ui.notice import Notice
 from app.ui.window import Window
 from tracking import open_source
@@ -17,7 +17,7 @@ def main(session: str) -> None:
     """Show the first frame of a session, press every key, and quit."""
     robot = RobotView("ready", 0.5, "happy")
     with open_source(session) as source, Window(source.size) as window:
-        intrinsics = fitting(source.intrinsics, source.size)
+        intrinsics = intrinsics_for(source.intrinsics, source.size)
         playground = Playground("companion", intrinsics, context=window.context)
         step = playground.step(next(iter(source)))
         assert step.picture is not None
