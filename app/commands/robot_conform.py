@@ -14,24 +14,32 @@ from rich.table import Table
 from rich.text import Text
 
 from app.errors import AppError
-from robot.conformance import Check, PortLine, Report, Result, all_checks, chosen, examine
+from robot.conformance import (
+    Check,
+    CheckResult,
+    ConformanceReport,
+    PortChannel,
+    all_checks,
+    run_checks,
+    select_checks,
+)
 from robot.errors import RobotError
 from robot.link.transport import opener
 
-MARKS = {"ok": ("ok", "green"), "failed": ("FAILED", "bold red"), "skipped": ("skipped", "dim")}
-POOR = ("poor", "yellow")
-"""The mark of a failed check that is only about being better."""
+LABELS = {"ok": ("ok", "green"), "failed": ("FAILED", "bold red"), "skipped": ("skipped", "dim")}
+FAILED_SHOULD_LABEL = ("poor", "yellow")
+"""The label of a failed check of level "should"."""
 
-NAME_WIDTH = 38
-"""Columns for the name of a check."""
+NAME_COLUMNS = 38
+"""Width of the name of a check."""
 
-MARGIN = 18
-"""Columns before what was expected and what came."""
+DETAIL_INDENT = 18
+"""Columns before the texts that explain a failure."""
 
-PICTURE_WIDTH = 100
-"""Columns of a picture of the output."""
+PICTURE_COLUMNS = 100
+"""Width of a picture of the output."""
 
-SVG = """\
+SVG_TEMPLATE = """\
 <svg class="rich-terminal" viewBox="0 0 {width} {height}" xmlns="http://www.w3.org/2000/svg">
 <style>
 .{unique_id}-matrix {{
@@ -55,7 +63,7 @@ SVG = """\
 </g>
 </svg>
 """
-"""How the output becomes a picture: like Rich's own, but with no font from the network."""
+"""The picture of the output: like Rich's own template, but without a font from the network."""
 
 
 def conform(
@@ -67,37 +75,37 @@ def conform(
     ] = "",
     only: Annotated[
         list[str] | None,
-        typer.Option(help="Only checks with this in their names; may be given again."),
+        typer.Option(help="Only checks with this word in their names; repeatable."),
     ] = None,
     output: Annotated[
-        Path | None, typer.Option("--json", help="Write what was found to this file too.")
+        Path | None, typer.Option("--json", help="Write the results to this file too.")
     ] = None,
     picture: Annotated[
-        Path | None, typer.Option("--svg", help="Draw the output into this file too.")
+        Path | None, typer.Option("--svg", help="Write the output to this file as a picture too.")
     ] = None,
-    list_: Annotated[bool, typer.Option("--list", help="Say what is checked, and end.")] = False,
+    list_: Annotated[bool, typer.Option("--list", help="List the checks, and exit.")] = False,
 ) -> None:
-    """Check whether a robot keeps to robot/PROTOCOL.md, and say where it does not.
+    """Test whether a robot conforms to robot/PROTOCOL.md, and report where it does not.
 
-    Works with any robot: ours, your own firmware, a stranger's. It takes a minute, and more
-    with a slow robot. The robot shows its moods and motions meanwhile, and is neutral at the end.
+    Works with any robot: ours, or one with your own firmware. It takes a minute, or more with a
+    slow robot. The robot shows its moods and motions during the test, and is neutral at the end.
     Use a good cable: every frame counts.
 
-    Ends with exit code 0 if the robot does all that it must, 1 if not, 2 if nobody answers.
+    The exit code is 0 if the robot conforms, 1 if not, 2 if no robot answers.
 
     Example: [cyan]cubeling robot conform /dev/ttyACM0[/]
     """
-    checks = chosen(only) if only else all_checks()
+    checks = select_checks(only) if only else all_checks()
     if list_:
         Console().print(listing(checks))
         return
     for path in (output, picture):
-        if path is not None:  # what cannot be written is better known before than after
-            _writable(path)
+        if path is not None:  # fail before the checks, not after them
+            _check_writable(path)
     console = Console(highlight=False, record=picture is not None)
     if picture is not None:
-        console.width = PICTURE_WIDTH
-    report = _examined(port, checks, console)
+        console.width = PICTURE_COLUMNS
+    report = _run_checks(port, checks, console)
     console.print()
     console.print(verdict(report), soft_wrap=picture is None)
     if output is not None:
@@ -106,24 +114,24 @@ def conform(
         except OSError as error:
             raise AppError(f"cannot write '{output}': {error.strerror}") from error
     if picture is not None:
-        console.save_svg(str(picture), title="cubeling robot conform", code_format=SVG)
+        console.save_svg(str(picture), title="cubeling robot conform", code_format=SVG_TEMPLATE)
     if not report.conforms:
         raise typer.Exit(1)
 
 
-def _writable(path: Path) -> None:
-    """Refuse what cannot be written, or would be waited for."""
+def _check_writable(path: Path) -> None:
+    """Refuse a file that cannot be written, and a pipe, on which writing would block."""
     if path.is_fifo():
-        raise AppError(f"cannot write '{path}': it is a pipe, no file")
+        raise AppError(f"cannot write '{path}': it is a pipe, not a file")
     path.open("a").close()
 
 
-def _examined(port: str, checks: list[Check], console: Console) -> Report:
-    """Try what is behind a port, and print what each check finds."""
-    line = opener(port)()
+def _run_checks(port: str, checks: list[Check], console: Console) -> ConformanceReport:
+    """Test the robot at a port, and print each result."""
+    opened = opener(port)()
     try:
-        return examine(
-            PortLine(line, time.monotonic),
+        return run_checks(
+            PortChannel(opened, time.monotonic),
             checks,
             secrets.randbits(32),
             lambda result: show(result, console),
@@ -131,46 +139,46 @@ def _examined(port: str, checks: list[Check], console: Console) -> Report:
     except RobotError as error:
         raise RobotError(f"{port}: {error}") from error
     finally:
-        line.close()
+        opened.close()
 
 
-def show(result: Result, console: Console) -> None:
-    """Print what one check found."""
-    mark, style = MARKS[result.verdict]
+def show(result: CheckResult, console: Console) -> None:
+    """Print the result of a check."""
+    label, style = LABELS[result.verdict]
     if result.verdict == "failed" and result.check.level == "should":
-        mark, style = POOR
+        label, style = FAILED_SHOULD_LABEL
     console.print(
         Text.assemble(
-            (f"{mark:8}", style),
-            f"{result.check.name:{NAME_WIDTH}}",
+            (f"{label:8}", style),
+            f"{result.check.name:{NAME_COLUMNS}}",
             (f"§{result.check.section}  {result.remark}".rstrip(), "dim"),
         ),
         soft_wrap=True,
     )
     if result.verdict != "failed":
         return
-    for word, told in (
+    for word, text in (
         ("required", result.check.requires),
         ("expected", result.expected),
-        ("came", result.came),
+        ("received", result.received),
     ):
-        lines = textwrap.wrap(told, console.width - MARGIN, break_on_hyphens=False) or [""]
+        lines = textwrap.wrap(text, console.width - DETAIL_INDENT, break_on_hyphens=False) or [""]
         for head, line in zip_longest([word], lines, fillvalue=""):
-            # The margins have no style, so that a picture does not take them for text.
-            parts = ("        ", (f"{head:{MARGIN - 8}}", "dim" if head else ""), (line, "not dim"))
-            console.print(Text.assemble(*parts), soft_wrap=True)
+            # The indent has no style, so a picture does not draw it as text.
+            title = (f"{head:{DETAIL_INDENT - 8}}", "dim" if head else "")
+            console.print(Text.assemble("        ", title, (line, "not dim")), soft_wrap=True)
 
 
-def verdict(report: Report) -> Text:
+def verdict(report: ConformanceReport) -> Text:
     """Return the last line: whether the robot conforms."""
     welcome = report.welcome
     counts = {
-        mark: sum(result.verdict == mark for result in report.results)
-        for mark in ("ok", "failed", "skipped")
+        verdict: sum(result.verdict == verdict for result in report.results)
+        for verdict in ("ok", "failed", "skipped")
     }
-    numbers = ", ".join(f"{count} {mark}" for mark, count in counts.items() if count)
+    numbers = ", ".join(f"{count} {verdict}" for verdict, count in counts.items() if count)
     good, bad = ("It conforms.", "bold green"), ("It does not conform.", "bold red")
-    cut = f" The rest was left out: {report.cut_short}." if report.cut_short else ""
+    cut = f" The other checks were skipped: {report.cut_short}." if report.cut_short else ""
     return Text.assemble(
         f"{welcome.name} ({welcome.firmware}), version {welcome.version}: ",
         f"{numbers} in {report.seconds:.0f} s. ",
@@ -180,15 +188,15 @@ def verdict(report: Report) -> Text:
 
 
 def listing(checks: list[Check]) -> Table:
-    """Return a table of what is checked."""
-    table = Table("§", "check", "level", "what is required", box=None, pad_edge=False)
+    """Return a table of the checks."""
+    table = Table("§", "check", "level", "requirement", box=None, pad_edge=False)
     for check in checks:
         table.add_row(str(check.section), check.name, check.level, check.requires)
     return table
 
 
-def as_json(report: Report, port: str) -> dict[str, Any]:
-    """Return a report as JSON has it."""
+def as_json(report: ConformanceReport, port: str) -> dict[str, Any]:
+    """Return a report for JSON."""
     return {
         "port": port,
         "robot": report.welcome.name,
@@ -205,7 +213,7 @@ def as_json(report: Report, port: str) -> dict[str, Any]:
                 "verdict": result.verdict,
                 "required": result.check.requires,
                 "expected": result.expected,
-                "came": result.came,
+                "came": result.received,
                 "remark": result.remark,
                 "seconds": round(result.seconds, 3),
             }

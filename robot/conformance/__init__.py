@@ -1,17 +1,23 @@
-"""Does a robot keep to PROTOCOL.md? `cubeling robot conform PORT`, as a library."""
+"""Conformance tests of robots against PROTOCOL.md: `cubeling robot conform PORT`, as a library."""
 
+from robot.conformance.channel import Channel, PortChannel, SimulatedChannel
 from robot.conformance.check import Check
-from robot.conformance.line import Line, PortLine, SimulatedLine
-from robot.conformance.suite import Report, Result, all_checks, chosen, examine
+from robot.conformance.suite import (
+    CheckResult,
+    ConformanceReport,
+    all_checks,
+    run_checks,
+    select_checks,
+)
 
 __all__ = [
+    "Channel",
     "Check",
-    "Line",
-    "PortLine",
-    "Report",
-    "Result",
-    "SimulatedLine",
+    "CheckResult",
+    "ConformanceReport",
+    "PortChannel",
+    "SimulatedChannel",
     "all_checks",
-    "chosen",
-    "examine",
+    "run_checks",
+    "select_checks",
 ]

@@ -1,4 +1,4 @@
-"""What a check is: a sentence of PROTOCOL.md that binds the robot, and how to see that it holds."""
+"""A check: one requirement of PROTOCOL.md, and the function that tests a robot for it."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -7,44 +7,44 @@ from typing import Literal
 from robot.conformance.probe import Probe
 
 Level = Literal["must", "should"]
-"""Whether a robot that fails does not conform, or could only be better."""
+"""must: a robot that fails does not conform. should: it conforms, but could be better."""
 
-Run = Callable[[Probe], str | None]
-"""Tries a robot; returns a remark or None, and raises `UnmetError` or `NotApplicableError`."""
+CheckFunction = Callable[[Probe], str | None]
+"""Tests a robot; returns a remark or None, and raises `CheckFailed` or `NotApplicableError`."""
 
 
 @dataclass(frozen=True)
 class Check:
-    """One requirement, and how to see whether a robot meets it."""
+    """One requirement, and its test."""
 
     name: str
-    """What it is called, in words."""
+    """Name in words."""
 
     section: int
-    """Section of PROTOCOL.md that requires it."""
+    """Section of PROTOCOL.md with the requirement."""
 
     level: Level
-    """Whether failing it is failing the suite."""
+    """Whether a failure means that the robot does not conform."""
 
     requires: str
-    """What is required, in a sentence."""
+    """The requirement, in a sentence."""
 
-    run: Run
-    """Tries a robot that answers greetings; leaves any session it likes behind."""
+    run: CheckFunction
+    """Tests a robot that answers HELLO; may leave a session open."""
 
 
-class Chapter:
-    """The checks of one section of PROTOCOL.md, in the order in which they are written.
+class CheckGroup:
+    """The checks of one subject, in the order of their definition.
 
-    A function becomes a check by the decorators `must` and `should`: its name is the check's name
-    and its docstring what is required.
+    The decorators `must` and `should` turn a function into a check: its name is the check's name,
+    its docstring the requirement.
 
     Parameters
     ----------
     title
-        What the section is about.
+        Subject of the checks.
     section
-        Its number; 0 for checks of several.
+        Their section of PROTOCOL.md; 0 if they belong to several.
     """
 
     def __init__(self, title: str, section: int) -> None:
@@ -52,19 +52,19 @@ class Chapter:
         self.section = section
         self._checks: list[Check] = []
 
-    def must(self, run: Run) -> Run:
-        """Enter a function as a check that a conforming robot passes."""
-        return self._enter(run, "must")
+    def must(self, run: CheckFunction) -> CheckFunction:
+        """Add a function as a check that a conforming robot passes."""
+        return self._add(run, "must")
 
-    def should(self, run: Run) -> Run:
-        """Enter a function as a check that a good robot passes."""
-        return self._enter(run, "should")
+    def should(self, run: CheckFunction) -> CheckFunction:
+        """Add a function as a check that a good robot passes."""
+        return self._add(run, "should")
 
-    def must_of(self, section: int) -> Callable[[Run], Run]:
-        """Enter a function as `must` does, for a sentence of another section."""
-        return lambda run: self._enter(run, "must", section)
+    def must_of(self, section: int) -> Callable[[CheckFunction], CheckFunction]:
+        """Add a function as `must` does, for a requirement of another section."""
+        return lambda run: self._add(run, "must", section)
 
-    def _enter(self, run: Run, level: Level, section: int | None = None) -> Run:
+    def _add(self, run: CheckFunction, level: Level, section: int | None = None) -> CheckFunction:
         name = getattr(run, "__name__", "").replace("_", " ")
         requires = " ".join((run.__doc__ or "").split())
         self._checks.append(Check(name, section or self.section, level, requires, run))

@@ -1,90 +1,99 @@
-"""What a check tries a robot with: it speaks as a host would, or as none should, and listens."""
+"""The host that tests a robot: it keeps or breaks every rule of the protocol, as a check needs."""
 
 import contextlib
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any, TypeVar
 
-from robot.conformance.heard import Heard, Log, Splitter, shown_bytes
-from robot.conformance.line import Line
-from robot.conformance.verdicts import SilentError, UnmetError
+from robot.conformance.channel import Channel
+from robot.conformance.errors import CheckFailed, NoAnswerError
+from robot.conformance.received import (
+    FrameLog,
+    FrameSplitter,
+    ReceivedFrame,
+    describe_frames,
+    format_bytes,
+)
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.schema import pack, spec_of
+from robot.protocol.schema import HEADER, pack, spec_of
 from robot.protocol.wire import encode_frame
 
-AT_ONCE = 0.100
-"""Within this time an answer is "at once" [s] (PROTOCOL.md, section 5)."""
+REPLY_WITHIN_S = 0.100
+"""Longest time to an answer "at once" [s] (PROTOCOL.md, section 5)."""
 
-ACTS_WITHIN = 0.250
-"""Within this time STATE shows what a command started or ended [s] (PROTOCOL.md, section 6)."""
+EFFECT_WITHIN_S = 0.250
+"""Longest time until STATE shows what a command started or ended [s] (PROTOCOL.md, section 6)."""
 
-SHOWN_WITHIN = 5.0
-"""Within this time an emotion is shown that was asked for [s] (PROTOCOL.md, section 7)."""
+EMOTION_WITHIN_S = 5.0
+"""Longest time until a commanded emotion is shown [s] (PROTOCOL.md, section 7)."""
 
-NEUTRAL = 0.05
-"""How far from (0, 0) an emotion may be that counts as neutral."""
+EMOTION_TOLERANCE = 0.02
+"""Largest distance between the emotion commanded and the one shown in the end."""
 
-SLACK = 0.050
-"""How much later than it was sent a frame may be read here, on a busy computer [s]."""
+EMOTION_CHANGE = 0.05
+"""Smallest change of the emotion shown that counts as one; closer to (0, 0) is neutral."""
 
-POUR = 256
-"""Bytes of noise sent in one go; a line of 115200 baud takes 22 ms for them."""
+TIMING_SLACK_S = 0.050
+"""Longest delay between the sending of a frame and its reading here, on a busy computer [s]."""
 
-POUR_EVERY = 0.025
-"""Time between two such goes [s]."""
+PACED_WRITE_BYTES = 256
+"""Bytes of noise in one write; a line of 115200 baud takes 22 ms for them."""
 
-QUEUE_MAX = 10_000
-"""Frames that may wait to be looked at; older ones are given up."""
+PACED_WRITE_EVERY_S = 0.025
+"""Time between two such writes [s]."""
+
+MAX_QUEUED_FRAMES = 10_000
+"""Most received frames in the queue; older ones are dropped."""
 
 Kind = TypeVar("Kind")
 
 
 class Probe:
-    """A host for one robot, which keeps or breaks every rule as a check wants.
+    """A host for one robot, under the control of the checks.
 
     Parameters
     ----------
-    line
-        The way to the robot.
+    channel
+        The channel to the robot.
     host
-        Number of the first host that it says it is; each check is another one.
+        Number of the first host; each check acts as another host.
     """
 
-    def __init__(self, line: Line, host: int) -> None:
-        self.log = Log()
-        """What is remembered of all that the robot said."""
+    def __init__(self, channel: Channel, host: int) -> None:
+        self.log = FrameLog()
+        """Everything that the robot sent."""
         self.host = host % 0xFFFFFFFF or 1
-        """Who it says it is now."""
+        """Number of the current host."""
         self.session = 0x2120
-        """The session last opened."""
+        """The session opened last."""
         self.version = timing.VERSION
-        """The version agreed in it."""
+        """The protocol version agreed in it."""
         self.welcome: m.Welcome | None = None
-        """The last greeting that was answered."""
+        """The last WELCOME."""
         self.catalogue: dict[tuple[int, int], m.Joint | m.Name] | None = None
-        """Its catalogue by item and index; None if it is not all known."""
-        self.held_up = 0.0
-        """How much longer than asked for a wait has lasted: this computer had other work [s]."""
-        self.moved = False
-        """Whether a check has made all of it move."""
-        self.lengths: dict[int, float] | None = None
-        """How long its last motion and sound take [s], by item; None if no check has seen it."""
-        self.pose: tuple[float, ...] | None = None
-        """The joints after STOP [rad], once a check has seen them rest."""
-        self._line = line
-        self._splitter = Splitter()
-        self._queue: deque[Heard] = deque(maxlen=QUEUE_MAX)
-        self._count = 0x0100
+        """The robot's catalogue by item and index; None before a check has read all of it."""
+        self.max_overrun = 0.0
+        """Longest overrun of a wait, because this computer was busy [s]."""
+        self.has_moved = False
+        """Whether a check has moved all of the robot."""
+        self.durations: dict[int, float] | None = None
+        """Duration of the last motion and sound [s], by item; None before a check measured them."""
+        self.stop_pose: tuple[float, ...] | None = None
+        """The joints after STOP [rad]; None before a check measured them."""
+        self._channel = channel
+        self._splitter = FrameSplitter()
+        self._queue: deque[ReceivedFrame] = deque(maxlen=MAX_QUEUED_FRAMES)
+        self._beat = 0x0100
         self._number = 0
 
     @property
     def now(self) -> float:
         """The time [s]."""
-        return self._line.now()
+        return self._channel.now()
 
     # --- Numbers -------------------------------------------------------------------------------
-    # None has a zero byte, so that a frame of them is one run of COBS and may be damaged at will.
+    # None has a zero byte, so a frame of them is one run of COBS, and any byte may be damaged.
 
     def next_session(self) -> int:
         """Return the number of a session that was never open."""
@@ -92,7 +101,7 @@ class Probe:
         return self.session
 
     def next_host(self) -> int:
-        """Return the number of a host that never spoke, and forget the numbers of its commands."""
+        """Return the number of a new host, and restart the numbers of its commands."""
         self.host = _without_zeros(self.host + 1, 4)
         self._number = 0
         return self.host
@@ -102,75 +111,85 @@ class Probe:
         self._number += 1
         return self._number
 
-    def next_count(self) -> int:
-        """Return the number of the next BEAT."""
-        self._count = _without_zeros(self._count + 1, 2)
-        return self._count
+    def next_beat(self) -> int:
+        """Return the count of the next BEAT."""
+        self._beat = _without_zeros(self._beat + 1, 2)
+        return self._beat
 
-    # --- Speaking ------------------------------------------------------------------------------
+    # --- Sending -------------------------------------------------------------------------------
 
-    def write(self, data: bytes) -> None:
-        """Send bytes as they are; what was heard before is over."""
-        self.hear(0)
-        self._line.write(data)
+    def write(self, data: bytes, *, keep: bool = False) -> None:
+        """Send raw bytes; frames received before are dropped, unless `keep` is set."""
+        if not keep:
+            self.receive(0)
+        self._channel.write(data)
 
-    def send(self, data: bytes) -> None:
-        """Send bytes as they are; what was heard before can still be waited for."""
-        self._line.write(data)
-
-    def pour(self, data: bytes) -> None:
+    def write_paced(self, data: bytes) -> None:
         """Send many bytes, no faster than a serial line takes them."""
-        for start in range(0, len(data), POUR):
-            self._line.write(data[start : start + POUR])
-            self.hear(POUR_EVERY)
+        for start in range(0, len(data), PACED_WRITE_BYTES):
+            self._channel.write(data[start : start + PACED_WRITE_BYTES])
+            self.receive(PACED_WRITE_EVERY_S)
 
-    def say(self, *messages: Any, session: int | None = None, version: int | None = None) -> None:
-        """Send messages in one go, in the session that is open or in another."""
+    def send(self, *messages: Any, session: int | None = None, version: int | None = None) -> None:
+        """Send messages in one write, in the open session or in another."""
         self.write(b"".join(self.frame(one, session, version) for one in messages))
 
     def frame(self, message: Any, session: int | None = None, version: int | None = None) -> bytes:
-        """Return the bytes of a message, edges included."""
+        """Return the frame of a message, edges included."""
         session = self.session if session is None else session
         return encode_frame(pack(message, session, version or self.version))
 
-    # --- Listening -----------------------------------------------------------------------------
+    def raw_frame(self, number: int, fields: bytes, session: int | None = None) -> bytes:
+        """Return the frame of a body with arbitrary bytes after its header, edges included."""
+        session = self.session if session is None else session
+        return encode_frame(HEADER.pack(number, session) + fields)
 
-    def hear(self, seconds: float) -> list[Heard]:
-        """Return all that comes within a time [s], and what had come before."""
+    # --- Receiving -----------------------------------------------------------------------------
+
+    def receive(self, seconds: float) -> list[ReceivedFrame]:
+        """Return all frames in the queue, and all that arrive within a time [s]."""
         end = self.now + seconds
         while True:
-            self._take(end)
+            self._read(end)
             if self.now >= end:
                 break
-        heard = list(self._queue)
+        received = list(self._queue)
         self._queue.clear()
-        return heard
+        return received
 
     def wait_for(
-        self, wanted: Callable[[Heard], bool], within: float
-    ) -> tuple[Heard | None, list[Heard]]:
-        """Return the first frame that is wanted, or None after a time [s], and those before it."""
+        self, wanted: Callable[[ReceivedFrame], bool], within: float
+    ) -> tuple[ReceivedFrame | None, list[ReceivedFrame]]:
+        """Return the first wanted frame, or None after a time [s], and the frames before it."""
         end = self.now + within
-        before: list[Heard] = []
+        before: list[ReceivedFrame] = []
         while True:
             while self._queue:
-                heard = self._queue.popleft()
-                if wanted(heard):
-                    return heard, before
-                before.append(heard)
-                del before[:-QUEUE_MAX]
+                received = self._queue.popleft()
+                if wanted(received):
+                    return received, before
+                before.append(received)
+                del before[:-MAX_QUEUED_FRAMES]
             if self.now >= end:
                 return None, before
-            self._take(end)
+            self._read(end)
 
-    def expect(self, kind: type[Kind], after: str, within: float = AT_ONCE, **content: Any) -> Kind:
-        """Return the message of this kind, session and content; raises UnmetError without it."""
+    def expect(
+        self, kind: type[Kind], after: str, within: float = REPLY_WITHIN_S, **content: Any
+    ) -> Kind:
+        """Return the next message of a kind in our session with the given field values.
 
-        def wanted(heard: Heard) -> bool:
+        Raises
+        ------
+        CheckFailed
+            If there is none within a time [s].
+        """
+
+        def wanted(received: ReceivedFrame) -> bool:
             return (
-                type(heard.message) is kind
-                and heard.session == self.session
-                and all(getattr(heard.message, key) == value for key, value in content.items())
+                type(received.message) is kind
+                and received.session == self.session
+                and all(getattr(received.message, key) == value for key, value in content.items())
             )
 
         found, before = self.wait_for(wanted, within)
@@ -178,79 +197,89 @@ class Probe:
             words = ", ".join(f"{key}={value}" for key, value in content.items())
             name = spec_of(kind).name + (f"({words})" if words else "")
             expected = f"{name} in session {self.session} within {1000 * within:.0f} ms"
-            raise UnmetError(f"{expected} after {after}", told(before))
+            raise CheckFailed(f"{expected} after {after}", describe_frames(before))
         answer: Kind = found.message
         return answer
 
-    def _take(self, until: float) -> None:
+    def _read(self, until: float) -> None:
         until = max(until, self.now)
-        data = self._line.read(until)
-        self.held_up = max(self.held_up, self.now - until)
+        data = self._channel.read(until)
+        self.max_overrun = max(self.max_overrun, self.now - until)
         self.log.bytes += len(data)
-        for heard in self._splitter.feed(data, self.now):
-            self.log.enter(heard)
-            self._queue.append(heard)
+        for received in self._splitter.feed(data, self.now):
+            self.log.add(received)
+            self._queue.append(received)
 
-    # --- What a host does ----------------------------------------------------------------------
+    # --- Sessions ------------------------------------------------------------------------------
 
-    def greet(self, within: float = AT_ONCE, offer: int = timing.VERSION) -> m.Welcome:
-        """Say HELLO in the session named last, and return its WELCOME."""
-        self.say(m.Hello(offer, self.host))
+    def hello(self, within: float = REPLY_WITHIN_S, offer: int = timing.VERSION) -> m.Welcome:
+        """Send HELLO in the current session, and return its WELCOME."""
+        self.send(m.Hello(offer, self.host))
         self.welcome = self.expect(m.Welcome, f"HELLO (version {offer})", within)
         self.version = min(self.welcome.version, timing.VERSION)
         return self.welcome
 
-    def fresh(self, offer: int = timing.VERSION) -> m.Welcome:
-        """Open a session as a host that never spoke; raises SilentError if that fails thrice."""
+    def open_session(self, offer: int = timing.VERSION) -> m.Welcome:
+        """Open a session as a new host; raises NoAnswerError if three attempts fail."""
         self.next_host()
         for _ in range(3):
             self.next_session()
             try:
-                return self.greet(offer=offer)
-            except UnmetError as unmet:
-                last = unmet
-        raise SilentError(last.expected + ", at the third try", last.came)
+                return self.hello(offer=offer)
+            except CheckFailed as failure:
+                last = failure
+        raise NoAnswerError(last.expected + ", at the third attempt", last.received)
 
-    def calm(self) -> m.Welcome:
-        """Open a session as a host that never spoke, and wait until the robot shows neutral."""
-        welcome = self.fresh()
-
-        def neutral(state: m.State) -> bool:
-            return max(abs(state.valence), abs(state.arousal)) < NEUTRAL
-
-        last = self.live(SHOWN_WITHIN, neutral)[-1]
-        if not neutral(last):
-            expected = f"emotion (0, 0) within {SHOWN_WITHIN:.0f} s after HELLO of another host"
-            raise UnmetError(expected, f"({last.valence}, {last.arousal})")
-        return welcome
-
-    def again(self, offer: int = timing.VERSION) -> m.Welcome:
+    def reopen_session(self, offer: int = timing.VERSION) -> m.Welcome:
         """Open another session as the same host."""
         self.next_session()
-        return self.greet(offer=offer)
+        return self.hello(offer=offer)
+
+    def open_neutral_session(self) -> m.Welcome:
+        """Open a session as a new host, and wait until the robot shows neutral."""
+        welcome = self.open_session()
+        self.expect_state(
+            is_neutral,
+            EMOTION_WITHIN_S,
+            "emotion (0, 0) after HELLO of another host",
+            "valence", "arousal",
+        )  # fmt: skip
+        return welcome
+
+    def end_session(self) -> None:
+        """Leave the robot neutral, not stopped and without a session, whatever its state.
+
+        All messages go in one write and no answer is awaited: the port may be about to close.
+        """
+        self.next_host()
+        self.next_session()
+        with contextlib.suppress(CheckFailed):  # the robot does not read its input
+            self.send(m.Hello(1, self.host), m.Express(1, 0.0, 0.0), m.Bye(), version=1)
+
+    # --- Commands and states -------------------------------------------------------------------
 
     def beat(self, after: str = "it") -> m.State:
-        """Say BEAT and return the STATE that answers it."""
-        count = self.next_count()
-        self.say(m.Beat(count))
+        """Send BEAT and return the STATE that answers it."""
+        count = self.next_beat()
+        self.send(m.Beat(count))
         return self.expect(m.State, f"BEAT({count}) after {after}", beat=count)
 
     def command(self, command: Any, result: int = m.TAKEN) -> int:
-        """Say a command, see its ACK, and return its number."""
-        self.say(command)
+        """Send a command, expect its ACK, and return its number."""
+        self.send(command)
         name = spec_of(type(command)).name
         self.expect(m.Ack, f"{name} {command.number}", number=command.number, result=result)
         self._number = max(self._number, command.number)
         return int(command.number)
 
     def express(self, valence: float, arousal: float, mood: int = m.NOTHING) -> int:
-        """Command an emotion under the next number, see its ACK, and return the number."""
+        """Command an emotion with the next number, expect its ACK, and return the number."""
         return self.command(m.Express(self.next_number(), valence, arousal, mood))
 
-    def live(
+    def keep_alive(
         self, seconds: float, until: Callable[[m.State], bool] = lambda state: False
     ) -> list[m.State]:
-        """Say BEAT every 50 ms and return the STATEs of that time [s]; ends early where it may."""
+        """Send BEAT every 50 ms and return its STATEs, for a time [s] or until a condition."""
         states: list[m.State] = []
         end = self.now + seconds
         while not states or self.now < end:
@@ -258,56 +287,75 @@ class Probe:
             states.append(self.beat("others"))
             if until(states[-1]):
                 break
-            self.hear(max(min(due, end) - self.now, 0))
+            self.receive(max(min(due, end) - self.now, 0))
         return states
 
-    def reaction(self, *said: bytes, after: str = "it") -> list[Heard]:
-        """Send bytes, then BEAT; return the messages before its STATE, apart from other STATEs.
+    def expect_state(
+        self, condition: Callable[[m.State], bool], within: float, expected: str, *shown: str
+    ) -> list[m.State]:
+        """Send BEATs until a STATE meets a condition, and return all STATEs.
 
-        A robot takes bytes in their order, so whatever it says to them comes before that STATE.
+        Parameters
+        ----------
+        condition
+            The condition.
+        within
+            Longest time until then [s].
+        expected
+            The same in words, and after what; CheckFailed adds the time.
+        shown
+            Fields of the last STATE that CheckFailed reports.
         """
-        self.write(b"".join(said))
-        count = self.next_count()
-        self._line.write(self.frame(m.Beat(count)))
+        states = self.keep_alive(within, condition)
+        if not condition(states[-1]):
+            time = f"{within:.0f} s" if within >= 1 else f"{1000 * within:.0f} ms"
+            received = [f"{name}={getattr(states[-1], name)}" for name in shown]
+            raise CheckFailed(f"{expected}, within {time}", ", ".join(received))
+        return states
+
+    def expect_taken(self, number: int, after: str) -> m.State:
+        """Return the STATE of a BEAT; raises CheckFailed if another command was taken last."""
+        state = self.beat(after)
+        if state.taken != number:
+            raise CheckFailed(f"STATE(taken={number}) after {after}", f"taken={state.taken}")
+        return state
+
+    def replies_to(self, *data: bytes, after: str = "it") -> list[ReceivedFrame]:
+        """Send bytes, then BEAT; return the messages before its STATE, without other STATEs.
+
+        A robot processes bytes in order, so its replies to them precede that STATE.
+        """
+        self.write(b"".join(data))
+        count = self.next_beat()
+        self._channel.write(self.frame(m.Beat(count)))
         found, before = self.wait_for(
-            lambda heard: isinstance(heard.message, m.State) and heard.message.beat == count,
-            AT_ONCE,
+            lambda one: isinstance(one.message, m.State) and one.message.beat == count,
+            REPLY_WITHIN_S,
         )
         if found is None:
-            raise UnmetError(f"STATE(beat={count}) after {after}, then BEAT({count})", told(before))
+            expected = f"STATE(beat={count}) after {after}, then BEAT({count})"
+            raise CheckFailed(expected, describe_frames(before))
         return [one for one in before if not isinstance(one.message, m.State | None)]
 
-    def unanswered(self, data: bytes, what: str) -> None:
-        """Send bytes that must be skipped; raises UnmetError if anything answers them."""
-        came = self.reaction(data, after=what)
-        if came:
-            raise UnmetError(f"no answer to {what} [{shown_bytes(data)}]", told(came))
-
-    def goodbye(self) -> None:
-        """Leave the robot neutral, not stopped and without a session, whatever it was doing.
-
-        It is all said at once and nothing waited for: the port may be about to close.
-        """
-        self.next_host()
-        self.next_session()
-        with contextlib.suppress(UnmetError):  # it does not read its line
-            self.say(m.Hello(1, self.host), m.Express(1, 0.0, 0.0), m.Bye(), version=1)
+    def expect_no_reply(self, data: bytes, what: str) -> None:
+        """Send bytes that the robot must skip; raises CheckFailed if it answers them."""
+        replies = self.replies_to(data, after=what)
+        if replies:
+            expected = f"no answer to {what} [{format_bytes(data)}]"
+            raise CheckFailed(expected, describe_frames(replies))
 
 
-def told(heard: Iterable[Heard]) -> str:
-    """Write what came for a person: the last of it in full."""
-    frames = list(heard)
-    if not frames:
-        return "nothing"
-    *others, last = frames
-    names: dict[str, int] = {}
-    for one in others:
-        names[one.name] = names.get(one.name, 0) + 1
-    before = ", ".join(f"{count} × {name}" for name, count in names.items())
-    return f"{before}, then {last}" if before else str(last)
+def emotion_distance(state: m.State, valence: float, arousal: float) -> float:
+    """Return the distance between the emotion shown and another, along the axis of the larger."""
+    return max(abs(state.valence - valence), abs(state.arousal - arousal))
+
+
+def is_neutral(state: m.State) -> bool:
+    """Whether the emotion shown is neutral."""
+    return emotion_distance(state, 0.0, 0.0) < EMOTION_CHANGE
 
 
 def _without_zeros(number: int, size: int) -> int:
-    """Return the number with a one in place of every zero byte."""
+    """Return the number with every zero byte replaced by a one."""
     data = (number % (1 << 8 * size)).to_bytes(size, "little")
     return int.from_bytes(bytes(byte or 1 for byte in data), "little")

@@ -1,214 +1,216 @@
-"""The whole suite: every check in turn, in bounded time, and what they found."""
+"""The suite: runs every check in turn, in bounded time, and reports the results."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from robot.conformance.check import Chapter, Check
+from robot.conformance.channel import Channel
+from robot.conformance.check import Check, CheckGroup
 from robot.conformance.checks.bodies import BODIES
 from robot.conformance.checks.catalogue import CATALOGUE
 from robot.conformance.checks.commands import COMMANDS
 from robot.conformance.checks.failsafe import FAILSAFE
 from robot.conformance.checks.frames import FRAMES
+from robot.conformance.checks.going_neutral import NEUTRALITY
 from robot.conformance.checks.heartbeat import HEARTBEAT
 from robot.conformance.checks.moods import MOODS
-from robot.conformance.checks.neutral import NEUTRALITY
+from robot.conformance.checks.other_sessions import OTHER_SESSIONS
 from robot.conformance.checks.playing import PLAYING
+from robot.conformance.checks.recorded import RECORDED
 from robot.conformance.checks.sessions import SESSIONS
 from robot.conformance.checks.stopping import STOPPING
-from robot.conformance.checks.strangers import OTHERS
-from robot.conformance.checks.whole import WHOLE
-from robot.conformance.line import Line
+from robot.conformance.errors import CheckFailed, NoAnswerError, NotApplicableError
 from robot.conformance.probe import Probe
-from robot.conformance.verdicts import NotApplicableError, SilentError, UnmetError
 from robot.errors import RobotError
 from robot.protocol import messages as m
 from robot.protocol import timing
 
-CHAPTERS: tuple[Chapter, ...] = (
-    FRAMES, BODIES, SESSIONS, OTHERS, CATALOGUE, COMMANDS, MOODS, PLAYING, STOPPING, HEARTBEAT,
-    FAILSAFE, NEUTRALITY, WHOLE,
+GROUPS: tuple[CheckGroup, ...] = (
+    FRAMES, BODIES, SESSIONS, OTHER_SESSIONS, CATALOGUE, COMMANDS, MOODS, PLAYING, STOPPING,
+    HEARTBEAT, FAILSAFE, NEUTRALITY, RECORDED,
 )  # fmt: skip
-"""The checks, by subject; those of everything heard come last."""
+"""The checks by subject; those of everything received come last."""
 
-LONGEST = 100.0
-"""No check begins later than this after the first one [s]."""
+MAX_DURATION_S = 100.0
+"""No check starts later than this after the first one [s]."""
 
-FIRST_WITHIN = 0.5
-"""How long each of the first greetings waits [s]: long, so that being slow is not being silent."""
+FIRST_REPLY_WITHIN_S = 0.5
+"""Longest wait for the answer to each of the first HELLOs [s]; a slow robot is not a silent one."""
 
-HELD_UP = 0.030
-"""A wait that lasts so much longer than asked for means that this computer is busy [s]."""
+BUSY_OVERRUN_S = 0.030
+"""A wait that overruns by this much means that this computer is busy [s]."""
 
-ATTEMPTS = 3
-"""A check that fails on a busy computer is tried so often at most."""
+MAX_ATTEMPTS = 3
+"""Most attempts of a check that fails while this computer is busy."""
 
-SILENCES = 2
-"""After so many checks in a row that nobody answers, the rest is left out."""
+MAX_SILENT_CHECKS = 2
+"""After so many checks without an answer in a row, the remaining ones are skipped."""
 
 Verdict = Literal["ok", "failed", "skipped"]
 
 
 @dataclass(frozen=True)
-class Result:
-    """What one check found."""
+class CheckResult:
+    """The result of one check."""
 
     check: Check
-    """Which one."""
+    """The check."""
 
     verdict: Verdict
-    """Whether the robot does what is required; skipped if it could not be tried."""
+    """Whether the robot meets the requirement; skipped if that could not be tested."""
 
     expected: str = ""
     """What it should have done, if it failed."""
 
-    came: str = ""
+    received: str = ""
     """What it did instead."""
 
     remark: str = ""
     """Why the check was skipped, or what it measured."""
 
     seconds: float = 0.0
-    """How long it took [s]."""
+    """Duration of the check [s]."""
 
 
 @dataclass
-class Report:
-    """What the suite found."""
+class ConformanceReport:
+    """The results of the suite."""
 
     welcome: m.Welcome
-    """How the robot introduced itself."""
+    """The robot's first WELCOME."""
 
-    results: list[Result] = field(default_factory=list)
+    results: list[CheckResult] = field(default_factory=list)
     """One for each check, in order."""
 
     cut_short: str = ""
     """Why checks were left out; empty if none were."""
 
     seconds: float = 0.0
-    """How long it took [s]."""
+    """Duration of the suite [s]."""
 
     @property
     def conforms(self) -> bool:
-        """Whether all was tried that can be, and nothing failed that a robot must do."""
+        """Whether the suite was not cut short and no check of level "must" failed."""
         failed = any(one.verdict == "failed" and one.check.level == "must" for one in self.results)
         return not failed and not self.cut_short
 
 
 def all_checks() -> list[Check]:
     """Return every check, in the order of the document."""
-    return [check for chapter in CHAPTERS for check in chapter]
+    return [check for group in GROUPS for check in group]
 
 
-def chosen(words: Iterable[str]) -> list[Check]:
-    """Return the checks whose names hold any of the words.
+def select_checks(words: Iterable[str]) -> list[Check]:
+    """Return the checks whose names contain any of the words.
 
     Raises
     ------
     RobotError
-        If one of the words is in no name.
+        If no name contains one of the words.
     """
-    found: set[str] = set()
+    selected: set[str] = set()
     for word in words:
         plain = word.lower().replace("-", " ").replace("_", " ").strip()
         names = {check.name for check in all_checks() if plain and plain in check.name}
         if not names:
             raise RobotError(f"no check is called {word!r}; `cubeling robot conform --list`")
-        found |= names
-    return [check for check in all_checks() if check.name in found]
+        selected |= names
+    return [check for check in all_checks() if check.name in selected]
 
 
-def examine(
-    line: Line,
+def run_checks(
+    channel: Channel,
     checks: Iterable[Check],
     host: int,
-    on_result: Callable[[Result], None] = lambda result: None,
-    longest: float = LONGEST,
-) -> Report:
-    """Try a robot, and leave it neutral and without a session, whatever happens.
+    on_result: Callable[[CheckResult], None] = lambda result: None,
+    max_duration: float = MAX_DURATION_S,
+) -> ConformanceReport:
+    """Run checks, and always leave the robot neutral and without a session.
 
     Parameters
     ----------
-    line
-        The way to it; it should be a good one, for a check tries everything once.
+    channel
+        The channel to the robot; it must not lose frames, for a check sends everything once.
     checks
-        What to try, in this order.
+        The checks, in this order.
     host
-        A number that the robot has not heard as a host's before.
+        A host number that the robot has not seen before.
     on_result
-        Is called after each check.
-    longest
-        No check begins later than this [s].
+        Called after each check.
+    max_duration
+        No check starts later than this [s].
 
     Raises
     ------
     RobotError
-        If nobody answers a greeting, or the port goes away.
+        If no robot answers HELLO, or the port is lost.
     """
-    robot = Probe(line, host)
-    begin = robot.now
+    probe = Probe(channel, host)
+    begin = probe.now
     try:
-        report = Report(_introduced(robot))
-        silences = 0
+        report = ConformanceReport(_first_welcome(probe))
+        silent_checks = 0
         for check in checks:
-            if silences == SILENCES:
-                report.cut_short = "it no longer answers a greeting"
-            elif robot.now - begin > longest:
-                report.cut_short = f"the checks have taken {longest:.0f} s"
+            if silent_checks == MAX_SILENT_CHECKS:
+                report.cut_short = "it no longer answers HELLO"
+            elif probe.now - begin > max_duration:
+                report.cut_short = f"the checks have taken {max_duration:.0f} s"
             if report.cut_short:
-                result = Result(check, "skipped", remark=report.cut_short)
+                result = CheckResult(check, "skipped", remark=report.cut_short)
             else:
-                result, silent = _tried(check, robot)
-                silences = silences + 1 if silent else 0
+                result, silent = _run(check, probe)
+                silent_checks = silent_checks + 1 if silent else 0
             report.results.append(result)
             on_result(result)
     finally:
-        robot.goodbye()
-    report.seconds = robot.now - begin
+        probe.end_session()
+    report.seconds = probe.now - begin
     return report
 
 
-def _introduced(robot: Probe) -> m.Welcome:
-    """Greet until the robot answers; it may be booting."""
-    robot.next_host()
-    end = robot.now + timing.ANSWER_WITHIN
-    while robot.now < end:
-        robot.next_session()
+def _first_welcome(probe: Probe) -> m.Welcome:
+    """Send HELLO until the robot answers; it may be booting."""
+    probe.next_host()
+    end = probe.now + timing.ANSWER_WITHIN
+    while probe.now < end:
+        probe.next_session()
         try:
-            return robot.greet(FIRST_WITHIN)
-        except UnmetError:
+            return probe.hello(FIRST_REPLY_WITHIN_S)
+        except CheckFailed:
             continue
-    came = f"{robot.log.bytes} bytes came, but no WELCOME" if robot.log.bytes else "nothing came"
+    count = probe.log.bytes
+    received = f"{count} bytes received, but no WELCOME" if count else "nothing received"
     raise RobotError(
-        f"no robot of this protocol answers within {timing.ANSWER_WITHIN:.0f} s ({came}); "
+        f"no robot of this protocol answers within {timing.ANSWER_WITHIN:.0f} s ({received}); "
         "is it switched on, and is its speed 115200 baud?"
     )
 
 
-def _tried(check: Check, robot: Probe) -> tuple[Result, bool]:
-    """Try one thing; say too whether the robot did not even answer a greeting.
+def _run(check: Check, probe: Probe) -> tuple[CheckResult, bool]:
+    """Run a check; return its result, and whether the robot did not even answer HELLO.
 
-    What fails while this computer is held up says nothing of the robot, and is tried again.
+    A failure while this computer is busy proves nothing about the robot, and is retried.
     """
-    begin = robot.now
-    again = ""
-    for attempt in range(1, ATTEMPTS + 1):
-        robot.held_up = 0.0
-        result, silent = _tried_once(check, robot)
-        if result.verdict != "failed" or robot.held_up < HELD_UP:
+    begin = probe.now
+    retried = ""
+    for attempt in range(1, MAX_ATTEMPTS + 1):
+        probe.max_overrun = 0.0
+        result, silent = _run_once(check, probe)
+        if result.verdict != "failed" or probe.max_overrun < BUSY_OVERRUN_S:
             break
-        robot.lengths = robot.pose = None  # what was measured meanwhile is no better
-        again = f"at attempt {attempt} this computer was held up for {1000 * robot.held_up:.0f} ms"
-    remark = "; ".join(filter(None, (result.remark, again)))
-    return replace(result, remark=remark, seconds=robot.now - begin), silent
+        probe.durations = probe.stop_pose = None  # measured on a busy computer
+        overrun = 1000 * probe.max_overrun
+        retried = f"at attempt {attempt} this computer was busy for {overrun:.0f} ms"
+    remark = "; ".join(filter(None, (result.remark, retried)))
+    return replace(result, remark=remark, seconds=probe.now - begin), silent
 
 
-def _tried_once(check: Check, robot: Probe) -> tuple[Result, bool]:
+def _run_once(check: Check, probe: Probe) -> tuple[CheckResult, bool]:
     try:
-        remark = check.run(robot)
-    except UnmetError as unmet:
-        result = Result(check, "failed", unmet.expected, unmet.came)
-        return result, isinstance(unmet, SilentError)
+        remark = check.run(probe)
+    except CheckFailed as failure:
+        result = CheckResult(check, "failed", failure.expected, failure.received)
+        return result, isinstance(failure, NoAnswerError)
     except NotApplicableError as reason:
-        return Result(check, "skipped", remark=str(reason)), False
-    return Result(check, "ok", remark=remark or ""), False
+        return CheckResult(check, "skipped", remark=str(reason)), False
+    return CheckResult(check, "ok", remark=remark or ""), False

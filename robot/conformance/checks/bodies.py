@@ -1,16 +1,13 @@
-"""Checks of section 3: what is skipped, and what is used."""
+"""Checks of section 3: which bodies are skipped, and which are used."""
 
-from functools import partial
-
-from robot.conformance.check import Chapter
-from robot.conformance.heard import header
-from robot.conformance.probe import ACTS_WITHIN, Probe
-from robot.conformance.verdicts import NotApplicableError, UnmetError
+from robot.conformance.check import CheckGroup
+from robot.conformance.checks.moods import expect_mood, mood_to_name
+from robot.conformance.probe import Probe
 from robot.protocol import messages as m
 from robot.protocol.schema import MESSAGES, pack, spec_of
 from robot.protocol.wire import MAX_BODY, encode_frame
 
-BODIES = Chapter("Bodies", 3)
+BODIES = CheckGroup("Bodies", 3)
 
 _UNKNOWN = (0x00, 0x04, 0x13, 0x42, 0x80, 0xA0, 0xFF)
 _ECHOES = (
@@ -21,7 +18,7 @@ _ECHOES = (
     m.Ack(1, m.TAKEN),
     m.Gone(),
 )
-_SPOKEN = (
+_HOST_MESSAGES = (
     m.Hello(1, 0x01010101),
     m.Ask(m.ITEM_MOTION, 0),
     m.Beat(0x0101),
@@ -32,63 +29,62 @@ _SPOKEN = (
 
 
 @BODIES.must
-def unknown_message_skipped(robot: Probe) -> None:
-    """A message whose number is not known is skipped, in the session and outside of it."""
-    robot.fresh()
+def unknown_message_skipped(probe: Probe) -> None:
+    """A message with an unknown number is skipped, in the session and outside."""
+    probe.open_session()
     for number in _UNKNOWN:
-        for session in (robot.session, robot.session + 0x0101):
-            body = header(number, session) + b"\x01\x02\x03\x04\x05"
-            robot.unanswered(encode_frame(body), f"a message {number:02X}")
+        for session in (probe.session, probe.session + 0x0101):
+            frame = probe.raw_frame(number, b"\x01\x02\x03\x04\x05", session)
+            probe.expect_no_reply(frame, f"a message {number:02X}")
 
 
 @BODIES.must
-def echo_skipped(robot: Probe) -> None:
+def echo_skipped(probe: Probe) -> None:
     """A message that only robots send is an echo and is skipped, in the session and outside."""
-    robot.fresh()
+    probe.open_session()
     for echo in _ECHOES:
-        for session in (robot.session, robot.session + 0x0101):
+        for session in (probe.session, probe.session + 0x0101):
             what = f"an echo of {spec_of(type(echo)).name}"
-            robot.unanswered(robot.frame(echo, session), what)
+            probe.expect_no_reply(probe.frame(echo, session), what)
 
 
 @BODIES.must
-def short_body_skipped(robot: Probe) -> None:
+def short_body_skipped(probe: Probe) -> None:
     """A body that is shorter than its message was in version 1 is skipped."""
-    robot.fresh()
+    probe.open_session()
     for length in (1, 2):
-        robot.unanswered(encode_frame(b"\x03\x21"[:length]), f"a body of {length} bytes")
-    for message in _SPOKEN:
-        form = spec_of(type(message))
-        for length in range(3, form.size):
-            body = pack(message, robot.session)[:length]
-            what = f"{form.name} of {length} bytes"
-            robot.unanswered(encode_frame(body), what)
-    _untaken(robot, "short bodies")
+        probe.expect_no_reply(encode_frame(b"\x03\x21"[:length]), f"a body of {length} bytes")
+    for message in _HOST_MESSAGES:
+        spec = spec_of(type(message))
+        for length in range(3, spec.size):
+            body = pack(message, probe.session)[:length]
+            probe.expect_no_reply(encode_frame(body), f"{spec.name} of {length} bytes")
+    probe.expect_taken(0, "short bodies")
 
 
 @BODIES.must
-def longer_body_used(robot: Probe) -> None:
-    """Of a body that is longer than known, the known fields are used."""
-    robot.fresh()
+def longer_body_used(probe: Probe) -> None:
+    """The known fields of a body that is longer than known are used."""
+    probe.open_session()
     for more in (1, 4, 40):
-        count = robot.next_count()
-        robot.write(_longer(m.Beat(count), robot, more))
-        robot.expect(m.State, f"a BEAT with {more} bytes more", beat=count)
-        number = robot.next_number()
-        robot.write(_longer(m.Express(number, 0.0, 0.0), robot, more))
-        robot.expect(m.Ack, f"an EXPRESS with {more} bytes more", number=number, result=m.TAKEN)
-        robot.next_session()
-        robot.write(_longer(m.Hello(2, robot.host), robot, more))
-        robot.expect(m.Welcome, f"a HELLO with {more} bytes more")
+        count = probe.next_beat()
+        probe.write(_extended(m.Beat(count), probe, more))
+        probe.expect(m.State, f"a BEAT with {more} bytes more", beat=count)
+        number = probe.next_number()
+        probe.write(_extended(m.Express(number, 0.0, 0.0), probe, more))
+        probe.expect(m.Ack, f"an EXPRESS with {more} bytes more", number=number, result=m.TAKEN)
+        probe.next_session()
+        probe.write(_extended(m.Hello(2, probe.host), probe, more))
+        probe.expect(m.Welcome, f"a HELLO with {more} bytes more")
 
 
 @BODIES.must
-def field_out_of_range_skipped(robot: Probe) -> None:
+def field_out_of_range_skipped(probe: Probe) -> None:
     """A body with a field out of its range is skipped."""
-    robot.fresh()
-    good = robot.express(0.0, 0.0)
-    number = (good + 1).to_bytes(4, "little")
-    wrong = {
+    probe.open_session()
+    valid = probe.express(0.0, 0.0)
+    number = (valid + 1).to_bytes(4, "little")
+    invalid = {
         "EXPRESS with valence 10001": (0x10, number + b"\x11\x27\x00\x00\xff"),
         "EXPRESS with valence -10001": (0x10, number + b"\xef\xd8\x00\x00\xff"),
         "EXPRESS with arousal 10001": (0x10, number + b"\x00\x00\x11\x27\xff"),
@@ -101,51 +97,33 @@ def field_out_of_range_skipped(robot: Probe) -> None:
         "HELLO with version 0": (0x01, b"\x00\x01\x01\x01\x01"),
         "HELLO with host 0": (0x01, b"\x02\x00\x00\x00\x00"),
     }
-    for what, (kind, rest) in wrong.items():
-        robot.unanswered(encode_frame(header(kind, robot.session) + rest), what)
-    _untaken(robot, "fields out of range", good)
+    for what, (kind, fields) in invalid.items():
+        probe.expect_no_reply(probe.raw_frame(kind, fields), what)
+    probe.expect_taken(valid, "fields out of range")
 
 
 @BODIES.must
-def express_of_version_1_used(robot: Probe) -> None:
-    """An EXPRESS without the fields that version 2 added is used, and means the default."""
+def express_of_version_1_used(probe: Probe) -> None:
+    """An EXPRESS without the fields that version 2 added is used, with their defaults."""
     for offer in (1, 2):
-        robot.fresh(offer)
-        number = robot.next_number()
-        robot.say(m.Express(number, 0.5, 0.5), version=1)
+        probe.open_session(offer)
+        number = probe.next_number()
+        probe.send(m.Express(number, 0.5, 0.5), version=1)
         what = f"an EXPRESS of 11 bytes, after HELLO (version {offer})"
-        robot.expect(m.Ack, what, number=number, result=m.TAKEN)
+        probe.expect(m.Ack, what, number=number, result=m.TAKEN)
 
 
 @BODIES.must
-def express_of_version_2_used(robot: Probe) -> None:
+def express_of_version_2_used(probe: Probe) -> None:
     """The mood that an EXPRESS names is the one that STATE shows from then on."""
-    welcome = robot.fresh()
-    if robot.version < 2 or welcome.moods < 2:
-        raise NotApplicableError("it speaks version 1, or has fewer than two moods")
-    for mood in (welcome.moods - 1, 0):
-        robot.express(0.0, 0.0, mood)
-        states = robot.live(ACTS_WITHIN, partial(_has_mood, mood=mood))
-        if states[-1].mood != mood:
-            raise UnmetError(
-                f"STATE(mood={mood}) within {1000 * ACTS_WITHIN:.0f} ms after EXPRESS with it",
-                f"mood={states[-1].mood}",
-            )
+    for mood in (mood_to_name(probe), 0):
+        probe.express(0.0, 0.0, mood)
+        expect_mood(probe, mood, "EXPRESS with it")
 
 
-def _has_mood(state: m.State, mood: int) -> bool:
-    return state.mood == mood
-
-
-def _longer(message: object, robot: Probe, more: int) -> bytes:
-    body = pack(message, robot.session) + b"\x17" * more
+def _extended(message: object, probe: Probe, more: int) -> bytes:
+    body = pack(message, probe.session) + b"\x17" * more
     return encode_frame(body[:MAX_BODY])
-
-
-def _untaken(robot: Probe, what: str, number: int = 0) -> None:
-    taken = robot.beat(what).taken
-    if taken != number:
-        raise UnmetError(f"STATE(taken={number}) after {what}", f"taken={taken}")
 
 
 assert not {*_UNKNOWN} & {*MESSAGES}

@@ -1,146 +1,136 @@
 """Checks of section 6: commands are acknowledged, and take effect exactly once."""
 
-from robot.conformance.check import Chapter
-from robot.conformance.probe import ACTS_WITHIN, Probe
-from robot.conformance.verdicts import NotApplicableError, UnmetError
+from robot.conformance.check import CheckGroup
+from robot.conformance.errors import CheckFailed, NotApplicableError
+from robot.conformance.probe import EFFECT_WITHIN_S, EMOTION_CHANGE, Probe
 from robot.protocol import messages as m
 
-COMMANDS = Chapter("Commands", 6)
-
-RISE = 0.05
-"""A change of the emotion shown that is no chance."""
+COMMANDS = CheckGroup("Commands", 6)
 
 
 @COMMANDS.must
-def command_acknowledged(robot: Probe) -> None:
+def command_acknowledged(probe: Probe) -> None:
     """EXPRESS, PLAY and STOP are each answered by ACK with their number, within 100 ms."""
-    robot.fresh()
-    robot.express(0.0, 0.0)
-    robot.next_number()
-    robot.say(m.Play(2, m.ITEM_MOTION, 254))
-    robot.expect(m.Ack, "PLAY 2", number=2)
-    robot.next_number()
-    robot.command(m.Stop(3))
+    probe.open_session()
+    probe.express(0.0, 0.0)
+    probe.next_number()
+    probe.send(m.Play(2, m.ITEM_MOTION, 254))
+    probe.expect(m.Ack, "PLAY 2", number=2)
+    probe.next_number()
+    probe.command(m.Stop(3))
 
 
 @COMMANDS.must
-def taken_reported(robot: Probe) -> None:
+def taken_reported(probe: Probe) -> None:
     """STATE names the last command taken: 0 before the first, then the highest number."""
-    robot.fresh()
-    _sees(robot, "HELLO of a new host", taken=0)
+    probe.open_session()
+    probe.expect_taken(0, "HELLO of a new host")
     for _ in range(3):
-        number = robot.express(0.0, 0.0)
-        _sees(robot, f"EXPRESS {number}", taken=number)
-    robot.command(m.Stop(100))
-    _sees(robot, "STOP 100", taken=100)
+        number = probe.express(0.0, 0.0)
+        probe.expect_taken(number, f"EXPRESS {number}")
+    probe.command(m.Stop(100))
+    probe.expect_taken(100, "STOP 100")
 
 
 @COMMANDS.must
-def repeat_acknowledged(robot: Probe) -> None:
-    """A command that has come before, or an older one, is answered by ACK all the same."""
-    robot.fresh()
-    robot.command(m.Express(5, 0.0, 0.0))
+def repeat_acknowledged(probe: Probe) -> None:
+    """A repeated or older command is answered by ACK too."""
+    probe.open_session()
+    probe.command(m.Express(5, 0.0, 0.0))
     for number in (5, 5, 4, 1):
-        robot.say(m.Express(number, 0.0, 0.0))
-        robot.expect(m.Ack, f"EXPRESS {number}, with 5 taken before", number=number)
-        _sees(robot, f"EXPRESS {number}, with 5 taken before", taken=5)
+        after = f"EXPRESS {number}, with 5 taken before"
+        probe.send(m.Express(number, 0.0, 0.0))
+        probe.expect(m.Ack, after, number=number)
+        probe.expect_taken(5, after)
 
 
 @COMMANDS.must
-def repeat_without_effect(robot: Probe) -> None:
+def repeat_without_effect(probe: Probe) -> None:
     """A command whose number is not above the last one's has no effect."""
-    robot.calm()
-    before = robot.beat("HELLO").valence
-    robot.command(m.Express(5, 0.8, 0.6))
+    probe.open_neutral_session()
+    before = probe.beat("HELLO").valence
+    probe.command(m.Express(5, 0.8, 0.6))
     for number in (5, 4):
-        robot.say(m.Express(number, -0.8, -0.6))
-        robot.say(m.Stop(number))
-    after = robot.live(ACTS_WITHIN)[-1]
+        probe.send(m.Express(number, -0.8, -0.6))
+        probe.send(m.Stop(number))
+    after = probe.keep_alive(EFFECT_WITHIN_S)[-1]
     if after.flags & m.STILL:
-        raise UnmetError("no effect of STOP 4 after EXPRESS 5", f"STATE(flags={after.flags})")
+        raise CheckFailed("no effect of STOP 4 after EXPRESS 5", f"STATE(flags={after.flags})")
     if after.valence <= before:
-        raise UnmetError(
-            "valence going up after EXPRESS 5 (valence 0.8) and a repeat with valence -0.8",
-            f"from {before} to {after.valence} within {1000 * ACTS_WITHIN:.0f} ms",
+        raise CheckFailed(
+            "a rising valence after EXPRESS 5 (valence 0.8) and a repeat with valence -0.8",
+            f"from {before} to {after.valence} within {1000 * EFFECT_WITHIN_S:.0f} ms",
         )
 
 
 @COMMANDS.must
-def numbers_compared_unsigned(robot: Probe) -> None:
-    """Numbers of commands go up to 4294967295, and gaps between them do no harm."""
-    robot.fresh()
+def numbers_compared_unsigned(probe: Probe) -> None:
+    """Numbers of commands go up to 4294967295, and gaps between them are allowed."""
+    probe.open_session()
     for number in (1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF):
-        robot.command(m.Express(number, 0.0, 0.0))
-        _sees(robot, f"EXPRESS {number}", taken=number)
-    robot.say(m.Express(7, 0.0, 0.0))
-    robot.expect(m.Ack, "EXPRESS 7 after EXPRESS 4294967295", number=7)
-    _sees(robot, "EXPRESS 7 after EXPRESS 4294967295", taken=0xFFFFFFFF)
+        probe.command(m.Express(number, 0.0, 0.0))
+        probe.expect_taken(number, f"EXPRESS {number}")
+    probe.send(m.Express(7, 0.0, 0.0))
+    probe.expect(m.Ack, "EXPRESS 7 after EXPRESS 4294967295", number=7)
+    probe.expect_taken(0xFFFFFFFF, "EXPRESS 7 after EXPRESS 4294967295")
 
 
 @COMMANDS.must
-def latest_wins(robot: Probe) -> None:
-    """Of two commands in one go both are acknowledged, and the later one holds."""
-    robot.calm()
-    before = robot.beat("HELLO").valence
-    robot.say(m.Express(1, 0.8, 0.0), m.Express(2, -0.8, 0.0))
+def latest_wins(probe: Probe) -> None:
+    """Of two commands in one write both are acknowledged, and the later one is in force."""
+    probe.open_neutral_session()
+    before = probe.beat("HELLO").valence
+    probe.send(m.Express(1, 0.8, 0.0), m.Express(2, -0.8, 0.0))
     for number in (1, 2):
-        robot.expect(m.Ack, "EXPRESS 1 and 2 in one go", number=number, result=m.TAKEN)
-    states = robot.live(1.0, lambda state: abs(state.valence - before) > RISE)
+        probe.expect(m.Ack, "EXPRESS 1 and 2 in one write", number=number, result=m.TAKEN)
+    states = probe.keep_alive(1.0, lambda state: abs(state.valence - before) > EMOTION_CHANGE)
     if states[-1].valence >= before:
-        raise UnmetError(
-            "valence going to -0.8, asked for by EXPRESS 2, and not to 0.8, asked for by EXPRESS 1",
+        raise CheckFailed(
+            "valence going to -0.8, commanded by EXPRESS 2, not to 0.8, commanded by EXPRESS 1",
             f"from {before} to {states[-1].valence}",
         )
 
 
 @COMMANDS.must
-def unknown_index_refused(robot: Probe) -> None:
+def unknown_index_refused(probe: Probe) -> None:
     """PLAY with an index that the catalogue does not have gets ACK with result 1, and is taken."""
-    welcome = robot.fresh()
+    welcome = probe.open_session()
     for item, count in ((m.ITEM_MOTION, welcome.motions), (m.ITEM_SOUND, welcome.sounds)):
         for index in {count, 255}:
-            number = robot.command(m.Play(robot.next_number(), item, index), m.UNKNOWN)
-            _sees(robot, f"PLAY {number} with index {index}", taken=number)
+            number = probe.command(m.Play(probe.next_number(), item, index), m.UNKNOWN)
+            probe.expect_taken(number, f"PLAY {number} with index {index}")
 
 
 @COMMANDS.must
-def unknown_mood_refused(robot: Probe) -> None:
+def unknown_mood_refused(probe: Probe) -> None:
     """EXPRESS with a mood that the catalogue does not have gets ACK with result 1, and is taken."""
-    if robot.fresh().version < 2:
+    if probe.open_session().version < 2:
         raise NotApplicableError("it speaks version 1")
-    welcome = robot.calm()
-    before = robot.beat("HELLO").valence
+    welcome = probe.open_neutral_session()
+    before = probe.beat("HELLO").valence
     for mood in {welcome.moods, 254}:
-        command = m.Express(robot.next_number(), 0.8, 0.0, mood)
-        number = robot.command(command, m.UNKNOWN)
-        _sees(robot, f"EXPRESS {number} with mood {mood}", taken=number)
-    after = robot.live(ACTS_WITHIN)[-1].valence
-    if after > before + RISE:
-        raise UnmetError(
-            "no effect of an EXPRESS that was refused", f"valence from {before} to {after}"
-        )
+        command = m.Express(probe.next_number(), 0.8, 0.0, mood)
+        number = probe.command(command, m.UNKNOWN)
+        probe.expect_taken(number, f"EXPRESS {number} with mood {mood}")
+    after = probe.keep_alive(EFFECT_WITHIN_S)[-1].valence
+    if after > before + EMOTION_CHANGE:
+        raise CheckFailed("no effect of a refused EXPRESS", f"valence from {before} to {after}")
 
 
 @COMMANDS.must
-def refusal_changes_nothing(robot: Probe) -> None:
-    """A refused command changes nothing: who is stopped stays so. Its repeats are refused too."""
-    welcome = robot.fresh()
-    robot.command(m.Stop(robot.next_number()))
+def refusal_changes_nothing(probe: Probe) -> None:
+    """A refused command changes nothing: a stopped robot stays so. Its repeats are refused too."""
+    welcome = probe.open_session()
+    probe.command(m.Stop(probe.next_number()))
     commands: list[m.Play | m.Express] = [
-        m.Play(robot.next_number(), m.ITEM_MOTION, welcome.motions),
-        m.Play(robot.next_number(), m.ITEM_SOUND, welcome.sounds),
+        m.Play(probe.next_number(), m.ITEM_MOTION, welcome.motions),
+        m.Play(probe.next_number(), m.ITEM_SOUND, welcome.sounds),
     ]
-    if robot.version >= 2:
-        commands.append(m.Express(robot.next_number(), 0.5, 0.5, m.NOTHING - 1))
+    if probe.version >= 2:
+        commands.append(m.Express(probe.next_number(), 0.5, 0.5, m.NOTHING - 1))
     for command in commands:
-        robot.command(command, m.UNKNOWN)
-        robot.command(command, m.UNKNOWN)
-    flags = robot.live(ACTS_WITHIN)[-1].flags
+        probe.command(command, m.UNKNOWN)
+        probe.command(command, m.UNKNOWN)
+    flags = probe.keep_alive(EFFECT_WITHIN_S)[-1].flags
     if not flags & m.STILL:
-        raise UnmetError("flag 1 after STOP and commands that are refused", f"flags={flags}")
-
-
-def _sees(robot: Probe, after: str, taken: int) -> None:
-    state = robot.beat(after)
-    if state.taken != taken:
-        raise UnmetError(f"STATE(taken={taken}) after {after}", f"taken={state.taken}")
+        raise CheckFailed("flag 1 after STOP and refused commands", f"flags={flags}")

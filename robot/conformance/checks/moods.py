@@ -1,88 +1,80 @@
-"""Checks of section 6: the mood that a host names is the one that is shown."""
+"""Checks of section 6: the robot shows the mood that the host names."""
 
-from functools import partial
-
-from robot.conformance.check import Chapter
-from robot.conformance.probe import ACTS_WITHIN, SHOWN_WITHIN, Probe
-from robot.conformance.verdicts import NotApplicableError, UnmetError
+from robot.conformance.check import CheckGroup
+from robot.conformance.errors import CheckFailed, NotApplicableError
+from robot.conformance.probe import (
+    EFFECT_WITHIN_S,
+    EMOTION_TOLERANCE,
+    EMOTION_WITHIN_S,
+    Probe,
+    emotion_distance,
+)
 from robot.protocol import messages as m
 
-MOODS = Chapter("Moods", 6)
+MOODS = CheckGroup("Moods", 6)
 
-NEAR = 0.02
-"""How close the emotion shown comes to the one asked for."""
-
-_FELT = (0.8, 0.6)
+_EMOTION = (0.8, 0.6)
 
 
 @MOODS.must
-def named_mood_shown_at_once(robot: Probe) -> None:
-    """A mood that is named is shown within 250 ms, however far the emotion is, and from then on.
+def named_mood_shown_at_once(probe: Probe) -> None:
+    """A named mood is shown within 250 ms, however far the emotion is, and from then on.
 
-    The emotion of that EXPRESS is felt all the same.
+    The emotion of that EXPRESS is shown all the same.
     """
-    mood = last_mood(robot)
-    robot.calm()
-    robot.express(*_FELT, mood)
-    sees_mood(robot, mood, "EXPRESS with it")
-    for state in _feels(robot, _FELT):
+    mood = mood_to_name(probe)
+    probe.open_neutral_session()
+    probe.express(*_EMOTION, mood)
+    expect_mood(probe, mood, "EXPRESS with it")
+    for state in expect_emotion(probe, _EMOTION, "EXPRESS"):
         if state.mood != mood:
-            raise UnmetError(f"mood {mood} until another is named", f"mood={state.mood}")
+            raise CheckFailed(f"mood {mood} until another is named", f"mood={state.mood}")
 
 
 @MOODS.must
-def mood_255_leaves_the_choice(robot: Probe) -> None:
+def mood_255_leaves_the_choice(probe: Probe) -> None:
     """After 255 the robot chooses the mood as if none had been named before."""
-    last = last_mood(robot)
-    robot.calm()
-    robot.express(*_FELT)
-    own = _feels(robot, _FELT)[-1].mood
-    other = 0 if own else last  # 0 where it can be: its choice came from there
-    robot.express(*_FELT, other)
-    sees_mood(robot, other, "EXPRESS with it")
-    robot.express(*_FELT)
-    mood = robot.live(SHOWN_WITHIN, lambda state: state.mood == own)[-1].mood
-    if mood != own:
-        raise UnmetError(f"mood {own}, its own choice for {_FELT}, after 255", f"mood={mood}")
+    last = mood_to_name(probe)
+    probe.open_neutral_session()
+    probe.express(*_EMOTION)
+    own = expect_emotion(probe, _EMOTION, "EXPRESS")[-1].mood
+    other = 0 if own else last  # 0 if possible: the robot's choice started from it
+    probe.express(*_EMOTION, other)
+    expect_mood(probe, other, "EXPRESS with it")
+    probe.express(*_EMOTION)
+    expected = f"mood {own}, its own choice for {_EMOTION}, after 255"
+    probe.expect_state(lambda state: state.mood == own, EMOTION_WITHIN_S, expected, "mood")
 
 
 @MOODS.must
-def stop_ends_a_named_mood(robot: Probe) -> None:
-    """A robot that was told a mood shows its first one within 250 ms after STOP."""
-    mood = last_mood(robot)
-    robot.express(*_FELT, mood)
-    sees_mood(robot, mood, "EXPRESS with it")
-    robot.command(m.Stop(robot.next_number()))
-    sees_mood(robot, 0, "STOP")
+def stop_ends_a_named_mood(probe: Probe) -> None:
+    """After STOP a named mood ends: the robot shows its first mood within 250 ms."""
+    mood = mood_to_name(probe)
+    probe.express(*_EMOTION, mood)
+    expect_mood(probe, mood, "EXPRESS with it")
+    probe.command(m.Stop(probe.next_number()))
+    expect_mood(probe, 0, "STOP")
 
 
-def last_mood(robot: Probe) -> int:
+def mood_to_name(probe: Probe) -> int:
     """Open a session and return a mood to name; raises NotApplicableError if there is none."""
-    welcome = robot.fresh()
-    if robot.version < 2 or welcome.moods < 2:
+    welcome = probe.open_session()
+    if probe.version < 2 or welcome.moods < 2:
         raise NotApplicableError("it speaks version 1, or has fewer than two moods")
     return welcome.moods - 1
 
 
-def sees_mood(robot: Probe, mood: int, after: str) -> None:
-    """See a mood in STATE within 250 ms."""
-    last = robot.live(ACTS_WITHIN, lambda state: state.mood == mood)[-1].mood
-    if last != mood:
-        raise UnmetError(
-            f"STATE(mood={mood}) within {1000 * ACTS_WITHIN:.0f} ms after {after}", f"mood={last}"
-        )
+def expect_mood(probe: Probe, mood: int, after: str) -> None:
+    """Wait for a STATE with a mood, at most 250 ms."""
+    expected = f"STATE(mood={mood}) after {after}"
+    probe.expect_state(lambda state: state.mood == mood, EFFECT_WITHIN_S, expected, "mood")
 
 
-def _feels(robot: Probe, emotion: tuple[float, float]) -> list[m.State]:
-    states = robot.live(SHOWN_WITHIN, partial(_shows, emotion=emotion))
-    last = states[-1]
-    if not _shows(last, emotion):
-        raise UnmetError(
-            f"{emotion} shown within {SHOWN_WITHIN:.0f} s after EXPRESS",
-            f"({last.valence}, {last.arousal})",
-        )
-    return states
-
-
-def _shows(state: m.State, emotion: tuple[float, float]) -> bool:
-    return max(abs(state.valence - emotion[0]), abs(state.arousal - emotion[1])) < NEAR
+def expect_emotion(probe: Probe, emotion: tuple[float, float], after: str) -> list[m.State]:
+    """Return the STATEs until an emotion is shown, at most 5 s."""
+    return probe.expect_state(
+        lambda state: emotion_distance(state, *emotion) < EMOTION_TOLERANCE,
+        EMOTION_WITHIN_S,
+        f"{emotion} shown after {after}",
+        "valence", "arousal",
+    )  # fmt: skip

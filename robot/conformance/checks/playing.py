@@ -1,227 +1,226 @@
-"""Checks of section 6: motions and sounds are played once, and side by side."""
+"""Checks of section 6: motions and sounds are played once, and at the same time."""
 
 from math import inf
 
-from robot.conformance.check import Chapter
-from robot.conformance.probe import ACTS_WITHIN, Probe
-from robot.conformance.verdicts import NotApplicableError, UnmetError
+from robot.conformance.check import CheckGroup
+from robot.conformance.errors import CheckFailed, NotApplicableError
+from robot.conformance.probe import EFFECT_WITHIN_S, Probe
 from robot.protocol import messages as m
 from robot.protocol import timing
 
-PLAYING = Chapter("Motions and sounds", 6)
+PLAYING = CheckGroup("Motions and sounds", 6)
 
-LONGEST_PIECE = 10.0
-"""What is played longer than this does not seem to end [s]."""
+MAX_PLAY_TIME_S = 10.0
+"""A motion or sound that takes longer than this does not end [s]."""
 
-LONG_ENOUGH = 3 * ACTS_WITHIN
-"""What is played at least so long can be looked at while something else is commanded [s]."""
+MIN_PLAY_TIME_S = 3 * EFFECT_WITHIN_S
+"""Shortest motion or sound during which other commands can be tested [s]."""
 
-LOOK_EVERY = 0.010
-"""Time between two looks [s]: more often than a host would, for a sound may be short."""
+POLL_EVERY_S = 0.010
+"""Time between two BEATs that watch for a motion or sound [s]; a sound may be short."""
 
-WORDS = {m.ITEM_MOTION: "motion", m.ITEM_SOUND: "sound"}
+ITEM_WORDS = {m.ITEM_MOTION: "motion", m.ITEM_SOUND: "sound"}
 
 
 @PLAYING.must
-def motion_played(robot: Probe) -> None:
+def motion_played(probe: Probe) -> None:
     """STATE shows the motion of a PLAY within 250 ms."""
-    _played(robot, m.ITEM_MOTION)
+    _check_played(probe, m.ITEM_MOTION)
 
 
 @PLAYING.must
-def sound_played(robot: Probe) -> None:
+def sound_played(probe: Probe) -> None:
     """STATE shows the sound of a PLAY within 250 ms."""
-    _played(robot, m.ITEM_SOUND)
+    _check_played(probe, m.ITEM_SOUND)
 
 
 @PLAYING.should
-def played_once(robot: Probe) -> str:
-    """A motion or a sound is played once: it ends. What takes over 10 s does not seem to."""
-    lengths = known_lengths(robot)
-    for item, length in lengths.items():
-        if length > LONGEST_PIECE:
-            raise UnmetError(f"the end of a {WORDS[item]} within {LONGEST_PIECE:.0f} s", "none")
-    return ", ".join(f"a {WORDS[item]} of {length:.1f} s" for item, length in lengths.items())
+def played_once(probe: Probe) -> str:
+    """A motion or a sound is played once, and ends within 10 s."""
+    durations = _known_durations(probe)
+    for item, time in durations.items():
+        if time > MAX_PLAY_TIME_S:
+            expected = f"the end of a {ITEM_WORDS[item]} within {MAX_PLAY_TIME_S:.0f} s"
+            raise CheckFailed(expected, "none")
+    return ", ".join(f"a {ITEM_WORDS[item]} of {time:.1f} s" for item, time in durations.items())
 
 
 @PLAYING.must
-def old_play_without_effect(robot: Probe) -> None:
+def old_play_without_effect(probe: Probe) -> None:
     """A PLAY whose number is not above the last one's plays nothing, and nothing again."""
-    lengths = known_lengths(robot)
-    item = min(lengths, key=lambda one: lengths[one])
-    robot.calm()
-    state = robot.beat("HELLO")
-    played = chosen(robot, state, item)
+    durations = _known_durations(probe)
+    item = min(durations, key=lambda one: durations[one])
+    probe.open_neutral_session()
+    state = probe.beat("HELLO")
+    played = _idle_entry(probe, state, item)
     first = m.Play(5, item, played)
-    robot.command(first)
-    for other in lengths:
-        index = chosen(robot, state, other, but=played if other == item else m.NOTHING)
+    probe.command(first)
+    for other in durations:
+        exclude = played if other == item else m.NOTHING
+        index = _idle_entry(probe, state, other, exclude)
         if index != m.NOTHING:
             for number in (5, 4):
-                robot.say(m.Play(number, other, index))
-                robot.expect(m.Ack, f"PLAY {number}, with 5 taken before", number=number)
-                _not_shown(robot, other, index, f"PLAY {number}, with 5 taken before")
-    if lengths[item] > LONGEST_PIECE:
+                after = f"PLAY {number}, with 5 taken before"
+                probe.send(m.Play(number, other, index))
+                probe.expect(m.Ack, after, number=number)
+                _expect_not_played(probe, other, index, after)
+    if durations[item] > MAX_PLAY_TIME_S:
         return
-    end = robot.now + lengths[item] + LONG_ENOUGH
-    while shown(robot.beat("PLAY 5"), item) == played:  # every repeat might begin it again
-        if robot.now > end:
-            raise UnmetError(
-                f"the end of {WORDS[item]} {played} after {lengths[item]:.1f} s, "
+    end = probe.now + durations[item] + MIN_PLAY_TIME_S
+    while played_item(probe.beat("PLAY 5"), item) == played:  # a repeat might restart it
+        if probe.now > end:
+            raise CheckFailed(
+                f"the end of {ITEM_WORDS[item]} {played} after {durations[item]:.1f} s, "
                 "however often its PLAY is repeated",
-                f"none after {lengths[item] + LONG_ENOUGH:.1f} s",
+                f"none after {durations[item] + MIN_PLAY_TIME_S:.1f} s",
             )
-        robot.say(first)
-        robot.expect(m.Ack, "PLAY 5 again", number=5)
-        robot.hear(LOOK_EVERY)
-    robot.say(first)
-    robot.expect(m.Ack, "PLAY 5 again", number=5)
-    _not_shown(robot, item, played, "its end and a repeat of its PLAY")
+        probe.send(first)
+        probe.expect(m.Ack, "PLAY 5 again", number=5)
+        probe.receive(POLL_EVERY_S)
+    probe.send(first)
+    probe.expect(m.Ack, "PLAY 5 again", number=5)
+    _expect_not_played(probe, item, played, "its end and a repeat of its PLAY")
 
 
 @PLAYING.must
-def motion_and_sound_together(robot: Probe) -> None:
+def motion_and_sound_together(probe: Probe) -> None:
     """Motion and sound do not end each other."""
-    indices = lasting(robot, m.ITEM_MOTION, m.ITEM_SOUND)
+    indices = long_entries(probe, m.ITEM_MOTION, m.ITEM_SOUND)
     for first, second in ((m.ITEM_MOTION, m.ITEM_SOUND), (m.ITEM_SOUND, m.ITEM_MOTION)):
-        play(robot, first, indices[first])
-        see(robot, first, indices[first], "PLAY")
-        play(robot, second, indices[second])
-        state = see(robot, second, indices[second], "PLAY")
-        if shown(state, first) != indices[first]:
-            raise UnmetError(
-                f"{WORDS[first]} {indices[first]} going on after PLAY of a {WORDS[second]}",
-                f"{WORDS[first]}={shown(state, first)}",
-            )
+        play(probe, first, indices[first])
+        play(probe, second, indices[second])
+        after = f"PLAY of a {ITEM_WORDS[second]}"
+        expect_still_played(probe.beat(after), first, indices[first], after)
 
 
 @PLAYING.must
-def refused_play_ends_nothing(robot: Probe) -> None:
-    """What is played goes on when a PLAY is refused."""
-    index = lasting(robot, m.ITEM_MOTION)[m.ITEM_MOTION]
-    play(robot, m.ITEM_MOTION, index)
-    see(robot, m.ITEM_MOTION, index, "PLAY")
-    robot.command(m.Play(robot.next_number(), m.ITEM_MOTION, m.NOTHING - 1), m.UNKNOWN)
-    motion = robot.live(ACTS_WITHIN)[-1].motion
-    if motion != index:
-        raise UnmetError(f"motion {index} going on after a refused PLAY", f"motion={motion}")
+def refused_play_ends_nothing(probe: Probe) -> None:
+    """A refused PLAY does not end what is played."""
+    index = long_entries(probe, m.ITEM_MOTION)[m.ITEM_MOTION]
+    play(probe, m.ITEM_MOTION, index)
+    probe.command(m.Play(probe.next_number(), m.ITEM_MOTION, m.NOTHING - 1), m.UNKNOWN)
+    state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
+    expect_still_played(state, m.ITEM_MOTION, index, "a refused PLAY")
 
 
 @PLAYING.should
-def motion_survives_an_emotion(robot: Probe) -> None:
-    """EXPRESS ends no motion that is played: it comes too often."""
-    index = lasting(robot, m.ITEM_MOTION)[m.ITEM_MOTION]
-    play(robot, m.ITEM_MOTION, index)
-    see(robot, m.ITEM_MOTION, index, "PLAY")
-    robot.express(0.4, 0.4)
-    motion = robot.live(ACTS_WITHIN)[-1].motion
-    if motion != index:
-        raise UnmetError(f"motion {index} going on after EXPRESS", f"motion={motion}")
+def motion_survives_an_emotion(probe: Probe) -> None:
+    """EXPRESS does not end the motion that is played, for it comes often."""
+    index = long_entries(probe, m.ITEM_MOTION)[m.ITEM_MOTION]
+    play(probe, m.ITEM_MOTION, index)
+    probe.express(0.4, 0.4)
+    state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
+    expect_still_played(state, m.ITEM_MOTION, index, "EXPRESS")
 
 
-def shown(state: m.State, item: int) -> int:
+def played_item(state: m.State, item: int) -> int:
     """Return the index of the motion or sound that is played."""
     return state.motion if item == m.ITEM_MOTION else state.sound
 
 
-def count(robot: Probe, item: int) -> int:
-    """Return how many motions or sounds the robot has."""
-    assert robot.welcome is not None
-    return robot.welcome.motions if item == m.ITEM_MOTION else robot.welcome.sounds
+def start(probe: Probe, item: int, index: int) -> None:
+    """Command a motion or a sound with the next number, and expect its ACK."""
+    probe.command(m.Play(probe.next_number(), item, index))
 
 
-def chosen(robot: Probe, state: m.State, item: int, but: int = m.NOTHING) -> int:
-    """Return the last motion or sound that is neither played now nor excepted; 255 if none is."""
-    kept = (shown(state, item), but)
-    return next((one for one in reversed(range(count(robot, item))) if one not in kept), m.NOTHING)
-
-
-def play(robot: Probe, item: int, index: int) -> None:
-    """Command a motion or a sound under the next number, and see its ACK."""
-    robot.command(m.Play(robot.next_number(), item, index))
-
-
-def see(robot: Probe, item: int, index: int, after: str) -> m.State:
-    """Return the first STATE that shows what is played; raises UnmetError if none does in time."""
-    end = robot.now + ACTS_WITHIN
-    while True:
-        state = robot.beat(after)
-        if shown(state, item) == index:
-            return state
-        if robot.now > end:
-            raise UnmetError(
-                f"STATE({WORDS[item]}={index}) within {1000 * ACTS_WITHIN:.0f} ms after {after}",
-                f"{WORDS[item]}={shown(state, item)}",
+def play(probe: Probe, item: int, index: int) -> None:
+    """Command a motion or a sound, and wait until STATE shows it, at most 250 ms."""
+    start(probe, item, index)
+    end = probe.now + EFFECT_WITHIN_S
+    while (played := played_item(probe.beat("PLAY"), item)) != index:
+        if probe.now > end:
+            raise CheckFailed(
+                f"STATE({ITEM_WORDS[item]}={index}) within {1000 * EFFECT_WITHIN_S:.0f} ms "
+                "after PLAY",
+                f"{ITEM_WORDS[item]}={played}",
             )
-        robot.hear(LOOK_EVERY)
+        probe.receive(POLL_EVERY_S)
 
 
-def known_lengths(robot: Probe) -> dict[int, float]:
-    """Return how long motion and sound take [s], by item; both are played by the first call.
-
-    What does not end is infinite. Raises NotApplicableError for a robot that has neither.
-    """
-    if robot.lengths is None:
-        robot.lengths = _played_out(robot)
-    if not robot.lengths:
-        raise NotApplicableError("it has no motions and no sounds")
-    return robot.lengths
+def expect_still_played(state: m.State, item: int, index: int, after: str) -> None:
+    """Check that STATE still shows a motion or a sound."""
+    if played_item(state, item) != index:
+        word = ITEM_WORDS[item]
+        expected = f"{word} {index} going on after {after}"
+        raise CheckFailed(expected, f"{word}={played_item(state, item)}")
 
 
-def lasting(robot: Probe, *items: int) -> dict[int, int]:
-    """Open a session and return a motion, a sound or both that last; they are yet to be played."""
-    lengths = known_lengths(robot)
+def long_entries(probe: Probe, *items: int) -> dict[int, int]:
+    """Open a session and return a motion, a sound or both that last long; none is played yet."""
+    durations = _known_durations(probe)
     for item in items:
-        if lengths.get(item, 0.0) < LONG_ENOUGH:
-            raise NotApplicableError(f"it has no {WORDS[item]} that lasts long enough")
-    robot.calm()
-    state = robot.beat("HELLO")
-    return {item: chosen(robot, state, item) for item in items}
+        if durations.get(item, 0.0) < MIN_PLAY_TIME_S:
+            raise NotApplicableError(f"it has no {ITEM_WORDS[item]} that lasts long enough")
+    probe.open_neutral_session()
+    state = probe.beat("HELLO")
+    return {item: _idle_entry(probe, state, item) for item in items}
 
 
-def _played_out(robot: Probe) -> dict[int, float]:
-    """Play a motion and a sound at once, for that takes less time, and see how long they take."""
-    robot.calm()
-    state = robot.beat("HELLO")
-    indices = {item: chosen(robot, state, item) for item in WORDS}
+def _entry_count(probe: Probe, item: int) -> int:
+    assert probe.welcome is not None
+    return probe.welcome.motions if item == m.ITEM_MOTION else probe.welcome.sounds
+
+
+def _idle_entry(probe: Probe, state: m.State, item: int, exclude: int = m.NOTHING) -> int:
+    """Return the last motion or sound that is neither played now nor excluded; 255 if none is."""
+    skipped = (played_item(state, item), exclude)
+    indices = reversed(range(_entry_count(probe, item)))
+    return next((index for index in indices if index not in skipped), m.NOTHING)
+
+
+def _known_durations(probe: Probe) -> dict[int, float]:
+    """Return the duration of a motion and of a sound [s], by item; the first call plays both.
+
+    The duration is infinite if one does not end. Raises NotApplicableError if the robot has
+    neither.
+    """
+    if probe.durations is None:
+        probe.durations = _measure_durations(probe)
+    if not probe.durations:
+        raise NotApplicableError("it has no motions and no sounds")
+    return probe.durations
+
+
+def _measure_durations(probe: Probe) -> dict[int, float]:
+    """Play a motion and a sound at the same time, to save time, and measure their durations."""
+    probe.open_neutral_session()
+    state = probe.beat("HELLO")
+    indices = {item: _idle_entry(probe, state, item) for item in ITEM_WORDS}
     indices = {item: index for item, index in indices.items() if index != m.NOTHING}
-    lengths = _timed(robot, indices)
-    for item, length in lengths.items():
-        if length < LONG_ENOUGH and len(lengths) > 1:  # it may be that the other has ended it
-            lengths |= _timed(robot, {item: indices[item]})
-    return lengths
+    durations = _play_to_the_end(probe, indices)
+    for item, time in durations.items():
+        if time < MIN_PLAY_TIME_S and len(durations) > 1:  # the other one may have ended it
+            durations |= _play_to_the_end(probe, {item: indices[item]})
+    return durations
 
 
-def _timed(robot: Probe, indices: dict[int, int]) -> dict[int, float]:
-    """Play what is named, and return how long each takes [s], by item."""
-    begin = robot.now
+def _play_to_the_end(probe: Probe, indices: dict[int, int]) -> dict[int, float]:
+    """Play entries, and return their durations [s], by item."""
+    begin = probe.now
     for item, index in indices.items():
-        play(robot, item, index)
-        see(robot, item, index, "PLAY")
-    lengths: dict[int, float] = {}
-    while len(lengths) < len(indices):
-        state = robot.live(timing.BEAT_EVERY)[-1]
-        for item in indices.keys() - lengths.keys():
-            if shown(state, item) != indices[item]:
-                lengths[item] = robot.now - begin
-            elif robot.now - begin > LONGEST_PIECE:
-                lengths[item] = inf
-    return dict(sorted(lengths.items()))
+        play(probe, item, index)
+    durations: dict[int, float] = {}
+    while len(durations) < len(indices):
+        state = probe.keep_alive(timing.BEAT_EVERY)[-1]
+        for item in indices.keys() - durations.keys():
+            if played_item(state, item) != indices[item]:
+                durations[item] = probe.now - begin
+            elif probe.now - begin > MAX_PLAY_TIME_S:
+                durations[item] = inf
+    return dict(sorted(durations.items()))
 
 
-def _played(robot: Probe, item: int) -> None:
-    """Play an entry that is not played already, and see it in STATE."""
-    robot.fresh()
-    if not count(robot, item):
-        raise NotApplicableError(f"it has no {WORDS[item]}s")
-    index = chosen(robot, robot.beat("HELLO"), item)
-    if index == m.NOTHING:  # the only one, and it is played
-        index = 0
-    play(robot, item, index)
-    see(robot, item, index, "PLAY")
+def _check_played(probe: Probe, item: int) -> None:
+    """Play an entry that is not played yet, and expect it in STATE."""
+    probe.open_session()
+    if not _entry_count(probe, item):
+        raise NotApplicableError(f"it has no {ITEM_WORDS[item]}s")
+    index = _idle_entry(probe, probe.beat("HELLO"), item)
+    play(probe, item, 0 if index == m.NOTHING else index)  # 0: the only one, and it is played
 
 
-def _not_shown(robot: Probe, item: int, index: int, after: str) -> None:
-    for state in robot.live(ACTS_WITHIN):
-        if shown(state, item) == index:
-            raise UnmetError(f"no {WORDS[item]} {index} after {after}", f"{WORDS[item]}={index}")
+def _expect_not_played(probe: Probe, item: int, index: int, after: str) -> None:
+    for state in probe.keep_alive(EFFECT_WITHIN_S):
+        if played_item(state, item) == index:
+            word = ITEM_WORDS[item]
+            raise CheckFailed(f"no {word} {index} after {after}", f"{word}={index}")

@@ -1,197 +1,193 @@
-"""Checks of section 5: who is spoken to, and what is kept from one session to the next."""
+"""Checks of section 5: how sessions begin, and what is kept from one to the next."""
 
-from robot.conformance.check import Chapter
-from robot.conformance.checks.strangers import see_gone
-from robot.conformance.heard import Heard
-from robot.conformance.probe import AT_ONCE, SHOWN_WITHIN, SLACK, Probe, told
-from robot.conformance.verdicts import UnmetError
+from robot.conformance.check import CheckGroup
+from robot.conformance.checks.other_sessions import expect_gone
+from robot.conformance.errors import CheckFailed
+from robot.conformance.probe import EMOTION_WITHIN_S, REPLY_WITHIN_S, TIMING_SLACK_S, Probe
+from robot.conformance.received import ReceivedFrame, describe_frames
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.messages import CHARGING, STILL
 
-SESSIONS = Chapter("Sessions", 5)
+SESSIONS = CheckGroup("Sessions", 5)
 
-GREETINGS = 40
+HELLOS = 40
 """HELLOs in a row."""
 
-GREETING_EVERY = 0.005
+HELLO_EVERY_S = 0.005
 """Time between two of them [s]; the answers take 4 ms each at 115200 baud."""
 
-FELT = 0.15
-"""An emotion that has come so far was not taken back."""
+MIN_VALENCE_RISE = 0.15
+"""Rise of the valence after which the emotion was not taken back."""
 
 
 @SESSIONS.must
-def greeting_answered(robot: Probe) -> None:
+def hello_answered(probe: Probe) -> None:
     """HELLO opens the session in its header and is answered by WELCOME, within 100 ms."""
     for _ in range(3):
-        robot.fresh()
-        robot.beat("HELLO and WELCOME")
+        probe.open_session()
+        probe.beat("HELLO and WELCOME")
 
 
 @SESSIONS.must
-def greeting_repeated(robot: Probe) -> None:
+def hello_repeated(probe: Probe) -> None:
     """HELLO with the open session is a repeat: WELCOME comes again, and nothing is forgotten."""
-    robot.fresh()
-    first = robot.greet()
-    number = robot.express(0.0, 0.0)
-    count = robot.beat("WELCOME").beat
-    second = robot.greet()
-    state = robot.expect(m.State, "a repeated HELLO", timing.STATE_EVERY + SLACK)
+    probe.open_session()
+    first = probe.hello()
+    number = probe.express(0.0, 0.0)
+    count = probe.beat("WELCOME").beat
+    second = probe.hello()
+    state = probe.expect(m.State, "a repeated HELLO", timing.STATE_EVERY + TIMING_SLACK_S)
     if state.beat != count:
-        raise UnmetError(f"STATE(beat={count}) after a repeated HELLO", f"beat={state.beat}")
-    taken = robot.beat("a repeated HELLO").taken
-    if second.taken != number or taken != number:
-        raise UnmetError(
-            f"taken={number} in WELCOME and STATE after a repeated HELLO",
-            f"{second.taken} in WELCOME, {taken} in STATE",
-        )
-    robot.greet()
+        raise CheckFailed(f"STATE(beat={count}) after a repeated HELLO", f"beat={state.beat}")
+    _expect_taken(probe, second, number, number, "a repeated HELLO")
+    probe.hello()
     if (first.catalogue, first.joints) != (second.catalogue, second.joints):
-        raise UnmetError(f"the same WELCOME, {first}", f"{second}")
+        raise CheckFailed(f"the same WELCOME, {first}", f"{second}")
 
 
 @SESSIONS.must
-def session_zero_refused(robot: Probe) -> None:
-    """Session 0 is never opened, and nothing is done for it when no session is open."""
-    robot.fresh()
-    came = robot.reaction(robot.frame(m.Hello(2, robot.host), 0), after="HELLO in session 0")
-    _only_gone(came, "no WELCOME in session 0")
-    robot.say(m.Bye())
-    robot.hear(AT_ONCE)
-    for message in (m.Hello(2, robot.host), m.Beat(0x0707), m.Express(9, 0.5, 0.5)):
-        robot.say(message, session=0)
-        _only_gone(robot.hear(AT_ONCE), f"nothing but GONE to {message} in session 0")
+def session_zero_refused(probe: Probe) -> None:
+    """Session 0 is never opened, and messages in it have no effect when no session is open."""
+    probe.open_session()
+    hello = m.Hello(2, probe.host)
+    replies = probe.replies_to(probe.frame(hello, 0), after="HELLO in session 0")
+    _expect_only_gone(replies, "no WELCOME in session 0")
+    probe.send(m.Bye())
+    probe.receive(REPLY_WITHIN_S)
+    for message in (hello, m.Beat(0x0707), m.Express(9, 0.5, 0.5)):
+        probe.send(message, session=0)
+        received = probe.receive(REPLY_WITHIN_S)
+        _expect_only_gone(received, f"nothing but GONE to {message} in session 0")
 
 
 @SESSIONS.must
-def session_zero_changes_nothing(robot: Probe) -> None:
-    """HELLO in session 0, of another host too, does nothing: no emotion, no number is lost."""
-    robot.calm()
-    before = robot.beat("HELLO").valence
-    number = robot.express(0.8, 0.6)
-    robot.say(m.Hello(timing.VERSION, robot.host ^ 0x40404040), session=0)
+def session_zero_changes_nothing(probe: Probe) -> None:
+    """HELLO in session 0, also of another host, does not change the emotion or the numbers."""
+    probe.open_neutral_session()
+    before = probe.beat("HELLO").valence
+    number = probe.express(0.8, 0.6)
+    probe.send(m.Hello(timing.VERSION, probe.host ^ 0x40404040), session=0)
     after = "EXPRESS and HELLO of another host in session 0"
-    states = robot.live(SHOWN_WITHIN, lambda state: state.valence > before + FELT)
-    if states[-1].valence <= before + FELT:
-        raise UnmetError(f"valence on its way to 0.8 after {after}", f"{states[-1].valence}")
+    states = probe.expect_state(
+        lambda state: state.valence > before + MIN_VALENCE_RISE,
+        EMOTION_WITHIN_S,
+        f"valence on its way to 0.8 after {after}",
+        "valence",
+    )
     if states[-1].taken != number:
-        raise UnmetError(f"STATE(taken={number}) after {after}", f"taken={states[-1].taken}")
-    _taken(robot, robot.again(), number, number, after)
+        raise CheckFailed(f"STATE(taken={number}) after {after}", f"taken={states[-1].taken}")
+    _expect_taken(probe, probe.reopen_session(), number, number, after)
 
 
 @SESSIONS.must
-def highest_numbers_accepted(robot: Probe) -> None:
-    """Sessions up to 65535 and hosts up to 4294967295 are as good as any."""
-    robot.fresh()
-    session, host = robot.session, robot.host
-    for robot.session, robot.host in ((0xFFFF, 0xFFFFFFFF), (0x8000, 0x80000000), (1, 1)):
-        robot.greet()
-        robot.beat(f"HELLO in session {robot.session}, host {robot.host}")
-    robot.session, robot.host = session, host
+def highest_numbers_accepted(probe: Probe) -> None:
+    """Sessions up to 65535 and hosts up to 4294967295 are accepted."""
+    probe.open_session()
+    session, host = probe.session, probe.host
+    for probe.session, probe.host in ((0xFFFF, 0xFFFFFFFF), (0x8000, 0x80000000), (1, 1)):
+        probe.hello()
+        probe.beat(f"HELLO in session {probe.session}, host {probe.host}")
+    probe.session, probe.host = session, host
 
 
 @SESSIONS.must
-def newest_session_wins(robot: Probe) -> None:
+def newest_session_wins(probe: Probe) -> None:
     """HELLO with another session opens that one; the one before is gone."""
-    robot.fresh()
-    before = robot.session
-    robot.again()
-    robot.beat("a second session")
-    robot.say(m.Beat(7), session=before)
-    see_gone(robot, before, "BEAT in the session before")
-    robot.beat("that")
+    probe.open_session()
+    before = probe.session
+    probe.reopen_session()
+    probe.beat("a second session")
+    probe.send(m.Beat(7), session=before)
+    expect_gone(probe, before, "BEAT in the session before")
+    probe.beat("that")
 
 
 @SESSIONS.must
-def many_greetings_survived(robot: Probe) -> None:
+def many_hellos_survived(probe: Probe) -> None:
     """After 40 sessions that began within 200 ms the last one is open."""
-    robot.fresh()
-    for _ in range(GREETINGS):
-        robot.next_session()
-        robot.say(m.Hello(timing.VERSION, robot.host))
-        robot.hear(GREETING_EVERY)
-    robot.hear(AT_ONCE)
-    robot.beat(f"{GREETINGS} HELLOs")
+    probe.open_session()
+    for _ in range(HELLOS):
+        probe.next_session()
+        probe.send(m.Hello(timing.VERSION, probe.host))
+        probe.receive(HELLO_EVERY_S)
+    probe.receive(REPLY_WITHIN_S)
+    probe.beat(f"{HELLOS} HELLOs")
 
 
 @SESSIONS.must
-def another_host_begins_anew(robot: Probe) -> None:
-    """For another host than before, the number of the last command is forgotten."""
-    robot.fresh()
+def another_host_starts_over(probe: Probe) -> None:
+    """When another host says HELLO, the number of the last command is forgotten."""
+    probe.open_session()
     for _ in range(3):
-        robot.express(0.0, 0.0)
-    welcome = robot.fresh()
-    _taken(robot, welcome, 0, 0, "HELLO of another host")
-    robot.express(0.0, 0.0)
-    taken = robot.beat("EXPRESS 1 of another host").taken
-    if taken != 1:
-        raise UnmetError("STATE(taken=1) after EXPRESS 1 of another host", f"taken={taken}")
+        probe.express(0.0, 0.0)
+    welcome = probe.open_session()
+    _expect_taken(probe, welcome, 0, 0, "HELLO of another host")
+    probe.express(0.0, 0.0)
+    probe.expect_taken(1, "EXPRESS 1 of another host")
 
 
 @SESSIONS.must
-def another_host_in_the_same_session(robot: Probe) -> None:
-    """Another host may have chosen the same session: it begins anew all the same."""
-    robot.fresh()
-    robot.express(0.0, 0.0)
-    robot.next_host()
-    welcome = robot.greet()
-    _taken(robot, welcome, 0, 0, "HELLO of another host in the same session")
+def another_host_in_the_same_session(probe: Probe) -> None:
+    """Another host may have chosen the same session number: it starts over all the same."""
+    probe.open_session()
+    probe.express(0.0, 0.0)
+    probe.next_host()
+    _expect_taken(probe, probe.hello(), 0, 0, "HELLO of another host in the same session")
 
 
 @SESSIONS.must
-def same_host_continues(robot: Probe) -> None:
-    """A new session of the same host keeps what was commanded; WELCOME says its number."""
-    robot.fresh()
-    robot.express(0.0, 0.0)
-    number = robot.express(0.3, 0.3)
-    welcome = robot.again()
-    _taken(robot, welcome, number, number, "another session of the same host")
+def same_host_continues(probe: Probe) -> None:
+    """A new session of the same host keeps the last command; WELCOME says its number."""
+    probe.open_session()
+    probe.express(0.0, 0.0)
+    number = probe.express(0.3, 0.3)
+    welcome = probe.reopen_session()
+    _expect_taken(probe, welcome, number, number, "another session of the same host")
 
 
 @SESSIONS.must
-def version_agreed(robot: Probe) -> str:
+def version_agreed(probe: Probe) -> str:
     """WELCOME names the highest version that both speak: never above the one offered."""
-    most = robot.fresh(offer=255).version
-    for offer in (1, 2, most):
-        version = robot.fresh(offer).version
-        if version != min(offer, most):
-            raise UnmetError(
-                f"WELCOME(version={min(offer, most)}) after HELLO (version {offer}), "
-                f"as it answers HELLO (version 255) by {most}",
+    highest = probe.open_session(offer=255).version
+    for offer in (1, 2, highest):
+        version = probe.open_session(offer).version
+        if version != min(offer, highest):
+            raise CheckFailed(
+                f"WELCOME(version={min(offer, highest)}) after HELLO (version {offer}), "
+                f"as it answers HELLO (version 255) by {highest}",
                 f"version={version}",
             )
-        robot.beat(f"HELLO (version {offer})")
-        again = robot.greet(offer=1).version
-        if again != 1:
-            raise UnmetError("WELCOME(version=1) when HELLO is repeated with it", f"{again}")
-    return f"it speaks version {most}"
+        probe.beat(f"HELLO (version {offer})")
+        version = probe.hello(offer=1).version
+        if version != 1:
+            raise CheckFailed("WELCOME(version=1) when HELLO is repeated with it", f"{version}")
+    return f"it speaks version {highest}"
 
 
 @SESSIONS.must
-def version_1_spoken(robot: Probe) -> None:
+def version_1_spoken(probe: Probe) -> None:
     """In a session of version 1 the robot sends nothing that later versions added."""
-    robot.fresh(offer=1)
-    number = robot.next_number()
-    robot.command(m.Express(number, 0.0, 0.0))
-    for state in robot.live(0.2):
-        later = state.flags & ~(CHARGING | STILL)
+    probe.open_session(offer=1)
+    number = probe.next_number()
+    probe.command(m.Express(number, 0.0, 0.0))
+    for state in probe.keep_alive(0.2):
+        later = state.flags & ~(m.CHARGING | m.STILL)
         if later:
-            raise UnmetError("STATE with flags 0 and 1 alone in version 1", f"flags={state.flags}")
+            raise CheckFailed("STATE with flags 0 and 1 alone in version 1", f"flags={state.flags}")
 
 
-def _taken(robot: Probe, welcome: m.Welcome, in_force: int, last: int, after: str) -> None:
-    """See what a robot says that it has taken."""
-    state = robot.beat(after)
+def _expect_taken(probe: Probe, welcome: m.Welcome, in_force: int, last: int, after: str) -> None:
+    """Check the last command in WELCOME and in STATE."""
+    state = probe.beat(after)
     if (welcome.taken, state.taken) != (in_force, last):
-        raise UnmetError(
+        raise CheckFailed(
             f"WELCOME(taken={in_force}) and STATE(taken={last}) after {after}",
             f"WELCOME(taken={welcome.taken}) and STATE(taken={state.taken})",
         )
 
 
-def _only_gone(came: list[Heard], expected: str) -> None:
-    others = [heard for heard in came if not isinstance(heard.message, m.Gone | m.State)]
-    others += [heard for heard in came if isinstance(heard.message, m.State) and not heard.session]
+def _expect_only_gone(received: list[ReceivedFrame], expected: str) -> None:
+    others = [one for one in received if not isinstance(one.message, m.Gone | m.State)]
+    others += [one for one in received if isinstance(one.message, m.State) and not one.session]
     if others:
-        raise UnmetError(expected, told(others))
+        raise CheckFailed(expected, describe_frames(others))

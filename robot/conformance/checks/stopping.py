@@ -1,153 +1,153 @@
-"""Checks of section 6: STOP, and what ends it."""
+"""Checks of section 6: STOP ends everything, and the next command ends the stop."""
 
 from collections.abc import Sequence
 
-from robot.conformance.check import Chapter
-from robot.conformance.probe import ACTS_WITHIN, SHOWN_WITHIN, Probe
-from robot.conformance.verdicts import NotApplicableError, UnmetError
+from robot.conformance.check import CheckGroup
+from robot.conformance.errors import CheckFailed, NotApplicableError
+from robot.conformance.probe import (
+    EFFECT_WITHIN_S,
+    EMOTION_CHANGE,
+    EMOTION_WITHIN_S,
+    Probe,
+    is_neutral,
+)
 from robot.protocol import messages as m
 
-STOPPING = Chapter("Stop", 6)
+STOPPING = CheckGroup("Stop", 6)
 
-RISE = 0.05
-"""A change of the emotion shown that is no chance."""
+REST_TOLERANCE_RAD = 0.03
+"""Largest apparent movement of a joint at rest, by the noise of its sensor [rad]."""
 
-STILL_TOLERANCE = 0.03
-"""How far a joint that holds still may seem to move, by the noise of its sensor [rad]."""
+MIN_REST_S = 2.0
+"""How long a stopped robot must rest [s]: long enough to notice a slow sway."""
 
-STILL_FOR = 2.0
-"""How long a stopped robot must be seen to rest [s]: so long that a slow sway is seen too."""
-
-LOOK_FOR = 0.2
-"""It is looked at in stretches of this length [s]."""
+REST_STEP_S = 0.2
+"""Time between two tests whether it rests [s]."""
 
 
 @STOPPING.must
-def stop_stops(robot: Probe) -> None:
+def stop_stops(probe: Probe) -> None:
     """After STOP, STATE says within 250 ms that it is stopped and plays no motion and no sound."""
-    welcome = robot.fresh()
-    robot.express(0.5, 0.5)
+    welcome = probe.open_session()
+    probe.express(0.5, 0.5)
     for item, count in ((m.ITEM_MOTION, welcome.motions), (m.ITEM_SOUND, welcome.sounds)):
         if count:
-            robot.command(m.Play(robot.next_number(), item, count - 1))
-    robot.live(0.1)
-    robot.command(m.Stop(robot.next_number()))
-
-    def stopped(state: m.State) -> bool:
-        nothing = state.motion == state.sound == m.NOTHING
-        return bool(state.flags & m.STILL) and nothing
-
-    last = robot.live(ACTS_WITHIN, stopped)[-1]
-    if not stopped(last):
-        raise UnmetError(
-            f"STATE with flag 1, motion=255, sound=255 within {1000 * ACTS_WITHIN:.0f} ms "
-            "after STOP",
-            f"flags={last.flags}, motion={last.motion}, sound={last.sound}",
-        )
+            probe.command(m.Play(probe.next_number(), item, count - 1))
+    probe.keep_alive(0.1)
+    probe.command(m.Stop(probe.next_number()))
+    probe.expect_state(
+        lambda state: bool(state.flags & m.STILL) and state.motion == state.sound == m.NOTHING,
+        EFFECT_WITHIN_S,
+        "STATE with flag 1, motion=255, sound=255 after STOP",
+        "flags", "motion", "sound",
+    )  # fmt: skip
 
 
 @STOPPING.must
-def stop_holds_the_pose(robot: Probe) -> None:
+def stop_holds_the_pose(probe: Probe) -> None:
     """After STOP the emotion shown goes to neutral, and the joints come to rest, within 5 s."""
-    robot.fresh()
-    robot.express(0.8, 0.6)
-    robot.live(0.5)
-    robot.command(m.Stop(robot.next_number()))
-    robot.pose = _pose_at_rest(robot)
+    probe.open_session()
+    probe.express(0.8, 0.6)
+    probe.keep_alive(0.5)
+    probe.command(m.Stop(probe.next_number()))
+    probe.stop_pose = _wait_for_rest(probe)
 
 
 @STOPPING.must
-def stop_takes_the_same_pose(robot: Probe) -> None:
-    """The joints go to the same pose after every STOP, whatever the robot felt before."""
-    known_pose(robot)
-    robot.fresh()
-    robot.express(-0.8, -0.4)
-    robot.live(0.5)
-    robot.command(m.Stop(robot.next_number()))
-    see_pose(robot, "a second STOP", within=SHOWN_WITHIN)
+def stop_takes_the_same_pose(probe: Probe) -> None:
+    """The joints take the same pose after every STOP, whatever the emotion was before."""
+    known_stop_pose(probe)
+    probe.open_session()
+    probe.express(-0.8, -0.4)
+    probe.keep_alive(0.5)
+    probe.command(m.Stop(probe.next_number()))
+    expect_stop_pose(probe, "a second STOP", within=EMOTION_WITHIN_S)
 
 
 @STOPPING.must
-def express_after_stop(robot: Probe) -> None:
-    """An EXPRESS after STOP ends the stop: the flag is clear, and the emotion moves."""
-    robot.fresh()
-    robot.command(m.Stop(robot.next_number()))
-    before = robot.live(0.1)[-1].valence
+def express_after_stop(probe: Probe) -> None:
+    """An EXPRESS after STOP ends the stop: the flag is clear, and the emotion changes."""
+    probe.open_session()
+    probe.command(m.Stop(probe.next_number()))
+    before = probe.keep_alive(0.1)[-1].valence
     target = -0.8 if before > 0 else 0.8
-    robot.express(target, 0.0)
-    states = robot.live(1.0, lambda state: abs(state.valence - before) > RISE)
-    if states[-1].flags & m.STILL or (states[-1].valence - before) * target <= 0:
-        raise UnmetError(
+    probe.express(target, 0.0)
+    last = probe.keep_alive(1.0, lambda state: abs(state.valence - before) > EMOTION_CHANGE)[-1]
+    if last.flags & m.STILL or (last.valence - before) * target <= 0:
+        raise CheckFailed(
             f"flag 1 clear, and valence going from {before} to {target}, after STOP and EXPRESS",
-            f"flags={states[-1].flags}, valence={states[-1].valence}",
+            f"flags={last.flags}, valence={last.valence}",
         )
 
 
 @STOPPING.must
-def play_after_stop(robot: Probe) -> None:
+def play_after_stop(probe: Probe) -> None:
     """A PLAY after STOP ends the stop."""
-    welcome = robot.fresh()
+    welcome = probe.open_session()
     if not welcome.motions:
         raise NotApplicableError("it has no motions")
-    robot.command(m.Stop(robot.next_number()))
-    robot.live(0.1)
-    robot.command(m.Play(robot.next_number(), m.ITEM_MOTION, welcome.motions - 1))
-    flags = robot.live(ACTS_WITHIN, lambda state: not state.flags & m.STILL)[-1].flags
-    if flags & m.STILL:
-        raise UnmetError("flag 1 clear after STOP and PLAY", f"flags={flags}")
+    probe.command(m.Stop(probe.next_number()))
+    probe.keep_alive(0.1)
+    probe.command(m.Play(probe.next_number(), m.ITEM_MOTION, welcome.motions - 1))
+    probe.expect_state(
+        lambda state: not state.flags & m.STILL,
+        EFFECT_WITHIN_S,
+        "flag 1 clear after STOP and PLAY",
+        "flags",
+    )
 
 
-def _pose_at_rest(robot: Probe) -> tuple[float, ...]:
-    """Wait until a stopped robot rests, and return its joints [rad].
-
-    Raises UnmetError if it does not begin to rest within 5 s.
-    """
-    looks: list[list[m.State]] = []
-    end = robot.now + SHOWN_WITHIN + STILL_FOR
-    while True:
-        looks.append(robot.live(LOOK_FOR))
-        last = looks[-1][-1]
-        states = [state for look in looks[-round(STILL_FOR / LOOK_FOR) :] for state in look]
-        way = moved(states)
-        neutral = max(abs(last.valence), abs(last.arousal)) < RISE
-        if len(looks) * LOOK_FOR >= STILL_FOR and way <= STILL_TOLERANCE and neutral:
-            return tuple(sum(angles) / len(states) for angles in _by_joint(states))
-        if robot.now > end:
-            raise UnmetError(
-                f"joints at rest and emotion (0, 0) within {SHOWN_WITHIN:.0f} s after STOP",
-                f"a joint that moves by {way:.3f} rad in {STILL_FOR:.0f} s, "
-                f"emotion ({last.valence}, {last.arousal})",
-            )
+def largest_movement(states: Sequence[m.State]) -> float:
+    """Return the range of the angle of the joint that moved most [rad]."""
+    return max(max(angles) - min(angles) for angles in _angles_by_joint(states))
 
 
-def moved(states: Sequence[m.State]) -> float:
-    """Return how far the joint that moved most has moved [rad]."""
-    return max(max(angles) - min(angles) for angles in _by_joint(states))
+def known_stop_pose(probe: Probe) -> tuple[float, ...]:
+    """Return the joints after STOP [rad]; the first call may stop the robot to measure them."""
+    if probe.stop_pose is None:
+        stop_holds_the_pose(probe)
+    assert probe.stop_pose is not None
+    return probe.stop_pose
 
 
-def known_pose(robot: Probe) -> tuple[float, ...]:
-    """Return the joints after STOP [rad]; the first call may stop the robot to see them."""
-    if robot.pose is None:
-        stop_holds_the_pose(robot)
-    assert robot.pose is not None
-    return robot.pose
+def expect_stop_pose(probe: Probe, after: str, within: float) -> None:
+    """Expect the joints where they are after STOP, within a time [s]."""
+    pose = known_stop_pose(probe)
 
+    def wrong_joints(state: m.State) -> list[int]:
+        distances = [abs(now - then) for then, now in zip(pose, state.joints, strict=True)]
+        return [index for index, way in enumerate(distances) if way > 2 * REST_TOLERANCE_RAD]
 
-def see_pose(robot: Probe, after: str, within: float) -> None:
-    """See that the joints are where they are after STOP, within a time [s]."""
-    pose = known_pose(robot)
-
-    def off(state: m.State) -> list[int]:
-        way = [abs(now - then) for then, now in zip(pose, state.joints, strict=True)]
-        return [index for index, angle in enumerate(way) if angle > 2 * STILL_TOLERANCE]
-
-    last = robot.live(within, lambda state: not off(state))[-1]
-    for index in off(last):
-        raise UnmetError(
+    last = probe.keep_alive(within, lambda state: not wrong_joints(state))[-1]
+    for index in wrong_joints(last):
+        raise CheckFailed(
             f"joint {index} at {pose[index]:.3f} rad after {after}, as after the first STOP",
             f"{last.joints[index]:.3f} rad",
         )
 
 
-def _by_joint(states: Sequence[m.State]) -> list[tuple[float, ...]]:
+def _wait_for_rest(probe: Probe) -> tuple[float, ...]:
+    """Wait until a stopped robot rests, and return its joints [rad].
+
+    Raises CheckFailed if it does not come to rest within 5 s.
+    """
+    steps: list[list[m.State]] = []
+    end = probe.now + EMOTION_WITHIN_S + MIN_REST_S
+    while True:
+        steps.append(probe.keep_alive(REST_STEP_S))
+        last = steps[-1][-1]
+        states = [state for step in steps[-round(MIN_REST_S / REST_STEP_S) :] for state in step]
+        movement = largest_movement(states)
+        long_enough = len(steps) * REST_STEP_S >= MIN_REST_S
+        if long_enough and movement <= REST_TOLERANCE_RAD and is_neutral(last):
+            return tuple(sum(angles) / len(states) for angles in _angles_by_joint(states))
+        if probe.now > end:
+            raise CheckFailed(
+                f"joints at rest and emotion (0, 0) within {EMOTION_WITHIN_S:.0f} s after STOP",
+                f"a joint that moves by {movement:.3f} rad in {MIN_REST_S:.0f} s, "
+                f"emotion ({last.valence}, {last.arousal})",
+            )
+
+
+def _angles_by_joint(states: Sequence[m.State]) -> list[tuple[float, ...]]:
     return list(zip(*(state.joints for state in states), strict=True))

@@ -11,7 +11,7 @@ from robot import SimulatedPort, Simulator
 from robot.conformance import all_checks
 from robot.simulators import SIMULATORS
 
-FAST = ("wrong bit", "frames in one", "greeting answered", "repeat acknowledged", "beat answered")
+FAST = ("wrong bit", "frames in one", "hello answered", "repeat acknowledged", "beat answered")
 """Checks that take little real time, by names."""
 
 
@@ -53,14 +53,14 @@ class Forgetful(Simulator):
         return b"".join(b"\0" + one + b"\0" for one in frames if one and one[1:2] != b"\x90")
 
 
-def test_a_robot_that_fails_is_told_what_was_expected_and_what_came(conform, monkeypatch):
+def test_a_robot_that_fails_is_reported_with_what_was_expected_and_received(conform, monkeypatch):
     monkeypatch.setitem(SIMULATORS, "cubeling", Forgetful)
     code, out, _ = conform("sim:cubeling", *only("command acknowledged", "frames in one"))
     assert code == 1
     assert "FAILED  command acknowledged" in out
     assert "required  EXPRESS, PLAY and STOP are each answered by ACK" in out
     assert "expected  ACK(number=1, result=0) in session" in out
-    assert "came      STATE(beat=0, taken=1" in out
+    assert "received  STATE(beat=0, taken=1" in out
     assert "1 ok, 1 failed" in out
     assert "It does not conform." in out
 
@@ -87,7 +87,7 @@ def test_a_pipe_is_not_waited_for(conform, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     code, out, err = conform("sim:cubeling", "--json", str(tmp_path / "pipe"))
     assert (code, out) == (2, "")
-    assert "it is a pipe, no file" in err
+    assert "it is a pipe, not a file" in err
 
 
 def test_the_list_names_every_check_and_what_it_requires(conform):

@@ -3,9 +3,17 @@
 import pytest
 import serial
 
-from robot.conformance import PortLine, SimulatedLine, all_checks, chosen, examine, heard, probe
+from robot.conformance import (
+    PortChannel,
+    SimulatedChannel,
+    all_checks,
+    probe,
+    received,
+    run_checks,
+    select_checks,
+)
 from robot.conformance.probe import Probe
-from robot.conformance.suite import LONGEST
+from robot.conformance.suite import MAX_DURATION_S
 from robot.errors import RobotError
 from robot.protocol import messages as m
 from robot.protocol import timing
@@ -26,10 +34,10 @@ class Silent(Mutant):
 
 
 def test_a_robot_that_says_nothing_is_given_up_after_two_seconds():
-    line = SimulatedLine(Silent())
+    line = SimulatedChannel(Silent())
     begin = line.now()
-    with pytest.raises(RobotError, match=r"no robot of this protocol answers.*nothing came"):
-        examine(line, all_checks(), 1)
+    with pytest.raises(RobotError, match=r"no robot of this protocol answers.*nothing received"):
+        run_checks(line, all_checks(), 1)
     assert line.now() - begin < timing.ANSWER_WITHIN + 0.5
 
 
@@ -39,8 +47,8 @@ class Babbler(Silent):
 
 
 def test_a_robot_that_only_babbles_is_given_up_too():
-    with pytest.raises(RobotError, match=r"bytes came, but no WELCOME"):
-        examine(SimulatedLine(Babbler()), all_checks(), 1)
+    with pytest.raises(RobotError, match=r"bytes received, but no WELCOME"):
+        run_checks(SimulatedChannel(Babbler()), all_checks(), 1)
 
 
 class BabblingRobot(Mutant):
@@ -50,15 +58,15 @@ class BabblingRobot(Mutant):
 
 
 def test_a_robot_that_babbles_between_its_frames_fails_in_bounded_time():
-    line = SimulatedLine(BabblingRobot())
+    line = SimulatedChannel(BabblingRobot())
     begin = line.now()
-    report = examine(line, all_checks(), 1)
+    report = run_checks(line, all_checks(), 1)
     assert not report.conforms
     assert {one.check.name for one in report.results if one.verdict == "failed"} >= {
         "sends valid frames",
         "silent without session",
     }
-    assert line.now() - begin < LONGEST + 15
+    assert line.now() - begin < MAX_DURATION_S + 15
 
 
 class StatesWithoutEnd(Mutant):
@@ -70,11 +78,11 @@ class StatesWithoutEnd(Mutant):
 
 
 def test_a_robot_that_never_stops_sending_states_fills_no_memory(monkeypatch):
-    monkeypatch.setattr(heard, "STATES_KEPT", 50)
-    monkeypatch.setattr(probe, "QUEUE_MAX", 50)
-    robot = Probe(SimulatedLine(StatesWithoutEnd()), 1)
-    robot.fresh()
-    assert len(robot.hear(0.2)) == len(robot.log.states) == 50
+    monkeypatch.setattr(received, "MAX_STATES", 50)
+    monkeypatch.setattr(probe, "MAX_QUEUED_FRAMES", 50)
+    robot = Probe(SimulatedChannel(StatesWithoutEnd()), 1)
+    robot.open_session()
+    assert len(robot.receive(0.2)) == len(robot.log.states) == 50
 
 
 class Hangs(Mutant):
@@ -92,27 +100,27 @@ class Hangs(Mutant):
 
 
 def test_a_robot_that_hangs_in_the_middle_fails_and_the_rest_is_left_out():
-    line = SimulatedLine(Hangs())
+    line = SimulatedChannel(Hangs())
     begin = line.now()
-    report = examine(line, all_checks(), 1)
+    report = run_checks(line, all_checks(), 1)
     assert len(report.results) == len(all_checks())
     assert verdicts(report) == {"ok", "failed", "skipped"}
-    assert report.cut_short == "it no longer answers a greeting"
+    assert report.cut_short == "it no longer answers HELLO"
     assert not report.conforms
     assert line.now() - begin < 10
 
 
 def test_when_time_is_up_the_rest_is_left_out_and_the_robot_does_not_conform():
-    report = examine(SimulatedLine(Simulator()), all_checks(), 1, longest=1.0)
+    report = run_checks(SimulatedChannel(Simulator()), all_checks(), 1, max_duration=1.0)
     assert "have taken 1 s" in report.cut_short
     assert not report.conforms
 
 
 def test_a_robot_that_takes_five_seconds_for_an_emotion_has_time_enough(monkeypatch):
     monkeypatch.setattr(body, "FEELING_SPEED", 0.31)
-    report = examine(SimulatedLine(Simulator()), all_checks(), 1)
+    report = run_checks(SimulatedChannel(Simulator()), all_checks(), 1)
     assert report.conforms
-    assert 40 < report.seconds < LONGEST
+    assert 40 < report.seconds < MAX_DURATION_S
 
 
 class Listener(Simulator):
@@ -136,7 +144,7 @@ def test_whatever_happens_the_robot_is_left_neutral_and_without_a_session():
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        examine(SimulatedLine(robot), chosen(["stop holds"]), 1, interrupt)
+        run_checks(SimulatedChannel(robot), select_checks(["stop holds"]), 1, interrupt)
     assert isinstance(robot.told[-1], m.Bye)
     assert robot.link.session == 0
     assert robot.body.target.valence == robot.body.target.arousal == 0
@@ -180,13 +188,13 @@ def ticking():
 
 
 def test_a_port_that_is_pulled_out_ends_the_suite_in_one_line():
-    with pytest.raises(RobotError, match="the port went away in the middle of the checks"):
-        examine(PortLine(DeadPort(reads=20), ticking()), all_checks(), 1)
+    with pytest.raises(RobotError, match="the port was lost during the checks"):
+        run_checks(PortChannel(DeadPort(reads=20), ticking()), all_checks(), 1)
 
 
 def test_a_robot_that_does_not_read_its_line_is_given_up():
     with pytest.raises(RobotError, match="no robot of this protocol answers"):
-        examine(PortLine(DeadPort(reads=10**6, full=True), ticking()), all_checks(), 1)
+        run_checks(PortChannel(DeadPort(reads=10**6, full=True), ticking()), all_checks(), 1)
 
 
 class Version1(Mutant):
@@ -199,7 +207,7 @@ class Version1(Mutant):
 
 
 def test_a_robot_of_version_1_conforms():
-    report = examine(SimulatedLine(Version1()), all_checks(), 1)
+    report = run_checks(SimulatedChannel(Version1()), all_checks(), 1)
     assert report.conforms
     assert report.welcome.version == 1
     skipped = [one.check.name for one in report.results if one.verdict == "skipped"]
@@ -213,5 +221,5 @@ def test_a_robot_of_version_1_conforms():
 
 
 def test_our_simulated_robot_conforms():
-    report = examine(SimulatedLine(Simulator(7)), all_checks(), 2**32 - 1)
+    report = run_checks(SimulatedChannel(Simulator(7)), all_checks(), 2**32 - 1)
     assert verdicts(report) == {"ok"}

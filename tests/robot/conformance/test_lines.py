@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from robot.conformance import all_checks, examine
-from robot.conformance.suite import LONGEST
+from robot.conformance import all_checks, run_checks
+from robot.conformance.suite import MAX_DURATION_S
 from robot.protocol.timing import BAUD
 from robot.simulators.cubeling.simulator import Simulator
 
@@ -66,11 +66,11 @@ class SlowLine:
     ids=["plain", "late adapter", "robot looks every 20 ms", "both"],
 )
 def test_a_good_robot_conforms_over_a_real_serial_line(late: float, looks_every: float):
-    report = examine(SlowLine(late, looks_every), all_checks(), 1)
-    failed = [(one.check.name, one.came) for one in report.results if one.verdict == "failed"]
+    report = run_checks(SlowLine(late, looks_every), all_checks(), 1)
+    failed = [(one.check.name, one.received) for one in report.results if one.verdict == "failed"]
     assert report.conforms, failed
     assert {name for name, _ in failed} <= {"round trip short"}
-    assert report.seconds < LONGEST
+    assert report.seconds < MAX_DURATION_S
 
 
 class BusyComputer(SlowLine):
@@ -84,6 +84,6 @@ class BusyComputer(SlowLine):
 
 
 def test_what_fails_while_the_computer_is_held_up_is_tried_again():
-    report = examine(BusyComputer(0.0, 0.001), all_checks(), 1)
+    report = run_checks(BusyComputer(0.0, 0.001), all_checks(), 1)
     assert report.conforms
-    assert any("held up for 4" in one.remark for one in report.results)
+    assert any("busy for 4" in one.remark for one in report.results)

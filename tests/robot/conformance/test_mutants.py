@@ -8,14 +8,14 @@ import tests.robot.conformance.mutants.frames
 import tests.robot.conformance.mutants.heartbeat
 import tests.robot.conformance.mutants.playing
 import tests.robot.conformance.mutants.sessions  # noqa: F401 # these enter themselves
-from robot.conformance import SimulatedLine, all_checks, chosen, examine
+from robot.conformance import SimulatedChannel, all_checks, run_checks, select_checks
 from tests.robot.conformance.mutants.base import MUTANTS, Mutant
 
 PAIRS = [(check, mutant) for check, mutants in MUTANTS.items() for mutant in mutants]
 
 
 def failures(robot: Mutant, checks) -> list[str]:
-    report = examine(SimulatedLine(robot), checks, host=77)
+    report = run_checks(SimulatedChannel(robot), checks, host=77)
     return [one.check.name for one in report.results if one.verdict == "failed"]
 
 
@@ -35,4 +35,4 @@ def test_a_mutant_without_a_mutation_passes():
 
 
 def test_the_chosen_checks_are_those_whose_names_hold_the_word():
-    assert [check.name for check in chosen(["wrong-mark"])] == ["wrong mark dropped"]
+    assert [check.name for check in select_checks(["wrong-mark"])] == ["wrong mark dropped"]

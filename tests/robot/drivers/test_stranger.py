@@ -9,7 +9,7 @@ import struct
 import pytest
 
 from affect.emotion import Emotion
-from robot.conformance import SimulatedLine, all_checks, examine
+from robot.conformance import SimulatedChannel, all_checks, run_checks
 from robot.protocol.messages import ITEM_MOTION
 
 
@@ -210,8 +210,8 @@ def strange_world(world):
 
 
 def test_a_strangers_robot_conforms():
-    report = examine(SimulatedLine(StrangersRobot()), all_checks(), host=1)
-    failed = [(one.check.name, one.came) for one in report.results if one.verdict == "failed"]
+    report = run_checks(SimulatedChannel(StrangersRobot()), all_checks(), host=1)
+    failed = [(one.check.name, one.received) for one in report.results if one.verdict == "failed"]
     assert failed == []
     assert report.conforms
 

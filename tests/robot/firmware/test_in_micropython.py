@@ -18,7 +18,7 @@ import pytest
 import robot.firmware
 import robot.protocol
 from affect.emotion import Emotion
-from robot.conformance import SimulatedLine, all_checks, examine
+from robot.conformance import SimulatedChannel, all_checks, run_checks
 
 FOLDER = Path(robot.firmware.__file__).parent
 FILES = [FOLDER / "main.py", *sorted((FOLDER / "dino").glob("*.py"))]
@@ -162,7 +162,7 @@ def test_in_micropython_a_longer_session_needs_no_more_memory(tmp_path):
 
 
 def test_in_micropython_it_conforms(in_micropython):
-    report = examine(SimulatedLine(in_micropython), all_checks(), host=77)
+    report = run_checks(SimulatedChannel(in_micropython), all_checks(), host=77)
     assert [one.check.name for one in report.results if one.verdict != "ok"] == []
     assert report.conforms
 

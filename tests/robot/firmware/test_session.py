@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from affect.emotion import Emotion
-from robot.conformance import SimulatedLine, all_checks, examine
+from robot.conformance import SimulatedChannel, all_checks, run_checks
 from robot.firmware.dino import servos
 from robot.protocol import messages as m
 from robot.protocol.schema import pack, unpack
@@ -40,7 +40,7 @@ def told(dino: Dino) -> list[int]:
 
 
 def test_it_conforms():
-    report = examine(SimulatedLine(Dino()), all_checks(), host=77)
+    report = run_checks(SimulatedChannel(Dino()), all_checks(), host=77)
     assert [one.check.name for one in report.results if one.verdict != "ok"] == []
     assert report.conforms
 

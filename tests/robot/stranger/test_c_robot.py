@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 import robot
-from robot.conformance import PortLine, SimulatedLine, all_checks, chosen, examine
+from robot.conformance import PortChannel, SimulatedChannel, all_checks, run_checks, select_checks
 from robot.link.transport import opener
 from tools.protocol_reference import HEADER_FILE
 
@@ -91,7 +91,7 @@ class Stepped:
 def failures(program: Path) -> list[str]:
     """Return the names of the checks that the robot fails, in virtual time."""
     with Stepped(program) as stepped:
-        report = examine(SimulatedLine(stepped), all_checks(), host=1)
+        report = run_checks(SimulatedChannel(stepped), all_checks(), host=1)
     assert stepped.process.returncode == 0  # or the sanitizers have found something
     assert not report.cut_short
     return [one.check.name for one in report.results if one.verdict != "ok"]
@@ -141,7 +141,7 @@ QUICK = (
     "frames in one go",
     "longest frame received",
     "flood survived",
-    "greeting answered",
+    "hello answered",
     "catalogue complete",
     "command acknowledged",
     "beat answered",
@@ -154,11 +154,11 @@ ATTEMPTS = 3
 
 
 def test_it_conforms_on_a_real_line(url):
-    checks = chosen(QUICK)
+    checks = select_checks(QUICK)
     port = opener(url)()
     try:
         for attempt in range(ATTEMPTS):
-            report = examine(PortLine(port, time.monotonic), checks, host=attempt + 1)
+            report = run_checks(PortChannel(port, time.monotonic), checks, host=attempt + 1)
             checks = [one.check for one in report.results if one.verdict != "ok"]
             if not checks:
                 break

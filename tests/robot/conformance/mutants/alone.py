@@ -39,7 +39,7 @@ class TakesTheHostOfSessionZero(Mutant):
             super().hear(number, session, body)
 
 
-@breaks("greeting repeated")
+@breaks("hello repeated")
 class CountsBeatsFromEveryHello(Greeter):
     begun = False
 
@@ -67,7 +67,7 @@ class KeepsTheFirstVersionOfASession(Greeter):
         super().hello(session, replace(hello, version=self.version))
 
 
-@breaks("gone not too often")
+@breaks("gone rate bounded")
 class SaysGoneEvery10Milliseconds(Mutant):
     said = 0.0
 
@@ -190,7 +190,7 @@ class MovesOnWhenAlone(Left):
         return replace(state, joints=(sway, *(0.0,) * 15))
 
 
-@breaks("stopped keeps still")
+@breaks("stopped robot stays still")
 class SwaysWhenStoppedAndAlone(Left):
     def alter(self, state: m.State) -> m.State:
         if not (self.left and state.flags & m.STILL):
@@ -198,7 +198,7 @@ class SwaysWhenStoppedAndAlone(Left):
         return replace(state, joints=(0.2, *state.joints[1:]))
 
 
-@breaks("stopped keeps still")
+@breaks("stopped robot stays still")
 class WakesUpForAnotherHost(Greeter):
     host = 0
 

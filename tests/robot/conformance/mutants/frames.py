@@ -40,7 +40,7 @@ class TakesOneFrameOfEachRead(Mutant):
         return super().frames(data)[:1]
 
 
-@breaks("wrong bit dropped", "failsafe not fed by noise")
+@breaks("wrong bit dropped", "failsafe not reset by noise")
 class IgnoresTheCheck(Mutant):
     def decode(self, frame: bytes) -> bytes | None:
         try:

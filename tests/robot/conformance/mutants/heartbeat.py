@@ -37,7 +37,7 @@ class RemembersTheLastBeat(Stating):
         return replace(state, beat=self.last)
 
 
-@breaks("state by itself")
+@breaks("state sent without beat")
 class SpeaksOnlyWhenAsked(Mutant):
     asked = False
 
@@ -51,19 +51,19 @@ class SpeaksOnlyWhenAsked(Mutant):
             super().say(session, message)
 
 
-@breaks("state possible")
+@breaks("state values valid")
 class ShowsAMoodThatItDoesNotHave(Stating):
     def alter(self, state: m.State) -> m.State:
         return replace(state, mood=9)
 
 
-@breaks("state possible")
+@breaks("state values valid")
 class HasAJointTooMany(Stating):
     def alter(self, state: m.State) -> m.State:
         return replace(state, joints=(*state.joints[:15], 0.5))
 
 
-@breaks("state possible")
+@breaks("state values valid")
 class HasFlagsOfItsOwn(Stating):
     def alter(self, state: m.State) -> m.State:
         return replace(state, flags=state.flags | 0x40)
@@ -82,7 +82,7 @@ class WaversOnItsWay(Stating):
         return replace(state, valence=0.0) if wavering else state
 
 
-@breaks("emotion takes time")
+@breaks("emotion rate bounded")
 class TellsWhatItWasTold(Stating):
     def alter(self, state: m.State) -> m.State:
         told = self.body.target
@@ -102,7 +102,7 @@ class JerksItsTail(Stating):
         return replace(state, joints=(*state.joints[:9], tail, *state.joints[10:]))
 
 
-@breaks("not too talkative")
+@breaks("state rate bounded")
 class SaysEverythingThreeTimes(Mutant):
     def say(self, session: int, message: Any) -> None:
         for _ in range(3):
@@ -236,7 +236,7 @@ class GoesToNeutralWhenGreeted(Mutant):
         super().hear(number, session, body)
 
 
-@breaks("failsafe not fed by noise")
+@breaks("failsafe not reset by noise")
 class CountsAnyByte(Mutant):
     def frames(self, data: bytes) -> list[bytes]:
         if self.session:
@@ -244,7 +244,7 @@ class CountsAnyByte(Mutant):
         return super().frames(data)
 
 
-@breaks("failsafe not fed by strangers")
+@breaks("failsafe not reset by other sessions")
 class CountsAnySession(Mutant):
     def hear(self, number: int, session: int, body: bytes) -> None:
         if self.session and number in MESSAGES:
@@ -252,7 +252,7 @@ class CountsAnySession(Mutant):
         super().hear(number, session, body)
 
 
-@breaks("failsafe not fed by what is skipped")
+@breaks("failsafe not reset by skipped bodies")
 class CountsAnyFrameOfItsSession(Mutant):
     def hear(self, number: int, session: int, body: bytes) -> None:
         if self.session and session == self.session:
@@ -274,7 +274,7 @@ class GoesToNeutralInEverySession(Greeter):
         self.body.express(Emotion(0.0, 0.0), m.NOTHING)
 
 
-@breaks("stopped keeps still")
+@breaks("stopped robot stays still")
 class WakesUpWhenAlone(Mutant):
     def prepare(self) -> None:
         neutral = self.body.neutral

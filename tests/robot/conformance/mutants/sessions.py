@@ -22,7 +22,7 @@ class Greeter(Mutant):
         self.tell(hello, session)
 
 
-@breaks("greeting answered")
+@breaks("hello answered")
 class GreetsLate(Mutant):
     def prepare(self) -> None:
         self.late: list[tuple[float, int, m.Welcome]] = []
@@ -39,14 +39,14 @@ class GreetsLate(Mutant):
             self.send(session, message)
 
 
-@breaks("greeting answered")
+@breaks("hello answered")
 class ForgetsToOpenTheSession(Greeter):
     def hello(self, session: int, hello: m.Hello) -> None:
         super().hello(session, hello)
         self.tell(m.Bye())
 
 
-@breaks("greeting repeated")
+@breaks("hello repeated")
 class BeginsAnewAtARepeatedHello(Greeter):
     def hello(self, session: int, hello: m.Hello) -> None:
         if session == self.session:
@@ -83,7 +83,7 @@ class ReadsSessionsSigned(Mutant):
             super().hear(number, session, body)
 
 
-@breaks("newest session wins", "foreign session told")
+@breaks("newest session wins", "other session reported")
 class DoesNotLookAtSessions(Mutant):
     def hear(self, number: int, session: int, body: bytes) -> None:
         if number != 1 and self.session:
@@ -91,7 +91,7 @@ class DoesNotLookAtSessions(Mutant):
         super().hear(number, session, body)
 
 
-@breaks("many greetings survived")
+@breaks("many hellos survived")
 class TiresOfGreetings(Greeter):
     greeted = 0
     begin = 0.0
@@ -104,7 +104,7 @@ class TiresOfGreetings(Greeter):
             super().hello(session, hello)
 
 
-@breaks("another host begins anew", "another host goes to neutral")
+@breaks("another host starts over", "another host goes to neutral")
 class TakesAllHostsForOne(Greeter):
     def hello(self, session: int, hello: m.Hello) -> None:
         super().hello(session, replace(hello, host=5))
@@ -129,20 +129,20 @@ class ForgetsInEverySession(Greeter):
         super().hello(session, replace(hello, host=self.host))
 
 
-@breaks("foreign session told")
+@breaks("other session reported")
 class NamesItsOwnSessionInGone(Mutant):
     def say(self, session: int, message: Any) -> None:
         super().say(self.session if isinstance(message, m.Gone) else session, message)
 
 
-@breaks("foreign session told", "session ends after silence")
+@breaks("other session reported", "session ends after silence")
 class NeverSaysGone(Mutant):
     def say(self, session: int, message: Any) -> None:
         if not isinstance(message, m.Gone):
             super().say(session, message)
 
 
-@breaks("foreign session told")
+@breaks("other session reported")
 class EndsAtAnyBye(Mutant):
     def hear(self, number: int, session: int, body: bytes) -> None:
         super().hear(number, session, body)
@@ -157,7 +157,7 @@ class SaysGoneOnlyInASession(Mutant):
             super().say(session, message)
 
 
-@breaks("gone not too often")
+@breaks("gone rate bounded")
 class SaysGoneToEverything(Mutant):
     def hear(self, number: int, session: int, body: bytes) -> None:
         if session != self.session and number != 1:
@@ -257,7 +257,7 @@ class HasAJointTheWrongWayRound(Mutant):
         super().say(session, message)
 
 
-@breaks("catalogue steady")
+@breaks("catalogue constant")
 class CountsItsGreetings(Mutant):
     greeted = 0
 
@@ -268,7 +268,7 @@ class CountsItsGreetings(Mutant):
         super().say(session, message)
 
 
-@breaks("catalogue steady")
+@breaks("catalogue constant")
 class NamesThingsAnewEachTime(Mutant):
     asked = 0
 

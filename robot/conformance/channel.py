@@ -1,23 +1,23 @@
-"""The line to the robot under test: a real port in real time, or a simulated robot in virtual."""
+"""The channel to the robot under test: a port in real time, or a simulation in virtual time."""
 
 from typing import Protocol
 
 import serial
 
-from robot.conformance.verdicts import UnmetError
+from robot.conformance.errors import CheckFailed
 from robot.contract.port import Clock, Port
 from robot.errors import RobotError
 from robot.simulators.base import Simulated
 
-READ_AT_ONCE = 4096
-"""Most bytes taken from the line in one go; a babbling robot gets no more of our time."""
+MAX_READ_BYTES = 4096
+"""Most bytes of one read, so that a robot that never pauses does not block the suite."""
 
-STEP = 0.001
-"""Virtual time passes in steps of this length [s]."""
+STEP_S = 0.001
+"""Step of the virtual time [s]."""
 
 
-class Line(Protocol):
-    """Bytes to and from a robot, and the time in which it lives."""
+class Channel(Protocol):
+    """Bytes to and from a robot, and its time."""
 
     def now(self) -> float:
         """Return the time [s]."""
@@ -28,17 +28,17 @@ class Line(Protocol):
     def read(self, until: float) -> bytes:
         """Return bytes as soon as there are any, or none at time `until` [s].
 
-        Time passes in every call, so that a robot that never pauses does not stop it.
+        Every call takes some time, so a robot that never pauses cannot stop the clock.
         """
 
 
-class PortLine:
+class PortChannel:
     """A port in real time.
 
     Parameters
     ----------
     port
-        An open port; whoever opened it closes it.
+        An open port; the caller closes it.
     clock
         The time [s].
     """
@@ -56,9 +56,11 @@ class PortLine:
         try:
             self._port.write(data)
         except serial.SerialTimeoutException:
-            raise UnmetError("a robot that reads its line", "it took no bytes for 200 ms") from None
+            raise CheckFailed(
+                "a robot that reads its input", "it took no bytes for 200 ms"
+            ) from None
         except OSError as error:
-            raise _gone(error) from error
+            raise _port_lost(error) from error
 
     def read(self, until: float) -> bytes:
         """Return bytes as soon as there are any, or none at time `until` [s]."""
@@ -66,22 +68,22 @@ class PortLine:
             while self._port.in_waiting or self._clock() < until:
                 data = self._port.read(1)
                 if data:
-                    waiting = min(self._port.in_waiting, READ_AT_ONCE)
+                    waiting = min(self._port.in_waiting, MAX_READ_BYTES)
                     return data + self._port.read(waiting) if waiting else data
             return b""
         except OSError as error:  # pySerial's own errors are OSErrors too
-            raise _gone(error) from error
+            raise _port_lost(error) from error
 
 
-class SimulatedLine:
+class SimulatedChannel:
     """A simulated robot in virtual time.
 
     Parameters
     ----------
     robot
-        The robot at the far end.
+        The simulated robot.
     start
-        The time at which it begins [s].
+        The initial time [s].
     """
 
     def __init__(self, robot: Simulated, start: float = 1000.0) -> None:
@@ -93,18 +95,18 @@ class SimulatedLine:
         return self._now
 
     def write(self, data: bytes) -> None:
-        """Hand the bytes to the robot."""
+        """Pass the bytes to the robot."""
         self._robot.receive(data, self._now)
 
     def read(self, until: float) -> bytes:
-        """Let time pass until the robot speaks, or until `until` [s]."""
+        """Advance the time until the robot sends bytes, or to `until` [s]."""
         while True:
-            self._now += STEP
+            self._now += STEP_S
             self._robot.advance(self._now)
             data = self._robot.bytes_to_send()
             if data or self._now >= until:
                 return data
 
 
-def _gone(error: OSError) -> RobotError:
-    return RobotError(f"the port went away in the middle of the checks ({error}); plug it in again")
+def _port_lost(error: OSError) -> RobotError:
+    return RobotError(f"the port was lost during the checks ({error}); plug it in again")

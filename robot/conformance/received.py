@@ -1,0 +1,161 @@
+"""The bytes from the robot under test: split into frames, parsed and logged."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields
+from typing import Any
+
+from robot.protocol import messages as m
+from robot.protocol.fields import MessageError
+from robot.protocol.schema import MESSAGES, spec_of, unpack
+from robot.protocol.wire import MAX_FRAME, FrameError, decode_frame
+
+MAX_STATES = 20_000
+"""Most STATEs in a log: over ten minutes of them."""
+
+MAX_EXAMPLES = 3
+"""Violations of each rule that are logged with their bytes; more are only counted."""
+
+MAX_SHOWN_BYTES = 40
+"""Most bytes of a frame in a report."""
+
+
+@dataclass(frozen=True)
+class ReceivedFrame:
+    """A frame from the robot, valid or not."""
+
+    timestamp: float
+    """Arrival of its last byte [s]."""
+
+    frame: bytes
+    """Its bytes between the edges."""
+
+    session: int = 0
+    """The session in its header."""
+
+    message: Any = None
+    """Its message; None if it is not valid."""
+
+    error: str = ""
+    """Why it is not valid."""
+
+    @property
+    def name(self) -> str:
+        """The message's name in PROTOCOL.md."""
+        if self.message is None:
+            return "an invalid frame"
+        return spec_of(type(self.message)).name
+
+    def __str__(self) -> str:
+        if self.message is None:
+            return f"[{format_bytes(self.frame)}], {self.error}"
+        words = [
+            f"{field.name}={getattr(self.message, field.name)}"
+            for field in fields(self.message)
+            if field.name not in ("joints", "firmware", "flags", "battery")
+        ]
+        content = f"{self.name}({', '.join(words)}) in session {self.session}"
+        return f"{content} [{format_bytes(self.frame)}]"
+
+
+class FrameSplitter:
+    """Splits a byte stream into frames; buffers at most one frame."""
+
+    def __init__(self) -> None:
+        self._buffer = bytearray()
+        self._edge_seen = False  # bytes before the first edge may be half a frame
+
+    def feed(self, data: bytes, now: float) -> Iterator[ReceivedFrame]:
+        """Take bytes received at time `now` [s]; yield the frames that they complete."""
+        *ended, rest = data.split(b"\0")
+        for piece in ended:
+            self._append(piece)
+            frame = bytes(self._buffer)
+            self._buffer.clear()
+            if frame and self._edge_seen:
+                yield parse_frame(frame, now)
+            self._edge_seen = True
+        self._append(rest)
+
+    def _append(self, piece: bytes) -> None:
+        self._buffer += piece[: MAX_FRAME + 1 - len(self._buffer)]
+
+
+def parse_frame(frame: bytes, now: float) -> ReceivedFrame:
+    """Return a frame with its message, or with the reason why it has none."""
+    try:
+        body = decode_frame(frame)
+        session, message = unpack(body, "robot")
+    except (FrameError, MessageError) as error:
+        return ReceivedFrame(now, frame, error=str(error))
+    if message is None:
+        spec = MESSAGES.get(body[0])
+        reason = f"{body[0]:02X} is no message" if spec is None else f"{spec.name} is the host's"
+        return ReceivedFrame(now, frame, session, error=reason)
+    spec = spec_of(type(message))
+    if len(body) != spec.size:  # no version up to ours has extended a robot's message
+        reason = f"{spec.name} has {spec.size} bytes, not {len(body)}"
+        return ReceivedFrame(now, frame, session, error=reason)
+    return ReceivedFrame(now, frame, session, message)
+
+
+class FrameLog:
+    """A record of everything that the robot sent, for the checks of all of it."""
+
+    def __init__(self) -> None:
+        self.bytes = 0
+        """Bytes received."""
+        self.frames = 0
+        """Valid frames received."""
+        self.states: list[tuple[float, m.State]] = []
+        """Timestamp [s] and content of the STATEs of our sessions."""
+        self.violations: dict[str, list[ReceivedFrame]] = {}
+        """The first frames that violated each rule: "frame" or "session"."""
+        self.violation_counts: dict[str, int] = {}
+        """How many violated it."""
+        self._session = 0
+        self._welcomed = False
+
+    def add(self, received: ReceivedFrame) -> None:
+        """Record a frame, and test it against the rules for all frames."""
+        if received.message is None:
+            # Before the first WELCOME it may be the text of a boot loader.
+            if self._welcomed:
+                self._add_violation("frame", received)
+            return
+        self.frames += 1
+        if isinstance(received.message, m.Welcome):
+            self._session, self._welcomed = received.session, True
+        elif self._welcomed and not isinstance(received.message, m.Gone):
+            if received.session != self._session:
+                self._add_violation("session", received)
+            elif isinstance(received.message, m.State) and len(self.states) < MAX_STATES:
+                self.states.append((received.timestamp, received.message))
+
+    def _add_violation(self, rule: str, received: ReceivedFrame) -> None:
+        self.violation_counts[rule] = self.violation_counts.get(rule, 0) + 1
+        examples = self.violations.setdefault(rule, [])
+        if len(examples) < MAX_EXAMPLES:
+            examples.append(received)
+
+
+def format_bytes(data: bytes) -> str:
+    """Return bytes in hexadecimal, shortened if there are many.
+
+    >>> format_bytes(bytes([0, 255]))
+    '00 ff'
+    """
+    more = f" … {len(data)} bytes" if len(data) > MAX_SHOWN_BYTES else ""
+    return data[:MAX_SHOWN_BYTES].hex(" ") + more
+
+
+def describe_frames(received: Iterable[ReceivedFrame]) -> str:
+    """Return a description of frames for a person: the last one in full, the others counted."""
+    frames = list(received)
+    if not frames:
+        return "nothing"
+    *others, last = frames
+    counts: dict[str, int] = {}
+    for frame in others:
+        counts[frame.name] = counts.get(frame.name, 0) + 1
+    before = ", ".join(f"{count} × {name}" for name, count in counts.items())
+    return f"{before}, then {last}" if before else str(last)
