@@ -8,28 +8,33 @@ endif
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := demo
-.PHONY: demo test campaign check bench bench-tracking recordings assets pictures cast clean
+.PHONY: demo test campaign campaign-tenth check bench bench-tracking recordings assets pictures cast clean
 
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
 
-# A file's tests stay in one process, for they share what takes long to make.
-test: .venv/ready-dev  ## the whole test suite, on all cores
+# The tests of a file run in one process, as they share fixtures that take long to make.
+test: .venv/ready-dev  ## run the whole test suite on all cores
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
-# Longer than a test suite may take, and of another kind: nothing here has an expected value.
-campaign: .venv/ready-dev  ## a million exchanges on the robot's wire, what its check lets pass, a day without growth
+# The campaigns run for longer than a test suite may take, over random faults in virtual time.
+campaign: .venv/ready-dev  ## a million exchanges with robots, what the checksum misses, a day without growth
 	$(BIN)/python -m tests.campaigns.wire --exchanges 1e6
 	$(BIN)/python -m tests.campaigns.crc
 	$(BIN)/python -m tests.campaigns.soak --hours 24
 
-check: .venv/ready-dev  ## formatting, lint, the floors of the rooms, and types
+campaign-tenth: .venv/ready-dev  ## a tenth of the campaign, for every change
+	$(BIN)/python -m tests.campaigns.wire --exchanges 1e5
+	$(BIN)/python -m tests.campaigns.crc --random 1.2e5 --trials 1e6
+	$(BIN)/python -m tests.campaigns.soak --hours 2.4
+
+check: .venv/ready-dev  ## check formatting, lint, the floors of the rooms, and types
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/lint-imports
 	$(BIN)/mypy
 
-bench: .venv/ready-dev  ## every figure that the documents name
+bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.line
 	$(BIN)/python -m tests.bench.accuracy
 	$(BIN)/python -m tests.bench.animation
@@ -46,21 +51,21 @@ bench: .venv/ready-dev  ## every figure that the documents name
 	$(BIN)/python -m tests.bench.camera
 	$(BIN)/python -m tests.bench.calibration --seeds 2
 
-bench-tracking: .venv/ready-dev  ## the cube's tracker and its rivals, on the same frames
+bench-tracking: .venv/ready-dev  ## compare the cube's tracker with others on the same frames
 	$(BIN)/python -m tests.bench.tracking --readme tracking/README.md
 
-recordings: .venv/ready-dev  ## draw the bundled recordings anew
+recordings: .venv/ready-dev  ## record the bundled sessions again
 	$(BIN)/python -m tools.recordings
 
-assets: .venv/ready-dev  ## author the bundled characters anew
+assets: .venv/ready-dev  ## make the bundled characters again
 	$(BIN)/python -m tools.authoring all
 
-pictures: .venv/ready-dev  ## draw the pictures of the documents anew
+pictures: .venv/ready-dev  ## draw the pictures of the documents again
 	$(BIN)/python -m tools.pictures
 	$(BIN)/python -m tools.wiring
 	$(BIN)/python -m tests.robot.conformance.picture
 
-cast: .venv/ready  ## draw the bundled characters from all sides, and their clips, to look at
+cast: .venv/ready  ## draw the bundled characters from all sides, and their clips
 	$(BIN)/python -m tools.cast
 
 .venv/ready: pyproject.toml constraints.txt
