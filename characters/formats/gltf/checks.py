@@ -1,4 +1,4 @@
-"""Whether a character fits together, before it is written."""
+"""Checks of a character before it is written."""
 
 import numpy as np
 
@@ -7,13 +7,13 @@ from characters.model.character import Character
 from characters.model.mesh import Mesh
 
 
-def check(character: Character) -> None:
+def check_character(character: Character) -> None:
     """Refuse a character whose arrays do not fit together.
 
     Raises
     ------
     CharacterError
-        That names the clip, mesh or morph.
+        The message names the clip, mesh or morph.
     """
     joints, morphs = len(character.skeleton), len(character.morphs)
     for clip in character.clips.values():
@@ -49,15 +49,15 @@ def _check_mesh(mesh: Mesh, joints: int) -> None:
         shape = (len(morph.vertices), 3)
         ascends = bool((np.diff(morph.vertices.astype(np.int64)) > 0).all())
         inside = not len(morph.vertices) or int(morph.vertices[-1]) < count
-        whole = morph.normal_shifts is None or morph.normal_shifts.shape == shape
-        if not (ascends and inside and whole and morph.shifts.shape == shape):
+        normals_fit = morph.normal_shifts is None or morph.normal_shifts.shape == shape
+        if not (ascends and inside and normals_fit and morph.shifts.shape == shape):
             raise CharacterError(
                 f"mesh {mesh.name!r}: the arrays of its morph {morph.name!r} do not fit together"
             )
 
 
 def _check_morphs(character: Character) -> None:
-    """Refuse names that would not be found again when the file is read."""
+    """Refuse names that reading the file would not give back."""
     for mesh in character.meshes:
         names = [morph.name for morph in mesh.morphs]
         if len(set(names)) < len(names) or not set(names) <= set(character.morphs):
@@ -66,9 +66,9 @@ def _check_morphs(character: Character) -> None:
                 f"Character.morphs, which are {', '.join(character.morphs) or 'none'}"
             )
     used = {morph.name for mesh in character.meshes for morph in mesh.morphs}
-    idle = [name for name in character.morphs if name not in used]
-    if idle or len(set(character.morphs)) < len(character.morphs):
+    unused = [name for name in character.morphs if name not in used]
+    if unused or len(set(character.morphs)) < len(character.morphs):
         raise CharacterError(
-            f"Character.morphs {', '.join(idle or character.morphs)}: each must be named once, "
+            f"Character.morphs {', '.join(unused or character.morphs)}: each must be named once, "
             "and be a morph of some mesh"
         )

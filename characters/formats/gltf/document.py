@@ -1,4 +1,4 @@
-"""The JSON of a glTF: what its members must be, so that readers need not ask again."""
+"""The JSON of a glTF, checked once against a schema so that readers can rely on it."""
 
 import json
 import struct
@@ -13,9 +13,17 @@ Json = dict[str, Any]
 
 
 class DamagedFileError(ValueError):
-    """Something in a glTF file that contradicts itself; the message lacks the file's name."""
+    """A glTF file is invalid; the message lacks the name of the file."""
 
 
+_INVALID_DATA = (
+    ArithmeticError,
+    AttributeError,
+    LookupError,
+    TypeError,
+    ValueError,
+    struct.error,
+)
 TEXT, REAL, COUNT, FLAG = "text", "a number", "a count", "true or false"
 _REALS = {n: f"{n} numbers" for n in (2, 3, 4, 16)}
 _NUMBERS = "numbers"
@@ -132,8 +140,8 @@ SCHEMA: Json = {
         },
     },
 }
-"""The members that are read: an object, [a list], or what a value is; a name of the top level is a
-number of one of its members, "*" any other key, and "!" marks what may not be left out."""
+"""The members that are read: an object, [a list] or the kind of a value. The name of a top-level
+list stands for an index into it, "*" for any key; "!" marks required members."""
 
 
 def parse(text: bytes) -> Json:
@@ -142,13 +150,13 @@ def parse(text: bytes) -> Json:
     Raises
     ------
     DamagedFileError
-        If a member is absent, is not what it must be, or refers to what does not exist.
+        If a required member is absent, or a value has the wrong type or an invalid index.
     ValueError, RecursionError
-        If it is no JSON object of a glTF at all.
+        If it is not a JSON object of a glTF.
     """
-    document = json.loads(text, parse_constant=_no_constant)
+    document = json.loads(text, parse_constant=_refuse_constant)
     if not isinstance(document, dict) or not isinstance(document.get("asset"), dict):
-        raise ValueError("no glTF")
+        raise ValueError("not a glTF")
     sizes = {key: len(v) for key, v in document.items() if isinstance(v, list)}
     for key, kind in SCHEMA.items():
         if key in document:
@@ -157,27 +165,25 @@ def parse(text: bytes) -> Json:
 
 
 @contextmanager
-def at(place: str) -> Iterator[None]:
-    """Name the place in what goes wrong inside; a file's contradictions surface as any of these."""
+def error_context(place: str) -> Iterator[None]:
+    """Raise errors that invalid data cause inside as a `DamagedFileError` with the place."""
     try:
         yield
     except DamagedFileError as error:
         raise DamagedFileError(f"{place}: {error}") from None
-    except (ArithmeticError, AttributeError, LookupError, TypeError, struct.error) as error:
-        raise DamagedFileError(f"{place}: {error}") from error
     except np.linalg.LinAlgError:
         raise DamagedFileError(f"{place}: a matrix is singular") from None
-    except ValueError as error:
+    except _INVALID_DATA as error:
         raise DamagedFileError(f"{place}: {error}") from error
 
 
-def called(kind: str, number: int, item: Json) -> str:
-    """Return how to name an item of the document to a person: mesh 'Body', mesh 3."""
+def label(kind: str, number: int, item: Json) -> str:
+    """Return the label of an item in messages: mesh 'Body', or mesh 3 without a name."""
     return f"{kind} {item['name']!r}" if item.get("name") else f"{kind} {number}"
 
 
-def _no_constant(name: str) -> None:
-    raise DamagedFileError(f"its JSON holds {name}")
+def _refuse_constant(name: str) -> None:
+    raise DamagedFileError(f"its JSON contains {name}")
 
 
 def _check(value: object, kind: Any, place: str, sizes: dict[str, int]) -> None:
@@ -225,5 +231,5 @@ def _fits(value: object, kind: str) -> bool:
 
 
 def _is_real(value: object) -> bool:
-    # Beyond single precision nothing was meant, and products of such numbers would overflow.
+    # Numbers beyond single precision are not meant, and their products would overflow.
     return isinstance(value, int | float) and type(value) is not bool and -1e30 < value < 1e30

@@ -1,7 +1,8 @@
-"""An opened glTF: the arrays in its buffers, and the files that it refers to."""
+"""Opening a .glb or .gltf, and the arrays in its buffers."""
 
 import base64
-from dataclasses import dataclass, field
+import struct
+from dataclasses import dataclass, field, replace
 from errno import ENOENT
 from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes, urlsplit
@@ -9,11 +10,24 @@ from urllib.parse import unquote, unquote_to_bytes, urlsplit
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.formats.gltf.document import DamagedFileError, Json, at
+from characters.errors import CharacterError
+from characters.formats.gltf.document import DamagedFileError, Json, error_context, parse
+from characters.model.files import read_required_file
+from characters.skeleton.pose import Array
 
-Array = NDArray[np.float64]
+MAGIC, JSON_CHUNK, BIN_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
+_MAX_EMPTY_ROWS = 2_000_000  # of an accessor without data
 
-_MOST_ZEROS = 2_000_000  # rows without bytes behind them
+# Extensions that may be required; others change how the data must be read.
+_SUPPORTED_EXTENSIONS = {
+    "KHR_mesh_quantization",
+    "KHR_materials_unlit",
+    "KHR_texture_transform",
+    "KHR_materials_emissive_strength",
+    "VRMC_vrm",
+    "VRMC_materials_mtoon",
+    "VRM",
+}
 
 COMPONENTS: dict[int, type[np.generic]] = {
     5120: np.int8,
@@ -30,23 +44,23 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "M
 
 
 @dataclass
-class Budget:
-    """How much may still come out of a file: a few bytes can claim to be gigabytes."""
+class ReadBudget:
+    """How much may still be read from a file, since a few bytes can claim to be gigabytes."""
 
     numbers: int = 60_000_000
-    """Numbers in arrays, over all that is read; half a gigabyte, and more for large files."""
+    """Numbers in all arrays: half a gigabyte, and more for large files."""
 
     pixels: int = 64_000_000
-    """Of all images together."""
+    """Pixels of all images together."""
 
     def spend(self, numbers: int, what: str) -> None:
-        """Refuse what would not leave room for the rest."""
+        """Refuse an array beyond the budget."""
         self.numbers -= numbers
         if self.numbers < 0:
             raise DamagedFileError(f"{what} claims more numbers than any character has")
 
     def spend_pixels(self, pixels: int, what: str) -> None:
-        """Refuse a picture that would not leave room for the rest."""
+        """Refuse an image beyond the budget."""
         self.pixels -= pixels
         if self.pixels < 0:
             raise DamagedFileError(f"{what} makes more than 64 million pixels; scale them down")
@@ -57,16 +71,16 @@ class GltfFile:
     """An opened glTF: its document and its bytes."""
 
     path: Path
-    """Where it came from."""
+    """The file."""
 
     document: Json
-    """The JSON part, checked."""
+    """The JSON part, checked against the schema."""
 
     buffers: tuple[bytes, ...]
     """Content of each buffer."""
 
-    budget: Budget = field(default_factory=Budget)
-    """What may still be read."""
+    budget: ReadBudget = field(default_factory=ReadBudget)
+    """Limits of what may still be read."""
 
     def all(self, kind: str) -> list[Json]:
         """Return the members of a list at the top of the document, such as "nodes"."""
@@ -75,7 +89,7 @@ class GltfFile:
     def floats(self, index: int, width: int) -> Array:
         """Return an accessor's array, (count, width), or (count,) for scalars.
 
-        Integers marked as normalised become numbers of 0…1 or −1…1.
+        Normalised integers become numbers of 0…1 or −1…1.
         """
         values = self._accessor(index, width)
         if values.dtype.kind == "f":
@@ -90,11 +104,11 @@ class GltfFile:
         return numbers[:, 0] if width == 1 else numbers
 
     def integers(self, index: int, width: int) -> NDArray[np.int64]:
-        """Return an accessor's array of whole numbers, (count, width), or (count,) for scalars."""
+        """Return an accessor's array of indices, (count, width), or (count,) for scalars."""
         values = self._accessor(index, width)
         if values.dtype.kind != "u":
             raise DamagedFileError(
-                f"accessor {index} has {values.dtype} where numbers of things go"
+                f"accessor {index} has {values.dtype} components where indices are needed"
             )
         return values[:, 0].astype(np.int64) if width == 1 else values.astype(np.int64)
 
@@ -117,27 +131,27 @@ class GltfFile:
         return memoryview(buffer)[start : start + view["byteLength"]]
 
     def resource(self, uri: str) -> bytes:
-        """Return what a URI names: data inside it, or a file beside this one."""
+        """Return the content of a data URI, or of a file in the same folder."""
         if uri.startswith("data:"):
             kind, _, data = uri.partition(",")
             return base64.b64decode(data) if kind.endswith(";base64") else unquote_to_bytes(data)
         name = unquote(uri)
         if urlsplit(uri).scheme or Path(name).is_absolute():
-            raise DamagedFileError(f"needs {name!r:.80}, which is not a file beside it")
-        beside = self.path.parent / name
+            raise DamagedFileError(f"needs {name!r:.80}, which is not in the same folder")
+        path = self.path.parent / name
         try:
-            if not beside.is_file():  # neither folders nor devices, some of which never end
+            if not path.is_file():  # no folders, and no devices, which may have no end
                 raise FileNotFoundError(ENOENT, "no such file")
-            return beside.read_bytes()
+            return path.read_bytes()
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or error
             raise DamagedFileError(
-                f"needs {name!r:.80}, which cannot be read ({reason}); put it beside the file"
+                f"needs {name!r:.80}, which cannot be read ({reason}); put it into the same folder"
             ) from None
 
     def _accessor(self, index: int, width: int) -> NDArray[np.generic]:
         accessor, own_width = self.document["accessors"][index], self.width(index)
-        with at(f"accessor {index}"):
+        with error_context(f"accessor {index}"):
             dtype, count = _component(accessor), accessor["count"]
             if own_width != width:
                 raise DamagedFileError(f"is {accessor['type']}, {width} components are needed")
@@ -145,7 +159,7 @@ class GltfFile:
             if "bufferView" in accessor:
                 offset = accessor.get("byteOffset", 0)
                 values = self._strided(accessor["bufferView"], offset, dtype, count, width)
-            elif count > _MOST_ZEROS:
+            elif count > _MAX_EMPTY_ROWS:
                 raise DamagedFileError(f"has a count of {count}, and no data")
             else:
                 values = np.zeros((count, width), dtype)
@@ -195,3 +209,55 @@ def _component(holder: Json) -> "np.dtype[np.generic]":
     if code not in COMPONENTS:
         raise DamagedFileError(f"component type {code!r:.20} does not exist")
     return np.dtype(COMPONENTS[code]).newbyteorder("<")
+
+
+def open_gltf(path: Path) -> GltfFile:
+    """Read a .glb or .gltf file with its buffers.
+
+    Raises
+    ------
+    CharacterError
+        If it is absent, truncated, not glTF 2.0, or requires an extension that is not supported.
+    DamagedFileError
+        If its JSON or its buffers are invalid.
+    """
+    data = read_required_file(path)
+    text, blob = _unpacked(path, data)
+    try:
+        document = parse(text)
+    except DamagedFileError:
+        raise
+    except (ValueError, RecursionError):
+        raise CharacterError(f"{path}: not a glTF file; export it as .glb again") from None
+    version = str(document["asset"].get("version"))
+    if not version.startswith("2"):
+        raise CharacterError(f"{path}: glTF {version:.20}; export it as glTF 2.0")
+    unknown = sorted(set(document.get("extensionsRequired", ())) - _SUPPORTED_EXTENSIONS)
+    if unknown:
+        raise CharacterError(
+            f"{path}: requires the extension {', '.join(unknown)}; export it without compression"
+        )
+    opened = GltfFile(path, document, (), ReadBudget(60_000_000 + 2 * len(data)))
+    buffers: list[bytes] = []
+    for number, buffer in enumerate(opened.all("buffers")):
+        with error_context(f"buffer {number}"):
+            content = opened.resource(buffer["uri"]) if "uri" in buffer else blob
+            if len(content) < buffer["byteLength"]:
+                raise DamagedFileError(f"has {len(content)} bytes, not {buffer['byteLength']}")
+        buffers.append(content)
+    return replace(opened, buffers=tuple(buffers))
+
+
+def _unpacked(path: Path, data: bytes) -> tuple[bytes, bytes]:
+    """Return the JSON text and the binary chunk."""
+    if data[:4] != struct.pack("<I", MAGIC):
+        return data, b""
+    if len(data) < 20 or struct.unpack_from("<I", data, 8)[0] > len(data):
+        raise CharacterError(f"{path}: truncated .glb; copy or export it again")
+    chunks: dict[int, bytes] = {}
+    position = 12
+    while position + 8 <= len(data):
+        length, kind = struct.unpack_from("<II", data, position)
+        chunks.setdefault(kind, data[position + 8 : position + 8 + length])
+        position += 8 + length
+    return chunks.get(JSON_CHUNK, b""), chunks.get(BIN_CHUNK, b"")

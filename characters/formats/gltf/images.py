@@ -1,4 +1,4 @@
-"""Pictures in glTF files: measured before they are decoded, and written back as PNG."""
+"""Images in glTF files: measured before they are decoded, and written back as PNG."""
 
 import io
 import warnings
@@ -6,32 +6,33 @@ from typing import Literal
 
 import cv2
 import numpy as np
+import PIL.Image
 from numpy.typing import NDArray
-from PIL import Image, UnidentifiedImageError
+from PIL import UnidentifiedImageError
 
-from characters.formats.gltf.document import DamagedFileError, called
+from characters.formats.gltf.document import DamagedFileError, label
 from characters.formats.gltf.file import GltfFile
 
-Picture = NDArray[np.uint8]
+Image = NDArray[np.uint8]
+"""(height, width, 3 or 4), RGB or RGBA."""
 
-_LARGEST = 8192
-"""Width and height [px]; graphics cards promise hardly more."""
+MAX_SIDE_PX = 8192  # graphics cards guarantee hardly more
 
 
-class Images:
-    """Decodes each picture of a file once, and only those that are asked for."""
+class ImageDecoder:
+    """Decodes each requested image of a file once."""
 
     def __init__(self, file: GltfFile) -> None:
         self._file = file
-        self._decoded: dict[tuple[int, str], Picture] = {}
+        self._decoded: dict[tuple[int, str], Image] = {}
 
-    def texture(self, index: int, mode: Literal["RGB", "RGBA"]) -> Picture | None:
-        """Return the picture of a texture, (height, width, 3 or 4), or None if it has none.
+    def texture(self, index: int, mode: Literal["RGB", "RGBA"]) -> Image | None:
+        """Return the image of a texture, or None if it has none.
 
         Raises
         ------
         DamagedFileError
-            If it is no PNG or JPEG, truncated, or larger than pictures on a character are.
+            If it is not PNG or JPEG, is truncated or too large.
         """
         source = self._file.document["textures"][index].get("source")
         if source is None:
@@ -43,42 +44,42 @@ class Images:
             elif "bufferView" in image:
                 data = self._file.view(image["bufferView"])
             else:
-                raise DamagedFileError(f"{called('image', source, image)} has no data")
-            name = called("image", source, image)
+                raise DamagedFileError(f"{label('image', source, image)} has no data")
+            name = label("image", source, image)
             self._decoded[source, mode] = self._decode(data, name, mode)
         return self._decoded[source, mode]
 
-    def _decode(self, data: bytes | memoryview, name: str, mode: Literal["RGB", "RGBA"]) -> Picture:
+    def _decode(self, data: bytes | memoryview, name: str, mode: Literal["RGB", "RGBA"]) -> Image:
         try:
-            # What the library has to say, of odd palettes for one, is nothing to act on.
+            # Warnings of the library, for example about palettes, need no action.
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                with Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as picture:
-                    self._measure(picture.size, name)
-                    if picture.mode.startswith("I;16") or picture.mode == "I":
-                        grey = (np.asarray(picture).astype(np.uint32) >> 8).astype(np.uint8)
-                        return np.asarray(Image.fromarray(grey).convert(mode))
-                    return np.asarray(picture.convert(mode))
+                with PIL.Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as opened:
+                    self._check_size(opened.size, name)
+                    if opened.mode.startswith("I;16") or opened.mode == "I":
+                        grey = (np.asarray(opened).astype(np.uint32) >> 8).astype(np.uint8)
+                        return np.asarray(PIL.Image.fromarray(grey).convert(mode))
+                    return np.asarray(opened.convert(mode))
         except UnidentifiedImageError:
             raise DamagedFileError(f"{name} is neither PNG nor JPEG") from None
-        except Image.DecompressionBombError:
-            raise DamagedFileError(f"{name} is larger than {_LARGEST} pixels") from None
-        # PIL reports a file that is cut or contradicts itself by any of these.
+        except PIL.Image.DecompressionBombError:
+            raise DamagedFileError(f"{name} is larger than {MAX_SIDE_PX} pixels per side") from None
+        # PIL raises any of these for a truncated or invalid file.
         except (OSError, SyntaxError, EOFError, IndexError, OverflowError, TypeError) as error:
             raise DamagedFileError(f"{name} is damaged ({error})") from None
 
-    def _measure(self, size: tuple[int, int], name: str) -> None:
-        """Refuse a picture by what its header says, before it is unpacked."""
+    def _check_size(self, size: tuple[int, int], name: str) -> None:
+        """Refuse an image by its header, before it is decoded."""
         width, height = size
-        if not (0 < width <= _LARGEST and 0 < height <= _LARGEST):
+        if not (0 < width <= MAX_SIDE_PX and 0 < height <= MAX_SIDE_PX):
             raise DamagedFileError(
-                f"{name} has {width} × {height} pixels; scale it to {_LARGEST} at most"
+                f"{name} has {width} × {height} pixels; scale it to {MAX_SIDE_PX} at most"
             )
         self._file.budget.spend_pixels(width * height, name)
 
 
-def png(picture: Picture) -> bytes:
-    """Return a picture, RGB or RGBA, as a PNG file."""
-    swap = cv2.COLOR_RGBA2BGRA if picture.shape[2] == 4 else cv2.COLOR_RGB2BGR
-    _, data = cv2.imencode(".png", cv2.cvtColor(picture, swap))
+def png(image: Image) -> bytes:
+    """Return an image as a PNG file."""
+    swap = cv2.COLOR_RGBA2BGRA if image.shape[2] == 4 else cv2.COLOR_RGB2BGR
+    _, data = cv2.imencode(".png", cv2.cvtColor(image, swap))
     return data.tobytes()

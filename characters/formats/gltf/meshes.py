@@ -1,33 +1,35 @@
-"""From the meshes of a glTF scene to skinned meshes in the character frame."""
+"""Reading meshes as skinned meshes in the character frame."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.formats.gltf.document import DamagedFileError, Json, at, called
+from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
 from characters.formats.gltf.file import GltfFile
-from characters.formats.gltf.materials import Look, read_materials
-from characters.formats.gltf.morphs import MorphReader, MorphTable, morph_kept, morph_moved
+from characters.formats.gltf.materials import MappedMaterial, read_materials
+from characters.formats.gltf.morphs import (
+    MorphReader,
+    MorphTable,
+    renumbered_morph,
+    transformed_morph,
+)
 from characters.formats.gltf.nodes import NodeTree
-from characters.formats.gltf.skins import Skin, read_skin, rigid_skin
+from characters.formats.gltf.skins import VertexSkin, read_skin, rigid_skin
 from characters.model.mesh import Material, Mesh, Morph
+from characters.skeleton.pose import Array
 
-Array = NDArray[np.float64]
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-_MOST_PARTS = 4096  # that a character is drawn of; small ones cost time, not bytes
+_MAX_PRIMITIVES = 4096  # small ones cost time, not bytes
 
 
 def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple[int, Mesh]]:
-    """Return every primitive that the skeleton moves, as a mesh of its own, and whose it is.
-
-    The number is that of the node which carries it.
-    """
-    carried = [file.document["nodes"][number]["mesh"] for number in tree.mesh_nodes]
-    parts = sum(len(file.document["meshes"][mesh]["primitives"]) for mesh in carried)
-    if parts > _MOST_PARTS:
-        raise DamagedFileError(f"has {parts} parts, of which {_MOST_PARTS} are read; join them")
-    looks = read_materials(file)
+    """Return every primitive that the skeleton moves as a mesh, with the number of its node."""
+    instances = [file.document["nodes"][number]["mesh"] for number in tree.mesh_nodes]
+    parts = sum(len(file.document["meshes"][mesh]["primitives"]) for mesh in instances)
+    if parts > _MAX_PRIMITIVES:
+        raise DamagedFileError(f"has {parts} primitives, more than {_MAX_PRIMITIVES}; join them")
+    materials = read_materials(file)
     rest = tree.skeleton.rest.globals(tree.skeleton)
     meshes: list[tuple[int, Mesh]] = []
     for number in tree.mesh_nodes:
@@ -37,22 +39,24 @@ def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple
         targets = MorphReader(file, table.of(number))
         for primitive in mesh["primitives"]:
             if primitive.get("mode", _TRIANGLES) not in (_TRIANGLES, _STRIP, _FAN):
-                continue  # points and lines are not skin
-            with at(called("mesh", node["mesh"], mesh)):
-                look = looks[primitive["material"]] if "material" in primitive else Look(Material())
-                geometry = _geometry(file, primitive, look)
+                continue  # points and lines
+            with error_context(label("mesh", node["mesh"], mesh)):
+                mapped = MappedMaterial(Material())
+                if "material" in primitive:
+                    mapped = materials[primitive["material"]]
+                geometry = _geometry(file, primitive, mapped)
                 if not len(geometry.triangles):
                     continue
                 skin = _skin(file, primitive, number, tree, len(geometry.positions), rest)
                 morphs = targets.read(primitive, len(geometry.positions))
-                used = _used(geometry, skin, morphs)
-                placed = _placed(name, *used, look.material, rest)
-                meshes.append((number, placed))
+                used = _without_unused_vertices(geometry, skin, morphs)
+                mesh_at_rest = _in_character_frame(name, *used, mapped.material, rest)
+                meshes.append((number, mesh_at_rest))
     return meshes
 
 
 class _Geometry(NamedTuple):
-    """What a vertex is, without what moves it."""
+    """Triangles and the attributes of vertices, except skin and morphs."""
 
     positions: Array
     normals: Array
@@ -63,17 +67,17 @@ class _Geometry(NamedTuple):
 
 def _skin(
     file: GltfFile, primitive: Json, number: int, tree: NodeTree, vertices: int, rest: Array
-) -> Skin:
+) -> VertexSkin:
     node = file.document["nodes"][number]
     if "skin" not in node:
         file.budget.spend(16 * len(rest), "its bind matrices")
         return rigid_skin(tree.joint_of_node[number], vertices, rest)
-    mesh = called("mesh", node["mesh"], file.document["meshes"][node["mesh"]])
+    mesh = label("mesh", node["mesh"], file.document["meshes"][node["mesh"]])
     where = f"{file.path}: {mesh}"
     return read_skin(file, primitive["attributes"], node["skin"], tree, vertices, where)
 
 
-def _geometry(file: GltfFile, primitive: Json, look: Look) -> _Geometry:
+def _geometry(file: GltfFile, primitive: Json, mapped: MappedMaterial) -> _Geometry:
     attributes = primitive["attributes"]
     if "POSITION" not in attributes:
         raise DamagedFileError("has no positions")
@@ -83,14 +87,14 @@ def _geometry(file: GltfFile, primitive: Json, look: Look) -> _Geometry:
     else:
         indices = np.arange(len(positions), dtype=np.int64)
     if indices.size and indices.max() >= len(positions):
-        raise DamagedFileError(f"a triangle names vertex {indices.max()} of {len(positions)}")
+        raise DamagedFileError(f"a triangle has vertex {indices.max()} of {len(positions)}")
     triangles = _triangles(indices, primitive.get("mode", _TRIANGLES))
     geometry = _Geometry(
         positions,
         _normals(file, attributes.get("NORMAL"), positions, triangles),
         triangles,
         _colors(file, attributes.get("COLOR_0")),
-        _uvs(file, attributes, look),
+        _uvs(file, attributes, mapped),
     )
     for each in (geometry.normals, geometry.colors, geometry.uvs):
         if each is not None and len(each) != len(positions):
@@ -143,21 +147,22 @@ def _colors(file: GltfFile, accessor: int | None) -> Array | None:
     return colors
 
 
-def _uvs(file: GltfFile, attributes: Json, look: Look) -> Array | None:
-    """Return the coordinates of the look's textures."""
-    accessor = attributes.get(f"TEXCOORD_{look.uv_set}")
+def _uvs(file: GltfFile, attributes: Json, mapped: MappedMaterial) -> Array | None:
+    """Return the transformed coordinates of the material's textures."""
+    accessor = attributes.get(f"TEXCOORD_{mapped.uv_set}")
     if accessor is None:
         return None
     uvs = file.floats(accessor, 2)
-    return uvs if look.place is None else uvs @ look.place[:, :2].T + look.place[:, 2]
+    matrix = mapped.uv_transform
+    return uvs if matrix is None else uvs @ matrix[:, :2].T + matrix[:, 2]
 
 
-def _used(
-    geometry: _Geometry, skin: Skin, morphs: tuple[Morph, ...]
-) -> tuple[_Geometry, Skin, tuple[Morph, ...]]:
-    """Return the parts of a primitive without the vertices that no triangle has.
+def _without_unused_vertices(
+    geometry: _Geometry, skin: VertexSkin, morphs: tuple[Morph, ...]
+) -> tuple[_Geometry, VertexSkin, tuple[Morph, ...]]:
+    """Return a primitive without the vertices that its triangles do not use.
 
-    Primitives of one mesh often share all of its vertices and draw some each.
+    Primitives of one mesh often share its vertices and draw some of them each.
     """
     count = len(geometry.positions)
     kept = np.flatnonzero(np.bincount(geometry.triangles.ravel(), minlength=count))
@@ -174,23 +179,23 @@ def _used(
             None if colors is None else colors[kept],
             None if uvs is None else uvs[kept],
         ),
-        Skin(skin.joints[kept], skin.weights[kept], skin.inverse_bind),
-        tuple(morph_kept(morph, new_number) for morph in morphs),
+        VertexSkin(skin.joints[kept], skin.weights[kept], skin.inverse_bind),
+        tuple(renumbered_morph(morph, new_number) for morph in morphs),
     )
 
 
-def _placed(
+def _in_character_frame(
     name: str,
     geometry: _Geometry,
-    skin: Skin,
+    skin: VertexSkin,
     morphs: tuple[Morph, ...],
     material: Material,
     rest: Array,
 ) -> Mesh:
     """Return the mesh in the character frame.
 
-    A skin may leave its vertices in any frame. That of the first joint at rest is moved into the
-    vertices, so that a mesh bound at rest, which is nearly every one, lies where it is seen.
+    The vertices of a skinned mesh may be in any frame. The rest placement of the first joint is
+    applied to them, so that a mesh bound in the rest pose, as most are, has its visible positions.
     """
     joints, weights, inverse_bind = skin
     first = int(joints[0, 0]) if len(joints) else 0
@@ -199,13 +204,13 @@ def _placed(
     triangles = geometry.triangles
     if not np.allclose(character_from_mesh, np.eye(4), atol=1e-5):
         linear = character_from_mesh[:3, :3]
-        morphs = tuple(morph_moved(morph, normals, linear) for morph in morphs)
+        morphs = tuple(transformed_morph(morph, normals, linear) for morph in morphs)
         positions = positions @ linear.T + character_from_mesh[:3, 3]
         normals = _unit(normals @ np.linalg.inv(linear))
         used = np.unique(joints)
         inverse_bind = inverse_bind.copy()
         inverse_bind[used] = inverse_bind[used] @ np.linalg.inv(character_from_mesh)
-        if np.linalg.det(linear) < 0:  # mirrored: what was outside would be drawn as inside
+        if np.linalg.det(linear) < 0:  # mirrored: restores the winding order
             triangles = triangles[:, ::-1]
     uvs, colors = geometry.uvs, geometry.colors
     return Mesh(

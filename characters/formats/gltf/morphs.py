@@ -1,4 +1,4 @@
-"""From the morph targets of a glTF file to morphs with one weight a name."""
+"""Reading morph targets as morphs with one weight per name."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,42 +6,41 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.formats.gltf.document import DamagedFileError, Json, at, called
+from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
 from characters.formats.gltf.file import GltfFile
 from characters.formats.gltf.nodes import NodeTree
 from characters.model.mesh import Morph
+from characters.skeleton.pose import Array
 
-Array = NDArray[np.float64]
-
-_STILL = 1e-9  # [of the file's unit]: what shifts less is a zero that was rounded
+_MIN_DISPLACEMENT = 1e-9  # in the file's unit; smaller ones are rounded zeros
 
 
 @dataclass(frozen=True)
 class MorphTable:
-    """Which weight turns which morph target on."""
+    """Which weight drives which morph target."""
 
     names: tuple[str, ...]
-    """Names of all morphs; meshes whose targets have the same name share its weight."""
+    """Names of all morphs; targets of several meshes with one name share its weight."""
 
     columns: dict[int, tuple[int, ...]]
-    """Number in `names` of each target, by the number of the node that carries the mesh."""
+    """Index in `names` of each target, by the number of the node with the mesh."""
 
     rest: Array | None
-    """Weights where nothing is animated, (morphs,), or None for all zero."""
+    """Weights without animation, (morphs,), or None for all zero."""
 
     def of(self, node: int) -> tuple[str, ...]:
-        """Return the names of the targets of the mesh that a node carries."""
+        """Return the names of the targets of a node's mesh."""
         return tuple(self.names[column] for column in self.columns[node])
 
 
 def read_morph_table(file: GltfFile, tree: NodeTree) -> MorphTable:
-    """Return the names of the morphs that the skeleton's meshes have, and their weights at rest."""
+    """Return the names of the morphs of the skeleton's meshes, and their weights at rest."""
     of_node: dict[int, tuple[str, ...]] = {}
     defaults: dict[str, float] = {}
     for number in tree.mesh_nodes:
         node = file.document["nodes"][number]
         mesh = file.document["meshes"][node["mesh"]]
-        with at(called("mesh", node["mesh"], mesh)):
+        with error_context(label("mesh", node["mesh"], mesh)):
             of_node[number] = names = target_names(mesh, node["mesh"])
             weights = node.get("weights") or mesh.get("weights") or [0.0] * len(names)
             if len(weights) != len(names):
@@ -59,7 +58,7 @@ def read_morph_table(file: GltfFile, tree: NodeTree) -> MorphTable:
 
 
 def target_names(mesh: Json, number: int) -> tuple[str, ...]:
-    """Return the names of a mesh's morph targets; "MESH.0" where the file gives none."""
+    """Return the names of a mesh's morph targets; "MESH.0" where the file states none."""
     counts = {len(primitive.get("targets", ())) for primitive in mesh["primitives"]}
     if len(counts) > 1:
         raise DamagedFileError("has primitives with different numbers of morph targets")
@@ -78,7 +77,7 @@ def target_names(mesh: Json, number: int) -> tuple[str, ...]:
 
 
 class MorphReader:
-    """Reads the morph targets of one mesh, whose primitives often share their arrays."""
+    """Reads the morph targets of one mesh; its primitives often share arrays."""
 
     def __init__(self, file: GltfFile, names: Sequence[str]) -> None:
         self._file, self._names = file, names
@@ -94,9 +93,9 @@ class MorphReader:
     def _morph(self, target: Json, name: str, vertices: int) -> Morph:
         shifts = self._shifts(target.get("POSITION"), name, vertices)
         turns = self._shifts(target["NORMAL"], name, vertices) if "NORMAL" in target else None
-        moved = np.abs(shifts).max(axis=1, initial=0.0) > _STILL
+        moved = np.abs(shifts).max(axis=1, initial=0.0) > _MIN_DISPLACEMENT
         if turns is not None:
-            moved |= np.abs(turns).max(axis=1, initial=0.0) > _STILL
+            moved |= np.abs(turns).max(axis=1, initial=0.0) > _MIN_DISPLACEMENT
         where = np.flatnonzero(moved)
         return Morph(
             name,
@@ -118,8 +117,8 @@ class MorphReader:
         return shifts
 
 
-def morph_kept(morph: Morph, new_number: NDArray[np.int64]) -> Morph:
-    """Return a morph of a mesh that keeps some of its vertices; the new number of others is −1."""
+def renumbered_morph(morph: Morph, new_number: NDArray[np.int64]) -> Morph:
+    """Return a morph for a mesh with renumbered vertices; −1 marks removed ones."""
     numbers = new_number[morph.vertices]
     kept = numbers >= 0
     turns = morph.normal_shifts
@@ -131,8 +130,11 @@ def morph_kept(morph: Morph, new_number: NDArray[np.int64]) -> Morph:
     )
 
 
-def morph_moved(morph: Morph, normals: Array, linear: Array) -> Morph:
-    """Return a morph whose mesh, with these normals (vertices, 3), goes through a matrix (3, 3)."""
+def transformed_morph(morph: Morph, normals: Array, linear: Array) -> Morph:
+    """Return a morph of a mesh that is transformed by a matrix (3, 3).
+
+    `normals` are those of the mesh before, (vertices, 3).
+    """
     turned = morph.normal_shifts
     if turned is not None:
         inverse = np.linalg.inv(linear)
@@ -147,7 +149,7 @@ def _unit(vectors: Array) -> Array:
 
 
 def _order(file: GltfFile, found: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names in the order that our own writer notes in the scene, or as found."""
+    """Return the names in the order that our own writer states, or as found."""
     for scene in file.all("scenes"):
         extras = scene.get("extras")
         stated = extras.get("morphs") if isinstance(extras, dict) else None

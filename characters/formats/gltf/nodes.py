@@ -1,27 +1,24 @@
-"""From the nodes of a glTF scene to a skeleton."""
+"""Reading nodes as a skeleton."""
 
 import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from characters.errors import CharacterWarning
-from characters.formats.gltf.document import DamagedFileError, Json, at, called
+from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
 from characters.formats.gltf.file import GltfFile
 from characters.skeleton import rotations
-from characters.skeleton.pose import Pose, Skeleton
+from characters.skeleton.pose import Array, Pose, Skeleton
 
-Array = NDArray[np.float64]
-
-_MOST_JOINTS = 4096
-_UNIT = 1e-2  # how far from one rounding, to bytes at worst, may take the length of a quaternion
+_MAX_JOINTS = 4096
+_MAX_LENGTH_ERROR = 1e-2  # of a quaternion: rounding to bytes causes less
 
 
 @dataclass(frozen=True)
 class NodeTree:
-    """The nodes that matter, as a skeleton."""
+    """The nodes that move meshes, as a skeleton."""
 
     skeleton: Skeleton
     """Joints, all their ancestors, and nodes that carry rigid meshes."""
@@ -30,40 +27,40 @@ class NodeTree:
     """Joint number by node number."""
 
     mesh_nodes: tuple[int, ...]
-    """Numbers of the nodes that carry a mesh which the skeleton moves."""
+    """Numbers of the nodes with a mesh that the skeleton moves."""
 
 
-def read_tree(file: GltfFile, also: Iterable[int] = ()) -> NodeTree:
+def read_node_tree(file: GltfFile, extra_joints: Iterable[int] = ()) -> NodeTree:
     """Return the skeleton of a document.
 
     Ancestors of joints are joints too: exporters put the change of axes and units there, and
-    sometimes animate it. Rigid meshes that hang on a joint ride along.
+    sometimes animate it. Nodes with rigid meshes below a joint are joints as well.
 
     Parameters
     ----------
     file
-        Where they stand.
-    also
-        Numbers of nodes that are joints though no skin says so.
+        The opened file.
+    extra_joints
+        Numbers of nodes that are joints without being listed by a skin.
     """
     nodes = file.all("nodes")
     parents = _parents(nodes)
     wanted: set[int] = set()
-    for joint in (*also, *(node for skin in file.all("skins") for node in skin["joints"])):
-        _add_line(wanted, joint, parents)
-    hanging: set[int] = set()
+    for joint in (*extra_joints, *(node for skin in file.all("skins") for node in skin["joints"])):
+        _add_with_ancestors(wanted, joint, parents)
+    below: set[int] = set()
     for number in _top_down(nodes, parents):
-        if number in wanted or parents[number] in hanging:
-            hanging.add(number)
-    for number in hanging:
+        if number in wanted or parents[number] in below:
+            below.add(number)
+    for number in below:
         if "mesh" in nodes[number] and "skin" not in nodes[number]:
-            _add_line(wanted, number, parents)
+            _add_with_ancestors(wanted, number, parents)
     order = _parents_first(wanted, nodes, parents)
-    if len(order) > _MOST_JOINTS:
-        raise DamagedFileError(f"has {len(order)} joints, of which {_MOST_JOINTS} are read")
+    if len(order) > _MAX_JOINTS:
+        raise DamagedFileError(f"has {len(order)} joints, more than {_MAX_JOINTS}")
     joint_of_node = {node: joint for joint, node in enumerate(order)}
     skeleton = Skeleton(
-        names=unique([nodes[n].get("name") or f"node{n}" for n in order]),
+        names=unique_names([nodes[n].get("name") or f"node{n}" for n in order]),
         parents=tuple(joint_of_node.get(parents[n], -1) for n in order),
         rest=_rest(file, order),
     )
@@ -76,29 +73,29 @@ def read_tree(file: GltfFile, also: Iterable[int] = ()) -> NodeTree:
 
 
 def _parents(nodes: list[Json]) -> list[int]:
-    """Return each node's parent, −1 for none; refuse two parents."""
+    """Return each node's parent, or −1; refuse two parents."""
     parents = [-1] * len(nodes)
     for number, node in enumerate(nodes):
         for child in node.get("children", ()):
             if parents[child] != -1:
-                raise DamagedFileError(f"{called('node', child, nodes[child])} has two parents")
+                raise DamagedFileError(f"{label('node', child, nodes[child])} has two parents")
             parents[child] = number
     return parents
 
 
 def _top_down(nodes: list[Json], parents: list[int]) -> list[int]:
-    """Return all nodes, parents before children; refuse rings."""
-    # Whoever is reached from no root is in a ring, or hangs on one.
+    """Return all nodes, parents before children; refuse cycles."""
+    # Nodes that no root reaches are in a cycle or below one.
     reached = [n for n, parent in enumerate(parents) if parent == -1]
     for number in reached:
         reached += nodes[number].get("children", ())
     if len(reached) < len(nodes):
-        lost = min(set(range(len(nodes))) - set(reached))
-        raise DamagedFileError(f"{called('node', lost, nodes[lost])} is its own ancestor")
+        cyclic = min(set(range(len(nodes))) - set(reached))
+        raise DamagedFileError(f"{label('node', cyclic, nodes[cyclic])} is its own ancestor")
     return reached
 
 
-def _add_line(wanted: set[int], node: int, parents: list[int]) -> None:
+def _add_with_ancestors(wanted: set[int], node: int, parents: list[int]) -> None:
     """Add a node and its ancestors."""
     while node != -1 and node not in wanted:
         wanted.add(node)
@@ -106,7 +103,7 @@ def _add_line(wanted: set[int], node: int, parents: list[int]) -> None:
 
 
 def _parents_first(wanted: set[int], nodes: list[Json], parents: list[int]) -> list[int]:
-    """Return nodes as near to the order of the file as parents before children allows."""
+    """Return nodes in the order of the file, except that parents precede children."""
     order: list[int] = []
     placed: set[int] = set()
     for node in sorted(wanted):
@@ -119,8 +116,8 @@ def _parents_first(wanted: set[int], nodes: list[Json], parents: list[int]) -> l
     return order
 
 
-def unique(names: list[str]) -> tuple[str, ...]:
-    """Return the names, numbered where they repeat."""
+def unique_names(names: list[str]) -> tuple[str, ...]:
+    """Return the names with numbers where they repeat."""
     taken = set(names)
     seen: dict[str, int] = {}
     unique: list[str] = []
@@ -138,9 +135,9 @@ def _rest(file: GltfFile, order: list[int]) -> Pose:
     nodes = file.all("nodes")
     parts = []
     for number in order:
-        where = called("node", number, nodes[number])
-        with at(where):
-            parts.append(_placement(nodes[number], f"{file.path}: {where}"))
+        where = label("node", number, nodes[number])
+        with error_context(where):
+            parts.append(_local_transform(nodes[number], f"{file.path}: {where}"))
     scales = np.array([scale for _, _, scale in parts]).reshape(-1, 3)
     return Pose(
         np.array([translation for translation, _, _ in parts]).reshape(-1, 3),
@@ -149,13 +146,13 @@ def _rest(file: GltfFile, order: list[int]) -> Pose:
     )
 
 
-def _placement(node: Json, where: str) -> tuple[Array, Array, Array]:
+def _local_transform(node: Json, where: str) -> tuple[Array, Array, Array]:
     """Return a node's translation, rotation and scale, taken from its matrix if it has one."""
     if "matrix" not in node:
         rotation = np.array(node.get("rotation", (0.0, 0.0, 0.0, 1.0)), float)
         return (
             np.array(node.get("translation", (0.0, 0.0, 0.0)), float),
-            unit_turns(rotation[None], where)[0],
+            unit_quaternions(rotation[None], where)[0],
             np.array(node.get("scale", (1.0, 1.0, 1.0)), float),
         )
     matrix = np.array(node["matrix"], float).reshape(4, 4).T
@@ -166,24 +163,26 @@ def _placement(node: Json, where: str) -> tuple[Array, Array, Array]:
     return matrix[:3, 3], rotations.from_matrix(matrix[:3, :3] / safe), scale
 
 
-def unit_turns(turns: Array, where: str) -> Array:
-    """Return quaternions (n, 4) made unit; warn where they are not, refuse those of length zero.
+def unit_quaternions(quaternions: Array, where: str) -> Array:
+    """Return normalised quaternions (n, 4); warn of other lengths, refuse length zero.
 
     Parameters
     ----------
-    turns
+    quaternions
         As in the file.
     where
-        The file and the place, for the warning.
+        File and place, for the warning.
     """
-    lengths: Array = np.linalg.norm(turns, axis=1, keepdims=True)
+    lengths: Array = np.linalg.norm(quaternions, axis=1, keepdims=True)
     if (lengths < 1e-6).any():
-        raise DamagedFileError(f"rotation {turns[int(lengths.argmin())].tolist()} is none")
-    worst = int(np.abs(lengths - 1).argmax()) if len(turns) else 0
-    if len(turns) and abs(lengths[worst, 0] - 1) > _UNIT:
+        raise DamagedFileError(
+            f"rotation {quaternions[int(lengths.argmin())].tolist()} has no length"
+        )
+    worst = int(np.abs(lengths - 1).argmax()) if len(quaternions) else 0
+    if len(quaternions) and abs(lengths[worst, 0] - 1) > _MAX_LENGTH_ERROR:
         warnings.warn(
-            f"{where} has a rotation of length {lengths[worst, 0]:.3g}; made it a unit quaternion",
+            f"{where} has a rotation of length {lengths[worst, 0]:.3g}; normalised it",
             CharacterWarning,
             stacklevel=2,
         )
-    return turns / lengths
+    return quaternions / lengths

@@ -1,4 +1,4 @@
-"""What moves the vertices of a glTF mesh, in the skeleton's numbering."""
+"""Reading skins: joints, weights and inverse bind matrices of vertices."""
 
 import warnings
 from typing import NamedTuple
@@ -7,17 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterWarning
-from characters.formats.gltf.document import DamagedFileError, Json, at
+from characters.formats.gltf.document import DamagedFileError, Json, error_context
 from characters.formats.gltf.file import GltfFile
 from characters.formats.gltf.nodes import NodeTree
+from characters.skeleton.pose import Array
 
-Array = NDArray[np.float64]
-
-_SUM = 0.02  # how far from one rounding, of four bytes at worst, may take the sum of weights
+_MAX_WEIGHT_ERROR = 0.02  # of the sum of a vertex: rounding of four bytes causes less
 
 
-class Skin(NamedTuple):
-    """What moves a vertex."""
+class VertexSkin(NamedTuple):
+    """How joints move vertices."""
 
     joints: NDArray[np.int64]
     """Numbers of joints in the skeleton, (vertices, 4)."""
@@ -31,13 +30,13 @@ class Skin(NamedTuple):
 
 def read_skin(
     file: GltfFile, attributes: Json, number: int, tree: NodeTree, vertices: int, where: str
-) -> Skin:
+) -> VertexSkin:
     """Return the skin of a primitive's vertices; `where` names it in warnings."""
-    with at(f"skin {number}"):
+    with error_context(f"skin {number}"):
         skin = file.document["skins"][number]
         to_skeleton = np.array([tree.joint_of_node[node] for node in skin["joints"]], np.int64)
         if len(set(to_skeleton.tolist())) < len(to_skeleton) or not len(to_skeleton):
-            raise DamagedFileError("has no joints, or one of them twice")
+            raise DamagedFileError("has no joints, or repeats one")
         file.budget.spend(16 * len(tree.skeleton), "its bind matrices")
         inverse_bind = np.tile(np.eye(4), (len(tree.skeleton), 1, 1))
         if "inverseBindMatrices" in skin:
@@ -47,25 +46,23 @@ def read_skin(
             inverse_bind[to_skeleton] = np.swapaxes(matrices, 1, 2)[: len(to_skeleton)]
     joints, weights = _strongest_four(file, attributes, vertices, where)
     if joints.size and joints.max() >= len(to_skeleton):
-        raise DamagedFileError(
-            f"a vertex names joint {joints.max()} of a skin of {len(to_skeleton)}"
-        )
-    return Skin(to_skeleton[joints], weights, inverse_bind)
+        raise DamagedFileError(f"a vertex has joint {joints.max()} of a skin of {len(to_skeleton)}")
+    return VertexSkin(to_skeleton[joints], weights, inverse_bind)
 
 
-def rigid_skin(joint: int, vertices: int, rest: Array) -> Skin:
-    """Return the skin of a mesh that one node carries; its vertices lie in that node's frame."""
+def rigid_skin(joint: int, vertices: int, rest: Array) -> VertexSkin:
+    """Return the skin of a rigid mesh of one joint; its vertices are in that joint's frame."""
     inverse_bind = np.tile(np.eye(4), (len(rest), 1, 1))
     weights = np.tile([1.0, 0.0, 0.0, 0.0], (vertices, 1))
     joints = np.zeros((vertices, 4), np.int64)
     joints[:, 0] = joint
-    return Skin(joints, weights, inverse_bind)
+    return VertexSkin(joints, weights, inverse_bind)
 
 
 def _strongest_four(
     file: GltfFile, attributes: Json, vertices: int, where: str
 ) -> tuple[NDArray[np.int64], Array]:
-    """Return four joints and weights a vertex; of more, the strongest."""
+    """Return four joints and weights per vertex: the strongest if there are more."""
     sets = 0
     while f"JOINTS_{sets}" in attributes and f"WEIGHTS_{sets}" in attributes:
         sets += 1
@@ -77,26 +74,27 @@ def _strongest_four(
         raise DamagedFileError(
             f"has {len(joints)} joints and {len(weights)} weights for {vertices} vertices"
         )
-    weights = _checked(weights, where)
+    weights = _checked_weights(weights, where)
     strongest = np.argsort(-weights, axis=1, kind="stable")[:, :4]
     chosen = np.take_along_axis(weights, strongest, 1)
     totals = chosen.sum(1, keepdims=True)
-    # A vertex that nothing holds would collapse to the origin: its first joint holds it.
+    # A vertex without weights would collapse to the origin: its first joint gets all.
     chosen = np.where(totals > 1e-6, chosen / np.maximum(totals, 1e-6), [1.0, 0.0, 0.0, 0.0])
     numbers = np.take_along_axis(joints, strongest, 1)
     return np.where(chosen > 0, numbers, 0), chosen
 
 
-def _checked(weights: Array, where: str) -> Array:
-    """Return weights of at least zero; warn where a vertex's do not sum to one."""
-    if (weights < -_SUM).any():
+def _checked_weights(weights: Array, where: str) -> Array:
+    """Return weights of at least zero; warn of vertices whose sum is not one."""
+    if (weights < -_MAX_WEIGHT_ERROR).any():
         raise DamagedFileError(f"has a skin weight of {weights.min():.3g}")
     weights = np.maximum(weights, 0.0)
-    off = np.abs(weights.sum(1) - 1)
-    if (off > _SUM).any():
-        worst = int(off.argmax())
+    errors = np.abs(weights.sum(1) - 1)
+    wrong = int((errors > _MAX_WEIGHT_ERROR).sum())
+    if wrong:
+        worst = int(errors.argmax())
         warnings.warn(
-            f"{where} has {int((off > _SUM).sum())} vertices whose skin weights do not sum to one "
+            f"{where} has {wrong} vertices whose skin weights do not sum to one "
             f"({weights[worst].sum():.3g} at vertex {worst}); scaled them",
             CharacterWarning,
             stacklevel=2,

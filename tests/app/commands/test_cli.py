@@ -11,6 +11,7 @@ from app.cli import COMMANDS
 from app.commands import doctor_checks as doctor
 from characters import Character, CharacterError
 from characters.errors import CharacterWarning
+from tests.characters.formats.built_gltf import Builder
 
 COMMANDS_WITH_EXAMPLES = [
     ["demo"],
@@ -126,26 +127,12 @@ def test_bad_input_is_one_line_and_exit_code_2(cubeling, case, bundled_session):
 
 
 def write_bare_glb(path):
-    """A valid .glb that holds a triangle and no skin."""
-    import numpy as np
-    import pygltflib as gltf
-
-    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32).tobytes()
-    document = gltf.GLTF2(
-        scene=0,
-        scenes=[gltf.Scene(nodes=[0])],
-        nodes=[gltf.Node(mesh=0)],
-        meshes=[gltf.Mesh(primitives=[gltf.Primitive(attributes=gltf.Attributes(POSITION=0))])],
-        accessors=[
-            gltf.Accessor(
-                bufferView=0, componentType=5126, count=3, type="VEC3", max=[1, 1, 0], min=[0, 0, 0]
-            )
-        ],
-        bufferViews=[gltf.BufferView(buffer=0, byteLength=len(points))],
-        buffers=[gltf.Buffer(byteLength=len(points))],
-    )
-    document.set_binary_blob(points)
-    document.save(str(path))
+    """Write a valid .glb that holds a triangle and no skin."""
+    build = Builder()
+    points = build.floats([[0, 0, 0], [1, 0, 0], [0, 1, 0]], "VEC3")
+    build.document["meshes"] = [{"primitives": [{"attributes": {"POSITION": points}}]}]
+    build.document["nodes"] = [{"mesh": 0}]
+    path.write_bytes(build.bytes())
 
 
 def test_a_silent_port_is_one_line(cubeling, bundled_session):

@@ -6,7 +6,6 @@ import pytest
 
 from characters import Character, CharacterError, Pose
 from characters.formats import load_clip
-from characters.formats.gltf import reading as gltf
 from characters.formats.loading import load_motion
 from characters.model.character import skin
 from characters.skeleton import rotations
@@ -155,7 +154,7 @@ def test_arrays_that_do_not_fit_are_not_written(tmp_path, walker):
     broken = type(mesh)(**{**vars(mesh), "weights": mesh.weights * 2})
     character = Character("broken", walker.skeleton, {}, (broken,))
     with pytest.raises(CharacterError, match="'box': its skin weights do not sum to one"):
-        gltf.save(character, tmp_path / "broken.glb")
+        character.save(tmp_path / "broken.glb")
     assert not list(tmp_path.iterdir())
 
 
@@ -259,7 +258,7 @@ def test_one_clip_is_loaded_by_its_name_or_alone(tmp_path, arm, walker):
     assert load_clip(tmp_path / "walker.glb", "Run").duration == pytest.approx(0.7)
     with pytest.raises(CharacterError, match=r"has idle, Walk, Run.*say which one"):
         load_clip(tmp_path / "walker.glb")
-    with pytest.raises(CharacterError, match="motions are read from"):
+    with pytest.raises(CharacterError, match="not a motion file"):
         load_clip(tmp_path / "walk.xyz")
 
 

@@ -10,9 +10,8 @@ import pytest
 from PIL import Image
 
 from characters import Character, CharacterError, CharacterWarning
-from characters.formats.gltf.container import open_gltf
 from characters.formats.gltf.document import DamagedFileError
-from characters.formats.gltf.file import Budget
+from characters.formats.gltf.file import ReadBudget, open_gltf
 from characters.skeleton import rotations
 from tests.characters.formats.built_gltf import build_arm, glb
 
@@ -61,7 +60,7 @@ def test_an_absent_joint_is_named(tmp_path, arm):
 def test_a_vertex_on_an_absent_joint_is_refused(tmp_path, arm):
     rows = np.array([[0, 0, 0, 0], [5, 0, 0, 0], [1, 0, 0, 0]], np.uint8)
     attributes(arm)["JOINTS_0"] = arm.add(rows, "VEC4", 5121)
-    refused(tmp_path, arm, "mesh 0: a vertex names joint 5 of a skin of 2")
+    refused(tmp_path, arm, "mesh 0: a vertex has joint 5 of a skin of 2")
 
 
 def test_joints_of_equal_names_are_told_apart(tmp_path, arm):
@@ -83,15 +82,15 @@ def test_too_many_joints_are_refused(tmp_path, arm):
     nodes[2]["children"] = list(range(start, start + 5000))
     nodes += [{} for _ in range(5000)]
     arm.document["skins"][0] = {"joints": [1, 2, *range(start, start + 5000)]}
-    refused(tmp_path, arm, "has 5003 joints, of which 4096 are read")
+    refused(tmp_path, arm, "has 5003 joints, more than 4096")
 
 
 def test_more_parts_and_clips_than_any_character_has_are_refused(tmp_path, arm):
     arm.animate("LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
     arm.document["animations"] *= 5000
-    refused(tmp_path, arm, "has 5000 animations, of which 4096 are read")
+    refused(tmp_path, arm, "has 5000 animations, more than 4096")
     arm.document["meshes"][0]["primitives"] *= 5000
-    refused(tmp_path, arm, "has 5000 parts, of which 4096 are read")
+    refused(tmp_path, arm, "has 5000 primitives, more than 4096")
 
 
 # Rotations
@@ -111,7 +110,7 @@ def test_a_rotation_of_another_length_is_made_a_unit_quaternion(tmp_path, arm):
 
 def test_a_rotation_of_no_length_is_refused(tmp_path, arm):
     arm.document["nodes"][1]["rotation"] = [0, 0, 0, 0]
-    refused(tmp_path, arm, "node 'upper': rotation .* is none")
+    refused(tmp_path, arm, "node 'upper': rotation .* has no length")
 
 
 # Clips
@@ -127,7 +126,11 @@ def test_a_clip_of_one_key_is_a_still(tmp_path, arm):
 
 def test_keys_that_do_not_ascend_are_refused(tmp_path, arm):
     arm.animate("LINEAR", [0.0, 1.0, 0.5], rotations.about("x", [0.0, 1.0, 0.5]))
-    refused(tmp_path, arm, "animation 'a': channel 0: accessor 4 has key times that do not ascend")
+    refused(
+        tmp_path,
+        arm,
+        "animation 'a': channel 0: accessor 4 has no key times, or they do not ascend",
+    )
 
 
 def test_keys_without_values_are_refused(tmp_path, arm):
@@ -189,7 +192,7 @@ def test_what_is_no_number_is_named(tmp_path, arm, odd):
 
 def test_no_number_in_the_json_is_named(tmp_path, arm):
     arm.document["nodes"][1]["translation"] = [0, float("nan"), 0]
-    refused(tmp_path, arm, "its JSON holds NaN")
+    refused(tmp_path, arm, "its JSON contains NaN")
     arm.document["nodes"][1]["translation"] = [0, 10**400, 0]
     refused(tmp_path, arm, r"nodes\[1\]\.translation is .*, not 3 numbers")
 
@@ -226,13 +229,15 @@ def test_a_buffer_that_is_cut_is_named(tmp_path, arm):
 def test_only_files_beside_are_opened(tmp_path, arm, uri):
     arm.document["buffers"] = [{"byteLength": 9, "uri": uri}]
     (tmp_path / "arm.glb").write_bytes(glb(arm.document))
-    with pytest.raises(CharacterError, match=r"buffer 0: needs .*, which is not a file beside it"):
+    with pytest.raises(
+        CharacterError, match=r"buffer 0: needs .*, which is not in the same folder"
+    ):
         Character.load(tmp_path / "arm.glb")
 
 
 def test_joints_that_are_no_whole_numbers_are_refused(tmp_path, arm):
     attributes(arm)["JOINTS_0"] = arm.floats(np.zeros((3, 4)), "VEC4")
-    refused(tmp_path, arm, "mesh 0: accessor 4 has float32 where numbers of things go")
+    refused(tmp_path, arm, "mesh 0: accessor 4 has float32 components where indices")
 
 
 def test_a_sparse_row_beyond_the_array_is_refused(tmp_path, arm):
@@ -252,7 +257,7 @@ def test_claims_without_bytes_behind_them_are_refused(tmp_path, arm):
 
 def test_the_same_bytes_claimed_over_and_over_are_refused(tmp_path, arm):
     (tmp_path / "arm.glb").write_bytes(arm.bytes())
-    file = replace(open_gltf(tmp_path / "arm.glb"), budget=Budget(numbers=20))
+    file = replace(open_gltf(tmp_path / "arm.glb"), budget=ReadBudget(numbers=20))
     for _ in range(2):
         file.floats(0, 3)
     with pytest.raises(DamagedFileError, match="accessor 0: a count of 3 claims more numbers"):
@@ -264,7 +269,7 @@ def test_a_mesh_without_triangles_moves_nothing(tmp_path, arm):
     primitive["indices"] = arm.add(np.zeros(2, np.uint16), "SCALAR", 5123)
     refused(tmp_path, arm, "its skeleton moves no mesh")
     primitive["indices"] = arm.add(np.array([0, 1, 9], np.uint16), "SCALAR", 5123)
-    refused(tmp_path, arm, "mesh 0: a triangle names vertex 9 of 3")
+    refused(tmp_path, arm, "mesh 0: a triangle has vertex 9 of 3")
 
 
 def test_json_nested_without_end_is_refused(tmp_path):

@@ -105,7 +105,7 @@ def test_textures_that_lie_differently_are_left_out_with_a_warning(tmp_path):
         "normalTexture": {"index": 1, "texCoord": 1},
     }
     build = dressed(material, encoded(pixels(3)), encoded(pixels(3)))
-    with pytest.warns(CharacterWarning, match="material 0 has textures that lie differently"):
+    with pytest.warns(CharacterWarning, match="material 0 has textures with different coordinates"):
         read = load(tmp_path, build).material
     assert read.texture is not None
     assert read.bumps is None

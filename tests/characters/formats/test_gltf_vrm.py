@@ -169,5 +169,5 @@ def test_a_vrm_that_contradicts_itself_is_refused(tmp_path, extension, reason):
 
 
 def test_a_vrm_without_its_extension_is_refused(tmp_path):
-    with pytest.raises(CharacterError, match=r"holds no VRM; call it \.glb"):
+    with pytest.raises(CharacterError, match=r"contains no VRM; call it \.glb"):
         load(tmp_path, build_arm().bytes())
