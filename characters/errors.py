@@ -1,12 +1,9 @@
-"""What goes wrong in this room, said in one line."""
+"""Exceptions and warnings of `characters`."""
 
 
 class CharacterError(Exception):
-    """Bad input to `characters`: the message is one line for a person.
-
-    It says what was wrong, where, and what to do.
-    """
+    """Bad input. The message is one line for a person: what is wrong, where, and what to do."""
 
 
 class CharacterWarning(UserWarning):
-    """Bad input that was repaired: one line that says what was wrong, where, and what was done."""
+    """Bad input that was repaired. The message says what was wrong, where, and what was done."""

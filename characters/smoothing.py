@@ -1,29 +1,32 @@
-"""Numbers that follow a wish without jumping, at any frame rate."""
+"""Smoothing of single numbers, independent of the frame rate."""
 
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
 
 
-def low_pass(value: float, wish: float, elapsed: float, lag: float) -> float:
-    """Return a value after a time under a wish that it follows with a first-order lag.
+def low_pass(value: float, target: float, elapsed: float, lag: float) -> float:
+    """Return a value that follows a target through a first-order low-pass filter.
 
-    Two half steps end where one whole step does.
+    `elapsed` and `lag`, the time constant, are in seconds. Two half steps give the same result as
+    one whole step.
 
     >>> half = low_pass(0.0, 1.0, 0.05, 0.15)
     >>> math.isclose(low_pass(half, 1.0, 0.05, 0.15), low_pass(0.0, 1.0, 0.1, 0.15))
     True
     """
-    return wish + (value - wish) * math.exp(-elapsed / lag)
+    return target + (value - target) * math.exp(-elapsed / lag)
 
 
 def interpolate(value: float, knots: Sequence[float], values: Sequence[float]) -> float:
-    """Return what lies at a value on straight lines between knots, which ascend; held beyond them.
+    """Return the linear interpolation between ascending knots, held beyond the ends.
 
-    What `np.interp` does, for one number in a fraction of the time.
+    The same as `np.interp`, several times as fast for a single number.
 
-    >>> along(1.5, (1.0, 2.0, 4.0), (10.0, 20.0, 0.0)), along(9.0, (1.0, 2.0), (10.0, 20.0))
-    (15.0, 20.0)
+    >>> interpolate(1.5, (1.0, 2.0, 4.0), (10.0, 20.0, 0.0))
+    15.0
+    >>> interpolate(9.0, (1.0, 2.0), (10.0, 20.0))
+    20.0
     """
     after = bisect_right(knots, value)
     if after == 0 or after == len(knots):
@@ -33,17 +36,27 @@ def interpolate(value: float, knots: Sequence[float], values: Sequence[float]) -
 
 
 def damped_spring(
-    value: float, speed: float, wish: float, elapsed: float, lag: float
+    value: float, speed: float, target: float, elapsed: float, lag: float
 ) -> tuple[float, float]:
-    """Return value and speed of a critically damped spring with its rest at `wish`.
+    """Return value and speed of a critically damped spring that pulls towards a target.
 
-    Exact for a constant wish, so it is stable for any time step.
+    The solution is exact for a constant target, so it is stable for any time step [s].
 
     >>> damped_spring(1.0, 0.0, 1.0, 0.1, 0.2)
     (1.0, 0.0)
     """
     rate = 2.0 / lag
-    away = value - wish
-    push = speed + rate * away
+    offset = value - target
+    slope = speed + rate * offset
     decay = math.exp(-rate * elapsed)
-    return wish + (away + push * elapsed) * decay, (speed - rate * push * elapsed) * decay
+    return target + (offset + slope * elapsed) * decay, (speed - rate * slope * elapsed) * decay
+
+
+def hermite(a: float, slope_a: float, b: float, slope_b: float, u: float) -> float:
+    """Return the cubic from a at u = 0 to b at u = 1 with the given slopes at its ends.
+
+    >>> hermite(1.0, 2.0, 3.0, 2.0, 0.5)
+    2.0
+    """
+    bend = 3 * (b - a) - 2 * slope_a - slope_b
+    return a + u * (slope_a + u * (bend + u * (slope_a + slope_b - 2 * (b - a))))

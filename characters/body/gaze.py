@@ -265,7 +265,7 @@ class Gaze:
 
 def _carriers(skeleton: Skeleton, joints: list[int]) -> list[_Joint]:
     """Return some joints with all that carry them, parents first."""
-    order = skeleton.carrying(joints)
+    order = skeleton.with_ancestors(joints)
     place = {joint: number for number, joint in enumerate(order)} | {-1: -1}
     matrices = skeleton.rest.globals(skeleton)[order, :3, :3]
     sizes = np.linalg.norm(matrices, axis=1, keepdims=True)

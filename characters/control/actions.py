@@ -6,10 +6,11 @@ from dataclasses import dataclass
 from characters.model.character import Character
 from characters.motion.blend import BlendSpace1D
 from characters.motion.clip import Clip
-from characters.motion.contacts import Feet, find_contacts
+from characters.motion.contacts import find_contacts
 from characters.motion.motion import RootDelta
 from characters.motion.phase import PhasedMotion
 from characters.motion.state_machine import StateMachine
+from characters.skeleton.feet import Feet
 from characters.skeleton.pose import Pose, Skeleton
 
 INTENSITIES = (("head", -1.0), ("legs", 0.0), ("tail", 1.0))

@@ -21,8 +21,7 @@ from characters.locomotion.steering import STANDSTILL, Steering, SteeringOutput
 from characters.locomotion.stride_blending import StrideBlend
 from characters.model.character import Character
 from characters.motion.motion import Motion, RootDelta
-from characters.motion.phase import Cyclic
-from characters.motion.retimed import RetimedMotion
+from characters.motion.phase import Cyclic, RetimedMotion
 from characters.motion.state_machine import StateMachine
 from characters.skeleton.pose import Pose, Skeleton
 from characters.smoothing import low_pass

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from characters.ik import two_bones
 from characters.skeleton import rotations
-from characters.skeleton.feet import find_feet
+from characters.skeleton.feet import foot_joints_by_side
 from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.scalar_quaternions import (
     Quaternion,
@@ -212,10 +212,10 @@ def find_legs(skeleton: Skeleton) -> LegIK | None:
 
     A skeleton that is scaled at rest is left alone.
     """
-    lines = [line for feet in find_feet(skeleton) for line in _lines(feet, skeleton)[:1]]
+    lines = [line for feet in foot_joints_by_side(skeleton) for line in _lines(feet, skeleton)[:1]]
     if not lines or skeleton.rest.scales is not None:
         return None
-    order = skeleton.carrying(joint for line in lines for joint in line)
+    order = skeleton.with_ancestors(joint for line in lines for joint in line)
     number = {joint: place for place, joint in enumerate(order)} | {-1: -1}
     part = Skeleton(
         tuple(skeleton.names[joint] for joint in order),

@@ -7,8 +7,9 @@ import numpy as np
 
 from characters.model.character import Character
 from characters.motion.clip import Clip
-from characters.motion.contacts import feet_of, find_contacts, spans
-from characters.motion.ground import find_ground, track
+from characters.motion.contacts import find_contacts, spans
+from characters.motion.ground import find_ground, joint_trajectories
+from characters.skeleton.feet import find_feet
 
 _GOES = 0.15  # heights a second: what is slower stands
 
@@ -89,7 +90,7 @@ def joints_of_feet(character: Character) -> dict[str, tuple[int, ...]]:
     """Return the joints of each foot, from the ankle on, by its name."""
     skeleton, anatomy = character.skeleton, character.anatomy
     if not anatomy.feet:
-        return {skeleton.names[foot[0]]: foot for foot in feet_of(skeleton)}
+        return {skeleton.names[foot[0]]: foot for foot in find_feet(skeleton)}
     feet = {}
     for ankle in anatomy.feet:
         joints = [ankle]
@@ -126,7 +127,7 @@ def _speed(character: Character, clip: Clip, feet: list[int]) -> tuple[float, bo
         speed = float(np.linalg.norm(np.diff(ends[:, hips, [0, 2], 3], axis=0))) / clip.duration
     if speed > _GOES * character.height or not feet:
         return speed, False
-    tracked = track(clip, character.skeleton)
+    tracked = joint_trajectories(clip, character.skeleton)
     ground = find_ground(clip, tracked, np.array(feet, np.intp))
     under = float(np.hypot(*ground.velocity))
     return (under, True) if under > _GOES * character.height else (speed, False)

@@ -1,4 +1,4 @@
-"""Mixing motions that are in step: blends, and spaces of parameters to take them from."""
+"""Blends of motions at one phase, and blend spaces that give the weights for a parameter."""
 
 import itertools
 import math
@@ -12,20 +12,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from characters.errors import CharacterError
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.phase import Cyclic, UnphasedMotion, as_cyclic, unit
-from characters.motion.travel import mean_step
+from characters.motion.motion import Motion, RootDelta, mean_delta
+from characters.motion.phase import Cyclic, PhaseDriven, UnphasedMotion, as_cyclic, cycle_length
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
-_PARTS = 2  # a cycle: long ways are taken in parts that turn by less than half a circle
+_PARTS_PER_CYCLE = 2  # so that no part turns by half a circle or more
 
 
 def mix(poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
     """Return the weighted mean of poses; the weights sum to one.
 
-    Quaternions are brought to the side of the heaviest pose, so that the order of the poses does
-    not matter, and their sum is normalised.
+    Quaternion signs are aligned with the pose of the largest weight, so the order of the poses does
+    not matter; the weighted sum is normalised.
     """
     if len(poses) == 1:
         return poses[0]
@@ -37,8 +36,7 @@ def mix(poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
     turns = rotations.align(turns, turns[int(share.argmax())])
     scales = None
     if any(pose.scales is not None for pose in poses):
-        ones = np.ones_like(poses[0].translations)
-        scales = _sum([ones if p.scales is None else p.scales for p in poses], share)
+        scales = _sum([pose.scales_or_ones for pose in poses], share)
     morphs = None
     if any(pose.morphs is not None for pose in poses):
         width = max(0 if pose.morphs is None else pose.morphs.shape[-1] for pose in poses)
@@ -58,7 +56,7 @@ def _sum(arrays: Sequence[Array], share: Array) -> Array:
 
 
 class FootPlanter(Protocol):
-    """Keeps the feet of mixed poses where those of the members are: `characters.ik.legs.LegIK`."""
+    """Keeps the feet of a mixed pose at the members' feet; see `characters.ik.legs.LegIK`."""
 
     def plant(self, mixed: Pose, poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
         """Return the mixed pose with its feet at the weighted mean of the members' feet."""
@@ -66,25 +64,25 @@ class FootPlanter(Protocol):
 
 
 @dataclass(frozen=True)
-class Blend:
-    """Motions mixed in step; `Cyclic`, so blends can be blended.
+class Blend(PhaseDriven):
+    """Motions mixed at one phase; `Cyclic`, so blends can be blended.
 
-    All members go through their cycles together. The shared pace is the weighted mean of theirs.
-    A motion without a phase starts its cycle at its start; one without an end, such as a state
-    machine, or a single pose has no say in the pace and plays by the clock.
+    All members go through their cycles together; the common speed is the weighted mean of their
+    speeds. A motion without footfalls has phase 0 at its start. A motion without an end, such as a
+    state machine, and a single pose do not influence the speed and play in real time.
     """
 
     members: tuple[Motion, ...]
-    """What is mixed."""
+    """The mixed motions."""
 
     weights: tuple[float, ...]
-    """How much of each; none negative, sum one: see `shares`."""
+    """Weight of each; none negative, sum one: see `shares`."""
 
     legs: FootPlanter | None = None
-    """Whose feet are kept where the members' feet are, or None to mix joints alone."""
+    """Keeps the feet where the members' feet are; None mixes the joints only."""
 
     def __post_init__(self) -> None:
-        """Refuse weights that do not share out one."""
+        """Refuse weights that do not sum to one."""
         least, total = min(self.weights, default=math.nan), sum(self.weights)
         # Written so that NaN is refused as well.
         if len(self.weights) == len(self.members) and least >= 0.0 and abs(total - 1.0) < 1e-6:
@@ -97,70 +95,56 @@ class Blend:
     @property
     def duration(self) -> float:
         """Length of one cycle [s]."""
-        if self._endless:
+        if self._unphased:
             return math.inf
-        heard = [(w, m.duration) for m, w in self._heard if 0.0 < m.duration < math.inf]
-        if not heard:
+        cycles = [(w, m.duration) for m, w in self._active if 0.0 < m.duration < math.inf]
+        if not cycles:
             return 0.0
-        return sum(w for w, _ in heard) / sum(w / duration for w, duration in heard)
+        return sum(w for w, _ in cycles) / sum(w / duration for w, duration in cycles)
 
     def at(self, phase: float) -> Pose:
-        """Return the mixed pose at a phase; of an endless blend, after so many seconds."""
-        poses = [member.at(phase * self._rate(member)) for member, _ in self._heard]
-        weights = [weight for _, weight in self._heard]
+        """Return the mixed pose at a phase, or at a time [s] if no member has an end."""
+        poses = [member.at(phase * self._rate(member)) for member, _ in self._active]
+        weights = [weight for _, weight in self._active]
         mixed = mix(poses, weights)
         if self.legs is None or len(poses) == 1:
             return mixed
         return self.legs.plant(mixed, poses, weights)
 
     def between(self, start: float, end: float) -> RootDelta:
-        """Return the mean of the members' ways over the ground between two phases."""
-        weights = [weight for _, weight in self._heard]
+        """Return the mean of the members' root deltas between two phases."""
+        weights = [weight for _, weight in self._active]
         total = RootDelta()
-        parts = max(math.ceil((end - start) * _PARTS), 1)
+        parts = max(math.ceil((end - start) * _PARTS_PER_CYCLE), 1)
         for part in range(parts):
             low, high = (start + (end - start) * p / parts for p in (part, part + 1))
-            steps = [
+            deltas = [
                 member.between(low * self._rate(member), high * self._rate(member))
-                for member, _ in self._heard
+                for member, _ in self._active
             ]
-            total = total.then(mean_step(steps, weights))
+            total = total.then(mean_delta(deltas, weights))
         return total
 
-    def sample(self, time: float) -> Pose:
-        """Return the mixed pose at a time [s] since phase 0."""
-        return self.at(time / self._cycle)
-
-    def travel(self, start: float, end: float) -> RootDelta:
-        """Return how the root moves over the ground between two times [s]."""
-        cycle = self._cycle
-        return self.between(start / cycle, end / cycle)
-
-    @property
-    def _cycle(self) -> float:
-        """What a unit of phase lasts [s]: one second, if nothing in it has a cycle."""
-        return unit(self.duration)
-
     def _rate(self, member: Cyclic) -> float:
-        """Return how far a member's own phase goes in a unit of phase."""
-        return self._cycle if isinstance(member, UnphasedMotion) else 1.0
+        """Return the change of a member's own phase per unit of phase."""
+        return cycle_length(self.duration) if isinstance(member, UnphasedMotion) else 1.0
 
     @cached_property
-    def _endless(self) -> bool:
-        return all(isinstance(member, UnphasedMotion) for member, _ in self._heard)
+    def _unphased(self) -> bool:
+        return all(isinstance(member, UnphasedMotion) for member, _ in self._active)
 
     @cached_property
-    def _heard(self) -> list[tuple[Cyclic, float]]:
-        """What sounds, with blends inside this one taken apart."""
-        heard: list[tuple[Cyclic, float]] = []
+    def _active(self) -> list[tuple[Cyclic, float]]:
+        """Members of positive weight, with nested blends replaced by their members."""
+        active: list[tuple[Cyclic, float]] = []
         for member, weight in zip(self.members, self.weights, strict=True):
             if weight <= 0:
                 continue
             if isinstance(member, Blend):
-                heard += [(inner, weight * share) for inner, share in member._heard]
+                active += [(inner, weight * share) for inner, share in member._active]
             else:
-                heard.append((as_cyclic(member), weight))
-        return heard
+                active.append((as_cyclic(member), weight))
+        return active
 
 
 def shares(weights: Sequence[float]) -> tuple[float, ...]:
@@ -172,7 +156,7 @@ def shares(weights: Sequence[float]) -> tuple[float, ...]:
     Raises
     ------
     CharacterError
-        If one is negative or no number, or all are nought.
+        If a weight is negative or NaN, or all are zero.
     """
     total = sum(weights)
     if not all(weight >= 0.0 for weight in weights) or not 0.0 < total < math.inf:
@@ -182,16 +166,16 @@ def shares(weights: Sequence[float]) -> tuple[float, ...]:
 
 @dataclass(frozen=True)
 class TimeScaled:
-    """A cyclic motion at another pace and with another length of step; `Cyclic`."""
+    """A cyclic motion at another speed and with another stride length; `Cyclic`."""
 
     motion: Cyclic
-    """What is played."""
+    """The motion."""
 
     rate: float = 1.0
-    """How much faster; positive."""
+    """Factor of the speed; positive."""
 
     stride: float = 1.0
-    """What the way over the ground is multiplied with; its turning is not."""
+    """Factor of the distance over the ground, but not of the turning."""
 
     @property
     def duration(self) -> float:
@@ -204,25 +188,25 @@ class TimeScaled:
 
     def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
-        step = self.motion.between(start, end)
-        return RootDelta(step.x * self.stride, step.z * self.stride, step.yaw)
+        delta = self.motion.between(start, end)
+        return RootDelta(delta.x * self.stride, delta.z * self.stride, delta.yaw)
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s] since phase 0."""
-        return self.at(time * self.rate / unit(self.motion.duration))
+        return self.at(time * self.rate / cycle_length(self.motion.duration))
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        cycle = unit(self.motion.duration) / self.rate
+        cycle = cycle_length(self.motion.duration) / self.rate
         return self.between(start / cycle, end / cycle)
 
 
 @dataclass(frozen=True)
 class BlendSpace1D:
-    """Motions at points of a line; between two points both are mixed, at most two sound."""
+    """Motions at points of a line; between two points their motions are mixed."""
 
     knots: tuple[float, ...]
-    """Where each motion stands, ascending."""
+    """Position of each motion, ascending."""
 
     motions: tuple[Motion, ...]
     """One for each knot."""
@@ -237,7 +221,7 @@ class BlendSpace1D:
             )
 
     def weights(self, value: float) -> tuple[float, ...]:
-        """Return how much of each motion sounds at a value; beyond the ends, the end.
+        """Return the weight of each motion at a value; beyond the ends, the end motion has 1.
 
         >>> BlendSpace1D((0.0, 1.0, 3.0), (None,) * 3).weights(2.5)
         (0.0, 0.25, 0.75)
@@ -264,29 +248,29 @@ class BlendSpace2D:
     """Motions at points of a plane, mixed by gradient bands.
 
     Source: Johansen, "Automated semi-procedural animation for character locomotion", 2009,
-    section 6.3. Each motion's influence falls along the line to each other motion; it keeps the
-    least of them. Weights are continuous everywhere and do not depend on the order.
+    section 6.3. The influence of a motion decreases linearly towards each other motion; the
+    smallest of these values counts. Weights are continuous and do not depend on the order.
     """
 
     points: Array
-    """Where each motion stands, (motions, 2); no two alike."""
+    """Position of each motion, (motions, 2); all different."""
 
     motions: tuple[Motion, ...]
     """One for each point."""
 
     def __post_init__(self) -> None:
-        """Refuse points that cannot be told apart."""
+        """Refuse points that are equal or not finite."""
         count = len(self.motions)
         if not np.isfinite(self.points).all():
             raise CharacterError(f"blend space: points {self.points.tolist()}; give finite numbers")
         if self.points.shape != (count, 2) or count != len(np.unique(self.points, axis=0)):
             raise CharacterError(
                 f"blend space: {count} motions at points of shape {self.points.shape}; "
-                "give each a place of its own in the plane"
+                "give each motion a different point"
             )
 
     def weights(self, point: ArrayLike) -> tuple[float, ...]:
-        """Return how much of each motion sounds at a point (2,).
+        """Return the weight of each motion at a point (2,).
 
         >>> corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
         >>> BlendSpace2D(corners, (None,) * 3).weights([0.5, 0.0])
@@ -296,7 +280,7 @@ class BlendSpace2D:
             raise CharacterError(
                 f"blend space: a point of {np.asarray(point).tolist()}; give two finite numbers"
             )
-        towards = self.points[None] - self.points[:, None]  # from each to each other
+        towards = self.points[None] - self.points[:, None]  # from each point to each other
         squared = np.einsum("ijk,ijk->ij", towards, towards)
         here = np.asarray(point, float) - self.points
         along = np.einsum("ik,ijk->ij", here, towards) / np.where(squared > 0, squared, 1.0)

@@ -17,22 +17,22 @@ class Clip:
     """Poses at a uniform rate; a `Motion`."""
 
     name: str
-    """Name in the file."""
+    """Its name in the file."""
 
     rate: float
-    """Frames a second [Hz]."""
+    """Frame rate [Hz]."""
 
     poses: Pose
-    """(frames, joints, …); of a loop, the last frame is the first one, a cycle later."""
+    """(frames, joints, …); in a loop, the last frame equals the first, one cycle later."""
 
     loop: bool = True
     """Whether it repeats."""
 
     root_motion: bool = False
-    """Whether joint 0 is a root on the ground that carries the planar motion: see `travel`."""
+    """Whether joint 0 is on the ground and carries the planar root motion; see `travel`."""
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be played."""
+        """Refuse empty or misshapen poses and a rate that is not positive."""
         if self.poses.rotations.ndim != 3 or len(self) < 1 or not self.rate > 0:
             raise CharacterError(
                 f"clip {self.name!r}: poses of shape {self.poses.rotations.shape} at {self.rate} "
@@ -49,7 +49,7 @@ class Clip:
         return (len(self) - 1) / self.rate
 
     def position(self, time: float) -> tuple[int, float]:
-        """Return the frame at or before a time [s] and the part of the way to the next, 0…1.
+        """Return the frame at or before a time [s] and the fraction towards the next frame, 0…1.
 
         >>> clip = Clip("c", 10.0, Pose(np.zeros((5, 1, 3)), np.zeros((5, 1, 4))))
         >>> clip.position(0.65)[0], round(clip.position(0.65)[1], 6)
@@ -64,37 +64,33 @@ class Clip:
         return frame, at - frame
 
     def sample(self, time: float) -> Pose:
-        """Return the pose at a time [s]; the root stands at the origin if it has root motion."""
+        """Return the pose at a time [s]; with root motion, the root is at the origin."""
         frame, u = self.position(time)
         after = min(frame + 1, self._last)
         before = self._table[frame]
-        # The signs were made continuous, so a straight mix goes the shorter way.
+        # The signs are continuous, so linear interpolation goes the shorter way.
         pose = self._parts(before + (self._table[after] - before) * u)
         return Pose(
             pose.translations, rotations.normalize(pose.rotations), pose.scales, pose.morphs
         )
 
     def travel(self, start: float, end: float) -> RootDelta:
-        """Return how the root moves over the ground between two times [s], over any loops."""
+        """Return how the root moves over the ground between two times [s], across loops."""
         if not self.root_motion:
             return RootDelta()
         if self.loop and self._last > 0:
-            # Whole rounds before both are left out.
-            rounds = math.floor(start / self.duration)
-            later = math.floor(end / self.duration) - rounds
-            there = self._within(end)
-            return self._within(start).to(
-                self.cycle.repeated(later).then(there) if later else there
-            )
-        return self._within(start).to(self._within(end))
+            loops = math.floor(end / self.duration) - math.floor(start / self.duration)
+            there = self._place(end)
+            return self._place(start).to(self.cycle.repeated(loops).then(there) if loops else there)
+        return self._place(start).to(self._place(end))
 
     @cached_property
     def in_place(self) -> Pose:
-        """The poses with the root's planar motion taken out and continuous quaternion signs."""
+        """The poses without the planar root motion, with continuous quaternion signs."""
         return self._parts(self._table)
 
     def _parts(self, rows: Array) -> Pose:
-        """Return rows of the table, (…, columns), as poses that lie in the same memory."""
+        """Return rows of the table, (…, columns), as poses that share its memory."""
         joints = self.poses.rotations.shape[1]
         lead = rows.shape[:-1]
         turned, shifted = 4 * joints, 7 * joints
@@ -108,7 +104,7 @@ class Clip:
 
     @cached_property
     def _table(self) -> Array:
-        """The numbers of each pose in one row, (frames, columns), so that all are mixed at once."""
+        """All values of each pose in one row, (frames, columns), for fast interpolation."""
         translations = self.poses.translations.copy()
         turns = rotations.continuous(self.poses.rotations)
         if self.root_motion:
@@ -124,7 +120,7 @@ class Clip:
 
     @cached_property
     def track(self) -> Array:
-        """Where the root stands on the ground, (frames, 3): x, z [m] and unwrapped yaw [rad]."""
+        """Place of the root on the ground, (frames, 3): x, z [m] and unwrapped yaw [rad]."""
         root = self.poses.translations[:, 0]
         yaw = np.unwrap(rotations.heading(self.poses.rotations[:, 0]))
         return np.stack([root[:, 0], root[:, 2], yaw], axis=-1)
@@ -132,21 +128,21 @@ class Clip:
     @cached_property
     def cycle(self) -> RootDelta:
         """How the root moves over the ground from the first frame to the last."""
-        return self._steps[-1]
+        return self._places[-1]
 
     @cached_property
-    def _steps(self) -> list[RootDelta]:
-        """The track from where it starts, as plain numbers, which beat arrays of three."""
-        first, *_ = steps = [RootDelta(*row) for row in self.track.tolist()]
-        return [first.to(step) for step in steps]
+    def _places(self) -> list[RootDelta]:
+        """The track relative to its start."""
+        first, *_ = places = [RootDelta(*row) for row in self.track.tolist()]
+        return [first.to(place) for place in places]
 
     @cached_property
     def _last(self) -> int:
         """Number of the last frame."""
         return len(self) - 1
 
-    def _within(self, time: float) -> RootDelta:
-        """Return where the root is at a time, in the round that it is in."""
+    def _place(self, time: float) -> RootDelta:
+        """Return where the root is at a time [s], relative to the start of the current loop."""
         frame, u = self.position(time)
-        a, b = self._steps[frame], self._steps[min(frame + 1, self._last)]
+        a, b = self._places[frame], self._places[min(frame + 1, self._last)]
         return RootDelta(a.x + (b.x - a.x) * u, a.z + (b.z - a.z) * u, a.yaw + (b.yaw - a.yaw) * u)

@@ -1,39 +1,37 @@
-"""When feet stand on the ground: detected in a clip, not marked by hand.
+"""When feet stand on the ground: detected in a clip without manual marks.
 
-A foot stands while a joint of it is both low and slow over the ground. What counts as slow grows
-with the body's own speed; what counts as low, with its height. Thresholds have hysteresis, and
-what is shorter than any real contact is dropped. A clip that walks in place stands on a ground
-that runs backward under it, as on a treadmill; how fast, the standing feet themselves tell.
+A foot stands while one of its joints is both low and slow over the ground. The speed limit grows
+with the body's own speed, the height limit with its height. The limits have hysteresis, and very
+short contacts and gaps are dropped. Under a clip that walks in place the ground moves backward, as
+on a treadmill; its velocity is estimated from the standing feet.
 
-Source: Ikemoto, Arikan and Forsyth, "Knowing when to put your foot down", I3D 2006, for low and
-slow.
+Source: Ikemoto, Arikan and Forsyth, "Knowing when to put your foot down", I3D 2006, for the
+criteria "low" and "slow".
 """
-
-import re
-from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from characters.motion.clip import Clip
-from characters.motion.ground import NEAR, STEADY, above_lowest, find_ground, track
-from characters.skeleton.anatomy import Anatomy
+from characters.motion.ground import (
+    FIXED_GROUND,
+    MAX_CONTACT_HEIGHT,
+    find_ground,
+    height_above_lowest,
+    joint_trajectories,
+)
+from characters.skeleton.feet import Feet
 from characters.skeleton.pose import Array, Skeleton
 
-Feet = Sequence[Sequence[int]]
-"""The joints of each foot, from the ankle on; a paw may have one joint only."""
-
-_LOW = (NEAR, 0.05)  # body heights above a joint's lowest: to begin and to end a contact
-_SLOW = (0.10, 0.15)  # body heights a second, plus …
-_SHARE = (0.16, 0.24)  # … parts of the body's own speed: likewise
-_EASED = (0.6, 0.8)  # the same on a treadmill: animators let its speed rise and fall
-_HASTE = 0.15  # what counts of being faster than a treadmill, which no swinging foot is
-_ALOFT = 0.08  # body heights: a foot that stays so much above the lowest one is never down
-_SHORTEST = 0.06  # [s]: shorter contacts and shorter gaps are flickers
-_BREADTH = 0.4  # [s]: over which the body's speed is averaged, about half a cycle
-
-_EXTREMITY = re.compile(r"(?i:foot|toe|paw|hoof|hand)")
-_FINGER = re.compile(r"(?i:thumb|finger|index|middle|ring|pinky|palm)")
+# Limits to begin and to end a contact: lengths in body heights, speeds in body heights a second.
+_HEIGHT_LIMITS = (MAX_CONTACT_HEIGHT, 0.05)  # above a joint's lowest position
+_SPEED_LIMITS = (0.10, 0.15)
+_SPEED_SHARES = (0.16, 0.24)  # added to the speed limits, as parts of the body's own speed
+_TREADMILL_SPEED_SHARES = (0.6, 0.8)  # in animated loops the treadmill's speed varies
+_BACKWARD_SLIP_WEIGHT = 0.15  # a swinging foot is never faster than the treadmill
+_MAX_LOWEST_HEIGHT = 0.08  # a foot that stays higher above the lowest foot has no contacts
+_MIN_CONTACT_S = 0.06  # shorter contacts and gaps are noise
+_SPEED_WINDOW_S = 0.4  # the body's speed is averaged over about half a cycle
 
 
 def find_contacts(clip: Clip, skeleton: Skeleton, feet: Feet) -> NDArray[np.bool_]:
@@ -42,67 +40,42 @@ def find_contacts(clip: Clip, skeleton: Skeleton, feet: Feet) -> NDArray[np.bool
     Parameters
     ----------
     clip
-        With or without root motion; a loop is taken as periodic.
+        With or without root motion; a loop is treated as periodic.
     skeleton
-        What it moves.
+        The skeleton of the clip.
     feet
-        The joints of each foot; see `feet_of`.
+        The joints of each foot; see `find_feet`.
     """
     if len(clip) < 2 or not feet:
         return np.ones((len(clip), len(feet)), bool)
-    tracked = track(clip, skeleton)
+    tracks = joint_trajectories(clip, skeleton)
     joints = np.array([joint for foot in feet for joint in foot])
     owner = np.array([number for number, foot in enumerate(feet) for _ in foot])
-    heights = tracked.places[:, joints, 1]
-    above = above_lowest(heights)
-    ground = find_ground(clip, tracked, joints)
-    over = tracked.speeds - ground.under(tracked.places)
-    body = _smoothed(np.linalg.norm(over.mean(1), axis=-1), clip)[:, None]
-    speeds = _slips(over[:, joints], ground.under(tracked.places[:, joints]))
-    shares = _SHARE if ground is STEADY else _EASED
+    heights = tracks.positions[:, joints, 1]
+    above = height_above_lowest(heights)
+    ground = find_ground(clip, tracks, joints)
+    relative = tracks.velocities - ground.velocity_at(tracks.positions)
+    body = _running_mean(np.linalg.norm(relative.mean(1), axis=-1), clip)[:, None]
+    speeds = _slip_speeds(relative[:, joints], ground.velocity_at(tracks.positions[:, joints]))
+    shares = _SPEED_SHARES if ground is FIXED_GROUND else _TREADMILL_SPEED_SHARES
     begin, stay = (
-        (above < low * tracked.tall) & (speeds < slow * tracked.tall + share * body)
-        for low, slow, share in zip(_LOW, _SLOW, shares, strict=True)
+        (above < height * tracks.body_height) & (speeds < speed * tracks.body_height + share * body)
+        for height, speed, share in zip(_HEIGHT_LIMITS, _SPEED_LIMITS, shares, strict=True)
     )
     rest = skeleton.rest.globals(skeleton)[joints, 1, 3]
-    grounded = _grounded(heights, rest, owner, _ALOFT * tracked.tall)
+    grounded = _grounded(heights, rest, owner, _MAX_LOWEST_HEIGHT * tracks.body_height)
     contacts = np.zeros((len(clip), len(feet)), bool)
     for number in range(len(feet)):
-        of_it = owner == number
-        held = _held(_any(begin[:, of_it]), _any(stay[:, of_it]), clip.loop)
-        contacts[:, number] = _steady(held, clip) & grounded[number]
+        own = owner == number
+        held = _hysteresis(np.any(begin[:, own], axis=1), np.any(stay[:, own], axis=1), clip.loop)
+        contacts[:, number] = _without_short_spans(held, clip) & grounded[number]
     return contacts
 
 
-def feet_of(skeleton: Skeleton) -> tuple[tuple[int, ...], ...]:
-    """Return the joints of each foot and paw, each from its ankle on, in the skeleton's order.
-
-    They are known by their names; hands are paws where they are as near to the ground as feet.
-    Where names are silent, the shape of the skeleton tells.
-    """
-    named = [
-        joint
-        for joint, name in enumerate(skeleton.names)
-        if _EXTREMITY.search(name) and not _FINGER.search(name)
-    ]
-    if not named:
-        parts = Anatomy.guess(skeleton).joints
-        named = sorted(joint for part, joint in parts.items() if _EXTREMITY.search(part))
-    feet: dict[int, list[int]] = {}
-    for joint in named:
-        above = skeleton.parents[joint]
-        first = next((first for first, foot in feet.items() if above in foot), joint)
-        feet.setdefault(first, []).append(joint)
-    heights = skeleton.rest.globals(skeleton)[:, 1, 3]
-    reach = 0.15 * np.ptp(heights)
-    floor = min((heights[foot].min() for foot in feet.values()), default=0.0)
-    return tuple(tuple(foot) for foot in feet.values() if heights[foot].min() < floor + reach)
-
-
 def spans(contacts: NDArray[np.bool_], loop: bool) -> list[tuple[int, int]]:
-    """Return the first frame of each contact of one foot and how many frames it lasts.
+    """Return the first frame and the number of frames of each contact of one foot.
 
-    In a loop, whose last frame is its first, a contact may begin late and end early.
+    In a loop, whose last frame equals its first, a contact may continue beyond the end.
 
     >>> spans(np.array([True, False, True, True, True]), loop=True)
     [(2, 3)]
@@ -112,7 +85,7 @@ def spans(contacts: NDArray[np.bool_], loop: bool) -> list[tuple[int, int]]:
     cycle = contacts[:-1] if loop and len(contacts) > 1 else contacts
     if cycle.all() or not cycle.any():
         return [(0, len(cycle))] if cycle.any() else []
-    start = int(np.argmin(cycle)) if loop else 0  # a frame in the air, so that nothing is cut
+    start = int(np.argmin(cycle)) if loop else 0  # a frame in the air, so that no contact is split
     turned = np.concatenate([[False], np.roll(cycle, -start), [False]])
     edges = np.flatnonzero(turned[1:] != turned[:-1])
     return sorted(
@@ -121,37 +94,39 @@ def spans(contacts: NDArray[np.bool_], loop: bool) -> list[tuple[int, int]]:
     )
 
 
-def _slips(over: Array, ground: Array) -> Array:
-    """Return how fast joints slip, (…) [m/s], from velocities over the ground, and its own (…, 3).
+def _slip_speeds(relative: Array, ground: Array) -> Array:
+    """Return how fast joints slip, (…) [m/s].
 
-    A foot that goes backward faster than a treadmill slips less than one that goes forward.
+    `relative` are their velocities over the ground and `ground` the ground's own, (…, 3). A foot
+    that goes backward faster than a treadmill slips less than one that goes forward.
     """
     along = ground / np.maximum(np.linalg.norm(ground, axis=-1, keepdims=True), 1e-9)
-    ahead = np.einsum("...i,...i->...", over, along)[..., None]
-    slips: Array = np.linalg.norm(over - along * np.maximum(ahead, 0.0) * (1 - _HASTE), axis=-1)
+    ahead = np.einsum("...i,...i->...", relative, along)[..., None]
+    backward = along * np.maximum(ahead, 0.0) * (1 - _BACKWARD_SLIP_WEIGHT)
+    slips: Array = np.linalg.norm(relative - backward, axis=-1)
     return slips
 
 
 def _grounded(
-    heights: Array, rest: Array, owner: NDArray[np.intp], near: float
+    heights: Array, rest: Array, owner: NDArray[np.intp], margin: float
 ) -> NDArray[np.bool_]:
-    """Return which feet come down at all, (feet,): to the lowest foot's ground, or as at rest.
+    """Return which feet come down at all, (feet,): near the lowest foot, or as low as at rest.
 
-    `heights` (frames, n) and `rest` (n,) are of joints, `owner` (n,) says of which feet.
+    `heights` (frames, n) and `rest` (n,) are of joints, `owner` (n,) are the numbers of their feet.
     """
     count = int(owner.max()) + 1
     lowest, at_rest = np.full(count, np.inf), np.full(count, np.inf)
     np.minimum.at(lowest, owner, heights.min(0))
     np.minimum.at(at_rest, owner, rest)
-    risen = lowest - at_rest
-    down: NDArray[np.bool_] = (lowest < lowest.min() + near) | (risen < risen.min() + near)
+    raised = lowest - at_rest
+    down: NDArray[np.bool_] = (lowest < lowest.min() + margin) | (raised < raised.min() + margin)
     return down
 
 
-def _smoothed(values: Array, clip: Clip) -> Array:
-    """Return the running mean of values (frames,) over the breadth of a step."""
+def _running_mean(values: Array, clip: Clip) -> Array:
+    """Return the running mean of values (frames,) over `_SPEED_WINDOW_S`."""
     cycle = values[:-1] if clip.loop else values
-    width = min(max(round(_BREADTH * clip.rate), 1), len(cycle)) | 1
+    width = min(max(round(_SPEED_WINDOW_S * clip.rate), 1), len(cycle)) | 1
     half = width // 2
     padded = np.pad(cycle, half, mode="wrap" if clip.loop else "edge")
     total = np.concatenate([[0.0], np.cumsum(padded)])
@@ -159,13 +134,8 @@ def _smoothed(values: Array, clip: Clip) -> Array:
     return np.append(mean, mean[0]) if clip.loop else mean
 
 
-def _any(joints: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return whether any joint of a foot (frames, joints) does, (frames,)."""
-    return np.asarray(joints.any(axis=1), np.bool_)
-
-
-def _held(begin: NDArray[np.bool_], stay: NDArray[np.bool_], loop: bool) -> NDArray[np.bool_]:
-    """Return stretches of `stay` (frames,) that hold a frame of `begin`: hysteresis."""
+def _hysteresis(begin: NDArray[np.bool_], stay: NDArray[np.bool_], loop: bool) -> NDArray[np.bool_]:
+    """Return the spans of `stay` (frames,) that contain a frame of `begin`."""
     held = np.zeros_like(begin)
     count = len(begin) - 1 if loop else len(begin)
     for first, length in spans(stay, loop):
@@ -176,15 +146,14 @@ def _held(begin: NDArray[np.bool_], stay: NDArray[np.bool_], loop: bool) -> NDAr
     return held
 
 
-def _steady(contacts: NDArray[np.bool_], clip: Clip) -> NDArray[np.bool_]:
+def _without_short_spans(contacts: NDArray[np.bool_], clip: Clip) -> NDArray[np.bool_]:
     """Return contacts (frames,) with short gaps closed and then short contacts dropped."""
     steady = contacts.copy()
     count = len(contacts) - 1 if clip.loop else len(contacts)
     for down in (False, True):
-        found = spans(steady == down, clip.loop)
-        for first, length in found:
+        for first, length in spans(steady == down, clip.loop):
             at_an_end = not clip.loop and (first == 0 or first + length == count)
-            if length < _SHORTEST * clip.rate and not at_an_end and length < count:
+            if length < _MIN_CONTACT_S * clip.rate and not at_an_end and length < count:
                 steady[np.arange(first, first + length) % count] = not down
     if clip.loop:
         steady[-1] = steady[0]

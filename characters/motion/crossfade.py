@@ -1,8 +1,8 @@
-"""From one motion to the next by playing both for a while and mixing them.
+"""Cross-fade: both motions play for a while and are mixed.
 
-It costs two motions while it lasts, and feet slide where the two differ; inertialisation
-(`StateMachine`, `characters.motion.inertialization`) does neither. It is right where the old
-motion shall be seen to go on: a walk that dies down into another.
+A cross-fade samples two motions, and feet slide where they differ; inertialization (`StateMachine`,
+`characters.motion.inertialization`) avoids both. Use a cross-fade where the old motion must visibly
+continue during the transition.
 """
 
 import math
@@ -11,32 +11,31 @@ from dataclasses import dataclass
 from characters.errors import CharacterError
 from characters.motion.blend import mix
 from characters.motion.curves import Ease, ease
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.travel import accumulated, mean_step
+from characters.motion.motion import Motion, RootDelta, integrate_travel, mean_delta
 from characters.skeleton.pose import Pose
 
 
 @dataclass(frozen=True)
 class CrossFade:
-    """A motion, and another one that takes its place from a time on."""
+    """A motion that is replaced by another one at a time."""
 
     first: Motion
-    """What plays before."""
+    """The motion before."""
 
     second: Motion
-    """What plays after; its time 0 is `start`."""
+    """The motion after; its time 0 is `start`."""
 
     start: float
-    """When the fade starts [s]."""
+    """Start of the fade [s]."""
 
     length: float = 0.25
-    """How long it takes [s]."""
+    """Length of the fade [s]."""
 
     shape: Ease = "gonio"
-    """How it goes."""
+    """Shape of the fade."""
 
     def __post_init__(self) -> None:
-        """Refuse times that are none."""
+        """Refuse times that are not finite and lengths that are not positive."""
         if not math.isfinite(self.start) or not 0.0 < self.length < math.inf:
             raise CharacterError(
                 f"cross-fade at {self.start} s over {self.length} s; give a positive length"
@@ -48,7 +47,7 @@ class CrossFade:
         return self.start + self.second.duration
 
     def weight(self, time: float) -> float:
-        """Return how much of the second motion plays at a time [s], 0…1."""
+        """Return the weight of the second motion at a time [s], 0…1."""
         return ease((time - self.start) / self.length, self.shape)
 
     def sample(self, time: float) -> Pose:
@@ -63,17 +62,15 @@ class CrossFade:
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        fades = (
-            min(max(self.start, start), end),
-            min(max(self.start + self.length, start), end),
-        )
-        before = self.first.travel(start, fades[0])
-        during = accumulated(*fades, self._moved)
-        after = self.second.travel(fades[1] - self.start, end - self.start)
+        fade_end = self.start + self.length
+        fade = min(max(self.start, start), end), min(max(fade_end, start), end)
+        before = self.first.travel(start, fade[0])
+        during = integrate_travel(*fade, self._travel)
+        after = self.second.travel(fade[1] - self.start, end - self.start)
         return before.then(during).then(after)
 
-    def _moved(self, start: float, end: float, moment: float) -> RootDelta:
-        weight = self.weight(moment)
+    def _travel(self, start: float, end: float, weight_time: float) -> RootDelta:
+        weight = self.weight(weight_time)
         first = self.first.travel(start, end)
         second = self.second.travel(start - self.start, end - self.start)
-        return mean_step([first, second], [1.0 - weight, weight])
+        return mean_delta([first, second], [1.0 - weight, weight])

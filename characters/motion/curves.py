@@ -1,6 +1,6 @@
-"""How much, over time: fades, envelopes, keyed values and their products.
+"""Weights over time: fades, envelopes, keyed values and their products.
 
-Shapes after MIRAnim's blending parameters (Egges, "Real-time animation of interactive virtual
+The shapes are MIRAnim's blending parameters (Egges, "Real-time animation of interactive virtual
 humans", 2006, section 4.2 and appendix B): linear, cubic and goniometric fades, ADSR envelopes.
 """
 
@@ -13,22 +13,22 @@ from typing import Literal, Protocol, TypeAlias, get_args
 from characters.errors import CharacterError
 
 Ease = Literal["linear", "cubic", "gonio"]
-"""How a fade goes: in a straight line, along 3u² − 2u³, or along half a cosine."""
+"""Shape of a fade: linear, 3u² − 2u³, or half a cosine."""
 
 
 class Curve(Protocol):
-    """A weight or a scale that changes over time."""
+    """A weight or scale that changes over time."""
 
     def at(self, time: float, duration: float) -> float:
         """Return the value at a time [s] since the start of something that lasts `duration` [s].
 
-        The duration may be infinite; what depends on the end then never comes.
+        The duration may be infinite; a fade at the end then never starts.
         """
         ...
 
 
 Weight: TypeAlias = "float | Curve"
-"""A number, or a number that changes over time."""
+"""A constant, or a number that changes over time."""
 
 
 def value(weight: Weight, time: float, duration: float) -> float:
@@ -37,7 +37,7 @@ def value(weight: Weight, time: float, duration: float) -> float:
 
 
 def ease(u: float, shape: Ease) -> float:
-    """Return how far a fade has come, 0…1, at a part u of its time; before and after it holds.
+    """Return the progress of a fade, 0…1, at the fraction u of its length; constant outside 0…1.
 
     >>> [round(ease(u, "gonio"), 3) for u in (-1.0, 0.25, 0.5, 2.0)]
     [0.0, 0.146, 0.5, 1.0]
@@ -52,26 +52,26 @@ def ease(u: float, shape: Ease) -> float:
 
 @dataclass(frozen=True)
 class FadeCurve:
-    """One, but rising from nought at the start and falling to nought at the end."""
+    """1, with a rise from 0 at the start and a fall to 0 at the end."""
 
     fade_in: float = 0.0
-    """How long it rises [s]."""
+    """Length of the rise [s]."""
 
     fade_out: float = 0.0
-    """How long it falls, up to the end [s]; where the two overlap, their product counts."""
+    """Length of the fall, up to the end [s]; where both overlap, their product is taken."""
 
     shape: Ease = "gonio"
-    """How it rises and falls."""
+    """Shape of both."""
 
     def __post_init__(self) -> None:
-        """Refuse times that are none."""
+        """Refuse negative times and unknown shapes."""
         _check_times("fade curve", self.shape, self.fade_in, self.fade_out)
 
     @staticmethod
     def percent(
         fade_in: float, fade_out: float, duration: float, shape: Ease = "gonio"
     ) -> "FadeCurve":
-        """Return the curve whose fades are given in percent of a duration [s].
+        """Return a curve with fades in percent of a duration [s].
 
         >>> FadeCurve.percent(20, 20, 5.0)
         FadeCurve(fade_in=1.0, fade_out=1.0, shape='gonio')
@@ -87,25 +87,25 @@ class FadeCurve:
 
 @dataclass(frozen=True)
 class Adsr:
-    """Attack, decay, sustain, release: up to one, down to a level that holds, and off."""
+    """Attack, decay, sustain, release: up to 1, down to a constant level, and down to 0."""
 
     attack: float
-    """How long it rises from 0 to 1 [s]."""
+    """Length of the rise from 0 to 1 [s]."""
 
     decay: float
-    """How long it then falls to the level [s]."""
+    """Length of the following fall to the level [s]."""
 
     level: float
-    """What it holds, 0…1."""
+    """The sustained level, 0…1."""
 
     release: float
-    """How long it falls to 0, up to the end [s]."""
+    """Length of the fall to 0, up to the end [s]."""
 
     shape: Ease = "gonio"
-    """How it goes from one to the next."""
+    """Shape between the values."""
 
     def __post_init__(self) -> None:
-        """Refuse times that are none."""
+        """Refuse negative times and unknown shapes."""
         _check_times("ADSR curve", self.shape, self.attack, self.decay, self.release)
         if not 0.0 <= self.level <= 1.0:
             raise CharacterError(f"ADSR curve: level {self.level}; give 0 to 1")
@@ -120,16 +120,16 @@ class Adsr:
 
 @dataclass(frozen=True)
 class Keyed:
-    """Values at times, eased between; before the first and after the last they hold."""
+    """Values at times, interpolated between them and constant before and after."""
 
     times: tuple[float, ...]
     """Times since the start [s], ascending."""
 
     values: tuple[float, ...]
-    """One for each time."""
+    """One value for each time."""
 
     shape: Ease = "gonio"
-    """How it goes from one to the next."""
+    """Shape between the values."""
 
     def __post_init__(self) -> None:
         """Refuse times out of order."""
@@ -148,10 +148,10 @@ class Keyed:
 
 @dataclass(frozen=True)
 class Product:
-    """Several weights at once, multiplied."""
+    """Product of several weights."""
 
     factors: tuple[Weight, ...]
-    """What is multiplied."""
+    """The factors."""
 
     def at(self, time: float, duration: float) -> float:
         """Return the value at a time [s] since the start."""
@@ -159,7 +159,7 @@ class Product:
 
 
 def check_knots(what: str, times: tuple[float, ...], values: tuple[float, ...]) -> None:
-    """Refuse knots that are not one value for each of ascending times, all finite."""
+    """Refuse knots that are not finite, with ascending times and one value for each."""
     ascending = all(a < b for a, b in itertools.pairwise(times))
     if not times or len(times) != len(values) or not ascending:
         raise CharacterError(
@@ -170,7 +170,7 @@ def check_knots(what: str, times: tuple[float, ...], values: tuple[float, ...]) 
 
 
 def _ramp(time: float, length: float, shape: Ease) -> float:
-    """Return how far a fade has come that takes so long; one that takes no time is over."""
+    """Return the progress of a fade of a length [s]; a fade of length 0 is complete."""
     return 1.0 if length == 0.0 else ease(time / length, shape)
 
 

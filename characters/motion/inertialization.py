@@ -1,9 +1,9 @@
-"""From one motion to another without a pop, by letting their difference die away.
+"""Inertialization: transitions between motions without a jump.
 
 Source: Bollo, "Inertialization: high-performance animation transitions in Gears of War", GDC 2018.
-At the switch the new motion takes over at once; what it differs by from the old one, in position
-and in velocity, is added to it and fades along a quintic. Bollo fades the length of each offset
-along a fixed axis; here the whole vector fades, so its velocity is kept in every direction.
+At the switch the new motion takes over at once. The difference to the old motion, in position and
+velocity, is added to it and decays along a quintic. Bollo decays the length of each offset along a
+fixed axis; here the whole vector decays, so its velocity is continuous in every direction.
 """
 
 from dataclasses import dataclass
@@ -13,42 +13,40 @@ import numpy as np
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
-_FASTEST = 30.0  # [rad/s]: no joint turns faster; what seems to is a jump in the clip itself
+_MAX_JOINT_SPEED = 30.0  # [rad/s]; a faster turn is a jump in the clip itself
 
 
 @dataclass(frozen=True)
 class OffsetDecay:
-    """An offset that dies away: a vector of any shape with its first velocity."""
+    """An offset of any shape that decays to zero, with a given initial velocity."""
 
     offset: Array
-    """At the start."""
+    """Its initial value."""
 
     velocity: Array
-    """Its change at the start [1/s]."""
+    """Its initial rate of change [1/s]."""
 
     length: float
-    """When it is gone [s]."""
+    """Time until it is zero [s]."""
 
     def at(self, time: float) -> Array:
-        """Return the offset at a time [s], before 0 in a straight line.
+        """Return the offset at a time [s]; linear before 0.
 
         Position, velocity and acceleration end at zero.
 
-        >>> fade = OffsetDecay(np.array([2.0]), np.array([0.0]), 0.5)
-        >>> fade.at(0.0).tolist(), fade.at(0.25).tolist(), fade.at(0.5).tolist()
+        >>> decay = OffsetDecay(np.array([2.0]), np.array([0.0]), 0.5)
+        >>> decay.at(0.0).tolist(), decay.at(0.25).tolist(), decay.at(0.5).tolist()
         ([2.0], [1.0], [0.0])
         """
         if time < 0.0:
             return self.offset + self.velocity * time
         u = min(time / self.length, 1.0)
-        # The quintics with value and slope (1, 0) and (0, 1) at 0 and all else zero at both ends.
-        position = 1 - u**3 * (10 - 15 * u + 6 * u * u)
-        velocity = u - u**3 * (6 - 8 * u + 3 * u * u)
-        faded: Array = self.offset * position + self.velocity * (velocity * self.length)
-        return faded
+        position, velocity = quintic_decay(u)
+        offset: Array = self.offset * position + self.velocity * (velocity * self.length)
+        return offset
 
     def integral(self, start: float, end: float) -> Array:
-        """Return the offset summed over time from `start` to `end` [s].
+        """Return the integral of the offset over time from `start` to `end` [s].
 
         >>> OffsetDecay(np.array([2.0]), np.array([0.0]), 0.5).integral(0.0, 9.0).tolist()
         [0.5]
@@ -69,19 +67,19 @@ class OffsetDecay:
 
 @dataclass(frozen=True)
 class Inertialization:
-    """What a new motion's poses differ by from the old one's, dying away."""
+    """The decaying difference of an old motion's poses from a new motion's."""
 
-    turns: OffsetDecay
+    rotations: OffsetDecay
     """Rotation vectors in the parent's frame, (joints, 3) [rad]."""
 
-    shifts: OffsetDecay
-    """Translations, (joints, 3) [m]."""
+    translations: OffsetDecay
+    """(joints, 3) [m]."""
 
-    growth: OffsetDecay | None
-    """Scales, (joints, 3); None where nothing is scaled."""
+    scales: OffsetDecay | None
+    """(joints, 3); None without scales."""
 
-    looks: OffsetDecay | None = None
-    """Morphs, (morphs,); None where there are none."""
+    morphs: OffsetDecay | None = None
+    """(morphs,); None without morphs."""
 
     @staticmethod
     def begin(
@@ -92,60 +90,68 @@ class Inertialization:
         Parameters
         ----------
         old, new
-            Two poses of each: at the switch, and `step` seconds later as if it had not been.
+            Two poses of each motion: at the switch, and `step` seconds later without the switch.
         step
             Time between the two [s].
         length
-            How long the transition takes [s].
+            Length of the transition [s].
         """
-        turns, later = (_turns(a, b) for a, b in zip(old, new, strict=True))
+        turns, later = (_rotation_offset(a, b) for a, b in zip(old, new, strict=True))
         spin = (_nearer(later, turns) - turns) / step
-        spin *= np.minimum(1.0, _FASTEST / np.maximum(_norm(spin), 1e-9))
+        spin *= np.minimum(1.0, _MAX_JOINT_SPEED / np.maximum(_norm(spin), 1e-9))
         shifts, moved = (a.translations - b.translations for a, b in zip(old, new, strict=True))
         return Inertialization(
             OffsetDecay(turns, spin, length),
             OffsetDecay(shifts, (moved - shifts) / step, length),
-            _growth(old[0], new[0], length),
-            _looks(old[0], new[0], length),
+            _scale_decay(old[0], new[0], length),
+            _morph_decay(old[0], new[0], length),
         )
 
     def apply(self, pose: Pose, time: float) -> Pose:
-        """Return a pose of the new motion, `time` seconds after the switch, as it is shown."""
-        if time >= self.turns.length:
+        """Return the shown pose for a pose of the new motion, `time` seconds after the switch."""
+        if time >= self.rotations.length:
             return pose
-        turned = rotations.from_rotation_vector(self.turns.at(time))
+        turned = rotations.from_rotation_vector(self.rotations.at(time))
         scales = pose.scales
-        if self.growth is not None:
-            scales = _scales(pose) + self.growth.at(time)
+        if self.scales is not None:
+            scales = pose.scales_or_ones + self.scales.at(time)
         morphs = pose.morphs
-        if self.looks is not None:
-            faded = self.looks.at(time)
-            morphs = faded if morphs is None else morphs + faded
+        if self.morphs is not None:
+            offset = self.morphs.at(time)
+            morphs = offset if morphs is None else morphs + offset
         return Pose(
-            pose.translations + self.shifts.at(time),
+            pose.translations + self.translations.at(time),
             rotations.multiply(turned, pose.rotations),
             scales,
             morphs,
         )
 
 
-def _turns(old: Pose, new: Pose) -> Array:
-    """Return what turns each joint from the new pose to the old one, as rotation vectors."""
+def quintic_decay(u: float) -> tuple[float, float]:
+    """Return the quintics that decay an initial position and an initial velocity, for u in 0…1.
+
+    Their value and slope at 0 are (1, 0) and (0, 1); at 1 value, slope and curvature are zero.
+    """
+    return 1 - u**3 * (10 - 15 * u + 6 * u * u), u - u**3 * (6 - 8 * u + 3 * u * u)
+
+
+def _rotation_offset(old: Pose, new: Pose) -> Array:
+    """Return the rotation of each joint from the new pose to the old one, as rotation vectors."""
     return rotations.to_rotation_vector(
         rotations.multiply(old.rotations, rotations.conjugate(new.rotations))
     )
 
 
-def _growth(old: Pose, new: Pose, length: float) -> OffsetDecay | None:
-    """Return the fade of the scales; without velocity, so that nothing shrinks below nought."""
+def _scale_decay(old: Pose, new: Pose, length: float) -> OffsetDecay | None:
+    """Return the decay of scales, without velocity, so that no scale becomes negative."""
     if old.scales is None and new.scales is None:
         return None
-    offset = _scales(old) - _scales(new)
+    offset = old.scales_or_ones - new.scales_or_ones
     return OffsetDecay(offset, np.zeros_like(offset), length)
 
 
-def _looks(old: Pose, new: Pose, length: float) -> OffsetDecay | None:
-    """Return the fade of the morphs; without velocity, so that none goes below nought."""
+def _morph_decay(old: Pose, new: Pose, length: float) -> OffsetDecay | None:
+    """Return the decay of morphs, without velocity, so that no weight becomes negative."""
     if old.morphs is None and new.morphs is None:
         return None
     before = np.zeros(1) if old.morphs is None else old.morphs
@@ -154,14 +160,10 @@ def _looks(old: Pose, new: Pose, length: float) -> OffsetDecay | None:
     return OffsetDecay(offset, np.zeros_like(offset), length)
 
 
-def _scales(pose: Pose) -> Array:
-    return np.ones_like(pose.translations) if pose.scales is None else pose.scales
-
-
 def _nearer(vectors: Array, reference: Array) -> Array:
-    """Return the rotation vectors taken the other way round where that is nearer to `reference`.
+    """Return rotation vectors, replaced by the longer way where that is nearer to `reference`.
 
-    Next to half a turn the shorter way may change from one frame to the next; the motion does not.
+    Near half a turn the shorter way may change between two frames though the motion is continuous.
     """
     other = vectors * (1 - 2 * np.pi / np.maximum(_norm(vectors), 1e-9))
     return np.where(_norm(vectors - reference) <= _norm(other - reference), vectors, other)

@@ -1,4 +1,4 @@
-"""Motions on top of another: over some of its joints, or added to it."""
+"""Layers over a motion: masked layers replace joints, additive layers add to them."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,8 +7,7 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.motion.curves import Weight, value
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.travel import accumulated, mean_step
+from characters.motion.motion import Motion, RootDelta, integrate_travel, mean_delta
 from characters.skeleton import rotations
 from characters.skeleton.masks import Mask, check_mask
 from characters.skeleton.pose import Array, Pose
@@ -16,25 +15,25 @@ from characters.skeleton.pose import Array, Pose
 
 @dataclass(frozen=True)
 class MaskedLayer:
-    """A motion over another one, on the joints of a mask: waving while walking."""
+    """A motion over another one on the joints of a mask, such as waving while walking."""
 
     base: Motion
-    """What plays below; its duration is that of the whole."""
+    """The lower motion; it defines the duration."""
 
     over: Motion
-    """What plays above, at the same time."""
+    """The upper motion, at the same time."""
 
     mask: Mask | None = None
-    """How much of `over` each joint takes, (joints,), or None for all."""
+    """Share of `over` for each joint, (joints,), or None for 1."""
 
     weight: Weight = 1.0
-    """What the mask is multiplied with, 0…1."""
+    """Factor of the mask, 0…1."""
 
     morphs: float = 1.0
-    """What the weight is multiplied with for morphs, if `over` has any."""
+    """Factor of the weight for morphs, if `over` has any."""
 
     def __post_init__(self) -> None:
-        """Refuse weights that are none."""
+        """Refuse invalid masks and weights."""
         check_mask("layer", self.mask)
         _check_weight("layer", self.weight)
 
@@ -55,47 +54,47 @@ class MaskedLayer:
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s].
 
-        It is the base's as far as the mask leaves out joint 0.
+        The mask of joint 0 is the share of `over`.
         """
         if isinstance(self.weight, (int, float)):
-            return self._moved(start, end, start)
-        return accumulated(start, end, self._moved)
+            return self._travel(start, end, start)
+        return integrate_travel(start, end, self._travel)
 
-    def _moved(self, start: float, end: float, moment: float) -> RootDelta:
-        share = value(self.weight, moment, self.duration)
+    def _travel(self, start: float, end: float, weight_time: float) -> RootDelta:
+        share = value(self.weight, weight_time, self.duration)
         share *= 1.0 if self.mask is None else float(self.mask[0])
         if share <= 0.0:
             return self.base.travel(start, end)
         if share >= 1.0:
             return self.over.travel(start, end)
-        steps = [self.base.travel(start, end), self.over.travel(start, end)]
-        return mean_step(steps, [1.0 - share, share])
+        deltas = [self.base.travel(start, end), self.over.travel(start, end)]
+        return mean_delta(deltas, [1.0 - share, share])
 
 
 @dataclass(frozen=True)
 class AdditiveLayer:
-    """What a motion does beyond a reference, added to another: breathing in any pose.
+    """The difference of a motion from a reference, added to another motion: breathing in any pose.
 
-    Rotations are added in each joint's parent's frame. The root moves as the base's.
+    Rotations are added in the frame of each joint's parent. The root moves as the base's root.
     """
 
     base: Motion
-    """What plays below; its duration is that of the whole."""
+    """The lower motion; it defines the duration."""
 
     over: Motion
-    """What is added, at the same time."""
+    """The added motion, at the same time."""
 
     reference: Pose | None = None
-    """What of `over` adds nothing; None for its first pose."""
+    """Pose of `over` that adds nothing; None for its first pose."""
 
     weight: Weight = 1.0
-    """How much of it is added; beyond 1 it is exaggerated, below 0 turned round."""
+    """Factor of the difference; above 1 exaggerates it, below 0 inverts it."""
 
     mask: Mask | None = None
-    """What the weight is multiplied with for each joint, (joints,), or None for 1."""
+    """Factor of the weight for each joint, (joints,), or None for 1."""
 
     def __post_init__(self) -> None:
-        """Refuse a mask that is none."""
+        """Refuse an invalid mask or weight."""
         check_mask("added layer", self.mask)
         if isinstance(self.weight, (int, float)) and not np.isfinite(self.weight):
             raise CharacterError(f"added layer: weight {self.weight}; give a finite number")
@@ -124,29 +123,29 @@ class AdditiveLayer:
 
 
 def overlaid(base: Pose, over: Pose, shares: Array, morphs: float) -> Pose:
-    """Return the base where the shares (joints,) are 0 and `over` where they are 1."""
+    """Return the mix of two poses with shares 0…1 of `over` for each joint, (joints,)."""
     _check_joints("layer", base, over)
     column = shares[:, None]
     scales = base.scales
     if base.scales is not None or over.scales is not None:
-        scales = _scales(base) + (_scales(over) - _scales(base)) * column
-    looks = base.morphs
+        scales = base.scales_or_ones + (over.scales_or_ones - base.scales_or_ones) * column
+    mixed_morphs = base.morphs
     if over.morphs is not None:
         below = np.zeros_like(over.morphs) if base.morphs is None else base.morphs
-        looks = below + (over.morphs - below) * morphs
+        mixed_morphs = below + (over.morphs - below) * morphs
     turns = rotations.nlerp(base.rotations, over.rotations, shares)
     return Pose(
         base.translations + (over.translations - base.translations) * column,
-        np.where(column > 0.0, turns, base.rotations),  # what is left alone stays bit for bit
+        np.where(column > 0.0, turns, base.rotations),  # other joints keep their exact values
         scales,
-        looks,
+        mixed_morphs,
     )
 
 
 def added(base: Pose, over: Pose, reference: Pose, shares: Array, morphs: float) -> Pose:
-    """Return the base with the shares (joints,) of what `over` differs by from the reference.
+    """Return the base plus shares (joints,) of the difference between `over` and the reference.
 
-    Where it differs by nothing, the base comes back bit for bit.
+    Joints without a difference keep their exact values.
     """
     _check_joints("added layer", base, over)
     _check_joints("added layer", base, reference)
@@ -156,18 +155,18 @@ def added(base: Pose, over: Pose, reference: Pose, shares: Array, morphs: float)
     vectors = np.where(alike, 0.0, rotations.to_rotation_vector(turns)) * column
     scales = base.scales
     if over.scales is not None or reference.scales is not None:
-        below = _scales(reference)
-        growth = _scales(over) / np.where(below == 0.0, 1.0, below)
-        scales = _scales(base) * (1.0 + (growth - 1.0) * column)
-    looks = base.morphs
+        below = reference.scales_or_ones
+        growth = over.scales_or_ones / np.where(below == 0.0, 1.0, below)
+        scales = base.scales_or_ones * (1.0 + (growth - 1.0) * column)
+    mixed_morphs = base.morphs
     if over.morphs is not None:
         change = over.morphs if reference.morphs is None else over.morphs - reference.morphs
-        looks = change * morphs if looks is None else looks + change * morphs
+        mixed_morphs = change * morphs if mixed_morphs is None else mixed_morphs + change * morphs
     return Pose(
         base.translations + (over.translations - reference.translations) * column,
         rotations.multiply(rotations.from_rotation_vector(vectors), base.rotations),
         scales,
-        looks,
+        mixed_morphs,
     )
 
 
@@ -181,10 +180,6 @@ def _shares(mask: Mask | None, weight: float, pose: Pose) -> Array:
             f"layer: a mask of {len(mask)} joints on a pose of {joints}; make it with mask_of"
         )
     return mask * weight
-
-
-def _scales(pose: Pose) -> Array:
-    return np.ones_like(pose.translations) if pose.scales is None else pose.scales
 
 
 def _check_joints(what: str, a: Pose, b: Pose) -> None:

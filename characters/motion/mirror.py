@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from characters.motion.clip import Clip
 from characters.motion.motion import Motion, RootDelta
-from characters.motion.phase import as_cyclic, takes_steps
+from characters.motion.phase import as_cyclic, has_footfalls
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.symmetry import check_symmetry, paired_joints, paired_names
@@ -224,4 +224,4 @@ class Mirrored:
         """How far ahead of its own phase the motion is; back again where mirrored twice."""
         if isinstance(self.motion, Mirrored):
             return -self.motion.lead
-        return 0.5 if takes_steps(self.motion) else 0.0
+        return 0.5 if has_footfalls(self.motion) else 0.0

@@ -1,8 +1,8 @@
-"""Motions that change another one's time or place: each takes a motion and is one.
+"""Motions that change the time or place of another motion.
 
-Those that keep a cycle in step (`Stretch`, `RootOffset`, and `Mirrored` of
-`characters.motion.mirror`) are `Cyclic` as well, so a mirrored walk can be blended with a walk,
-left foot to left foot.
+Modifiers that preserve cycles (`Stretch`, `RootOffset`, and `Mirrored` of
+`characters.motion.mirror`) are also `Cyclic`, so a mirrored walk can be blended with a walk, left
+foot with left foot.
 """
 
 import itertools
@@ -19,20 +19,21 @@ from characters.motion.motion import Motion, RootDelta
 from characters.motion.phase import as_cyclic
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose
+from characters.smoothing import hermite
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """A motion that takes another time; `Cyclic`."""
+    """A motion with another duration; `Cyclic`."""
 
     motion: Motion
-    """What is played; it must have an end."""
+    """The motion; it must have an end."""
 
     duration: float
-    """How long it takes now [s]."""
+    """The new duration [s]."""
 
     def __post_init__(self) -> None:
-        """Refuse what has no length to stretch."""
+        """Refuse infinite durations and durations that are not positive."""
         if not 0.0 < self.duration < math.inf:
             raise CharacterError(f"stretch to {self.duration} s; give a positive duration")
         _finite("stretch", self.motion)
@@ -60,19 +61,19 @@ class Stretch:
 
 @dataclass(frozen=True)
 class Window:
-    """A part of a motion; before and after it, its first and last pose are held."""
+    """A part of a motion; its first and last pose are held before and after it."""
 
     motion: Motion
-    """What is played."""
+    """The motion."""
 
     start: float
-    """Where the part starts in the motion [s]."""
+    """Start of the part in the motion [s]."""
 
     end: float
-    """Where it ends [s]; beyond the motion's end lies what that shows there."""
+    """End of the part [s]; may be beyond the motion's end."""
 
     def __post_init__(self) -> None:
-        """Refuse a part that is none."""
+        """Refuse an empty or infinite part."""
         if not 0.0 <= self.start < self.end < math.inf:
             raise CharacterError(
                 f"window: {self.start} s to {self.end} s; give a start of 0 or more and a later end"
@@ -97,35 +98,35 @@ class Window:
 
 @dataclass(frozen=True)
 class Loop:
-    """A motion over and over, each time from where the last one led."""
+    """A motion that repeats; each repetition starts where the last one ended."""
 
     motion: Motion
-    """What is repeated; it must have an end."""
+    """The repeated motion; it must have an end."""
 
     def __post_init__(self) -> None:
-        """Refuse what never ends."""
+        """Refuse a motion without an end."""
         _finite("loop", self.motion)
 
     @property
     def duration(self) -> float:
-        """Length of one round [s]."""
+        """Length of one repetition [s]."""
         return self.motion.duration
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
-        return self.motion.sample(self._round(time)[1])
+        return self.motion.sample(self._repetition(time)[1])
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        (first, early), (last, late) = self._round(start), self._round(end)
+        (first, early), (last, late) = self._repetition(start), self._repetition(end)
         if first == last:
             return self.motion.travel(early, late)
         whole = self.motion.travel(0.0, self.duration)
         rest = self.motion.travel(early, self.duration)
         return rest.then(whole.repeated(last - first - 1)).then(self.motion.travel(0.0, late))
 
-    def _round(self, time: float) -> tuple[int, float]:
-        """Return which round a time [s] is in and the time in it."""
+    def _repetition(self, time: float) -> tuple[int, float]:
+        """Return the number of the repetition at a time [s] and the time in it [s]."""
         if self.duration == 0.0:
             return 0, 0.0
         rounds = math.floor(time / self.duration)
@@ -134,16 +135,16 @@ class Loop:
 
 @dataclass(frozen=True)
 class RootOffset:
-    """A motion that takes place elsewhere on the ground, all of it; `Cyclic`."""
+    """A motion at another place on the ground; `Cyclic`."""
 
     motion: Motion
-    """What is played."""
+    """The motion."""
 
-    step: RootDelta
-    """From its place to the new one."""
+    offset: RootDelta
+    """From its place to the new place."""
 
     roots: tuple[int, ...] = (0,)
-    """Joints without a parent."""
+    """The joints without a parent."""
 
     @property
     def duration(self) -> float:
@@ -156,7 +157,7 @@ class RootOffset:
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        return self._seen(self.motion.travel(start, end))
+        return self._moved(self.motion.travel(start, end))
 
     def at(self, phase: float) -> Pose:
         """Return the pose at a phase."""
@@ -164,38 +165,38 @@ class RootOffset:
 
     def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
-        return self._seen(as_cyclic(self.motion).between(start, end))
+        return self._moved(as_cyclic(self.motion).between(start, end))
 
     def _placed(self, pose: Pose) -> Pose:
         roots = list(self.roots)
-        turn = rotations.about("y", self.step.yaw)
+        turn = rotations.about("y", self.offset.yaw)
         moved, turned = pose.translations.copy(), pose.rotations.copy()
-        ground = np.array([self.step.x, 0.0, self.step.z])
+        ground = np.array([self.offset.x, 0.0, self.offset.z])
         moved[roots] = ground + rotations.rotate(turn, moved[roots])
         turned[roots] = rotations.multiply(turn, turned[roots])
         return replace(pose, translations=moved, rotations=turned)
 
-    def _seen(self, step: RootDelta) -> RootDelta:
-        """Return the step as seen from the origin, which the displaced root carries along."""
-        return self.step.then(step).then(self.step.inverse())
+    def _moved(self, delta: RootDelta) -> RootDelta:
+        """Return a delta of the motion in the frame of the new place."""
+        return self.offset.then(delta).then(self.offset.inverse())
 
 
 @dataclass(frozen=True)
 class TimeCurve:
-    """Which time of a motion is shown when; smooth, and never beyond its knots between them.
+    """Maps times to times of a motion, smoothly and without overshoot between the knots.
 
-    Monotone cubic interpolation (Fritsch and Butland, 1984). Before the first and after the last
-    knot time stands still. It may stand still or run backwards between knots, too.
+    Monotone cubic interpolation (Fritsch and Butland, 1984), constant before the first and after
+    the last knot. Between knots time may also stand still or run backward.
     """
 
     times: tuple[float, ...]
-    """Times of what is shown [s], ascending."""
+    """Times of the result [s], ascending."""
 
     sources: tuple[float, ...]
-    """Times of the motion that they show [s], one for each."""
+    """Times of the motion [s], one for each time."""
 
     def __post_init__(self) -> None:
-        """Refuse times out of order."""
+        """Refuse times that are not ascending."""
         check_knots("time curve", self.times, self.sources)
 
     def at(self, time: float) -> float:
@@ -207,16 +208,16 @@ class TimeCurve:
         after = bisect_right(self.times, time)
         if after in (0, len(self.times)):
             return self.sources[max(after - 1, 0)]
-        low, a, slope_a = self.times[after - 1], self.sources[after - 1], self._slopes[after - 1]
-        gap, b, slope_b = self.times[after] - low, self.sources[after], self._slopes[after]
-        u = (time - low) / gap
-        slope_a, slope_b = slope_a * gap, slope_b * gap
-        bend = 3 * (b - a) - 2 * slope_a - slope_b
-        return a + u * (slope_a + u * (bend + u * (slope_a + slope_b - 2 * (b - a))))
+        before = after - 1
+        gap = self.times[after] - self.times[before]
+        (a, slope_a), (b, slope_b) = (
+            (self.sources[knot], self._slopes[knot] * gap) for knot in (before, after)
+        )
+        return hermite(a, slope_a, b, slope_b, (time - self.times[before]) / gap)
 
     @cached_property
     def _slopes(self) -> list[float]:
-        """Slope at each knot: the harmonic mean of its neighbours', 0 at a turning point."""
+        """Slope at each knot: harmonic mean of the neighbouring slopes, 0 at an extremum."""
         knots = itertools.pairwise(zip(self.times, self.sources, strict=True))
         slopes = [(b - a) / (after - before) for (before, a), (after, b) in knots] or [0.0]
         inner = [2 * a * b / (a + b) if a * b > 0 else 0.0 for a, b in itertools.pairwise(slopes)]
@@ -225,13 +226,13 @@ class TimeCurve:
 
 @dataclass(frozen=True)
 class Warped:
-    """A motion whose time runs along a curve."""
+    """A motion whose time follows a curve."""
 
     motion: Motion
-    """What is played."""
+    """The motion."""
 
     curve: TimeCurve
-    """Which of its times is shown when."""
+    """Maps times to times of the motion."""
 
     @property
     def duration(self) -> float:
@@ -243,7 +244,7 @@ class Warped:
         return self.motion.sample(self.curve.at(time))
 
     def travel(self, start: float, end: float) -> RootDelta:
-        """Return how the root moves over the ground between two times [s]; backwards, too."""
+        """Return how the root moves over the ground between two times [s], also backward."""
         first, last = self.curve.at(start), self.curve.at(end)
         if last < first:
             return self.motion.travel(last, first).inverse()
@@ -251,7 +252,7 @@ class Warped:
 
 
 def _finite(what: str, motion: Motion) -> None:
-    """Refuse a motion that never ends."""
+    """Refuse a motion without an end."""
     if not math.isfinite(motion.duration):
         raise CharacterError(
             f"{what}: a {type(motion).__name__} of duration {motion.duration} s has no end; "

@@ -1,16 +1,28 @@
-"""What everything that moves a character has in common, and steps over the ground."""
+"""The protocol of all motions, and deltas of the root over the ground.
+
+A mix moves at each moment with the weighted mean of its members' velocities, each in its own frame.
+Means are therefore taken of twists (the constant velocities along a delta), not of the deltas' end
+points: the mean of two arcs is an arc, and the deltas of parts compose to the delta of the whole.
+"""
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from characters.skeleton.pose import Pose
 from characters.skeleton.rotations import wrap
 
+_WEIGHT_INTERVAL_S = 1 / 60  # varying weights are constant within such an interval
+_MAX_ARC_RAD = 3.0  # a larger turn is not described by a single arc
+
 
 @dataclass(frozen=True)
 class RootDelta:
-    """A planar motion over the ground, in the frame that it starts from."""
+    """A planar rigid motion of the root over the ground, in the frame that it starts from.
+
+    `RootDelta()` is no movement. A place on the ground is the delta from the origin to it.
+    """
 
     x: float = 0.0
     """To the character's left [m]."""
@@ -21,8 +33,33 @@ class RootDelta:
     yaw: float = 0.0
     """About +y, to the left [rad]; not wrapped."""
 
+    @staticmethod
+    def from_twist(x: float, z: float, yaw: float) -> "RootDelta":
+        """Return the delta along a constant velocity in one unit of time: the inverse of `twist`.
+
+        >>> delta = RootDelta.from_twist(*RootDelta(0.3, 1.0, 0.5).twist())
+        >>> round(delta.x, 9), round(delta.z, 9), delta.yaw
+        (0.3, 1.0, 0.5)
+        """
+        half = max(-_MAX_ARC_RAD, min(yaw, _MAX_ARC_RAD)) / 2
+        stretch = math.sin(half) / half if abs(half) > 1e-9 else 1.0
+        sine, cosine = math.sin(half) * stretch, math.cos(half) * stretch
+        return RootDelta(cosine * x + sine * z, cosine * z - sine * x, yaw)
+
+    def twist(self) -> tuple[float, float, float]:
+        """Return the constant velocity (x, z, yaw) that covers the delta in one unit of time.
+
+        >>> [round(v, 6) for v in RootDelta(2.0, 2.0, math.pi / 2).twist()]
+        [0.0, 3.141593, 1.570796]
+        """
+        half = max(-_MAX_ARC_RAD, min(self.yaw, _MAX_ARC_RAD)) / 2
+        stretch = half / math.sin(half) if abs(half) > 1e-9 else 1.0
+        # The chord of an arc is turned by half the arc's angle from its start.
+        sine, cosine = math.sin(half) * stretch, math.cos(half) * stretch
+        return cosine * self.x - sine * self.z, sine * self.x + cosine * self.z, self.yaw
+
     def then(self, other: "RootDelta") -> "RootDelta":
-        """Return this step followed by another, which starts where this one ends.
+        """Return this delta followed by another, which starts where this one ends.
 
         >>> quarter = RootDelta(z=1.0, yaw=math.pi / 2)
         >>> end = quarter.then(quarter)
@@ -37,10 +74,10 @@ class RootDelta:
         )
 
     def inverse(self) -> "RootDelta":
-        """Return the step back.
+        """Return the delta back.
 
-        >>> step = RootDelta(1.0, 2.0, 0.5)
-        >>> back = step.then(step.inverse())
+        >>> delta = RootDelta(1.0, 2.0, 0.5)
+        >>> back = delta.then(delta.inverse())
         >>> round(back.x, 9) == round(back.z, 9) == round(back.yaw, 9) == 0
         True
         """
@@ -50,7 +87,7 @@ class RootDelta:
         )
 
     def to(self, other: "RootDelta") -> "RootDelta":
-        """Return the step from this place to another, both seen from one frame.
+        """Return the delta from this place to another; both are given in one frame.
 
         >>> here, there = RootDelta(1.0, 2.0, 0.5), RootDelta(4.0, 3.0, -0.4)
         >>> again = here.then(here.to(there))
@@ -61,12 +98,10 @@ class RootDelta:
         x, z = other.x - self.x, other.z - self.z
         return RootDelta(cosine * x - sine * z, sine * x + cosine * z, other.yaw - self.yaw)
 
-    def scaled(self, factor: float) -> "RootDelta":
-        """Return the step with every component multiplied."""
-        return RootDelta(self.x * factor, self.z * factor, self.yaw * factor)
-
     def repeated(self, times: int) -> "RootDelta":
-        """Return the step taken a whole number of times, backwards too, in closed form.
+        """Return the delta composed with itself a whole number of times, in closed form.
+
+        A negative number goes backward.
 
         >>> square = RootDelta(z=1.0, yaw=math.pi / 2).repeated(4)
         >>> round(square.length, 9), round(square.yaw / math.pi, 9)
@@ -75,7 +110,7 @@ class RootDelta:
         if times == 0:
             return RootDelta()
         half = self.yaw / 2
-        # A chord of a polygon: the ratio of sines, by l'Hôpital where it is straight.
+        # A chord of a polygon: the ratio of sines, or its limit by l'Hôpital.
         ratio = times * math.cos(times * half) / math.cos(half)
         if abs(math.sin(half)) > 1e-9:
             ratio = math.sin(times * half) / math.sin(half)
@@ -96,11 +131,49 @@ class RootDelta:
         return wrap(math.atan2(x - self.x, z - self.z) - self.yaw)
 
 
+def mean_delta(deltas: Sequence[RootDelta], weights: Sequence[float]) -> RootDelta:
+    """Return the mean of simultaneous deltas; the weights sum to one.
+
+    >>> mean_delta([RootDelta(0.0, 1.0), RootDelta(0.0, 3.0)], [0.25, 0.75])
+    RootDelta(x=0.0, z=2.5, yaw=0.0)
+    """
+    if len(deltas) == 1 and weights[0] == 1.0:
+        return deltas[0]
+    x = z = yaw = 0.0
+    for delta, weight in zip(deltas, weights, strict=True):
+        dx, dz, turn = delta.twist()
+        x, z, yaw = x + weight * dx, z + weight * dz, yaw + weight * turn
+    return RootDelta.from_twist(x, z, yaw)
+
+
+def integrate_travel(
+    start: float, end: float, travel: Callable[[float, float, float], RootDelta]
+) -> RootDelta:
+    """Return the root's delta between two times [s] of a mix whose weights vary.
+
+    Parameters
+    ----------
+    start, end
+        The times, start ≤ end.
+    travel
+        Called with the ends of a short interval and the time of the weights in it. These times lie
+        on a fixed grid, so the result does not depend on how start…end is split into parts.
+    """
+    total = RootDelta()
+    first, last = (math.floor(time / _WEIGHT_INTERVAL_S) for time in (start, end))
+    for cell in range(first, last + 1):
+        low = max(start, cell * _WEIGHT_INTERVAL_S)
+        high = min(end, (cell + 1) * _WEIGHT_INTERVAL_S)
+        if high > low:
+            total = total.then(travel(low, high, (cell + 0.5) * _WEIGHT_INTERVAL_S))
+    return total
+
+
 @runtime_checkable
 class Motion(Protocol):
     """Something that can be played: a clip, a blend of motions, a generator of idle motion.
 
-    Motions nest: a blend is made of motions and is one.
+    Motions nest: a blend consists of motions and is one.
     """
 
     @property
@@ -109,10 +182,7 @@ class Motion(Protocol):
         ...
 
     def sample(self, time: float) -> Pose:
-        """Return the pose at a time [s] since its start.
-
-        What the root does over the ground is not in the pose; it is in `travel`.
-        """
+        """Return the pose at a time [s] since its start, without the root motion of `travel`."""
         ...
 
     def travel(self, start: float, end: float) -> RootDelta:

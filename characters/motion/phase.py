@@ -1,7 +1,7 @@
-"""Where in its stride a motion is: phase 0 at the left footfall, one half at the right.
+"""Motions addressed by phase: 0 at the left footfall, one half at the right footfall.
 
-Two clips that are both at phase 0.3 may be mixed: left steps then meet left steps, whatever the
-lengths of the clips.
+Two clips that are both at phase 0.3 can be mixed: their left steps coincide, whatever the lengths
+of the clips.
 """
 
 import itertools
@@ -11,13 +11,14 @@ from functools import cached_property
 from typing import Protocol, cast
 
 from characters.motion.clip import Clip
-from characters.motion.contacts import Feet, feet_of, find_contacts, spans
+from characters.motion.contacts import find_contacts, spans
 from characters.motion.motion import Motion, RootDelta
-from characters.skeleton.feet import find_feet
+from characters.skeleton.feet import Feet, find_feet, foot_joints_by_side
 from characters.skeleton.pose import Pose, Skeleton
+from characters.smoothing import hermite
 
-_TOGETHER = 0.2  # of a cycle: feet that land so soon after each other land together
-_FEWEST = 5  # frames of a loop that can hold steps
+_MIN_STEP_CYCLES = 0.2  # feet that land within this part of a cycle land together
+_MIN_LOOP_FRAMES = 5  # shorter loops contain no steps
 
 
 class Cyclic(Motion, Protocol):
@@ -32,21 +33,34 @@ class Cyclic(Motion, Protocol):
         ...
 
 
-def unit(duration: float) -> float:
-    """Return what a unit of phase lasts [s]: a cycle, or a second where there is none.
+def cycle_length(duration: float) -> float:
+    """Return the length of a unit of phase [s]: a cycle, or one second if there is no cycle.
 
-    >>> unit(0.8), unit(0.0), unit(math.inf)
+    >>> cycle_length(0.8), cycle_length(0.0), cycle_length(math.inf)
     (0.8, 1.0, 1.0)
     """
     return duration if 0.0 < duration < math.inf else 1.0
 
 
+class PhaseDriven:
+    """Base of `Cyclic` motions that are defined by phase; derives `sample` and `travel`."""
+
+    def sample(self: Cyclic, time: float) -> Pose:
+        """Return the pose at a time [s] since phase 0."""
+        return self.at(time / cycle_length(self.duration))
+
+    def travel(self: Cyclic, start: float, end: float) -> RootDelta:
+        """Return how the root moves over the ground between two times [s]."""
+        cycle = cycle_length(self.duration)
+        return self.between(start / cycle, end / cycle)
+
+
 @dataclass(frozen=True)
-class PhasedMotion:
+class PhasedMotion(PhaseDriven):
     """A looped motion with marks for its phase; `Cyclic`."""
 
     motion: Motion
-    """What is played."""
+    """The looped motion."""
 
     marks: tuple[float, ...] = ()
     """Times of phases 0, ½, 1, 1½ … over one loop of the motion [s]; empty: phase 0 at its start.
@@ -56,7 +70,7 @@ class PhasedMotion:
 
     @property
     def duration(self) -> float:
-        """Length of one cycle [s]; a clip may hold several."""
+        """Length of one cycle [s]; a clip may contain several."""
         return self.motion.duration / max(len(self.marks) // 2, 1)
 
     def at(self, phase: float) -> Pose:
@@ -67,20 +81,10 @@ class PhasedMotion:
         """Return how the root moves over the ground between two phases."""
         return self.motion.travel(self.time(start), self.time(end))
 
-    def sample(self, time: float) -> Pose:
-        """Return the pose at a time [s] after a left footfall."""
-        return self.at(time / unit(self.duration))
-
-    def travel(self, start: float, end: float) -> RootDelta:
-        """Return how the root moves over the ground between two times [s]."""
-        cycle = unit(self.duration)
-        return self.between(start / cycle, end / cycle)
-
     def time(self, phase: float) -> float:
-        """Return the time [s] in the motion at a phase, through the marks and smooth at them.
+        """Return the time [s] in the motion at a phase, smoothly interpolated between the marks.
 
-        Monotone cubic interpolation (Fritsch and Butland, 1984): where steps are even it is a
-        straight line.
+        Monotone cubic interpolation (Fritsch and Butland, 1984), which is linear for even steps.
 
         >>> import numpy as np
         >>> clip = Clip("c", 10.0, Pose(np.zeros((11, 1, 3)), np.zeros((11, 1, 4))))
@@ -91,13 +95,8 @@ class PhasedMotion:
             return phase * self.motion.duration
         loops, at = divmod(2 * phase, len(self.marks))
         mark = min(int(at), len(self.marks) - 1)
-        u = at - mark
-        (a, slope_a), (b, slope_b) = self._knots[mark], self._knots[mark + 1]
-        between = a + u * (
-            slope_a
-            + u * (3 * (b - a) - 2 * slope_a - slope_b + u * (slope_a + slope_b - 2 * (b - a)))
-        )
-        return between + loops * self.motion.duration
+        time = hermite(*self._knots[mark], *self._knots[mark + 1], at - mark)
+        return time + loops * self.motion.duration
 
     @cached_property
     def _knots(self) -> list[tuple[float, float]]:
@@ -112,85 +111,113 @@ class PhasedMotion:
 
 @dataclass(frozen=True)
 class StaticPose:
-    """A pose that is held, as if it had a cycle; `Cyclic`."""
+    """A pose that is held; `Cyclic`, with a cycle of any length."""
 
     pose: Pose
-    """What is held."""
+    """The pose."""
 
     duration: float
-    """Length of the cycle that it keeps up with [s]."""
+    """Length of its cycle [s], for blends."""
 
     def at(self, phase: float) -> Pose:
         """Return the pose."""
         return self.pose
 
     def between(self, start: float, end: float) -> RootDelta:
-        """Return no motion."""
+        """Return no movement."""
         return RootDelta()
 
-    def sample(self, time: float) -> Pose:
-        """Return the pose."""
-        return self.pose
-
-    def travel(self, start: float, end: float) -> RootDelta:
-        """Return no motion."""
-        return RootDelta()
+    sample = at
+    travel = between
 
 
 @dataclass(frozen=True)
 class UnphasedMotion:
-    """A motion without an end, as if it had cycles of one second; `Cyclic`."""
+    """A motion without an end, as a `Cyclic` whose phase is its time in seconds."""
 
     motion: Motion
-    """What is played."""
+    """The motion."""
 
     @property
     def duration(self) -> float:
-        """It has no end."""
+        """Infinite."""
         return math.inf
 
     def at(self, phase: float) -> Pose:
-        """Return the pose after so many seconds."""
+        """Return the pose at a time [s]."""
         return self.motion.sample(phase)
 
     def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
         return self.motion.travel(start, end)
 
+    sample = at
+    travel = between
+
+
+class RetimedMotion:
+    """A cyclic motion that can be replaced while it plays, at the same phase; a `Motion`.
+
+    Only the present motion is known: it is also returned for times before the last replacement.
+    """
+
+    def __init__(self, motion: Cyclic, phase: float = 0.0) -> None:
+        self.restart(motion, phase)
+
+    @property
+    def duration(self) -> float:
+        """Length of one cycle of the present motion [s]."""
+        return self._motion.duration
+
+    def phase(self, time: float) -> float:
+        """Return the phase at a time [s]; it grows by one each cycle."""
+        return self._phase + (time - self._time) / cycle_length(self._motion.duration)
+
+    def change(self, motion: Cyclic, time: float) -> None:
+        """Continue with another motion from a time [s] on, at the present phase."""
+        # Whole cycles are dropped, so that a long session does not lose precision.
+        self._phase, self._time = self.phase(time) % 1.0, time
+        self._motion = motion
+
+    def restart(self, motion: Cyclic, phase: float) -> None:
+        """Start again with a motion at a phase, at time 0."""
+        self._motion, self._time, self._phase = motion, 0.0, phase
+
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
-        return self.motion.sample(time)
+        return self._motion.at(self.phase(time))
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        return self.motion.travel(start, end)
+        return self._motion.between(self.phase(start), self.phase(end))
 
 
 def as_cyclic(motion: Motion) -> Cyclic:
-    """Return any motion as one with a phase; where it has none of its own, 0 is its start."""
-    # Asked for every frame, where an isinstance of a protocol would be ten times as slow.
+    """Return any motion as a cyclic one; without footfalls, phase 0 is its start."""
+    # Called every frame; isinstance with a protocol would be ten times as slow.
     if hasattr(motion, "at") and hasattr(motion, "between"):
         return cast(Cyclic, motion)
     return PhasedMotion(motion) if math.isfinite(motion.duration) else UnphasedMotion(motion)
 
 
-def takes_steps(motion: Motion) -> bool:
-    """Return whether phase 0 of a motion is a left footfall and one half a right one."""
+def has_footfalls(motion: Motion) -> bool:
+    """Return whether phases 0 and ½ of a motion are a left and a right footfall."""
     if isinstance(motion, PhasedMotion):
         return bool(motion.marks)
     inner: Motion | None = getattr(motion, "motion", None)
     members: tuple[Motion, ...] = getattr(motion, "members", ())
-    return any(map(takes_steps, members if inner is None else (inner,)))
+    return any(map(has_footfalls, members if inner is None else (inner,)))
 
 
 def phased(clip: Clip, skeleton: Skeleton) -> PhasedMotion:
-    """Return a clip with its footfalls as marks, or with none if it takes no regular steps.
+    """Return a clip with its footfalls as marks, or without marks if it has no regular steps.
 
-    On four legs the hind pair tells the phase. Feet that land nearly together, as in a gallop or a
-    hop, make one mark for both; the other half of the cycle is then marked in its middle.
+    On four legs the hind feet define the phase. Feet that land nearly together, as in a gallop or a
+    hop, make one mark; the middle of the cycle is then the other mark.
     """
-    feet = feet_of(skeleton)
-    pair = [_hindmost(skeleton, [f for f in feet if set(f) & set(s)]) for s in find_feet(skeleton)]
+    feet = find_feet(skeleton)
+    sides = foot_joints_by_side(skeleton)
+    pair = [_hindmost(skeleton, [foot for foot in feet if set(foot) & set(side)]) for side in sides]
     left, right = footfalls(clip, skeleton, pair) if all(pair) else ([], [])
     if not left or len(left) != len(right):
         return PhasedMotion(clip)
@@ -198,10 +225,10 @@ def phased(clip: Clip, skeleton: Skeleton) -> PhasedMotion:
     marks = [(t - start) % clip.duration + start for t in [*left, *right]]
     order = sorted(range(len(marks)), key=marks.__getitem__)
     if any((number < len(left)) != (place % 2 == 0) for place, number in enumerate(order)):
-        return PhasedMotion(clip)  # two steps of one foot in a row: no walk
+        return PhasedMotion(clip)  # two steps of one foot in sequence are not a walk
     marks.sort()
     gaps = [b - a for a, b in itertools.pairwise([*marks, marks[0] + clip.duration])]
-    if min(gaps) < _TOGETHER * clip.duration / len(left):
+    if min(gaps) < _MIN_STEP_CYCLES * clip.duration / len(left):
         lefts = [*marks[::2], marks[0] + clip.duration]
         halves = [(a + b) / 2 for a, b in itertools.pairwise(lefts)]
         marks = [time for both in zip(marks[::2], halves, strict=True) for time in both]
@@ -209,19 +236,19 @@ def phased(clip: Clip, skeleton: Skeleton) -> PhasedMotion:
 
 
 def footfalls(clip: Clip, skeleton: Skeleton, feet: Feet) -> list[list[float]]:
-    """Return the times [s] in a looped clip at which each foot lands, by contacts found in it."""
-    if not clip.loop or len(clip) < _FEWEST:
+    """Return the times [s] in a looped clip at which each foot lands, from its contacts."""
+    if not clip.loop or len(clip) < _MIN_LOOP_FRAMES:
         return [[] for _ in feet]
     contacts = find_contacts(clip, skeleton, feet)
     landings = []
     for down in contacts.T:
-        # A foot that never lifts does not land.
+        # A foot that never lifts never lands.
         found = [] if down.all() else spans(down, loop=True)
         landings.append([first / clip.rate for first, _ in found])
     return landings
 
 
 def _hindmost(skeleton: Skeleton, feet: list[tuple[int, ...]]) -> tuple[int, ...]:
-    """Return the foot that is farthest back at rest; nothing if there is none."""
+    """Return the foot that is farthest back at rest, or () if there are no feet."""
     places = skeleton.rest.globals(skeleton)[:, 2, 3]
     return min(feet, key=lambda foot: float(places[list(foot)].mean()), default=())

@@ -13,8 +13,7 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.motion.curves import Weight, ease, value
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.travel import accumulated, mean_step
+from characters.motion.motion import Motion, RootDelta, integrate_travel, mean_delta
 from characters.skeleton import rotations
 from characters.skeleton.masks import Mask, check_mask
 from characters.skeleton.pose import Array, Pose
@@ -134,7 +133,7 @@ class Schedule:
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        return accumulated(start, end, self._moved)
+        return integrate_travel(start, end, self._moved)
 
     def adding(self, action: Action) -> "Schedule":
         """Return the schedule with one action more."""
@@ -206,7 +205,7 @@ class Schedule:
                 roots.append((action, float(share)))
         total = sum(share for _, share in roots)
         sizes = [a.size(moment) * (1.0 if a.scales is None else a.scales[0]) for a, _ in roots]
-        return mean_step(
+        return mean_delta(
             [action.motion.travel(start - action.start, end - action.start) for action, _ in roots],
             [share / total * size for (_, share), size in zip(roots, sizes, strict=True)],
         )
@@ -261,7 +260,7 @@ def _mixed(voices: list[_Voice]) -> Pose:
     turns = rotations.align(turns, heaviest)
     scales = None
     if any(voice.pose.scales is not None for voice in voices):
-        scales = np.einsum("kj,kjc->jc", share, np.stack([_scales(v.pose) for v in voices]))
+        scales = np.einsum("kj,kjc->jc", share, np.stack([v.pose.scales_or_ones for v in voices]))
     shifts = np.stack([voice.pose.translations for voice in voices])
     return Pose(
         np.einsum("kj,kjc->jc", share, shifts),
@@ -289,10 +288,8 @@ def _scaled(pose: Pose, rest: Pose, size: float, sizes: Array | None) -> Pose:
     return Pose(
         rest.translations + (pose.translations - rest.translations) * factor,
         rotations.multiply(turns, rest.rotations),
-        None if pose.scales is None else _scales(rest) + (pose.scales - _scales(rest)) * factor,
+        None
+        if pose.scales is None
+        else rest.scales_or_ones + (pose.scales - rest.scales_or_ones) * factor,
         None if pose.morphs is None else pose.morphs * size,
     )
-
-
-def _scales(pose: Pose) -> Array:
-    return np.ones_like(pose.translations) if pose.scales is None else pose.scales

@@ -1,14 +1,14 @@
-"""Which joint is which part of a body: the common language of two skeletons.
+"""Which joint is which part of a body: the common vocabulary of different skeletons.
 
-Parts are called as in VRM 1.0's humanoid ("leftUpperLeg"); a quadruped's hind legs and trunk are
-called like a person's legs and trunk, its front legs "leftFrontUpperLeg" and so on, its tail
-"tail1", "tail2" …. What a file or a person says goes first; names and the shape of the tree tell
-the rest.
+Parts are named as in VRM 1.0's humanoid ("leftUpperLeg"). A quadruped's hind legs and trunk have
+the names of a person's legs and trunk, its front legs are "leftFrontUpperLeg" and so on, its tail
+is "tail1", "tail2" …. Declared parts have priority; the others are guessed from joint names and the
+shape of the skeleton.
 """
 
 import difflib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
@@ -19,7 +19,7 @@ from characters.skeleton.pose import Skeleton
 Kind = Literal["humanoid", "quadruped", "other"]
 
 SIDES = ("left", "right")
-"""Both sides, as the names of parts begin."""
+"""Both sides, as part names begin."""
 
 _TRUNK = ("hips", "spine", "chest", "upperChest", "neck", "head", "jaw")
 _SIDED = (
@@ -38,7 +38,7 @@ PARTS = (
     *(side + part for side in SIDES for part in _SIDED),
     *(f"tail{number}" for number in range(1, 33)),
 )
-"""Every name of a part."""
+"""All part names."""
 
 _LEGS = tuple(side + part for side in SIDES for part in ("UpperLeg", "LowerLeg", "Foot"))
 _ARMS = tuple(side + part for side in SIDES for part in ("UpperArm", "LowerArm", "Hand"))
@@ -57,13 +57,10 @@ class Anatomy:
     """Which joint of a skeleton is which part of a body."""
 
     kind: Kind
-    """What kind of body it is."""
+    """The kind of body."""
 
     joints: Mapping[str, int]
     """Joint number by part, one of `PARTS`."""
-
-    told: frozenset[str] = field(default=frozenset())
-    """Parts that were said, not guessed."""
 
     @staticmethod
     def guess(skeleton: Skeleton, semantics: Mapping[str, str] | None = None) -> "Anatomy":
@@ -72,23 +69,24 @@ class Anatomy:
         Parameters
         ----------
         skeleton
-            Whose names, tree and rest pose are looked at.
+            Its joint names, hierarchy and rest pose are examined.
         semantics
-            Names of joints by part, where they are known; they go before any guess. An empty
-            name says that the body has no such part.
+            Declared joint names by part; they have priority over guesses. An empty name declares
+            that the body has no such part.
 
         Raises
         ------
         CharacterError
-            If the semantics name a part or a joint that there is not.
+            If the semantics name an unknown part or joint.
 
         >>> from characters import Character
         >>> anatomy = Anatomy.guess(Character.load("human").skeleton)
         >>> anatomy.kind, anatomy.missing
         ('humanoid', ())
         """
-        told = dict(semantics or {})
-        known = {part: _told_joint(part, name, skeleton) for part, name in told.items()}
+        known = {
+            part: _declared_joint(part, name, skeleton) for part, name in (semantics or {}).items()
+        }
         fixed = {part: joint for part, joint in known.items() if joint is not None}
         guessed = find_parts(skeleton, fixed)
         joints = {
@@ -97,15 +95,15 @@ class Anatomy:
             if part not in known and joint not in fixed.values()
         } | fixed
         ordered = {part: joints[part] for part in PARTS if part in joints}
-        return Anatomy(_kind(ordered), ordered, frozenset(fixed))
+        return Anatomy(_kind(ordered), ordered)
 
     def joint(self, part: str) -> int | None:
-        """Return the number of the joint that is a part, or None if there is none."""
+        """Return the joint number of a part, or None if there is none."""
         return self.joints.get(part)
 
     @cached_property
     def missing(self) -> tuple[str, ...]:
-        """Parts that a body of its kind should have and that were not found."""
+        """Parts that a body of this kind should have and that were not found."""
         return tuple(part for part in _NEEDED[self.kind] if part not in self.joints)
 
     @cached_property
@@ -128,11 +126,11 @@ def _kind(joints: Mapping[str, int]) -> Kind:
     return "humanoid" if legs and upper else "other"
 
 
-def _told_joint(part: str, name: str, skeleton: Skeleton) -> int | None:
-    """Return the joint that is said to be a part; refuse what there is not."""
+def _declared_joint(part: str, name: str, skeleton: Skeleton) -> int | None:
+    """Return the joint that is declared as a part; refuse unknown parts and joints."""
     if part not in PARTS:
         raise CharacterError(
-            f"joints: no part of a body is called {part!r}{_near(part, PARTS)}; parts are called "
+            f"joints: no body part is named {part!r}{_near(part, PARTS)}; parts are named "
             "as in VRM 1.0, see docs/your-own-character.md"
         )
     if not name:

@@ -1,8 +1,8 @@
-"""What the name of a joint says: which side, which part of the body, which of several.
+"""Side and body part that are encoded in a joint's name.
 
-Riggers write one thing in many ways: "mixamorig:LeftUpLeg", "thigh.L", "lfemur", "l_hip",
-"Bip01 L Thigh", "J_Bip_L_UpperLeg", "BackUpLeg.L". A name is cut into words; sides, prefixes and
-numbers are taken out; what is left is looked up.
+Naming conventions differ: "mixamorig:LeftUpLeg", "thigh.L", "lfemur", "l_hip", "Bip01 L Thigh",
+"J_Bip_L_UpperLeg", "BackUpLeg.L". A name is split into words; sides, prefixes and numbers are
+removed; the rest is looked up.
 """
 
 import re
@@ -20,7 +20,7 @@ _FILLERS = _words(
     "mixamorig bip bip01 bone bones b j jnt joint jt armature skeleton def org c center centre m "
     "valve valvebiped biped character rig sk humanoid bn cc base bend"
 )
-# Joints that only help others: ends, twists, targets of inverse kinematics, cloth, meshes.
+# Helper joints: ends, twists, IK targets, cloth, meshes.
 _AUXILIARY = _words(
     "end nub site tip ik fk pole target twist roll helper socket prop weapon ctrl control "
     "effector mch sec adj offset mesh geo hair skirt bust breast cloth top lid eyelid brow "
@@ -46,8 +46,8 @@ _FINGERS = {
     "pinkie": "Little",
 }
 
-# How well a word fits each role of a limb, 0…1. "Shoulder" is a collarbone to some and the joint
-# of the upper arm to others; what else the limb has decides.
+# How well a word fits each role of a limb, 0…1. "Shoulder" is the collarbone in some rigs and the
+# upper arm in others; the rest of the limb decides.
 _LEG_WORDS: dict[str, dict[str, float]] = {
     "upleg upperleg thigh femur upperthigh legupper legup": {"UpperLeg": 1.0},
     "hip": {"UpperLeg": 0.7},
@@ -96,41 +96,41 @@ _KNOWN = frozenset({*LEG_FIT, *ARM_FIT, *_TRUNK, *_FINGERS, "hipjoint", "fingers
 
 @dataclass(frozen=True)
 class JointName:
-    """What a name says."""
+    """What the name of a joint encodes."""
 
     word: str
-    """What is left of it in small letters: "upperleg"; "" if nothing."""
+    """The part in lower case, such as "upperleg"; "" if none."""
 
     side: str = ""
-    """"left", "right", or "" where it does not say."""
+    """"left", "right", or "" if the name has no side."""
 
     front: bool = False
-    """Whether it says front leg."""
+    """Whether the name says front leg."""
 
     hind: bool = False
-    """Whether it says hind leg."""
+    """Whether the name says hind leg."""
 
     auxiliary: bool = False
-    """Whether it is no joint of a body: an end, a twist, a target, a strand of hair."""
+    """Whether it is a helper joint: an end, a twist, an IK target, hair."""
 
     @property
     def leg(self) -> dict[str, float]:
-        """How well it fits each role of a leg, 0…1; empty if not at all."""
+        """How well it fits each role of a leg, 0…1; empty if it fits none."""
         return {} if self.auxiliary else LEG_FIT.get(self.word, {})
 
     @property
     def arm(self) -> dict[str, float]:
-        """How well it fits each role of an arm, 0…1; empty if not at all."""
+        """How well it fits each role of an arm, 0…1; empty if it fits none."""
         return {} if self.auxiliary else ARM_FIT.get(self.word, {})
 
     @property
     def trunk(self) -> str:
-        """Which part of the trunk or the head it names, "" if none."""
+        """The part of the trunk or head, "" if none."""
         return "" if self.auxiliary else _TRUNK.get(self.word, "")
 
     @property
     def finger(self) -> str:
-        """Which finger it is of, as in VRM, "" if of none."""
+        """The finger it belongs to, named as in VRM, "" if none."""
         if self.auxiliary:
             return ""
         word = self.word.removeprefix("hand").removeprefix("finger").removesuffix("finger")
@@ -139,7 +139,7 @@ class JointName:
 
 @cache
 def read_name(name: str) -> JointName:
-    """Return what the name of a joint says.
+    """Return side and part that a joint's name encodes.
 
     >>> read_name("mixamorig:LeftUpLeg").word, read_name("lfemur").side, read_name("FootR").side
     ('upleg', 'left', 'right')
@@ -148,7 +148,7 @@ def read_name(name: str) -> JointName:
     """
     own = re.split(r"[:|]", name)[-1]
     words = [word.lower() for word in _WORD.findall(own) if not word.isdigit()]
-    words = [piece for word in words for piece in _unglued(word)]
+    words = [piece for word in words for piece in _split_side(word)]
     sides = [_SIDES[word] for word in words if word in _SIDES]
     auxiliary = not _AUXILIARY.isdisjoint(words)
     rest = [word for word in words if word not in _SIDES and word not in _FILLERS]
@@ -160,8 +160,8 @@ def read_name(name: str) -> JointName:
     return JointName("".join(rest), sides[0] if sides else "", front, hind, auxiliary)
 
 
-def _unglued(word: str) -> list[str]:
-    """Return a word cut where it is a side glued to a part: "lfemur", "leftfoot", "footr"."""
+def _split_side(word: str) -> list[str]:
+    """Split a word that joins a side and a part: "lfemur", "leftfoot", "footr"."""
     for side in ("left", "right", "l", "r"):
         inner = word.removeprefix(side)
         if inner == word:

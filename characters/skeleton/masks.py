@@ -1,6 +1,6 @@
-"""Which joints a layer moves: weights 0…1, one for each joint.
+"""Joint masks: one weight 0…1 for each joint.
 
-A mask is a plain array (joints,), so masks combine by arithmetic: `1 - mask`, `upper * left`,
+A mask is a plain array (joints,), so masks are combined by arithmetic: `1 - mask`, `upper * left`,
 `np.maximum(a, b)`.
 """
 
@@ -14,10 +14,9 @@ from characters.errors import CharacterError
 from characters.skeleton.pose import Array, Skeleton
 
 Mask: TypeAlias = Array
-"""How much each joint takes part, (joints,), 0…1."""
+"""Weight of each joint, (joints,), 0…1."""
 
-_NONE: Mapping[str, float] = MappingProxyType({})
-_NAMELESS: Mapping[str, int] = MappingProxyType({})
+_NONE: Mapping[str, int] = MappingProxyType({})
 
 
 def mask_of(
@@ -25,27 +24,27 @@ def mask_of(
     subtrees: Mapping[str, float] = _NONE,
     joints: Mapping[str, float] = _NONE,
     default: float = 0.0,
-    semantics: Mapping[str, int] = _NAMELESS,
+    semantics: Mapping[str, int] = _NONE,
 ) -> Mask:
     """Return the mask with these weights.
 
     Parameters
     ----------
     skeleton
-        Whose joints they are.
+        The skeleton of the mask.
     subtrees
-        Joint to the weight of it and of all below it; a later one overrides an earlier one.
+        Weight of a joint and all its descendants; later entries override earlier ones.
     joints
-        Joint to the weight of it alone; overrides the subtrees.
+        Weight of a joint alone; overrides the subtrees.
     default
         Weight of all other joints.
     semantics
-        Further names of joints, such as `Anatomy.joints`; the skeleton's own names come first.
+        Further joint names, such as `Anatomy.joints`; the skeleton's own names have priority.
 
     Raises
     ------
     CharacterError
-        If there is no such joint, or a weight is not 0…1.
+        If a joint is unknown, or a weight is not 0…1.
     """
     mask = np.full(len(skeleton), _weight("default", default))
     for name, weight in subtrees.items():
@@ -56,7 +55,7 @@ def mask_of(
 
 
 def subtree(skeleton: Skeleton, joint: int) -> list[int]:
-    """Return a joint and all joints below it."""
+    """Return a joint and all its descendants."""
     below = [joint]
     inside = {joint}
     for child in range(joint + 1, len(skeleton)):  # parents come before their children
@@ -67,11 +66,11 @@ def subtree(skeleton: Skeleton, joint: int) -> list[int]:
 
 
 def check_mask(what: str, mask: Mask | None) -> None:
-    """Refuse what is no mask."""
+    """Refuse an array that is not a mask; `what` names it in the message."""
     if mask is None:
         return
     if np.ndim(mask) != 1 or not bool(((mask >= 0) & (mask <= 1)).all()):
-        raise CharacterError(f"{what}: a mask that is not one weight 0…1 for each joint")
+        raise CharacterError(f"{what}: the mask is not one weight 0…1 for each joint")
 
 
 def _weight(name: str, weight: float) -> float:

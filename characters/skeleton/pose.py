@@ -1,4 +1,4 @@
-"""Skeletons and poses: arrays over joints, never objects a joint."""
+"""Skeletons and poses as arrays over joints."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Pose:
-    """Where every joint is, relative to its parent."""
+    """The local transform of every joint; leading axes are frames."""
 
     translations: Array
     """(…, joints, 3) [m]."""
@@ -27,7 +27,12 @@ class Pose:
     """(…, joints, 3), or None for all ones."""
 
     morphs: Array | None = None
-    """How far each of the character's morphs is on, (…, morphs), or None for not at all."""
+    """Weights of the character's morph targets, (…, morphs), or None for zeros."""
+
+    @property
+    def scales_or_ones(self) -> Array:
+        """The scales, (…, joints, 3); all ones if there are none."""
+        return np.ones_like(self.translations) if self.scales is None else self.scales
 
     def locals(self) -> Array:
         """Return `parent_from_joint` of every joint, (…, joints, 4, 4)."""
@@ -42,21 +47,21 @@ class Pose:
     def globals(self, skeleton: "Skeleton") -> Array:
         """Return `character_from_joint` of every joint, (…, joints, 4, 4).
 
-        Pointer doubling instead of a walk down the tree: after round n each matrix reaches 2ⁿ
-        joints up, so a skeleton twelve joints deep takes four products over all joints at once.
+        By pointer doubling instead of a walk down the tree: after round n each matrix reaches 2ⁿ
+        joints up, so a hierarchy of twelve levels takes four products over all joints.
         """
         locals_ = self.locals()
-        # One more joint, that never moves, above all roots.
+        # One more joint, the fixed world, is the parent of all roots.
         shape = (*locals_.shape[:-3], len(skeleton.parents) + 1, 4, 4)
         matrices = np.empty(shape)
         matrices[..., :-1, :, :] = locals_
         matrices[..., -1, :, :] = np.eye(4)
-        for ancestors in skeleton.doublings:
+        for ancestors in skeleton.doubled_ancestors:
             matrices = matrices[..., ancestors, :, :] @ matrices
         return matrices[..., :-1, :, :]
 
     def __getitem__(self, frames: "int | slice | NDArray[np.intp]") -> "Pose":
-        """Return some of the poses along the first of the leading axes."""
+        """Return some of the poses, selected along the first leading axis."""
         return Pose(
             self.translations[frames],
             self.rotations[frames],
@@ -67,19 +72,19 @@ class Pose:
 
 @dataclass(frozen=True)
 class Skeleton:
-    """Names, parents and rest pose of a tree of joints."""
+    """Names, parents and rest pose of a hierarchy of joints."""
 
     names: tuple[str, ...]
     """Name of each joint."""
 
     parents: tuple[int, ...]
-    """Number of each joint's parent, −1 for a root; a parent always comes before its children."""
+    """Number of each joint's parent, −1 for a root; parents come before their children."""
 
     rest: Pose
-    """The pose in the file."""
+    """The rest pose in the file."""
 
     def __post_init__(self) -> None:
-        """Refuse a tree that cannot be walked."""
+        """Refuse inconsistent lengths and parents after children."""
         joints = len(self.names)
         if len(self.parents) != joints or self.rest.rotations.shape != (joints, 4):
             raise CharacterError(
@@ -98,7 +103,7 @@ class Skeleton:
         return len(self.names)
 
     def index(self, name: str) -> int:
-        """Return the number of the joint of that name."""
+        """Return the number of the joint with a name."""
         try:
             return self.names.index(name)
         except ValueError:
@@ -106,8 +111,8 @@ class Skeleton:
                 f"skeleton has no joint {name!r}; it has {', '.join(self.names)}"
             ) from None
 
-    def carrying(self, joints: Iterable[int]) -> list[int]:
-        """Return some joints with all that carry them, parents first."""
+    def with_ancestors(self, joints: Iterable[int]) -> list[int]:
+        """Return joints and all their ancestors, parents first."""
         wanted = set(joints)
         for joint in reversed(range(len(self))):
             if joint in wanted and self.parents[joint] >= 0:
@@ -116,12 +121,12 @@ class Skeleton:
 
     @property
     def has_root_motion(self) -> bool:
-        """Whether joint 0 carries the planar motion of the body, as in the bundled characters."""
+        """Whether joint 0 carries the planar root motion, as in the bundled characters."""
         return self.names[0] == "root" and self.parents[0] == -1
 
     @cached_property
-    def doublings(self) -> tuple[NDArray[np.intp], ...]:
-        """The ancestors 1, 2, 4, … joints up, each (joints + 1,); the last joint is the world."""
+    def doubled_ancestors(self) -> tuple[NDArray[np.intp], ...]:
+        """Ancestors 1, 2, 4, … levels up, each (joints + 1,); the last joint is the world."""
         world = len(self.parents)
         ancestors = np.array([*(p if p >= 0 else world for p in self.parents), world])
         rounds: list[NDArray[np.intp]] = []

@@ -1,8 +1,8 @@
 """Unit quaternions xyzw, as in glTF, over any leading axes.
 
-Every function is vectorised and broadcasts. Products of two quaternions are taken as one outer
-product and one matrix product with a constant table: on the few dozen joints of a skeleton the
-cost is the number of NumPy calls, not the arithmetic.
+All functions broadcast. The product of two quaternions is one outer product and one matrix product
+with a constant table: for the few dozen joints of a skeleton the number of NumPy calls sets the
+cost, not the arithmetic.
 
 Source of the formulas: Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985.
 """
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 Array = NDArray[np.float64]
 
 IDENTITY: Array = np.array([0.0, 0.0, 0.0, 1.0])
-"""The rotation that changes nothing."""
+"""The identity rotation."""
 
 
 def _multiplication_table() -> Array:
@@ -58,7 +58,7 @@ def _outer(a: Array, b: Array) -> Array:
 
 
 def multiply(a: ArrayLike, b: ArrayLike) -> Array:
-    """Return the rotation that does b first and then a.
+    """Return the product a b: the rotation b followed by a.
 
     >>> quarter = about("y", np.pi / 2)
     >>> np.allclose(multiply(quarter, quarter), about("y", np.pi))
@@ -97,7 +97,7 @@ def normalize(q: ArrayLike) -> Array:
 
 
 def rotate(q: ArrayLike, vectors: ArrayLike) -> Array:
-    """Turn vectors (…, 3).
+    """Return rotated vectors (…, 3).
 
     >>> np.allclose(rotate(about("y", np.pi / 2), [0, 0, 1]), [1, 0, 0])
     True
@@ -154,7 +154,7 @@ def between(start: ArrayLike, end: ArrayLike) -> Array:
     half[..., :3] = cross(a, b)
     half[..., 3] = 1 + np.einsum("...i,...i->...", a, b)
     opposite = half[..., 3] < 1e-9
-    if opposite.any():  # any axis across them will do
+    if opposite.any():  # any perpendicular axis will do
         across = cross(a, np.eye(3)[np.abs(a).argmin(-1)])
         half[..., :3] = np.where(opposite[..., None], across, half[..., :3])
         half[..., 3] = np.where(opposite, 0.0, half[..., 3])
@@ -162,7 +162,7 @@ def between(start: ArrayLike, end: ArrayLike) -> Array:
 
 
 def cross(a: ArrayLike, b: ArrayLike) -> Array:
-    """Return the vector products of (…, 3); several times as fast as NumPy's on a few vectors.
+    """Return cross products of (…, 3); several times as fast as `np.cross` on a few vectors.
 
     >>> cross([1, 0, 0], [0, 1, 0]).tolist()
     [0.0, 0.0, 1.0]
@@ -183,7 +183,7 @@ def from_rotation_vector(vector: ArrayLike) -> Array:
     """
     vector = np.asarray(vector, float)
     half = np.sqrt(np.einsum("...i,...i->...", vector, vector))[..., None] / 2
-    # Next to zero the sine is its angle, to the last bit.
+    # Near zero the sine equals its angle to the last bit.
     safe = np.maximum(half, 1e-9)
     q = np.empty((*vector.shape[:-1], 4))
     np.multiply(vector, np.sin(safe) / (2 * safe), out=q[..., :3])
@@ -192,7 +192,7 @@ def from_rotation_vector(vector: ArrayLike) -> Array:
 
 
 def to_rotation_vector(q: ArrayLike) -> Array:
-    """Return axis times angle [rad], (…, 3), of the shorter way round: the logarithm.
+    """Return axis times angle [rad], (…, 3), of the shorter way: the logarithm.
 
     >>> np.allclose(to_rotation_vector(-about("y", 0.3)), [0, 0.3, 0])
     True
@@ -219,7 +219,7 @@ def to_matrix(q: ArrayLike) -> Array:
 def from_matrix(matrix: ArrayLike) -> Array:
     """Return the quaternions of rotation matrices (…, 3, 3), with w ≥ 0.
 
-    The largest of the four components is found first, so no division is by a small number
+    The largest of the four components is computed first, so there is no division by a small number
     (Shepperd, "Quaternion from rotation matrix", 1978).
 
     >>> np.allclose(from_matrix(to_matrix(about("x", 3.0))), about("x", 3.0))
@@ -244,7 +244,7 @@ def from_matrix(matrix: ArrayLike) -> Array:
 
 
 def align(q: ArrayLike, reference: ArrayLike) -> Array:
-    """Return q or −q, the same rotation, whichever lies nearer to `reference`.
+    """Return q or −q, the same rotation, whichever is nearer to `reference`.
 
     >>> align([0, 0, 0, -1], IDENTITY).tolist()
     [-0.0, -0.0, -0.0, 1.0]
@@ -255,7 +255,7 @@ def align(q: ArrayLike, reference: ArrayLike) -> Array:
 
 
 def nlerp(a: ArrayLike, b: ArrayLike, u: ArrayLike) -> Array:
-    """Return the normalised straight mix, the shorter way: 0 is a, 1 is b; u is (…) or scalar.
+    """Return the normalised linear interpolation, the shorter way, from a at u = 0 to b at u = 1.
 
     >>> np.allclose(nlerp(IDENTITY, about("y", 0.4), 0.5), about("y", 0.2))
     True
@@ -266,7 +266,7 @@ def nlerp(a: ArrayLike, b: ArrayLike, u: ArrayLike) -> Array:
 
 
 def slerp(a: ArrayLike, b: ArrayLike, u: ArrayLike) -> Array:
-    """Return the rotation a part u of the shorter way from a to b, at constant speed.
+    """Return the spherical linear interpolation, the shorter way, from a at u = 0 to b at u = 1.
 
     >>> np.allclose(slerp(IDENTITY, about("y", 2.0), 0.3), about("y", 0.6))
     True
@@ -285,7 +285,7 @@ def slerp(a: ArrayLike, b: ArrayLike, u: ArrayLike) -> Array:
 
 
 def continuous(q: ArrayLike) -> Array:
-    """Return a track (frames, …, 4) with the signs chosen so that no frame jumps to −q.
+    """Return a track (frames, …, 4) with signs chosen so that it does not jump between q and −q.
 
     >>> continuous([[0, 0, 0, 1], [0, 0, 0, -1]])[:, 3].tolist()
     [1.0, 1.0]
@@ -310,7 +310,7 @@ def heading(q: ArrayLike) -> Array:
 
 
 def wrap(angle: float) -> float:
-    """Return the same angle in −π…π.
+    """Return the equivalent angle in −π…π.
 
     >>> math.isclose(wrap(1.5 * math.pi), -0.5 * math.pi)
     True

@@ -1,8 +1,7 @@
-"""Single rotations in plain numbers.
+"""Single quaternions and vectors as tuples of floats.
 
-A few products of four numbers are done in a fraction of the time that as many calls of NumPy take;
-for many at once there is `characters.skeleton.rotations`. Vectors are x, y, z and unit quaternions
-x, y, z, w, as everywhere.
+For one rotation this is much faster than calls of NumPy; for many rotations at once see
+`characters.skeleton.rotations`. Vectors are (x, y, z), unit quaternions (x, y, z, w).
 """
 
 import math
@@ -12,11 +11,11 @@ Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 IDENTITY: Quaternion = (0.0, 0.0, 0.0, 1.0)
-"""The rotation that changes nothing."""
+"""The identity rotation."""
 
 
 def multiply(a: Sequence[float], b: Sequence[float]) -> Quaternion:
-    """Return the rotation that does b first and then a."""
+    """Return the product a b: the rotation b followed by a."""
     ax, ay, az, aw = a
     bx, by, bz, bw = b
     return (
@@ -44,7 +43,7 @@ def normalize(q: Sequence[float]) -> Quaternion:
 
 
 def rotate(q: Sequence[float], vector: Sequence[float]) -> Vector:
-    """Return a vector turned.
+    """Return a rotated vector.
 
     >>> half = math.sqrt(0.5)
     >>> [round(value, 6) + 0.0 for value in rotate((0.0, half, 0.0, half), (0.0, 2.0, 1.0))]
@@ -62,11 +61,11 @@ def rotate(q: Sequence[float], vector: Sequence[float]) -> Vector:
 
 
 def between(start: Vector, end: Vector) -> Quaternion:
-    """Return the shortest rotation from one direction to another."""
+    """Return the shortest rotation that turns one direction to another."""
     x, y, z = cross(start, end)
     w = length(start) * length(end) + dot(start, end)
     size = math.sqrt(x * x + y * y + z * z + w * w)
-    if size < 1e-12:  # opposite, or nothing at all
+    if size < 1e-12:  # opposite directions, or zero vectors
         return IDENTITY
     return x / size, y / size, z / size, w / size
 
@@ -79,9 +78,9 @@ def from_rotation_vector(vector: Vector) -> Quaternion:
 
 
 def to_rotation_vector(q: Sequence[float]) -> Vector:
-    """Return axis times angle [rad], the shorter way round.
+    """Return axis times angle [rad], of the shorter way.
 
-    >>> [round(value, 6) for value in to_vector(from_vector((0.1, -0.2, 0.3)))]
+    >>> [round(value, 6) for value in to_rotation_vector(from_rotation_vector((0.1, -0.2, 0.3)))]
     [0.1, -0.2, 0.3]
     """
     x, y, z, w = q
@@ -92,12 +91,12 @@ def to_rotation_vector(q: Sequence[float]) -> Vector:
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """Return the vector product."""
+    """Return the cross product."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 def dot(a: Vector, b: Vector) -> float:
-    """Return the scalar product."""
+    """Return the dot product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
@@ -107,5 +106,5 @@ def length(a: Vector) -> float:
 
 
 def subtract(a: Vector, b: Vector) -> Vector:
-    """Return the way from b to a."""
+    """Return a − b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]

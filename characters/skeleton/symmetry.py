@@ -1,4 +1,4 @@
-"""Which joints and names of a body are each other's on the left and the right."""
+"""Left and right partners of joints and names."""
 
 import re
 from collections.abc import Mapping
@@ -10,10 +10,10 @@ from characters.errors import CharacterError
 from characters.skeleton.pose import Array, Skeleton
 
 _REFLECTION = np.array([-1.0, 1.0, 1.0])
-_CROOKED = 0.25  # of the way from left to right: how far from symmetric most joints may be
-# Of the body's size: how much farther a joint counts whose name does not fit.
-_MISNAMED, _MISNUMBERED = 0.1, 0.01
-# "LeftFoot", "foot_l", "Foot.R.001", "FootL": words, and letters that stand alone or end a word.
+_MAX_ASYMMETRY = 0.25  # median distance from symmetry over the distance from left to right
+# Penalties for names that do not match, in body sizes: another name, another number.
+_NAME_PENALTY, _NUMBER_PENALTY = 0.1, 0.01
+# "LeftFoot", "foot_l", "Foot.R.001", "FootL": a word, or a letter that is alone or ends a word.
 _SIDES = re.compile(
     r"[Ll]eft|LEFT|[Rr]ight|RIGHT|(?<![A-Za-z])[LRlr](?![A-Za-z])|(?<=[a-z])[LR](?![a-z])"
 )
@@ -21,9 +21,15 @@ _OTHER = {"left": "right", "Left": "Right", "LEFT": "RIGHT", "l": "r", "L": "R"}
 _OTHER |= {right: left for left, right in _OTHER.items()}
 
 
-def paired_joints(skeleton: Skeleton, places: Array, pairs: Mapping[str, str]) -> NDArray[np.intp]:
-    """Return the partner of each joint, from the roots down: children of partners are partners."""
-    size = max(float(np.ptp(places, axis=0).max()), 1e-9)
+def paired_joints(
+    skeleton: Skeleton, positions: Array, pairs: Mapping[str, str]
+) -> NDArray[np.intp]:
+    """Return the partner of each joint on the other side; joints in the middle are their own.
+
+    Partners are matched from the roots down, so the children of partners are partners. `pairs`
+    are given partners by name.
+    """
+    size = max(float(np.ptp(positions, axis=0).max()), 1e-9)
     given = {skeleton.index(a): skeleton.index(b) for a, b in pairs.items()}
     given |= {b: a for a, b in given.items()}
     children: dict[int, list[int]] = {}
@@ -34,7 +40,7 @@ def paired_joints(skeleton: Skeleton, places: Array, pairs: Mapping[str, str]) -
         other = int(partners[parent]) if parent >= 0 else -1
         ours, theirs = children.get(parent, []), children.get(other, [])
         apart = {
-            (a, b): float(np.linalg.norm(places[a] * _REFLECTION - places[b])) / size
+            (a, b): float(np.linalg.norm(positions[a] * _REFLECTION - positions[b])) / size
             + _misfit(skeleton.names[a], skeleton.names[b])
             + (0.0 if given.get(a, b) == b and given.get(b, a) == a else np.inf)
             for a in ours
@@ -53,7 +59,7 @@ def paired_joints(skeleton: Skeleton, places: Array, pairs: Mapping[str, str]) -
 
 
 def _misfit(name: str, other: str) -> float:
-    """Return how badly names fit as a pair, as a part of the body's size.
+    """Return the penalty for two names as a pair, in body sizes.
 
     >>> _misfit("Palm2L", "Palm2R"), _misfit("LeftArm_06", "RightArm_09"), _misfit("ArmL", "LegR")
     (0.0, 0.01, 0.1)
@@ -62,33 +68,33 @@ def _misfit(name: str, other: str) -> float:
     if swapped == other:
         return 0.0
     plain, plain_other = (re.sub(r"[_\s\d]+", "", each).lower() for each in (swapped, other))
-    return _MISNUMBERED if plain == plain_other else _MISNAMED
+    return _NUMBER_PENALTY if plain == plain_other else _NAME_PENALTY
 
 
-def check_symmetry(skeleton: Skeleton, places: Array, partners: NDArray[np.intp]) -> None:
-    """Refuse a pose of which more than half is not symmetric: a body that looks elsewhere."""
+def check_symmetry(skeleton: Skeleton, positions: Array, partners: NDArray[np.intp]) -> None:
+    """Refuse a pose in which more than half of the joints are not symmetric about x = 0."""
     paired = np.flatnonzero(partners != np.arange(len(partners)))
     if not len(paired):
         return
-    apart = places[paired] * _REFLECTION - places[partners[paired]]
-    apart -= np.median(apart, axis=0)  # the plane may lie beside the origin
+    apart = positions[paired] * _REFLECTION - positions[partners[paired]]
+    apart -= np.median(apart, axis=0)  # the plane may be off the origin
     away = np.linalg.norm(apart, axis=-1)
-    across = np.linalg.norm(places[paired] - places[partners[paired]], axis=-1)
-    if np.median(away / np.maximum(across, 1e-9)) > _CROOKED:
+    across = np.linalg.norm(positions[paired] - positions[partners[paired]], axis=-1)
+    if np.median(away / np.maximum(across, 1e-9)) > _MAX_ASYMMETRY:
         worst = paired[away.argmax()]
         raise CharacterError(
             f"mirror: the pose is not symmetric about x = 0: {skeleton.names[worst]!r} is "
             f"{away.max():.3f} m from the mirrored {skeleton.names[partners[worst]]!r}; "
-            "give a symmetric one that looks along +z, or name pairs"
+            "give a symmetric pose that faces +z, or name pairs"
         )
 
 
 def paired_names(names: tuple[str, ...]) -> NDArray[np.intp]:
-    """Return for each name the place of that of the other side; its own where there is none."""
+    """Return for each name the index of its partner, or its own index if there is none."""
     swapped = [_SIDES.sub(_other_side, name) for name in names]
     return np.array([names.index(n) if n in names else i for i, n in enumerate(swapped)], np.intp)
 
 
 def _other_side(match: re.Match[str]) -> str:
-    """Return the other side, in the same letters."""
+    """Return the word for the other side in the same case."""
     return _OTHER[match[0]]

@@ -23,9 +23,10 @@ from rich.table import Table
 from characters import Character, CharacterCommand, Pose
 from characters.control.walker import Walker
 from characters.locomotion.steering import SteeringOutput
-from characters.motion.contacts import feet_of, spans
+from characters.motion.contacts import spans
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
+from characters.skeleton.feet import find_feet
 
 Array = NDArray[np.float64]
 
@@ -98,7 +99,7 @@ def film(character: Character, script: Script, frames: int, hold: bool = True) -
         else:
             poses.append(walker.update(wish, elapsed))
         places.append(walker.place)
-    feet = feet_of(character.skeleton)
+    feet = find_feet(character.skeleton)
     joints = [foot[-1] for foot in feet]
     legs = sorted({above for foot in feet for above in _upward(character, foot[-1])[:4]})
     turns = np.stack([pose.rotations for pose in poses])

@@ -3,8 +3,7 @@
 from collections.abc import Callable, Mapping
 
 from characters.motion.motion import Motion, RootDelta
-from characters.motion.phase import as_cyclic
-from characters.motion.retimed import RetimedMotion
+from characters.motion.phase import RetimedMotion, as_cyclic
 from characters.skeleton.pose import Pose
 
 Values = Mapping[str, float]

@@ -121,9 +121,9 @@ def test_a_walk_straight_on_covers_the_ground_at_the_pace_of_its_speed(walker):
 
 
 def test_planted_feet_do_not_slide(human):
-    from characters.skeleton.feet import find_feet
+    from characters.skeleton.feet import foot_joints_by_side
 
-    left, _ = find_feet(human.skeleton)
+    left, _ = foot_joints_by_side(human.skeleton)
     animator = Animator(human)
     frames = play(animator, 4.0, rate=60, action="move", speed=2.0, target=np.array([0.0, 99.0]))
     feet = np.array(

@@ -36,8 +36,7 @@ from characters import (
     mask_of,
 )
 from characters.motion.blend import TimeScaled
-from characters.motion.phase import PhasedMotion, StaticPose, as_cyclic
-from characters.motion.retimed import RetimedMotion
+from characters.motion.phase import PhasedMotion, RetimedMotion, StaticPose, as_cyclic
 from characters.skeleton import rotations
 
 NAMES = ("root", "spine", "LeftArm", "RightArm", "LeftHand", "RightHand")

@@ -100,7 +100,7 @@ def test_on_a_line_at_most_two_neighbours_sound(value):
 def test_knots_out_of_order_and_points_alike_are_refused():
     with pytest.raises(CharacterError, match="ascending"):
         BlendSpace1D((1.0, 0.0), (still(0), still(1)))
-    with pytest.raises(CharacterError, match="place of its own"):
+    with pytest.raises(CharacterError, match="a different point"):
         plane([(0, 0), (0, 0)])
 
 

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from characters import Character, Clip, Pose
 from characters.formats.loading import load_motion
-from characters.motion.contacts import feet_of, find_contacts, spans
-from characters.motion.ground import find_ground, track
+from characters.motion.contacts import find_contacts, spans
+from characters.motion.ground import find_ground, joint_trajectories
+from characters.skeleton.feet import find_feet
 from tools.authoring.human.limbs import FOOT
 from tools.authoring.human.motion import GAITS
 from tools.authoring.modelling.gait import Path as Arc
@@ -44,22 +45,22 @@ def off(found, down):
 
 def test_contacts_of_the_authored_gaits_are_found_to_a_frame_or_two(human, authored):
     clip, down = authored
-    assert (off(find_contacts(clip, human.skeleton, feet_of(human.skeleton)), down) <= 3).all()
+    assert (off(find_contacts(clip, human.skeleton, find_feet(human.skeleton)), down) <= 3).all()
 
 
 @pytest.mark.parametrize("rooted", [True, False])
 def test_contacts_are_found_in_place_too_even_in_curves(human, authored, rooted):
     clip, down = authored
     still = Clip(clip.name, clip.rate, clip.in_place, loop=True, root_motion=rooted)
-    found = find_contacts(still, human.skeleton, feet_of(human.skeleton))
+    found = find_contacts(still, human.skeleton, find_feet(human.skeleton))
     assert (off(found, down) <= 0.1 * clip.rate).all()  # 0.1 s
 
 
 def test_the_treadmill_of_a_walk_in_place_runs_as_fast_as_the_walk(human, authored):
     clip, _ = authored
     still = Clip(clip.name, clip.rate, clip.in_place, loop=True)
-    feet = np.array([joint for foot in feet_of(human.skeleton) for joint in foot])
-    ground = find_ground(still, track(still, human.skeleton), feet)
+    feet = np.array([joint for foot in find_feet(human.skeleton) for joint in foot])
+    ground = find_ground(still, joint_trajectories(still, human.skeleton), feet)
     gait = GAITS[clip.name.replace("Left", "Turn")]
     assert ground.velocity[1] == pytest.approx(-gait.speed, rel=0.15)
     assert np.degrees(ground.yaw_rate) == pytest.approx(-gait.yaw_rate, rel=0.15, abs=3)
@@ -80,11 +81,11 @@ def test_neither_size_nor_start_nor_floor_matter(human, shift, size, lift):
         Pose(rest.translations * size, rest.rotations),
     )
     down = truth(GAITS["Walk"])[frames]
-    assert (off(find_contacts(moved, skeleton, feet_of(skeleton)), down) <= 5).all()
+    assert (off(find_contacts(moved, skeleton, find_feet(skeleton)), down) <= 5).all()
 
 
 def test_who_stands_stands_on_both_feet(human):
-    assert find_contacts(human.clips["idle"], human.skeleton, feet_of(human.skeleton)).all()
+    assert find_contacts(human.clips["idle"], human.skeleton, find_feet(human.skeleton)).all()
 
 
 def test_flickers_are_no_contacts_and_no_gaps(gait, skeleton):
@@ -123,7 +124,7 @@ def test_each_foot_of_a_strangers_cycle_lands_once(name, clip, steps):
     if not path.exists():
         pytest.skip("no shared data")
     character = Character.load(path)
-    feet = feet_of(character.skeleton)
+    feet = find_feet(character.skeleton)
     found = find_contacts(character.clips[clip], character.skeleton, feet)
     assert [len(spans(found[:, foot], True)) for foot in range(len(feet))] == steps
     assert (found.mean(0) > 0.1).all()
@@ -138,10 +139,11 @@ def test_people_stand_as_much_of_the_time_as_they_do(name, share):
     if not path.exists():
         pytest.skip("no shared data")
     person = load_motion(path)
-    feet = feet_of(person.skeleton)
+    feet = find_feet(person.skeleton)
     found = find_contacts(person.clip, person.skeleton, feet)
     assert len(feet) == 2
     assert share[0] < found.mean() < share[1]
     toes = np.array([foot[1] for foot in feet])
-    speeds = np.linalg.norm(track(person.clip, person.skeleton).speeds[:, toes], axis=-1)
+    tracks = joint_trajectories(person.clip, person.skeleton)
+    speeds = np.linalg.norm(tracks.velocities[:, toes], axis=-1)
     assert np.median(speeds[found]) < 0.1 * np.median(speeds[~found])

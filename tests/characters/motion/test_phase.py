@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from characters import Character, Clip, Pose, Skeleton
 from characters.motion.phase import PhasedMotion, phased
 from characters.skeleton import rotations
-from characters.skeleton.feet import find_feet
+from characters.skeleton.feet import foot_joints_by_side
 
 
 @pytest.mark.parametrize("lead", [0.0, 0.13, 0.5, 0.77])
@@ -65,7 +65,7 @@ def test_time_runs_with_phase_and_hits_the_marks(gaps, phase, further):
 )
 def test_feet_are_found_by_the_names_that_people_give_them(names):
     rest = Pose(np.zeros((3, 3)), np.tile(rotations.IDENTITY, (3, 1)))
-    assert find_feet(Skeleton(names, (-1, -1, -1), rest)) == ([0], [1])
+    assert foot_joints_by_side(Skeleton(names, (-1, -1, -1), rest)) == ([0], [1])
 
 
 def test_the_bundled_gaits_land_their_left_foot_at_phase_nought():

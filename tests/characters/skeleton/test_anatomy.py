@@ -147,14 +147,13 @@ def test_what_is_said_goes_before_what_is_guessed():
     assert anatomy.joint("chest") == skeleton.index("mixamorig:Spine")
     assert anatomy.joint("leftToes") is None
     assert anatomy.joint("spine") is None  # one joint is one part
-    assert anatomy.told == {"chest"}
 
 
 def test_a_joint_that_there_is_not_is_refused_with_a_suggestion():
     skeleton, _ = body("Unity")
     with pytest.raises(CharacterError, match=r"leftFoot = 'LeftFoo'.*mean 'LeftFoot'"):
         Anatomy.guess(skeleton, {"leftFoot": "LeftFoo"})
-    with pytest.raises(CharacterError, match=r"called 'LeftFoot' \(do you mean 'leftFoot'"):
+    with pytest.raises(CharacterError, match=r"named 'LeftFoot' \(do you mean 'leftFoot'"):
         Anatomy.guess(skeleton, {"LeftFoot": "LeftFoot"})
 
 

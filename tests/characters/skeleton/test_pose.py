@@ -42,7 +42,7 @@ def test_a_chain_twelve_deep_takes_four_products():
     joints = 13
     rest = Pose(np.zeros((joints, 3)), np.tile(rotations.IDENTITY, (joints, 1)))
     chain = Skeleton(tuple(map(str, range(joints))), tuple(range(-1, joints - 1)), rest)
-    assert len(chain.doublings) == 4
+    assert len(chain.doubled_ancestors) == 4
 
 
 def test_a_child_before_its_parent_is_refused_by_name():
