@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
-from characters.rendering.geometry.buffers import Geometry
-from characters.rendering.geometry.morphing import Morphing
+from characters.rendering.geometry.morph_mixer import MorphMixer
+from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.scene import Drawable
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose
@@ -86,8 +86,8 @@ class Extent:
 
     def __init__(self, character: Drawable) -> None:
         self._character = character
-        self._geometry = Geometry.of(character.meshes)
-        self._outline = self._geometry.outline()
+        self._geometry = CharacterVertices.of(character.meshes)
+        self._outline = self._geometry.extreme()
         strongest = self._geometry.weights[self._outline].argmax(axis=1)
         rows = self._geometry.joints[self._outline, strongest]
         self._owners = rows % len(character.skeleton)
@@ -100,7 +100,7 @@ class Extent:
         """
         geometry, joints = self._geometry, pose.globals(self._character.skeleton)
         shape = geometry.positions.copy()
-        morphing = Morphing(self._still, geometry.morphs, self._character.morphs)
+        morphing = MorphMixer(self._still, geometry.morphs, self._character.morphs)
         mixed = morphing.mix(pose.morphs)
         if mixed is not None:
             shape[: geometry.moved] = mixed[:, :3]

@@ -1,71 +1,92 @@
-"""How the room is lit, judged from the camera's own picture."""
+"""How the scene is lit, estimated from the camera's own picture."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from characters.rendering.projection import NEAR_M, is_invertible, project
+from characters.rendering.scene import Box, View
+
 Array = NDArray[np.float64]
 
 TO_LIGHT = np.array([-0.42, 1.0, 0.34]) / np.linalg.norm([-0.42, 1.0, 0.34])
-"""Direction to the key light in the table frame: from above, the left, and the camera's side,
-as most desks are lit; the shadow then falls to the right and away, where it is seen."""
+"""Direction to the key light in the table frame: from above, from the left, and from the camera's
+side, as most desks are lit. The shadow falls to the right and to the back, where it is visible."""
 
 LUMA = np.array([0.2126, 0.7152, 0.0722])
-"""Shares of red, green and blue in luminance (Rec. 709)."""
+"""Weights of red, green and blue in luminance (Rec. 709)."""
 
-DECODED = np.where(
+LINEAR_FROM_SRGB = np.where(
     np.arange(256) <= 10, np.arange(256) / 3294.6, ((np.arange(256) / 255 + 0.055) / 1.055) ** 2.4
 )
 """Linear light of each 8-bit sRGB value (IEC 61966-2-1)."""
 
+SAMPLES_PER_SIDE = 12
+"""Sample points along each side of a cube's face."""
+
+PAPER_QUANTILE = 0.9
+"""Quantile of a face's brightness that is its paper: most of a face is a black marker."""
+
+_AXIS = (np.arange(SAMPLES_PER_SIDE) + 0.5) / SAMPLES_PER_SIDE - 0.5
+_FRONT = np.stack(
+    [*np.meshgrid(_AXIS, _AXIS), np.full((SAMPLES_PER_SIDE, SAMPLES_PER_SIDE), 0.5)], axis=-1
+).reshape(-1, 3)
+FACE_SAMPLES = np.stack(
+    [sign * np.roll(_FRONT, axis, axis=1) for axis in range(3) for sign in (1, -1)]
+)
+"""Sample points on the six faces of a unit cube, (6, points, 3)."""
+
 
 @dataclass(frozen=True)
 class Light:
-    """The light that falls on a character; linear RGB, 1 makes a white surface just white."""
+    """The light on a character, in linear RGB; 1 makes a white surface just white."""
 
     key: Array
-    """From `TO_LIGHT`, (3,)."""
+    """Key light from `TO_LIGHT`, (3,)."""
 
     sky: Array
-    """From all of the upper hemisphere, (3,)."""
+    """Ambient light from the upper hemisphere, (3,)."""
 
     ground: Array
-    """Thrown back by the table, (3,)."""
+    """Light reflected by the table, (3,)."""
 
     @property
     def white(self) -> Array:
-        """What a white sheet on the table returns, (3,)."""
+        """Light that a white sheet on the table reflects, (3,)."""
         return np.asarray(self.key * TO_LIGHT[1] + self.sky)
 
 
-class LightEstimate:
-    """Follows exposure and colour of the light from picture to picture.
+class LightEstimator:
+    """Tracks the exposure and the colour of the light from picture to picture.
 
     A real cube of white paper in the picture is the best light meter. Without one, the illuminant
     is the Minkowski mean of the picture, between grey world and brightest patch (Finlayson and
-    Trezzi, "Shades of gray and colour constancy", 2004, with p = 6), drawn towards what a camera's
-    automatic exposure makes of white. It depends on the pictures given, in their order, only.
+    Trezzi, "Shades of gray and colour constancy", 2004, with p = 6), drawn towards the value that
+    automatic exposure gives to white. The result depends only on the sequence of pictures.
     """
 
-    MINKOWSKI = 6.0
-    BRIGHTEST = 0.6
-    """Albedo of the things that dominate the Minkowski mean: light things, seldom white ones."""
+    MINKOWSKI_P = 6.0
+    BRIGHT_ALBEDO = 0.6
+    """Albedo of the surfaces that dominate the Minkowski mean: light ones, seldom white ones."""
 
-    USUAL = 0.85
+    EXPOSED_WHITE = 0.85
     """Linear value to which automatic exposure tends to bring white."""
 
-    PAPER = 0.82
+    PAPER_ALBEDO = 0.82
     """Albedo of printing paper."""
 
-    TRUST = 0.45
-    """Share of a colour cast that is ascribed to the light and not to the things."""
+    PICTURE_CAST_SHARE = 0.45
+    """Share of the picture's colour cast that is ascribed to the light, not to the surfaces."""
 
-    STEP = 0.08
-    """Share of the way to a new estimate that is gone each picture: half of it after eight."""
+    PAPER_CAST_SHARE = 0.8
+    """The same share for the colour cast of paper."""
 
-    LIMITS = (0.25, 1.1)
-    """Of the light's strength: a character is never lost in the dark, nor burnt out."""
+    SMOOTHING = 0.08
+    """Share of the way to the new estimate in each picture: half of it after eight pictures."""
+
+    LUMINANCE_RANGE = (0.25, 1.1)
+    """Limits of the light's luminance, so that a character is neither too dark nor burnt out."""
 
     def __init__(self) -> None:
         self._white: Array | None = None
@@ -79,27 +100,68 @@ class LightEstimate:
         picture
             (height, width, 3) BGR.
         paper
-            Linear RGB of white paper in it, (3,), where some was recognised.
+            Linear RGB of white paper in the picture, (3,), if some was found.
         """
         step = max(1, picture.shape[1] // 64)
-        linear = DECODED[picture[step // 2 :: step, step // 2 :: step, ::-1].reshape(-1, 3)]
-        white = self._guess(linear) if paper is None else _toned(paper / self.PAPER, 0.8)
+        linear = LINEAR_FROM_SRGB[
+            picture[step // 2 :: step, step // 2 :: step, ::-1].reshape(-1, 3)
+        ]
+        if paper is None:
+            white = self._white_from_picture(linear)
+        else:
+            white = _reduce_cast(paper / self.PAPER_ALBEDO, self.PAPER_CAST_SHARE)
         white = np.maximum(white, 1e-3)
-        white = white * np.clip(white @ LUMA, *self.LIMITS) / (white @ LUMA)
-        ground = np.maximum(linear.mean(axis=0), 0.25 * self.LIMITS[0])
+        white = white * np.clip(white @ LUMA, *self.LUMINANCE_RANGE) / (white @ LUMA)
+        ground = np.maximum(linear.mean(axis=0), 0.25 * self.LUMINANCE_RANGE[0])
         if self._white is None or self._ground is None:
             self._white, self._ground = white, ground
-        self._white = self._white + self.STEP * (white - self._white)
-        self._ground = self._ground + self.STEP * (ground - self._ground)
+        self._white = self._white + self.SMOOTHING * (white - self._white)
+        self._ground = self._ground + self.SMOOTHING * (ground - self._ground)
         return Light(key=0.72 * self._white, sky=0.36 * self._white, ground=0.6 * self._ground)
 
-    def _guess(self, linear: Array) -> Array:
-        """Return what a white sheet would show, judged from all of the picture."""
-        bright = (linear**self.MINKOWSKI).mean(axis=0) ** (1 / self.MINKOWSKI) / self.BRIGHTEST
-        level = float(bright @ LUMA)
-        return _toned(bright, self.TRUST) * float(np.sqrt(self.USUAL / max(level, 1e-6)))
+    def _white_from_picture(self, linear: Array) -> Array:
+        """Return the colour of a white sheet, estimated from the whole picture."""
+        bright = (linear**self.MINKOWSKI_P).mean(axis=0) ** (1 / self.MINKOWSKI_P)
+        bright = bright / self.BRIGHT_ALBEDO
+        gain = float(np.sqrt(self.EXPOSED_WHITE / max(float(bright @ LUMA), 1e-6)))
+        return _reduce_cast(bright, self.PICTURE_CAST_SHARE) * gain
 
 
-def _toned(color: Array, share: float) -> Array:
-    """Return a colour with some share of its cast, as bright as before."""
+def paper_color(picture: NDArray[np.uint8], matrix: Array, view: View) -> Array | None:
+    """Return the linear RGB (3,) of the paper of the brightest visible cube face, or None.
+
+    Parameters
+    ----------
+    picture
+        Undistorted, (height, width, 3) BGR.
+    matrix
+        Its pinhole matrix, (3, 3) [px].
+    view
+        Its occluders are the cubes.
+    """
+    papers = [paper for box in view.occluders for paper in _face_papers(picture, matrix, box)]
+    return max(papers, key=lambda paper: float(paper @ LUMA), default=None)
+
+
+def _face_papers(picture: NDArray[np.uint8], matrix: Array, box: Box) -> list[Array]:
+    """Return the paper colour of each face that looks at the camera and is completely in view."""
+    if not is_invertible(box.camera_from_box) or not np.isfinite(box.edge):
+        return []
+    pose = np.asarray(box.camera_from_box, float)
+    points = box.edge * FACE_SAMPLES @ pose[:3, :3].T + pose[:3, 3]
+    centers = points.mean(axis=1)
+    facing = np.einsum("ij,ij->i", centers - pose[:3, 3], centers) < 0.0
+    visible = points[facing & (points[:, :, 2] > NEAR_M).all(axis=1)]
+    pixels = np.rint(project(visible, matrix)).astype(int)
+    inside = ((pixels >= 0) & (pixels < [picture.shape[1], picture.shape[0]])).all(axis=(1, 2))
+    papers = []
+    for columns, rows in pixels[inside].transpose(0, 2, 1):
+        colors = LINEAR_FROM_SRGB[picture[rows, columns, ::-1]]
+        luminance = colors @ LUMA
+        papers.append(colors[luminance >= np.quantile(luminance, PAPER_QUANTILE)].mean(axis=0))
+    return papers
+
+
+def _reduce_cast(color: Array, share: float) -> Array:
+    """Return a colour of the same luminance with only a share of its colour cast."""
     return np.asarray(share * color + (1.0 - share) * (color @ LUMA))

@@ -1,37 +1,101 @@
-"""From the pinhole matrix of OpenCV to the clip space of OpenGL, exactly."""
+"""From OpenCV's pinhole matrix to OpenGL's clip space, and rectangles in the picture."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.rendering.scene import Rectangle
-
 Array = NDArray[np.float64]
 
-NEAR, FAR = 0.02, 20.0
-"""Depths between which things are drawn [m]: from a hand before the lens to the end of a room."""
+NEAR_M, FAR_M = 0.02, 20.0
+"""Depths of the near and far planes [m]: from a hand at the lens to the end of a room."""
+
+RELATIVE_MARGIN = 0.02
+"""Margin around projected points, as a share of their extent: few points stand for many."""
+
+COST_PER_REGION_PX = 12_000
+"""Pixels that software rendering draws in the time that one more region costs."""
+
+MIN_RELATIVE_VOLUME = 1e-6
+"""Determinant of a transform's axes over the product of their lengths; less counts as singular."""
 
 
-SLACK = 0.02
-"""Share of its size by which a part is larger than its points: a few stand for many."""
+@dataclass(frozen=True)
+class Rectangle:
+    """An area of the picture in whole pixels."""
 
-FIXED = 12_000
-"""Pixels that software rendering draws in the time that one more part costs."""
+    x: int
+    """Left column."""
+
+    y: int
+    """Top row."""
+
+    width: int
+    """Number of columns."""
+
+    height: int
+    """Number of rows."""
+
+    @property
+    def slices(self) -> tuple[slice, slice]:
+        """Index of the area in an image array: rows, columns."""
+        return slice(self.y, self.y + self.height), slice(self.x, self.x + self.width)
+
+    @property
+    def area(self) -> int:
+        """Number of pixels."""
+        return self.width * self.height
+
+    @property
+    def viewport(self) -> tuple[int, int, int, int]:
+        """Left column, top row, width and height, as OpenGL takes a viewport."""
+        return self.x, self.y, self.width, self.height
+
+    def relative_to(self, other: "Rectangle") -> "Rectangle":
+        """Return this rectangle in coordinates whose origin is another's top left corner."""
+        return Rectangle(self.x - other.x, self.y - other.y, self.width, self.height)
+
+    def contains(self, other: "Rectangle") -> bool:
+        """Return whether another rectangle lies completely inside."""
+        return self.union(other) == self
+
+    def intersection(self, other: "Rectangle") -> "Rectangle | None":
+        """Return the pixels in both, or None where there are none.
+
+        >>> Rectangle(0, 0, 2, 2).intersection(Rectangle(1, 1, 5, 5))
+        Rectangle(x=1, y=1, width=1, height=1)
+        >>> Rectangle(0, 0, 2, 2).intersection(Rectangle(2, 0, 5, 5))
+        """
+        x, y = max(self.x, other.x), max(self.y, other.y)
+        right = min(self.x + self.width, other.x + other.width)
+        bottom = min(self.y + self.height, other.y + other.height)
+        return Rectangle(x, y, right - x, bottom - y) if right > x and bottom > y else None
+
+    def union(self, other: "Rectangle") -> "Rectangle":
+        """Return the smallest rectangle that contains both.
+
+        >>> Rectangle(0, 0, 2, 2).union(Rectangle(3, 1, 1, 4))
+        Rectangle(x=0, y=0, width=4, height=5)
+        """
+        x, y = min(self.x, other.x), min(self.y, other.y)
+        right = max(self.x + self.width, other.x + other.width)
+        bottom = max(self.y + self.height, other.y + other.height)
+        return Rectangle(x, y, right - x, bottom - y)
 
 
-def clip_from_camera(matrix: Array, part: Rectangle) -> Array:
-    """Return the projection that draws one part of a picture into a viewport of the same size.
+def clip_from_camera(matrix: Array, area: Rectangle) -> Array:
+    """Return the projection that draws one area of a picture into a viewport of the same size.
 
-    OpenCV puts the centre of the top-left pixel at (0, 0), OpenGL the corner of a viewport; hence
-    the halves. Row 0 of the viewport is the part's top row: what is read back needs no flip.
+    OpenCV puts the centre of the top left pixel at (0, 0), OpenGL the corner of a viewport, hence
+    the offsets of 0.5. Row 0 of the viewport is the top row, so the result needs no flip.
 
     Parameters
     ----------
     matrix
         Pinhole matrix of the whole picture, (3, 3) [px].
-    part
-        The part to draw.
+    area
+        The area to draw.
 
     Returns
     -------
@@ -44,22 +108,27 @@ def clip_from_camera(matrix: Array, part: Rectangle) -> Array:
     ([0.0, 0.0], 1.0)
     """
     (fx, skew, cx), (_, fy, cy) = matrix[0], matrix[1]
-    across, down = 2.0 / part.width, 2.0 / part.height
-    depth = (FAR + NEAR) / (FAR - NEAR)
+    scale_x, scale_y = 2.0 / area.width, 2.0 / area.height
+    depth = (FAR_M + NEAR_M) / (FAR_M - NEAR_M)
     return np.array(
         [
-            [across * fx, across * skew, across * (cx + 0.5 - part.x) - 1.0, 0.0],
-            [0.0, down * fy, down * (cy + 0.5 - part.y) - 1.0, 0.0],
-            [0.0, 0.0, depth, -2.0 * FAR * NEAR / (FAR - NEAR)],
+            [scale_x * fx, scale_x * skew, scale_x * (cx + 0.5 - area.x) - 1.0, 0.0],
+            [0.0, scale_y * fy, scale_y * (cy + 0.5 - area.y) - 1.0, 0.0],
+            [0.0, 0.0, depth, -2.0 * FAR_M * NEAR_M / (FAR_M - NEAR_M)],
             [0.0, 0.0, 1.0, 0.0],
         ]
     )
 
 
-def part_that_shows(
+def project(points: Array, matrix: Array) -> Array:
+    """Return the pixels (…, 2) of points (…, 3) in the camera frame."""
+    return np.asarray((points / points[..., 2:]) @ matrix[:2].T)
+
+
+def bounding_rectangle(
     points: Array, matrix: Array, camera_from_table: Array, size: tuple[int, int], margin: int = 3
 ) -> Rectangle | None:
-    """Return the part of a picture that holds all of some points, and a little more.
+    """Return the area of a picture that contains all of some points, with a margin.
 
     Parameters
     ----------
@@ -70,23 +139,23 @@ def part_that_shows(
     size
         Of the picture, (width, height) [px].
     margin
-        Pixels to add on each side.
+        Pixels to add on each side, besides `RELATIVE_MARGIN`.
 
     Returns
     -------
     Rectangle or None
-        The whole picture where a point is behind the camera; None where no part of it shows any.
+        The whole picture if some points are behind the camera; None if no point is in the picture.
     """
-    seen = points @ camera_from_table[:3, :3].T + camera_from_table[:3, 3]
-    behind = seen[:, 2] < NEAR
+    in_camera = points @ camera_from_table[:3, :3].T + camera_from_table[:3, 3]
+    behind = in_camera[:, 2] < NEAR_M
     if not len(points) or behind.all():
         return None
     width, height = size
     if behind.any():
         return Rectangle(0, 0, width, height)
-    pixels = (seen / seen[:, 2:]) @ matrix[:2].T
+    pixels = project(in_camera, matrix)
     low, high = pixels.min(axis=0), pixels.max(axis=0)
-    rim = margin + SLACK * (high - low)
+    rim = margin + RELATIVE_MARGIN * (high - low)
     low = np.clip(np.floor(low - rim), 0, size).astype(int)
     high = np.clip(np.ceil(high + rim) + 1, 0, size).astype(int)
     if (high <= low).any():
@@ -94,34 +163,34 @@ def part_that_shows(
     return Rectangle(int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1]))
 
 
-def merged(parts: Sequence[Rectangle]) -> list[Rectangle]:
-    """Return fewer parts that hold the same: two become one where that costs less than it saves.
+def merge_rectangles(rectangles: Sequence[Rectangle]) -> list[Rectangle]:
+    """Return fewer rectangles that contain the same pixels.
 
-    A part has a fixed cost, about that of `FIXED` pixels.
+    Neighbours in the sequence are merged where the extra pixels cost less than a region of its own.
     """
-    kept: list[Rectangle] = []
-    for part in parts:
-        while kept:
-            both = part.joined(kept[-1])
-            if both.area > part.area + kept[-1].area + FIXED:
+    merged: list[Rectangle] = []
+    for rectangle in rectangles:
+        while merged:
+            both = rectangle.union(merged[-1])
+            if both.area > rectangle.area + merged[-1].area + COST_PER_REGION_PX:
                 break
-            part, _ = both, kept.pop()
-        kept.append(part)
-    return kept
+            rectangle, _ = both, merged.pop()
+        merged.append(rectangle)
+    return merged
 
 
-def is_rigid(transform: Array | None) -> bool:
-    """Whether a transform is there, finite, and not flattened: scaled at most, never singular."""
+def is_invertible(transform: Array | None) -> bool:
+    """Return whether a transform is a finite, non-singular (4, 4) matrix; it may be scaled."""
     if transform is None or np.shape(transform) != (4, 4) or not np.isfinite(transform).all():
         return False
     axes = np.asarray(transform, float)[:3, :3]
-    # Against their lengths: what was made in millimetres comes to the table at a ten-thousandth.
-    space = float(np.prod(np.linalg.norm(axes, axis=0)))
-    return bool(abs(np.linalg.det(axes)) > 1e-6 * space)
+    # Relative to the axes' lengths: a model in millimetres stands on the table at a scale of 1e-4.
+    volume = float(np.prod(np.linalg.norm(axes, axis=0)))
+    return bool(abs(np.linalg.det(axes)) > MIN_RELATIVE_VOLUME * volume)
 
 
 def is_pinhole(matrix: Array) -> bool:
-    """Whether a matrix is that of a camera: (3, 3), finite, with two positive focal lengths."""
+    """Return whether a matrix is a camera's: (3, 3), finite, with positive focal lengths."""
     if np.shape(matrix) != (3, 3) or not np.isfinite(matrix).all():
         return False
     return bool(matrix[0, 0] > 0.0 and matrix[1, 1] > 0.0)

@@ -1,4 +1,4 @@
-"""What a picture is made of: the camera's view and what stands in it."""
+"""What a picture shows: the camera's view, the characters in it, and the paths on the floor."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Box:
-    """A real cube in the camera's picture, which hides what is behind it."""
+    """A real cube in the camera's picture. It hides what is behind it."""
 
     camera_from_box: Array
     """Its pose, (4, 4) [m]; the origin is its centre."""
@@ -27,30 +27,31 @@ class Box:
 
 @dataclass(frozen=True)
 class View:
-    """The camera's picture and what is known about the room in it."""
+    """The camera's picture and what is known about the scene in it."""
 
     image: NDArray[np.uint8] | None
-    """The camera's frame as it came, (height, width, 3) BGR; None for a plain backdrop."""
+    """The camera's frame as captured, (height, width, 3) BGR; None for a plain backdrop."""
 
     matrix: Array
-    """Pinhole matrix of the frame, (3, 3) [px], centres of pixels at whole numbers as in OpenCV."""
+    """Pinhole matrix of the frame, (3, 3) [px]. Pixel centres have integer coordinates, as in
+    OpenCV."""
 
     distortion: Array
-    """Distortion of the lens as OpenCV takes it, (n,); n = 0, 4, 5, 8, 12 or 14."""
+    """Distortion coefficients as in OpenCV, (n,); n = 0, 4, 5, 8, 12 or 14."""
 
     camera_from_table: Array | None
-    """The table's frame, (4, 4) [m], +y up; None where it is not known: nothing is drawn then."""
+    """The table frame, (4, 4) [m], +y up. If it is None, nothing is drawn on the frame."""
 
     occluders: tuple[Box, ...] = ()
     """Real cubes that hide what is behind them."""
 
 
 class Drawable(Protocol):
-    """What is asked of a character in order to draw it."""
+    """The part of a character that drawing needs."""
 
     @property
     def meshes(self) -> Sequence[Mesh]:
-        """Its skinned surfaces."""
+        """Skinned meshes."""
 
     @property
     def skeleton(self) -> Skeleton:
@@ -58,23 +59,23 @@ class Drawable(Protocol):
 
     @property
     def morphs(self) -> Sequence[str]:
-        """Names of the morphs that `Pose.morphs` turns on, in its order."""
+        """Names of the morph targets, in the order of the weights `Pose.morphs`."""
 
 
 @dataclass(frozen=True)
 class SceneCharacter:
-    """A character in a pose, on the table."""
+    """A posed character in the scene."""
 
     character: Drawable
-    """Its meshes and skeleton; sent to the graphics card when first drawn."""
+    """Its meshes and skeleton; uploaded to the graphics card when first drawn."""
 
     posed: PosedCharacter
-    """Its pose and place."""
+    """Its pose and its place on the table."""
 
 
 @dataclass(frozen=True)
 class FloorPath:
-    """A line of points painted on the table: a disc for each, dashes between them."""
+    """A polyline painted on the table: a disc at each point, dashes between them."""
 
     points: Array
     """(n, 2): x and z in the table frame [m]."""
@@ -86,63 +87,18 @@ class FloorPath:
     """sRGB, each 0…1."""
 
     highlight: int | None = None
-    """Number of the point that is larger and has a ring around it, or None."""
+    """Index of the point that is drawn larger and with a ring, or None."""
 
 
 @dataclass(frozen=True)
-class Rectangle:
-    """A part of the picture in whole pixels."""
+class Scene:
+    """Everything that one picture shows."""
 
-    x: int
-    """Left column."""
+    view: View
+    """The camera's frame, and the real cubes in it."""
 
-    y: int
-    """Top row."""
+    characters: Sequence[SceneCharacter]
+    """The characters on the table."""
 
-    width: int
-    """Columns."""
-
-    height: int
-    """Rows."""
-
-    @property
-    def rows_and_columns(self) -> tuple[slice, slice]:
-        """Index of the part in an image array."""
-        return slice(self.y, self.y + self.height), slice(self.x, self.x + self.width)
-
-    @property
-    def area(self) -> int:
-        """Number of pixels."""
-        return self.width * self.height
-
-    @property
-    def sides(self) -> tuple[int, int, int, int]:
-        """Left column, top row, columns and rows."""
-        return self.x, self.y, self.width, self.height
-
-    def seen_from(self, other: "Rectangle") -> "Rectangle":
-        """Return the same rectangle with rows and columns counted from another's corner."""
-        return Rectangle(self.x - other.x, self.y - other.y, self.width, self.height)
-
-    def meets(self, other: "Rectangle") -> bool:
-        """Return whether both have a pixel in common.
-
-        >>> Rectangle(0, 0, 2, 2).meets(Rectangle(1, 1, 5, 5))
-        True
-        >>> Rectangle(0, 0, 2, 2).meets(Rectangle(2, 0, 5, 5))
-        False
-        """
-        across = max(self.x, other.x) < min(self.x + self.width, other.x + other.width)
-        down = max(self.y, other.y) < min(self.y + self.height, other.y + other.height)
-        return across and down
-
-    def joined(self, other: "Rectangle") -> "Rectangle":
-        """Return the smallest rectangle that holds both.
-
-        >>> Rectangle(0, 0, 2, 2).joined(Rectangle(3, 1, 1, 4))
-        Rectangle(x=0, y=0, width=4, height=5)
-        """
-        x, y = min(self.x, other.x), min(self.y, other.y)
-        right = max(self.x + self.width, other.x + other.width)
-        foot = max(self.y + self.height, other.y + other.height)
-        return Rectangle(x, y, right - x, foot - y)
+    floor: Sequence[FloorPath] = ()
+    """What is painted on the table."""

@@ -22,29 +22,32 @@ from rich.table import Table
 from characters.control.command import PosedCharacter
 from characters.model.character import Character
 from characters.rendering import Box, FloorPath, SceneCharacter, Stage, View, create_context
-from characters.rendering.geometry.skinning import SkinnedCharacter
-from characters.rendering.light import LightEstimate
-from characters.rendering.passes.background import Background
-from characters.rendering.passes.characters import Figures
-from characters.rendering.passes.cubes import Cubes
-from characters.rendering.passes.floor import FloorMarks
-from characters.rendering.passes.shadow import Shadow
-from characters.rendering.target import Target
+from characters.rendering.geometry.skinned_character import SkinnedCharacter
+from characters.rendering.light import LightEstimator
+from characters.rendering.passes.background import BackgroundPass
+from characters.rendering.passes.characters import CharacterPass
+from characters.rendering.passes.cube_occlusion import CubeOcclusionPass
+from characters.rendering.passes.floor_paths import FloorPathPass
+from characters.rendering.passes.resolve import ResolvePass
+from characters.rendering.passes.shadows import ShadowPass
+from characters.rendering.target import RenderTarget
+from characters.rendering.undistortion import Undistorter
 
 SIZE = (1280, 720)
 TARGET_MS = 12.0
 PARTS = (
-    ("undistort", Background, "of"),
-    ("judge the light", LightEstimate, "update"),
-    ("skin", SkinnedCharacter, "pose"),
-    ("cast the shadow", Shadow, "cast"),
-    ("upload the frame", Target, "lay"),
-    ("the cube's depth", Cubes, "hide"),
-    ("floor marks", FloorMarks, "draw"),
-    ("shadow on the table", Shadow, "draw"),
-    ("characters", Figures, "draw"),
-    ("lay figures over it", Target, "combine"),
-    ("read back", moderngl.Framebuffer, "read"),
+    ("undistort", Undistorter, "undistort"),
+    ("estimate the light", LightEstimator, "update"),
+    ("skin", SkinnedCharacter, "skin"),
+    ("prepare floor paths", FloorPathPass, "prepare"),
+    ("render shadow maps", ShadowPass, "prepare"),
+    ("background", BackgroundPass, "draw"),
+    ("floor paths", FloorPathPass, "draw"),
+    ("shadows", ShadowPass, "draw"),
+    ("cube occlusion", CubeOcclusionPass, "draw"),
+    ("characters", CharacterPass, "draw"),
+    ("resolve", ResolvePass, "draw"),
+    ("read back", RenderTarget, "read"),
 )
 
 

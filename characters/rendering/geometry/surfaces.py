@@ -1,4 +1,4 @@
-"""The surfaces of a character on the graphics card: materials with their maps and programs."""
+"""The surfaces of a character on the graphics card: materials with textures and programs."""
 
 from dataclasses import dataclass
 
@@ -8,38 +8,41 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.model.mesh import Material
-from characters.rendering.geometry.buffers import Geometry
-from characters.rendering.programs import Programs
+from characters.rendering.geometry.vertices import CharacterVertices
+from characters.rendering.programs import ShaderPrograms, set_uniforms
 
-SRGB8_ALPHA8 = 0x8C43
-"""OpenGL's name of the format that decodes sRGB when it is sampled."""
+GL_SRGB8_ALPHA8 = 0x8C43
+"""OpenGL's texture format that is decoded from sRGB when it is sampled."""
+
+TEXTURE_UNITS = {"base_texture": 0, "surface_map": 1, "bump_map": 2}
+"""Texture units of a material's base colour, roughness and metalness, and normals."""
 
 
 @dataclass(frozen=True)
-class Part:
+class Surface:
     """A run of triangles with one material."""
 
     first: int
-    """Number of the first index."""
+    """Position of its first index."""
 
     count: int
-    """How many indices."""
+    """Number of its indices."""
 
     material: Material
-    """The surface."""
+    """The material."""
 
-    looks: frozenset[str]
-    """Which of `LOOKS` it has."""
+    features: frozenset[str]
+    """Result of `surface_features`."""
 
     array: moderngl.VertexArray
-    """All triangles, with the program for these looks."""
+    """All triangles, with the program for these features."""
 
     textures: tuple[tuple[int, moderngl.Texture], ...]
-    """Units and textures of the maps that it has: 0 base colour, 1 surface, 2 bumps."""
+    """Units and textures of the material, see `TEXTURE_UNITS`."""
 
 
-class Surfaces:
-    """Makes what the parts of one character are drawn with, and keeps it.
+class SurfaceBuffers:
+    """Creates and owns what the surfaces of one character are drawn with.
 
     Parameters
     ----------
@@ -47,74 +50,76 @@ class Surfaces:
         Where to draw.
     skinned
         Position and normal of each vertex in the table frame, 3 + 3 float32.
-    paint
+    colors
         Linear RGBA and texture coordinates of each vertex, 4 + 2 float32.
     indices
-        Three a triangle.
+        Three for each triangle.
     """
 
     def __init__(
         self,
         context: moderngl.Context,
-        programs: Programs,
+        programs: ShaderPrograms,
         skinned: moderngl.Buffer,
-        paint: moderngl.Buffer,
+        colors: moderngl.Buffer,
         indices: moderngl.Buffer,
     ) -> None:
         self._context = context
         self._programs = programs
-        self._skinned, self._paint, self._indices = skinned, paint, indices
+        self._skinned, self._colors, self._indices = skinned, colors, indices
         self._arrays: dict[frozenset[str], moderngl.VertexArray] = {}
         self._textures: dict[tuple[int, bool], moderngl.Texture] = {}
 
-    def parts(self, geometry: Geometry) -> tuple[Part, ...]:
-        """Return a part for each material of a character."""
-        parts: list[Part] = []
+    def surfaces(self, vertices: CharacterVertices) -> tuple[Surface, ...]:
+        """Return a surface for each material of a character."""
+        surfaces: list[Surface] = []
         first = 0
-        for material, count in geometry.materials:
-            looks = looks_of(material)
-            maps = (material.texture, material.surface, material.bumps)
+        for material, count in vertices.materials:
+            features = surface_features(material)
+            images = (material.texture, material.surface, material.bumps)
             textures = tuple(
-                (unit, self._texture(image, srgb=unit == 0))
-                for unit, image in enumerate(maps)
+                (unit, self._texture(image, srgb=unit == TEXTURE_UNITS["base_texture"]))
+                for unit, image in enumerate(images)
                 if image is not None
             )
-            parts.append(Part(first, count, material, looks, self._array(looks), textures))
+            array = self._array(features)
+            surfaces.append(Surface(first, count, material, features, array, textures))
             first += count
-        return tuple(parts)
+        return tuple(surfaces)
 
     def release(self) -> None:
-        """Give the card's memory back; a second call does nothing."""
+        """Release the arrays and textures; a second call does nothing."""
         for array in self._arrays.values():
             array.release()
         for texture in self._textures.values():
             texture.release()
 
-    def _array(self, looks: frozenset[str]) -> moderngl.VertexArray:
-        """Return all triangles with the program for some looks."""
-        if looks not in self._arrays:
-            program = self._programs.figure(looks)
-            mapped = "uv" in program
-            content = (
-                (self._paint, "4f 2f", "color", "uv") if mapped else (self._paint, "4f 8x", "color")
+    def _array(self, features: frozenset[str]) -> moderngl.VertexArray:
+        """Return all triangles with the program for some features."""
+        if features not in self._arrays:
+            program = surface_program(self._programs, features)
+            colors = (
+                (self._colors, "4f 2f", "color", "uv")
+                if "uv" in program
+                else (self._colors, "4f 8x", "color")
             )
-            placed = (self._skinned, "3f 3f", "position", "normal")
-            self._arrays[looks] = self._context.vertex_array(
-                program, [placed, content], self._indices
+            skinned = (self._skinned, "3f 3f", "position", "normal")
+            self._arrays[features] = self._context.vertex_array(
+                program, [skinned, colors], self._indices
             )
-        return self._arrays[looks]
+        return self._arrays[features]
 
     def _texture(self, image: NDArray[np.uint8], srgb: bool) -> moderngl.Texture:
-        """Return a picture on the card; one that several materials share is sent once."""
+        """Return an image as a texture; one that several materials share is uploaded once."""
         key = id(image), srgb
         if key not in self._textures:
-            texture = self._sent(image, SRGB8_ALPHA8 if srgb else None)
+            texture = self._upload(image, GL_SRGB8_ALPHA8 if srgb else None)
             texture.build_mipmaps()
             texture.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
             self._textures[key] = texture
         return self._textures[key]
 
-    def _sent(self, image: NDArray[np.uint8], internal_format: int | None) -> moderngl.Texture:
+    def _upload(self, image: NDArray[np.uint8], internal_format: int | None) -> moderngl.Texture:
         limit = int(self._context.info["GL_MAX_TEXTURE_SIZE"])
         height, width = image.shape[:2]
         if max(height, width) > limit:
@@ -123,7 +128,7 @@ class Surfaces:
             image = np.asarray(
                 cv2.resize(image, (width, height), interpolation=cv2.INTER_AREA), np.uint8
             )
-        if image.shape[2] == 3:  # four bytes a texel are read faster, and need no padding
+        if image.shape[2] == 3:  # four bytes per texel are read faster, and need no padding
             image = np.asarray(cv2.cvtColor(image, cv2.COLOR_RGB2RGBA), np.uint8)
         pixels = np.ascontiguousarray(image)
         if internal_format is None:
@@ -131,10 +136,13 @@ class Surfaces:
         return self._context.texture((width, height), 4, pixels, internal_format=internal_format)
 
 
-def looks_of(material: Material) -> frozenset[str]:
-    """Return which of `LOOKS` a material has.
+def surface_features(material: Material) -> frozenset[str]:
+    """Return what a material has beyond one colour, one roughness and one metalness.
 
-    >>> sorted(looks_of(Material(glow=(0.0, 0.2, 0.0), cutoff=0.5)))
+    TEXTURED: a texture of the base colour; SURFACE: one of roughness and metalness; BUMPS: a normal
+    map; GLOW: emitted light; CUTOFF: holes where alpha is low. The shaders test these names.
+
+    >>> sorted(surface_features(Material(glow=(0.0, 0.2, 0.0), cutoff=0.5)))
     ['CUTOFF', 'GLOW']
     """
     has = {
@@ -144,4 +152,16 @@ def looks_of(material: Material) -> frozenset[str]:
         "GLOW": any(material.glow),
         "CUTOFF": material.cutoff is not None,
     }
-    return frozenset(look for look, is_there in has.items() if is_there)
+    return frozenset(feature for feature, present in has.items() if present)
+
+
+def surface_program(programs: ShaderPrograms, features: frozenset[str]) -> moderngl.Program:
+    """Return the program that shades surfaces with some features.
+
+    Each set of features is a program of its own: software rendering samples a texture even where a
+    condition excludes it, and a plain surface must not pay for the features of others.
+    """
+    mapped = {"MAPPED"} if features & {"TEXTURED", "SURFACE", "BUMPS"} else set()
+    program = programs.load("character", "character", *sorted(features | mapped))
+    set_uniforms(program, **TEXTURE_UNITS)
+    return program

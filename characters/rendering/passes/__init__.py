@@ -1,1 +1,1 @@
-"""The passes that a picture is drawn in, a file each."""
+"""The passes that draw a picture, one file each; `Stage` lists them in their order."""

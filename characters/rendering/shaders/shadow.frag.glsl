@@ -8,8 +8,8 @@ in vec2 at;
 
 out vec4 factor;
 
-#include "seen"
+#include "cube_outlines"
 
 void main() {
-    factor = vec4(mix(vec3(1.0), texture(factors, vec2(0.5 * at.x, at.y)).rgb, seen()), 1.0);
+    factor = vec4(mix(vec3(1.0), texture(factors, vec2(0.5 * at.x, at.y)).rgb, not_hidden()), 1.0);
 }

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from characters.rendering import Box
-from characters.rendering.passes.cubes import MOST, SIDES, UNIT_CUBE, Outlines
-from characters.rendering.scene import Rectangle
+from characters.rendering.occlusion import MAX_CUBES, MAX_SIDES, UNIT_CUBE, CubeOutlines
+from characters.rendering.projection import Rectangle
 
 MATRIX = np.array([[300.0, 0, 159.5], [0, 300.0, 89.5], [0, 0, 1]])
 PART = Rectangle(40, 20, 200, 120)
@@ -39,7 +39,7 @@ coordinate = st.floats(-1.5, 1.5)
 @given(st.tuples(coordinate, coordinate, coordinate), st.floats(0.2, 0.9))
 def test_an_outline_holds_the_cube_tightly(turn, depth):
     box = box_at(turn, (0.02, -0.01, depth))
-    outlines = Outlines.of([box], MATRIX, PART)
+    outlines = CubeOutlines.of([box], MATRIX, PART)
     corners = inside(outlines, on_part(box, box.edge * UNIT_CUBE))
     assert outlines.count == 1
     assert corners.min() > -1e-3  # all within it
@@ -47,18 +47,20 @@ def test_an_outline_holds_the_cube_tightly(turn, depth):
     at = on_part(box, box.edge * UNIT_CUBE)
     nearest = (np.column_stack([at, np.ones(len(at))]) @ sides.T).min(axis=0)
     assert nearest.max() < 1e-3  # and each side touches it
-    assert 4 <= len(sides) <= SIDES
+    assert 4 <= len(sides) <= MAX_SIDES
 
 
 def test_a_cube_that_reaches_behind_the_lens_is_cut_off_there():
     box = box_at((0.3, 0.5, 0.1), (0.0, 0.0, 0.03))
-    outlines = Outlines.of([box], MATRIX, PART)
+    outlines = CubeOutlines.of([box], MATRIX, PART)
     assert np.isfinite(outlines.sides).all()
     assert inside(outlines, np.array([[100.0, 60.0]]))[0] > 0.0
 
 
 def test_the_nearest_cubes_are_known_where_there_are_many():
-    boxes = [box_at((0, 0, 0), (0, 0, 0.9 - 0.05 * number)) for number in range(MOST + 2)]
-    outlines = Outlines.of(boxes, MATRIX, PART)
-    assert outlines.count == MOST
-    np.testing.assert_array_equal(outlines.sides[0], Outlines.of(boxes[-1:], MATRIX, PART).sides[0])
+    boxes = [box_at((0, 0, 0), (0, 0, 0.9 - 0.05 * number)) for number in range(MAX_CUBES + 2)]
+    outlines = CubeOutlines.of(boxes, MATRIX, PART)
+    assert outlines.count == MAX_CUBES
+    np.testing.assert_array_equal(
+        outlines.sides[0], CubeOutlines.of(boxes[-1:], MATRIX, PART).sides[0]
+    )

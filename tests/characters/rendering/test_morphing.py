@@ -11,10 +11,10 @@ from characters.errors import CharacterError
 from characters.model.character import skin
 from characters.model.mesh import Material, Morph
 from characters.rendering import SceneCharacter
-from characters.rendering.geometry.buffers import Geometry
-from characters.rendering.geometry.morphing import Morphing
-from characters.rendering.geometry.skinning import SkinnedCharacter
-from characters.rendering.programs import Programs
+from characters.rendering.geometry.morph_mixer import MorphMixer
+from characters.rendering.geometry.skinned_character import SkinnedCharacter
+from characters.rendering.geometry.vertices import CharacterVertices
+from characters.rendering.programs import ShaderPrograms
 
 NAMES = ("grin", "absent", "tall")
 
@@ -35,7 +35,7 @@ def jester(pawn):
 
 @pytest.fixture
 def on_card(ctx, jester):
-    programs = Programs(ctx)
+    programs = ShaderPrograms(ctx)
     character = SkinnedCharacter(ctx, programs, jester)
     target = ctx.framebuffer([ctx.renderbuffer((4, 4), 4)])
     target.use()
@@ -53,8 +53,8 @@ def corners(on_card, geometry):
 @pytest.mark.parametrize("weights", [(0, 0, 0), (1, 0, 0), (0.5, 9, 0.25), (-0.3, 0, 1.2)])
 def test_the_card_draws_the_shape_that_the_processor_measures(on_card, jester, weights):
     joints = jester.posed(bend=0.6).posed.pose.globals(jester.skeleton)
-    on_card.pose(joints, np.eye(4), np.array(weights, float))
-    drawn = corners(on_card, Geometry.of(jester.meshes))[:, :3]
+    on_card.skin(joints, np.eye(4), np.array(weights, float))
+    drawn = corners(on_card, CharacterVertices.of(jester.meshes))[:, :3]
     by_name = dict(zip(NAMES, weights, strict=True))
     placed = [skin(mesh, joints, by_name)[mesh.triangles.ravel()] for mesh in jester.meshes]
     assert np.abs(drawn - np.concatenate(placed)).max() < 1e-5
@@ -63,12 +63,12 @@ def test_the_card_draws_the_shape_that_the_processor_measures(on_card, jester, w
 def test_normals_lean_with_the_surface(on_card, jester):
     joints = np.tile(np.eye(4), (2, 1, 1))
     binds = jester.meshes[0].inverse_bind
-    on_card.pose(np.linalg.inv(binds) @ joints, np.eye(4), np.array([0.8, 0.0, 0.0]))
+    on_card.skin(np.linalg.inv(binds) @ joints, np.eye(4), np.array([0.8, 0.0, 0.0]))
     mesh = jester.meshes[1]
     leant = mesh.normals.astype(float)
     leant[mesh.morphs[0].vertices] += 0.8 * mesh.morphs[0].normal_shifts
     leant /= np.linalg.norm(leant, axis=1, keepdims=True)
-    drawn = corners(on_card, Geometry.of(jester.meshes))[mesh.triangles.size :, 3:]
+    drawn = corners(on_card, CharacterVertices.of(jester.meshes))[mesh.triangles.size :, 3:]
     assert np.abs(drawn - leant[mesh.triangles.ravel()]).max() < 1e-4
 
 
@@ -90,8 +90,8 @@ def test_a_morph_that_is_off_again_leaves_no_trace(stage, view, jester):
 
 
 def test_only_what_a_morph_moves_is_sent(jester):
-    geometry = Geometry.of(jester.meshes)
-    morphing = Morphing(geometry.shape_records[: geometry.moved], geometry.morphs, NAMES)
+    geometry = CharacterVertices.of(jester.meshes)
+    morphing = MorphMixer(geometry.shape_records[: geometry.moved], geometry.morphs, NAMES)
     touched = sum(len(mesh.morphs[-1].vertices) for mesh in jester.meshes)
     assert geometry.moved == touched < 0.4 * len(geometry.positions)
     assert morphing.mix(None) is None
@@ -111,14 +111,14 @@ def test_weights_of_another_character_are_refused_in_one_line(stage, view, jeste
 @settings(max_examples=20, deadline=None)
 @given(grin=st.floats(0, 1), tall=st.floats(0, 1), bend=st.floats(-1.5, 1.5))
 def test_the_outline_encloses_the_shapes_too(jester, grin, tall, bend):
-    geometry = Geometry.of(jester.meshes)
+    geometry = CharacterVertices.of(jester.meshes)
     shape = geometry.positions.copy()
-    morphing = Morphing(geometry.shape_records[: geometry.moved], geometry.morphs, NAMES)
+    morphing = MorphMixer(geometry.shape_records[: geometry.moved], geometry.morphs, NAMES)
     mixed = morphing.mix(np.array([grin, 0.0, tall]))
     if mixed is not None:
         shape[: geometry.moved] = mixed[:, :3]
     palette = geometry.palette(jester.posed(bend).posed.pose.globals(jester.skeleton))
-    outline = geometry.outline()
+    outline = geometry.extreme()
     every = geometry.skinned(palette, slice(None), shape)
     some = geometry.skinned(palette, outline, shape[outline])
     assert np.abs(some.min(axis=0) - every.min(axis=0)).max() < 0.05

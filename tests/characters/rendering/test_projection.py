@@ -10,8 +10,13 @@ from hypothesis import strategies as st
 
 from characters.model.mesh import Material
 from characters.rendering import SceneCharacter, Stage
-from characters.rendering.projection import clip_from_camera, is_rigid, merged, part_that_shows
-from characters.rendering.scene import Rectangle
+from characters.rendering.projection import (
+    Rectangle,
+    bounding_rectangle,
+    clip_from_camera,
+    is_invertible,
+    merge_rectangles,
+)
 
 MATRIX = np.array([[310.0, 0.7, 158.2], [0.0, 305.0, 92.4], [0.0, 0.0, 1.0]])
 
@@ -65,9 +70,9 @@ def test_a_drawn_square_lies_where_opencv_projects_it(ctx, view, pawn, at):
 
 def test_a_point_behind_the_camera_asks_for_the_whole_picture():
     points = np.array([[0, 0, 1.0], [0, 0, -1.0]])
-    assert part_that_shows(points, MATRIX, np.eye(4), (320, 180)) == Rectangle(0, 0, 320, 180)
-    assert part_that_shows(points[1:], MATRIX, np.eye(4), (320, 180)) is None
-    assert part_that_shows(points[:0], MATRIX, np.eye(4), (320, 180)) is None
+    assert bounding_rectangle(points, MATRIX, np.eye(4), (320, 180)) == Rectangle(0, 0, 320, 180)
+    assert bounding_rectangle(points[1:], MATRIX, np.eye(4), (320, 180)) is None
+    assert bounding_rectangle(points[:0], MATRIX, np.eye(4), (320, 180)) is None
 
 
 @given(
@@ -80,17 +85,17 @@ def test_a_point_behind_the_camera_asks_for_the_whole_picture():
     )
 )  # fmt: skip
 def test_merged_parts_hold_all_that_they_were_made_of(parts):
-    fewer = merged(parts)
+    fewer = merge_rectangles(parts)
     assert len(fewer) <= len(parts)
     for part in parts:
-        assert any(other.joined(part) == other for other in fewer)
+        assert any(other.union(part) == other for other in fewer)
 
 
 @pytest.mark.parametrize("scale", [1e-7, 1e-4, 1.0, 1e5])
 def test_what_is_small_is_not_flat(scale):
     """A body of 1700 units, as one in millimetres is, comes to the table at a ten-thousandth."""
-    assert is_rigid(np.diag([scale, scale, scale, 1.0]))
-    assert not is_rigid(np.diag([scale, 0.0, scale, 1.0]))
+    assert is_invertible(np.diag([scale, scale, scale, 1.0]))
+    assert not is_invertible(np.diag([scale, 0.0, scale, 1.0]))
     flat = np.eye(4)
     flat[:3, :3] = scale * np.array([[1, 0, 1], [0, 1, 1], [1, 1, 2]])
-    assert not is_rigid(flat)
+    assert not is_invertible(flat)

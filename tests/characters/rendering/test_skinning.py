@@ -9,14 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters.model.mesh import Material
-from characters.rendering.geometry.buffers import Geometry
-from characters.rendering.geometry.skinning import SkinnedCharacter
-from characters.rendering.programs import Programs
+from characters.rendering.geometry.skinned_character import SkinnedCharacter
+from characters.rendering.geometry.vertices import CharacterVertices
+from characters.rendering.programs import ShaderPrograms
 
 
 @pytest.fixture
 def programs(ctx):
-    programs = Programs(ctx)
+    programs = ShaderPrograms(ctx)
     yield programs
     programs.release()
 
@@ -25,7 +25,7 @@ def skinned_on_the_card(ctx, programs, character, joints, place):
     on_card = SkinnedCharacter(ctx, programs, character)
     any_target = ctx.framebuffer([ctx.renderbuffer((4, 4), 4)])
     any_target.use()
-    enclosing = on_card.pose(joints, place)
+    enclosing = on_card.skin(joints, place)
     vertices = np.frombuffer(on_card.skinned.read(), np.float32).reshape(-1, 6)
     on_card.release()
     ctx.detect_framebuffer(0).use()
@@ -76,7 +76,7 @@ def test_two_hundred_joints_are_not_too_many(ctx, programs, pawn):
     character = replace(pawn, meshes=(crowd,), skeleton=skeleton)
     joints = matrices(2, count)
     vertices, _ = skinned_on_the_card(ctx, programs, character, joints, np.eye(4))
-    geometry = Geometry.of([crowd])
+    geometry = CharacterVertices.of([crowd])
     expected = geometry.skinned(geometry.palette(joints), slice(None))
     assert np.abs(vertices[:, :3] - expected).max() < 1e-4
 
@@ -95,7 +95,7 @@ def test_meshes_with_other_bind_poses_keep_their_own(ctx, programs, pawn):
     one, same, other = vertices[:, :3].reshape(3, -1, 3)  # meshes of one material lie together
     assert np.allclose(one, same)
     assert np.allclose(other - one, [0.0, 0.5, 0.0], atol=1e-6)
-    assert [count for _, count in Geometry.of(character.meshes).materials] == [
+    assert [count for _, count in CharacterVertices.of(character.meshes).materials] == [
         2 * mesh.triangles.size,
         mesh.triangles.size,
     ]
@@ -104,13 +104,13 @@ def test_meshes_with_other_bind_poses_keep_their_own(ctx, programs, pawn):
 @settings(max_examples=25, deadline=None)
 @given(bend=st.floats(-1.5, 1.5), turn=st.floats(-3.0, 3.0))
 def test_the_outline_encloses_all_vertices(pawn, bend, turn):
-    geometry = Geometry.of(pawn.meshes)
+    geometry = CharacterVertices.of(pawn.meshes)
     pose = pawn.posed(bend).posed.pose
     turned = np.eye(4)
     turned[[0, 0, 2, 2], [0, 2, 0, 2]] = np.cos(turn), np.sin(turn), -np.sin(turn), np.cos(turn)
     palette = geometry.palette(turned @ pose.globals(pawn.skeleton))
     every = geometry.skinned(palette, slice(None))
-    outline = geometry.skinned(palette, geometry.outline())
+    outline = geometry.skinned(palette, geometry.extreme())
     assert np.abs(outline.min(axis=0) - every.min(axis=0)).max() < 0.03
     assert np.abs(outline.max(axis=0) - every.max(axis=0)).max() < 0.03
 
@@ -130,15 +130,15 @@ def test_the_outline_of_a_ball_encloses_it_from_any_side(pawn, seed):
         weights=np.tile([1.0, 0.0, 0.0, 0.0], (4000, 1)).astype(np.float32),
         triangles=mesh.triangles[:1],
     )
-    outline = ball.positions[Geometry.of([ball]).outline()]
+    outline = ball.positions[CharacterVertices.of([ball]).extreme()]
     assert len(outline) <= 98
     side = rng.standard_normal(3)
     assert (outline @ side).max() > 0.96 * (ball.positions @ side).max()
 
 
 def test_the_coarse_caster_has_fewer_triangles_and_the_same_size(pawn):
-    geometry = Geometry.of(pawn.meshes)
-    coarse, runs = geometry.coarse(16)
+    geometry = CharacterVertices.of(pawn.meshes)
+    coarse, runs = geometry.simplified(16)
     assert 0 < coarse.size < geometry.indices.size
     assert runs == ((0, coarse.size, False),)
     kept = geometry.positions[coarse]
@@ -160,15 +160,17 @@ def test_a_body_of_specks_casts_a_shadow_too(ctx, programs, pawn):
         uvs=None,
     )
     on_card = SkinnedCharacter(ctx, programs, replace(pawn, meshes=(specks,)))
-    assert on_card.coarse_runs[0][1] == 3
+    assert on_card.caster_runs[0][1] == 3
     on_card.release()
 
 
 def test_every_program_is_released(ctx):
-    programs = Programs(ctx)
-    programs.figure(frozenset({"TEXTURED", "GLOW"}))
-    every = programs.every
+    programs = ShaderPrograms(ctx)
+    programs.load("full_screen", "resolve")
+    programs.load_transform("skin", "skinned_position", "skinned_normal")
+    programs.load("character", "character", "GLOW")
+    built = programs.built
     programs.release()
     programs.release()
-    assert len(every) >= 10
-    assert all(isinstance(program.mglo, moderngl.InvalidObject) for program in every)
+    assert len(built) == 3
+    assert all(isinstance(program.mglo, moderngl.InvalidObject) for program in built)

@@ -5,11 +5,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import cv2
+import moderngl
 import numpy as np
 import pytest
 
 from characters.errors import CharacterError
 from characters.rendering import FloorPath, SceneCharacter, Stage, View
+from characters.rendering.passes.render_pass import RenderPass
 
 GOLDEN = Path(__file__).parent / "golden"
 LOOP = FloorPath(
@@ -200,6 +202,47 @@ def test_five_hundred_draws_leave_nothing_behind(ctx, view, pawn, cube):
     draw(500)
     assert resident() - before < 12e6
     stage.release()
+
+
+class TintPass(RenderPass):
+    """Multiplies the picture with a colour: the example of the room's README."""
+
+    def __init__(self, context, bgr):
+        program = context.program(vertex_shader=FULL_SCREEN, fragment_shader=TINT)
+        program["tint"] = bgr
+        self._triangle = context.vertex_array(program, [])
+        self.owned = (self._triangle, program)
+
+    def prepare(self, frame):
+        return [frame.whole]
+
+    def draw(self, frame, region):
+        region.use()
+        frame.context.enable_only(moderngl.BLEND)
+        frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
+        self._triangle.render(moderngl.TRIANGLES, vertices=3)
+
+
+FULL_SCREEN = """#version 330 core
+void main() {
+    gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);
+}"""
+TINT = """#version 330 core
+uniform vec3 tint;
+out vec4 color;
+void main() {
+    color = vec4(tint, 1.0);
+}"""
+
+
+def test_a_pass_of_ones_own_is_one_class_and_one_line(ctx, view, pawn):
+    plain, tinted = Stage(ctx, (320, 180)), Stage(ctx, (320, 180))
+    tinted.passes.append(TintPass(ctx, (0.5, 1.0, 0.0)))
+    expected = plain.draw(view, [pawn.posed()]) * [0.5, 1.0, 0.0]
+    picture = tinted.draw(view, [pawn.posed()])
+    plain.release()
+    tinted.release()
+    assert np.abs(picture - expected).max() <= 1
 
 
 def test_a_second_release_does_nothing(ctx, view, pawn):

@@ -7,8 +7,8 @@ import pytest
 
 from characters.model.mesh import Material, Mesh
 from characters.rendering import SceneCharacter
-from characters.rendering.geometry.buffers import Geometry
-from characters.rendering.geometry.surfaces import looks_of
+from characters.rendering.geometry.surfaces import surface_features
+from characters.rendering.geometry.vertices import CharacterVertices
 
 RED = Material(base_color=(0.6, 0.1, 0.08, 1.0), roughness=0.5)
 
@@ -53,7 +53,7 @@ def shown(stage, view, pawn):
 
 
 def test_a_plain_material_asks_for_nothing():
-    assert looks_of(RED) == frozenset()
+    assert surface_features(RED) == frozenset()
 
 
 def test_maps_of_roughness_and_metalness_multiply_the_factors(shown, tile):
@@ -126,4 +126,4 @@ def test_materials_that_differ_in_a_map_are_drawn_apart(tile):
     bumps = even(128, 128, 255)
     one, other = replace(RED, bumps=bumps), replace(RED, bumps=bumps.copy())
     meshes = [tile(material).meshes[0] for material in (one, other, one)]
-    assert len(Geometry.of(meshes).materials) == 2
+    assert len(CharacterVertices.of(meshes).materials) == 2

@@ -11,7 +11,7 @@ in vec3 paint;
 
 out vec4 color;
 
-#include "seen"
+#include "cube_outlines"
 
 void main() {
     float off = length(vec2(max(abs(at.x) - capsule.x, 0.0), at.y));
@@ -19,5 +19,5 @@ void main() {
     float cover = clamp((capsule.y - off) / soft + 0.5, 0.0, 1.0);
     if (capsule.z > 0.0) cover *= clamp((off - capsule.z) / soft + 0.5, 0.0, 1.0);
     vec3 lit = pow(clamp(paint * light, 0.0, 1.0), vec3(1.0 / 2.2));
-    color = vec4(lit.bgr, 0.82 * cover * seen());
+    color = vec4(lit.bgr, 0.82 * cover * not_hidden());
 }

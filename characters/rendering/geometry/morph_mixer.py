@@ -1,7 +1,8 @@
-"""The vertices that morphs move, mixed on the processor before the card skins them.
+"""Morph targets, mixed on the processor before the graphics card skins the vertices.
 
-A face is some hundreds of vertices of tens of thousands, and few of its morphs are on at once: to
-mix just those and send them costs less than to let the card look at every morph of every vertex.
+A face is a few hundred of tens of thousands of vertices, and few of its morphs are active at once.
+To mix only those and to upload them costs less than to let the card read every morph of every
+vertex.
 """
 
 from collections.abc import Sequence
@@ -18,10 +19,10 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class _Run:
-    """A morph spread over all vertices from the first to the last that it moves.
+class _DenseMorph:
+    """A morph for all vertices from the first to the last that it moves.
 
-    To add rows that lie together is some ten times as fast as to pick them.
+    To add a contiguous block is about ten times as fast as to add selected rows.
     """
 
     first: int
@@ -32,17 +33,17 @@ class _Run:
     def of(cls, morph: Morph) -> Self:
         first = int(morph.vertices[0])
         shifts = np.zeros((int(morph.vertices[-1]) + 1 - first, 6), np.float32)
-        shifts[morph.vertices - first] = _both_shifts(morph)
+        shifts[morph.vertices - first] = _shift_records(morph)
         return cls(first, shifts)
 
 
-class Morphing:
-    """Mixes the shapes of a character.
+class MorphMixer:
+    """Mixes the morphs of a character.
 
     Parameters
     ----------
-    still
-        Position and normal of every vertex that some morph moves, (moved, 6).
+    neutral
+        Position and normal of every vertex that a morph moves, (moved, 6).
     morphs
         Of these vertices.
     names
@@ -50,31 +51,31 @@ class Morphing:
     """
 
     def __init__(
-        self, still: NDArray[np.float32], morphs: Sequence[Morph], names: Sequence[str]
+        self, neutral: NDArray[np.float32], morphs: Sequence[Morph], names: Sequence[str]
     ) -> None:
-        self._still = still
-        self._mixed = still.copy()
-        known = {morph.name: _Run.of(morph) for morph in morphs}
-        self._runs = [known.get(name) for name in names]
+        self._neutral = neutral
+        self._mixed = neutral.copy()
+        known = {morph.name: _DenseMorph.of(morph) for morph in morphs}
+        self._morphs = [known.get(name) for name in names]
         self._weights = np.zeros(len(names))
 
     def mix(self, weights: Array | None) -> NDArray[np.float32] | None:
-        """Return position and normal of the vertices that move, (moved, 6).
+        """Return position and normal of the vertices that morphs move, (moved, 6).
 
         Parameters
         ----------
         weights
-            How far each morph is on, (morphs,) and finite; None for not at all.
+            Of each morph, (morphs,), finite; None for all zero.
 
         Returns
         -------
         NDArray or None
-            None where nothing changed since the last call. Normals are not of unit length.
+            None if nothing has changed since the last call. Normals are not of unit length.
 
         Raises
         ------
         CharacterError
-            The weights are those of another character.
+            The number of weights is not that of the character's morphs.
         """
         if weights is None:
             if not self._weights.any():
@@ -83,30 +84,30 @@ class Morphing:
         if np.shape(weights) != self._weights.shape:
             raise CharacterError(
                 f"a pose with morphs of shape {np.shape(weights)} for a character that has "
-                f"{len(self._runs)}: give one weight for each"
+                f"{len(self._morphs)}: give one weight for each"
             )
         if np.array_equal(weights, self._weights):
             return None
         self._weights = np.array(weights, float)
-        np.copyto(self._mixed, self._still)
+        np.copyto(self._mixed, self._neutral)
         for number in np.flatnonzero(self._weights):
-            run = self._runs[number]
-            if run is not None:  # else no mesh that is drawn has it
-                self._mixed[run.first : run.first + len(run.shifts)] += (
-                    np.float32(self._weights[number]) * run.shifts
+            morph = self._morphs[number]
+            if morph is not None:  # None: no mesh that is drawn has it
+                self._mixed[morph.first : morph.first + len(morph.shifts)] += (
+                    np.float32(self._weights[number]) * morph.shifts
                 )
         return self._mixed
 
 
-def joined(meshes: Sequence[Mesh], starts: Sequence[int]) -> tuple[Morph, ...]:
-    """Return the morphs of meshes that lie one after the other; those of one name become one.
+def merge_morphs(meshes: Sequence[Mesh], starts: Sequence[int]) -> tuple[Morph, ...]:
+    """Return the morphs of concatenated meshes; morphs of the same name become one.
 
     Parameters
     ----------
     meshes
-        Some that are drawn together.
+        Meshes that are drawn together.
     starts
-        Number that the first vertex of each has among all of them.
+        Index of the first vertex of each mesh among all vertices.
     """
     found: dict[str, list[tuple[Morph, int]]] = {}
     for mesh, start in zip(meshes, starts, strict=True):
@@ -117,15 +118,15 @@ def joined(meshes: Sequence[Mesh], starts: Sequence[int]) -> tuple[Morph, ...]:
 
 
 def _sum(name: str, parts: Sequence[tuple[Morph, int]]) -> Morph:
-    numbers = np.concatenate([morph.vertices.astype(np.uint32) + start for morph, start in parts])
-    rows = np.concatenate([_both_shifts(morph) for morph, _ in parts])
-    vertices, which = np.unique(numbers, return_inverse=True)
+    indices = np.concatenate([morph.vertices.astype(np.uint32) + start for morph, start in parts])
+    records = np.concatenate([_shift_records(morph) for morph, _ in parts])
+    vertices, rows = np.unique(indices, return_inverse=True)
     total = np.zeros((len(vertices), 6), np.float32)
-    np.add.at(total, which, rows)  # a mesh may have two morphs of one name
+    np.add.at(total, rows, records)  # a mesh can have two morphs of one name
     return Morph(name, vertices, total[:, :3], total[:, 3:] if total[:, 3:].any() else None)
 
 
-def _both_shifts(morph: Morph) -> NDArray[np.float32]:
-    """Return what positions and normals change by, (n, 6)."""
+def _shift_records(morph: Morph) -> NDArray[np.float32]:
+    """Return the shifts of positions and normals, (n, 6)."""
     normals = np.zeros_like(morph.shifts) if morph.normal_shifts is None else morph.normal_shifts
     return np.hstack([morph.shifts, normals]).astype(np.float32)

@@ -2,11 +2,11 @@
 
 // One direction of a Gaussian whose width differs between the four heights. The map's halves do not mix.
 
-const int TAPS = 10;
+const int BLUR_TAPS = 10;
 
 uniform sampler2D source;
 uniform ivec2 direction;
-uniform vec4 weights[TAPS];
+uniform vec4 weights[BLUR_TAPS];
 uniform int left;       // first column of the half
 uniform int side;       // columns of the half, and rows
 
@@ -16,7 +16,7 @@ void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     ivec2 low = ivec2(left, 0), high = low + side - 1;
     softened = weights[0] * texelFetch(source, here, 0);
-    for (int i = 1; i < TAPS; ++i)
+    for (int i = 1; i < BLUR_TAPS; ++i)
         softened += weights[i] * (texelFetch(source, min(here + i * direction, high), 0)
                                 + texelFetch(source, max(here - i * direction, low), 0));
 }

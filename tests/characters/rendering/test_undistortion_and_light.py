@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from characters.rendering.context import create_context
-from characters.rendering.light import LightEstimate
-from characters.rendering.paper import paper_of
-from characters.rendering.passes.background import Background
+from characters.rendering.light import LightEstimator, paper_color
+from characters.rendering.undistortion import Undistorter
 
 BENT = np.array([0.12, -0.2, 0.001, -0.002, 0.05])
 
@@ -20,21 +19,23 @@ def test_a_straightened_frame_shows_points_where_the_pinhole_puts_them(view):
     yy, xx = np.mgrid[:180, :320]
     spot = np.exp(-((xx - bent[0, 0, 0]) ** 2 + (yy - bent[0, 0, 1]) ** 2) / 8)
     frame = np.repeat((250 * spot)[..., None], 3, axis=2).astype(np.uint8)
-    straight, matrix = Background((320, 180)).of(replace(view, image=frame, distortion=BENT))
+    straight, matrix = Undistorter((320, 180)).undistort(
+        replace(view, image=frame, distortion=BENT)
+    )
     weight = straight[..., 0].astype(float)
     seen = [(weight * xx).sum(), (weight * yy).sum()] / weight.sum()
     assert seen == pytest.approx((matrix @ point / point[2])[:2], abs=0.05)
 
 
 def test_a_frame_without_distortion_passes_untouched_and_is_not_shared(view):
-    picture, matrix = Background((320, 180)).of(view)
+    picture, matrix = Undistorter((320, 180)).undistort(view)
     assert np.array_equal(picture, view.image)
     assert not np.shares_memory(picture, view.image)
     assert np.array_equal(matrix, view.matrix)
 
 
 def test_a_frame_of_another_size_is_fitted_with_its_matrix(view):
-    picture, matrix = Background((640, 400)).of(view)
+    picture, matrix = Undistorter((640, 400)).undistort(view)
     assert picture.shape == (400, 640, 3)
     assert matrix[0, 0] == pytest.approx(2 * view.matrix[0, 0])
     middle = matrix @ np.linalg.inv(view.matrix) @ [159.5, 89.5, 1.0]
@@ -42,26 +43,26 @@ def test_a_frame_of_another_size_is_fitted_with_its_matrix(view):
 
 
 def test_the_maps_are_made_once_a_camera(view, monkeypatch):
-    background = Background((320, 180))
+    undistorter = Undistorter((320, 180))
     bent = replace(view, distortion=BENT)
-    background.of(bent)
+    undistorter.undistort(bent)
     monkeypatch.setattr(cv2, "initUndistortRectifyMap", None)
-    background.of(bent)
+    undistorter.undistort(bent)
     with pytest.raises(TypeError):
-        background.of(replace(view, distortion=2 * BENT))
+        undistorter.undistort(replace(view, distortion=2 * BENT))
 
 
 def test_a_darker_and_redder_room_gives_a_darker_and_redder_light(view):
-    bright = LightEstimate().update(np.full((180, 320, 3), 180, np.uint8))
+    bright = LightEstimator().update(np.full((180, 320, 3), 180, np.uint8))
     image = np.full((180, 320, 3), (40, 50, 70), np.uint8)
-    dim = LightEstimate().update(image)
+    dim = LightEstimator().update(image)
     assert (dim.white < bright.white).all()
     assert dim.white[0] > dim.white[1] > dim.white[2]
-    assert (LightEstimate().update(np.zeros_like(image)).white > 0.1).all()
+    assert (LightEstimator().update(np.zeros_like(image)).white > 0.1).all()
 
 
 def test_the_light_follows_slowly(view):
-    estimate = LightEstimate()
+    estimate = LightEstimator()
     first = estimate.update(np.full((180, 320, 3), 60, np.uint8)).white
     second = estimate.update(np.full((180, 320, 3), 240, np.uint8)).white
     for _ in range(80):
@@ -79,11 +80,11 @@ def test_the_paper_of_a_cube_is_read_between_its_markers(view, cube):
         pixels = np.rint((seen / seen[:, 2:] @ view.matrix.T)[:, :2]).astype(int)
         cv2.fillConvexPoly(image, pixels, (value,) * 3)
     image[:72] = 0
-    paper = paper_of(image, view.matrix, replace(view, occluders=(cube,)))
+    paper = paper_color(image, view.matrix, replace(view, occluders=(cube,)))
     assert paper is not None
-    assert paper_of(image, view.matrix, view) is None
+    assert paper_color(image, view.matrix, view) is None
     broken = replace(cube, camera_from_box=np.full((4, 4), np.nan))
-    assert paper_of(image, view.matrix, replace(view, occluders=(broken,))) is None
+    assert paper_color(image, view.matrix, replace(view, occluders=(broken,))) is None
 
 
 def test_a_missing_library_is_named_with_the_command_that_installs_it(monkeypatch):

@@ -6,7 +6,7 @@
 uniform sampler2D map;
 uniform int side;       // columns of each half of the map
 uniform vec3 key;       // share of the key light in what reaches the table, by channel
-uniform vec4 sky_keeps; // how much of the sky each height can keep
+uniform vec4 sky_occlusion; // how much of the sky each height can keep
 
 out vec4 factor;
 
@@ -16,7 +16,7 @@ void main() {
     vec4 closed = texelFetch(map, here + ivec2(side, 0), 0);
     float shade = min(dot(blocked, vec4(1.0)), 1.0);
     // Under a foot it is dark, not black: some light comes off the foot and the table.
-    float sky = min(dot(closed, sky_keeps), 0.78);
+    float sky = min(dot(closed, sky_occlusion), 0.78);
     vec3 light = key * (1.0 - shade) + (1.0 - key) * (1.0 - sky);
     factor = vec4(pow(light, vec3(1.0 / 2.2)).bgr, 1.0);
 }

@@ -1,0 +1,91 @@
+"""The characters of a picture on the graphics card."""
+
+from collections import Counter, OrderedDict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.rendering.geometry.skinned_character import SkinnedCharacter
+from characters.rendering.programs import ShaderPrograms
+from characters.rendering.projection import is_invertible
+from characters.rendering.scene import Drawable, SceneCharacter
+
+Array = NDArray[np.float64]
+
+MAX_CHARACTERS = 8
+"""Characters that stay on the graphics card; more only if one picture shows more."""
+
+
+@dataclass(frozen=True)
+class CharacterInstance:
+    """A character of the picture, skinned on the graphics card."""
+
+    skinned: SkinnedCharacter
+    """Its buffers, in the table frame."""
+
+    enclosing: Array
+    """Points of the table frame around it, (n, 3) [m]."""
+
+    height: float
+    """Its height on the table [m]."""
+
+
+class CharacterCache:
+    """Skins characters, and keeps the buffers of the most recently drawn.
+
+    Parameters
+    ----------
+    context, programs
+        Where to draw.
+    """
+
+    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
+        self._context = context
+        self._programs = programs
+        # By character, and by its number among its copies in the picture: each has own vertices.
+        self._kept: OrderedDict[tuple[int, int], tuple[Drawable, SkinnedCharacter]]
+        self._kept = OrderedDict()
+
+    def skin(self, characters: Sequence[SceneCharacter]) -> tuple[CharacterInstance, ...]:
+        """Skin the visible characters whose pose is finite.
+
+        A framebuffer must be bound: transform feedback needs one, although it draws nothing.
+        """
+        instances: list[CharacterInstance] = []
+        copies: Counter[int] = Counter()
+        for each in characters:
+            place = np.asarray(each.posed.table_from_character, float)
+            if not each.posed.visible or not is_invertible(place):
+                continue
+            skinned = self._buffers(each.character, copies[id(each.character)])
+            copies[id(each.character)] += 1
+            with np.errstate(invalid="ignore", over="ignore"):  # `skin` checks the result
+                joints = each.posed.pose.globals(each.character.skeleton)
+                enclosing = skinned.skin(joints, place, each.posed.pose.morphs)
+            if enclosing is not None:
+                height = skinned.height * float(np.linalg.norm(place[:3, 1]))
+                instances.append(CharacterInstance(skinned, enclosing, height))
+        self._evict(copies.total())
+        return tuple(instances)
+
+    def release(self) -> None:
+        """Release all buffers; a second call does nothing."""
+        while self._kept:
+            self._kept.popitem()[1][1].release()
+
+    def _buffers(self, character: Drawable, copy: int) -> SkinnedCharacter:
+        """Return the buffers of one copy of a character, created when it is first drawn."""
+        key = id(character), copy
+        kept = self._kept.pop(key, None)
+        if kept is None:
+            kept = (character, SkinnedCharacter(self._context, self._programs, character))
+        self._kept[key] = kept
+        return kept[1]
+
+    def _evict(self, drawn: int) -> None:
+        """Release the least recently drawn, but none of the last `drawn`."""
+        while len(self._kept) > max(MAX_CHARACTERS, drawn):
+            self._kept.popitem(last=False)[1][1].release()

@@ -1,0 +1,123 @@
+"""A character on the graphics card: uploaded once, skinned in every picture."""
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.rendering.geometry.morph_mixer import MorphMixer
+from characters.rendering.geometry.surfaces import SurfaceBuffers
+from characters.rendering.geometry.vertices import CharacterVertices
+from characters.rendering.programs import ShaderPrograms
+from characters.rendering.scene import Drawable
+
+Array = NDArray[np.float64]
+
+SHADOW_CELLS = 44
+"""Grid cells along a character's height to which the mesh for its shadow is simplified; a shadow
+map is not much finer."""
+
+
+class SkinnedCharacter:
+    """All meshes of one character in one set of buffers.
+
+    Vertices are skinned once a picture by transform feedback into `skinned`, in the table frame,
+    where the passes for shadow and colour read them. The joint matrices go through a texture with
+    one row for each joint, so their number is not limited.
+
+    Parameters
+    ----------
+    context, programs
+        Where to draw.
+    character
+        Its meshes and skeleton.
+    """
+
+    def __init__(
+        self, context: moderngl.Context, programs: ShaderPrograms, character: Drawable
+    ) -> None:
+        self._vertices = vertices = CharacterVertices.of(character.meshes)
+        self._extreme = vertices.extreme()
+        rest = vertices.palette(character.skeleton.rest.globals(character.skeleton))
+        heights = vertices.skinned(rest, slice(None))[:, 1]
+        self.height = float(max(heights.max() - min(heights.min(), 0.0), 1e-6))
+        """Height of the rest pose above the ground [m in the character frame]."""
+        self._morphs = MorphMixer(
+            vertices.shape_records[: vertices.moved], vertices.morphs, character.morphs
+        )
+        self._extreme_positions = vertices.positions[self._extreme]
+        self._shapes = context.buffer(vertices.shape_records)
+        joints = context.buffer(vertices.joint_records)
+        colors = context.buffer(vertices.color_records)
+        indices = context.buffer(vertices.indices)
+        simplified, self.caster_runs = vertices.simplified(SHADOW_CELLS)
+        caster_indices = context.buffer(simplified)
+        self.skinned = context.buffer(reserve=24 * len(vertices.positions))
+        """Positions and normals in the table frame, 3 + 3 float32 for each vertex."""
+        self._palette = context.texture((3, len(rest)), 4, dtype="f4")
+        self._palette.filter = (moderngl.NEAREST, moderngl.NEAREST)
+        self._skinning = context.vertex_array(
+            programs.load_transform("skin", "skinned_position", "skinned_normal"),
+            [
+                (self._shapes, "3f 3f", "position", "normal"),
+                (joints, "4u4 4f", "joints", "weights"),
+            ],
+        )
+        self.caster = context.vertex_array(
+            programs.load("shadow_caster", "shadow_caster"),
+            [(self.skinned, "3f 12x", "position")],
+            caster_indices,
+        )
+        """Draws its shadow, in runs of indices `caster_runs`: (first, count, double-sided)."""
+        self._surfaces = SurfaceBuffers(context, programs, self.skinned, colors, indices)
+        self.surfaces = self._surfaces.surfaces(vertices)
+        """A run of triangles for each material."""
+        self._buffers = (self._shapes, joints, colors, indices, caster_indices, self.skinned)
+
+    def skin(
+        self, character_from_joint: Array, table_from_character: Array, morphs: Array | None = None
+    ) -> Array | None:
+        """Skin the vertices, and return points in the table frame that enclose them, (n, 3).
+
+        Parameters
+        ----------
+        character_from_joint
+            Of every joint of the skeleton, (joints, 4, 4).
+        table_from_character
+            Its place on the table, (4, 4).
+        morphs
+            Weights of the character's morphs, (morphs,), or None for all zero.
+
+        Returns
+        -------
+        NDArray or None
+            None if the pose is not finite; then there is nothing to draw.
+        """
+        palette = self._vertices.palette(table_from_character @ character_from_joint)
+        if not np.isfinite(palette).all():
+            return None
+        if morphs is not None and not np.isfinite(morphs).all():
+            return None
+        self._morph(morphs)
+        self._palette.write(np.ascontiguousarray(palette[:, :3], "f4"))
+        self._palette.use(0)
+        count = len(self._vertices.positions)
+        self._skinning.transform(self.skinned, moderngl.POINTS, vertices=count)
+        return self._vertices.skinned(palette, self._extreme, self._extreme_positions)
+
+    def _morph(self, weights: Array | None) -> None:
+        """Upload the vertices that morphs move, if the weights have changed."""
+        mixed = self._morphs.mix(weights)
+        if mixed is None:
+            return
+        self._shapes.write(mixed)
+        moved = self._extreme < len(mixed)
+        self._extreme_positions[moved] = mixed[self._extreme[moved], :3]
+
+    def release(self) -> None:
+        """Release the buffers; a second call does nothing."""
+        for array in (self._skinning, self.caster):
+            array.release()
+        self._palette.release()
+        self._surfaces.release()
+        for buffer in self._buffers:
+            buffer.release()

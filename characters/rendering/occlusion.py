@@ -1,0 +1,110 @@
+"""Where real cubes are in the picture, and the outlines of what they hide."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.rendering.projection import (
+    NEAR_M,
+    Rectangle,
+    bounding_rectangle,
+    is_invertible,
+    project,
+)
+from characters.rendering.scene import Box
+
+Array = NDArray[np.float64]
+
+_FACE = np.array([(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, -1, 1), (1, 1, 1), (-1, 1, 1)]) / 2
+UNIT_CUBE = np.concatenate([s * np.roll(_FACE, axis, axis=1) for axis in range(3) for s in (1, -1)])
+"""Corners of the twelve triangles of a cube, (36, 3)."""
+
+_EDGE_ENDS = np.array([(a, a | b) for a in range(8) for b in (1, 2, 4) if not a & b])
+_CORNERS = (np.arange(8)[:, None] >> np.arange(3) & 1) - 0.5
+EDGES = _CORNERS[_EDGE_ENDS]
+"""Both ends of its twelve edges, (12, 2, 3)."""
+
+MAX_SIDES = 10
+"""Sides that a cube's outline can have, when the near plane cuts it; `MAX_SIDES` in the shaders
+too. The outline of a cube that lies completely before the camera has six at most."""
+
+MAX_CUBES = 8
+"""Cubes whose outlines a region keeps, the nearest ones; `MAX_CUBES` in the shaders too."""
+
+NO_SIDE = 1e6
+"""Distance [px] that stands for a side that does not exist: everything is inside of it."""
+
+
+@dataclass(frozen=True)
+class VisibleCube:
+    """A real cube that is in the picture."""
+
+    box: Box
+    """Its pose and size."""
+
+    area: Rectangle
+    """Where it is in the picture."""
+
+
+@dataclass(frozen=True)
+class CubeOutlines:
+    """Outlines of cubes in a region of the picture. They hide the part of the table inside."""
+
+    count: int
+    """Number of cubes."""
+
+    longest: int
+    """Number of sides of the outline that has the most."""
+
+    sides: Array
+    """(`MAX_CUBES`, `MAX_SIDES`, 3). A side times (x, y, 1) is how far inside of it a point lies
+    [px]; the origin is the corner of the region's first pixel."""
+
+    @classmethod
+    def of(cls, boxes: Sequence[Box], matrix: Array, region: Rectangle) -> Self:
+        """Return the outlines of boxes under the picture's pinhole matrix (3, 3)."""
+        nearest = sorted(boxes, key=lambda box: float(np.linalg.norm(box.camera_from_box[:3, 3])))
+        pixel_from_point = np.eye(3)
+        pixel_from_point[:2, 2] = region.x - 0.5, region.y - 0.5
+        sides = np.zeros((MAX_CUBES, MAX_SIDES, 3))
+        sides[..., 2] = NO_SIDE
+        longest = 0
+        for row, box in zip(sides, nearest, strict=False):
+            outline = _outline(box, matrix)
+            row[: len(outline)] = outline @ pixel_from_point
+            longest = max(longest, len(outline))
+        return cls(min(len(boxes), MAX_CUBES), longest, sides)
+
+
+def visible_cubes(
+    boxes: Sequence[Box], matrix: Array, size: tuple[int, int]
+) -> tuple[VisibleCube, ...]:
+    """Return the boxes that are in a picture of a `size` (width, height) [px]."""
+    visible = []
+    for box in boxes:
+        if is_invertible(box.camera_from_box) and np.isfinite(box.edge) and box.edge > 0.0:
+            area = bounding_rectangle(box.edge * UNIT_CUBE, matrix, box.camera_from_box, size)
+            if area is not None:
+                visible.append(VisibleCube(box, area))
+    return tuple(visible)
+
+
+def _outline(box: Box, matrix: Array) -> Array:
+    """Return the lines (n, 3) around a box in the picture, positive inside."""
+    pose = np.asarray(box.camera_from_box, float)
+    ends = box.edge * EDGES @ pose[:3, :3].T + pose[:3, 3]
+    depths = ends[..., 2]
+    crossing = (depths.min(axis=1) < NEAR_M) & (depths.max(axis=1) > NEAR_M)
+    share = (NEAR_M - depths[crossing, :1]) / np.diff(depths[crossing], axis=1)
+    cuts = ends[crossing, 0] + share * (ends[crossing, 1] - ends[crossing, 0])
+    visible = np.concatenate([ends[depths >= NEAR_M], cuts])
+    hull = cv2.convexHull(project(visible, matrix).astype(np.float32))[:, 0].astype(float)
+    along = np.roll(hull, -1, axis=0) - hull
+    inward = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    inward /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-9)
+    lines = np.column_stack([inward, -np.einsum("ij,ij->i", inward, hull)])
+    return np.asarray(lines * np.sign(lines @ [*hull.mean(axis=0), 1.0])[:, None])[:MAX_SIDES]

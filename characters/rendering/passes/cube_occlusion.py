@@ -1,0 +1,45 @@
+"""The depth of the real cubes, which hide the characters behind them."""
+
+import moderngl
+import numpy as np
+
+from characters.rendering.occlusion import UNIT_CUBE
+from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.resources import FrameResources, Region
+
+
+class CubeOcclusionPass(RenderPass):
+    """Clears the character layer and writes the depth of the real cubes, without colour.
+
+    Parameters
+    ----------
+    context, programs
+        Where to draw.
+    """
+
+    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
+        self._program = programs.load("cube", "depth_only")
+        corners = context.buffer(UNIT_CUBE.astype("f4"))
+        self._cube = context.vertex_array(self._program, [(corners, "3f", "position")])
+        self.owned = (self._cube, corners)
+
+    def draw(self, frame: FrameResources, region: Region) -> None:
+        """Clear the character layer and write depth."""
+        layer = region.characters
+        if layer is None:
+            return
+        framebuffer = layer.use()
+        framebuffer.clear()
+        if not layer.cubes:
+            return
+        framebuffer.color_mask = False, False, False, False
+        framebuffer.use()  # the mask takes effect here
+        frame.context.enable_only(moderngl.DEPTH_TEST)
+        for box in layer.cubes:
+            clip_from_box = layer.clip_from_camera @ box.camera_from_box
+            scale = np.diag([box.edge, box.edge, box.edge, 1.0])
+            set_uniforms(self._program, clip_from_cube=clip_from_box @ scale)
+            self._cube.render(moderngl.TRIANGLES)
+        framebuffer.color_mask = True, True, True, True
+        framebuffer.use()

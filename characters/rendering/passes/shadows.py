@@ -1,0 +1,242 @@
+"""The characters' shadows on the table: sharp under the feet, softer with height."""
+
+from collections.abc import Sequence
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.rendering.geometry.character_cache import CharacterInstance
+from characters.rendering.light import TO_LIGHT
+from characters.rendering.passes.render_pass import RenderPass
+from characters.rendering.programs import ShaderPrograms, set_uniforms
+from characters.rendering.projection import Rectangle
+from characters.rendering.resources import FrameResources, Region
+
+Array = NDArray[np.float64]
+
+MAP_SIDE = 80
+"""Texels along each side of a shadow map; a character covers about half of them."""
+
+BLUR_TAPS = 10
+"""Taps of the blur on each side; `BLUR_TAPS` in `shadow_blur.frag` too."""
+
+SLOPE = TO_LIGHT[[0, 2]] / TO_LIGHT[1]
+"""Horizontal offset (x, z) of a point from its shadow, for each metre of the point's height."""
+
+LEVELS = (0.0, 0.1, 0.4, 1.0)
+"""Heights whose shadows are blurred separately, as shares of the character's height."""
+
+KEY_BLUR = (0.010, 0.022, 0.05, 0.10)
+"""Standard deviation of the key light's blur at each level, as a share of the character's height:
+a light of about 25° across, as a window or a ceiling light is from a desk."""
+
+SKY_BLUR = (0.022, 0.05, 0.11, 0.13)
+"""The same for ambient light."""
+
+SKY_OCCLUSION = (0.78, 0.7, 0.48, 0.2)
+"""Share of the ambient light that a surface at each level keeps from the table below it."""
+
+BLUR_MARGIN = 0.22
+"""Margin around the character for the blur, as a share of its height."""
+
+
+class ShadowPass(RenderPass):
+    """Renders a shadow map for each character, and darkens the table with them.
+
+    Parameters
+    ----------
+    context, programs
+        Where to draw.
+    """
+
+    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
+        self._context = context
+        self._programs = programs
+        self._program = programs.load("shadow", "shadow")
+        self._table = context.vertex_array(self._program, [])
+        self.owned = (self._table,)
+        self._maps: list[ShadowMap] = []
+        self._count = 0
+
+    def prepare(self, frame: FrameResources) -> Sequence[Rectangle]:
+        """Render the shadow maps, and return one area for all shadows and their characters."""
+        self._count = len(frame.characters)
+        if not self._count:
+            return ()
+        while len(self._maps) < self._count:
+            self._maps.append(ShadowMap(self._context, self._programs))
+        key_share = frame.light.key * TO_LIGHT[1] / frame.light.white
+        corners = [
+            shadow.render(character, key_share)
+            for shadow, character in zip(self._maps, frame.characters, strict=False)
+        ]
+        bodies = [character.enclosing for character in frame.characters]
+        area = frame.area_of(np.concatenate([*bodies, *corners]))
+        return () if area is None else (area,)
+
+    def draw(self, frame: FrameResources, region: Region) -> None:
+        """Darken the table, except where real cubes hide it."""
+        if not self._count:
+            return
+        region.use()
+        frame.context.enable_only(moderngl.BLEND)
+        frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
+        set_uniforms(
+            self._program,
+            clip_from_table=region.clip_from_table,
+            cube_count=region.outlines.count,
+            longest=region.outlines.longest,
+            outlines=region.outlines.sides,
+        )
+        for shadow in self._maps[: self._count]:
+            set_uniforms(self._program, area=shadow.area, extent=shadow.extent)
+            shadow.texture.use(0)
+            self._table.render(moderngl.TRIANGLE_STRIP, vertices=4)
+
+    def release(self) -> None:
+        """Release the maps too; a second call does nothing."""
+        super().release()
+        for shadow in self._maps:
+            shadow.release()
+
+
+class ShadowMap:
+    """The light that one character takes from the table, by colour channel.
+
+    Parameters
+    ----------
+    context, programs
+        Where to draw.
+    """
+
+    def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
+        self._context = context
+        self._caster = programs.load("shadow_caster", "shadow_caster")
+        self._blur = programs.load("full_screen", "shadow_blur")
+        self._factor = programs.load("full_screen", "shadow_factor")
+        self._blur_triangle = context.vertex_array(self._blur, [])
+        self._factor_triangle = context.vertex_array(self._factor, [])
+        self._textures = [context.texture((2 * MAP_SIDE, MAP_SIDE), 4) for _ in range(2)]
+        for texture in self._textures:
+            texture.repeat_x = texture.repeat_y = False
+        self._targets = [context.framebuffer([texture]) for texture in self._textures]
+        self.texture = self._textures[1]
+        """What is left of the light, in its left half."""
+        self.area = np.zeros(4)
+        """Origin x, z and side of the square that the map covers, and the character's height."""
+        self.extent = np.zeros(4)
+        """Lowest x and z, highest x and z that the shadow can reach [m]."""
+
+    def render(self, character: CharacterInstance, key_share: Array) -> Array:
+        """Render the map of a character.
+
+        Parameters
+        ----------
+        character
+            Its skinned vertices are read.
+        key_share
+            Share of the key light in the light on the table, (3,).
+
+        Returns
+        -------
+        NDArray
+            Corners of the rectangle on the table that the shadow can reach, (4, 3).
+        """
+        height = character.height
+        self.extent = _extent(character.enclosing, height)
+        self.area = _map_area(self.extent, height)
+        context = self._context
+        set_uniforms(self._caster, area=self.area, slope=SLOPE, levels=LEVELS)
+        for target in reversed(self._targets):
+            target.use()
+            target.viewport = (0, 0, 2 * MAP_SIDE, MAP_SIDE)
+            target.clear()
+        # Faces that look away from the light are drawn: they are nearest to the table, and soles
+        # touch it.
+        context.enable_only(moderngl.BLEND | moderngl.CULL_FACE)
+        context.front_face = "ccw"
+        context.blend_equation = moderngl.MAX, moderngl.MAX
+        context.blend_func = moderngl.ONE, moderngl.ONE
+        for first, count, double_sided in character.skinned.caster_runs:
+            (context.disable if double_sided else context.enable)(moderngl.CULL_FACE)
+            character.skinned.caster.render(vertices=count, first=first, instances=2)
+        context.blend_equation = moderngl.FUNC_ADD, moderngl.FUNC_ADD
+        context.enable_only(moderngl.NOTHING)
+        self._soften(height)
+        self._combine(key_share)
+        x, z = self.extent[[0, 2, 2, 0]], self.extent[[1, 1, 3, 3]]
+        return np.stack([x, np.zeros(4), z], axis=1)
+
+    def _soften(self, height: float) -> None:
+        """Blur the part of the map that can have a shadow: along x, then along z."""
+        texels_per_height = MAP_SIDE / self.area[2] * height
+        set_uniforms(self._blur, side=MAP_SIDE)
+        x, z, width, depth = self._used_texels()
+        halves = [
+            (left, _gaussian_kernels(texels_per_height * np.array(deviations)))
+            for left, deviations in ((0, KEY_BLUR), (MAP_SIDE, SKY_BLUR))
+        ]
+        for source, target, direction in ((0, 1, (1, 0)), (1, 0, (0, 1))):
+            self._targets[target].use()
+            self._textures[source].use(0)
+            set_uniforms(self._blur, direction=direction)
+            for left, weights in halves:
+                self._targets[target].viewport = (x + left, z, width, depth)
+                set_uniforms(self._blur, weights=weights, left=left)
+                self._blur_triangle.render(moderngl.TRIANGLES, vertices=3)
+
+    def _combine(self, key_share: Array) -> None:
+        """Write what is left of both lights to one map: it has fewer texels than the table."""
+        set_uniforms(self._factor, side=MAP_SIDE, key=key_share, sky_occlusion=SKY_OCCLUSION)
+        self._targets[1].use()
+        x, z, width, depth = self._used_texels()
+        # One more texel on each side, for the interpolation between texels.
+        self._targets[1].viewport = (x - 1, z - 1, width + 2, depth + 2)
+        self._textures[0].use(0)
+        self._factor_triangle.render(moderngl.TRIANGLES, vertices=3)
+
+    def _used_texels(self) -> tuple[int, int, int, int]:
+        """Return the texels of a half that can have a shadow: first x and z, width and depth."""
+        area = self.area
+        x, z = np.floor((self.extent[:2] - area[:2]) / area[2] * MAP_SIDE).astype(int).tolist()
+        right, far = np.ceil((self.extent[2:] - area[:2]) / area[2] * MAP_SIDE).astype(int).tolist()
+        return x, z, right - x, far - z
+
+    def release(self) -> None:
+        """Release the buffers; a second call does nothing."""
+        self._blur_triangle.release()
+        self._factor_triangle.release()
+        for target, texture in zip(self._targets, self._textures, strict=True):
+            target.release()
+            texture.release()
+
+
+def _extent(enclosing: Array, height: float) -> Array:
+    """Return lowest x and z, highest x and z that a character's shadow can reach [m]."""
+    below = enclosing[:, [0, 2]]
+    shadow = below - SLOPE * np.maximum(enclosing[:, 1:2], 0.0)
+    low = np.minimum(below.min(axis=0), shadow.min(axis=0)) - BLUR_MARGIN * height
+    high = np.maximum(below.max(axis=0), shadow.max(axis=0)) + BLUR_MARGIN * height
+    return np.concatenate([low, high])
+
+
+def _map_area(extent: Array, height: float) -> Array:
+    """Return the area of the map that covers an extent.
+
+    The side grows in steps and the origin moves by whole texels, so that edges do not crawl.
+    """
+    low, high = extent[:2], extent[2:]
+    step = height / 8
+    side = (np.ceil((high - low).max() / step) + 1) * step
+    texel = side / MAP_SIDE
+    origin = np.floor((low + high - side) / 2 / texel) * texel
+    return np.array([*origin, side, height])
+
+
+def _gaussian_kernels(deviations: Array) -> Array:
+    """Return one half of four normalised kernels, (taps, 4)."""
+    taps = np.arange(BLUR_TAPS)[:, None]
+    kernels = np.exp(-0.5 * (taps / np.maximum(deviations, 0.3)) ** 2)
+    kernels /= kernels[0] + 2.0 * kernels[1:].sum(axis=0)
+    return np.asarray(kernels)

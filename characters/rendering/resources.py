@@ -1,0 +1,168 @@
+"""What the passes of a picture share: the resources of a frame, and of one region of it."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import moderngl
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.rendering.geometry.character_cache import CharacterInstance
+from characters.rendering.light import Light
+from characters.rendering.occlusion import CubeOutlines, VisibleCube
+from characters.rendering.programs import ShaderPrograms
+from characters.rendering.projection import Rectangle, bounding_rectangle, clip_from_camera
+from characters.rendering.scene import Box, Scene
+from characters.rendering.target import RenderTarget, RenderTargets
+
+Array = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+
+@dataclass(frozen=True)
+class CharacterLayer:
+    """Where the characters of a region are drawn: supersampled, with depth, on transparent ground.
+
+    Its target may be that of the region, whose picture it does not touch.
+    """
+
+    area: Rectangle
+    """The area of the picture that it covers."""
+
+    target: RenderTarget
+    """Its character layer is drawn on, from its first texel on."""
+
+    clip_from_camera: Array
+    """Projection to the layer, (4, 4)."""
+
+    cubes: tuple[Box, ...]
+    """Real cubes in this area."""
+
+    def use(self) -> moderngl.Framebuffer:
+        """Draw on this layer from now on."""
+        return self.target.use_characters(self.area.width, self.area.height)
+
+
+@dataclass(frozen=True)
+class Region:
+    """A part of the picture that is drawn on the graphics card."""
+
+    area: Rectangle
+    """Where it is in the picture."""
+
+    target: RenderTarget
+    """It is drawn on the target's picture, from the first texel on."""
+
+    clip_from_table: Array
+    """Projection to the region, (4, 4); its first row is the top row, so triangles turn
+    clockwise."""
+
+    outlines: CubeOutlines
+    """Of the real cubes in this region. They hide what lies on the table."""
+
+    characters: CharacterLayer | None
+    """For the characters; None if there are none in this region."""
+
+    def use(self) -> None:
+        """Draw on the picture of this region from now on."""
+        self.target.use_picture((0, 0, self.area.width, self.area.height))
+
+
+@dataclass(frozen=True)
+class FrameResources:
+    """All that the passes share while they draw one picture; built once a frame."""
+
+    context: moderngl.Context
+    """Where everything is drawn."""
+
+    programs: ShaderPrograms
+    """The shaders."""
+
+    targets: RenderTargets
+    """Framebuffers to draw in."""
+
+    scene: Scene
+    """What the picture shows."""
+
+    picture: Image
+    """The undistorted camera frame, (height, width, 3) BGR."""
+
+    camera_matrix: Array
+    """Pinhole matrix of the picture, (3, 3) [px]."""
+
+    camera_from_table: Array
+    """Pose of the table, (4, 4) [m]."""
+
+    light: Light
+    """What lights the scene."""
+
+    cubes: tuple[VisibleCube, ...]
+    """Real cubes in the picture."""
+
+    characters: tuple[CharacterInstance, ...]
+    """The visible characters, skinned on the graphics card."""
+
+    @property
+    def whole(self) -> Rectangle:
+        """The whole picture."""
+        return Rectangle(0, 0, self.picture.shape[1], self.picture.shape[0])
+
+    @cached_property
+    def camera_position(self) -> Array:
+        """The camera in the table frame, (3,) [m]."""
+        return np.asarray(np.linalg.inv(self.camera_from_table)[:3, 3], float)
+
+    def area_of(self, points: Array) -> Rectangle | None:
+        """Return the area of the picture around points (n, 3) of the table frame, or None."""
+        whole = self.whole
+        size = whole.width, whole.height
+        return bounding_rectangle(points, self.camera_matrix, self.camera_from_table, size)
+
+    @cached_property
+    def character_area(self) -> Rectangle | None:
+        """The area around all characters, without their shadows; None if there are none."""
+        points = [character.enclosing for character in self.characters]
+        return self.area_of(np.concatenate(points)) if points else None
+
+    def regions(self, areas: Sequence[Rectangle]) -> Iterator[Region]:
+        """Yield a region for each area that no other contains.
+
+        Where regions overlap, the last one is right. The caller reads each before it asks for the
+        next, which may use the same target.
+        """
+        areas = [
+            area
+            for i, area in enumerate(areas)
+            if not any(
+                other.contains(area) and (other != area or j > i) for j, other in enumerate(areas)
+            )
+        ]
+        characters = self.character_area
+        for number, area in enumerate(areas):
+            later = areas[number + 1 :]
+            drawn_later = characters is None or any(each.contains(characters) for each in later)
+            yield self._region(area, None if drawn_later else characters)
+
+    def _region(self, area: Rectangle, characters: Rectangle | None) -> Region:
+        boxes = self._cubes_in(area)
+        clip = clip_from_camera(self.camera_matrix, area)
+        inner = None if characters is None else area.intersection(characters)
+        return Region(
+            area,
+            self.targets.at_least(area.width, area.height),
+            clip @ self.camera_from_table,
+            CubeOutlines.of(boxes, self.camera_matrix, area),
+            None if inner is None else self._character_layer(inner),
+        )
+
+    def _character_layer(self, area: Rectangle) -> CharacterLayer:
+        return CharacterLayer(
+            area,
+            self.targets.at_least(area.width, area.height),
+            clip_from_camera(self.camera_matrix, area),
+            self._cubes_in(area),
+        )
+
+    def _cubes_in(self, area: Rectangle) -> tuple[Box, ...]:
+        return tuple(cube.box for cube in self.cubes if cube.area.intersection(area))

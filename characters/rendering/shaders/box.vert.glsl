@@ -1,9 +1,0 @@
-#version 330 core
-
-uniform mat4 clip_from_box;
-
-in vec3 position;
-
-void main() {
-    gl_Position = clip_from_box * vec4(position, 1.0);
-}

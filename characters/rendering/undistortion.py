@@ -1,0 +1,140 @@
+"""The camera's frame as an ideal pinhole camera of the picture's size would have taken it."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from characters.errors import CharacterError
+from characters.rendering.projection import is_pinhole
+from characters.rendering.scene import View
+
+Array = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+BACKDROP_TOP_BGR, BACKDROP_BOTTOM_BGR = (226.0, 224.0, 222.0), (176.0, 180.0, 186.0)
+"""Colours of the plain backdrop."""
+
+
+class Undistorter:
+    """Undistorts camera frames, and fits them to the size of the picture.
+
+    The maps of `cv2.remap` are computed once for each camera. The frame is remapped with four
+    channels, the last unused: OpenCV has a fast path for four that is twice as fast as the one for
+    three, both conversions included.
+
+    Parameters
+    ----------
+    size
+        Of the picture, (width, height) [px].
+    """
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        self._size = size
+        self._camera_key: tuple[bytes, ...] = ()
+        self._maps: tuple[NDArray[np.float32], NDArray[np.float32]] | None = None
+        self._bgra = np.empty((0, 0, 4), np.uint8)
+        self._undistorted_bgra = np.empty((size[1], size[0], 4), np.uint8)
+        self._matrix = np.eye(3)
+        self._backdrop: Image | None = None
+
+    def undistort(self, view: View) -> tuple[Image, Array]:
+        """Return the undistorted picture, (height, width, 3) BGR, and its pinhole matrix (3, 3).
+
+        The picture is a copy that the caller may draw on.
+
+        Raises
+        ------
+        CharacterError
+            The view's image is not (height, width, 3) uint8.
+        """
+        if view.image is None:
+            return self._plain_backdrop(), np.asarray(view.matrix, float)
+        image = _checked(view.image)
+        frame_size = (image.shape[1], image.shape[0])
+        if not is_pinhole(view.matrix):
+            return self._fitted(image, frame_size), np.eye(3)
+        matrix = np.asarray(view.matrix, float)
+        distortion = np.asarray(view.distortion, float).ravel()
+        camera_key = (matrix.tobytes(), distortion.tobytes(), bytes(repr(frame_size), "ascii"))
+        if camera_key != self._camera_key:
+            self._matrix, self._maps = self._make_maps(matrix, distortion, frame_size)
+            self._camera_key = camera_key
+        if self._maps is None:
+            return image.copy(), self._matrix
+        return self._remapped(image, *self._maps), self._matrix
+
+    def _remapped(
+        self, image: Image, columns: NDArray[np.float32], rows: NDArray[np.float32]
+    ) -> Image:
+        """Return a picture whose pixels come from the given columns and rows of the frame."""
+        if self._bgra.shape[:2] != image.shape[:2]:
+            self._bgra = np.empty((*image.shape[:2], 4), np.uint8)
+        cv2.cvtColor(image, cv2.COLOR_BGR2BGRA, dst=self._bgra)
+        cv2.remap(
+            self._bgra,
+            columns,
+            rows,
+            interpolation=cv2.INTER_LINEAR,
+            dst=self._undistorted_bgra,
+            borderMode=cv2.BORDER_REFLECT_101,
+        )
+        return np.asarray(cv2.cvtColor(self._undistorted_bgra, cv2.COLOR_BGRA2BGR), np.uint8)
+
+    def _make_maps(
+        self, matrix: Array, distortion: Array, frame_size: tuple[int, int]
+    ) -> tuple[Array, tuple[NDArray[np.float32], NDArray[np.float32]] | None]:
+        """Return the picture's matrix and, if it needs any, the maps from it to the frame."""
+        distorted = bool(
+            distortion.size in (4, 5, 8, 12, 14)
+            and np.isfinite(distortion).all()
+            and distortion.any()
+        )
+        if not distorted and frame_size == self._size:
+            return matrix, None
+        fitted = _fit(frame_size, self._size) @ matrix
+        columns, rows = cv2.initUndistortRectifyMap(
+            matrix,
+            distortion if distorted else np.zeros(5),
+            np.eye(3),
+            fitted,
+            self._size,
+            cv2.CV_32FC1,
+        )
+        return fitted, (np.asarray(columns, np.float32), np.asarray(rows, np.float32))
+
+    def _fitted(self, image: Image, frame_size: tuple[int, int]) -> Image:
+        """Scale a frame of an unknown camera to the picture."""
+        if frame_size == self._size:
+            return image.copy()
+        fit = _fit(frame_size, self._size)[:2]
+        return np.asarray(cv2.warpAffine(image, fit, self._size, flags=cv2.INTER_LINEAR), np.uint8)
+
+    def _plain_backdrop(self) -> Image:
+        """Return a light backdrop for pictures without a camera, darker towards the bottom."""
+        if self._backdrop is None:
+            width, height = self._size
+            share = np.linspace(0.0, 1.0, height)[:, None, None] ** 1.5
+            top, bottom = np.array(BACKDROP_TOP_BGR), np.array(BACKDROP_BOTTOM_BGR)
+            rows = (top + (bottom - top) * share).round().astype(np.uint8)
+            self._backdrop = np.ascontiguousarray(np.broadcast_to(rows, (height, width, 3)))
+        return self._backdrop.copy()
+
+
+def _checked(image: Image) -> Image:
+    if image.ndim != 3 or image.shape[2] != 3 or image.dtype != np.uint8 or 0 in image.shape:
+        raise CharacterError(
+            f"cannot draw on an image of shape {image.shape} and type {image.dtype}: "
+            "it must be (height, width, 3) uint8, BGR"
+        )
+    return image
+
+
+def _fit(frame_size: tuple[int, int], picture_size: tuple[int, int]) -> Array:
+    """Return the map of pixels (3, 3) that centres a whole frame in the picture, unstretched.
+
+    >>> _fit((64, 48), (128, 96)) @ [-0.5, -0.5, 1]
+    array([-0.5, -0.5,  1. ])
+    """
+    scale = min(picture_size[0] / frame_size[0], picture_size[1] / frame_size[1])
+    shift = (np.array(picture_size) - scale * np.array(frame_size)) / 2 + 0.5 * scale - 0.5
+    return np.array([[scale, 0.0, shift[0]], [0.0, scale, shift[1]], [0.0, 0.0, 1.0]])
