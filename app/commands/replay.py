@@ -23,7 +23,7 @@ from app.running.network import SITE
 from app.running.opening import open_session
 from app.running.options import SessionOptions
 from app.running.replay_check import check_session
-from app.session import about, salvaged
+from app.session import session_info
 from app.ui.display import has_display
 from robot.network import Credentials
 
@@ -68,7 +68,7 @@ def replay(
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """
     console = Console()
-    recorded = salvaged(session) if salvage else about(session)
+    recorded = session_info(session, salvage=salvage)
     options = SessionOptions(
         scenario=scenario or recorded.scenario,
         source=str(session),

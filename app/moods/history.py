@@ -12,7 +12,7 @@ from app.errors import AppError
 from app.pipeline.scenario import EmotionTarget
 from app.scenarios.affect import Temper
 from app.scenarios.follow import gait
-from app.session import About, about, cues, messages, salvaged
+from app.session import SessionInfo, messages, session_info, start_over_times
 from app.session.encoding import decode
 from characters import CharacterCommand
 from tracking import CubeControls
@@ -50,7 +50,7 @@ class History:
     name: str
     """Name of the session's file."""
 
-    about: About
+    about: SessionInfo
     """What the session says of itself."""
 
     felt: Felt
@@ -97,7 +97,7 @@ def read_history(path: Path, *, salvage: bool = False) -> History:
     AppError
         It is no session, was cut off, or holds no feelings.
     """
-    told = salvaged(path) if salvage else about(path)
+    info = session_info(path, salvage=salvage)
     frames: list[dict[str, Any]] = []
     frame: dict[str, Any] = {}
     for topic, _, data in messages(path, *KINDS):
@@ -114,11 +114,11 @@ def read_history(path: Path, *, salvage: bool = False) -> History:
     targets: list[EmotionTarget] = [each["/robot/emotion"] for each in frames]
     return History(
         path.name,
-        told,
+        info,
         _felt("", targets),
         tuple(each["/cube/controls"] for each in frames),
         tuple(each["/character/command"] for each in frames),
-        cues(path),
+        start_over_times(path),
     )
 
 

@@ -10,7 +10,7 @@ from app.errors import AppError
 from app.pipeline.scenario import EmotionTarget
 from app.running.network import Network
 from app.running.players import PlayerLine
-from app.session import about, messages
+from app.session import messages, session_info
 from app.session.encoding import decode
 from characters import CharacterCommand
 from robot import connect
@@ -67,7 +67,7 @@ class RecordedPlayer:
     def __init__(self, line: PlayerLine, path: Path) -> None:
         self.line = line
         """Where it is published."""
-        about(path)  # what is no session is refused here
+        session_info(path)  # what is no session is refused here
         self._arrows = _arrows(path)
         self._next = next(self._arrows, None)
         self._shift: float | None = None

@@ -15,7 +15,7 @@ from app.running.options import SessionOptions
 from app.running.players import PlayerLine
 from app.running.robots import RobotLine, WireRecorder
 from app.scenarios import make_scenario, scenario_cube
-from app.session import Recorder, cues
+from app.session import Recorder, start_over_times
 from app.session.replay_inputs import recorded_arrows
 from app.ui.overlay import virtual_robot_side
 from app.ui.screen import NullScreen, Screen, VideoFile
@@ -115,7 +115,7 @@ def open_session(
         )
         closing.callback(playground.close)
         is_session = options.source.endswith(".mcap")
-        start_overs = cues(Path(options.source)) if is_session else frozenset[float]()
+        start_overs = start_over_times(Path(options.source)) if is_session else frozenset[float]()
         replay_inputs = None
         if options.start != "camera":
             replay_inputs = recorded_arrows(options.source, options.start)

@@ -10,7 +10,7 @@ from app.pipeline.step import Step
 from app.running.gaps import CameraGaps
 from app.running.opening import OpenedSession
 from app.running.summary import Summary
-from app.session import START_OVER, preparation
+from app.session import START_OVER_EVENT, frame_encoder
 from app.ui.notice import notice
 from robot import RobotError
 from tracking import Frame, Health, LiveFrames, TrackingError
@@ -71,10 +71,10 @@ class _FrameLoop:
     def __init__(self, session: OpenedSession, summary: Summary) -> None:
         self._session, self._summary = session, summary
         self._inputs = Inputs()
-        self._prepare = None
+        self._encode = None
         if session.recorder is not None:
             source = session.source
-            self._prepare = preparation(session.options.codec, source.size, source.rate)
+            self._encode = frame_encoder(session.options.codec, source.size, source.rate)
 
     def step(self, frame: Frame) -> Step:
         """Process one frame."""
@@ -84,8 +84,9 @@ class _FrameLoop:
         if frame.timestamp in session.start_overs:
             inputs = Inputs(clear=True)
         replay = None if session.replay_inputs is None else next(session.replay_inputs, None)
-        prepared = self._prepare(frame) if self._prepare else frame
-        step = session.playground.step(prepared, inputs, replay)
+        if self._encode is not None:
+            frame = self._encode(frame)
+        step = session.playground.step(frame, inputs, replay)
         # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
         view = session.robot.view()
         session.robot.feel(step.emotion)
@@ -103,7 +104,7 @@ class _FrameLoop:
             return
         now = step.frame.timestamp
         if inputs.clear:
-            recorder.event(START_OVER, now)
+            recorder.event(START_OVER_EVENT, now)
         if self._summary.frames == 0:
             recorder.camera(self._session.playground.intrinsics, now)
         recorder.write(step)

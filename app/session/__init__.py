@@ -1,18 +1,24 @@
-"""A session on disk: one .mcap file with the camera's frames and every arrow after them."""
+"""A session on disk: one .mcap file with the camera's frames and every message after them."""
 
-from app.session.frames import Preparation, preparation
-from app.session.reading import START_OVER, About, about, cues, events, messages, salvaged
+from app.session.frames import FrameEncoder, frame_encoder
+from app.session.reading import (
+    START_OVER_EVENT,
+    SessionInfo,
+    events,
+    messages,
+    session_info,
+    start_over_times,
+)
 from app.session.recorder import Recorder
 
 __all__ = [
-    "START_OVER",
-    "About",
-    "Preparation",
+    "START_OVER_EVENT",
+    "FrameEncoder",
     "Recorder",
-    "about",
-    "cues",
+    "SessionInfo",
     "events",
+    "frame_encoder",
     "messages",
-    "preparation",
-    "salvaged",
+    "session_info",
+    "start_over_times",
 ]

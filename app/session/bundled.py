@@ -1,4 +1,4 @@
-"""The sessions that come with the program."""
+"""The bundled sessions."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ from app.errors import AppError
 
 
 def bundled(name: str) -> Path:
-    """Return the session in `recordings/` that belongs to a scenario."""
+    """Return the session of a scenario in `recordings/`."""
     import recordings
 
     for folder in recordings.__path__:

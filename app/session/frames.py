@@ -1,4 +1,4 @@
-"""Camera frames as a session stores them: the bytes, and the very picture that they give back."""
+"""Encoding camera frames for a session, with the picture that decoding gives back."""
 
 import dataclasses
 from collections.abc import Callable
@@ -11,37 +11,51 @@ import numpy as np
 from app.errors import AppError
 from tracking import Frame
 
-Preparation = Callable[[Frame], Frame]
-"""Gives a frame its stored bytes, and the picture that a replay will decode from them."""
+FrameEncoder = Callable[[Frame], Frame]
+"""Gives a frame its encoded bytes, and the picture that a replay decodes from them."""
+
+JPEG_QUALITY = 92
+"""Of OpenCV's JPEG encoder, 0…100."""
+
+H264_CRF = 25
+"""Constant rate factor of x264: a larger one gives smaller files and worse pictures."""
+
+KEYFRAME_INTERVAL_S = 5
+"""Time between pictures that can be decoded alone [s]."""
 
 
-def preparation(codec: str, size: tuple[int, int], rate: float) -> Preparation:
-    """Return how frames are made ready to be recorded.
+def frame_encoder(codec: str, size: tuple[int, int], rate: float) -> FrameEncoder:
+    """Return the function that encodes frames for a recording.
 
-    A replay sees the decoded picture, so the tracker must see that too: every step after it
-    is then the same, live and replayed.
+    A replay sees the decoded picture, so the tracker must see that picture too. Every message
+    after it is then the same, live and replayed.
 
     Parameters
     ----------
     codec
         "jpeg" keeps the camera's own bytes where it gives them; "h264" is ten times smaller.
     size
-        Width and height of the frames.
+        Width and height of the frames [px].
     rate
-        Frames a second, roughly.
+        Approximate frame rate [1/s].
+
+    Raises
+    ------
+    AppError
+        There is no such codec.
     """
     if codec == "jpeg":
-        return as_jpeg
+        return encode_jpeg
     if codec == "h264":
-        return Video(size, rate)
+        return H264Encoder(size, rate)
     raise AppError(f"a session cannot hold '{codec}' pictures: use jpeg or h264")
 
 
-def as_jpeg(frame: Frame) -> Frame:
-    """Return the frame with JPEG bytes and the picture in them; its own bytes where it has any."""
+def encode_jpeg(frame: Frame) -> Frame:
+    """Return the frame with JPEG bytes and their decoded picture; keep bytes that it has."""
     if frame.encoded is not None:
         return frame
-    done, data = cv2.imencode(".jpg", frame.image, (cv2.IMWRITE_JPEG_QUALITY, 92))
+    done, data = cv2.imencode(".jpg", frame.image, (cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY))
     if not done:
         raise AppError("OpenCV could not write a JPEG of the camera's picture")
     image = cv2.imdecode(data, cv2.IMREAD_COLOR)
@@ -51,23 +65,23 @@ def as_jpeg(frame: Frame) -> Frame:
     )
 
 
-class Video:
-    """H.264 without frames of delay: one packet a frame, decoded again at once."""
+class H264Encoder:
+    """Encodes H.264 without delay: one packet a frame, decoded again at once."""
 
-    def __init__(self, size: tuple[int, int], rate: float, quality: int = 25) -> None:
+    def __init__(self, size: tuple[int, int], rate: float) -> None:
         encoder = av.CodecContext.create("libx264", "w")
         assert isinstance(encoder, av.VideoCodecContext)
         encoder.width, encoder.height = size
         encoder.pix_fmt = "yuv420p"
         encoder.framerate = Fraction(max(1, round(rate)))
         encoder.time_base = 1 / encoder.framerate
-        # One slice thread: the same bytes on every machine, however many cores it has.
+        # One thread gives the same bytes on every machine, whatever its number of cores.
         encoder.thread_count = 1
         encoder.options = {
             "preset": "slow",
-            "crf": str(quality),
+            "crf": str(H264_CRF),
             "x264-params": "bframes=0:rc-lookahead=0:sync-lookahead=0:repeat-headers=1"
-            f":keyint={5 * round(rate)}:force-cfr=1"
+            f":keyint={KEYFRAME_INTERVAL_S * round(rate)}:force-cfr=1"
             ":colorprim=bt470bg:transfer=bt470bg:colormatrix=bt470bg",
         }
         self._encoder = encoder
@@ -78,7 +92,7 @@ class Video:
         self._count = 0
 
     def __call__(self, frame: Frame) -> Frame:
-        """Return the frame with its packet and the picture in it; its own where it has one."""
+        """Return the frame with its packet and the decoded picture; keep a packet that it has."""
         if frame.encoding == "h264" and frame.encoded is not None:
             return frame
         planes = cv2.cvtColor(frame.image, cv2.COLOR_BGR2YUV_I420)

@@ -1,4 +1,4 @@
-"""Writing a session: append-only, on its own thread, so that nobody waits for the disk."""
+"""Recording a session: append-only, on a thread of its own, so that no frame waits for the disk."""
 
 import json
 import queue
@@ -20,11 +20,11 @@ from app.session.encoding import ARROWS, encode, schema
 from tracking import Frame, Intrinsics
 from tracking.sources.base import nanoseconds_of
 
-CHUNK = 128 * 1024
-"""Bytes that are gathered before they are written [B]: well under a second of any session."""
+CHUNK_BYTES = 128 * 1024
+"""Size at which a chunk is written to the disk [B]: well under a second of any session."""
 
-BACKLOG = 256
-"""Writes that may wait for a slow disk; then recording gives up rather than hold the picture up."""
+MAX_QUEUED_WRITES = 256
+"""Writes that may wait for a slow disk; with more, recording stops instead of delaying frames."""
 
 EVENT_SCHEMA = b'{"type":"object","properties":{"event":{"type":"string"}}}'
 WIRE_SCHEMA = (
@@ -35,31 +35,35 @@ WIRE_SCHEMA = (
 class Recorder:
     """Records one session to one .mcap file.
 
-    Open it before the first frame, `write` every step, `close` it at the end; a second `close` does
-    nothing.
-    The file can be read up to the last half second whenever the program dies.
+    Open it before the first frame, `write` every step, and `close` it at the end; a second `close`
+    does nothing. If the program is killed, all but the last half second can be read.
 
     Parameters
     ----------
     path
         Where to write.
     about
-        What a replay must know: the scenario, its options, the cube …
+        Metadata that a replay needs: the scenario, its options, the cube …
+
+    Raises
+    ------
+    AppError
+        The file cannot be written.
     """
 
     def __init__(self, path: Path, about: dict[str, str]) -> None:
         self.path = path
         self.problem: str | None = None
-        """Why recording stopped early, or None."""
+        """Why recording stopped before `close`, or None."""
         self._about = about
         self._steps = 0
-        self._queue: queue.Queue[Callable[[], None] | None] = queue.Queue(BACKLOG)
+        self._queue: queue.Queue[Callable[[], None] | None] = queue.Queue(MAX_QUEUED_WRITES)
         self._channels: dict[str, int] = {}
         try:
             self._file = path.open("wb")
         except OSError as error:
             raise AppError(f"cannot record to '{path}': {error.strerror}") from error
-        self._writer = Writer(self._file, chunk_size=CHUNK)
+        self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
         self._submit(self._start)
         self._thread.start()
@@ -86,31 +90,31 @@ class Recorder:
         self._protobuf("/camera/calibration", message, timestamp)
 
     def write(self, step: Step) -> None:
-        """Record the camera's frame and every arrow after it."""
+        """Record the camera's frame and every message after it."""
         self._steps += 1
-        self._picture(step.frame)
-        for topic, arrow in step.arrows().items():
-            self._json(topic, partial(encode, arrow), step.frame.timestamp)
+        self._frame(step.frame)
+        for topic, message in step.arrows().items():
+            self._json(topic, partial(encode, message), step.frame.timestamp)
 
     def wire(self, direction: str, data: bytes, timestamp: float) -> None:
-        """Record bytes that went to the robot ("tx") or came from it ("rx")."""
+        """Record bytes that were sent to the robot ("tx") or received from it ("rx")."""
         line = json.dumps({"direction": direction, "hex": data.hex()}).encode()
         self._json("/robot/wire", lambda: line, timestamp)
 
-    def event(self, what: str, timestamp: float) -> None:
-        """Record that something happened."""
-        line = json.dumps({"event": what}).encode()
+    def event(self, name: str, timestamp: float) -> None:
+        """Record an event."""
+        line = json.dumps({"event": name}).encode()
         self._json("/events", lambda: line, timestamp)
 
     def flush(self) -> None:
-        """Wait until all that was handed over is written, but for the chunk being gathered."""
+        """Wait until everything is written, except for the last chunk."""
         done = threading.Event()
         self._submit(done.set)
         while self.problem is None and not done.wait(0.1):
             pass
 
     def close(self) -> None:
-        """Write what waits and the index; remove the file where nothing was recorded."""
+        """Write the rest and the index; remove the file if it has no frame."""
         if self._closed:
             return
         self._closed = True
@@ -124,7 +128,7 @@ class Recorder:
         try:
             while (write := self._queue.get()) is not None:
                 write()
-                self._file.flush()  # a finished chunk must not wait for the next one
+                self._file.flush()  # write a full chunk now, not with the next one
             self._writer.finish()  # type: ignore[no-untyped-call]  # mcap has no types here
         except (OSError, ValueError) as error:
             reason = (error.strerror if isinstance(error, OSError) else None) or error
@@ -142,9 +146,9 @@ class Recorder:
         self._writer.start(profile="", library="cubeling")
         self._writer.add_metadata("cubeling", self._about)
 
-    def _picture(self, frame: Frame) -> None:
+    def _frame(self, frame: Frame) -> None:
         if frame.encoded is None:
-            raise AppError("a frame must be prepared before it is recorded")
+            raise AppError("a frame must be encoded before it is recorded")
         kind = CompressedVideo if frame.encoding == "h264" else CompressedImage
         message = kind(frame_id="camera", data=frame.encoded, format=frame.encoding)
         message.timestamp.FromNanoseconds(nanoseconds_of(frame.timestamp))

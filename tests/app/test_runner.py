@@ -9,7 +9,7 @@ from app.running.opening import open_session
 from app.running.options import SessionOptions
 from app.running.robots import WireRecorder
 from app.running.runner import run
-from app.session import about, messages
+from app.session import messages, session_info
 from tracking import TrackingError, open_source
 
 
@@ -57,7 +57,7 @@ def run_recorded(short_session, tmp_path):
 def test_a_camera_that_fails_ends_the_session_and_keeps_the_recording(run_recorded, tmp_path):
     summary = run_recorded(5, live=True)
     assert summary.frames == 5
-    assert about(tmp_path / "out.mcap").frames == 5
+    assert session_info(tmp_path / "out.mcap").frames == 5
     with pytest.raises(TrackingError, match="no picture"):
         summary.check()
 

@@ -10,7 +10,7 @@ from app.running.opening import open_session
 from app.running.options import SessionOptions
 from app.running.runner import run
 from app.running.summary import Summary, camera_line
-from app.session import about, events
+from app.session import events, session_info
 from app.ui.notice import Notice, notice
 from app.ui.overlay import interrupted
 from app.ui.screen import NullScreen
@@ -121,7 +121,7 @@ def test_the_window_can_be_closed_while_the_camera_is_lost(run_with_gap):
 
 def test_a_camera_that_does_not_come_back_ends_the_session_and_keeps_the_recording(run_with_gap):
     summary, path = run_with_gap(20, NullScreen())
-    assert about(path).frames == 5
+    assert session_info(path).frames == 5
     with pytest.raises(TrackingError, match="gave no picture"):
         summary.check()
 

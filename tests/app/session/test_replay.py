@@ -14,7 +14,7 @@ from app.running.options import SessionOptions
 from app.running.replay_check import check_session
 from app.running.runner import run
 from app.scenarios import SCENARIOS
-from app.session import about, cues, messages
+from app.session import messages, session_info, start_over_times
 from app.session.bundled import bundled
 from app.session.encoding import ARROWS, decode, encode
 from app.session.replay_inputs import STARTS, recorded_arrows
@@ -85,7 +85,7 @@ def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session)
     )
     with open_session(options, screen=Presses()) as session:
         run(session)
-    assert len(cues(path)) == 1
+    assert len(start_over_times(path)) == 1
     assert check_session(path, replace(options, source=str(path))).identical
 
 
@@ -102,7 +102,7 @@ def _agree(topic, time, one, other):
 
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_bundled_recordings_are_small_and_whole(name):
-    told = about(bundled(name))
+    told = session_info(bundled(name))
     assert bundled(name).stat().st_size < 6_000_000
     assert told.scenario == name
     assert told.frames > 600
@@ -121,6 +121,6 @@ def test_a_replay_takes_the_character_that_was_recorded(cubeling, short_session,
         "replay", short_session, "--character", "human", "--no-pictures", "--record", "human.mcap"
     )
     assert (code, err) == (0, "")
-    assert about(tmp_path / "human.mcap").character == "human"
+    assert session_info(tmp_path / "human.mcap").character == "human"
     code, _, err = cubeling("replay", "human.mcap", "--check")
     assert (code, err) == (0, "")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.errors import AppError
-from app.session import Recorder, about, events, messages, preparation, salvaged
+from app.session import Recorder, events, frame_encoder, messages, session_info
 from tracking import Frame, Intrinsics
 
 SIZE = (64, 48)
@@ -31,18 +31,18 @@ def test_what_is_prepared_is_what_a_replay_decodes(codec, recorded):
 
 def test_frames_that_come_with_bytes_keep_them():
     frame = next(frames())
-    once = preparation("jpeg", SIZE, 30)(frame)
-    assert preparation("jpeg", SIZE, 30)(once) is once
+    once = frame_encoder("jpeg", SIZE, 30)(frame)
+    assert frame_encoder("jpeg", SIZE, 30)(once) is once
 
 
 def test_an_unknown_codec_is_refused():
     with pytest.raises(AppError, match="use jpeg or h264"):
-        preparation("gif", SIZE, 30)
+        frame_encoder("gif", SIZE, 30)
 
 
 def test_a_session_tells_what_it_holds(recorded):
     path, prepared = recorded("jpeg")
-    told = about(path)
+    told = session_info(path)
     assert (told.scenario, told.turns, told.frames) == ("follow", 2.0, len(prepared))
     assert events(path)[0] == (0.0, "started")
 
@@ -52,8 +52,8 @@ def test_a_session_that_was_cut_off_says_how_much_is_whole(recorded):
     data = path.read_bytes()
     path.write_bytes(data[: len(data) * 2 // 3])
     with pytest.raises(AppError, match=r"cut off: \d+ frames .* --salvage"):
-        about(path)
-    told = salvaged(path)
+        session_info(path)
+    told = session_info(path, salvage=True)
     assert 0 < told.frames < len(prepared)
     assert told.scenario == "follow"
 
@@ -63,7 +63,7 @@ def test_a_cut_at_any_byte_is_one_line(recorded, cut):
     path, _ = recorded("jpeg", count=4)
     path.write_bytes(path.read_bytes()[:cut])
     with pytest.raises(AppError) as caught:
-        about(path)
+        session_info(path)
     assert "\n" not in str(caught.value)
 
 
@@ -105,7 +105,7 @@ def recorder_steps(hand):
 
     def write(recorder, count, codec="jpeg"):
         playground = Playground("follow", Intrinsics.guess(SIZE))
-        prepare = preparation(codec, SIZE, 30)
+        prepare = frame_encoder(codec, SIZE, 30)
         prepared = []
         for frame in frames(count):
             step = playground.step(prepare(frame))
