@@ -20,7 +20,7 @@ from tracking.calibration import (
     BoardFinder,
     Calibration,
     CubeFinder,
-    Finder,
+    TargetFinder,
     check,
     measured_cube,
     write_board,
@@ -112,7 +112,7 @@ def calibrate(
         _tell_cube(session.finder.cube, found, output, save_cube, console)
 
 
-def finders_of(cube: str | None, board: str) -> list[Finder]:
+def finders_of(cube: str | None, board: str) -> list[TargetFinder]:
     """Return what may be held up: the named cube, either bundled one, or the board."""
     if board not in ("", "charuco"):
         raise AppError(f"no board is called '{board}': there is only charuco")
@@ -133,7 +133,7 @@ def told_camera(path: Path, found: Calibration) -> str:
 
 
 def _coached(
-    finders: list[Finder], frames: FrameSource, target: str, shown: bool, seconds: float
+    finders: list[TargetFinder], frames: FrameSource, target: str, shown: bool, seconds: float
 ) -> CalibrationSession:
     """Teach in a window or on the terminal; Ctrl-C ends the session, not the program."""
     session = CalibrationSession(finders, frames.size)

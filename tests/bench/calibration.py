@@ -20,7 +20,7 @@ from rich.table import Table
 from tests.bench.tracking.sequences import Sequence, sequence
 from tests.tracking.calibration.waved import aligned
 from tracking import CubeModel, Frame
-from tracking.calibration import Collector, CubeFinder, View, calibrate, measured_cube
+from tracking.calibration import CubeFinder, View, ViewCollector, calibrate, measured_cube
 from tracking.synthetic import open_synthetic
 from tracking.synthetic.folding import folded, placements
 
@@ -65,7 +65,7 @@ def drawn(seed: int, fold: float) -> Wave:
     """Collect views of `synthetic:wave` as `cubeling calibrate` does, at its stops."""
     source = open_synthetic(f"wave?fold={fold:g}&seed={seed}")
     ideal = CubeModel.load(source.cube.name)
-    collector = Collector(CubeFinder(ideal), source.size)
+    collector = ViewCollector(CubeFinder(ideal), source.size)
     for index in range(source.count):
         since = source.time(index) % 0.74
         if 0.03 < since < 0.2:

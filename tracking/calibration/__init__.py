@@ -1,26 +1,25 @@
 """Intrinsics of a camera from the printed cube itself, or from a ChArUco board."""
 
 from tracking.calibration.board import Board, write_board
-from tracking.calibration.camera import calibrate_camera
-from tracking.calibration.checking import Check, check
-from tracking.calibration.coach import Coach, Look
-from tracking.calibration.collecting import Collector, Glance
-from tracking.calibration.finders import BoardFinder, CubeFinder, Finder
-from tracking.calibration.solving import Calibration, calibrate, measured_cube
+from tracking.calibration.camera_check import CameraCheck, check
+from tracking.calibration.collector import ViewCollector, ViewResult, calibrate_camera
+from tracking.calibration.coverage import ViewCoverage, ViewSample
+from tracking.calibration.solver import Calibration, calibrate, measured_cube
+from tracking.calibration.target_finders import BoardFinder, CubeFinder, TargetFinder
 from tracking.calibration.view import View
 
 __all__ = [
     "Board",
     "BoardFinder",
     "Calibration",
-    "Check",
-    "Coach",
-    "Collector",
+    "CameraCheck",
     "CubeFinder",
-    "Finder",
-    "Glance",
-    "Look",
+    "TargetFinder",
     "View",
+    "ViewCollector",
+    "ViewCoverage",
+    "ViewResult",
+    "ViewSample",
     "calibrate",
     "calibrate_camera",
     "check",

@@ -1,4 +1,4 @@
-"""What one still picture says: where points of the target lie, each across one line."""
+"""The measurements in one still image of the calibration target."""
 
 from dataclasses import dataclass
 
@@ -10,43 +10,43 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class View:
-    """Measurements in one picture of a target that is made of flat, rigid plates.
+    """Measurements in one image of a target that consists of flat, rigid plates.
 
-    A cube is six plates, one for each marker; a board is one. An edge tells a place across itself
-    only, so it is one row; a corner is two rows with normals at right angles. All arrays have the
-    same length N.
+    A cube has one plate per marker; a board is a single plate. Each row is one measurement along
+    one direction: a point on an edge gives one row, across the edge; a corner gives two rows with
+    perpendicular normals. All arrays have the same length N.
     """
 
     timestamp: float
-    """Of the frame [s]."""
+    """Time of the frame [s]."""
 
     plates: NDArray[np.intp]
-    """Number of the plate that each point lies on, (N,)."""
+    """Index of the plate of each point, (N,)."""
 
     points: Array
-    """Points of the target as it should be, in the target's frame, (N, 3) [m]."""
+    """Nominal position of each point in the target frame, (N, 3) [m]."""
 
     pixels: Array
-    """Where they were seen, (N, 2) [px]; true across the edge, and nearly so along it."""
+    """Measured position, (N, 2) [px]; accurate along the normal, approximate across it."""
 
     normals: Array
-    """Unit vectors in the picture along which the place was measured, (N, 2): from black to white
-    for edges."""
+    """Unit vectors in the image along which the position was measured, (N, 2); for edges, from
+    black to white."""
 
     bloom: Array
-    """1 where a row moves when white grows over black (edges), 0 where it does not, (N,)."""
+    """1 for rows that shift when white areas bloom over black ones (edges), else 0, (N,)."""
 
     lines: NDArray[np.intp]
-    """Number of the straight line that a row belongs to, whose rows may err alike, (N,)."""
+    """Index of the straight edge of each row, (N,). Rows of one edge have correlated errors."""
 
     @property
     def plate_numbers(self) -> tuple[int, ...]:
-        """The plates seen, in order."""
+        """The indices of the visible plates, in order."""
         return tuple(int(number) for number in np.unique(self.plates))
 
 
-def joined(timestamp: float, parts: list[View]) -> View:
-    """Put what single plates say into one view of all of them."""
+def join_views(timestamp: float, parts: list[View]) -> View:
+    """Combine views of single plates in one image into one view."""
     lines, first = [], 0
     for part in parts:
         lines.append(part.lines + first)
@@ -62,19 +62,21 @@ def joined(timestamp: float, parts: list[View]) -> View:
     )
 
 
-def of_corners(timestamp: float, plates: NDArray[np.intp], points: Array, pixels: Array) -> View:
-    """Make a view of corners: each becomes two rows, one for x and one for y.
+def view_of_corners(
+    timestamp: float, plates: NDArray[np.intp], points: Array, pixels: Array
+) -> View:
+    """Make a view of M corners; each becomes two rows, one for x and one for y.
 
     Parameters
     ----------
     timestamp
-        Of the frame [s].
+        Time of the frame [s].
     plates
-        Number of the plate of each corner, (M,).
+        Index of the plate of each corner, (M,).
     points
-        Where it is on the target, (M, 3) [m].
+        Nominal position of each corner on the target, (M, 3) [m].
     pixels
-        Where it was seen, (M, 2) [px].
+        Measured position of each corner, (M, 2) [px].
     """
     count = len(points)
     return View(

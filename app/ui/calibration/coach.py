@@ -14,7 +14,7 @@ from app.ui.calibration.orientation_icons import draw_board, draw_cube, draw_scr
 from app.ui.calibration.session import Advice
 from app.ui.canvas import Canvas, Card, text_width
 from app.ui.palette import ACTION, HAPPY, INK, NEUTRAL, PAPER, QUIET, RULE, between
-from tracking.calibration import Coach
+from tracking.calibration import ViewCoverage
 
 Picture = NDArray[np.uint8]
 Array = NDArray[np.float64]
@@ -204,26 +204,28 @@ def _ring(canvas: Canvas, middle: tuple[float, float], radius: float, moved: flo
 
 def _progress(advice: Advice, width: float, scale: float) -> Card:
     """Draw what is there already: tilts, places, distances, sides."""
-    coach = advice.coach
-    sides = [kind for kind in coach.needed if kind.startswith("side ")]
+    coverage = advice.coverage
+    sides = [kind for kind in coverage.needed if kind.startswith("side ")]
     wide = 452.0 if sides else 352.0
     canvas = Canvas(wide, 132, scale)
-    _tilts(canvas, coach, 62, 52)
-    _places(canvas, coach, 172, 52)
+    _tilts(canvas, coverage, 62, 52)
+    _places(canvas, coverage, 172, 52)
     for number, kind in enumerate(("far", "near")):
         size = 11 + 9 * number
-        _dot(canvas, 262 + 46 * number, 52, size, coach.share(kind))
+        _dot(canvas, 262 + 46 * number, 52, size, coverage.progress_of(kind))
     for number, kind in enumerate(sides):
-        _dot(canvas, 364 + 28 * (number % 3), 39 + 27 * (number // 3), 9, coach.share(kind))
+        _dot(
+            canvas, 364 + 28 * (number % 3), 39 + 27 * (number // 3), 9, coverage.progress_of(kind)
+        )
     captions = [(62, "tipped"), (172, "everywhere"), (285, "far, near"), (392, "all sides")]
     for x, words in captions[: 4 if sides else 3]:
         canvas.text(x, 106, words, 15, QUIET, "middle")
     canvas.bar(18, 119, wide - 36, 6, RULE)
-    canvas.bar(18, 119, max(6.0, (wide - 36) * coach.progress), 6, HAPPY)
+    canvas.bar(18, 119, max(6.0, (wide - 36) * coverage.progress), 6, HAPPY)
     return canvas.card((width - wide) / 2, HEIGHT - 156)
 
 
-def _tilts(canvas: Canvas, coach: Coach, x: float, y: float) -> None:
+def _tilts(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
     for kind, way in (
         ("tilt up", (0, -1)),
         ("tilt down", (0, 1)),
@@ -234,15 +236,15 @@ def _tilts(canvas: Canvas, coach: Coach, x: float, y: float) -> None:
         aside = np.array([-ahead[1], ahead[0]])
         foot = np.array([x, y]) + 13 * ahead
         triangle = np.array([foot + 13 * aside, foot + 19 * ahead, foot - 13 * aside])
-        fill(canvas, triangle, _green(coach.share(kind)))
+        fill(canvas, triangle, _green(coverage.progress_of(kind)))
 
 
-def _places(canvas: Canvas, coach: Coach, x: float, y: float) -> None:
+def _places(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
     for kind, (across, down) in PLACES.items():
         middle = np.array([x + 31 * across, y + 19 * down])
         half = np.array([13.5, 8.5])
         corners = middle + half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-        fill(canvas, corners, _green(coach.share(kind)))
+        fill(canvas, corners, _green(coverage.progress_of(kind)))
 
 
 def _dot(canvas: Canvas, x: float, y: float, radius: float, share: float) -> None:

@@ -46,7 +46,7 @@ class CoachLines:
         if new == words or (timestamp - at < self.PATIENCE and advice.wish != "done"):
             return
         self._told = new, timestamp
-        share = f"{100 * advice.coach.progress:3.0f} %  {advice.views:2d} views"
+        share = f"{100 * advice.coverage.progress:3.0f} %  {advice.views:2d} views"
         self._console.print(f"[dim]{share}[/]  {new}", highlight=False)
 
 

@@ -9,7 +9,14 @@ from numpy.typing import NDArray
 
 from app.errors import AppError
 from tracking import Frame, FrameSource, LiveFrames, TrackingError
-from tracking.calibration import Calibration, Coach, Collector, Finder, Glance, calibrate
+from tracking.calibration import (
+    Calibration,
+    TargetFinder,
+    ViewCollector,
+    ViewCoverage,
+    ViewResult,
+    calibrate,
+)
 
 Picture = NDArray[np.uint8]
 
@@ -22,7 +29,7 @@ class Advice:
     """What to tell the person now."""
 
     wish: str
-    """What to do: "show", "still", "done", or a wish of the `Coach`."""
+    """What to do: "show", "still", "done", or a wish of the `ViewCoverage`."""
 
     taken: bool
     """Whether this very frame became a view."""
@@ -30,7 +37,7 @@ class Advice:
     views: int
     """How many views there are."""
 
-    coach: Coach
+    coverage: ViewCoverage
     """What is there and what is missing."""
 
     outlines: tuple[NDArray[np.float64], ...]
@@ -82,20 +89,20 @@ class CalibrationSession:
         Width and height of the frames [px].
     """
 
-    def __init__(self, finders: Sequence[Finder], size: tuple[int, int]) -> None:
+    def __init__(self, finders: Sequence[TargetFinder], size: tuple[int, int]) -> None:
         self._size = size
-        self._pairs = [(finder, Collector(finder, size)) for finder in finders]
+        self._pairs = [(finder, ViewCollector(finder, size)) for finder in finders]
         self._seen = -np.inf
         self.last: Picture | None = None
         """The last picture."""
 
     @property
-    def finder(self) -> Finder:
+    def finder(self) -> TargetFinder:
         """Finds the target that is held up."""
         return self._pairs[0][0]
 
     @property
-    def collector(self) -> Collector:
+    def collector(self) -> ViewCollector:
         """Has the views of it."""
         return self._pairs[0][1]
 
@@ -106,14 +113,14 @@ class CalibrationSession:
             first = frame.timestamp if first is None else first
             glance = self._glance(frame)
             # A recording is looked through to its end: it cannot be asked for anything.
-            done = source.live and self.collector.coach.content and self._determined()
+            done = source.live and self.collector.coverage.complete and self._determined()
             wish = "done" if done else self._advised(glance, frame.timestamp)
             collector = self.collector
             advice = Advice(
                 wish,
                 glance.verdict == "taken",
                 len(collector.views),
-                collector.coach,
+                collector.coverage,
                 glance.outlines,
                 collector.outlines,
             )
@@ -150,25 +157,25 @@ class CalibrationSession:
                 f"no {what} was seen in any picture: more light, nearer, and is it the right one?"
             )
 
-    def _glance(self, frame: Frame) -> Glance:
+    def _glance(self, frame: Frame) -> ViewResult:
         glances = [collector.update(frame) for _, collector in self._pairs]
         for pair, glance in zip(self._pairs, glances, strict=True):
-            if glance.look is not None:
+            if glance.sample is not None:
                 self._pairs = [pair]
                 return glance
         return glances[0]
 
-    def _advised(self, glance: Glance, now: float) -> str:
+    def _advised(self, glance: ViewResult, now: float) -> str:
         collector = self.collector
-        if glance.look is not None:
+        if glance.sample is not None:
             self._seen = now
         elif now - self._seen > LOST:
             return "show"
-        wanted = collector.coach.next()
+        wanted = collector.coverage.next_kind()
         return "still" if glance.verdict == "moving" and wanted in self._offered(glance) else wanted
 
-    def _offered(self, glance: Glance) -> set[str]:
-        return set() if glance.look is None else self.collector.coach.offered(glance.look)
+    def _offered(self, glance: ViewResult) -> set[str]:
+        return set() if glance.sample is None else self.collector.coverage.kinds_of(glance.sample)
 
     def _determined(self) -> bool:
         """Whether the views tell the camera well; if not, more are asked for."""
@@ -177,5 +184,5 @@ class CalibrationSession:
         except TrackingError:
             good = False
         if not good:
-            self.collector.coach.ask_more()
+            self.collector.coverage.require_more()
         return good

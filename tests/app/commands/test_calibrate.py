@@ -9,7 +9,7 @@ from app.commands import calibrate as command
 from app.ui.calibration.coach import WORDS, CoachView, words_of
 from app.ui.calibration.session import Advice, CalibrationSession
 from tracking import CubeModel, Frame, Intrinsics
-from tracking.calibration import Coach, CubeFinder
+from tracking.calibration import CubeFinder, ViewCoverage
 from tracking.synthetic import open_synthetic
 
 
@@ -120,8 +120,8 @@ def test_pictures_that_make_no_camera_are_told_in_one_line(shown, waved, tmp_pat
     words = {
         "blank": "no cube's markers was seen",
         "none": "the source gave no picture at all",
-        "still": "only 1 still pictures",
-        "few": "still pictures show the target well, 8 are needed",
+        "still": "only 1 still images",
+        "few": "still images show the target well, 8 are needed",
     }[change]
     code, _, err, _ = shown(frames)
     assert code == 2
@@ -155,14 +155,14 @@ def test_the_board_is_printed(cubeling, tmp_path):
 
 
 def test_every_wish_has_words_and_a_drawing():
-    coach = Coach([face.name for face in CubeModel.load("companion").faces])
-    for wish in [*WORDS, *coach.needed]:
+    coverage = ViewCoverage([face.name for face in CubeModel.load("companion").faces])
+    for wish in [*WORDS, *coverage.needed]:
         assert words_of(wish, "cube")
         for target, time in itertools.product(("cube", "board"), (0.0, 0.9)):
             view = CoachView(target)
             blank = np.full((360, 640, 3), 90, np.uint8)
-            view.draw(blank, 0.0, Advice(wish, False, 3, coach, (), ()))
-            drawn = view.draw(blank, time, Advice(wish, False, 3, coach, (), ()))
+            view.draw(blank, 0.0, Advice(wish, False, 3, coverage, (), ()))
+            drawn = view.draw(blank, time, Advice(wish, False, 3, coverage, (), ()))
             assert (drawn[120:240, 20:110] != 90).any()
             # The corners of the picture are where the cube must go.
             assert (drawn[:30, :30] == 90).all()
@@ -170,12 +170,12 @@ def test_every_wish_has_words_and_a_drawing():
 
 
 def test_the_drawing_gives_way_to_the_cube():
-    coach = Coach(["board"])
+    coverage = ViewCoverage(["board"])
     view = CoachView("cube")
     for left, free in ((20.0, np.s_[120:240, :130]), (540.0, np.s_[120:240, -130:])):
         outline = np.array([(left, 150), (left + 60, 150), (left + 60, 210), (left, 210)], float)
         blank = np.full((360, 640, 3), 90, np.uint8)
-        drawn = view.draw(blank, 0.0, Advice("near", False, 3, coach, (outline,), ()))
+        drawn = view.draw(blank, 0.0, Advice("near", False, 3, coverage, (outline,), ()))
         assert (drawn[free] == 90).mean() > 0.9, "only the outline is drawn there"
 
 

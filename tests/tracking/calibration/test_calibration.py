@@ -7,9 +7,16 @@ import pytest
 
 from tests.tracking.calibration.waved import aligned, corner_views, folded_corners
 from tracking import CubeModel, Intrinsics, TrackingError
-from tracking.calibration import Coach, Look, calibrate, check, lens, measured_cube, unknowns
-from tracking.calibration.coach import kinds
-from tracking.calibration.solving import started, target_of
+from tracking.calibration import (
+    ViewCoverage,
+    ViewSample,
+    calibrate,
+    camera_vector,
+    check,
+    measured_cube,
+)
+from tracking.calibration import model as calibration_model
+from tracking.calibration.solver import cube_target, fit_poses
 from tracking.geometry import se3
 
 SIZE = (1280, 720)
@@ -26,7 +33,7 @@ def views_of(seed, count=70, noise=0.12, camera=TRUE, **how):
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_focal_length_to_half_a_percent_and_folds_to_a_fifth_of_a_millimetre(seed):
     views, real = views_of(seed, count=100, noise=0.1)
-    found = calibrate(views, target_of(CUBE, SIZE))
+    found = calibrate(views, cube_target(CUBE, SIZE))
     away = found.intrinsics.matrix[0, 0] / TRUE[0] - 1
     assert abs(away) < 0.005
     assert abs(away) < 4 * found.focal_spread, "it is less sure than it says"
@@ -42,21 +49,21 @@ def test_focal_length_to_half_a_percent_and_folds_to_a_fifth_of_a_millimetre(see
 def test_wide_and_long_lenses_are_found_without_being_told(focal):
     camera = np.array([focal, focal, *TRUE[2:]])
     views, _ = views_of(3, count=40, camera=camera, near=0.25 * focal / 900)
-    found = calibrate(views, target_of(CUBE, SIZE))
+    found = calibrate(views, cube_target(CUBE, SIZE))
     assert abs(found.intrinsics.matrix[0, 0] / focal - 1) < max(0.005, 3 * found.focal_spread)
 
 
 def test_one_side_met_squarely_makes_no_camera():
     views, _ = views_of(4, count=20, tilt=5.0, only_main=True)
     with pytest.raises(TrackingError, match="tilted more, in every direction") as caught:
-        calibrate(views, target_of(CUBE, SIZE)).check()
+        calibrate(views, cube_target(CUBE, SIZE)).check()
     assert "\n" not in str(caught.value)
 
 
 def test_a_handful_of_views_makes_no_camera():
     views, _ = views_of(5, count=5)
-    with pytest.raises(TrackingError, match="only 5 still pictures"):
-        calibrate(views, target_of(CUBE, SIZE))
+    with pytest.raises(TrackingError, match="only 5 still images"):
+        calibrate(views, cube_target(CUBE, SIZE))
 
 
 def test_views_of_something_else_are_left_out():
@@ -65,38 +72,38 @@ def test_views_of_something_else_are_left_out():
     for number in (3, 17, 30):
         spoilt = views[number].pixels + 25 * random.standard_normal(views[number].pixels.shape)
         views[number] = replace(views[number], pixels=spoilt)
-    found = calibrate(views, target_of(CUBE, SIZE))
+    found = calibrate(views, cube_target(CUBE, SIZE))
     assert found.views <= 37
     assert abs(found.intrinsics.matrix[0, 0] / TRUE[0] - 1) < 0.005
 
 
 def test_slopes_are_those_of_small_steps():
     views, _ = views_of(7, count=8)
-    target = target_of(CUBE, SIZE)
-    model, kept = started(views, TRUE, target)
+    target = cube_target(CUBE, SIZE)
+    model, kept = fit_poses(views, TRUE, target)
     view = replace(kept[2], bloom=np.full(len(kept[2].bloom), 0.7))
-    _, camera, plate, own = unknowns.linearised(view, model, 2, target)
-    at_rest = unknowns.errors(view, model, 2, target)
+    _, camera, plate, own = calibration_model.linearise(view, model, 2, target)
+    at_rest = calibration_model.residuals(view, model, 2, target)
     small = 1e-6
     for number in range(9):
         shared = np.zeros(9 + 6 * len(model.plates))
         shared[number] = small * max(1.0, abs(TRUE[number]))
-        moved = unknowns.stepped(model, target, shared, [np.zeros(7)] * len(kept))
-        slope = (at_rest - unknowns.errors(view, moved, 2, target)) / shared[number]
+        moved = calibration_model.apply_step(model, target, shared, [np.zeros(7)] * len(kept))
+        slope = (at_rest - calibration_model.residuals(view, moved, 2, target)) / shared[number]
         np.testing.assert_allclose(camera[:, number], slope, rtol=1e-3, atol=1e-3)
     for number in range(6):
         shared = np.zeros(9 + 6 * len(model.plates))
         shared[9 + number :: 6] = small
-        moved = unknowns.stepped(model, target, shared, [np.zeros(7)] * len(kept))
-        slope = (at_rest - unknowns.errors(view, moved, 2, target)) / small
+        moved = calibration_model.apply_step(model, target, shared, [np.zeros(7)] * len(kept))
+        slope = (at_rest - calibration_model.residuals(view, moved, 2, target)) / small
         np.testing.assert_allclose(plate[:, number], slope, rtol=1e-3, atol=0.2)
     for number in range(7):
         step = np.zeros(7)
         step[number] = small
-        moved = unknowns.stepped(
+        moved = calibration_model.apply_step(
             model, target, np.zeros(9 + 6 * len(model.plates)), [step] * len(kept)
         )
-        slope = (at_rest - unknowns.errors(view, moved, 2, target)) / small
+        slope = (at_rest - calibration_model.residuals(view, moved, 2, target)) / small
         np.testing.assert_allclose(own[:, number], slope, rtol=1e-3, atol=0.2)
 
 
@@ -111,7 +118,9 @@ def test_slopes_are_those_of_small_steps():
 )
 def test_a_saved_camera_is_ok_until_it_has_changed(change, degraded):
     views, _ = views_of(8, noise=0.05)
-    verdict = check(views, lens.camera(TRUE + change, SIZE), target_of(CUBE, SIZE))
+    verdict = check(
+        views, camera_vector.to_intrinsics(TRUE + change, SIZE), cube_target(CUBE, SIZE)
+    )
     assert verdict.degraded is degraded
     assert verdict.verdict == ("DEGRADED" if degraded else "OK")
     assert verdict.focal_change == pytest.approx(-change[0] / (900 + change[0]), abs=0.004)
@@ -119,41 +128,41 @@ def test_a_saved_camera_is_ok_until_it_has_changed(change, degraded):
 
 def test_a_saved_camera_of_the_rational_model_can_be_checked():
     views, _ = views_of(9, noise=0.05)
-    plain = lens.camera(TRUE, SIZE)
+    plain = camera_vector.to_intrinsics(TRUE, SIZE)
     eight = np.array([*plain.distortion, 0.0, 0.0, 0.0])
-    verdict = check(views, Intrinsics(plain.matrix, eight, SIZE), target_of(CUBE, SIZE))
+    verdict = check(views, Intrinsics(plain.matrix, eight, SIZE), cube_target(CUBE, SIZE))
     assert not verdict.degraded
 
 
-def test_the_coach_asks_for_tilt_first_and_keeps_asking_until_it_is_there():
-    coach = Coach([face.name for face in CUBE.faces])
-    square = Look((0.5, 0.5), 0.17, (0.02, 0.01), (0,))
-    up = Look((0.1, 0.9), 0.25, (0.05, -0.5), (0, 1))
-    assert kinds(square, [face.name for face in CUBE.faces]) == {"middle"}
+def test_coverage_requests_tilt_first_until_there_is_enough():
+    coverage = ViewCoverage([face.name for face in CUBE.faces])
+    square = ViewSample((0.5, 0.5), 0.17, (0.02, 0.01), (0,))
+    up = ViewSample((0.1, 0.9), 0.25, (0.05, -0.5), (0, 1))
+    assert coverage.kinds_of(square) == {"middle"}
     sides = {f"side {face.name}" for face in CUBE.faces[:2]}
-    assert coach.offered(up) == {"tilt up", "bottom left", "near"} | sides
-    assert coach.next() == "tilt up"
+    assert coverage.kinds_of(up) == {"tilt up", "bottom left", "near"} | sides
+    assert coverage.next_kind() == "tilt up"
     for _ in range(20):
-        coach.add(square)
-    assert coach.next() == "tilt up"
+        coverage.add(square)
+    assert coverage.next_kind() == "tilt up"
     for _ in range(3):
-        coach.add(up)
-    assert coach.next() == "tilt left"
-    assert not coach.content
-    assert 0 < coach.progress < 1
+        coverage.add(up)
+    assert coverage.next_kind() == "tilt left"
+    assert not coverage.complete
+    assert 0 < coverage.progress < 1
 
 
-def test_the_coach_is_content_when_nothing_is_missing_and_can_ask_for_more():
-    coach = Coach(["board"])
+def test_coverage_is_complete_when_nothing_is_missing_and_can_require_more():
+    coverage = ViewCoverage(["board"])
     for x in (0.1, 0.5, 0.9):
         for y in (0.1, 0.5, 0.9):
             for tilt in ((0.0, -0.5), (0.0, 0.5), (-0.5, 0.0), (0.5, 0.0)):
                 for size in (0.2, 0.5):
-                    coach.add(Look((x, y), size, tilt, (0,)))
-    assert coach.content
-    assert coach.next() == ""
-    coach.ask_more()
-    assert coach.next() == "tilt up"
+                    coverage.add(ViewSample((x, y), size, tilt, (0,)))
+    assert coverage.complete
+    assert coverage.next_kind() == ""
+    coverage.require_more()
+    assert coverage.next_kind() == "tilt up"
 
 
 def test_a_perfect_cube_comes_back_from_perfect_plates():

@@ -12,15 +12,15 @@ from tracking import CubeModel, Frame, Intrinsics, TrackingError, calibrate_came
 from tracking.calibration import (
     Board,
     BoardFinder,
-    Collector,
     CubeFinder,
+    ViewCollector,
     calibrate,
     measured_cube,
     write_board,
 )
-from tracking.calibration.solving import started
-from tracking.calibration.unknowns import Setting, errors
-from tracking.calibration.view import of_corners
+from tracking.calibration.model import CalibrationTarget, residuals
+from tracking.calibration.solver import fit_poses
+from tracking.calibration.view import view_of_corners
 from tracking.geometry import se3
 from tracking.synthetic import open_synthetic
 
@@ -40,7 +40,7 @@ def test_a_waved_folded_cube_tells_lens_and_folds():
     source = open_synthetic("wave?fold=0.8&seed=4&clutter=0&noise=3&size=960x540")
     cube = CubeModel.load("locomotion")
     finder = CubeFinder(cube)
-    collector = Collector(finder, source.size)
+    collector = ViewCollector(finder, source.size)
     indices = [round((0.74 * stop + time) * 30) for stop in range(27) for time in STOP]
     verdicts = [collector.update(source.frame(index)).verdict for index in indices]
     assert verdicts.count("taken") >= 20
@@ -61,13 +61,13 @@ def test_frames_without_enough_of_a_cube_make_no_camera():
     with pytest.raises(TrackingError, match="no frame"):
         calibrate_camera([], CubeModel.load("locomotion"))
     blank = np.full((360, 640, 3), 128, np.uint8)
-    with pytest.raises(TrackingError, match="only 0 still pictures"):
+    with pytest.raises(TrackingError, match="only 0 still images"):
         calibrate_camera([Frame(blank, 0.0, 0)], CubeModel.load("locomotion"))
 
 
 def test_a_moving_cube_and_a_view_seen_before_are_not_taken():
     source = open_synthetic("wave?seed=4&clutter=0")
-    collector = Collector(CubeFinder(CubeModel.load("locomotion")), source.size)
+    collector = ViewCollector(CubeFinder(CubeModel.load("locomotion")), source.size)
     still, moving = source.frame(3), source.frame(14)
     assert collector.update(still).verdict == "moving", "the first frame tells no speed"
     again = Frame(still.image, still.timestamp + 1 / 30, 1)
@@ -114,12 +114,14 @@ def test_photographs_of_a_chessboard_give_the_camera_that_opencv_finds():
         criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 40, 1e-3)
         seen.append(cv2.cornerSubPix(grey, corners, (7, 7), (-1, -1), criteria))
     views = [
-        of_corners(
+        view_of_corners(
             0.0, np.zeros(54, np.intp), points, np.asarray(corners, np.float64).reshape(-1, 2)
         )
         for corners in seen
     ]
-    target = Setting((640, 480), np.ones(9, np.bool_), points.mean(axis=0)[None], crooked=False)
+    target = CalibrationTarget(
+        (640, 480), np.ones(9, np.bool_), points.mean(axis=0)[None], adjust_plates=False
+    )
     found = calibrate(views, target)
     found.check()
     flat = [points.astype(np.float32)] * len(seen)
@@ -147,8 +149,8 @@ def test_a_photograph_of_a_charuco_board_fits_its_camera_but_makes_none_alone():
     assert len(view.points) == 2 * 24
     target = finder.target(camera.size)
     numbers = np.array([*camera.matrix[[0, 1, 0, 1], [0, 1, 2, 2]], *camera.distortion])
-    model, kept = started([view] * 8, numbers, target)
-    away = errors(kept[0], model, 0, target)
+    model, kept = fit_poses([view] * 8, numbers, target)
+    away = residuals(kept[0], model, 0, target)
     assert np.sqrt((away**2).mean()) < 0.8
     with pytest.raises(TrackingError, match="tilted more"):
         calibrate([view] * 8, target).check()
@@ -183,7 +185,7 @@ def test_a_board_that_is_waved_tells_the_lens():
     camera = Intrinsics(matrix, np.array([-0.15, 0.07, 0.0005, -0.0005, 0]), (640, 480))
     board = Board()
     finder = BoardFinder(board)
-    collector = Collector(finder, camera.size)
+    collector = ViewCollector(finder, camera.size)
     random = np.random.default_rng(3)
     for stop in range(15):
         way = 2 * np.pi * stop / 4

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from tracking.calibration import lens
-from tracking.calibration.view import View, of_corners
+from tracking.calibration import camera_vector
+from tracking.calibration.view import View, view_of_corners
 from tracking.geometry import se3
 
 
@@ -32,7 +32,7 @@ def corner_views(
             seen = real[plate] @ pose[:3, :3].T + pose[:3, 3]
             centre = seen.mean(axis=0)
             cosine = -(pose[:3, :3] @ cube.faces[plate].normal) @ centre / np.linalg.norm(centre)
-            exact = lens.projected(camera, seen)[0]
+            exact = camera_vector.project(camera, seen)[0]
             if cosine < 0.25 or (exact < 0).any() or (exact > np.array(size) - 1).any():
                 continue
             plates += [plate] * 4
@@ -41,7 +41,9 @@ def corner_views(
         if plates:
             time = float(len(views))
             views.append(
-                of_corners(time, np.array(plates), np.concatenate(points), np.concatenate(pixels))
+                view_of_corners(
+                    time, np.array(plates), np.concatenate(points), np.concatenate(pixels)
+                )
             )
     return views
 

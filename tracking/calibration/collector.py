@@ -1,0 +1,191 @@
+"""Choosing views from a camera's frames: still ones that show something new."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.calibration import camera_vector, initialization
+from tracking.calibration.coverage import ViewCoverage, ViewSample
+from tracking.calibration.solver import Calibration, calibrate, measured_cube
+from tracking.calibration.target_finders import CubeFinder, TargetDetection, TargetFinder
+from tracking.calibration.view import View
+from tracking.cube.model import CubeModel
+from tracking.errors import TrackingError
+from tracking.geometry import se3
+from tracking.geometry.frame import Frame
+from tracking.geometry.intrinsics import Intrinsics
+
+Array = NDArray[np.float64]
+
+MAX_SPEED = 0.09
+"""A target that moves faster than this is too blurred to measure [image widths/s]."""
+
+MIN_SHIFT, MIN_ROTATION_RAD, MIN_DISTANCE_RATIO_LOG = 0.10, np.deg2rad(12), 0.18
+"""A view is new if it differs from every other one by one of these: position [image widths],
+orientation [rad], or natural logarithm of the ratio of their distances."""
+
+MAX_VIEWS = 90
+"""More views than this add no accuracy."""
+
+ViewVerdict = Literal["unseen", "moving", "known", "unclear", "taken", "full"]
+
+
+@dataclass(frozen=True)
+class ViewResult:
+    """The result of one frame."""
+
+    verdict: ViewVerdict
+    """Whether the frame became a view, or why not."""
+
+    outlines: tuple[Array, ...]
+    """Outlines of the detected plates, each (4, 2) [px]."""
+
+    sample: ViewSample | None
+    """How the target appears; None if it was not detected."""
+
+
+class ViewCollector:
+    """Chooses views from the frames of one camera and keeps account of their coverage.
+
+    Parameters
+    ----------
+    finder
+        Finds the target.
+    size
+        Width and height of the frames [px].
+    """
+
+    def __init__(self, finder: TargetFinder, size: tuple[int, int]) -> None:
+        self._finder = finder
+        self.size = size
+        """Width and height of the frames [px]."""
+        # A guessed camera is good enough to compare poses.
+        self._camera = camera_vector.from_intrinsics(Intrinsics.guess(size))
+        self._previous: TargetDetection | None = None
+        self._poses: list[tuple[Array, tuple[int, ...]]] = []
+        self.coverage = ViewCoverage(finder.names)
+        """Which kinds of views there are and which are missing."""
+        self.views: list[View] = []
+        """The views so far."""
+        self.outlines: list[Array] = []
+        """Outlines of the plates in all views, each (4, 2) [px]."""
+
+    def update(self, frame: Frame) -> ViewResult:
+        """Process the next frame."""
+        grey = np.asarray(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY), np.uint8)
+        found = self._finder.find(grey, frame.timestamp)
+        previous, self._previous = self._previous, found
+        pose = None if found is None else initialization.best_pose(found.corners, self._camera)
+        if found is None or pose is None:
+            return ViewResult("unseen", (), None)
+        sample = self._sample(found, pose)
+        verdict = self._verdict(found, pose, previous)
+        if verdict == "taken":
+            view = self._finder.measure(grey, found)
+            if view is None:
+                return ViewResult("unclear", found.outlines, sample)
+            self.views.append(view)
+            self.outlines += found.outlines
+            self._poses.append((pose, tuple(sorted(found.plates))))
+            self.coverage.add(sample)
+        return ViewResult(verdict, found.outlines, sample)
+
+    def _verdict(
+        self, found: TargetDetection, pose: Array, previous: TargetDetection | None
+    ) -> ViewVerdict:
+        if len(self.views) >= MAX_VIEWS:
+            return "full"
+        if not self._is_new(pose, tuple(sorted(found.plates))):
+            return "known"
+        return "taken" if _speed(found, previous) <= MAX_SPEED * self.size[0] else "moving"
+
+    def _is_new(self, pose: Array, plates: tuple[int, ...]) -> bool:
+        """Return whether no view shows the same plates in nearly the same pose."""
+        distance = max(float(pose[2, 3]), 1e-3)
+        for other, other_plates in self._poses:
+            step = se3.motion(other, pose)
+            shift = float(np.linalg.norm(step[:2])) * self._camera[0] / distance / self.size[0]
+            ratio_log = abs(float(np.log(distance / max(float(other[2, 3]), 1e-3))))
+            rotation = float(np.linalg.norm(step[3:]))
+            same = shift < MIN_SHIFT and rotation < MIN_ROTATION_RAD
+            if same and ratio_log < MIN_DISTANCE_RATIO_LOG and plates == other_plates:
+                return False
+        return True
+
+    def _sample(self, found: TargetDetection, pose: Array) -> ViewSample:
+        sides = [
+            np.linalg.norm(outline - np.roll(outline, 1, axis=0), axis=1).mean()
+            for outline in found.outlines
+        ]
+        x, y = np.concatenate(found.outlines).mean(axis=0) / self.size
+        size = float(max(sides)) / self.size[1]
+        return ViewSample((float(x), float(y)), size, _tilt(found, pose), found.plates)
+
+
+def _speed(found: TargetDetection, previous: TargetDetection | None) -> float:
+    """Return the speed of the plates in the image [px/s]; infinite if it is unknown."""
+    if previous is None:
+        return np.inf
+    before = dict(zip(previous.plates, previous.outlines, strict=True))
+    shifts = [
+        np.linalg.norm(outline - before[plate], axis=1).max()
+        for plate, outline in zip(found.plates, found.outlines, strict=True)
+        if plate in before
+    ]
+    elapsed = found.corners.timestamp - previous.corners.timestamp
+    return float(max(shifts)) / elapsed if shifts and elapsed > 0 else np.inf
+
+
+def _tilt(found: TargetDetection, pose: Array) -> tuple[float, float]:
+    """Return the tilt of the plate that faces the camera most directly: see `ViewSample.tilt`."""
+    best, smallest_angle = np.zeros(2), np.inf
+    view = found.corners
+    for plate in found.plates:
+        points = np.unique(view.points[view.plates == plate], axis=0)
+        in_camera = points @ pose[:3, :3].T + pose[:3, 3]
+        centre = in_camera.mean(axis=0)
+        sight = centre / np.linalg.norm(centre)
+        normal = np.linalg.svd(in_camera - centre)[2][2]
+        normal = normal if normal @ sight < 0 else -normal
+        difference = normal + sight
+        angle = float(np.arccos(np.clip(-normal @ sight, -1, 1)))
+        if angle < smallest_angle:
+            smallest_angle = angle
+            best = difference[:2] * angle / max(float(np.linalg.norm(difference[:2])), 1e-9)
+    return float(best[0]), float(best[1])
+
+
+def calibrate_camera(frames: Iterable[Frame], cube: CubeModel) -> tuple[Calibration, CubeModel]:
+    """Calibrate a camera from frames of a cube that is waved in front of it.
+
+    Parameters
+    ----------
+    frames
+        Frames of one size, in order: `open_source(…)` gives them.
+    cube
+        The cube as printed.
+
+    Returns
+    -------
+    The calibration, and the cube as it was actually folded.
+
+    Raises
+    ------
+    TrackingError
+        There are too few still views of the cube, or they do not determine the camera.
+    """
+    finder = CubeFinder(cube)
+    collector: ViewCollector | None = None
+    for frame in frames:
+        if collector is None:
+            collector = ViewCollector(finder, (frame.image.shape[1], frame.image.shape[0]))
+        collector.update(frame)
+    if collector is None:
+        raise TrackingError("there is no frame to calibrate the camera with")
+    found = calibrate(collector.views, finder.target(collector.size))
+    found.check()
+    return found, measured_cube(cube, found.plates)

@@ -1,0 +1,93 @@
+"""A first guess: the focal length that fits most views, and a pose for each view."""
+
+from collections.abc import Iterator, Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.calibration import camera_vector
+from tracking.calibration.view import View
+from tracking.geometry import se3
+
+Array = NDArray[np.float64]
+
+FIELDS_OF_VIEW_RAD = np.deg2rad(np.linspace(30, 100, 15))
+"""Horizontal fields of view to try: telephoto to action camera."""
+
+MAX_VIEWS = 12
+"""Maximum number of views to try them on."""
+
+MAX_MISFIT = 0.04
+"""The error of a view is limited to this, so that a wrong one does not decide [image widths]."""
+
+
+def initial_camera(views: Sequence[View], size: tuple[int, int]) -> Array:
+    """Return the parameters (9,) of the distortion-free camera that fits the views best.
+
+    A few views of two faces or of a tilted one determine the focal length to some percent, which is
+    enough for a start.
+    """
+    indices = np.unique(np.linspace(0, len(views) - 1, MAX_VIEWS).astype(int))
+    chosen = [views[i] for i in indices]
+    cameras = [_perfect_camera(size, field) for field in FIELDS_OF_VIEW_RAD]
+    return min(cameras, key=lambda camera: _misfit(chosen, camera, size))
+
+
+def _perfect_camera(size: tuple[int, int], field_of_view: float) -> Array:
+    focal = size[0] / 2 / np.tan(field_of_view / 2)
+    return np.array([focal, focal, (size[0] - 1) / 2, (size[1] - 1) / 2, 0, 0, 0, 0, 0])
+
+
+def _misfit(views: Sequence[View], camera: Array, size: tuple[int, int]) -> float:
+    errors = [min((error for _, error in _poses(view, camera)), default=np.inf) for view in views]
+    return float(np.minimum(errors, MAX_MISFIT * size[0]).mean())
+
+
+def best_pose(view: View, camera: Array) -> Array | None:
+    """Return `camera_from_target` of a view, (4, 4); None if no pose fits its points."""
+    found = min(_poses(view, camera), key=lambda pair: pair[1], default=None)
+    return None if found is None else found[0]
+
+
+def _poses(view: View, camera: Array) -> Iterator[tuple[Array, float]]:
+    """Propose poses of a view, each with its root mean square error [px].
+
+    The pose of a single plate is ambiguous (Collins and Bartoli, 2014): each plate proposes both of
+    its poses, and each proposal is refined on the points of all plates.
+    """
+    intrinsics = camera_vector.to_intrinsics(camera, (1, 1))
+    rays = np.asarray(
+        cv2.undistortPoints(view.pixels[:, None], intrinsics.matrix, intrinsics.distortion)[:, 0],
+        np.float64,
+    )
+    starts = [
+        pose
+        for number in view.plate_numbers
+        for pose in _plate_poses(view.points[view.plates == number], rays[view.plates == number])
+    ]
+    for start in starts:
+        rotation, origin = cv2.solvePnPRefineLM(
+            view.points,
+            rays,
+            np.eye(3),
+            None,
+            se3.rotation_vector(start[:3, :3])[:, None],
+            start[:3, 3:].copy(),
+        )
+        pose = se3.pose(se3.rotation(np.ravel(rotation)), np.ravel(origin))
+        points = view.points @ pose[:3, :3].T + pose[:3, 3]
+        if np.isfinite(points).all() and points[:, 2].min() > 0.01:
+            pixels = camera_vector.project(camera, points)[0]
+            errors = np.einsum("ni,ni->n", view.normals, view.pixels - pixels)
+            yield pose, float(np.sqrt((errors**2).mean()))
+
+
+def _plate_poses(points: Array, rays: Array) -> Iterator[Array]:
+    found, rotations, origins = cv2.solvePnPGeneric(
+        points, rays, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE
+    )[:3]
+    for rotation, origin in zip(rotations, origins, strict=True) if found else ():
+        vectors = np.array([rotation, origin], np.float64).reshape(2, 3)
+        if np.isfinite(vectors).all():
+            yield se3.pose(se3.rotation(vectors[0]), vectors[1])

@@ -1,0 +1,181 @@
+"""The stages of a calibration, from views to a camera."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.calibration import camera_vector
+from tracking.calibration.bundle_adjustment import AdjustmentResult, adjust
+from tracking.calibration.initialization import best_pose, initial_camera
+from tracking.calibration.model import CalibrationModel, CalibrationTarget
+from tracking.calibration.view import View
+from tracking.cube.model import CubeModel
+from tracking.errors import TrackingError
+from tracking.geometry.intrinsics import Intrinsics
+
+Array = NDArray[np.float64]
+
+MIN_VIEWS = 8
+"""Minimum number of views of a calibration."""
+
+GOOD_FOCAL_ERROR, MAX_FOCAL_ERROR = 0.005, 0.01
+"""Relative uncertainty of the focal length (two standard deviations) to aim at, and to accept."""
+
+MAX_RESIDUAL_RATIO = 3.0
+"""A view with more than this times the median residual does not show this target."""
+
+MIN_K3_GAIN = 25.0
+"""k3 is kept if it reduces the cost by more than this: five standard deviations."""
+
+FREE_PARAMETERS = {
+    "focal length": (0, 1),
+    "radial": (0, 1, 4),
+    "all but k3": range(8),
+    "all": range(9),
+}
+"""Indices of the camera's free parameters in each stage."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A camera, and the actual shape of the target that it was calibrated with."""
+
+    intrinsics: Intrinsics
+    """The camera."""
+
+    spread: Array
+    """Standard deviations of fx fy cx cy [px] k1 k2 p1 p2 k3, (9,); 0 for fixed parameters."""
+
+    plates: Array
+    """Actual pose of each plate: `target_from_plate`, (P, 4, 4)."""
+
+    residual: float
+    """Robust standard deviation of the edges' or corners' residuals [px]."""
+
+    views: int
+    """Number of views that agree with it."""
+
+    @property
+    def focal_spread(self) -> float:
+        """Standard deviation of the focal length, relative to it."""
+        return float(self.spread[0] / self.intrinsics.matrix[0, 0])
+
+    @property
+    def good(self) -> bool:
+        """Whether the focal length is known to half a percent (95 %)."""
+        return 2 * self.focal_spread <= GOOD_FOCAL_ERROR
+
+    def check(self) -> None:
+        """Refuse a camera that the views do not determine.
+
+        Raises
+        ------
+        TrackingError
+            The focal length is uncertain by more than a percent.
+        """
+        if 2 * self.focal_spread > MAX_FOCAL_ERROR:
+            raise TrackingError(
+                f"the focal length is known to ±{200 * self.focal_spread:.1f} % only, "
+                f"±{100 * MAX_FOCAL_ERROR:.0f} % is needed: "
+                "show the cube or board tilted more, in every direction, and nearer"
+            )
+
+
+def cube_target(cube: CubeModel, size: tuple[int, int]) -> CalibrationTarget:
+    """Describe a cube as a target whose six plates may be off their nominal poses."""
+    centres = np.stack([face.corners.mean(axis=0) for face in cube.faces])
+    return CalibrationTarget(size, np.ones(9, np.bool_), centres, len(cube.faces) > 1)
+
+
+def calibrate(views: Sequence[View], target: CalibrationTarget) -> Calibration:
+    """Find the camera that took these views, and the actual shape of the target.
+
+    Raises
+    ------
+    TrackingError
+        There are too few views, or they contradict each other.
+    """
+    return solve(views, target)[0]
+
+
+def solve(views: Sequence[View], target: CalibrationTarget) -> tuple[Calibration, list[View]]:
+    """Run all stages, from a distortion-free camera to the full model; see `calibrate`.
+
+    Returns
+    -------
+    The calibration, and the views that agree with it.
+    """
+    _check_count(len(views))
+    model, kept = fit_poses(views, initial_camera(views, target.size), target)
+    rigid = replace(target, adjust_plates=False)
+    model = adjust(kept, model, _with_free(rigid, "focal length")).model
+    model, kept = fit_poses(kept, model.camera, target)
+    result = adjust(kept, model, _with_free(target, "radial"))
+    model, kept = _drop_outliers(result, kept)
+    result = adjust(kept, model, _with_free(target, "all but k3"))
+    model, kept = _drop_outliers(result, kept)
+    best = adjust(kept, model, _with_free(target, "all but k3"))
+    with_k3 = adjust(kept, best.model, _with_free(target, "all"))
+    if best.cost * (best.residual / with_k3.residual) ** 2 - with_k3.cost > MIN_K3_GAIN:
+        best = with_k3
+    intrinsics = camera_vector.to_intrinsics(best.model.camera, target.size)
+    spread = np.sqrt(np.diag(best.covariance))[:9]
+    calibration = Calibration(intrinsics, spread, best.model.plates, best.residual, len(kept))
+    return calibration, kept
+
+
+def fit_poses(
+    views: Sequence[View], camera: Array, target: CalibrationTarget, plates: Array | None = None
+) -> tuple[CalibrationModel, list[View]]:
+    """Find the best pose of each view for a camera; drop views that have none."""
+    pairs = [(view, best_pose(view, camera)) for view in views]
+    kept = [view for view, pose in pairs if pose is not None]
+    _check_count(len(kept))
+    poses = np.array([pose for _, pose in pairs if pose is not None])
+    if plates is None:
+        plates = np.tile(np.eye(4), (len(target.centres), 1, 1))
+    return CalibrationModel(camera, plates, poses, np.zeros(len(kept))), kept
+
+
+def _drop_outliers(
+    result: AdjustmentResult, views: Sequence[View]
+) -> tuple[CalibrationModel, list[View]]:
+    """Drop views with large residuals: a misread marker, motion blur, a second cube."""
+    usual = max(float(np.median(result.view_residuals)), 0.1)
+    chosen = np.flatnonzero(result.view_residuals < MAX_RESIDUAL_RATIO * usual).tolist()
+    _check_count(len(chosen))
+    return result.model.of_views(chosen), [views[number] for number in chosen]
+
+
+def measured_cube(cube: CubeModel, plates: Array) -> CubeModel:
+    """Return the cube with its markers where they were measured.
+
+    Parameters
+    ----------
+    cube
+        The nominal cube.
+    plates
+        `Calibration.plates`.
+    """
+    faces = []
+    for face, plate in zip(cube.faces, plates, strict=True):
+        centre = face.corners.mean(axis=0)
+        corners = (face.corners - centre) @ plate[:3, :3].T + centre + plate[:3, 3]
+        faces.append(replace(face, corners=corners))
+    return replace(cube, faces=tuple(faces))
+
+
+def _with_free(target: CalibrationTarget, stage: str) -> CalibrationTarget:
+    free = np.zeros(9, np.bool_)
+    free[list(FREE_PARAMETERS[stage])] = True
+    return replace(target, free=free)
+
+
+def _check_count(count: int) -> None:
+    if count < MIN_VIEWS:
+        raise TrackingError(
+            f"only {count} still images show the target well, {MIN_VIEWS} are needed: "
+            "hold it still for a moment in more places, each time tilted in another direction"
+        )
