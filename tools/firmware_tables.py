@@ -123,7 +123,7 @@ def _count(field: FieldSpec, limit: float | None, highest: int) -> int:
     if limit is not None:
         return round(limit / field.scale)
     return {"u8": (0, 255), "u16": (0, 65535), "u32": (0, 2**32 - 1), "i16": (-32768, 32767)}[
-        field.type
+        field.wire_type
     ][highest]
 
 

@@ -98,10 +98,10 @@ def _member(field: FieldSpec) -> str:
     unit = {1.0: field.unit, 1e-3: f"m{field.unit}", 1e-4: "1/10000"}[field.scale]
     since = f", since version {field.since}" if field.since > 1 else ""
     remark = f"{field.meaning}{f' [{unit}]' if unit else ''}{since}"
-    if field.type == "text16":
+    if field.wire_type == "text16":
         return f"{_INDENT}char {field.name}[{_TEXT + 1}]; /* {remark} */"
-    element = _TYPES[field.type.removesuffix(f"x{_ROW}")]
-    row = f"[{_ROW}]" if field.type == f"i16x{_ROW}" else ""
+    element = _TYPES[field.wire_type.removesuffix(f"x{_ROW}")]
+    row = f"[{_ROW}]" if field.wire_type == f"i16x{_ROW}" else ""
     return f"{_INDENT}{element} {field.name}{row}; /* {remark} */"
 
 
@@ -159,33 +159,33 @@ def _placed(part: VersionPart) -> list[tuple[FieldSpec, int]]:
 
 def _put(field: FieldSpec, at: int) -> list[str]:
     own = f"from->{field.name}"
-    if field.type == "text16":
+    if field.wire_type == "text16":
         return [f"strncpy((char *)body + {at}, {own}, {_TEXT});"]
-    if field.type == f"i16x{_ROW}":
+    if field.wire_type == f"i16x{_ROW}":
         loop = f"for (size_t i = 0; i < {_ROW}; i++)"
         return [loop, f"{_INDENT}cubeling_put16(body + {at} + 2 * i, (uint16_t){own}[i]);"]
-    if field.type == "u8":
+    if field.wire_type == "u8":
         return [f"body[{at}] = {own};"]
-    if field.type == "u32":
+    if field.wire_type == "u32":
         return [f"cubeling_put32(body + {at}, {own});"]
     return [f"cubeling_put16(body + {at}, (uint16_t){own});"]
 
 
 def _get(field: FieldSpec, at: int) -> list[str]:
     own = f"to->{field.name}"
-    if field.type == "text16":
+    if field.wire_type == "text16":
         return [f"memcpy({own}, body + {at}, {_TEXT});", f"{own}[{_TEXT}] = 0;"]
-    if field.type == f"i16x{_ROW}":
+    if field.wire_type == f"i16x{_ROW}":
         loop = f"for (size_t i = 0; i < {_ROW}; i++)"
         return [loop, f"{_INDENT}{own}[i] = cubeling_get16s(body + {at} + 2 * i);"]
     get = {"u16": "cubeling_get16", "i16": "cubeling_get16s", "u32": "cubeling_get32"}
-    value = f"{get[field.type]}(body + {at})" if field.type in get else f"body[{at}]"
+    value = f"{get[field.wire_type]}(body + {at})" if field.wire_type in get else f"body[{at}]"
     return [f"{own} = {value};", *_refuse(field, own)]
 
 
 def _refuse(field: FieldSpec, own: str) -> list[str]:
     """Return the lines that refuse a value out of range, if the type can hold one."""
-    least, most = INTEGER_LIMITS[field.type]
+    least, most = INTEGER_LIMITS[field.wire_type]
     low = least if field.low is None else round(field.low / field.scale)
     high = most if field.high is None else round(field.high / field.scale)
     tests = [f"{own} < {low}"] if low > least else []

@@ -111,7 +111,7 @@ def _row(offset: int, field: FieldSpec) -> str:
         allowed = f"≤ {high:g}"
     since = "" if field.since == 1 else f" (since version {field.since})"
     meaning = field.meaning + since
-    return f"| {offset} | {field.type} | {field.name} | {unit} | {allowed} | {meaning} |"
+    return f"| {offset} | {field.wire_type} | {field.name} | {unit} | {allowed} | {meaning} |"
 
 
 def drawn() -> dict[Path, str]:

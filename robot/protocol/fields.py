@@ -37,7 +37,7 @@ class FieldSpec:
     name: str
     """Its name, in code and document."""
 
-    type: str
+    wire_type: str
     """Its type on the wire: "u8" … "text16"."""
 
     scale: float
@@ -61,17 +61,17 @@ class FieldSpec:
     @property
     def size(self) -> int:
         """Bytes on the wire."""
-        return struct.calcsize("<" + STRUCT_CODES[self.type])
+        return struct.calcsize("<" + STRUCT_CODES[self.wire_type])
 
     @cached_property
     def count(self) -> int:
         """Number of values that `struct` unpacks for it."""
-        return 16 if self.type == "i16x16" else 1
+        return 16 if self.wire_type == "i16x16" else 1
 
     @cached_property
     def limits(self) -> tuple[int, int]:
         """Smallest and largest count allowed."""
-        smallest, largest = INTEGER_LIMITS[self.type.removesuffix("x16")]
+        smallest, largest = INTEGER_LIMITS[self.wire_type.removesuffix("x16")]
         low = smallest if self.low is None else round(self.low / self.scale)
         high = largest if self.high is None else round(self.high / self.scale)
         return low, high
@@ -83,12 +83,12 @@ class FieldSpec:
 
     def to_wire(self, value: Any) -> list[Any]:
         """Return what `struct` packs for a value; raises ValueError if it does not fit."""
-        if self.type == "text16":
+        if self.wire_type == "text16":
             text = str(value).encode()
             if len(text) > 16 or b"\0" in text:
                 raise ValueError(f"{self.name} must be at most 16 bytes of UTF-8, not {value!r}")
             return [text]
-        values = list(value) if self.type == "i16x16" else [value]
+        values = list(value) if self.wire_type == "i16x16" else [value]
         if len(values) != self.count:
             raise ValueError(f"{self.name} must have {self.count} values, not {len(values)}")
         scale = self.scale
@@ -98,14 +98,14 @@ class FieldSpec:
 
     def from_wire(self, values: tuple[Any, ...]) -> Any:
         """Return the value that `struct` unpacked; raises MessageError if it is not allowed."""
-        if self.type == "text16":
+        if self.wire_type == "text16":
             try:
                 return values[0].partition(b"\0")[0].decode()
             except UnicodeDecodeError:
                 raise MessageError(f"{self.name} is not UTF-8") from None
         self._check(values, MessageError)
         per_unit = self.per_unit
-        if self.type == "i16x16":
+        if self.wire_type == "i16x16":
             return tuple([count / per_unit for count in values])
         return values[0] if self.scale == 1 else values[0] / per_unit
 

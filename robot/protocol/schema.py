@@ -133,7 +133,7 @@ def _parts_of(fields: tuple[FieldSpec, ...]) -> tuple[VersionPart, ...]:
     parts: list[VersionPart] = []
     for version in versions:
         own = tuple(field for field in fields if field.since == version)
-        layout = struct.Struct("<" + "".join(STRUCT_CODES[field.type] for field in own))
+        layout = struct.Struct("<" + "".join(STRUCT_CODES[field.wire_type] for field in own))
         parts.append(VersionPart(version, own, layout, parts[-1].end if parts else HEADER.size))
     return tuple(parts)
 

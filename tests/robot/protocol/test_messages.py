@@ -17,18 +17,18 @@ specs = st.sampled_from(sorted(MESSAGES.values(), key=lambda spec: spec.number))
 
 
 def values_of(field: FieldSpec) -> st.SearchStrategy:
-    if field.type == "text16":
+    if field.wire_type == "text16":
         return st.text(
             st.characters(exclude_characters="\0", exclude_categories=["Cs"]), max_size=4
         )
     low, high = {"u8": (0, 255), "u16": (0, 65535), "u32": (0, 2**32 - 1)}.get(
-        field.type, (-32768, 32767)
+        field.wire_type, (-32768, 32767)
     )
     low = low if field.low is None else round(field.low / field.scale)
     high = high if field.high is None else round(field.high / field.scale)
     per_unit = round(1 / field.scale)
     one = st.integers(low, high).map(lambda n: n if per_unit == 1 else n / per_unit)
-    return st.tuples(*[one] * 16) if field.type == "i16x16" else one
+    return st.tuples(*[one] * 16) if field.wire_type == "i16x16" else one
 
 
 @st.composite
