@@ -1,4 +1,4 @@
-"""Simulated robots: one package for each, and the table by which "sim:NAME" finds them."""
+"""Simulated robots: a package each, and the table in which "sim:NAME" finds them."""
 
 from collections.abc import Callable
 
@@ -13,4 +13,4 @@ SIMULATORS: dict[str, Callable[[int], Simulated]] = {
     "nybble": nybble,
     "pleo": PleoSimulator,
 }
-"""The simulated robots by name; made from a seed."""
+"""The simulated robots by name; each is made from a seed."""

@@ -1,25 +1,25 @@
-"""What every simulated robot is: the far end of a line, without clock, thread or port."""
+"""The interface of a simulated robot, without clock, thread or port."""
 
 from typing import Protocol
 
 
 class Simulated(Protocol):
-    """A simulated robot. It has no clock: it lives until the time that it is told."""
+    """A simulated robot. It has no clock: the caller advances it to a time."""
 
     edge: bytes
-    """The byte at which its protocol's frames or lines end; faults strike whole frames."""
+    """The byte that ends a frame or a line of its protocol; faults affect whole frames."""
 
     def receive(self, data: bytes, now: float) -> None:
-        """Take bytes from the line at time `now` [s]."""
+        """Process received bytes at time `now` [s]."""
 
     def advance(self, now: float) -> None:
-        """Live until time `now` [s]."""
+        """Advance to time `now` [s]."""
 
     def bytes_to_send(self) -> bytes:
-        """Return what is to be written to the line, once."""
+        """Return the bytes to write, once."""
 
     def reboot(self) -> None:
-        """Lose power and come back."""
+        """Restart, as after a loss of power."""
 
     def portrait(self) -> tuple[float, str]:
-        """Return what it shows now: the mood from angry, −1, to happy, 1, and the word for it."""
+        """Return the mood that it shows, from −1, angry, to 1, happy, and its word."""

@@ -1,8 +1,8 @@
-"""What may go wrong with a simulated robot, and how it is written in a URL.
+"""The faults of a simulated robot, and how its URL names them.
 
-`sim:cubeling?drop=0.05&delay=20ms~5ms&stall=1s/10s&seed=7` is a robot whose line loses every
-twentieth frame and delays the others, and that hangs for a second about every ten. docs/faults.md
-explains every option.
+The line of `sim:cubeling?drop=0.05&delay=20ms~5ms&stall=1s/10s&seed=7` loses every twentieth frame
+and delays the others, and the robot stalls for a second about every ten. docs/faults.md explains
+every option.
 """
 
 import re
@@ -12,90 +12,90 @@ from typing import Final, NamedTuple
 
 from robot.errors import RobotError
 
-STALL_EVERY: Final = 20.0
-"""How often a robot hangs if its URL does not say [s]."""
+DEFAULT_STALL_INTERVAL_S: Final = 20.0
+"""Default mean time between stalls [s]."""
 
-UNPLUGGED_FOR: Final = 1.0
-"""How long the plug is out if the URL does not say [s]."""
+DEFAULT_UNPLUGGED_S: Final = 1.0
+"""Default time for which the plug is out [s]."""
 
-DELAY_MAX: Final = 10.0
+MAX_DELAY_S: Final = 10.0
 """Longest delay of a line [s]."""
 
-BABBLE_MAX: Final = 1e6
+MAX_NOISE_BYTES_PER_S: Final = 1e6
 """Most noise on a line [bytes/s]."""
 
-LENGTH_RANGE: Final = (0.001, 3600.0)
-"""How long a robot may hang, or its plug be out [s]."""
+LENGTH_RANGE_S: Final = (0.001, 3600.0)
+"""Shortest and longest stall or unplugging [s]."""
 
-EVERY_RANGE: Final = (0.1, 86400.0)
-"""How often something may befall it [s]."""
+INTERVAL_RANGE_S: Final = (0.1, 86400.0)
+"""Shortest and longest mean time between two events [s]."""
 
 
-class Spell(NamedTuple):
-    """Something that befalls a robot again and again, at moments that nobody foresees."""
+class Outage(NamedTuple):
+    """A stall or an unplugging that recurs at random times (a Poisson process)."""
 
     length: float
-    """How long it lasts [s]."""
+    """Its length [s]."""
 
     every: float
-    """Mean time from the end of one to the begin of the next [s]; drawn exponentially."""
+    """Mean time from the end of one to the start of the next [s]; drawn exponentially."""
 
 
 @dataclass(frozen=True)
 class Faults:
-    """What goes wrong on the way to a simulated robot and back, and with the robot itself.
+    """The faults of a line and of the robot at its end.
 
-    Chances and rates hold for each direction of the line by itself.
+    Probabilities and rates hold for each direction of the line separately.
     """
 
     drop: float = 0.0
-    """Chance that a frame, or line of text, is lost."""
+    """Probability that a frame, or a line of text, is lost."""
 
     flip: float = 0.0
-    """Chance of each byte that one of its bits is wrong."""
+    """Probability per byte that one of its bits is flipped."""
 
     dup: float = 0.0
-    """Chance that a frame comes twice, one straight behind the other."""
+    """Probability that a frame arrives twice in succession."""
 
     split: float = 0.0
-    """Chance that a frame comes in two pieces, some milliseconds apart."""
+    """Probability that a frame arrives in two pieces, some milliseconds apart."""
 
     babble: float = 0.0
-    """Noise between the frames, in bursts of some bytes [bytes/s]."""
+    """Noise between the frames, in bursts [bytes/s]."""
 
     delay: float = 0.0
-    """How late every byte arrives [s]."""
+    """Delay of every byte [s]."""
 
     jitter: float = 0.0
-    """How much earlier or later than that a frame arrives at most [s]; none overtakes another."""
+    """Largest deviation from the delay [s]; frames never overtake each other."""
 
-    stall: Spell | None = None
-    """The robot hangs: it neither reads nor writes nor looks at its clock."""
+    stall: Outage | None = None
+    """The robot neither reads nor writes nor advances its clock."""
 
-    unplug: Spell | None = None
+    unplug: Outage | None = None
     """The plug is pulled, and put in again."""
 
     reboot: float | None = None
-    """Mean time between two reboots of the robot [s]."""
+    """Mean time between two reboots [s]."""
 
 
 class Option(NamedTuple):
     """One option of a simulator's URL."""
 
     read: Callable[[str], dict[str, object]]
-    """Turns its text into fields of `Faults`; raises ValueError if it is not allowed."""
+    """Converts its text to fields of `Faults`; raises ValueError if it is not allowed."""
 
     allowed: str
-    """What may stand there, in words."""
+    """The allowed values, for messages."""
 
 
 def faults_of(url: str, options: Mapping[str, str]) -> Faults:
-    """Read the faults from the options of a simulator's URL.
+    """Return the faults in the options of a simulator's URL.
 
     Raises
     ------
     RobotError
-        In one line, for an option that there is not, or a value that is not allowed.
+        For an unknown option, or a value that is not allowed.
     """
     fields: dict[str, object] = {}
     for name, text in options.items():
@@ -107,7 +107,7 @@ def faults_of(url: str, options: Mapping[str, str]) -> Faults:
             fields |= option.read(text)
         except ValueError:
             raise RobotError(f"{url!r}: {name} must be {option.allowed}, not {text!r}") from None
-    return Faults(**fields)  # type: ignore[arg-type] # the readers below give what it takes
+    return Faults(**fields)  # type: ignore[arg-type] # the readers below return its fields
 
 
 def _number(text: str, low: float, high: float) -> float:
@@ -127,43 +127,43 @@ def _seconds(text: str, low: float, high: float) -> float:
     return round(_number(number, low / unit, high / unit) * unit, 9)
 
 
-def _chance(name: str) -> Option:
-    return Option(lambda text: {name: _number(text, 0.0, 1.0)}, "a chance from 0 to 1")
+def _probability(name: str) -> Option:
+    return Option(lambda text: {name: _number(text, 0.0, 1.0)}, "a probability from 0 to 1")
 
 
 def _read_delay(text: str) -> dict[str, object]:
-    middle, tilde, width = text.partition("~")
-    delay = _seconds(middle, 0.0, DELAY_MAX)
-    return {"delay": delay, "jitter": _seconds(width, 0.0, delay) if tilde else 0.0}
+    mean, tilde, jitter = text.partition("~")
+    delay = _seconds(mean, 0.0, MAX_DELAY_S)
+    return {"delay": delay, "jitter": _seconds(jitter, 0.0, delay) if tilde else 0.0}
 
 
 def _read_stall(text: str) -> dict[str, object]:
     length, slash, every = text.partition("/")
-    mean = _seconds(every, *EVERY_RANGE) if slash else STALL_EVERY
-    return {"stall": Spell(_seconds(length, *LENGTH_RANGE), mean)}
+    mean = _seconds(every, *INTERVAL_RANGE_S) if slash else DEFAULT_STALL_INTERVAL_S
+    return {"stall": Outage(_seconds(length, *LENGTH_RANGE_S), mean)}
 
 
 def _read_unplug(text: str) -> dict[str, object]:
     every, slash, length = text.partition("/")
-    out = _seconds(length, *LENGTH_RANGE) if slash else UNPLUGGED_FOR
-    return {"unplug": Spell(out, _seconds(every, *EVERY_RANGE))}
+    out = _seconds(length, *LENGTH_RANGE_S) if slash else DEFAULT_UNPLUGGED_S
+    return {"unplug": Outage(out, _seconds(every, *INTERVAL_RANGE_S))}
 
 
 OPTIONS: Final[dict[str, Option]] = {
-    "drop": _chance("drop"),
-    "flip": _chance("flip"),
-    "dup": _chance("dup"),
-    "split": _chance("split"),
+    "drop": _probability("drop"),
+    "flip": _probability("flip"),
+    "dup": _probability("dup"),
+    "split": _probability("split"),
     "babble": Option(
-        lambda text: {"babble": _number(text, 0.0, BABBLE_MAX)},
+        lambda text: {"babble": _number(text, 0.0, MAX_NOISE_BYTES_PER_S)},
         "bytes a second from 0 to 1000000, as in 200",
     ),
     "delay": Option(_read_delay, "a time up to 10s, as in 20ms, or 20ms~5ms with jitter within it"),
     "stall": Option(_read_stall, "how long, 1ms to 3600s, as in 1s, or 1s/10s with how often"),
     "unplug": Option(_read_unplug, "how often, 100ms to 86400s, as in 30s, or 30s/2s for how long"),
     "reboot": Option(
-        lambda text: {"reboot": _seconds(text, *EVERY_RANGE)},
+        lambda text: {"reboot": _seconds(text, *INTERVAL_RANGE_S)},
         "how often, 100ms to 86400s, as in 60s",
     ),
 }
-"""Every option but the seed."""
+"""Every option except the seed."""

@@ -1,4 +1,4 @@
-"""A simulated robot behind pySerial's interface, without a port: what "sim:NAME" opens."""
+"""A simulated robot behind pySerial's interface without a port: what "sim:NAME" opens."""
 
 import re
 import threading
@@ -15,14 +15,14 @@ from robot.simulators.faulty import FaultyRobot
 
 
 class SimulatedWire:
-    """A simulated robot, and the wire to it, which outlives every unplugging.
+    """A simulated robot and its line, which outlive every unplugging.
 
     Parameters
     ----------
     url
         "sim:NAME", with options: "sim:cubeling?seed=7&drop=0.05"; see `simulator_of`.
     clock
-        The time by which both live.
+        The time of both.
 
     Raises
     ------
@@ -32,34 +32,34 @@ class SimulatedWire:
 
     def __init__(self, url: str, clock: Clock) -> None:
         self.robot = simulator_of(url)
-        """The robot at the far end."""
+        """The simulated robot."""
         self._url = url
         self._clock = clock
 
     def open(self) -> "MemoryPort":
-        """Open the port; raises RobotError while its plug is out."""
+        """Open the port; raises RobotError while the plug is out."""
         robot = self.robot
         if isinstance(robot, FaultyRobot):
             robot.advance(self._clock())
             if not robot.plugged_in:
                 raise RobotError(f"cannot open the port {self._url}: its plug is out")
-            robot.bytes_to_send()  # a port that nobody had open has lost what came
+            robot.bytes_to_send()  # a port that was not open has lost what arrived
         return MemoryPort(robot, self._clock)
 
 
 def open_simulated(url: str, clock: Clock) -> Opener:
-    """Return what opens a simulated robot, now and after every unplugging."""
+    """Return a function that opens a simulated robot, now and after every unplugging."""
     return SimulatedWire(url, clock).open
 
 
 def simulator_of(url: str) -> Simulated:
-    """Make the simulated robot that a URL names, with the faults that it names.
+    """Make the simulated robot that a URL names, with its faults.
 
     Parameters
     ----------
     url
-        "sim:NAME?OPTIONS"; "sim:" may be left out. Options are `seed`, and those of
-        `faults.OPTIONS`: "cubeling?drop=0.05&stall=1s/10s&seed=7".
+        "sim:NAME?OPTIONS"; "sim:" may be omitted. The options are `seed` and `faults.OPTIONS`:
+        "cubeling?drop=0.05&stall=1s/10s&seed=7".
 
     Raises
     ------
@@ -68,7 +68,7 @@ def simulator_of(url: str) -> Simulated:
     """
     name, _, query = url.removeprefix("sim:").partition("?")
     if name not in SIMULATORS:
-        known = ", ".join(f"sim:{one}" for one in SIMULATORS)
+        known = ", ".join(f"sim:{simulator}" for simulator in SIMULATORS)
         raise RobotError(f"there is no simulated robot {url!r}; there is {known}")
     options: dict[str, str] = {}
     for option, text in parse_qsl(query, keep_blank_values=True):
@@ -87,8 +87,8 @@ def simulator_of(url: str) -> Simulated:
 class MemoryPort:
     """A simulated robot behind pySerial's interface, without a port.
 
-    The robot lives while it is read from; a closed port stops its time. Once its plug was pulled,
-    every call raises serial.SerialException, as a real port does.
+    Every call advances the robot. After an unplugging every call raises serial.SerialException, as
+    a real port does.
     """
 
     def __init__(self, simulator: Simulated, clock: Clock) -> None:
@@ -98,29 +98,29 @@ class MemoryPort:
         self._arrived = bytearray()
         self._open = True
         self._cancelled = threading.Event()
-        self._plug = simulator if isinstance(simulator, FaultyRobot) else None
-        self._pulls = self._plug.pulls if self._plug else 0
+        self._faulty = simulator if isinstance(simulator, FaultyRobot) else None
+        self._unplug_count = self._faulty.unplug_count if self._faulty else 0
 
     @property
     def in_waiting(self) -> int:
-        """Bytes that can be read at once."""
-        self._live()
+        """Number of bytes that can be read at once."""
+        self._advance()
         return len(self._arrived)
 
     def read(self, size: int = 1, /) -> bytes:
         """Read up to `size` bytes; waits at most `READ_TIMEOUT_S` for the first."""
-        self._live()
+        self._advance()
         if not self._arrived:
             self._cancelled.wait(READ_TIMEOUT_S)
             self._cancelled.clear()
-            self._live()
+            self._advance()
         data = bytes(self._arrived[:size])
         del self._arrived[:size]
         return data
 
     def write(self, data: bytes, /) -> int:
-        """Hand the bytes to the robot."""
-        self._live()
+        """Send the bytes to the robot."""
+        self._advance()
         self.simulator.receive(data, self._clock())
         return len(data)
 
@@ -129,13 +129,13 @@ class MemoryPort:
         self._cancelled.set()
 
     def close(self) -> None:
-        """Stop the robot's time."""
+        """Close the port; the robot no longer advances."""
         self._open = False
 
-    def _live(self) -> None:
+    def _advance(self) -> None:
         if not self._open:
             raise serial.PortNotOpenError
         self.simulator.advance(self._clock())
-        if self._plug is not None and self._plug.pulls != self._pulls:
+        if self._faulty is not None and self._faulty.unplug_count != self._unplug_count:
             raise serial.SerialException("the plug was pulled")
         self._arrived += self.simulator.bytes_to_send()

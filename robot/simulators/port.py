@@ -1,4 +1,4 @@
-"""A simulated robot behind a real port: a pseudo-terminal, or a TCP port where there are none."""
+"""A simulated robot behind a real port: a pseudo-terminal, or a TCP port on Windows."""
 
 import contextlib
 import errno
@@ -8,7 +8,7 @@ import socket
 import sys
 import threading
 import time
-from typing import Literal, Protocol
+from typing import Literal
 
 from robot.contract.closeable import Closeable
 from robot.contract.port import Clock
@@ -16,37 +16,18 @@ from robot.errors import RobotError
 from robot.simulators.base import Simulated
 from robot.simulators.cubeling.simulator import Simulator
 
-WAIT = 0.010
-"""Longest wait for bytes [s]; the robot lives in steps of 20 ms."""
+POLL_TIMEOUT_S = 0.010
+"""Longest wait for bytes [s]; the robot advances in steps of 20 ms."""
 
 MAX_READ_BYTES = 4096
-"""Most bytes taken from the line in one go."""
-
-
-class _Line(Protocol):
-    """The robot's side of a line that clients come to and leave."""
-
-    url: str
-    """What a client gives to pySerial."""
-
-    def read(self) -> bytes:
-        """Wait a moment for bytes; none if there are none, or nobody is there."""
-
-    def write(self, data: bytes) -> None:
-        """Send what the line takes at once; the rest is lost, as on a real one."""
-
-    def wake(self) -> None:
-        """End a read that waits."""
-
-    def close(self) -> None:
-        """Give everything back."""
+"""Most bytes of one read."""
 
 
 class _PtyLine:
-    """A pseudo-terminal. Its far end stays open here too, so a client may come and go."""
+    """The robot's side of a pseudo-terminal. It keeps the far end open: clients come and go."""
 
     def __init__(self) -> None:
-        import termios  # there is none on Windows
+        import termios  # not on Windows
         import tty
 
         self._near, self._far = os.openpty()
@@ -54,14 +35,14 @@ class _PtyLine:
             tty.setraw(self._far, termios.TCSANOW)
             os.set_blocking(self._near, False)
             self.url = os.ttyname(self._far)
-            self._alarm, self._bell = os.pipe()
+            self._wake_reader, self._wake_writer = os.pipe()
         except BaseException:
             os.close(self._near)
             os.close(self._far)
             raise
 
     def read(self) -> bytes:
-        ready, _, _ = select.select([self._near, self._alarm], [], [], WAIT)
+        ready, _, _ = select.select([self._near, self._wake_reader], [], [], POLL_TIMEOUT_S)
         if self._near not in ready:
             return b""
         try:
@@ -69,34 +50,34 @@ class _PtyLine:
         except OSError as error:
             if error.errno not in (errno.EIO, errno.EAGAIN):
                 raise
-            return b""  # the client has just left; another one will come
+            return b""  # the client has just left; another one may come
 
-    def write(self, data: bytes) -> None:
+    def write(self, data: bytes) -> None:  # what does not fit is lost, as on a real line
         with contextlib.suppress(BlockingIOError):
             os.write(self._near, data)
 
     def wake(self) -> None:
-        os.write(self._bell, b"!")
+        os.write(self._wake_writer, b"!")
 
     def close(self) -> None:
-        for descriptor in (self._near, self._far, self._alarm, self._bell):
+        for descriptor in (self._near, self._far, self._wake_reader, self._wake_writer):
             os.close(descriptor)
 
 
 class _TcpLine:
-    """A TCP port on this machine, for one client at a time; the latest one has it."""
+    """The robot's side of a local TCP port; it serves the latest client."""
 
     def __init__(self, number: int) -> None:
         self._server = socket.create_server(("127.0.0.1", number))
         self._client: socket.socket | None = None
-        self._alarm, self._bell = socket.socketpair()
+        self._wake_reader, self._wake_writer = socket.socketpair()
         self.url = f"socket://127.0.0.1:{self._server.getsockname()[1]}"
 
     def read(self) -> bytes:
-        watched = [self._server, self._alarm, *([self._client] if self._client else [])]
-        ready, _, _ = select.select(watched, [], [], WAIT)
+        watched = [self._server, self._wake_reader, *([self._client] if self._client else [])]
+        ready, _, _ = select.select(watched, [], [], POLL_TIMEOUT_S)
         if self._server in ready:
-            self._leave()
+            self._drop_client()
             self._client, _ = self._server.accept()
             self._client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             self._client.setblocking(False)
@@ -108,7 +89,7 @@ class _TcpLine:
         except OSError:
             data = b""
         if not data:
-            self._leave()
+            self._drop_client()
         return data
 
     def write(self, data: bytes) -> None:
@@ -117,32 +98,32 @@ class _TcpLine:
                 self._client.send(data)
 
     def wake(self) -> None:
-        self._bell.send(b"!")
+        self._wake_writer.send(b"!")
 
     def close(self) -> None:
-        self._leave()
-        for one in (self._server, self._alarm, self._bell):
-            one.close()
+        self._drop_client()
+        for sock in (self._server, self._wake_reader, self._wake_writer):
+            sock.close()
 
-    def _leave(self) -> None:
+    def _drop_client(self) -> None:
         if self._client is not None:
             self._client.close()
             self._client = None
 
 
 class SimulatedPort(Closeable):
-    """Puts a simulated robot behind a real port, for as long as a `with` statement lasts.
+    """A simulated robot behind a real port, best used in a `with` statement.
 
     Parameters
     ----------
     simulator
-        The robot; a new one if None. It belongs to this port's thread until the end.
+        The robot; a new one if None. Only this port's thread uses it until `close`.
     kind
-        "pty" for a pseudo-terminal, "tcp" for a port on 127.0.0.1; by default what the system has.
+        "pty" for a pseudo-terminal, "tcp" for a port on 127.0.0.1; None for what the system has.
     tcp_port
-        Number of the TCP port; 0 for any that is free.
+        Number of the TCP port; 0 for any free one.
     clock
-        The time [s] by which the robot lives.
+        The time of the robot [s].
 
     Examples
     --------
@@ -164,12 +145,12 @@ class SimulatedPort(Closeable):
         self._simulator = simulator or Simulator()
         self._clock = clock
         try:
-            self._line: _Line = _PtyLine() if kind == "pty" else _TcpLine(tcp_port)
+            self._line: _PtyLine | _TcpLine = _PtyLine() if kind == "pty" else _TcpLine(tcp_port)
         except (OSError, ImportError) as error:
             raise RobotError(f"cannot make a port for the simulated robot: {error}") from error
         self.url = self._line.url
-        """What pySerial opens to reach the robot."""
-        self._ending = threading.Event()
+        """The URL of the robot for pySerial."""
+        self._closing = threading.Event()
         self._closed = False
         self._thread = threading.Thread(
             target=self._serve, name=f"robot at {self.url}", daemon=True
@@ -177,17 +158,17 @@ class SimulatedPort(Closeable):
         self._thread.start()
 
     def close(self) -> None:
-        """Stop the robot and give the port back. A second call does nothing."""
+        """Stop the robot and close the port. A second call does nothing."""
         if self._closed:
             return
         self._closed = True
-        self._ending.set()
+        self._closing.set()
         self._line.wake()
-        self._thread.join()  # it waits for nothing longer than `WAIT`
+        self._thread.join()  # it never waits longer than `POLL_TIMEOUT_S`
         self._line.close()
 
     def _serve(self) -> None:
-        while not self._ending.is_set():
+        while not self._closing.is_set():
             data = self._line.read()
             now = self._clock()
             self._simulator.receive(data, now)

@@ -26,12 +26,12 @@ from robot.drivers import DRIVERS
 from robot.link.exchange import REOPEN_INTERVAL_S
 from robot.protocol import messages as m
 from robot.simulators import SIMULATORS
-from robot.simulators.faults import Faults, Spell
+from robot.simulators.faults import Faults, Outage
 from robot.simulators.faulty import FaultyRobot
 
 FAULTS = Faults(
     drop=0.005, flip=0.0001, dup=0.005, delay=0.002, jitter=0.001,
-    stall=Spell(1.0, 600.0), unplug=Spell(2.0, 600.0), reboot=7200.0,
+    stall=Outage(1.0, 600.0), unplug=Outage(2.0, 600.0), reboot=7200.0,
 )  # fmt: skip
 """What goes wrong."""
 
@@ -120,7 +120,7 @@ class Day:
         self.soaked = Soaked(name, 0.0)
         self.now = self.wish_at = self.tick_at = self.reopen_at = 0.0
         self.port_open = False
-        self.pulls = 0
+        self.unplug_count = 0
 
     def live_until(self, end: float) -> None:
         """Let time pass."""
@@ -144,13 +144,13 @@ class Day:
             self.robot.receive(out, self.now)
 
     def _watch_plug(self) -> None:
-        if self.port_open and self.robot.pulls != self.pulls:
+        if self.port_open and self.robot.unplug_count != self.unplug_count:
             self.driver.port_lost()
             self.port_open, self.reopen_at = False, self.now + REOPEN_INTERVAL_S
         if not self.port_open and self.now >= self.reopen_at:
             self.port_open, self.reopen_at = self.robot.plugged_in, self.now + REOPEN_INTERVAL_S
             if self.port_open:
-                self.pulls = self.robot.pulls
+                self.unplug_count = self.robot.unplug_count
                 self.driver.port_opened(self.now)
 
     def _wish(self) -> None:
@@ -177,7 +177,7 @@ def soak(name: str, hours: float, seed: int = 1) -> Soaked:
             gc.collect()
             soaked.held.append(weight(day.driver, day.robot, logs=False))
             soaked.tracked.append(len(gc.get_objects()))
-        soaked.unplugged = day.robot.pulls
+        soaked.unplugged = day.robot.unplug_count
         _settle(day)
     except Exception as error:
         soaked.wrong.append(f"at {day.now:.3f} s: {error!r}")
@@ -193,9 +193,9 @@ def soak(name: str, hours: float, seed: int = 1) -> Soaked:
 
 def _settle(day: Day) -> None:
     """End all faults, and see the last wish acknowledged."""
-    day.robot.there.cut = day.robot.back.cut = False
+    day.robot.to_robot.cut = day.robot.from_robot.cut = False
     calm = FaultyRobot(day.robot.robot, Faults(), 0)
-    day.robot, day.pulls = calm, calm.pulls
+    day.robot, day.unplug_count = calm, calm.unplug_count
     day.wish_at = float("inf")
     wish = Emotion(0.5, 0.5)
     day.driver.express(wish)

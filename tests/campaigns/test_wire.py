@@ -39,7 +39,7 @@ def test_the_exchanges_are_divided_among_all_mixtures():
 
 def test_a_robot_that_takes_a_command_twice_is_found(monkeypatch):
     def obey(self, command):
-        self._taken, self._in_force = command.number, True
+        self.last_command, self._in_force = command.number, True
         self._result = self._carry_out(command)
         self._send(m.Ack(command.number, self._result))
 

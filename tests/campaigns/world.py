@@ -10,8 +10,8 @@ from robot.link.exchange import REOPEN_INTERVAL_S
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.wire import MAX_FRAME
-from robot.simulators.faulty import INBOX_MAX, FaultyRobot
-from robot.simulators.line import IN_FLIGHT_MAX
+from robot.simulators.channel import MAX_IN_FLIGHT_BYTES
+from robot.simulators.faulty import MAX_INBOX_BYTES, FaultyRobot
 from tests.campaigns.ends import LightRobot, WatchedLane, watched_host
 from tests.campaigns.mixes import Mix
 from tests.campaigns.witness import BrokenPromiseError, Witness
@@ -77,7 +77,7 @@ class CampaignWorld:
         self.events_now = 0
         self.host_number = 0
         self.port_open = False
-        self.pulls = 0
+        self.unplug_count = 0
         self.tick_at = self.wish_at = self.reopen_at = 0.0
         self.host_ends_at = NEVER
         self.host = watched_host(self.witness, 1)
@@ -136,7 +136,7 @@ class CampaignWorld:
 
     def _watch_plug(self) -> None:
         """Be to the host what its pump is when the port vanishes and comes back."""
-        if self.port_open and self.faulty.pulls != self.pulls:
+        if self.port_open and self.faulty.unplug_count != self.unplug_count:
             self.host.port_lost()
             self.port_open, self.reopen_at = False, self.now + REOPEN_INTERVAL_S
         if not self.port_open and self.now >= self.reopen_at:
@@ -146,7 +146,7 @@ class CampaignWorld:
         self.port_open = self.faulty.plugged_in
         self.reopen_at = self.now + REOPEN_INTERVAL_S
         if self.port_open:
-            self.pulls = self.faulty.pulls
+            self.unplug_count = self.faulty.unplug_count
             self.host.port_opened(self.now)
 
     def _start_host(self) -> None:
@@ -233,8 +233,11 @@ class CampaignWorld:
             "frame in robot": (link._reader.buffered, MAX_FRAME + 1),
             "actions": (len(self.lane._actions), timing.ACTIONS_MAX),
             "beats": (len(host._round_trip._sent), 16),
-            "inbox": (len(faulty._inbox), INBOX_MAX),
-            "line": (max(faulty.there.in_flight, faulty.back.in_flight), IN_FLIGHT_MAX),
+            "inbox": (faulty.inbox_size, MAX_INBOX_BYTES),
+            "line": (
+                max(faulty.to_robot.in_flight, faulty.from_robot.in_flight),
+                MAX_IN_FLIGHT_BYTES,
+            ),
             "unsent": (len(host._out) + len(link._out), 0),
         }
         for name, (size, most) in sizes.items():
@@ -244,7 +247,7 @@ class CampaignWorld:
 
     def _outcome(self, violation: str | None) -> Outcome:
         witness, faulty = self.witness, self.faulty
-        counts = witness.counts + faulty.counts + faulty.there.counts + faulty.back.counts
+        counts = witness.counts + faulty.counts + faulty.to_robot.counts + faulty.from_robot.counts
         return Outcome(
             self.mix.name, self.seed, self.now, counts, self.recoveries, self.worst_recovery,
             witness.worst_failsafe, witness.latencies, self.largest, violation,

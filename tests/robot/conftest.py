@@ -9,9 +9,9 @@ from hypothesis import settings
 from affect.emotion import Emotion
 from robot.drivers.cubeling.host import HostLink
 from robot.protocol import messages as m
+from robot.simulators.channel import FaultyChannel
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.faults import Faults
-from robot.simulators.line import Line
 
 # A busy machine is no reason for a property to fail.
 settings.register_profile("no deadline", deadline=None)
@@ -30,8 +30,8 @@ class World:
         self.step = step
         self.host = HostLink(host=7)
         self.robot = Simulator(seed)
-        self.there = Line(faults, Simulator.edge, (seed, 0))
-        self.back = Line(faults, Simulator.edge, (seed, 1))
+        self.to_robot = FaultyChannel(faults, Simulator.edge, (seed, 0))
+        self.from_robot = FaultyChannel(faults, Simulator.edge, (seed, 1))
         self.applied: list[tuple[float, Emotion]] = []
         self.neutral_at: list[float] = []
         self.reboots: list[float] = []
@@ -63,13 +63,13 @@ class World:
         return self.host.telemetry(self.now)
 
     def _turn(self) -> None:
-        self.host.receive(self.back.receive(self.now), self.now)
+        self.host.receive(self.from_robot.receive(self.now), self.now)
         self.host.tick(self.now)
-        self.there.send(self.host.bytes_to_send(), self.now)
+        self.to_robot.send(self.host.bytes_to_send(), self.now)
         if self.now < self.stalled_until:
             return
-        self.robot.receive(self.there.receive(self.now), self.now)
-        self.back.send(self.robot.bytes_to_send(), self.now)
+        self.robot.receive(self.to_robot.receive(self.now), self.now)
+        self.from_robot.send(self.robot.bytes_to_send(), self.now)
 
     def _watch(self) -> None:
         """Write down when the robot's body is told what."""

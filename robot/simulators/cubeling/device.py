@@ -1,6 +1,6 @@
-"""The robot's end of the protocol: bytes in, bytes out, and a body that is told what to do.
+"""The robot side of the protocol, without clock, thread or port: it commands a body.
 
-No clock, no thread, no port: whoever owns those calls `receive` and `tick` with the time.
+The owner calls `receive` and `tick` with the time.
 """
 
 from dataclasses import dataclass
@@ -17,25 +17,25 @@ from robot.protocol.wire import FrameReader, crc16, encode_frame
 
 @dataclass(frozen=True)
 class BodyState:
-    """What a body says of itself; the fields mean what they mean in STATE."""
+    """State of a body; the fields are those of the message STATE."""
 
     emotion: Emotion
-    """What it shows now."""
+    """The emotion that it shows."""
 
     mood: int
-    """Index of its word for it."""
+    """Index of its mood."""
 
     battery: float
-    """From empty, 0, to full, 1."""
+    """From 0, empty, to 1, full."""
 
     joints: tuple[float, ...]
     """Angles [rad]."""
 
     motion: int = m.NOTHING
-    """Index of the motion played now."""
+    """Index of the motion that is playing."""
 
     sound: int = m.NOTHING
-    """Index of the sound played now."""
+    """Index of the sound that is playing."""
 
     charging: bool = False
     """Whether the battery is being charged."""
@@ -47,59 +47,60 @@ class BodyState:
     """Whether its motors have no power."""
 
     reckoned: bool = False
-    """Whether the joints are where they should be, and not measured."""
+    """Whether the joint angles are calculated, not measured."""
 
 
 class Body(Protocol):
-    """What the protocol moves."""
+    """What the protocol commands."""
 
     catalogue: Catalogue
-    """What it has."""
+    """What the robot has."""
 
     def express(self, emotion: Emotion, mood: int) -> None:
-        """Feel this from now on; the mood is one of the catalogue's, or `NOTHING`: choose one."""
+        """Show an emotion; the mood is an index of the catalogue, or `NOTHING`: choose one."""
 
     def play(self, item: int, index: int) -> None:
-        """Play a motion or a sound that the catalogue has."""
+        """Play a motion or a sound of the catalogue."""
 
     def stop(self) -> None:
         """End everything and hold the neutral pose."""
 
     def neutral(self) -> None:
-        """End motion and sound, feel neutral, and live on: the host is gone."""
+        """End motion and sound and return to the neutral emotion: the host is gone."""
 
     def state(self) -> BodyState:
-        """Say how it is now."""
+        """Return the current state."""
 
 
 class DeviceLink:
-    """One robot's end of the protocol.
-
-    Parameters
-    ----------
-    body
-        What the commands move. Its memory is this link's memory: a reboot is a new link.
-    """
+    """The robot side of one link. A reboot is a new `DeviceLink`."""
 
     def __init__(self, body: Body) -> None:
         self.body = body
         self.session = 0
         """The open session; 0 when none is."""
         self._host = 0
-        self._taken = 0  # number of the last command, kept over sessions of the same host
+        self.last_command = 0
+        """Number of the last command; it survives the sessions of the same host."""
+        self.last_received = 0.0
+        """Time of the last message of the session [s]."""
         self._result = m.TAKEN
         self._in_force = False
         self._beat = 0
         self._version = timing.VERSION
-        self._heard = 0.0
-        self._stated = 0.0
-        self._last_gone = float("-inf")
+        self._state_sent = 0.0
+        self._gone_sent = float("-inf")
         self._reader = FrameReader()
         self._out = bytearray()
 
+    @property
+    def frames_received(self) -> int:
+        """Number of valid frames received."""
+        return self._reader.frames
+
     def receive(self, data: bytes, now: float) -> None:
-        """Take bytes from the line at time `now` [s]."""
-        # First the clock: bytes that waited while this robot hung belong to a session that is over.
+        """Process received bytes at time `now` [s]."""
+        # First the clock: bytes that waited during a stall belong to a session that is over.
         self.tick(now)
         for body in self._reader.feed(data):
             try:
@@ -110,14 +111,14 @@ class DeviceLink:
                 self._take(session, message, now)
 
     def tick(self, now: float) -> None:
-        """Do what is due at time `now` [s]: the failsafe, and STATE in time."""
-        if self.session and now - self._heard >= timing.FAILSAFE_AFTER:
+        """Do what is due at time `now` [s]: the failsafe and STATE."""
+        if self.session and now - self.last_received >= timing.FAILSAFE_AFTER:
             self._end_session()
-        if self.session and now - self._stated >= timing.STATE_EVERY:
+        if self.session and now - self._state_sent >= timing.STATE_EVERY:
             self._send_state(now)
 
     def bytes_to_send(self) -> bytes:
-        """Return what is to be written to the line, once."""
+        """Return the bytes to write, once."""
         data = bytes(self._out)
         self._out.clear()
         return data
@@ -130,7 +131,7 @@ class DeviceLink:
         if not self.session or session != self.session:
             self._refuse(session, now)
             return
-        self._heard = now
+        self.last_received = now
         match message:
             case m.Beat():
                 self._beat = message.count
@@ -146,15 +147,15 @@ class DeviceLink:
         if hello.host != self._host:
             if self._in_force:
                 self.body.neutral()
-            self._host, self._taken, self._in_force = hello.host, 0, False
+            self._host, self.last_command, self._in_force = hello.host, 0, False
         if session != self.session:
-            self.session, self._beat, self._stated = session, 0, now
-        self._heard = now
+            self.session, self._beat, self._state_sent = session, 0, now
+        self.last_received = now
         self._version = min(hello.version, timing.VERSION)
         catalogue = self.body.catalogue
         welcome = m.Welcome(
             version=self._version,
-            taken=self._taken if self._in_force else 0,
+            taken=self.last_command if self._in_force else 0,
             catalogue=crc16(repr(catalogue).encode()),
             joints=len(catalogue.joints),
             motions=len(catalogue.motions),
@@ -177,9 +178,9 @@ class DeviceLink:
             self._send(m.Name(ask.item, ask.index, names[ask.index]))
 
     def _obey(self, command: m.Express | m.Play | m.Stop) -> None:
-        """Take a command once, and acknowledge it as often as it comes."""
-        if command.number > self._taken:
-            self._taken, self._in_force = command.number, True
+        """Execute a command once, and acknowledge it each time that it arrives."""
+        if command.number > self.last_command:
+            self.last_command, self._in_force = command.number, True
             self._result = self._carry_out(command)
         self._send(m.Ack(command.number, self._result))
 
@@ -199,7 +200,7 @@ class DeviceLink:
         return m.TAKEN
 
     def _send_state(self, now: float) -> None:
-        self._stated = now
+        self._state_sent = now
         state = self.body.state()
         joints = state.joints + (0.0,) * (m.JOINTS_MAX - len(state.joints))
         flags = (
@@ -209,11 +210,11 @@ class DeviceLink:
             | m.RECKONED * state.reckoned
         )
         if self._version < 2:
-            flags &= m.CHARGING | m.STILL  # the others are zero there
+            flags &= m.CHARGING | m.STILL  # version 1 has no others
         self._send(
             m.State(
                 beat=self._beat,
-                taken=self._taken,
+                taken=self.last_command,
                 flags=flags,
                 valence=state.emotion.valence,
                 arousal=state.emotion.arousal,
@@ -226,8 +227,8 @@ class DeviceLink:
         )
 
     def _refuse(self, session: int, now: float) -> None:
-        if now - self._last_gone >= timing.GONE_EVERY:
-            self._last_gone = now
+        if now - self._gone_sent >= timing.GONE_EVERY:
+            self._gone_sent = now
             self._out += encode_frame(pack(m.Gone(), session))
 
     def _end_session(self) -> None:

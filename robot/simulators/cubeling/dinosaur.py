@@ -1,6 +1,6 @@
-"""What the simulated robot is made of: the joints of a Pleo, and what they do in each mood.
+"""The simulated dinosaur's joints, motions and sounds.
 
-Joints, limits and speeds are those of `robot.drivers.pleo.joints`. The motions are our own.
+Joints, limits and speeds are those of `robot.drivers.pleo.joints`; the motions are our own.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 _LIMITS = tuple(joint.limits for joint in PLEO)
 
 JOINTS = tuple(joint.name for joint in _LIMITS)
-"""Names of the joints, in the order of the catalogue."""
+"""Joint names in the order of the catalogue."""
 
 MOOD_LOOPS = (
     SineMotion(
@@ -63,7 +63,7 @@ MOOD_LOOPS = (
         "growl",
     ),
 )
-"""One endless motion with one sound for each mood, in the order of `mood.LABELS`."""
+"""A looping motion with a sound for each mood, in the order of `affect.mood_line.LABELS`."""
 
 ACTIONS = (
     SineMotion("nod", 2.0, {"neck up": JointSine(0, 6, 2), "eyes and mouth": JointSine(50)}),
@@ -88,7 +88,7 @@ ACTIONS = (
         {"neck up": JointSine(12, 8, 1, -0.25), "eyes and mouth": JointSine(-50, 30, 2, -0.25)},
     ),
 )
-"""Motions that are played once and then give way to the mood again."""
+"""Motions that play once; then the loop of the mood continues."""
 
 SOUNDS = {"breath": 2.0, "purr": 3.0, "growl": 1.5, "chirp": 0.5, "smack": 0.6, "roar": 1.8}
 """Length of every sound [s]."""
@@ -109,4 +109,4 @@ CATALOGUE = Catalogue(
     sounds=tuple(SOUNDS),
     moods=tuple(loop.name for loop in MOOD_LOOPS),
 )
-"""What the simulated robot says that it has."""
+"""The catalogue that the simulated robot reports."""

@@ -1,59 +1,110 @@
-"""The body: servos that turn no faster than they can, and do nothing without power."""
+"""The body of a simulated Bittle or Nybble: its skills, and servos with limited speed and power.
+
+The angles are our own; only the names are those of real boards.
+"""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from robot.simulators.opencat.skills import REST, Skill
-
-SPEED = 180.0
-"""How fast a posture turns each joint [deg/s]; a board interpolates, well below what servos can."""
+SERVO_SPEED_DEG_PER_S = 180.0
+"""Speed of a joint in a posture [°/s]; a board interpolates well below the speed of its servos."""
 
 JOINTS = 16
-"""Joints that a board counts, whether the robot has them or not."""
+"""Number of joints on a board; a robot has fewer."""
 
 
-class Body:
-    """The body of a simulated Bittle or Nybble; angles change in straight lines over time.
+@dataclass(frozen=True)
+class Skill:
+    """A posture, or a skill that plays once."""
+
+    seconds: float
+    """Its length [s]; 0 for a posture, which takes as long as the joints need."""
+
+    head: tuple[int, int, int]
+    """Final angles of head pan, head tilt and tail [°]; a robot may lack some."""
+
+    shoulders: tuple[int, int]
+    """Final angles of the front and the back shoulders [°]."""
+
+    knees: tuple[int, int]
+    """Final angles of the front and the back knees [°]."""
+
+    mood: tuple[float, str]
+    """The mood that it shows: from −1, angry, to 1, happy, and its word."""
+
+    def angles(self, crossed: bool) -> list[int]:
+        """Return the final angles of the board's 16 joints [°].
+
+        `crossed` is for a cat, whose back legs bend the other way.
+        """
+        (front, back), (knee, heel) = self.shoulders, self.knees
+        if crossed:
+            back, heel = -back, -heel
+        rolls = [0] * 5
+        return [*self.head, *rolls, front, front, back, back, knee, knee, heel, heel]
+
+
+REST = Skill(0.0, (-25, -70, -40), (65, 65), (-50, -50), (0.0, "resting"))
+"""The pose after "d" and after the start."""
+
+SKILLS = {
+    "balance": Skill(0.0, (0, 0, 0), (32, 32), (28, 28), (0.0, "neutral")),
+    "up": Skill(0.0, (0, 0, 0), (30, 30), (30, 30), (0.0, "neutral")),
+    "buttUp": Skill(0.0, (20, 35, 0), (75, 40), (-50, 10), (0.8, "happy")),
+    "str": Skill(0.0, (10, 30, -30), (-60, 50), (55, 40), (-0.8, "angry")),
+    "sit": Skill(0.0, (8, -18, -50), (35, 80), (50, -40), (-0.3, "sad")),
+    "rest": Skill(0.0, (-25, -70, -40), (65, 65), (-50, -50), (0.0, "sleepy")),
+    "hi": Skill(2.5, (30, -15, -60), (-55, 60), (45, 20), (0.5, "waving")),
+    "ck": Skill(1.8, (25, 15, 30), (28, 30), (40, 20), (0.1, "looking")),
+    "pu": Skill(4.5, (0, -20, 0), (60, 45), (-40, 10), (0.3, "exercising")),
+    "pd": Skill(3.5, (40, 40, 0), (10, 10), (70, 70), (-0.2, "playing dead")),
+}
+"""Skills by name."""
+
+
+class OpenCatBody:
+    """The body of a simulated Bittle or Nybble; angles change linearly over time.
 
     Parameters
     ----------
     crossed
-        Whether its back legs are bent the other way, as Nybble's.
+        Whether its back legs bend the other way, as Nybble's.
     """
 
     def __init__(self, crossed: bool) -> None:
         self.powered = False
         """Whether the servos have power."""
-        self.showing = REST.mood
-        """What it looks like, as mood and word."""
+        self.mood = REST.mood
+        """The mood that it shows, and its word."""
         self._crossed = crossed
         self._from = self._to = [float(angle) for angle in REST.angles(crossed)]
         self._begun = self._ends = 0.0
 
-    def take(self, skill: Skill, now: float) -> float:
-        """Go where a skill ends; return how long that takes [s]."""
+    def perform(self, skill: Skill, now: float) -> float:
+        """Start a skill; return how long it takes [s]."""
         wanted = dict(enumerate(skill.angles(self._crossed)))
-        self.showing = skill.mood
+        self.mood = skill.mood
         return max(self.move(wanted, now), skill.seconds)
 
     def move(self, wanted: Mapping[int, float], now: float) -> float:
-        """Turn some joints together, {number: angle [deg]}; return how long it takes [s]."""
+        """Turn some joints together, {number: angle [°]}; return how long it takes [s]."""
         self.powered = True
         self._from = self.angles(now)
         self._to = [wanted.get(joint, angle) for joint, angle in enumerate(self._from)]
-        way = max(abs(to - at) for to, at in zip(self._to, self._from, strict=True))
-        self._begun, self._ends = now, now + way / SPEED
-        return way / SPEED
+        way = max(abs(end - start) for end, start in zip(self._to, self._from, strict=True))
+        self._begun, self._ends = now, now + way / SERVO_SPEED_DEG_PER_S
+        return way / SERVO_SPEED_DEG_PER_S
 
-    def let_go(self, now: float) -> None:
-        """Take the power from the servos; they stay where they are, as the robot lies."""
+    def power_off(self, now: float) -> None:
+        """Switch the servos off; they stay where they are."""
         self._from = self._to = self.angles(now)
         self.powered = False
-        self.showing = REST.mood
+        self.mood = REST.mood
 
     def angles(self, now: float) -> list[float]:
-        """Return where the joints are at time `now` [s], in degrees."""
+        """Return the joint angles at time `now` [s], in degrees."""
         if now >= self._ends:
             return list(self._to)
         share = max(now - self._begun, 0.0) / (self._ends - self._begun)
         pairs = zip(self._from, self._to, strict=True)
-        return [at + (to - at) * share for at, to in pairs]
+        return [start + (end - start) * share for start, end in pairs]

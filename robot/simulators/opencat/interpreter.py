@@ -1,4 +1,4 @@
-"""What the board does with a line that it has read, and how long that takes."""
+"""Executes the lines that the board has read."""
 
 import re
 from collections import deque
@@ -7,79 +7,78 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot.simulators.opencat.body import JOINTS, Body
-from robot.simulators.opencat.habits import Habits
-from robot.simulators.opencat.skills import REST, SKILLS
+from robot.simulators.opencat.body import JOINTS, REST, SKILLS, OpenCatBody
+from robot.simulators.opencat.quirks import BoardQuirks
 
-DISASTERS = frozenset("acsS!gGnwWKTXzpRxMLIfFoqtlvVzhuPrBCmU;:")
-"""Tokens that calibrate, write memory, change what outlasts the line, stop the board, or move it in
-ways that nobody here has thought through. Whoever sends one has lost the game."""
+FORBIDDEN_TOKENS = frozenset("acsS!gGnwWKTXzpRxMLIfFoqtlvVzhuPrBCmU;:")
+"""Tokens that a driver must not send: they calibrate, write memory, change lasting settings, stop
+the board, or move it in untested ways."""
 
-KEPT = 500
-"""How many disasters are remembered."""
+MAX_KEPT = 500
+"""Number of forbidden lines that are kept."""
 
 
 @dataclass
 class Job:
-    """What the board is busy with."""
+    """What keeps the board busy."""
 
     ends: float
-    """When it is done [s]."""
+    """Its end [s]."""
 
     finish: Callable[[float], None]
-    """Is called then."""
+    """Called at the end."""
 
     skill: bool = False
-    """Whether it is a skill, which the next byte may break off."""
+    """Whether it is a skill, which the next byte may interrupt."""
 
 
 class Interpreter:
-    """Does what lines say.
+    """Executes lines.
 
     Parameters
     ----------
     random
-        Draws what happens.
+        Source of all draws.
     names
-        Model and version, with which "?" is answered.
-    habits
-        How ugly the board is.
-    say
-        Says a line.
+        Model and version, the answer to "?".
+    quirks
+        The quirks of the board.
+    send_line
+        Sends a line.
     """
 
     def __init__(
         self,
         random: np.random.Generator,
         names: tuple[str, str],
-        habits: Habits,
-        say: Callable[[str], None],
+        quirks: BoardQuirks,
+        send_line: Callable[[str], None],
     ) -> None:
-        self.body = Body(crossed=names[0].startswith("Nybble"))
-        """The robot."""
-        self.disasters: deque[str] = deque(maxlen=KEPT)
-        """Lines that calibrate, write memory or the like."""
+        self.body = OpenCatBody(crossed=names[0].startswith("Nybble"))
+        """The body of the robot."""
+        self.forbidden: deque[str] = deque(maxlen=MAX_KEPT)
+        """The forbidden lines that were received."""
         self.rested = True
         """Whether the last token was a rest."""
         self.low_power = False
         """Whether the battery is too low to move."""
-        self._random, self._names, self._habits, self._say = random, names, habits, say
+        self._random, self._names, self._quirks, self._send_line = random, names, quirks, send_line
 
-    def do(self, line: str, now: float, brown_out: Callable[[float], None]) -> Job | None:
-        """Begin what a line says; return what keeps the board busy."""
+    def execute(self, line: str, now: float, brown_out: Callable[[float], None]) -> Job | None:
+        """Start executing a line; return what keeps the board busy."""
         token, rest = line[0], line[1:]
         if self.rested and token != "d":
-            self._say("G")
+            self._send_line("G")
         self.rested = token == "d"
-        if token in DISASTERS:
-            self.disasters.append(line)
+        if token in FORBIDDEN_TOKENS:
+            self.forbidden.append(line)
         match token:
             case "?" | "j":
-                self._tell(token, rest, now)
+                self._answer(token, rest, now)
             case "d":
-                self._say("g")
-                seconds = self.body.take(REST, now) if self.body.powered else 0.0
-                return Job(now + seconds, self._let_go)
+                self._send_line("g")
+                seconds = self.body.perform(REST, now) if self.body.powered else 0.0
+                return Job(now + seconds, self._power_off)
             case "k":
                 return self._play(rest, now, brown_out)
             case "i":
@@ -87,33 +86,33 @@ class Interpreter:
             case "b":
                 return self._busy(token, self._beep(line), now)
             case _:
-                self._say("Undefined token!")
+                self._send_line("Undefined token!")
                 self.echo(token)
         return None
 
     def echo(self, token: str) -> None:
-        """Say that a token is done; seldom after text that has no end."""
-        mangled = self._random.random() < self._habits.mangled
-        self._say(f"AA {token}" if mangled else token)
+        """Echo a token that is done; sometimes after text without a line end."""
+        mangled = self._random.random() < self._quirks.mangled
+        self._send_line(f"AA {token}" if mangled else token)
 
-    def _tell(self, token: str, rest: str, now: float) -> None:
+    def _answer(self, token: str, rest: str, now: float) -> None:
         if token == "j":
-            self._say("=")
-            self._say("".join(f"{joint}\t" for joint in range(JOINTS)))
-            self._say("".join(f"{round(angle)},\t" for angle in self.body.angles(now)))
-        elif self._habits.answers_query and not rest:
+            self._send_line("=")
+            self._send_line("".join(f"{joint}\t" for joint in range(JOINTS)))
+            self._send_line("".join(f"{round(angle)},\t" for angle in self.body.angles(now)))
+        elif self._quirks.answers_query and not rest:
             for name in self._names:
-                self._say(name)
+                self._send_line(name)
         self.echo(token)
 
     def _play(self, name: str, now: float, brown_out: Callable[[float], None]) -> Job | None:
         skill = SKILLS.get(name)
-        self._say(name if skill else f"?{name}?")
+        self._send_line(name if skill else f"?{name}?")
         if skill is None or self.low_power:
             self.echo("k")
             return None
-        seconds = self.body.take(skill, now)
-        if skill.seconds and self._random.random() < self._habits.brown_outs:
+        seconds = self.body.perform(skill, now)
+        if skill.seconds and self._random.random() < self._quirks.brown_outs:
             return Job(now + seconds / 2, brown_out)
         return self._busy("k", seconds, now, skill=skill.seconds > 0)
 
@@ -126,11 +125,11 @@ class Interpreter:
     def _beep(self, line: str) -> float:
         numbers = [int(number) for number in re.findall(r"\d+", line)]
         if len(numbers) < 2:
-            self.disasters.append(line)  # stored, as the volume
+            self.forbidden.append(line)  # stored as the volume
         return sum(1.0 / value for value in numbers[1::2] if value)
 
-    def _let_go(self, now: float) -> None:
-        self.body.let_go(now)
+    def _power_off(self, now: float) -> None:
+        self.body.power_off(now)
         self.echo("d")
 
     def _busy(self, token: str, seconds: float, now: float, skill: bool = False) -> Job:

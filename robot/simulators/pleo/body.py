@@ -1,4 +1,4 @@
-"""The body of the simulated Pleo: joints that take their time, motions and sounds that end."""
+"""The body of the simulated Pleo: joints, motions, sounds and battery."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -10,35 +10,35 @@ import numpy as np
 from affect.words import PLACES
 from robot.drivers.pleo.joints import JOINTS, Joint
 
-MOTION_LASTS = (2.0, 5.0)
-"""A motion's file lasts between these [s], the same one always as long."""
+MOTION_LENGTH_RANGE_S = (2.0, 5.0)
+"""Shortest and longest motion [s]; the name of a motion determines its length."""
 
-SOUND_LASTS = 1.5
-"""A sound lasts so long [s]."""
+SOUND_LENGTH_S = 1.5
+"""Length of a sound [s]."""
 
-BATTERY_LIFE = 3600.0
-"""A full battery lasts so long [s]."""
+BATTERY_LIFE_S = 3600.0
+"""Time from full to empty [s]."""
 
-REMEMBERED = 1000
-"""Only so many things that were played are remembered, the last ones."""
+MAX_PLAYED = 1000
+"""Number of played motions and sounds that are kept."""
 
 
 class Played(NamedTuple):
-    """Something that the body was told to play."""
+    """A motion or a sound that was played."""
 
     time: float
-    """When it began [s], by the body's own clock."""
+    """Its start by the clock of the body [s]."""
 
     kind: Literal["motion", "sound"]
-    """What it is."""
+    """Which of them."""
 
     name: str
     """Its file."""
 
 
 @dataclass
-class _Way:
-    """Where a joint comes from and goes to."""
+class _JointMove:
+    """A move of a joint."""
 
     start: float = 0.0
     began: float = 0.0
@@ -51,79 +51,83 @@ class _Way:
 
 
 class PleoBody:
-    """The joints, the loudspeaker and the battery.
+    """Joints, loudspeaker and battery.
 
     Parameters
     ----------
     battery
-        How full it is at first, 0 to 1.
+        First charge, from 0 to 1.
     now
-        When it got power [s].
+        Time of the start [s].
     """
 
     def __init__(self, battery: float, now: float) -> None:
         self.now = now
-        """Its own time [s]; never runs backwards."""
-        self.played: deque[Played] = deque(maxlen=REMEMBERED)
-        """What it was told to play."""
+        """Its own time [s]; it never runs backwards."""
+        self.played: deque[Played] = deque(maxlen=MAX_PLAYED)
+        """The motions and sounds that were played."""
         self.volume = 50
-        """How loud it is [%]."""
+        """Volume [%]."""
         self.motion_speed = 100
-        """How fast motions are [%]."""
+        """Speed of motions [%]."""
         self.motion: str | None = None
-        """The motion's file that is played; None when it has ended."""
+        """The file of the motion that is playing, or None."""
         self._motion_ends = 0.0
         self._mood = "neutral"
         self._sound: str | None = None
         self._sound_ends = 0.0
-        self._ways = [_Way() for _ in JOINTS]
-        self._battery = battery + now / BATTERY_LIFE
+        self._moves = [_JointMove() for _ in JOINTS]
+        self._battery = battery + now / BATTERY_LIFE_S
 
     @property
     def battery(self) -> float:
-        """From empty, 0, to full, 1; somebody puts it on its charger before it is empty."""
-        return max(0.1, (self._battery - self.now / BATTERY_LIFE) % 1.0)
+        """From 0, empty, to 1, full; it is charged before it is empty."""
+        return max(0.1, (self._battery - self.now / BATTERY_LIFE_S) % 1.0)
 
     @property
     def angles(self) -> tuple[float, ...]:
-        """Where every joint is [°]."""
-        return tuple(way.at(joint, self.now) for way, joint in zip(self._ways, JOINTS, strict=True))
+        """Angles of the joints [°]."""
+        return tuple(
+            move.at(joint, self.now) for move, joint in zip(self._moves, JOINTS, strict=True)
+        )
 
     @property
     def sound(self) -> str | None:
-        """The sound's file that is played; None when it is quiet."""
+        """The file of the sound that is playing, or None."""
         return self._sound if self.now < self._sound_ends else None
 
     @property
     def mood(self) -> str:
-        """The word that the last motion is named after, if it is one for a feeling."""
+        """The mood that it shows: the last one after which a motion was named."""
         return self._mood
 
-    def live(self, now: float) -> None:
-        """Live until time `now` [s]."""
+    def advance(self, now: float) -> None:
+        """Advance to time `now` [s]."""
         self.now = max(self.now, now)
         if self.motion is not None and self.now >= self._motion_ends:
             self.motion = None
 
     def move(self, joint: int, degrees: float) -> float:
-        """Send a joint on its way; return when it will be there [s]."""
-        start = self._ways[joint].at(JOINTS[joint], self.now)
+        """Start a move of a joint; return when it ends [s]."""
+        start = self._moves[joint].at(JOINTS[joint], self.now)
         goal = JOINTS[joint].nearest(degrees)
-        self._ways[joint] = _Way(start, self.now, goal)
+        self._moves[joint] = _JointMove(start, self.now, goal)
         return self.now + JOINTS[joint].time(start, goal)
 
     def neutral(self) -> None:
-        """Send every joint to zero, and end the motion."""
+        """Move every joint to zero and end the motion."""
         self.motion, self._mood = None, "neutral"
         for number in range(len(JOINTS)):
             self.move(number, 0)
 
     def play_motion(self, name: str) -> None:
-        """Begin a motion; it ends any other."""
+        """Start a motion; it ends any other."""
         self.played.append(Played(self.now, "motion", name))
         random = np.random.default_rng(crc32(name.encode()))
         self.motion = name
-        self._motion_ends = self.now + random.uniform(*MOTION_LASTS) * 100 / self.motion_speed
+        self._motion_ends = (
+            self.now + random.uniform(*MOTION_LENGTH_RANGE_S) * 100 / self.motion_speed
+        )
         for number, joint in enumerate(JOINTS):
             self.move(number, random.uniform(joint.low, joint.high))
         word = name.partition(":")[2].partition(".")[0].casefold()
@@ -131,6 +135,6 @@ class PleoBody:
             self._mood = word
 
     def play_sound(self, name: str) -> None:
-        """Begin a sound; it ends any other."""
+        """Start a sound; it ends any other."""
         self.played.append(Played(self.now, "sound", name))
-        self._sound, self._sound_ends = name, self.now + SOUND_LASTS
+        self._sound, self._sound_ends = name, self.now + SOUND_LENGTH_S

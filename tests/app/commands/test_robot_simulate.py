@@ -26,7 +26,7 @@ def test_the_way_to_it_names_its_protocol(cubeling):
     ("arguments", "named"),
     [
         (["cat"], "there is no simulated robot 'cat'; there is sim:cubeling"),
-        (["cubeling?drop=2"], "drop must be a chance from 0 to 1, not '2'"),
+        (["cubeling?drop=2"], "drop must be a probability from 0 to 1, not '2'"),
         (["cubeling?fly=1"], "'fly' is no option of a simulator; there are seed, drop"),
         (["cubeling?seed=1", "--seed", "2"], "seed is given twice"),
         (["--seconds", "nan"], "0 seconds or more, not for nan"),

@@ -113,10 +113,10 @@ def test_stop_overtakes_what_waits_and_holds_the_neutral_pose(open_world):
 
 def test_an_action_asked_for_while_the_robot_is_lost_is_dropped_and_not_played_late(open_world):
     w = open_world
-    w.there.cut = w.back.cut = True
+    w.to_robot.cut = w.from_robot.cut = True
     w.run(1)
     assert w.host.play(m.ITEM_MOTION, 3)
-    w.there.cut = w.back.cut = False
+    w.to_robot.cut = w.from_robot.cut = False
     w.run(0.5)
     assert w.telemetry.motion == "neutral"
     assert w.telemetry.counts.dropped == 1
@@ -134,12 +134,12 @@ def test_a_robot_is_neutral_within_half_a_second_of_silence(open_world):
     w = open_world
     w.host.express(HAPPY)
     w.run(2)
-    w.there.cut = True
+    w.to_robot.cut = True
     silent_since = w.now
     w.run_until(lambda: bool(w.neutral_at), within=1)
     assert w.neutral_at[0] - silent_since <= timing.FAILSAFE_PROMISE
     w.run(2)
-    assert w.robot.body.feeling == Emotion(0, 0)
+    assert w.robot.body.emotion == Emotion(0, 0)
 
 
 def test_a_robot_that_is_looked_after_only_every_50_ms_keeps_the_promise(world):
@@ -147,7 +147,7 @@ def test_a_robot_that_is_looked_after_only_every_50_ms_keeps_the_promise(world):
     w.run_until(lambda: w.telemetry.state == "ready", within=5)
     w.host.express(HAPPY)
     w.run(1)
-    w.there.cut = True
+    w.to_robot.cut = True
     silent_since = w.now
     w.run(1)
     assert w.neutral_at[-1] - silent_since <= timing.FAILSAFE_PROMISE + 1e-9
@@ -157,7 +157,7 @@ def test_the_link_says_how_it_is_and_comes_back_with_the_last_emotion(open_world
     w = open_world
     w.host.express(HAPPY)
     w.run(1)
-    w.there.cut = w.back.cut = True
+    w.to_robot.cut = w.from_robot.cut = True
     silence = timing.DEGRADED_AFTER + timing.BEAT_EVERY
     assert w.run_until(lambda: w.telemetry.state == "degraded", 1) <= silence + 2 * w.step
     w.run_until(lambda: w.telemetry.state == "lost", 1)
@@ -165,7 +165,7 @@ def test_the_link_says_how_it_is_and_comes_back_with_the_last_emotion(open_world
     assert w.telemetry.acknowledged is None
     w.host.express(ANGRY)
     w.run(3)
-    w.there.cut = w.back.cut = False
+    w.to_robot.cut = w.from_robot.cut = False
     w.run_until(lambda: w.telemetry.state == "ready", within=0.2)
     w.run_until(lambda: w.telemetry.acknowledged == ANGRY, within=0.2)
     assert w.telemetry.counts.sessions == 2
@@ -176,9 +176,9 @@ def test_an_emotion_that_the_failsafe_ended_is_restated(open_world):
     w = open_world
     w.host.express(HAPPY)
     w.run(1)
-    w.there.cut = True
+    w.to_robot.cut = True
     w.run(1)
-    w.there.cut = False
+    w.to_robot.cut = False
     w.run(0.5)
     assert [emotion for _, emotion in w.applied] == [HAPPY, HAPPY]
     assert w.robot.body.target == HAPPY
@@ -187,15 +187,15 @@ def test_an_emotion_that_the_failsafe_ended_is_restated(open_world):
 def test_an_action_taken_meanwhile_does_not_speak_for_an_emotion_that_was_lost(open_world):
     # EXPRESS 1 is lost with its session; PLAY 2 is taken first in the next one, which ends too.
     w = open_world
-    w.there.cut = True
+    w.to_robot.cut = True
     w.host.express(HAPPY)
     w.run(0.1)
     w.host.port_lost()
-    w.there.cut = False
+    w.to_robot.cut = False
     w.host.port_opened(w.now)
     w.run(w.step)
     w.host.play(m.ITEM_MOTION, 3)
-    w.run_until(lambda: w.telemetry.motion == "nod" or w.robot.link._taken == 2, within=0.3)
+    w.run_until(lambda: w.telemetry.motion == "nod" or w.robot.link.last_command == 2, within=0.3)
     w.host.port_lost()
     w.host.port_opened(w.now)
     w.run(0.5)
@@ -217,11 +217,11 @@ def test_a_state_that_names_a_command_stands_for_its_lost_acknowledgement(open_w
 
 def test_a_repeat_carries_the_latest_emotion(open_world):
     w = open_world
-    w.there.cut = True
+    w.to_robot.cut = True
     w.host.express(HAPPY)
     w.run(0.01)
     w.host.express(ANGRY)
-    w.there.cut = False
+    w.to_robot.cut = False
     w.run(0.3)
     assert [emotion for _, emotion in w.applied] == [ANGRY]
 
@@ -261,10 +261,10 @@ def test_only_the_robots_voice_lost_does_not_take_the_emotion_from_it(open_world
     w = open_world
     w.host.express(HAPPY)
     w.run(0.3)
-    w.back.cut = True
+    w.from_robot.cut = True
     w.run(2)
     assert w.telemetry.state == "lost"
-    w.back.cut = False
+    w.from_robot.cut = False
     w.run(0.5)
     assert w.telemetry.acknowledged == HAPPY
     assert (len(w.applied), w.neutral_at) == (1, [])

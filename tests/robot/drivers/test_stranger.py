@@ -26,7 +26,7 @@ def crc(data: bytes) -> int:
 LENGTH = 1.0
 """How long its motions take [s]."""
 
-FEELING_SPEED = 8000
+MAX_EMOTION_SPEED = 8000
 """Fastest change of the emotion that it shows [1/10000 of valence and of arousal, per second]."""
 
 
@@ -188,7 +188,7 @@ class StrangersRobot:
         self.neutral()
 
     def advance(self, now: float) -> None:
-        step, self.now = FEELING_SPEED * min(now - self.now, 0.05), now
+        step, self.now = MAX_EMOTION_SPEED * min(now - self.now, 0.05), now
         for axis, wanted in enumerate(self.emotion):
             self.shown[axis] += min(max(wanted - self.shown[axis], -step), step)
         if now >= self.motion_ends:
@@ -236,10 +236,10 @@ def test_a_strangers_robot_is_neutral_in_time_and_brought_back(strange_world):
     w = strange_world()
     w.host.express(Emotion(0.5, 0.5))
     w.run(0.5)
-    w.there.cut = True
+    w.to_robot.cut = True
     w.run(0.5)
     assert w.robot.emotion == (0, 0)
-    w.there.cut = False
+    w.to_robot.cut = False
     w.run(0.5)
     assert w.robot.emotion == (5000, 5000)
 

@@ -175,9 +175,9 @@ def test_in_micropython_it_obeys_our_host_on_a_bad_line(in_micropython, world):
     w.run(1.5)
     assert w.telemetry.observed == w.telemetry.acknowledged == Emotion(0.8, 0.5)
     assert (w.telemetry.label, w.telemetry.motion) == ("happy", "happy")
-    w.there.cut = True
+    w.to_robot.cut = True
     w.run(0.6)
-    w.there.cut = False
+    w.to_robot.cut = False
     w.run_until(lambda: w.telemetry.state == "ready", within=2)
     w.run(1.5)
     assert w.telemetry.observed == Emotion(0.8, 0.5)

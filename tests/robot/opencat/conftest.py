@@ -10,10 +10,10 @@ from affect.emotion import Emotion
 from robot.drivers.opencat.host import OpenCatHost
 from robot.drivers.opencat.settings import Settings
 from robot.drivers.opencat.settings_file import load_settings
-from robot.simulators.opencat.habits import Habits
+from robot.simulators.opencat.quirks import BoardQuirks
 from robot.simulators.opencat.simulator import OpenCatSimulator
 
-QUIET = Habits(slow=0.0, mangled=0.0, brown_outs=0.0, restless=0.0, battery_lasts=1e9)
+QUIET = BoardQuirks(slow=0.0, mangled=0.0, brown_outs=0.0, restless=0.0, battery_lasts=1e9)
 """A board without any ugliness."""
 
 POLITE = re.compile(rb"(?:[?jd]|k[a-z][A-Za-z]+|i\d+ -?\d+(?: \d+ -?\d+)*|b\d+ \d+(?: \d+ \d+)*)\n")
@@ -45,7 +45,7 @@ class Desk:
     ) -> None:
         self.settings = settings or load_settings()
         self.host = OpenCatHost(self.settings)
-        self.robot = robot or OpenCatSimulator(seed, habits=QUIET)
+        self.robot = robot or OpenCatSimulator(seed, quirks=QUIET)
         self.now = 100.0
         self.step = step
         self.sent: list[tuple[float, str]] = []
@@ -167,6 +167,6 @@ def desk() -> Callable[..., Desk]:
 
 
 @pytest.fixture
-def quiet() -> Habits:
+def quiet() -> BoardQuirks:
     """A board without any ugliness."""
     return QUIET

@@ -11,7 +11,7 @@ from robot.drivers.opencat.exchange import LOST_TRIES, QUESTION_WITHIN
 from robot.drivers.opencat.host import REST_ASK_EVERY, OpenCatHost
 from robot.drivers.opencat.settings_file import load_settings, settings_of
 from robot.protocol import messages as m
-from robot.simulators.opencat.habits import Habits
+from robot.simulators.opencat.quirks import BoardQuirks
 from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
 
 HAPPY = Emotion(0.7, 0.6)
@@ -39,7 +39,7 @@ def test_a_whole_session_line_by_line(desk):
         "kbalance",
     ]
     assert [text for _, text in d.robot.board.log] == d.lines
-    assert not d.robot.board.disasters
+    assert not d.robot.board.forbidden
 
 
 def test_it_says_nothing_while_the_board_starts_and_then_knows_it(desk):
@@ -67,7 +67,7 @@ def test_nybble_is_known_with_its_eleven_joints(desk):
 
 @pytest.mark.parametrize("model", ["", "bittle"])
 def test_an_old_board_that_does_not_say_what_it_is_shows_moods_all_the_same(model, desk, quiet):
-    robot = OpenCatSimulator(1, habits=replace(quiet, answers_query=False))
+    robot = OpenCatSimulator(1, quirks=replace(quiet, answers_query=False))
     d = desk(robot, settings_of({"opencat": {"model": model}}, "mine.toml")).ready()
     assert d.host.catalogue.name == "OpenCat"
     assert len(d.host.catalogue.joints) == (9 if model else 0)
@@ -86,7 +86,7 @@ def test_another_robot_shows_moods_by_postures_alone(desk):
 
 
 def test_a_board_that_asks_whether_to_erase_its_calibration_gets_no_byte(desk, quiet):
-    robot = OpenCatSimulator(2, habits=quiet, new_board=True)
+    robot = OpenCatSimulator(2, quirks=quiet, new_board=True)
     d = desk(robot)
     d.feel("happy")
     d.run(120.0)
@@ -95,12 +95,12 @@ def test_a_board_that_asks_whether_to_erase_its_calibration_gets_no_byte(desk, q
     robot.receive(b"n", d.now)  # its owner answers, in Petoi's own program
     d.ready()
     d.settle()
-    assert not robot.board.disasters
+    assert not robot.board.forbidden
     d.host.close()
 
 
 def test_a_board_that_asks_gets_no_goodbye_either(desk, quiet):
-    d = desk(OpenCatSimulator(2, habits=quiet, new_board=True))
+    d = desk(OpenCatSimulator(2, quirks=quiet, new_board=True))
     d.run(30.0)
     d.host.close()
     assert d.host.bytes_to_send() == b""
@@ -244,7 +244,7 @@ class Deaf(OpenCatSimulator):
 
 
 def test_a_late_echo_counts_for_its_own_command_and_for_no_later_one(desk, quiet):
-    robot = Deaf(4, habits=quiet)
+    robot = Deaf(4, quirks=quiet)
     d = desk(robot).ready()
     d.feel("happy")
     d.run(0.3)
@@ -349,7 +349,7 @@ def test_unplugging_and_plugging_is_recovered_from(desk):
 
 
 def test_a_silent_board_is_lost_within_the_stated_time_and_found_again(desk, quiet):
-    robot = Deaf(4, habits=quiet)
+    robot = Deaf(4, quirks=quiet)
     d = desk(robot).ready()
     d.feel("happy")
     d.settle()
@@ -397,7 +397,7 @@ def test_a_robot_that_nobody_wants_anything_of_lies_down_and_wakes_for_a_new_moo
 
 
 def test_a_robot_with_a_low_battery_is_called_limp_and_is_not_asked_to_move(desk, quiet):
-    d = desk(OpenCatSimulator(1, habits=replace(quiet, battery_lasts=30.0))).ready()
+    d = desk(OpenCatSimulator(1, quirks=replace(quiet, battery_lasts=30.0))).ready()
     d.feel("happy")
     d.settle()
     d.until(lambda: d.telemetry.limp, 40.0)
@@ -483,8 +483,8 @@ def test_after_the_goodbye_nothing_is_sent_or_taken(desk):
 
 
 def test_lines_that_would_run_together_are_never_sent_together(desk):
-    habits = Habits(slow=1.0, brown_outs=0.0, mangled=0.0, restless=0.0)
-    d = desk(OpenCatSimulator(5, habits=habits)).ready()
+    quirks = BoardQuirks(slow=1.0, brown_outs=0.0, mangled=0.0, restless=0.0)
+    d = desk(OpenCatSimulator(5, quirks=quirks)).ready()
     for word in ("happy", "sad", "angry", "neutral", "happy"):
         d.feel(word)
         d.run(6.0)
@@ -555,7 +555,7 @@ class Unheard(OpenCatSimulator):
 
 
 def test_a_robot_that_lies_is_let_lie_though_its_sign_of_life_is_lost(desk, quiet):
-    robot = Unheard(4, habits=quiet)
+    robot = Unheard(4, quirks=quiet)
     d = desk(robot).ready()
     d.feel("happy")
     d.settle()

@@ -19,12 +19,12 @@ from robot.drivers.opencat.settings_file import load_settings
 from robot.errors import RobotError
 from robot.link.spacing import SpacedPort
 from robot.protocol import messages as m
-from robot.simulators.opencat.habits import Habits
+from robot.simulators.opencat.quirks import BoardQuirks
 from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
 
-UGLY = Habits(slow=0.1, mangled=0.03, brown_outs=0.05, restless=8.0, battery_lasts=900.0)
+UGLY = BoardQuirks(slow=0.1, mangled=0.03, brown_outs=0.05, restless=8.0, battery_lasts=900.0)
 BOARDS = {
-    "bittle": lambda seed: OpenCatSimulator(seed, habits=UGLY),
+    "bittle": lambda seed: OpenCatSimulator(seed, quirks=UGLY),
     "nybble": lambda seed: OpenCatSimulator(
         seed, "Nybble", "N12_230306", replace(UGLY, merges=False, buffer=64)
     ),
@@ -91,7 +91,7 @@ def test_an_hour_with_an_ugly_board(kind, seed, desk):
         d.feel("sad")
     d.settle(SETTLED_WITHIN)
     assert d.shown == {"happy": "happy", "sad": "sad"}[_word(d.telemetry.commanded)]
-    assert not d.robot.board.disasters
+    assert not d.robot.board.forbidden
     assert d.robot.board.lost == 0
     assert watch.claims > 50
     assert max(len(text) for _, text in d.robot.board.log) < tokens.LINE_MAX
@@ -103,7 +103,7 @@ def _word(emotion) -> str:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_a_line_that_loses_and_flips_bytes_only_delays(seed, desk):
-    d = desk(OpenCatSimulator(seed, habits=replace(UGLY, battery_lasts=1e9)), step=0.05, seed=seed,
+    d = desk(OpenCatSimulator(seed, quirks=replace(UGLY, battery_lasts=1e9)), step=0.05, seed=seed,
              flip=0.005, drop=0.005)  # fmt: skip
     d.ready()
     random = np.random.default_rng(seed)
@@ -111,7 +111,7 @@ def test_a_line_that_loses_and_flips_bytes_only_delays(seed, desk):
         d.feel(WORDS[random.integers(len(WORDS))])
         d.settle(4 * SETTLED_WITHIN)
         d.run(2.0)
-    assert not d.robot.board.disasters
+    assert not d.robot.board.forbidden
 
 
 def test_a_day_leaves_nothing_behind(desk):

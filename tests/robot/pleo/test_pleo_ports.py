@@ -36,14 +36,14 @@ def test_a_simulated_pleo_is_found_by_its_name(soon):
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
 def test_a_mood_reaches_pleo_over_a_real_port_and_the_goodbye_is_neutral(soon):
     simulator = PleoSimulator(5)
-    simulator.slow_chance = simulator.fault_chance = 0.0
+    simulator.slow_probability = simulator.error_probability = 0.0
     with robot.SimulatedPort(simulator, clock=fast) as port:
         with robot.connect(f"pleo:{port.url}", clock=fast) as pleo:
             pleo.express(HAPPY)
             soon(lambda: simulator.portrait()[1] == "happy")
             soon(lambda: pleo.telemetry.acknowledged == HAPPY)
             soon(lambda: pleo._driver._console.flight is None)  # type: ignore[attr-defined]
-        soon(lambda: simulator.obeyed[-1] == "JOINT NEUTRAL")
+        soon(lambda: simulator.executed[-1] == "JOINT NEUTRAL")
         assert not simulator.violations
 
 

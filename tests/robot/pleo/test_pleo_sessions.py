@@ -48,7 +48,7 @@ def test_nothing_is_typed_before_the_prompt_and_only_what_is_allowed(pleo_world,
     world = pleo_world(seed, cut_reads=True)
     random = np.random.default_rng(seed)
     world.run(120, wander(world, random))
-    assert len(world.robot.obeyed) > 30
+    assert len(world.robot.executed) > 30
     assert list(world.robot.violations) == []
     assert all(allowed.fullmatch(line) for _, line in world.sent)
 
@@ -56,7 +56,7 @@ def test_nothing_is_typed_before_the_prompt_and_only_what_is_allowed(pleo_world,
 @pytest.mark.parametrize("seed", range(6))
 def test_the_last_mood_asked_is_the_one_that_ends_up_playing(pleo_world, seed):
     world = pleo_world(seed)
-    world.robot.slow_chance = world.robot.fault_chance = 0.1
+    world.robot.slow_probability = world.robot.error_probability = 0.1
     random = np.random.default_rng(seed)
     world.run(60, wander(world, random, chance=0.02))
     world.express("neutral")
@@ -72,7 +72,7 @@ def test_the_last_mood_asked_is_the_one_that_ends_up_playing(pleo_world, seed):
 @pytest.mark.parametrize("seed", range(8))
 def test_after_a_reboot_the_mood_is_back_and_the_application_is_not(pleo_world, seed):
     world = pleo_world(seed)
-    world.robot.slow_chance = 0.0
+    world.robot.slow_probability = 0.0
     world.express("angry")
     world.run_until(lambda: world.telemetry.acknowledged is not None, within=COMES_BACK)
     world.run(float(np.random.default_rng(seed).uniform(0, 5)))
@@ -105,7 +105,7 @@ def test_after_an_unplugging_the_mood_is_back(pleo_world, seed):
 @pytest.mark.parametrize("seed", range(6))
 def test_a_silent_console_is_never_called_ready_and_found_again(pleo_world, seed):
     world = pleo_world(seed)
-    world.robot.slow_chance = 0.0
+    world.robot.slow_probability = 0.0
     world.express("happy")
     world.run_until(lambda: world.telemetry.acknowledged is not None, within=COMES_BACK)
     world.run(float(np.random.default_rng(seed).uniform(0, 4)))

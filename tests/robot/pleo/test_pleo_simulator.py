@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.drivers.pleo.joints import JOINTS
-from robot.simulators.pleo.simulator import WAITING_MAX, PleoSimulator
+from robot.simulators.pleo.simulator import MAX_UNREAD_BYTES, PleoSimulator
 
 
 class Terminal:
@@ -14,7 +14,7 @@ class Terminal:
 
     def __init__(self, seed: int = 0) -> None:
         self.robot = PleoSimulator(seed)
-        self.robot.slow_chance = self.robot.fault_chance = 0.0
+        self.robot.slow_probability = self.robot.error_probability = 0.0
         self.now = 10.0
         self.robot.advance(self.now)
         self.text = self.robot.bytes_to_send().decode("latin-1")
@@ -145,7 +145,7 @@ def test_after_a_reboot_it_is_silent_then_says_so_and_runs_its_own_behaviour(see
 def test_a_seed_gives_the_same_bytes_again(seed):
     def life() -> str:
         terminal = Terminal(seed)
-        terminal.robot.slow_chance = terminal.robot.fault_chance = 0.2
+        terminal.robot.slow_probability = terminal.robot.error_probability = 0.2
         for line in ("APP UNLOAD", "STATS POWER", "MOTION PLAY a:happy.umf", "HELP"):
             terminal.ask(line)
         return terminal.text
@@ -158,7 +158,7 @@ def test_nobody_who_does_not_read_makes_it_grow():
     robot = PleoSimulator(1)
     for number in range(5000):
         robot.advance(number)
-    assert len(robot.bytes_to_send()) <= WAITING_MAX
+    assert len(robot.bytes_to_send()) <= MAX_UNREAD_BYTES
 
 
 @given(st.lists(st.binary(max_size=400), max_size=10))
@@ -167,4 +167,4 @@ def test_no_bytes_are_too_strange_for_it(chunks):
     for number, chunk in enumerate(chunks):
         robot.receive(chunk, float(number))
     robot.bytes_to_send()
-    assert len(robot._input) <= 128
+    assert len(robot.input_line) <= 128

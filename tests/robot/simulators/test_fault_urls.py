@@ -7,7 +7,7 @@ import pytest
 
 from robot.errors import RobotError
 from robot.simulators.cubeling.simulator import Simulator
-from robot.simulators.faults import OPTIONS, Faults, Spell, faults_of
+from robot.simulators.faults import OPTIONS, Faults, Outage, faults_of
 from robot.simulators.faulty import FaultyRobot
 from robot.simulators.memory import simulator_of
 
@@ -19,14 +19,14 @@ def test_every_option_is_read_in_its_unit():
     }  # fmt: skip
     assert faults_of("sim:cubeling", options) == Faults(
         drop=0.05, flip=0.001, dup=0.0, split=1.0, babble=200.0, delay=0.02, jitter=0.005,
-        stall=Spell(1.0, 10.0), unplug=Spell(0.5, 30.0), reboot=60.0,
+        stall=Outage(1.0, 10.0), unplug=Outage(0.5, 30.0), reboot=60.0,
     )  # fmt: skip
     assert set(options) == set(OPTIONS)
 
 
 def test_what_is_not_said_has_its_default():
     faults = faults_of("sim:cubeling", {"stall": "1s", "unplug": "30s", "delay": "5ms"})
-    assert faults == Faults(delay=0.005, stall=Spell(1.0, 20.0), unplug=Spell(1.0, 30.0))
+    assert faults == Faults(delay=0.005, stall=Outage(1.0, 20.0), unplug=Outage(1.0, 30.0))
 
 
 @pytest.mark.parametrize(

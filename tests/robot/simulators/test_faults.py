@@ -63,10 +63,10 @@ def test_the_last_emotion_always_arrives_and_none_comes_twice(kind, seed, world)
         w.host.express(numbered(count))
         w.run(float(random.uniform(0.0, 0.3)))
         link = w.robot.link
-        assert not link.session or w.now - link._heard < timing.FAILSAFE_PROMISE
+        assert not link.session or w.now - link.last_received < timing.FAILSAFE_PROMISE
     w.run_until(lambda: w.telemetry.acknowledged == numbered(count), within=3)
     assert w.robot.body.target == numbered(count)
-    assert w.there.harmed or kind == "is slow"
+    assert w.to_robot.counts.total() or kind == "is slow"
     check_applied(w, count)
 
 
@@ -91,7 +91,7 @@ def test_every_wrong_bit_is_noticed(world):
     assert w.applied == []
     assert w.telemetry.state == "connecting"
     assert w.robot.link.session == 0
-    assert w.robot.link._reader.frames == 0
+    assert w.robot.link.frames_received == 0
 
 
 def test_a_long_session_does_not_grow(world):
@@ -179,7 +179,7 @@ class Storm(RuleBasedStateMachine):
 
     @rule(there=st.booleans(), back=st.booleans(), seconds=st.sampled_from([0.1, 0.4, 1.0]))
     def wires_are_cut(self, there: bool, back: bool, seconds: float) -> None:
-        self.world.there.cut, self.world.back.cut = there, back
+        self.world.to_robot.cut, self.world.from_robot.cut = there, back
         self.world.run(seconds)
 
     @rule(seconds=st.sampled_from([0.1, 0.4, 0.6, 2.0]))
@@ -206,12 +206,12 @@ class Storm(RuleBasedStateMachine):
     def silence_ends_in_neutral(self) -> None:
         w = self.world
         if w.now >= w.stalled_until and w.robot.link.session:
-            assert w.now - w.robot.link._heard < timing.FAILSAFE_PROMISE + w.step
+            assert w.now - w.robot.link.last_received < timing.FAILSAFE_PROMISE + w.step
 
     @rule()
     def all_is_well_again_and_the_last_wish_comes_true(self) -> None:
         w = self.world
-        w.there.cut = w.back.cut = False
+        w.to_robot.cut = w.from_robot.cut = False
         w.run_until(lambda: w.telemetry.state == "ready", within=30)
         if self.stopped:
             w.run_until(lambda: w.robot.body.target == Emotion(0, 0), within=10)

@@ -10,8 +10,8 @@ from robot.errors import RobotError
 from robot.protocol import timing
 from robot.simulators import SIMULATORS
 from robot.simulators.cubeling.simulator import Simulator
-from robot.simulators.faults import Faults, Spell
-from robot.simulators.faulty import INBOX_MAX, FaultyRobot
+from robot.simulators.faults import Faults, Outage
+from robot.simulators.faulty import MAX_INBOX_BYTES, FaultyRobot
 from robot.simulators.memory import SimulatedWire, simulator_of
 from robot.simulators.port import SimulatedPort
 
@@ -55,7 +55,7 @@ def test_the_same_seed_and_times_give_the_same_bytes(name):
 
 def stalled(seconds: float) -> tuple[FaultyRobot, HostLink, float]:
     """Return a robot in the first moment of such a stall, its host, and the time."""
-    faulty = FaultyRobot(Simulator(), Faults(stall=Spell(seconds, 2.0)), 1)
+    faulty = FaultyRobot(Simulator(), Faults(stall=Outage(seconds, 2.0)), 1)
     host, now = HostLink(7), 0.0
     host.port_opened(now)
     while faulty.stalled_until < now:
@@ -95,12 +95,12 @@ def test_what_waits_in_a_robot_that_hangs_is_bounded():
     faulty, _, now = stalled(5.0)
     for index in range(500):
         faulty.receive(bytes(100), now + 0.005 * index)
-        assert len(faulty._inbox) <= INBOX_MAX
+        assert faulty.inbox_size <= MAX_INBOX_BYTES
     assert faulty.counts["lost"] > 40_000
 
 
 def test_after_a_sleep_nothing_has_befallen_the_robot():
-    faulty = FaultyRobot(Simulator(), Faults(stall=Spell(1.0, 1.0), babble=1e5), 1)
+    faulty = FaultyRobot(Simulator(), Faults(stall=Outage(1.0, 1.0), babble=1e5), 1)
     faulty.advance(0.0)
     faulty.advance(1e9)  # at once: not a billion stalls
     assert faulty.counts["stall"] == 0
@@ -151,7 +151,7 @@ def test_a_robot_with_faults_stands_behind_a_real_port_too(soon):
 
 
 def test_a_robot_whose_host_is_cut_off_is_neutral_in_time():
-    faulty = FaultyRobot(Simulator(), Faults(unplug=Spell(2.0, 3.0)), 1)
+    faulty = FaultyRobot(Simulator(), Faults(unplug=Outage(2.0, 3.0)), 1)
     simulator, host, now = faulty.robot, HostLink(7), 0.0
     assert isinstance(simulator, Simulator)
     host.port_opened(now)
@@ -167,7 +167,7 @@ def test_a_robot_whose_host_is_cut_off_is_neutral_in_time():
 
 
 def test_a_pulled_plug_loses_what_is_on_the_line_and_what_is_sent():
-    faulty = FaultyRobot(Simulator(), Faults(delay=0.2, unplug=Spell(2.0, 3.0)), 1)
+    faulty = FaultyRobot(Simulator(), Faults(delay=0.2, unplug=Outage(2.0, 3.0)), 1)
     host, now, on_the_line = HostLink(7), 0.0, 0
     host.port_opened(now)
     while True:
@@ -178,10 +178,10 @@ def test_a_pulled_plug_loses_what_is_on_the_line_and_what_is_sent():
         host.receive(faulty.bytes_to_send(), now)
         host.tick(now)
         faulty.receive(host.bytes_to_send(), now)
-        on_the_line = faulty.there.in_flight
+        on_the_line = faulty.to_robot.in_flight
     assert on_the_line > 0
-    assert faulty.there.in_flight == faulty.back.in_flight == 0
+    assert faulty.to_robot.in_flight == faulty.from_robot.in_flight == 0
     faulty.receive(FRAME, now + 0.01)
     faulty.advance(now + 0.5)
-    assert faulty.there.in_flight == 0
+    assert faulty.to_robot.in_flight == 0
     assert faulty.bytes_to_send() == b""

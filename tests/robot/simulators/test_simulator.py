@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from affect.emotion import Emotion
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
-from robot.simulators.cubeling.body import FEELING_SPEED, STEP, DinosaurBody
+from robot.simulators.cubeling.body import MAX_EMOTION_SPEED, STEP_S, Battery, DinosaurBody
 
 MOODS = {"happy": Emotion(0.9, 0.9), "neutral": Emotion(0, 0), "angry": Emotion(-0.9, 0.9)}
 
@@ -16,8 +16,8 @@ MOODS = {"happy": Emotion(0.9, 0.9), "neutral": Emotion(0, 0), "angry": Emotion(
 def live(body: DinosaurBody, start: float, seconds: float) -> np.ndarray:
     """Live, and return the true angles at every step, (steps, joints) [rad]."""
     angles = []
-    for step in range(round(seconds / STEP)):
-        body.advance(start + (step + 1) * STEP + 1e-6)
+    for step in range(round(seconds / STEP_S)):
+        body.advance(start + (step + 1) * STEP_S + 1e-6)
         angles.append(body.angles)
     return np.array(angles)
 
@@ -53,17 +53,17 @@ def test_no_joint_leaves_its_limits_or_turns_faster_than_it_can(wishes):
         now, before = now + 0.6, angles[-1]
         assert (angles >= dinosaur.LOW - 1e-12).all()
         assert (angles <= dinosaur.HIGH + 1e-12).all()
-        assert (np.abs(np.diff(angles, axis=0)) <= dinosaur.SPEED * STEP + 1e-12).all()
+        assert (np.abs(np.diff(angles, axis=0)) <= dinosaur.SPEED * STEP_S + 1e-12).all()
 
 
 @pytest.mark.parametrize("motion", dinosaur.MOTIONS, ids=lambda motion: motion.name)
 def test_every_motion_asks_only_what_the_joints_can_do(motion):
-    times = np.arange(0, motion.period, STEP)
+    times = np.arange(0, motion.period, STEP_S)
     angles = np.array([motion.angles(t, dinosaur.JOINTS) for t in [*times, motion.period]])
     assert (angles >= dinosaur.LOW - 1e-9).all()
     assert (angles <= dinosaur.HIGH + 1e-9).all()
     assert np.allclose(angles[0], angles[-1])  # a loop closes
-    assert (np.abs(np.diff(angles, axis=0)) <= dinosaur.SPEED * STEP + 1e-9).all()
+    assert (np.abs(np.diff(angles, axis=0)) <= dinosaur.SPEED * STEP_S + 1e-9).all()
 
 
 def test_the_moods_look_different_and_none_of_them_freezes():
@@ -85,12 +85,12 @@ def test_feelings_change_at_a_bounded_rate_and_pass_neutral():
     body.express(MOODS["angry"])
     live(body, 0, 3)
     body.express(MOODS["happy"])
-    moods, before = [], body.feeling
-    for step in range(round(3 / STEP)):
-        live(body, 3 + step * STEP, STEP)
-        after = body.feeling
+    moods, before = [], body.emotion
+    for step in range(round(3 / STEP_S)):
+        live(body, 3 + step * STEP_S, STEP_S)
+        after = body.emotion
         moved = np.hypot(after.valence - before.valence, after.arousal - before.arousal)
-        assert moved <= FEELING_SPEED * STEP + 1e-12
+        assert moved <= MAX_EMOTION_SPEED * STEP_S + 1e-12
         moods.append(body.state().mood)
         before = after
     words = [dinosaur.CATALOGUE.moods[mood] for mood in moods]
@@ -116,12 +116,12 @@ def test_the_same_seed_gives_the_same_robot_and_another_another():
 
 
 def test_the_battery_runs_down_and_is_charged_before_it_is_empty():
-    body = body_at()
+    battery = Battery(0.8)
     levels = []
-    for _ in range(6 * 60):  # six hours of battery, without the movements
-        for _ in range(round(60 / STEP)):
-            body._live()
-        levels.append(body.state().battery)
+    for _ in range(6 * 60):  # six hours
+        for _ in range(round(60 / STEP_S)):
+            battery.advance(STEP_S)
+        levels.append(battery.level)
     change = np.diff(levels)
     assert min(levels) >= 0.04
     assert max(levels) > 0.95
@@ -132,7 +132,7 @@ def test_a_body_that_slept_does_not_live_through_the_night_at_once():
     body = body_at()
     body.express(MOODS["happy"])
     body.advance(3600.0 * 8)
-    assert body.feeling == Emotion(0, 0)
+    assert body.emotion == Emotion(0, 0)
 
 
 def test_a_motion_played_once_gives_way_to_the_mood():

@@ -1,4 +1,4 @@
-"""A line does the harm that it is told to, so often, and none besides."""
+"""A faulty channel has the faults that it is given, at their rates, and no others."""
 
 from itertools import pairwise
 
@@ -7,26 +7,26 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from robot.simulators.channel import MAX_IN_FLIGHT_BYTES, SPLIT_GAP_S, FaultyChannel
 from robot.simulators.faults import Faults
-from robot.simulators.line import IN_FLIGHT_MAX, SPLIT_GAP, Line
 
 FRAME = b"\0frame 12\0"
 
 
-def line(**faults) -> Line:
-    return Line(Faults(**faults), b"\0", (3, 0))
+def channel(**faults) -> FaultyChannel:
+    return FaultyChannel(Faults(**faults), b"\0", (3, 0))
 
 
 @pytest.mark.parametrize("kind", ["drop", "dup", "split"])
-def test_so_many_frames_are_struck(kind):
-    struck = line(**{kind: 0.1})
+def test_frame_faults_occur_at_their_rate(kind):
+    struck = channel(**{kind: 0.1})
     for index in range(5000):
         struck.send(FRAME, 0.01 * index)
     assert struck.counts[kind] == pytest.approx(500, abs=5 * np.sqrt(450))
 
 
-def test_so_many_bytes_have_one_wrong_bit():
-    wrong, sent = line(flip=0.01), FRAME * 2000
+def test_bit_flips_occur_at_their_rate():
+    wrong, sent = channel(flip=0.01), FRAME * 2000
     wrong.send(sent, 0.0)
     arrived = wrong.receive(1.0)
     bits = [(a ^ b).bit_count() for a, b in zip(sent, arrived, strict=True)]
@@ -34,8 +34,8 @@ def test_so_many_bytes_have_one_wrong_bit():
     assert sum(bits) == wrong.counts["flip"] == pytest.approx(200, abs=5 * np.sqrt(200))
 
 
-def test_a_frame_is_lost_whole_and_its_neighbours_are_not():
-    lossy = line(drop=0.5)
+def test_a_dropped_frame_leaves_its_neighbours_intact():
+    lossy = channel(drop=0.5)
     frames = [b"\0" + bytes([65 + index % 26]) * 9 + b"\0" for index in range(100)]
     lossy.send(b"".join(frames), 0.0)
     arrived = [piece for piece in lossy.receive(0.0).split(b"\0") if piece]
@@ -43,21 +43,21 @@ def test_a_frame_is_lost_whole_and_its_neighbours_are_not():
     assert all(b"\0" + piece + b"\0" in frames for piece in arrived)
 
 
-def test_a_frame_that_is_doubled_comes_straight_behind_itself():
-    double = line(dup=1.0)
+def test_a_duplicated_frame_arrives_twice_in_succession():
+    double = channel(dup=1.0)
     double.send(b"\0a\0", 0.0)
     double.send(b"\0b\0", 0.0)
     assert double.receive(0.0) == b"\0a\0\0a\0\0b\0\0b\0"
 
 
-def test_a_text_without_an_edge_does_not_wait_for_one():
-    prompt = Line(Faults(dup=1.0), b"\n", (1, 0))
+def test_a_text_without_an_edge_does_not_wait():
+    prompt = FaultyChannel(Faults(dup=1.0), b"\n", (1, 0))
     prompt.send(b"ok\n> ", 0.0)
     assert prompt.receive(0.0) == b"ok\nok\n> "
 
 
-def test_everything_is_late_and_in_order():
-    late, now = line(delay=0.020, jitter=0.005), 0.0
+def test_delay_and_jitter_keep_the_order():
+    late, now = channel(delay=0.020, jitter=0.005), 0.0
     for index in range(200):
         late.send(b"\0%d\0" % index, 0.01 * index)
     arrived, when = b"", []
@@ -73,25 +73,25 @@ def test_everything_is_late_and_in_order():
     assert lateness.max() <= 0.0251
 
 
-def test_a_split_frame_comes_in_two_pieces():
-    halves = line(split=1.0)
+def test_a_split_frame_arrives_in_two_pieces():
+    halves = channel(split=1.0)
     halves.send(FRAME, 0.0)
     first = halves.receive(0.0)
     assert 0 < len(first) < len(FRAME)
-    assert first + halves.receive(SPLIT_GAP) == FRAME
+    assert first + halves.receive(SPLIT_GAP_S) == FRAME
 
 
-def test_a_line_that_babbles_says_so_many_bytes_a_second():
-    noisy = line(babble=2000.0)
+def test_noise_has_its_rate():
+    noisy = channel(babble=2000.0)
     count = sum(len(noisy.receive(0.01 * step)) for step in range(2001))
     assert count == pytest.approx(40_000, rel=0.1)
 
 
-def test_what_nobody_takes_is_lost_in_the_end():
-    full = line(delay=5.0, babble=1e5)
+def test_the_bytes_in_flight_are_bounded():
+    full = channel(delay=5.0, babble=1e5)
     for index in range(20_000):
         full.send(FRAME, 0.0001 * index)
-        assert full.in_flight <= IN_FLIGHT_MAX
+        assert full.in_flight <= MAX_IN_FLIGHT_BYTES
     assert full.counts["lost"] > 0
 
 
@@ -101,16 +101,16 @@ harms = st.fixed_dictionaries(
 
 
 @given(harms, st.lists(st.binary(max_size=40), max_size=20))
-def test_a_line_that_only_delays_and_splits_loses_nothing_and_keeps_the_order(harm, written):
-    slow = line(**harm)
+def test_delay_and_split_lose_nothing_and_keep_the_order(harm, written):
+    slow = channel(**harm)
     for index, data in enumerate(written):
         slow.send(data, 0.001 * index)
     assert slow.receive(1e3) == b"".join(written)
 
 
 @given(st.binary(max_size=200), st.lists(st.integers(0, 200), max_size=6))
-def test_it_does_not_matter_how_the_bytes_are_cut(data, places):
-    whole, parts = line(drop=0.3, flip=0.05), line(drop=0.3, flip=0.05)
+def test_the_faults_do_not_depend_on_how_the_bytes_are_cut(data, places):
+    whole, parts = channel(drop=0.3, flip=0.05), channel(drop=0.3, flip=0.05)
     whole.send(data, 0.0)
     edges = [0, *sorted(min(place, len(data)) for place in places), len(data)]
     for start, end in pairwise(edges):
