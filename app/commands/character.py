@@ -20,8 +20,8 @@ from app.ui.album import Album, save
 from characters import Character, Skeleton
 from characters.errors import CharacterWarning
 from characters.formats.loading import Performance, is_motion_only, load_motion
-from characters.model.facts import ClipFacts, Footing
 from characters.model.inspection import Inspection, inspect
+from characters.model.statistics import ClipStats, FootContactStats
 from characters.model.stick_figure import stick_figure
 from characters.rendering import create_context
 
@@ -122,17 +122,17 @@ def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
 
 
 def _tell(console: Console, found: Inspection) -> None:
-    character, sizes = found.character, found.sizes
+    character, stats = found.character, found.stats
     console.print(f"[bold]{escape(character.name)}[/], {character.anatomy.kind}", highlight=False)
     console.print(
-        f"{sizes.height:.3g} m tall, {_count(sizes.joints, 'joint')}, "
-        f"{_count(sizes.meshes, 'mesh', 'meshes')}, {sizes.vertices:,} vertices, "
-        f"{sizes.triangles:,} triangles, {_count(sizes.materials, 'material')}, "
-        f"{_count(sizes.textures, 'texture')}",
+        f"{stats.height:.3g} m tall, {_count(stats.joints, 'joint')}, "
+        f"{_count(stats.meshes, 'mesh', 'meshes')}, {stats.vertices:,} vertices, "
+        f"{stats.triangles:,} triangles, {_count(stats.materials, 'material')}, "
+        f"{_count(stats.textures, 'texture')}",
         highlight=False,
     )
-    if sizes.morphs:
-        console.print(f"Morphs: {', '.join(sizes.morphs)}", highlight=False, markup=False)
+    if stats.morphs:
+        console.print(f"Morphs: {', '.join(stats.morphs)}", highlight=False, markup=False)
     console.print(_tree(character))
     if found.clips:
         console.print(_table(found.clips))
@@ -186,38 +186,38 @@ def _families(
     return children, sizes, known
 
 
-def _table(clips: Sequence[ClipFacts]) -> Table:
+def _table(clips: Sequence[ClipStats]) -> Table:
     table = Table(title="Clips", title_justify="left", title_style="bold", box=SIMPLE_HEAD)
     for heading in ("clip", "seconds", "Hz", "repeats", "speed [m/s]", "feet down"):
         table.add_column(heading, justify="right" if heading in ("seconds", "Hz") else "left")
-    for facts in clips:
-        clip = facts.clip
+    for clip_stats in clips:
+        clip = clip_stats.clip
         table.add_row(
             escape(clip.name),
             f"{clip.duration:.2f}",
             f"{clip.rate:.4g}",
             "loop" if clip.loop else "once",
-            _speed(facts),
-            _feet(facts.footing),
+            _speed(clip_stats),
+            _feet(clip_stats.contacts),
         )
     return table
 
 
-def _speed(facts: ClipFacts) -> str:
-    if facts.speed < 5e-3:
+def _speed(clip_stats: ClipStats) -> str:
+    if clip_stats.speed < 5e-3:
         return "[dim]stays[/]"
-    way = " in place" if facts.in_place else "" if facts.clip.root_motion else " no root"
-    return f"{facts.speed:.2f}{way}"
+    way = " in place" if clip_stats.in_place else "" if clip_stats.clip.root_motion else " no root"
+    return f"{clip_stats.speed:.2f}{way}"
 
 
-def _feet(footing: Sequence[Footing]) -> str:
+def _feet(footing: Sequence[FootContactStats]) -> str:
     """Return how long each foot is down; what all have in common is said once."""
     if footing and all(foot.share == 1.0 for foot in footing):
         return "[dim]always[/]"
     each = []
     for foot in footing:
         name = escape(foot.foot).replace("Foot", "").replace("Front", " front") or foot.foot
-        times = f" in {foot.times}" if foot.times > 1 else ""
+        times = f" in {foot.landings}" if foot.landings > 1 else ""
         each.append(f"{name} {100 * foot.share:.0f} %{times}")
     return ", ".join(each)
 

@@ -1,1 +1,1 @@
-"""The character itself: skeleton, meshes, clips, and the file beside them."""
+"""Characters: skeleton, meshes, clips and sidecar file."""

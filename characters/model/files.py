@@ -1,4 +1,4 @@
-"""Reading files that others gave: whole, and never one without an end."""
+"""Reading files with a limit of size, and no pipes or devices."""
 
 import os
 from pathlib import Path
@@ -7,48 +7,47 @@ from stat import S_ISDIR, S_ISREG
 from characters.errors import CharacterError
 
 MAX_FILE_BYTES = 1 << 30
-"""What is read at most [bytes]; two hours of motion capture at 120 Hz take 0.6 GB."""
+"""Two hours of motion capture at 120 Hz take 0.6 GB."""
 
 
-def read_file(path: Path, most: int = MAX_FILE_BYTES) -> bytes:
-    """Return what is in a file.
+def read_file(path: Path, max_bytes: int = MAX_FILE_BYTES) -> bytes:
+    """Return the content of a file.
 
-    A pipe or a device is refused: to open the one may wait for ever, and the other may not end.
+    Pipes and devices are refused: opening or reading them may never return.
 
     Raises
     ------
     FileNotFoundError
-        If there is no such file: for some it is no mistake. All others see a `CharacterError`
-        (`read_required_file`).
+        If there is no such file; `read_required_file` raises a `CharacterError` instead.
     CharacterError
-        If it cannot be read, or has more than `most` bytes.
+        If it cannot be read, or has more than `max_bytes` bytes.
     """
     try:
-        found = os.stat(path)
-        if not S_ISREG(found.st_mode) and not S_ISDIR(found.st_mode):
+        status = os.stat(path)
+        if not S_ISREG(status.st_mode) and not S_ISDIR(status.st_mode):
             raise CharacterError(f"{path}: a pipe or a device; save it as a file first")
-        if found.st_size > most:
+        if status.st_size > max_bytes:
             raise CharacterError(
-                f"{path}: {found.st_size / 1e6:.0f} MB, of at most {most / 1e6:.0f}; "
+                f"{path}: {status.st_size / 1e6:.0f} MB, of at most {max_bytes / 1e6:.0f}; "
                 "cut it into pieces"
             )
         return path.read_bytes()
     except FileNotFoundError:
         raise
-    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte in it
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
         reason = getattr(error, "strerror", None) or error
         raise CharacterError(f"{path}: cannot be read ({reason}); check the path") from None
 
 
-def read_required_file(path: Path, most: int = MAX_FILE_BYTES) -> bytes:
-    """Return what is in a file that somebody named, so that it has to be there.
+def read_required_file(path: Path, max_bytes: int = MAX_FILE_BYTES) -> bytes:
+    """Return the content of a file that must exist.
 
     Raises
     ------
     CharacterError
-        As `read_file`, and if there is no such file.
+        As for `read_file`, and if there is no such file.
     """
     try:
-        return read_file(path, most)
+        return read_file(path, max_bytes)
     except FileNotFoundError as error:
         raise CharacterError(f"{path}: cannot be read ({error.strerror}); check the path") from None

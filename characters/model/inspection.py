@@ -1,4 +1,4 @@
-"""What there is to know of a character, and what is wrong with it, in plain sentences."""
+"""Statistics and problems of a character, as sentences for a person."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -8,96 +8,99 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.model.character import Character
-from characters.model.facts import ClipFacts, Sizes, facts_of, joints_of_feet
 from characters.model.mesh import Mesh
+from characters.model.statistics import CharacterStats, ClipStats, clip_stats, foot_joints
 
-MANY_JOINTS, MANY_TRIANGLES, LARGE_TEXTURE = 256, 100_000, 4096
-"""What takes long without a graphics card: joints, triangles, pixels along a texture."""
+MANY_JOINTS, MANY_TRIANGLES, LARGE_TEXTURE_PX = 256, 100_000, 4096
+"""More of these is slow without a GPU."""
 
-LIKELY_HEIGHT = 0.05, 30.0
-"""Between these a height is taken to be meant [m]: there are mice, and there were dinosaurs."""
+PLAUSIBLE_HEIGHT_M = 0.05, 30.0
+"""Heights of characters, from mice to dinosaurs."""
 
-_CLOSED = 0.03  # heights: a loop whose ends are so near to each other closes
-_CYCLE = re.compile(r"(?i)walk|run|jog|trot|gallop|stroll|idle|loop|cycle")
-_GAIT = re.compile(r"(?i)walk|run|jog|trot|gallop|stroll")
+_MAX_LOOP_GAP = 0.03  # body heights
+_LOOP_NAME = re.compile(r"(?i)walk|run|jog|trot|gallop|stroll|idle|loop|cycle")
+_GAIT_NAME = re.compile(r"(?i)walk|run|jog|trot|gallop|stroll")
 
 
 @dataclass(frozen=True)
 class Inspection:
-    """What was found."""
+    """The result of an inspection."""
 
     character: Character
-    """Who."""
+    """The character."""
 
-    sizes: Sizes
-    """How large."""
+    stats: CharacterStats
+    """Its size."""
 
-    clips: tuple[ClipFacts, ...]
-    """What it knows."""
+    clips: tuple[ClipStats, ...]
+    """Its clips."""
 
     problems: tuple[str, ...]
-    """Sentences for a person, the ones that matter most first; none if all is well."""
+    """Sentences for a person, the most important ones first."""
 
 
 def inspect(character: Character, notes: Sequence[str] = (), body: bool = True) -> Inspection:
-    """Look at a character.
+    """Return statistics and problems of a character.
 
     Parameters
     ----------
     character
-        Who.
+        The character.
     notes
-        What was repaired or guessed while it was read; these come first among the problems.
+        Repairs and guesses while it was read; the problems begin with them.
     body
-        Whether its meshes are its own: those of a stick figure have no problems.
+        Whether to look for problems of the meshes; those of a stick figure have none.
     """
-    feet = joints_of_feet(character)
-    clips = tuple(facts_of(character, clip, feet) for clip in character.clips.values())
-    sizes = Sizes.of(character)
+    feet = foot_joints(character)
+    clips = tuple(clip_stats(character, clip, feet) for clip in character.clips.values())
+    stats = CharacterStats.of(character)
     problems = [
         *notes,
-        *(_problems_of_body(character, sizes) if body else ()),
+        *(_problems_of_meshes(character, stats) if body else ()),
         *_problems_of_joints(character, feet),
         *_problems_of_clips(character, clips),
     ]
-    return Inspection(character, sizes, clips, tuple(problems))
+    return Inspection(character, stats, clips, tuple(problems))
 
 
-def _problems_of_body(character: Character, sizes: Sizes) -> Iterator[str]:
+def _problems_of_meshes(character: Character, stats: CharacterStats) -> Iterator[str]:
     low = float(character.bounds[0, 1])
-    if not LIKELY_HEIGHT[0] <= sizes.height <= LIKELY_HEIGHT[1]:
+    if not PLAUSIBLE_HEIGHT_M[0] <= stats.height <= PLAUSIBLE_HEIGHT_M[1]:
         yield (
-            f"It is {sizes.height:.3g} m tall at rest: files are in metres, so this one was "
+            f"It is {stats.height:.3g} m tall at rest: files are in metres, so this one was "
             "exported at another scale. On the table it is scaled to fit."
         )
-    if sizes.height and abs(low) > 0.05 * sizes.height:
+    if stats.height and abs(low) > 0.05 * stats.height:
         where = "above" if low > 0 else "below"
         yield f"At rest it is {abs(low):.2g} m {where} the ground: move it to y = 0 in its file."
     lowest, highest = character.bounds[:, [0, 2]]
-    beside = float(np.hypot(*np.maximum(np.maximum(lowest, -highest), 0.0)))
-    if beside > 0.05 * sizes.height:
-        yield f"At rest it is {beside:.2g} m beside x = z = 0, where it is put down: move it there."
-    off = max((_unevenness(mesh) for mesh in character.meshes), default=0.0)
-    if off > 1e-3:
-        yield f"Skin weights do not sum to one: they are off by {off:.2g}; normalise them."
-    if sizes.triangles > MANY_TRIANGLES:
+    distance = float(np.hypot(*np.maximum(np.maximum(lowest, -highest), 0.0)))
+    if distance > 0.05 * stats.height:
         yield (
-            f"{sizes.triangles:,} triangles take long to draw without a graphics card; "
-            f"{MANY_TRIANGLES:,} are plenty on a table."
+            f"At rest it is {distance:.2g} m away from x = z = 0, its reference point: "
+            "move it there."
         )
-    largest = max((_side(mesh) for mesh in character.meshes), default=0)
-    if largest > LARGE_TEXTURE:
-        yield f"A texture has {largest} pixels along a side: {LARGE_TEXTURE} are plenty."
-    if sizes.joints > MANY_JOINTS:
-        yield f"{sizes.joints} joints take long to pose: {MANY_JOINTS} are plenty."
+    error = max((_weight_error(mesh) for mesh in character.meshes), default=0.0)
+    if error > 1e-3:
+        yield f"Skin weights do not sum to one: the error is {error:.2g}; normalise them."
+    if stats.triangles > MANY_TRIANGLES:
+        yield (
+            f"{stats.triangles:,} triangles are slow to draw without a graphics card; "
+            f"{MANY_TRIANGLES:,} are enough."
+        )
+    largest = max((_texture_side(mesh) for mesh in character.meshes), default=0)
+    if largest > LARGE_TEXTURE_PX:
+        yield f"A texture has {largest} pixels along a side: {LARGE_TEXTURE_PX} are enough."
+    if stats.joints > MANY_JOINTS:
+        yield f"{stats.joints} joints are slow to pose: {MANY_JOINTS} are enough."
 
 
-def _unevenness(mesh: Mesh) -> float:
+def _weight_error(mesh: Mesh) -> float:
     sums = mesh.weights.sum(axis=1)
     return float(np.abs(sums - 1.0).max()) if len(sums) else 0.0
 
 
-def _side(mesh: Mesh) -> int:
+def _texture_side(mesh: Mesh) -> int:
     maps: list[NDArray[np.uint8] | None] = [
         mesh.material.texture, mesh.material.surface, mesh.material.bumps
     ]  # fmt: skip
@@ -106,7 +109,7 @@ def _side(mesh: Mesh) -> int:
 
 def _problems_of_joints(character: Character, feet: dict[str, tuple[int, ...]]) -> Iterator[str]:
     anatomy = character.anatomy
-    remedy = f"say which joints they are under [joints] in {character.name}.toml beside it"
+    remedy = f"say which joints they are under [joints] in {character.name}.toml next to it"
     if anatomy.kind == "other":
         yield (
             "Its joints were not recognised as those of a person or an animal: for looking "
@@ -114,47 +117,47 @@ def _problems_of_joints(character: Character, feet: dict[str, tuple[int, ...]]) 
         )
     elif anatomy.missing:
         parts = ", ".join(anatomy.missing)
-        yield f"Not found in its {anatomy.kind} skeleton: {parts}; if they are there, {remedy}."
+        yield f"Not found in its {anatomy.kind} skeleton: {parts}; if it has them, {remedy}."
     if not feet:
-        yield f"No feet were found: they will not hold the ground; {remedy}."
+        yield f"No feet were found, so they may slide; {remedy}."
     head, foot = anatomy.joint("head"), next(iter(anatomy.feet), None)
     if head is not None and foot is not None:
         heights = character.skeleton.rest.globals(character.skeleton)[:, 1, 3]
         if heights[head] < heights[foot]:
-            yield "At rest its head is below its feet: turn it so that +y is up in its file."
+            yield "At rest its head is below its feet: rotate it in its file so that +y is up."
 
 
-def _problems_of_clips(character: Character, clips: Sequence[ClipFacts]) -> Iterator[str]:
+def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iterator[str]:
     if not clips:
-        yield "It has no clips: it can be posed and retargeted to, but does nothing by itself."
-    still = [facts.clip.name for facts in clips if facts.clip.duration == 0.0]
-    if still:
-        yield f"{_named(still)} of one frame: nothing moves in it."
+        yield "It has no clips: it can be posed and retargeted to, but plays nothing by itself."
+    static = [stats.clip.name for stats in clips if stats.clip.duration == 0.0]
+    if static:
+        yield f"{_named(static)} only one frame long and does not move."
     height = max(character.height, 1e-9)
     open_ = [
-        f"{facts.clip.name!r} ({100 * facts.opening / height:.0f} % of its height)"
-        for facts in clips
-        if _CYCLE.search(facts.clip.name) and facts.opening > _CLOSED * height
+        f"{stats.clip.name!r} ({100 * stats.loop_gap / height:.0f} % of its height)"
+        for stats in clips
+        if _LOOP_NAME.search(stats.clip.name) and stats.loop_gap > _MAX_LOOP_GAP * height
     ]
     if open_:
         yield (
-            f"{'This clip does' if len(open_) == 1 else 'These clips do'} not loop, for the last "
-            f"frame is not the first again: {', '.join(open_)}."
+            f"{'This clip does' if len(open_) == 1 else 'These clips do'} not loop: the last "
+            f"frame differs from the first: {', '.join(open_)}."
         )
-    afloat = [
-        facts.clip.name
-        for facts in clips
-        if _GAIT.search(facts.clip.name) and not any(foot.times for foot in facts.footing)
+    without_contacts = [
+        stats.clip.name
+        for stats in clips
+        if _GAIT_NAME.search(stats.clip.name) and not any(foot.landings for foot in stats.contacts)
     ]
-    if afloat:
-        yield f"{_named(afloat)} called a gait, but no foot was found to step in it."
+    if without_contacts:
+        yield f"{_named(without_contacts)} named as a gait, but no foot steps in it."
     treadmill = [
-        facts.clip.name for facts in clips if facts.in_place and _GAIT.search(facts.clip.name)
+        stats.clip.name for stats in clips if stats.in_place and _GAIT_NAME.search(stats.clip.name)
     ]
     if treadmill:
         yield (
-            f"{_named(treadmill)} in place: `cubeling character locomotion` makes a walk over the "
-            "ground of it."
+            f"{_named(treadmill)} in place: `cubeling character locomotion` turns it into a walk "
+            "over the ground."
         )
 
 

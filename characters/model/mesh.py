@@ -1,4 +1,4 @@
-"""Skinned geometry as the graphics card wants it."""
+"""Skinned geometry in the layout of vertex buffers."""
 
 from dataclasses import dataclass, field
 
@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Material:
-    """How a surface answers light; the subset of glTF's metallic-roughness that is drawn."""
+    """The part of glTF's metallic-roughness material that is drawn."""
 
     base_color: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
-    """Linear RGBA factor; multiplies vertex colour and texture."""
+    """Linear RGBA factor of vertex colour and texture."""
 
     metallic: float = 0.0
     """0 dielectric … 1 metal."""
@@ -23,17 +23,17 @@ class Material:
     """Base colour, (height, width, 4) sRGB with alpha, or None."""
 
     surface: NDArray[np.uint8] | None = None
-    """Roughness in green and metalness in blue, (height, width, 3) linear, or None; both
-    multiply the factors above."""
+    """Roughness in green and metalness in blue, (height, width, 3) linear, or None; factors of the
+    values above."""
 
     bumps: NDArray[np.uint8] | None = None
     """Normal map in tangent space, (height, width, 3), +y up as in glTF, or None."""
 
     bump_scale: float = 1.0
-    """How strongly the normal map leans the normals."""
+    """Strength of the normal map."""
 
     glow: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Light of its own, linear RGB."""
+    """Emission, linear RGB."""
 
     cutoff: float | None = None
     """Alpha below which nothing is drawn; None for an opaque surface."""
@@ -44,22 +44,22 @@ class Material:
 
 @dataclass(frozen=True)
 class Morph:
-    """Another shape of some vertices of a mesh: a closed eye, an open mouth.
+    """A morph target of a mesh: a closed eye, an open mouth.
 
-    A vertex lies at its place plus, for each morph, the shift times how far that morph is on.
+    The position of a vertex is that in the mesh plus, for each morph, its weight times the shift.
     """
 
     name: str
-    """One of `Character.morphs`; VRM's names of expressions where they fit: "blink", "aa" …"""
+    """One of `Character.morphs`; VRM's names of expressions if possible: "blink", "aa" …"""
 
     vertices: NDArray[np.uint32]
-    """Numbers of the vertices that it moves, (n,), ascending."""
+    """Indices of the vertices that it moves, (n,), ascending."""
 
     shifts: NDArray[np.float32]
-    """How far each is moved, in the bind pose, (n, 3) [m]."""
+    """Displacement of each in the bind pose, (n, 3) [m]."""
 
     normal_shifts: NDArray[np.float32] | None = None
-    """What their normals change by, (n, 3), or None to leave them."""
+    """Change of their normals, (n, 3), or None for no change."""
 
 
 @dataclass(frozen=True)
@@ -76,10 +76,10 @@ class Mesh:
     """Unit normals, (vertices, 3)."""
 
     triangles: NDArray[np.uint32]
-    """Vertex numbers, (triangles, 3), counter-clockwise from outside."""
+    """Vertex indices, (triangles, 3), counter-clockwise from outside."""
 
     joints: NDArray[np.uint16]
-    """Numbers of the skeleton's joints that move each vertex, (vertices, 4)."""
+    """Indices of the joints that move each vertex, (vertices, 4)."""
 
     weights: NDArray[np.float32]
     """Skin weights, (vertices, 4); each row sums to one."""
@@ -88,7 +88,7 @@ class Mesh:
     """Inverse bind matrices, (joints of the skeleton, 4, 4); identity for unused joints."""
 
     colors: NDArray[np.float32] | None = None
-    """Linear RGBA a vertex, (vertices, 4), or None."""
+    """Linear RGBA of vertices, (vertices, 4), or None."""
 
     uvs: NDArray[np.float32] | None = None
     """Texture coordinates, (vertices, 2), v down as in glTF, or None."""
@@ -97,4 +97,4 @@ class Mesh:
     """The surface."""
 
     morphs: tuple[Morph, ...] = ()
-    """Its other shapes."""
+    """Its morph targets."""

@@ -1,4 +1,4 @@
-"""The file beside a character that says what its own does not: `fox.toml` beside `fox.glb`."""
+"""The sidecar file of a character, `fox.toml` for `fox.glb`: body parts and motion plans."""
 
 import difflib
 import tomllib
@@ -13,22 +13,22 @@ from characters.motion.trees.plan import Plan
 from characters.motion.trees.reading import TABLES, read_plan
 from characters.skeleton.anatomy import PARTS
 
-_LARGEST = 1_000_000  # bytes: more was not written by hand
+_MAX_BYTES = 1_000_000  # larger files are not written by hand
 
 
 @dataclass(frozen=True)
 class Sidecar:
-    """What such a file says."""
+    """The content of a sidecar file."""
 
     semantics: Mapping[str, str]
     """Joint by part of the body, as in `Character.semantics`."""
 
     plan: Plan | None
-    """How its motions are put together, or None where it does not say."""
+    """How its motions are combined, or None if it does not say."""
 
 
 def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
-    """Read the file; one that does not exist says nothing.
+    """Read a sidecar file; one that does not exist is empty.
 
     Parameters
     ----------
@@ -40,13 +40,13 @@ def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
     Raises
     ------
     CharacterError
-        If it cannot be read, is not TOML, or says something that cannot be.
+        If it cannot be read, is not TOML, or its content is invalid.
     """
     document = _document(path)
     for key in document:
         if key not in ("joints", *TABLES):
             raise CharacterError(
-                f"{path}: [{key}] means nothing here; there are joints, {', '.join(TABLES)}"
+                f"{path}: [{key}] is not a known table; there are joints, {', '.join(TABLES)}"
             )
     joints = document.get("joints", {})
     if not isinstance(joints, dict) or not all(isinstance(j, str) for j in joints.values()):
@@ -55,14 +55,14 @@ def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
         if part not in PARTS:
             near = difflib.get_close_matches(part, PARTS, 1)
             hint = f"; did you mean {near[0]!r}?" if near else ""
-            raise CharacterError(f"{path}: joints.{part}: no part of a body is called that{hint}")
+            raise CharacterError(f"{path}: joints.{part}: not a body part{hint}")
     return Sidecar(joints, read_plan(document, str(path), clips))
 
 
 def _document(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(read_file(path, _LARGEST).decode("utf-8-sig"))
+        return tomllib.loads(read_file(path, _MAX_BYTES).decode("utf-8-sig"))
     except FileNotFoundError:
         return {}
-    except (ValueError, RecursionError) as error:  # no TOML, no UTF-8, a number without an end
-        raise CharacterError(f"{path}: not TOML ({error}); mend that line") from None
+    except (ValueError, RecursionError) as error:  # not TOML, not UTF-8, or nested too deeply
+        raise CharacterError(f"{path}: not TOML ({error}); correct that line") from None

@@ -1,7 +1,7 @@
-"""A body for motions that have none: a capsule for each bone, so that any clip can be seen.
+"""A body for motions without meshes: one capsule per bone.
 
-What is on the left is blue and what is on the right is red, and the head has a nose: in motion
-capture these are the two things that are most often the wrong way round.
+The left side is blue, the right side is red, and the head has a nose: side and facing are what
+motion capture most often gets wrong.
 """
 
 from collections.abc import Iterable
@@ -16,16 +16,16 @@ from characters.motion.clip import Clip
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Skeleton
 
-LEFT, RIGHT, MIDDLE = (0.06, 0.2, 0.55), (0.6, 0.06, 0.04), (0.5, 0.46, 0.38)
-"""Linear RGB of what is on a side."""
+LEFT_RGB, RIGHT_RGB, MIDDLE_RGB = (0.06, 0.2, 0.55), (0.6, 0.06, 0.04), (0.5, 0.46, 0.38)
+"""Linear colours of the sides."""
 
-_SIDES = 14  # of a capsule
-_RINGS = np.sin(np.linspace(-0.5, 0.5, 7) * np.pi)  # of both half balls, along the axis
+_CAPSULE_SIDES = 14
+_RING_HEIGHTS = np.sin(np.linspace(-0.5, 0.5, 7) * np.pi)  # of both hemispheres, along the axis
 
-_BREADTH = 0.11  # radius of a bone, as a share of its length …
-_THIN, _THICK = 0.005, 0.022  # … but within these shares of the body's height
-_SKULL = (0.06, 0.13)  # smallest and largest radius, as shares of the body's height
-_NOSE = 0.28  # its radius, as a share of the skull's
+_BONE_RADIUS = 0.11  # bone lengths …
+_MIN_BONE_RADIUS, _MAX_BONE_RADIUS = 0.005, 0.022  # … within these limits in body heights
+_MIN_HEAD_RADIUS, _MAX_HEAD_RADIUS = 0.06, 0.13  # body heights
+_NOSE_RADIUS = 0.28  # head radii
 
 
 @dataclass(frozen=True)
@@ -33,29 +33,29 @@ class _Capsules:
     """Capsules in the rest pose."""
 
     ends: Array
-    """(n, 2, 3) [m]."""
+    """Centres of both ends, (n, 2, 3) [m]."""
 
     radii: Array
-    """At both ends, (n, 2) [m]."""
+    """Radii at both ends, (n, 2) [m]."""
 
     joints: NDArray[np.intp]
-    """Which moves each, (n,)."""
+    """The joint that moves each, (n,)."""
 
     colors: Array
     """Linear RGB, (n, 3)."""
 
 
 def stick_figure(name: str, skeleton: Skeleton, clips: Iterable[Clip] = ()) -> Character:
-    """Return a character whose body is made of its bones.
+    """Return a character with a body of capsules.
 
     Parameters
     ----------
     name
-        Of the character.
+        Name of the character.
     skeleton
-        Its joints; nothing is drawn for one that carries root motion.
+        Its joints; a root joint on the ground is not drawn.
     clips
-        What it knows.
+        Its clips.
     """
     rest = skeleton.rest.globals(skeleton).astype(np.float64)
     anatomy = Anatomy.guess(skeleton)
@@ -64,8 +64,8 @@ def stick_figure(name: str, skeleton: Skeleton, clips: Iterable[Clip] = ()) -> C
 
 
 def _bones(skeleton: Skeleton, anatomy: Anatomy, rest: Array) -> list[_Capsules]:
-    """Return a capsule from each joint to each of its children, and a ball at each tip."""
-    inner, outer = _within(skeleton, anatomy)
+    """Return a capsule from each joint to each of its children, and a sphere at each tip."""
+    inner, outer = _bone_joints(skeleton, anatomy)
     parents = np.array(skeleton.parents, np.intp)
     children = np.flatnonzero(outer & inner[parents] & (parents >= 0))
     parents = parents[children]
@@ -73,21 +73,23 @@ def _bones(skeleton: Skeleton, anatomy: Anatomy, rest: Array) -> list[_Capsules]
     tall = _height(places)
     ends = np.stack([places[parents], places[children]], axis=1)
     lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-    radii = np.clip(_BREADTH * lengths, _THIN * tall, _THICK * tall)
+    radii = np.clip(_BONE_RADIUS * lengths, _MIN_BONE_RADIUS * tall, _MAX_BONE_RADIUS * tall)
     shown = lengths > 1e-3 * tall
     sided = _colors(skeleton, anatomy)
     bones = _Capsules(ends, radii[:, None] * [1.0, 0.6], parents, sided[children])
     tips = np.setdiff1d(np.flatnonzero(outer), parents[shown])
-    radius = np.full((len(tips), 2), 1.6 * _THIN * tall)
+    radius = np.full((len(tips), 2), 1.6 * _MIN_BONE_RADIUS * tall)
     balls = _Capsules(np.repeat(places[tips, None], 2, axis=1), radius, tips, sided[tips])
-    return [_some(bones, shown), balls]
+    return [_selected(bones, shown), balls]
 
 
-def _within(skeleton: Skeleton, anatomy: Anatomy) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return from which joints bones lead, and to which, (joints,) each.
+def _bone_joints(
+    skeleton: Skeleton, anatomy: Anatomy
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which joints start a bone and which end one, (joints,) each.
 
-    Above the hips lies what carries them over the ground, beside them what drives limbs, and in a
-    skull what moves a face: none of it is a bone.
+    Joints above the hips carry the body over the ground, joints next to them control limbs, and
+    joints in the head move the face: none of them has a bone.
     """
     hips, head = anatomy.joint("hips"), anatomy.joint("head")
     outer = np.ones(len(skeleton), bool)
@@ -103,35 +105,35 @@ def _within(skeleton: Skeleton, anatomy: Anatomy) -> tuple[NDArray[np.bool_], ND
 
 
 def _head(anatomy: Anatomy, rest: Array) -> list[_Capsules]:
-    """Return a skull with a nose where the head of a person is."""
+    """Return a sphere with a nose for the head of a person."""
     head = anatomy.joint("head")
     if head is None or anatomy.kind != "humanoid":
         return []
     places = rest[:, :3, 3]
     tall = _height(places)
-    rise = float(places[:, 1].max() - places[head, 1])  # of a joint that ends the head, if any
-    radius = min(max(0.5 * rise, _SKULL[0] * tall), _SKULL[1] * tall)
+    rise = float(places[:, 1].max() - places[head, 1])  # to the end of the head, if it has a joint
+    radius = min(max(0.5 * rise, _MIN_HEAD_RADIUS * tall), _MAX_HEAD_RADIUS * tall)
     middle = places[head] + [0.0, radius, 0.0]
     nose = middle + [0.0, 0.0, radius]
     ends = np.stack([[middle, middle], [nose, nose]])
-    radii = radius * np.array([[1.0, 1.0], [_NOSE, _NOSE]])
-    return [_Capsules(ends, radii, np.full(2, head), np.tile(MIDDLE, (2, 1)))]
+    radii = radius * np.array([[1.0, 1.0], [_NOSE_RADIUS, _NOSE_RADIUS]])
+    return [_Capsules(ends, radii, np.full(2, head), np.tile(MIDDLE_RGB, (2, 1)))]
 
 
 def _mesh(capsules: _Capsules, rest: Array) -> Mesh:
-    """Return all capsules as one mesh that is bound to the rest pose."""
+    """Return all capsules as one mesh bound to the rest pose."""
     starts, ends = capsules.ends[:, 0], capsules.ends[:, 1]
     axes = ends - starts
     lengths = np.linalg.norm(axes, axis=1, keepdims=True)
     axes = np.where(lengths > 1e-9, axes / np.maximum(lengths, 1e-9), [0.0, 1.0, 0.0])
-    # The cross product with the world's axis that is least along it is never short.
+    # The cross product with the most perpendicular world axis is never short.
     across = np.cross(axes, np.eye(3)[np.abs(axes).argmin(axis=1)])
     across /= np.linalg.norm(across, axis=1, keepdims=True)
-    turns = np.linspace(0.0, 2.0 * np.pi, _SIDES + 1)[:-1]
+    turns = np.linspace(0.0, 2.0 * np.pi, _CAPSULE_SIDES + 1)[:-1]
     around = np.stack([across, np.cross(axes, across)], axis=1)
     spokes = np.einsum("sk,nkc->nsc", np.stack([np.cos(turns), np.sin(turns)], axis=1), around)
-    # Rings of the first half ball, then of the second: (n, rings, sides, 3).
-    rise = np.concatenate([_RINGS[_RINGS <= 0], _RINGS[_RINGS >= 0]])
+    # Rings of the first hemisphere, then of the second: (n, rings, sides, 3).
+    rise = np.concatenate([_RING_HEIGHTS[_RING_HEIGHTS <= 0], _RING_HEIGHTS[_RING_HEIGHTS >= 0]])
     second = np.repeat([False, True], len(rise) // 2)
     normals = (
         np.sqrt(1.0 - rise**2)[None, :, None, None] * spokes[:, None]
@@ -140,7 +142,7 @@ def _mesh(capsules: _Capsules, rest: Array) -> Mesh:
     centres = np.where(second[None, :, None], ends[:, None], starts[:, None])[:, :, None]
     radii = np.where(second[None], capsules.radii[:, 1:], capsules.radii[:, :1])[..., None, None]
     positions = centres + radii * normals
-    count, each = len(starts), len(rise) * _SIDES
+    count, each = len(starts), len(rise) * _CAPSULE_SIDES
     joints = np.zeros((count * each, 4), np.uint16)
     joints[:, 0] = np.repeat(capsules.joints, each)
     colors = np.ones((count * each, 4), np.float32)
@@ -160,23 +162,27 @@ def _mesh(capsules: _Capsules, rest: Array) -> Mesh:
 
 def _triangles(rings: int, count: int) -> NDArray[np.uint32]:
     """Return the triangles between the rings of capsules, counter-clockwise from outside."""
-    ring, side = (grid.ravel() for grid in np.mgrid[: rings - 1, :_SIDES])
-    here, there = ring * _SIDES + side, ring * _SIDES + (side + 1) % _SIDES
-    quads = np.stack([here, there, there + _SIDES, here, there + _SIDES, here + _SIDES], axis=1)
-    numbers = quads.reshape(1, -1, 3) + (np.arange(count) * rings * _SIDES)[:, None, None]
+    ring, side = (grid.ravel() for grid in np.mgrid[: rings - 1, :_CAPSULE_SIDES])
+    sides = _CAPSULE_SIDES
+    here, there = ring * sides + side, ring * sides + (side + 1) % sides
+    quads = np.stack(
+        [here, there, there + sides, here, there + sides, here + sides],
+        axis=1,
+    )
+    numbers = quads.reshape(1, -1, 3) + (np.arange(count) * rings * sides)[:, None, None]
     return numbers.reshape(-1, 3).astype(np.uint32)
 
 
 def _colors(skeleton: Skeleton, anatomy: Anatomy) -> Array:
-    """Return the colour of each joint, (joints, 3): its side's, or that of the joint above it."""
+    """Return the colours of joints, (joints, 3): by side, else that of the parent."""
     colors = np.empty((len(skeleton), 3))
     for joint, parent in enumerate(skeleton.parents):
         part = anatomy.parts.get(joint)
         if part is None:
-            colors[joint] = MIDDLE if parent < 0 else colors[parent]
+            colors[joint] = MIDDLE_RGB if parent < 0 else colors[parent]
         else:
-            sides = {"left": LEFT, "right": RIGHT}
-            colors[joint] = next((c for s, c in sides.items() if part.startswith(s)), MIDDLE)
+            sides = {"left": LEFT_RGB, "right": RIGHT_RGB}
+            colors[joint] = next((c for s, c in sides.items() if part.startswith(s)), MIDDLE_RGB)
     return colors
 
 
@@ -184,7 +190,7 @@ def _height(places: Array) -> float:
     return max(float(np.ptp(places, axis=0).max()), 1e-6)
 
 
-def _some(capsules: _Capsules, which: NDArray[np.bool_]) -> _Capsules:
+def _selected(capsules: _Capsules, which: NDArray[np.bool_]) -> _Capsules:
     return _Capsules(*(values[which] for values in vars(capsules).values()))
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 from characters.errors import CharacterError
 from characters.formats.loading import is_motion_only, load_motion
+from characters.model.bind_pose import with_bind_pose
 from characters.model.character import Character
 from characters.model.sidecar import read_sidecar
 from characters.motion.clip import Clip
-from characters.retargeting.bound import bound_skeleton
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Skeleton
 
@@ -66,5 +66,5 @@ def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording
             f"{file}: which clip? write {file}#CLIP with one of its clips: {there}"
         )
     found = character.clips[clip]
-    modelled = replace(character, skeleton=bound_skeleton(character))
+    modelled = replace(character, skeleton=with_bind_pose(character))
     return Recording(Path(name).name, found, modelled.skeleton, modelled.anatomy)

@@ -10,9 +10,9 @@ from rich.console import Console
 from rich.table import Table
 
 from characters import Character, Clip
+from characters.model.bind_pose import with_bind_pose
 from characters.retargeting import Recording, load_recording, retarget
 from characters.retargeting.body import Body
-from characters.retargeting.bound import bound_skeleton
 from characters.retargeting.feet import find_footing
 from characters.retargeting.retarget import leg_pairs
 
@@ -94,7 +94,7 @@ def main() -> None:
             continue
         source = load_recording(str(SHARED / motion))
         character = Character.load(name)
-        character = replace(character, skeleton=bound_skeleton(character))
+        character = replace(character, skeleton=with_bind_pose(character))
         body = Body(character.skeleton, character.anatomy)
         args = (source.clip, source.skeleton, source.anatomy, body.skeleton, body.anatomy)
         bare = retarget(*args, hold_feet=False)

@@ -12,12 +12,12 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
+from characters.model.bind_pose import with_bind_pose
 from characters.model.character import Character
 from characters.model.mirroring import mirror_of
 from characters.motion.clip import Clip
 from characters.motion.mirror import Mirror
 from characters.retargeting.body import Body
-from characters.retargeting.bound import bound_skeleton
 from characters.retargeting.feet import Footing
 from characters.retargeting.locomotion.arcs import Course
 from characters.retargeting.locomotion.cycle import Cut, closed, find_pause, resampled
@@ -99,7 +99,7 @@ def make_locomotion(
         If a recording does not fit the character, or holds no cycle.
     """
     as_given = character
-    character = replace(character, skeleton=bound_skeleton(character))
+    character = replace(character, skeleton=with_bind_pose(character))
     walker = with_root(character)
     body = Body(walker.skeleton, walker.anatomy)
     trees = (("walk", WALK_CLIPS, walks), ("run", RUN_CLIPS, runs))

@@ -28,7 +28,7 @@ DATA = Path(__file__).parents[4] / "shared" / "data"
 def test_a_fox_of_79_metres_that_walks_in_place_is_told():
     found = inspect(Character.load(DATA / "gltf" / "Fox.glb"))
     assert found.character.anatomy.kind == "quadruped"
-    assert [facts.in_place for facts in found.clips] == [False, True, True]
+    assert [stats.in_place for stats in found.clips] == [False, True, True]
     assert "79 m tall" in found.problems[0]
     assert "'Walk', 'Run' are in place" in found.problems[1]
     assert len(found.problems) == 2
@@ -38,19 +38,19 @@ def test_a_fox_of_79_metres_that_walks_in_place_is_told():
 def test_nothing_is_wrong_with_a_bundled_character(name):
     found = inspect(Character.load(name))
     assert found.problems == ()
-    assert found.sizes.triangles > 1000
+    assert found.stats.triangles > 1000
     assert len(found.clips) == len(found.character.clips)
 
 
 def test_a_walk_goes_as_fast_as_it_goes_and_steps_once_a_cycle(sound):
-    facts = {found.clip.name: found for found in inspect(sound).clips}
-    assert facts["Walk"].speed == pytest.approx(1.35, abs=0.01)
-    assert facts["Walk"].opening == pytest.approx(0.0, abs=1e-6)
-    assert [foot.foot for foot in facts["Walk"].footing] == ["leftFoot", "rightFoot"]
-    for foot in facts["Walk"].footing:
-        assert foot.times == 1
+    stats = {found.clip.name: found for found in inspect(sound).clips}
+    assert stats["Walk"].speed == pytest.approx(1.35, abs=0.01)
+    assert stats["Walk"].loop_gap == pytest.approx(0.0, abs=1e-6)
+    assert [foot.foot for foot in stats["Walk"].contacts] == ["leftFoot", "rightFoot"]
+    for foot in stats["Walk"].contacts:
+        assert foot.landings == 1
         assert foot.share == pytest.approx(0.6, abs=0.12)
-    assert [foot.share for foot in facts["idle"].footing] == [1.0, 1.0]
+    assert [foot.share for foot in stats["idle"].contacts] == [1.0, 1.0]
 
 
 def test_a_walk_in_place_is_known_by_its_feet(sound):
@@ -79,15 +79,15 @@ def test_bodies_of_an_odd_size_or_place_are_told(sound):
     assert "170 m tall" in moved(100.0, 0.0)
     assert "0.5 m above the ground" in moved(1.0, 0.5)
     assert "0.5 m below the ground" in moved(1.0, -0.5)
-    assert "beside x" not in moved(1.0, 0.0, 0.1)
-    assert "1.8 m beside x = z = 0" in moved(1.0, 0.0, 2.0)
-    assert "1.8 m beside x = z = 0" in moved(1.0, 0.0, -2.0)
+    assert "away from x" not in moved(1.0, 0.0, 0.1)
+    assert "1.8 m away from x = z = 0" in moved(1.0, 0.0, 2.0)
+    assert "1.8 m away from x = z = 0" in moved(1.0, 0.0, -2.0)
 
 
 def test_weights_textures_and_crowds_are_told(sound):
     mesh = sound.meshes[0]
     heavy = replace(mesh, weights=1.2 * mesh.weights)
-    assert "off by 0.2" in problems(sound, meshes=(heavy,))
+    assert "the error is 0.2" in problems(sound, meshes=(heavy,))
     crowd = replace(mesh, triangles=np.tile(mesh.triangles, (30_000, 1)))
     assert "120,000 triangles" in problems(sound, meshes=(crowd,))
     large = replace(mesh.material, bumps=np.zeros((2, 5000, 3), np.uint8))

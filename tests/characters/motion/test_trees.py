@@ -282,8 +282,8 @@ def test_a_file_beside_says_what_joints_are(human, tmp_path):
     ("text", "told"),
     [
         ("a = = 1", "not TOML"),
-        ("[jonts]\nx = 1", r"\[jonts\] means nothing"),
-        ("[joints]\nbeak = 'head'", "no part of a body"),
+        ("[jonts]\nx = 1", r"\[jonts\] is not a known table"),
+        ("[joints]\nbeak = 'head'", "not a body part"),
         ("[joints]\nhead = 3", "write part"),
         ("\xff", "not TOML"),
     ],

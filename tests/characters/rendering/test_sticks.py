@@ -7,7 +7,7 @@ import pytest
 
 from characters import Character, Pose, Skeleton
 from characters.model.character import skin
-from characters.model.stick_figure import LEFT, RIGHT, stick_figure
+from characters.model.stick_figure import LEFT_RGB, RIGHT_RGB, stick_figure
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def test_it_is_as_tall_as_its_skeleton_and_closed_and_seen_from_outside(human):
 def test_left_is_blue_and_right_is_red(human):
     mesh = human.meshes[0]
     assert mesh.colors is not None
-    for color, sign in ((LEFT, 1), (RIGHT, -1)):
+    for color, sign in ((LEFT_RGB, 1), (RIGHT_RGB, -1)):
         painted = np.isclose(mesh.colors[:, :3], color).all(axis=1)
         assert painted.sum() > 100
         assert np.median(sign * mesh.positions[painted, 0]) > 0.05

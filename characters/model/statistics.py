@@ -1,4 +1,4 @@
-"""What can be measured of a character and its clips."""
+"""Statistics of a character and its clips."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,31 +11,31 @@ from characters.motion.contacts import find_contacts, spans
 from characters.motion.ground import find_ground, joint_trajectories
 from characters.skeleton.feet import find_feet
 
-_GOES = 0.15  # heights a second: what is slower stands
+_MIN_SPEED = 0.15  # body heights per second; slower bodies stand
 
 
 @dataclass(frozen=True)
-class Sizes:
-    """How large a character is."""
+class CharacterStats:
+    """The size of a character."""
 
     height: float
-    """Of the rest pose above the ground [m]."""
+    """Height of the rest pose above the ground [m]."""
 
     joints: int
     meshes: int
     vertices: int
     triangles: int
     materials: int
-    """Different ones."""
+    """Distinct materials."""
 
     textures: int
-    """Different pictures, of all kinds."""
+    """Distinct images of all kinds."""
 
     morphs: tuple[str, ...]
     """Their names."""
 
     @classmethod
-    def of(cls, character: Character) -> "Sizes":
+    def of(cls, character: Character) -> "CharacterStats":
         """Measure a character."""
         materials = [mesh.material for mesh in character.meshes]
         maps = [image for each in materials for image in (each.texture, each.surface, each.bumps)]
@@ -52,42 +52,42 @@ class Sizes:
 
 
 @dataclass(frozen=True)
-class Footing:
-    """How one foot stands in a clip."""
+class FootContactStats:
+    """The ground contact of one foot in a clip."""
 
     foot: str
-    """The part of `Anatomy` that it is, or the name of its joint."""
+    """Its part in `Anatomy`, or the name of its joint."""
 
     share: float
-    """Of the clip during which it stands, 0…1."""
+    """Part of the clip with contact, 0…1."""
 
-    times: int
-    """How often it is put down."""
+    landings: int
+    """Number of contacts, 0 for one without an end."""
 
 
 @dataclass(frozen=True)
-class ClipFacts:
-    """What there is to know of one clip."""
+class ClipStats:
+    """The movement of one clip."""
 
     clip: Clip
-    """The clip itself."""
+    """The clip."""
 
     speed: float
-    """How fast the body goes over the ground, on average [m/s]; in place, over a ground that is
-    taken to run backward under it."""
+    """Mean speed over the ground [m/s]; in place, over a ground that moves backward under it as a
+    treadmill."""
 
     in_place: bool
-    """Whether it goes nowhere, though its feet do."""
+    """Whether the feet walk and the body stays."""
 
-    opening: float
-    """Furthest that a joint is, in the last frame, from where it was in the first [m]."""
+    loop_gap: float
+    """Greatest distance of a joint between the first and the last frame [m]."""
 
-    footing: tuple[Footing, ...]
+    contacts: tuple[FootContactStats, ...]
     """Of each foot."""
 
 
-def joints_of_feet(character: Character) -> dict[str, tuple[int, ...]]:
-    """Return the joints of each foot, from the ankle on, by its name."""
+def foot_joints(character: Character) -> dict[str, tuple[int, ...]]:
+    """Return the joints of each foot, from the ankle on, by name."""
     skeleton, anatomy = character.skeleton, character.anatomy
     if not anatomy.feet:
         return {skeleton.names[foot[0]]: foot for foot in find_feet(skeleton)}
@@ -101,33 +101,35 @@ def joints_of_feet(character: Character) -> dict[str, tuple[int, ...]]:
     return feet
 
 
-def facts_of(character: Character, clip: Clip, feet: Mapping[str, Sequence[int]]) -> ClipFacts:
-    """Return what there is to know of one clip; `feet` are the joints of each foot by its name."""
+def clip_stats(character: Character, clip: Clip, feet: Mapping[str, Sequence[int]]) -> ClipStats:
+    """Return the statistics of one clip; `feet` are the joints of each foot by name."""
     skeleton = character.skeleton
     ends = clip.in_place[np.array([0, len(clip) - 1])].globals(skeleton)[:, :, :3, 3]
-    opening = float(np.linalg.norm(ends[1] - ends[0], axis=-1).max())
+    loop_gap = float(np.linalg.norm(ends[1] - ends[0], axis=-1).max())
     if len(clip) < 2:
-        return ClipFacts(clip, 0.0, False, opening, ())
+        return ClipStats(clip, 0.0, False, loop_gap, ())
     contacts = find_contacts(clip, skeleton, list(feet.values()))
-    footing = [
-        Footing(name, float(stands.mean()), 0 if stands.all() else len(spans(stands, clip.loop)))
-        for name, stands in zip(feet, contacts.T, strict=True)
+    stats = [
+        FootContactStats(name, float(down.mean()), 0 if down.all() else len(spans(down, clip.loop)))
+        for name, down in zip(feet, contacts.T, strict=True)
     ]
-    speed, in_place = _speed(character, clip, [joint for foot in feet.values() for joint in foot])
-    return ClipFacts(clip, speed, in_place, opening, tuple(footing))
+    speed, in_place = _ground_speed(
+        character, clip, [joint for foot in feet.values() for joint in foot]
+    )
+    return ClipStats(clip, speed, in_place, loop_gap, tuple(stats))
 
 
-def _speed(character: Character, clip: Clip, feet: list[int]) -> tuple[float, bool]:
-    """Return how fast a body goes in a clip [m/s], and whether only its feet do."""
+def _ground_speed(character: Character, clip: Clip, feet: list[int]) -> tuple[float, bool]:
+    """Return the speed over the ground [m/s], and whether the clip walks in place."""
     if clip.root_motion:
         speed = clip.cycle.length / clip.duration
     else:
         hips = character.anatomy.joint("hips") or 0
         ends = clip.poses[np.array([0, len(clip) - 1])].globals(character.skeleton)
         speed = float(np.linalg.norm(np.diff(ends[:, hips, [0, 2], 3], axis=0))) / clip.duration
-    if speed > _GOES * character.height or not feet:
+    if speed > _MIN_SPEED * character.height or not feet:
         return speed, False
     tracked = joint_trajectories(clip, character.skeleton)
     ground = find_ground(clip, tracked, np.array(feet, np.intp))
-    under = float(np.hypot(*ground.velocity))
-    return (under, True) if under > _GOES * character.height else (speed, False)
+    treadmill = float(np.hypot(*ground.velocity))
+    return (treadmill, True) if treadmill > _MIN_SPEED * character.height else (speed, False)
