@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from characters.ik.legs import LegIK
-from characters.motion.batch.bank import Bank
+from characters.motion.batch.bank import ClipBank
 from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts
 from characters.motion.motion import RootDelta
@@ -49,7 +49,7 @@ class FootTrajectories:
     motions: tuple[PhasedMotion, ...]
     """The clips by their phases."""
 
-    bank: Bank
+    bank: ClipBank
     """The clips, then the stance. Beside a pose stand ball (3), facing (4) and contact (1) of each
     foot; none for the stance."""
 
@@ -84,7 +84,7 @@ class FootTrajectories:
         feet = [_trodden(clip, skeleton, legs, stance) for clip in clips]
         still = Clip("stance", 1.0, _once(standing), loop=False)
         beside = [*(each.reshape(len(each), -1) for each in feet), np.zeros((1, legs.count * 8))]
-        bank = Bank.of(skeleton, [*clips, still], np.float64, beside)
+        bank = ClipBank.of(skeleton, [*clips, still], np.float64, beside)
         homes = np.stack([_home(each) for each in feet])
         return FootTrajectories(tuple(motions), bank, homes, legs, stance)
 
@@ -105,7 +105,7 @@ class FootTrajectories:
         heard = [(number, self.time(number, phase), weight * share) for number, weight in voices]
         if share < 1.0:
             heard.append((len(self.motions), 0.0, 1.0 - share))
-        pose, numbers = self.bank.blended(heard)
+        pose, numbers = self.bank.blend(heard)
         feet: list[list[float]] = (numbers.reshape(-1, 8) / share).tolist()
         self._stood[:] = [(voices, phase, [foot[7] for foot in feet])]
         return pose, feet

@@ -7,7 +7,7 @@ import numpy as np
 
 from characters.model.bind_pose import bind_placements
 from characters.model.character import Character
-from characters.motion.mirror import EXACT, Mirror
+from characters.motion.mirror import LENGTH_TOLERANCE, Mirror
 from characters.skeleton.pose import Pose
 
 _NO_PAIRS: Mapping[str, str] = MappingProxyType({})
@@ -44,5 +44,5 @@ def mirror_of(
         # Parts bound away from the rest pose are modelled about a plane of their own.
         rest = skeleton.rest.globals(skeleton)[:, :3, 3]
         distances = np.linalg.norm(placements[:, :3, 3] - rest, axis=-1)
-        skinned &= distances < 100 * EXACT * np.ptp(rest, axis=0).max()
+        skinned &= distances < 100 * LENGTH_TOLERANCE * np.ptp(rest, axis=0).max()
     return Mirror.about(skeleton, character.morphs, pairs, placements, skinned)

@@ -1,10 +1,10 @@
-"""Left and right exchanged: for poses, steps, clips and motions of any symmetric skeleton.
+"""Mirroring of poses, root deltas, clips and motions of symmetric skeletons.
 
-A symmetric pose, of rest or the one that the skin was bound in, says how the frame of a joint and
-that of its partner belong together. With B(k) the transform of a joint k to the character in that
-pose, p(k) its partner and M the reflection x → −x, F(k) = B⁻¹(p(k)) M B(k) takes coordinates in the
-frame of k to those in its partner's. The transform L of a joint in its parent q then becomes
-F(q) L F⁻¹(k), that of the partner: the skin is reflected exactly, whatever the joints' axes are.
+A symmetric pose (the rest or bind pose) defines how the frames of a joint and its partner
+correspond. Let B(k) be the transform of joint k to the character in that pose, p(k) its partner
+and M the reflection x → −x. Then F(k) = B⁻¹(p(k)) M B(k) maps coordinates in the frame of k to the
+frame of its partner, and the transform L of k in its parent q becomes F(q) L F⁻¹(k), the transform
+of the partner. The skin is mirrored exactly, whatever the axes of the joints.
 """
 
 from collections.abc import Mapping
@@ -22,45 +22,45 @@ from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.symmetry import check_symmetry, paired_joints, paired_names
 
 _REFLECTION = np.array([-1.0, 1.0, 1.0])
-_PSEUDO = np.array([1.0, -1.0, -1.0, 1.0])  # what the reflection does to a rotation
-EXACT = 1e-5
-"""Relative difference below which two lengths are meant to be the same."""
+_QUATERNION_REFLECTION = np.array([1.0, -1.0, -1.0, 1.0])
+LENGTH_TOLERANCE = 1e-5
+"""Relative difference below which two lengths count as equal."""
 
 _NONE: Mapping[str, str] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
 class _Frames:
-    """Transforms M Q of joints' frames to their partners', with shifts and uniform scales."""
+    """Transforms F from the frames of joints to those of their partners."""
 
-    turns: Array
-    """Q, (joints, 4)."""
+    rotations: Array
+    """Q, where F without scale and translation is M Q, (joints, 4)."""
 
-    shifts: Array
+    translations: Array
     """(joints, 3)."""
 
-    sizes: Array
-    """(joints, 1)."""
+    scales: Array
+    """Uniform scales, (joints, 1)."""
 
     def __getitem__(self, joints: NDArray[np.intp]) -> "_Frames":
-        return _Frames(self.turns[joints], self.shifts[joints], self.sizes[joints])
+        return _Frames(self.rotations[joints], self.translations[joints], self.scales[joints])
 
 
 @dataclass(frozen=True)
 class Mirror:
-    """Which joints and morphs of a skeleton change places, and how their frames do."""
+    """Partners of joints and morphs of a skeleton, and the transforms between their frames."""
 
     partners: NDArray[np.intp]
-    """The joint on the other side, (joints,); of one in the middle, itself."""
+    """Joint on the other side, (joints,); a joint in the middle is its own partner."""
 
     frames: "_Frames"
-    """F of each joint: see above."""
+    """F of each joint; see the module."""
 
     parents: "_Frames"
     """F of each joint's parent."""
 
-    looks: NDArray[np.intp]
-    """The morph of the other side, (morphs,); of one for both, itself."""
+    morphs: NDArray[np.intp]
+    """Morph of the other side, (morphs,); a morph of both sides is its own partner."""
 
     @staticmethod
     def of(
@@ -68,20 +68,20 @@ class Mirror:
         morphs: tuple[str, ...] = (),
         pairs: Mapping[str, str] = _NONE,
     ) -> "Mirror":
-        """Return the mirror of a skeleton, its pairs found by places and names.
+        """Return the mirror of a skeleton, with pairs found by positions and names.
 
-        The places of all joints are reflected exactly. Where there is a skin,
-        `characters.model.mirroring.mirror_of` is better: it reflects that, even if the skeleton
-        is a little crooked.
+        The positions of all joints are mirrored exactly. For skinned characters use
+        `characters.model.mirroring.mirror_of`, which mirrors the skin exactly even if the skeleton
+        is slightly asymmetric.
 
         Parameters
         ----------
         skeleton
-            Its rest pose is symmetric about the plane x = 0.
+            A skeleton whose rest pose is symmetric about the plane x = 0.
         morphs
-            Names of the character's morphs; "blinkLeft" changes places with "blinkRight".
+            Names of the character's morphs; "blinkLeft" is exchanged with "blinkRight".
         pairs
-            Joint to joint where they cannot be found; each counts both ways.
+            Partners that cannot be found, by joint names; each pair applies both ways.
 
         Raises
         ------
@@ -99,7 +99,7 @@ class Mirror:
         symmetric: Array,
         exact: NDArray[np.bool_],
     ) -> "Mirror":
-        """Return the mirror of a skeleton about a pose that need not be its rest pose.
+        """Return the mirror of a skeleton for any symmetric pose.
 
         Parameters
         ----------
@@ -108,34 +108,36 @@ class Mirror:
         symmetric
             `character_from_joint` in the symmetric pose, (joints, 4, 4).
         exact
-            Joints with a skin, (joints,): what hangs on them is reflected; of the others only the
-            places are.
+            Skinned joints, (joints,), whose skin is mirrored exactly; of other joints only the
+            positions are.
 
         Raises
         ------
         CharacterError
-            If that pose is not symmetric, or a joint has no partner.
+            If the pose is not symmetric, or a joint has no partner.
         """
-        places = symmetric[:, :3, 3]
-        partners = paired_joints(skeleton, places, pairs)
-        check_symmetry(skeleton, places, partners)
-        sizes = np.cbrt(np.abs(np.linalg.det(symmetric[:, :3, :3])))
-        turns = rotations.from_matrix(symmetric[:, :3, :3] / sizes[:, None, None])
-        # F = M Q, and so Q = M G(p)ᵀ M G, with G the rotations alone.
+        positions = symmetric[:, :3, 3]
+        partners = paired_joints(skeleton, positions, pairs)
+        check_symmetry(skeleton, positions, partners)
+        scales = np.cbrt(np.abs(np.linalg.det(symmetric[:, :3, :3])))
+        turns = rotations.from_matrix(symmetric[:, :3, :3] / scales[:, None, None])
+        # F = M Q, and so Q = M G(p)ᵀ M G, where G are the rotations only.
         theirs = rotations.conjugate(turns[partners])
-        between = rotations.multiply(theirs * _PSEUDO, turns)
-        apart = places * _REFLECTION - places[partners]
-        crooked = np.linalg.norm(apart, axis=-1) > EXACT * float(np.ptp(places, axis=0).max())
-        shifts = rotations.rotate(theirs, apart) / sizes[partners, None]
+        between = rotations.multiply(theirs * _QUATERNION_REFLECTION, turns)
+        apart = positions * _REFLECTION - positions[partners]
+        tolerance = LENGTH_TOLERANCE * float(np.ptp(positions, axis=0).max())
+        asymmetric = np.linalg.norm(apart, axis=-1) > tolerance
+        translations = rotations.rotate(theirs, apart) / scales[partners, None]
         exact = exact & exact[partners]
-        crooked |= crooked[partners]
-        shifts = np.where((exact & crooked)[:, None], shifts, 0.0)
-        ratios = (sizes / sizes[partners])[:, None]
-        ratios = np.where(exact[:, None] & (np.abs(ratios - 1.0) > EXACT), ratios, 1.0)
-        # One frame more, of the world, for parent −1.
+        asymmetric |= asymmetric[partners]
+        translations = np.where((exact & asymmetric)[:, None], translations, 0.0)
+        ratios = (scales / scales[partners])[:, None]
+        different = np.abs(ratios - 1.0) > LENGTH_TOLERANCE
+        ratios = np.where(exact[:, None] & different, ratios, 1.0)
+        # One more frame, the world's, for parent −1.
         frames = _Frames(
             np.vstack([between, rotations.IDENTITY]),
-            np.vstack([shifts, np.zeros(3)]),
+            np.vstack([translations, np.zeros(3)]),
             np.vstack([ratios, np.ones(1)]),
         )
         joints = np.arange(len(skeleton))
@@ -144,42 +146,45 @@ class Mirror:
         )
 
     def pose(self, pose: Pose) -> Pose:
-        """Return poses (…) mirrored."""
+        """Return mirrored poses (…)."""
         frames, parents = self.frames, self.parents
-        turns = rotations.multiply(parents.turns, pose.rotations)
-        turns = rotations.multiply(turns, rotations.conjugate(frames.turns)) * _PSEUDO
-        # Where the origin of the partner's frame is, as seen from the joint.
+        turns = rotations.multiply(parents.rotations, pose.rotations)
+        turns = rotations.multiply(turns, rotations.conjugate(frames.rotations))
+        turns = turns * _QUATERNION_REFLECTION
+        # The origin of the partner's frame in the frame of the joint.
         origins = -rotations.rotate(
-            rotations.conjugate(frames.turns), frames.shifts * _REFLECTION / frames.sizes
+            rotations.conjugate(frames.rotations), frames.translations * _REFLECTION / frames.scales
         )
-        scales, shifts = pose.scales, pose.translations
-        if frames.shifts.any():
-            spread = origins if scales is None else origins * scales
-            shifts = shifts + rotations.rotate(pose.rotations, spread)
-        shifts = rotations.rotate(parents.turns, shifts) * _REFLECTION * parents.sizes
-        sizes = parents.sizes / frames.sizes
+        scales, translations = pose.scales, pose.translations
+        if frames.translations.any():
+            scaled = origins if scales is None else origins * scales
+            translations = translations + rotations.rotate(pose.rotations, scaled)
+        translations = rotations.rotate(parents.rotations, translations)
+        translations = translations * _REFLECTION * parents.scales
+        ratios = parents.scales / frames.scales
         if scales is not None:
-            # F S F⁻¹ along the partner's axes; frames of partners differ by quarter turns at most.
-            scales = (rotations.to_matrix(frames.turns) ** 2 @ scales[..., None])[..., 0] * sizes
-        elif (sizes != 1.0).any():
-            scales = np.broadcast_to(sizes, shifts.shape)
+            # F S F⁻¹ along the partner's axes, which differ by quarter turns at most.
+            squares = rotations.to_matrix(frames.rotations) ** 2
+            scales = (squares @ scales[..., None])[..., 0] * ratios
+        elif (ratios != 1.0).any():
+            scales = np.broadcast_to(ratios, translations.shape)
         morphs = pose.morphs
-        if morphs is not None and len(self.looks):
-            morphs = morphs[..., self.looks]
+        if morphs is not None and len(self.morphs):
+            morphs = morphs[..., self.morphs]
         return Pose(
-            (shifts + parents.shifts)[..., self.partners, :],
+            (translations + parents.translations)[..., self.partners, :],
             turns[..., self.partners, :],
             None if scales is None else scales[..., self.partners, :],
             morphs,
         )
 
     @staticmethod
-    def step(step: RootDelta) -> RootDelta:
-        """Return a step mirrored."""
-        return RootDelta(-step.x, step.z, -step.yaw)
+    def delta(delta: RootDelta) -> RootDelta:
+        """Return a mirrored root delta."""
+        return RootDelta(-delta.x, delta.z, -delta.yaw)
 
     def clip(self, clip: Clip, name: str = "") -> Clip:
-        """Return a clip mirrored; its footfalls are then found anew by `phased`."""
+        """Return a mirrored clip; `phased` then finds its footfalls."""
         return replace(clip, name=name or clip.name, poses=self.pose(clip.poses))
 
 
@@ -187,15 +192,15 @@ class Mirror:
 class Mirrored:
     """A motion with left and right exchanged; `Cyclic`.
 
-    Its left footfall is the right one of the motion: of a motion that takes steps, phases are half
-    a cycle away. Times are the same.
+    Its left footfall is the right footfall of the motion, so the phases of a motion with footfalls
+    differ by half a cycle. Times are equal.
     """
 
     motion: Motion
-    """What is played."""
+    """The motion."""
 
     mirror: Mirror
-    """That of its skeleton."""
+    """The mirror of its skeleton."""
 
     @property
     def duration(self) -> float:
@@ -208,7 +213,7 @@ class Mirrored:
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        return self.mirror.step(self.motion.travel(start, end))
+        return self.mirror.delta(self.motion.travel(start, end))
 
     def at(self, phase: float) -> Pose:
         """Return the pose at a phase."""
@@ -217,11 +222,11 @@ class Mirrored:
     def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
         lead = self.lead
-        return self.mirror.step(as_cyclic(self.motion).between(start + lead, end + lead))
+        return self.mirror.delta(as_cyclic(self.motion).between(start + lead, end + lead))
 
     @property
     def lead(self) -> float:
-        """How far ahead of its own phase the motion is; back again where mirrored twice."""
+        """Phase of the motion ahead of the mirrored one; negative if mirrored twice."""
         if isinstance(self.motion, Mirrored):
             return -self.motion.lead
         return 0.5 if has_footfalls(self.motion) else 0.0

@@ -1,8 +1,8 @@
-"""Actions that start when they are due and share the joints by their weights.
+"""Schedules: actions on a time line that share the joints by their weights.
 
-The blending engine MIRAnim (Egges, "Real-time animation of interactive virtual humans", 2006,
-section 4.2). For each joint the mean is taken of all that plays, by weight, mask and fade curve;
-a schedule is a motion, so schedules nest, and give the same as if all were in one.
+After the blending engine MIRAnim (Egges, "Real-time animation of interactive virtual humans", 2006,
+section 4.2). Each joint shows the mean of the active actions by weight, mask and fade curve. A
+schedule is a motion, so schedules nest; nesting does not change the result.
 """
 
 import math
@@ -24,40 +24,40 @@ class Action:
     """A motion in a schedule."""
 
     motion: Motion
-    """What is played; its time 0 is `start`."""
+    """The motion; its time 0 is `start`."""
 
     start: float = 0.0
-    """When it starts [s]."""
+    """Its start [s]."""
 
     weight: Weight = 1.0
-    """How much it counts beside the others; none negative, and only the ratio matters."""
+    """Its weight relative to the other actions; not negative."""
 
     mask: Mask | None = None
-    """What the weight is multiplied with for each joint, (joints,), or None for 1."""
+    """Factor of the weight for each joint, (joints,), or None for 1."""
 
     scale: Weight = 1.0
-    """How far it goes from the rest pose: 0 is that, 2 twice as far as the motion."""
+    """Factor of its distance from the rest pose: 0 is the rest pose, 2 exaggerates."""
 
     scales: Array | None = None
-    """What the scale is multiplied with for each joint, (joints,), or None for 1."""
+    """Factor of the scale for each joint, (joints,), or None for 1."""
 
     morphs: float = 1.0
-    """What the weight is multiplied with for morphs, if the motion has any."""
+    """Factor of the weight for morphs, if the motion has any."""
 
     always: bool = False
-    """Whether it plays before its start and after its end, too, as loops do."""
+    """Whether it also plays before its start and after its end, as loops do."""
 
     name: str = ""
-    """What to call it when it shall be cut or removed."""
+    """Name by which it can be cut or removed."""
 
     until: float = math.inf
-    """When it is cut off [s]."""
+    """When it stops [s], if earlier than its end."""
 
     release: float = 0.0
-    """How long it fades before that [s]."""
+    """Length of the fade before `until` [s]."""
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be mixed."""
+        """Refuse invalid masks, weights and times."""
         what = f"action {self.name!r}"
         check_mask(what, self.mask)
         for weight in (self.weight, self.morphs):
@@ -71,11 +71,11 @@ class Action:
 
     @property
     def end(self) -> float:
-        """When its motion has ended or it is cut off [s]."""
+        """When it ends or stops [s]."""
         return min(self.start + self.motion.duration, self.until)
 
-    def loudness(self, time: float) -> float:
-        """Return its weight at a time [s] of the schedule, 0 where it does not play."""
+    def weight_at(self, time: float) -> float:
+        """Return its weight at a time [s] of the schedule; 0 while it does not play."""
         own, duration = time - self.start, self.motion.duration
         if time >= self.until or not (self.always or 0.0 <= own <= duration):
             return 0.0
@@ -84,20 +84,20 @@ class Action:
             weight *= ease((self.until - time) / self.release, "gonio")
         return max(weight, 0.0)
 
-    def size(self, time: float) -> float:
+    def scale_at(self, time: float) -> float:
         """Return its scale at a time [s] of the schedule."""
         return value(self.scale, time - self.start, self.motion.duration)
 
 
 @dataclass(frozen=True)
-class _Voice:
-    """A pose, and how much of it."""
+class _Contribution:
+    """A pose and its weights."""
 
     pose: Pose
     weights: Array
-    """(joints,)."""
+    """Of its joints, (joints,)."""
 
-    looks: float
+    morph_weight: float
     """Of its morphs."""
 
 
@@ -105,47 +105,47 @@ class _Voice:
 class Schedule:
     """Actions, mixed joint by joint; a `Motion`. Their order does not matter.
 
-    It does not change: `adding`, `without` and `cut` return another one on the same time line.
+    It is immutable: `adding`, `without` and `cut` return a new schedule on the same time line.
     """
 
     actions: tuple[Action, ...]
-    """What plays, each from its own start on."""
+    """The actions."""
 
     rest: Pose
-    """What joints show that no action moves, and what scales refer to: the skeleton's rest."""
+    """The skeleton's rest pose: shown by joints without actions, and reference of scales."""
 
     def __post_init__(self) -> None:
-        """Refuse names that stand for two actions."""
+        """Refuse duplicate names."""
         names = [action.name for action in self.actions if action.name]
         for name in names:
             if names.count(name) > 1:
-                raise CharacterError(f"schedule: two actions are called {name!r}; rename one")
+                raise CharacterError(f"schedule: two actions are named {name!r}; rename one")
 
     @property
     def duration(self) -> float:
-        """When the last action ends [s]; what plays always may go on."""
+        """End of the last action [s]; actions that play always may continue."""
         return max((action.end for action in self.actions), default=0.0)
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
-        voices = self._voices(time)
-        return replace(_mixed(voices), morphs=_morphs(voices))
+        contributions = self._contributions(time)
+        return replace(_mixed(contributions), morphs=_mixed_morphs(contributions))
 
     def travel(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two times [s]."""
-        return integrate_travel(start, end, self._moved)
+        return integrate_travel(start, end, self._travel)
 
     def adding(self, action: Action) -> "Schedule":
-        """Return the schedule with one action more."""
+        """Return the schedule with another action."""
         return Schedule((*self.actions, action), self.rest)
 
     def without(self, name: str) -> "Schedule":
-        """Return the schedule without an action, at once; `cut` lets it fade."""
+        """Return the schedule without an action, which disappears at once; see also `cut`."""
         gone = self._named(name)
         return Schedule(tuple(a for a in self.actions if a is not gone), self.rest)
 
     def cut(self, name: str, time: float, fade: float = 0.25) -> "Schedule":
-        """Return the schedule in which an action fades from a time on [s], over `fade` [s]."""
+        """Return the schedule in which an action fades out from a time on [s], over `fade` [s]."""
         old = self._named(name)
         until = min(old.until, time + fade)
         new = replace(old, until=until, release=fade if until < old.until else old.release)
@@ -158,64 +158,77 @@ class Schedule:
         names = ", ".join(repr(a.name) for a in self.actions if a.name) or "none with a name"
         raise CharacterError(f"schedule: no action {name!r}; there are {names}")
 
-    def _voices(self, time: float) -> list[_Voice]:
-        """Return what sounds, its weights divided by their sum, joint by joint."""
-        voices = [voice for action in self.actions for voice in self._heard(action, time)]
+    def _contributions(self, time: float) -> list[_Contribution]:
+        """Return what is active, with weights that sum to one for each joint."""
+        active = [part for action in self.actions for part in self._active(action, time)]
         joints = self.rest.rotations.shape[-2]
-        total = sum((voice.weights for voice in voices), np.zeros(joints))
-        looks = sum(v.looks for v in voices if v.pose.morphs is not None)
-        silent = total <= 0.0
-        whole = np.where(silent, 1.0, total)
+        total = sum((part.weights for part in active), np.zeros(joints))
+        morphs = sum(part.morph_weight for part in active if part.pose.morphs is not None)
+        unmoved = total <= 0.0
+        divisor = np.where(unmoved, 1.0, total)
         shared = [
-            _Voice(v.pose, v.weights / whole, v.looks / looks if looks > 0 else 0.0) for v in voices
+            _Contribution(
+                part.pose,
+                part.weights / divisor,
+                part.morph_weight / morphs if morphs > 0 else 0.0,
+            )
+            for part in active
         ]
-        if silent.any():
-            shared.append(_Voice(replace(self.rest, morphs=None), silent.astype(float), 0.0))
+        if unmoved.any():
+            rest = replace(self.rest, morphs=None)
+            shared.append(_Contribution(rest, unmoved.astype(float), 0.0))
         return shared
 
-    def _heard(self, action: Action, time: float) -> Iterator[_Voice]:
-        """Yield the voices of an action; those of a schedule one by one, as if they stood here."""
-        loudness = action.loudness(time)
-        if loudness <= 0.0:
+    def _active(self, action: Action, time: float) -> Iterator[_Contribution]:
+        """Yield the contributions of an action; those of a nested schedule one by one."""
+        weight = action.weight_at(time)
+        if weight <= 0.0:
             return
         own, joints = time - action.start, self.rest.rotations.shape[-2]
         mask = np.ones(joints) if action.mask is None else action.mask
         if isinstance(action.motion, Schedule):
-            inner = action.motion._voices(own)
+            inner = action.motion._contributions(own)
         else:
-            inner = [_Voice(action.motion.sample(own), np.ones(joints), 1.0)]
-        size = action.size(time)
-        for voice in inner:
-            if not voice.pose.rotations.shape[-2] == joints == len(mask):
+            inner = [_Contribution(action.motion.sample(own), np.ones(joints), 1.0)]
+        scale = action.scale_at(time)
+        for part in inner:
+            if not part.pose.rotations.shape[-2] == joints == len(mask):
                 raise CharacterError(
                     f"action {action.name!r}: a mask of {len(mask)} and a pose of "
-                    f"{voice.pose.rotations.shape[-2]} joints in a schedule of {joints}; "
+                    f"{part.pose.rotations.shape[-2]} joints in a schedule of {joints}; "
                     "retarget the motion"
                 )
-            pose = _scaled(voice.pose, self.rest, size, action.scales)
-            weights = voice.weights * (loudness * mask)
-            yield _Voice(pose, weights, voice.looks * loudness * action.morphs)
+            pose = _scaled(part.pose, self.rest, scale, action.scales)
+            weights = part.weights * (weight * mask)
+            yield _Contribution(pose, weights, part.morph_weight * weight * action.morphs)
 
-    def _moved(self, start: float, end: float, moment: float) -> RootDelta:
-        """Return the mean of the ways of what moves the root."""
-        roots: list[tuple[Action, float]] = []
+    def _travel(self, start: float, end: float, weight_time: float) -> RootDelta:
+        """Return the mean of the root deltas of the actions that move joint 0."""
+        active: list[tuple[Action, float]] = []
         for action in self.actions:
-            share = action.loudness(moment) * (1.0 if action.mask is None else action.mask[0])
-            if share > 0.0:
-                roots.append((action, float(share)))
-        total = sum(share for _, share in roots)
-        sizes = [a.size(moment) * (1.0 if a.scales is None else a.scales[0]) for a, _ in roots]
+            mask = 1.0 if action.mask is None else action.mask[0]
+            weight = action.weight_at(weight_time) * mask
+            if weight > 0.0:
+                active.append((action, float(weight)))
+        total = sum(weight for _, weight in active)
+        scales = [
+            action.scale_at(weight_time) * (1.0 if action.scales is None else action.scales[0])
+            for action, _ in active
+        ]
         return mean_delta(
-            [action.motion.travel(start - action.start, end - action.start) for action, _ in roots],
-            [share / total * size for (_, share), size in zip(roots, sizes, strict=True)],
+            [
+                action.motion.travel(start - action.start, end - action.start)
+                for action, _ in active
+            ],
+            [weight / total * scale for (_, weight), scale in zip(active, scales, strict=True)],
         )
 
 
 class LiveSchedule:
     """A schedule that changes while it plays; a `Motion`.
 
-    Changes count from when they are made on; what was shown before is forgotten. It is for one
-    thread, like everything in this room: whoever has several hands the changes over.
+    A change applies from now on; earlier times show the changed schedule. Not thread-safe, like
+    everything in this room.
     """
 
     def __init__(self, schedule: Schedule) -> None:
@@ -223,11 +236,11 @@ class LiveSchedule:
 
     @property
     def duration(self) -> float:
-        """It plays for ever, as more may come."""
+        """Infinite, because actions may be added."""
         return math.inf
 
     def add(self, action: Action) -> None:
-        """Add an action; its start may lie in the past."""
+        """Add an action; its start may be in the past."""
         self.schedule = self.schedule.adding(action)
 
     def remove(self, name: str) -> None:
@@ -235,7 +248,7 @@ class LiveSchedule:
         self.schedule = self.schedule.without(name)
 
     def cut(self, name: str, time: float, fade: float = 0.25) -> None:
-        """Let an action fade from a time on [s], over `fade` [s]."""
+        """Fade out an action from a time on [s], over `fade` [s]."""
         self.schedule = self.schedule.cut(name, time, fade)
 
     def sample(self, time: float) -> Pose:
@@ -247,49 +260,55 @@ class LiveSchedule:
         return self.schedule.travel(start, end)
 
 
-def _mixed(voices: list[_Voice]) -> Pose:
-    """Return the mean of poses with weights for each joint, which sum to one; without morphs."""
-    share = np.stack([voice.weights for voice in voices])
-    turns = np.stack([voice.pose.rotations for voice in voices])
-    heaviest = turns[share.argmax(0), np.arange(share.shape[1])]
-    if len(voices) > 2:
-        # The signs that agree best do not depend on the order, as those next to one of several
-        # equals would (Markley et al., "Averaging quaternions", 2007).
+def _mixed(contributions: list[_Contribution]) -> Pose:
+    """Return the weighted mean of poses, whose weights sum to one for each joint; no morphs."""
+    share = np.stack([part.weights for part in contributions])
+    turns = np.stack([part.pose.rotations for part in contributions])
+    reference = turns[share.argmax(0), np.arange(share.shape[1])]
+    if len(contributions) > 2:
+        # The principal eigenvector, unlike one of several equal maxima, does not depend on the
+        # order (Markley et al., "Averaging quaternions", 2007).
         squares = np.einsum("kj,kja,kjb->jab", share, turns, turns)
-        heaviest = rotations.align(np.linalg.eigh(squares)[1][..., -1], heaviest)
-    turns = rotations.align(turns, heaviest)
+        reference = rotations.align(np.linalg.eigh(squares)[1][..., -1], reference)
+    turns = rotations.align(turns, reference)
     scales = None
-    if any(voice.pose.scales is not None for voice in voices):
-        scales = np.einsum("kj,kjc->jc", share, np.stack([v.pose.scales_or_ones for v in voices]))
-    shifts = np.stack([voice.pose.translations for voice in voices])
+    if any(part.pose.scales is not None for part in contributions):
+        all_scales = np.stack([part.pose.scales_or_ones for part in contributions])
+        scales = np.einsum("kj,kjc->jc", share, all_scales)
+    translations = np.stack([part.pose.translations for part in contributions])
     return Pose(
-        np.einsum("kj,kjc->jc", share, shifts),
+        np.einsum("kj,kjc->jc", share, translations),
         rotations.normalize(np.einsum("kj,kjc->jc", share, turns)),
         scales,
     )
 
 
-def _morphs(voices: list[_Voice]) -> Array | None:
-    """Return the mean of the morphs of those that have any."""
-    looks = [(v.pose.morphs, v.looks) for v in voices if v.pose.morphs is not None]
-    if not looks:
+def _mixed_morphs(contributions: list[_Contribution]) -> Array | None:
+    """Return the weighted mean of the morphs of the poses that have any."""
+    weighted = [
+        part.pose.morphs * part.morph_weight
+        for part in contributions
+        if part.pose.morphs is not None
+    ]
+    if not weighted:
         return None
-    total: Array = np.sum([morphs * share for morphs, share in looks], axis=0)
+    total: Array = np.sum(weighted, axis=0)
     return total
 
 
-def _scaled(pose: Pose, rest: Pose, size: float, sizes: Array | None) -> Pose:
-    """Return the pose so many times as far from the rest pose."""
-    if size == 1.0 and sizes is None:
+def _scaled(pose: Pose, rest: Pose, scale: float, scales: Array | None) -> Pose:
+    """Return the pose with its distance from the rest pose multiplied."""
+    if scale == 1.0 and scales is None:
         return pose
-    factor = (np.ones(rest.rotations.shape[-2]) if sizes is None else sizes)[:, None] * size
+    factor = (np.ones(rest.rotations.shape[-2]) if scales is None else scales)[:, None] * scale
     away = rotations.multiply(pose.rotations, rotations.conjugate(rest.rotations))
     turns = rotations.from_rotation_vector(rotations.to_rotation_vector(away) * factor)
+    own, sized = rest.scales_or_ones, None
+    if pose.scales is not None:
+        sized = own + (pose.scales - own) * factor
     return Pose(
         rest.translations + (pose.translations - rest.translations) * factor,
         rotations.multiply(turns, rest.rotations),
-        None
-        if pose.scales is None
-        else rest.scales_or_ones + (pose.scales - rest.scales_or_ones) * factor,
-        None if pose.morphs is None else pose.morphs * size,
+        sized,
+        None if pose.morphs is None else pose.morphs * scale,
     )

@@ -1,8 +1,7 @@
-"""Where the joints of many characters are, all at once.
+"""Global joint transforms of many characters at once.
 
-The walk down the skeleton goes by depth: all joints of one depth, of all characters, in a few
-products. Characters lie innermost in memory meanwhile, so that each product runs over it in a
-straight line.
+The skeleton is processed by depth: all joints of one depth, of all characters, in a few products.
+Characters are the innermost axis, so that the products run over contiguous memory.
 """
 
 from dataclasses import dataclass
@@ -14,68 +13,70 @@ import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from characters.motion.batch.bank import Bank
+from characters.motion.batch.bank import ClipBank
 from characters.skeleton.pose import Pose, Skeleton
 
 Floats = NDArray[Any]
-Numbers = NDArray[np.intp]
+Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
 class _Level:
     """The joints of one depth."""
 
-    place: slice
-    """Where they are in the order of depth."""
+    positions: slice
+    """Their positions in the order of depth."""
 
-    parents: Numbers
-    """Where their parents are in it, (joints of the level,)."""
+    parents: Indices
+    """Positions of their parents, (joints of the level,)."""
 
 
 @dataclass(frozen=True)
-class _Order:
+class _DepthOrder:
     """Joints sorted by depth."""
 
-    joints: Numbers
-    """Number of the joint at each place, (joints,)."""
+    joints: Indices
+    """Joint number at each position, (joints,)."""
 
-    places: Numbers
-    """Place of each joint, (joints,)."""
+    positions: Indices
+    """Position of each joint, (joints,)."""
 
     levels: tuple[_Level, ...]
-    """Below the roots, from the top down."""
+    """All levels below the roots, from the top down."""
 
 
-def crowd_globals(bank: Bank, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Floats:
-    """Return `character_from_joint` of many characters that each mix some clips.
+def crowd_globals(bank: ClipBank, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Floats:
+    """Return `character_from_joint` of many characters, each of which mixes some clips.
 
-    The same as `globals_of_many` of `Bank.sample`, in less time.
+    Equal to `globals_of_many` of `ClipBank.sample`, but faster.
 
     Parameters
     ----------
     bank
         The clips.
     clips, times
-        What each character plays and when [s], (characters, voices).
+        Clip numbers and times [s] for each character, (characters, clips of each).
     weights
-        How much of each, (characters, voices); each row sums to one.
+        Their weights, (characters, clips of each); each row sums to one.
 
     Returns
     -------
     ndarray
         (characters, joints, 3, 4); the last row of each matrix, (0, 0, 0, 1), is left out.
     """
-    rows = bank.mixed(clips, times, weights)
-    columns = _innermost(rows)
+    rows = bank.mixed_rows(clips, times, weights)
+    columns = _transposed(rows)
     joints = len(bank.skeleton)
-    turned, shifted, sized, _ = bank.edges
+    turned, shifted, sized, _ = bank.column_ends
     turns = columns[:turned].reshape(joints, 4, -1)
     turns = turns / np.sqrt(np.einsum("jkn,jkn->jn", turns, turns))[:, None]
-    shifts = _filled(bank.still.translations, bank.moved, columns[turned:shifted])
-    stretched, scales = bank.stretched, None
-    if bank.still.scales is not None:
-        scales = _filled(bank.still.scales, bank.scaled, columns[shifted:sized])[stretched]
-    return _globals(turns, shifts, scales, stretched, bank.skeleton)
+    shifts = _with_constants(bank.constant.translations, bank.moving, columns[turned:shifted])
+    non_unit_scale, scales = bank.non_unit_scale, None
+    if bank.constant.scales is not None:
+        scales = _with_constants(bank.constant.scales, bank.scaling, columns[shifted:sized])[
+            non_unit_scale
+        ]
+    return _globals(turns, shifts, scales, non_unit_scale, bank.skeleton)
 
 
 def globals_of_many(pose: Pose, skeleton: Skeleton) -> Floats:
@@ -86,47 +87,51 @@ def globals_of_many(pose: Pose, skeleton: Skeleton) -> Floats:
     Parameters
     ----------
     pose
-        (poses, joints, …), of any precision; the result has the same.
+        (poses, joints, …), of any precision; the result has the same precision.
     skeleton
-        Of all of them.
+        The skeleton of all poses.
     """
     count, joints = pose.rotations.shape[:2]
     turns, shifts = (
-        _innermost(part.reshape(count, -1)).reshape(joints, -1, count)
+        _transposed(part.reshape(count, -1)).reshape(joints, -1, count)
         for part in (pose.rotations, pose.translations)
     )
     scales = None
     if pose.scales is not None:
-        scales = _innermost(pose.scales.reshape(count, -1)).reshape(joints, 3, count)
+        scales = _transposed(pose.scales.reshape(count, -1)).reshape(joints, 3, count)
     return _globals(turns, shifts, scales, np.arange(joints), skeleton)
 
 
 def _globals(
-    turns: Floats, shifts: Floats, scales: Floats | None, stretched: Numbers, skeleton: Skeleton
+    turns: Floats,
+    shifts: Floats,
+    scales: Floats | None,
+    scaled: Indices,
+    skeleton: Skeleton,
 ) -> Floats:
-    """Return matrices (characters, joints, 3, 4) of locals (joints, 4 or 3, characters).
+    """Return matrices (characters, joints, 3, 4) of local values (joints, 4 or 3, characters).
 
-    The scales are those of the joints `stretched` (n,) alone.
+    The scales are those of the joints `scaled` (n,) only.
     """
-    order = _order(skeleton.parents)
+    order = _depth_order(skeleton.parents)
     joints, _, count = turns.shape
-    # Joints of a depth lie side by side, under each component: one long line for each product.
+    # For each component the joints of a depth are contiguous.
     matrices = np.empty((3, 4, joints, count), turns.dtype)
     _rotate(turns.swapaxes(0, 1)[:, order.joints], matrices)
     if scales is not None:
-        matrices[:, :3, order.places[stretched]] *= scales.swapaxes(0, 1)
+        matrices[:, :3, order.positions[scaled]] *= scales.swapaxes(0, 1)
     matrices[:, 3] = shifts.swapaxes(0, 1)[:, order.joints]
     for level in order.levels:
-        above, here = matrices[:, :, level.parents], matrices[:, :, level.place]
+        above, here = matrices[:, :, level.parents], matrices[:, :, level.positions]
         below = above[:, 0, None] * here[0]
         part = above[:, 1, None] * here[1]
         below += part
         np.multiply(above[:, 2, None], here[2], out=part)
         below += part
         below[:, 3] += above[:, 3]
-        matrices[:, :, level.place] = below
-    sorted_back = matrices.transpose(2, 0, 1, 3)[order.places]
-    return _innermost(sorted_back.reshape(-1, count)).reshape(count, joints, 3, 4)
+        matrices[:, :, level.positions] = below
+    sorted_back = matrices.transpose(2, 0, 1, 3)[order.positions]
+    return _transposed(sorted_back.reshape(-1, count)).reshape(count, joints, 3, 4)
 
 
 def _rotate(q: Floats, matrices: Floats) -> None:
@@ -146,30 +151,30 @@ def _rotate(q: Floats, matrices: Floats) -> None:
     np.add(yz, wx, out=matrices[2, 1])
 
 
-def _filled(still: Floats, moved: Numbers, columns: Floats) -> Floats:
-    """Return numbers (joints, 3) for all characters, (joints, 3, n), some of them moved."""
-    everyone = np.repeat(still[..., None], columns.shape[1], axis=2)
-    everyone[moved] = columns.reshape(len(moved), 3, -1)
+def _with_constants(constant: Floats, moving: Indices, columns: Floats) -> Floats:
+    """Return values (joints, 3, n) for all n characters: constants, and varying columns."""
+    everyone = np.repeat(constant[..., None], columns.shape[1], axis=2)
+    everyone[moving] = columns.reshape(len(moving), 3, -1)
     return everyone
 
 
-def _innermost(rows: Floats) -> Floats:
-    """Return a matrix transposed, in its own memory; OpenCV does it block by block."""
+def _transposed(rows: Floats) -> Floats:
+    """Return a transposed copy of a matrix; OpenCV does it block by block, faster than NumPy."""
     return np.asarray(cv2.transpose(rows)) if rows.size else np.zeros(rows.shape[::-1], rows.dtype)
 
 
 @lru_cache(maxsize=64)
-def _order(parents: tuple[int, ...]) -> _Order:
-    """Return the joints by depth; a parent comes before its children already."""
+def _depth_order(parents: tuple[int, ...]) -> _DepthOrder:
+    """Return the joints sorted by depth."""
     depths: list[int] = []
     for parent in parents:
         depths.append(0 if parent < 0 else depths[parent] + 1)
     depth = np.array(depths)
     joints = np.argsort(depth, kind="stable")
-    places = np.argsort(joints, kind="stable")
-    edges = np.searchsorted(depth[joints], np.arange(depth.max(initial=0) + 2))
+    positions = np.argsort(joints, kind="stable")
+    column_ends = np.searchsorted(depth[joints], np.arange(depth.max(initial=0) + 2))
     levels = []
-    for start, end in pairwise(edges[1:]):
+    for start, end in pairwise(column_ends[1:]):
         own = joints[start:end]
-        levels.append(_Level(slice(int(start), int(end)), places[np.array(parents)[own]]))
-    return _Order(joints, places, tuple(levels))
+        levels.append(_Level(slice(int(start), int(end)), positions[np.array(parents)[own]]))
+    return _DepthOrder(joints, positions, tuple(levels))

@@ -194,7 +194,7 @@ def test_actions_come_and_go_while_it_plays_without_a_pop():
 
 
 def test_two_actions_of_one_name_are_refused():
-    with pytest.raises(CharacterError, match="two actions are called 'a'"):
+    with pytest.raises(CharacterError, match="two actions are named 'a'"):
         Schedule((Action(still(0.0), name="a"), Action(still(1.0), name="a")), REST)
 
 

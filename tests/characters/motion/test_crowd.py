@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import Character, CharacterError, Clip, Pose, Skeleton
-from characters.motion.batch.bank import Bank
+from characters.motion.batch.bank import ClipBank
 from characters.motion.batch.crowd import crowd_globals, globals_of_many
 from characters.motion.blend import mix
 from characters.skeleton.rotations import about, normalize
@@ -17,7 +17,7 @@ def vleo() -> Character:
 
 def test_a_crowd_of_one_voice_each_shows_what_its_clips_show(vleo):
     clips = list(vleo.clips.values())
-    bank = Bank.of(vleo.skeleton, clips, np.float64)
+    bank = ClipBank.of(vleo.skeleton, clips, np.float64)
     rng = np.random.default_rng(3)
     numbers, times = rng.integers(0, len(clips), (20, 1)), rng.uniform(-2.0, 9.0, (20, 1))
     poses = bank.sample(numbers, times, np.ones((20, 1)))
@@ -33,16 +33,16 @@ def test_a_crowd_of_one_voice_each_shows_what_its_clips_show(vleo):
 
 def test_a_crowd_mixes_as_one_character_does(vleo):
     clips = list(vleo.clips.values())
-    bank = Bank.of(vleo.skeleton, clips)
+    bank = ClipBank.of(vleo.skeleton, clips)
     rng = np.random.default_rng(4)
     numbers, times = rng.integers(0, len(clips), (12, 3)), rng.uniform(0.0, 5.0, (12, 3))
     weights = rng.dirichlet(np.ones(3), 12)
     poses = bank.sample(numbers, times, weights)
     for crowd in range(12):
-        voices = [
+        contributions = [
             clips[n].sample(float(t)) for n, t in zip(numbers[crowd], times[crowd], strict=True)
         ]
-        alone = mix(voices, weights[crowd])
+        alone = mix(contributions, weights[crowd])
         near = np.abs((poses[crowd].rotations * alone.rotations).sum(-1))
         assert 2 * np.arccos(np.clip(near, 0, 1)).max() < np.radians(0.5)
 
@@ -67,7 +67,7 @@ def test_matrices_of_many_are_those_of_each(seed):
 def test_a_crowd_stands_where_its_poses_do(name):
     character = Character.load(name)
     clips = list(character.clips.values())
-    bank = Bank.of(character.skeleton, clips, np.float64)
+    bank = ClipBank.of(character.skeleton, clips, np.float64)
     rng = np.random.default_rng(2)
     played = rng.integers(0, len(clips), (9, 2)), rng.uniform(-1.0, 5.0, (9, 2))
     weights = rng.dirichlet(np.ones(2), 9)
@@ -81,8 +81,8 @@ def test_joints_that_turn_all_the_way_round_are_mixed_the_shorter_way():
     skeleton = Skeleton(("spinner",), (-1,), rest)
     angles = np.linspace(0.0, 2 * np.pi, 9)
     clip = Clip("spin", 8.0, Pose(np.zeros((9, 1, 3)), about("y", angles)[:, None]))
-    bank = Bank.of(skeleton, [clip], np.float64)
-    assert bank.astray.tolist() == [0]
+    bank = ClipBank.of(skeleton, [clip], np.float64)
+    assert bank.sign_ambiguous.tolist() == [0]
     poses = bank.sample([[0, 0]], [[0.5, 0.75]], [[0.5, 0.5]])
     turned = about("y", np.radians(225.0))
     assert abs(float(poses.rotations[0, 0] @ turned)) == pytest.approx(1.0)
@@ -93,13 +93,13 @@ def test_one_character_is_blended_as_a_crowd_is(name):
     character = Character.load(name)
     clips = list(character.clips.values())
     beside = [np.arange(float(len(clip)))[:, None] for clip in clips]
-    bank = Bank.of(character.skeleton, clips, np.float64, beside)
+    bank = ClipBank.of(character.skeleton, clips, np.float64, beside)
     rng = np.random.default_rng(6)
     numbers, times = rng.integers(0, len(clips), 3), rng.uniform(-1.0, 5.0, 3)
     weights = rng.dirichlet(np.ones(3))
-    rows = bank.mixed([numbers], [times], [weights])
+    rows = bank.mixed_rows([numbers], [times], [weights])
     crowd = bank.pose(rows)[0]
-    alone, other = bank.blended(list(zip(numbers.tolist(), times.tolist(), weights, strict=True)))
+    alone, other = bank.blend(list(zip(numbers.tolist(), times.tolist(), weights, strict=True)))
     np.testing.assert_allclose(alone.rotations, crowd.rotations, atol=1e-12)
     np.testing.assert_allclose(alone.translations, crowd.translations, atol=1e-12)
     for mine, theirs in ((alone.scales, crowd.scales), (alone.morphs, crowd.morphs)):
@@ -112,4 +112,4 @@ def test_clips_of_another_skeleton_are_refused(vleo):
     other = Clip("other", 30.0, vleo.clips["idle"].poses)
     fewer = Pose(other.poses.translations[:, 1:], other.poses.rotations[:, 1:])
     with pytest.raises(CharacterError, match=f"{len(vleo.skeleton)} joints"):
-        Bank.of(vleo.skeleton, [Clip("fewer", 30.0, fewer)])
+        ClipBank.of(vleo.skeleton, [Clip("fewer", 30.0, fewer)])
