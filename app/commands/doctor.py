@@ -1,14 +1,49 @@
-"""`cubeling doctor`."""
+"""`cubeling doctor`: what this computer has and lacks."""
 
-from typing import Annotated
+import importlib.metadata
+import platform
+import shutil
+import sys
+from dataclasses import dataclass
+from typing import Annotated, Literal
 
+import av
+import cv2
 import typer
 from rich.console import Console
 from rich.table import Table
 
-from app.commands.doctor_checks import Finding, examine
+from app.errors import AppError
+from app.running.summary import camera_line
+from app.scenarios import SCENARIOS
+from app.session.bundled import bundled
+from app.ui.display import has_display
+from characters import Character, CharacterError
+from characters.rendering import create_context
+from robot import serial_ports
+from tracking import FrameSource, LiveFrames, TrackingError, open_source
 
 MARKS = {"good": "[green]✓[/]", "missing": "[yellow]–[/]", "bad": "[red]✗[/]"}
+
+CAMERA_CHECK_S = 4.0
+"""How long the camera is read: it locks its exposure after a second or two."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """The result of one check."""
+
+    name: str
+    """What was checked."""
+
+    verdict: Literal["good", "missing", "bad"]
+    """Cubeling runs without what is "missing", but not with what is "bad"."""
+
+    found: str
+    """What was found: one line, for a camera several."""
+
+    remedy: str = ""
+    """A command that corrects it, or ""."""
 
 
 def doctor(
@@ -23,7 +58,8 @@ def doctor(
     findings = examine(cameras=cameras)
     table = Table.grid(padding=(0, 2))
     for finding in findings:
-        table.add_row(MARKS[finding.verdict], f"[bold]{finding.what}[/]", _told(finding))
+        remedy = f"\n[cyan]{finding.remedy}[/]" if finding.remedy else ""
+        table.add_row(MARKS[finding.verdict], f"[bold]{finding.name}[/]", finding.found + remedy)
     console = Console()
     console.print(table)
     if any(finding.verdict == "bad" for finding in findings):
@@ -31,5 +67,149 @@ def doctor(
     console.print("\nReady. [cyan]cubeling demo[/] shows it.")
 
 
-def _told(finding: Finding) -> str:
-    return f"{finding.found}\n[cyan]{finding.remedy}[/]" if finding.remedy else finding.found
+def examine(*, cameras: bool = True) -> list[Finding]:
+    """Run all checks; no finding is raised as an error."""
+    findings = [
+        _python(),
+        _opencv(),
+        _drawing(),
+        _video(),
+        _characters(),
+        _recordings(),
+        _display(),
+        _ports(),
+        _broker(),
+    ]
+    return [*findings, _camera()] if cameras else findings
+
+
+def _python() -> Finding:
+    version = platform.python_version()
+    verdict: Literal["good", "bad"] = "good" if sys.version_info >= (3, 11) else "bad"
+    return Finding("Python", verdict, f"{version} on {platform.system()} {platform.machine()}")
+
+
+def _opencv() -> Finding:
+    names = [
+        name
+        for name in ("opencv-python", "opencv-contrib-python", "opencv-python-headless")
+        if _installed(name)
+    ]
+    if names:
+        # They share one folder: the one that was installed last has overwritten the other.
+        return Finding(
+            "OpenCV",
+            "bad",
+            f"{cv2.__version__}, but {names[0]} has overwritten its files",
+            f"pip uninstall -y {names[0]} && "
+            "pip install --force-reinstall opencv-contrib-python-headless",
+        )
+    if int(cv2.__version__.split(".")[0]) < 5:
+        remedy = "pip install --upgrade -c constraints.txt opencv-contrib-python-headless"
+        return Finding("OpenCV", "bad", f"{cv2.__version__} is too old", remedy)
+    return Finding("OpenCV", "good", f"{cv2.__version__}")
+
+
+def _drawing() -> Finding:
+    try:
+        context = create_context()
+    except CharacterError as error:
+        return Finding("drawing", "bad", str(error), _mesa())
+    renderer = str(context.info["GL_RENDERER"])
+    version = context.version_code
+    context.release()
+    return Finding("drawing", "good", f"OpenGL {version / 100:.1f}, {renderer}")
+
+
+def _mesa() -> str:
+    """Return the command that installs EGL and Mesa's drivers here."""
+    for tool, command in (
+        ("apt-get", "sudo apt-get install -y libegl1 libgl1 libegl-mesa0 libgl1-mesa-dri"),
+        ("dnf", "sudo dnf install -y mesa-libEGL mesa-libGL mesa-dri-drivers"),
+        ("pacman", "sudo pacman -S --noconfirm mesa libglvnd"),
+    ):
+        if shutil.which(tool):
+            return command
+    return ""
+
+
+def _video() -> Finding:
+    if "libx264" in av.codecs_available:
+        return Finding("video", "good", f"H.264 by PyAV {av.__version__}")
+    return Finding("video", "bad", "PyAV has no libx264", "pip install --force-reinstall av")
+
+
+def _characters() -> Finding:
+    try:
+        characters = [Character.load(name) for name in ("human", "vleo", "robot")]
+    except CharacterError as error:
+        return Finding("characters", "bad", str(error))
+    return Finding(
+        "characters", "good", ", ".join(f"{c.name} ({len(c.clips)} clips)" for c in characters)
+    )
+
+
+def _recordings() -> Finding:
+    try:
+        names = [bundled(name).name for name in SCENARIOS]
+    except AppError as error:
+        return Finding("recordings", "bad", str(error))
+    return Finding("recordings", "good", ", ".join(names))
+
+
+def _display() -> Finding:
+    if has_display():
+        return Finding("display", "good", "a window can be opened")
+    return Finding("display", "missing", "none: cubeling writes videos instead of opening a window")
+
+
+def _ports() -> Finding:
+    ports = serial_ports()
+    if not ports:
+        return Finding("robot", "missing", "no serial port", "cubeling robot simulate")
+    return Finding("robot", "good", ", ".join(port.url for port in ports))
+
+
+def _broker() -> Finding:
+    """Look for an MQTT broker; only players in several places need one."""
+    path = shutil.which("mosquitto") or shutil.which("mosquitto", path="/usr/sbin:/usr/local/sbin")
+    if path is None:
+        remedy = "apt install mosquitto"
+        return Finding("broker", "missing", "none: only for players in several places", remedy)
+    return Finding("broker", "good", path)
+
+
+def _camera() -> Finding:
+    try:
+        with open_source("camera:0") as source:
+            read_for(source, CAMERA_CHECK_S)
+            return Finding("camera", "good", camera_report("camera:0", source))
+    except TrackingError as error:
+        return Finding("camera", "missing", str(error), "cubeling demo --recording")
+
+
+def read_for(source: FrameSource, seconds: float) -> None:
+    """Read frames until their timestamps have advanced by so many seconds."""
+    start: float | None = None
+    for frame in source:
+        start = frame.timestamp if start is None else start
+        if frame.timestamp - start >= seconds:
+            return
+
+
+def camera_report(uri: str, source: FrameSource) -> str:
+    """Return what a camera delivers, and whether it accepted the settings."""
+    size = f"{uri}, {source.size[0]}x{source.size[1]}"
+    if not isinstance(source, LiveFrames):
+        return size
+    health = source.health
+    settings = [f"{setting.name} {setting.told}" for setting in health.settings]
+    return "\n".join([f"{size}, {camera_line(health)}", *settings])
+
+
+def _installed(name: str) -> bool:
+    try:
+        importlib.metadata.version(name)
+    except importlib.metadata.PackageNotFoundError:
+        return False
+    return True

@@ -27,44 +27,42 @@ app.command("try")(try_)
 @app.command()
 def simulate(
     name: Annotated[
-        str, typer.Argument(metavar="NAME[?FAULTS]", help="Which robot, and what goes wrong.")
+        str, typer.Argument(metavar="NAME[?FAULTS]", help="Which robot, and its faults.")
     ] = "cubeling",
-    seed: Annotated[
-        int | None, typer.Option(min=0, help="Which robot of the litter it is.")
-    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, help="Seed of its random numbers.")] = None,
     seconds: Annotated[
-        float | None, typer.Option(help="End after this long; without, at Ctrl-C.")
+        float | None, typer.Option(help="End after this many seconds; without it, at Ctrl-C.")
     ] = None,
 ) -> None:
     """Put a simulated robot behind a real serial port of this computer.
 
-    The port is a pseudo-terminal (on Windows a TCP port); any program that speaks the robot's
+    The port is a pseudo-terminal (on Windows a TCP port). Any program that speaks the robot's
     protocol can open it.
 
     Example: [cyan]cubeling robot simulate[/], then in another terminal
     [cyan]cubeling play companion --robot PORT[/] with the port that it printed.
 
-    What may go wrong, as in [cyan]cubeling robot simulate "cubeling?drop=0.05&stall=1s/10s"[/]:
+    Faults, as in [cyan]cubeling robot simulate "cubeling?drop=0.05&stall=1s/10s"[/]:
 
-    [bold]drop=0.05[/], [bold]dup=0.02[/], [bold]split=0.1[/]   chance that a frame is lost, comes
-    twice, comes in two pieces
+    [bold]drop=0.05[/], [bold]dup=0.02[/], [bold]split=0.1[/]   probability that a frame is lost,
+    duplicated, split in two
 
-    [bold]flip=0.001[/]   chance of every byte that one of its bits is wrong
+    [bold]flip=0.001[/]   probability for each byte that one of its bits is flipped
 
-    [bold]babble=200[/]   noise between the frames, bytes a second
+    [bold]babble=200[/]   noise between the frames, in bytes a second
 
-    [bold]delay=20ms[/], [bold]delay=20ms~5ms[/]   everything is so late, with jitter
+    [bold]delay=20ms[/], [bold]delay=20ms~5ms[/]   latency, with jitter
 
-    [bold]stall=1s[/], [bold]stall=1s/10s[/]   it hangs for 1 s, on average every 20 s, or every 10
+    [bold]stall=1s[/], [bold]stall=1s/10s[/]   it hangs for 1 s, on average every 20 s or every 10 s
 
-    [bold]unplug=30s[/], [bold]unplug=30s/2s[/]   on average every 30 s it is unplugged, for 1 s or
-    for 2; here the line is silent then, for a pseudo-terminal cannot vanish and come back
+    [bold]unplug=30s[/], [bold]unplug=30s/2s[/]   it is unplugged on average every 30 s, for 1 s or
+    for 2 s; here the line is silent meanwhile, as a pseudo-terminal cannot disappear and come back
 
     [bold]reboot=60s[/]   it reboots, on average every 60 s
 
-    [bold]seed=7[/]   of all that is drawn
+    [bold]seed=7[/]   seed of the random numbers
 
-    The same words work in every URL: [cyan]--robot "sim:cubeling?drop=0.05"[/].
+    The same options work in every URL: [cyan]--robot "sim:cubeling?drop=0.05"[/].
     """
     console = Console()
     if seconds is not None and not seconds >= 0:  # also refuses NaN
@@ -80,21 +78,21 @@ def simulate(
         )
         if "unplug=" in name:
             console.print(
-                "[dim]While it is unplugged the line is silent: this port cannot vanish and come "
-                "back[/]",
+                "[dim]While it is unplugged the line is silent: this port cannot disappear and "
+                "come back[/]",
                 soft_wrap=True,
             )
         end = None if seconds is None else time.monotonic() + seconds
         with suppress(KeyboardInterrupt), Live(console=console, transient=True) as live:
             while end is None or time.monotonic() < end:
                 if console.is_terminal:
-                    live.update(_portrait(simulator))
+                    live.update(_emotion_line(simulator))
                 time.sleep(0.1)
 
 
 @app.command("list")
 def list_() -> None:
-    """List the serial ports of this computer and what may be behind them.
+    """List the serial ports of this computer and the robots that may be connected to them.
 
     Example: [cyan]cubeling robot list[/]
     """
@@ -110,12 +108,12 @@ def list_() -> None:
 
 
 def _with_seed(name: str, seed: int | None) -> str:
-    """Write `--seed` into the robot's name."""
+    """Add `--seed` to the robot's name."""
     return name if seed is None else f"{name}{'&' if '?' in name else '?'}seed={seed}"
 
 
-def _portrait(simulator: Simulated) -> Text:
-    """How the robot feels now, in a line."""
+def _emotion_line(simulator: Simulated) -> Text:
+    """Return the robot's emotion as a line of text."""
     valence, label = simulator.portrait()
     bar = "".join("●" if abs(place - 10 * (valence + 1)) <= 0.5 else "·" for place in range(21))
     return Text.assemble(("angry ", "red"), bar, (" happy", "green"), f"   {label}")

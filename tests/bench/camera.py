@@ -16,7 +16,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from app.commands.doctor_checks import camera_words, watch
+from app.commands.doctor import camera_report, read_for
 from tracking import Frame, TrackingError, open_source
 from tracking.sources.live import LiveSource
 
@@ -168,8 +168,8 @@ def main() -> None:
     driver.running = False
     if uri:
         with open_source(uri) as source:
-            watch(source, 10.0)
-            console.print(camera_words(uri, source))
+            read_for(source, 10.0)
+            console.print(camera_report(uri, source))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import COMMANDS
-from app.commands import doctor_checks as doctor
+from app.commands import doctor
 from characters import Character, CharacterError
 from characters.errors import CharacterWarning
 from tests.characters.formats.built_gltf import Builder

@@ -1,6 +1,6 @@
 """What the doctor says of a camera that is there."""
 
-from app.commands import doctor_checks as doctor
+from app.commands import doctor
 from tracking import Frame
 from tracking.sources.health import Health, Setting
 
