@@ -1,7 +1,8 @@
-"""What happened: one screen for a person, the same numbers as JSON."""
+"""The summary of a session, on one screen."""
 
 import statistics
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from rich.console import Group, RenderableType
 from rich.panel import Panel
@@ -12,74 +13,84 @@ from app.pipeline.step import RobotView, Step
 from robot import RobotError
 from tracking import Health, TrackingError
 
-BLOCKS = "▁▂▃▄▅▆▇█"
+CURVE_BLOCKS = "▁▂▃▄▅▆▇█"
+"""The heights of a curve, from −1 to 1."""
+
+CURVE_WIDTH = 56
+"""Length of the robot's curve [characters]."""
+
+MIN_STATE_S = 0.6
+"""A state that is shorter counts as part of the one before it."""
+
+MAX_TIMELINE_ENTRIES = 12
+"""Entries of a timeline before the rest is summed up."""
 
 
 @dataclass
 class Summary:
-    """Gathers what a session was like, a frame at a time."""
+    """Collects the figures of a session, frame by frame."""
 
     scenario: str
-    """Which scenario was played."""
+    """Name of the scenario."""
 
     frames: int = 0
     """Frames so far."""
 
-    seen: int = 0
+    tracked_frames: int = 0
     """Frames in which the cube was found."""
 
-    spans: list[tuple[float, str]] = field(default_factory=list)
-    """When the character began something else [s], and what."""
+    states: list[tuple[float, str]] = field(default_factory=list)
+    """When each state of the character began [s], and its name."""
 
     moods: list[tuple[float, float, str]] = field(default_factory=list)
-    """Time [s], valence that the robot reports, and its word for it."""
+    """Time [s], valence that the robot reports, and its label."""
 
-    times: list[float] = field(default_factory=list)
-    """How long each frame took, from the camera's picture to the finished one [s]."""
+    frame_seconds: list[float] = field(default_factory=list)
+    """Processing time of each frame, from the camera's picture to the finished one [s]."""
 
     lost: RobotError | TrackingError | None = None
-    """Why the robot could not be reached at the end, or the camera stopped; None if all is well."""
+    """Why the robot could not be reached at the end, or why the camera stopped; None if neither."""
 
     gaps: list[tuple[float, float]] = field(default_factory=list)
     """When the camera was lost [s, its timestamps], and how long until its next frame [s]."""
 
     camera: Health | None = None
-    """How the camera fared, at the end; None where the source was none."""
+    """State of the camera at the end; None for a source that is not live."""
 
     interrupted: bool = False
-    """Whether the player ended it with Ctrl-C."""
+    """Whether Ctrl-C ended the session."""
 
     first: float = 0.0
-    """Time of the first frame [s]."""
+    """Timestamp of the first frame [s]."""
 
     last: float = 0.0
-    """Time of the last frame [s]."""
+    """Timestamp of the last frame [s]."""
 
     def add(self, step: Step, robot: RobotView, seconds: float) -> None:
-        """Take in one frame and how long it took."""
+        """Add one frame and its processing time [s]."""
         now = step.frame.timestamp
         if self.frames == 0:
             self.first = now
         self.last = now
         self.frames += 1
-        self.seen += step.state.visible
-        if not self.spans or self.spans[-1][1] != step.posed.state:
-            self.spans.append((now - self.first, step.posed.state))
+        self.tracked_frames += step.state.visible
+        if not self.states or self.states[-1][1] != step.posed.state:
+            self.states.append((now - self.first, step.posed.state))
         self.moods.append((now - self.first, robot.mood, robot.label))
-        self.times.append(seconds)
+        self.frame_seconds.append(seconds)
 
     def check(self) -> None:
-        """Raise what went wrong with robot or camera; asked last, as all else is whole by then."""
+        """Raise what went wrong with robot or camera; call it once everything is closed."""
         if self.lost is not None:
             raise self.lost
 
     @property
     def tracking_rate(self) -> float:
         """Share of the frames in which the cube was found, 0…1."""
-        return self.seen / self.frames if self.frames else 0.0
+        return self.tracked_frames / self.frames if self.frames else 0.0
 
     def labels(self) -> list[tuple[float, str]]:
-        """When the robot's mood got another name [s], and which."""
+        """Return when the label of the robot's mood changed [s], and the new label."""
         changes: list[tuple[float, str]] = []
         for time, _, label in self.moods:
             if not changes or changes[-1][1] != label:
@@ -87,37 +98,11 @@ class Summary:
         return changes
 
     def frame_ms(self) -> tuple[float, float]:
-        """Median and 95th percentile of the time a frame took [ms]."""
-        if len(self.times) < 2:
-            return (1000 * sum(self.times),) * 2
-        cuts = statistics.quantiles(self.times, n=20)
-        return 1000 * statistics.median(self.times), 1000 * cuts[18]
-
-    def document(self) -> dict[str, object]:
-        """Return the same as plain numbers for JSON."""
-        median, slow = self.frame_ms()
-        camera = {} if self.camera is None else {"camera": self._camera(self.camera)}
-        return {
-            "scenario": self.scenario,
-            "frames": self.frames,
-            "duration_s": round(self.last - self.first, 3),
-            "tracking_rate": round(self.tracking_rate, 4),
-            "actions": [{"t_s": round(t, 3), "state": state} for t, state in self.spans],
-            "robot": [{"t_s": round(t, 3), "label": label} for t, label in self.labels()],
-            "frame_ms": {"median": round(median, 2), "p95": round(slow, 2)},
-            **camera,
-        }
-
-    def _camera(self, health: Health) -> dict[str, object]:
-        return {
-            "rate": round(health.rate, 2),
-            "latency_ms": round(1000 * health.latency, 1),
-            "stamped_by": health.stamped_by,
-            "dropped": health.dropped,
-            "queue": {"mean": round(health.depth, 2), "most": health.deepest},
-            "gaps": [{"t_s": round(t - self.first, 3), "s": round(s, 3)} for t, s in self.gaps],
-            "settings": {setting.name: setting.told for setting in health.settings},
-        }
+        """Return the median and the 95th percentile of the processing time [ms]."""
+        if len(self.frame_seconds) < 2:
+            return (1000 * sum(self.frame_seconds),) * 2
+        cuts = statistics.quantiles(self.frame_seconds, n=20)
+        return 1000 * statistics.median(self.frame_seconds), 1000 * cuts[18]
 
     def __rich__(self) -> RenderableType:
         table = Table.grid(padding=(0, 2))
@@ -127,10 +112,10 @@ class Summary:
         median, slow = self.frame_ms()
         table.add_row("played", f"{self.frames} frames, {duration:.1f} s")
         table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")
-        table.add_row("character", _story(self.spans, duration))
-        table.add_row("robot felt", _story(self.labels(), duration))
+        table.add_row("character", _timeline(self.states, duration))
+        table.add_row("robot felt", _timeline(self.labels(), duration))
         table.add_row(
-            "", Text(self._curve(56), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim")
+            "", Text(self._curve(), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim")
         )
         table.add_row(
             "a frame took", f"{median:.1f} ms in the median, {slow:.1f} ms at the 95th percentile"
@@ -143,19 +128,18 @@ class Summary:
             table.add_row("camera lost", f"{count}, {lost:.1f} s in all")
         return Panel(Group(table), title=f"[bold]{self.scenario}", title_align="left", expand=False)
 
-    def _curve(self, width: int) -> str:
+    def _curve(self) -> str:
+        """Return the valence over time as a line of blocks."""
         if not self.moods:
             return ""
-        picks = [
-            self.moods[round(i * (len(self.moods) - 1) / (width - 1))][1] for i in range(width)
-        ]
-        return "".join(
-            BLOCKS[min(7, int((min(1.0, max(-1.0, mood)) + 1) * 3.999))] for mood in picks
-        )
+        last = len(self.moods) - 1
+        picks = (self.moods[round(i * last / (CURVE_WIDTH - 1))][1] for i in range(CURVE_WIDTH))
+        heights = (int((min(1.0, max(-1.0, valence)) + 1) * 3.999) for valence in picks)
+        return "".join(CURVE_BLOCKS[min(7, height)] for height in heights)
 
 
 def camera_line(health: Health) -> str:
-    """Return a live source's figures in one line.
+    """Return the figures of a live source in one line.
 
     >>> camera_line(Health("camera 0", "running", 0.0, rate=30.0, latency=0.041, dropped=2))
     '30.0 pictures/s, 41 ms old (since arrival), 2 left out for newer ones, none waited'
@@ -168,29 +152,34 @@ def camera_line(health: Health) -> str:
     )
 
 
-MOMENT = 0.6
-"""A state shorter than this is told as part of the one before it [s]."""
+def without_short_states(
+    changes: list[tuple[float, str]], duration: float
+) -> list[tuple[float, str]]:
+    """Leave out states that lasted less than `MIN_STATE_S`.
 
-
-def lasting(changes: list[tuple[float, str]], duration: float) -> list[tuple[float, str]]:
-    """Leave out what lasted for a moment only.
-
-    >>> lasting([(0.0, "idle"), (3.0, "run"), (3.2, "idle"), (9.0, "walk")], 12.0)
+    >>> changes = [(0.0, "idle"), (3.0, "run"), (3.2, "idle"), (9.0, "walk")]
+    >>> without_short_states(changes, 12.0)
     [(0.0, 'idle'), (9.0, 'walk')]
     """
     kept: list[tuple[float, str]] = []
-    for (start, state), end in zip(changes, [*(t for t, _ in changes[1:]), duration], strict=True):
-        if kept and (end - start < MOMENT or kept[-1][1] == state):
-            continue
-        kept.append((start, state))
+    for (start, state), seconds in zip(changes, _durations(changes, duration), strict=True):
+        if not kept or (seconds >= MIN_STATE_S and kept[-1][1] != state):
+            kept.append((start, state))
     return kept
 
 
-def _story(changes: list[tuple[float, str]], duration: float) -> str:
-    """Return "idle 3 s → kiss 9 s → …", at most a dozen entries."""
-    changes = lasting(changes, duration)
-    ends = [time for time, _ in changes[1:]] + [duration]
-    told = [f"{what} {end - time:.1f} s" for (time, what), end in zip(changes, ends, strict=True)]
-    if len(told) > 12:
-        told = [*told[:11], f"… and {len(told) - 11} more"]
-    return " → ".join(told)
+def _durations(changes: list[tuple[float, str]], duration: float) -> list[float]:
+    """Return how long each state lasted [s]."""
+    times = [*(time for time, _ in changes), duration]
+    return [end - start for start, end in pairwise(times)]
+
+
+def _timeline(changes: list[tuple[float, str]], duration: float) -> str:
+    """Return "idle 3 s → kiss 9 s → …"."""
+    changes = without_short_states(changes, duration)
+    seconds = _durations(changes, duration)
+    entries = [f"{name} {s:.1f} s" for (_, name), s in zip(changes, seconds, strict=True)]
+    if len(entries) > MAX_TIMELINE_ENTRIES:
+        shown = MAX_TIMELINE_ENTRIES - 1
+        entries = [*entries[:shown], f"… and {len(entries) - shown} more"]
+    return " → ".join(entries)

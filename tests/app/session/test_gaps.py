@@ -5,11 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from app.running.opening import open_session
 from app.running.options import SessionOptions
 from app.running.runner import run
-from app.running.summary import Summary, camera_line
+from app.running.summary import Summary
 from app.session import events, session_info
 from app.ui.notice import Notice, notice
 from app.ui.overlay import interrupted
@@ -155,11 +156,18 @@ def test_the_last_picture_stays_under_the_card_and_is_not_changed():
 def test_the_summary_names_drops_gaps_and_latency():
     health = replace(RUNNING, latency=0.0412, dropped=3, deepest=2, stamped_by="driver")
     summary = Summary("follow", camera=health, gaps=[(1.0, 6.25)])
-    document = summary.document()["camera"]
-    assert isinstance(document, dict)
-    assert (document["latency_ms"], document["dropped"]) == (41.2, 3)
-    assert document["gaps"] == [{"t_s": 1.0, "s": 6.25}]
-    assert document["settings"] == {"focus": "30"}
-    assert camera_line(health) == (
+    console = Console(width=140)
+    with console.capture() as capture:
+        console.print(summary)
+    shown = capture.get()
+    assert (
         "30.0 pictures/s, 41 ms old (since exposure), 3 left out for newer ones, at most 2 waited"
-    )
+    ) in shown
+    assert "once, 6.2 s in all" in shown
+
+
+def test_a_session_that_ends_before_its_first_frame_has_a_summary():
+    console = Console(width=140)
+    with console.capture() as capture:
+        console.print(Summary("follow", interrupted=True))
+    assert "0 frames" in capture.get()

@@ -5,6 +5,7 @@ from pathlib import Path
 import av
 import numpy as np
 import pytest
+from rich.console import Console
 
 from app.commands import demo
 from app.errors import AppError
@@ -78,15 +79,22 @@ def test_a_video_that_cannot_be_written_is_one_line(tmp_path):
         VideoFile(tmp_path / "no" / "out.mp4", (64, 48), 30)
 
 
-def test_the_summary_tells_rate_actions_and_moods(a_step):
+def test_the_summary_shows_frames_moods_and_processing_time(a_step):
     summary = Summary("companion")
     step = a_step(None)
     for _ in range(4):
         summary.add(step, ROBOT, 0.02)
-    document = summary.document()
-    assert document["frames"] == 4
-    assert document["robot"] == [{"t_s": 0.0, "label": "happy"}]
-    assert document["frame_ms"] == {"median": 20.0, "p95": 20.0}
+    assert summary.labels() == [(0.0, "happy")]
+    shown = printed(summary)
+    assert "4 frames" in shown
+    assert "20.0 ms in the median, 20.0 ms at the 95th percentile" in shown
+
+
+def printed(summary):
+    console = Console(width=120)
+    with console.capture() as capture:
+        console.print(summary)
+    return capture.get()
 
 
 def test_the_demo_without_a_display_renders_a_video_and_says_what_happened(
