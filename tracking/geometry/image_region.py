@@ -70,7 +70,7 @@ class Patch:
         """Do the same for columns and rows of this part, (N, M) each, counted from its corner.
 
         `remap` of 32 bit floats is exact in OpenCV 5; that of bytes rounds places to 1/32 px, which
-        is coarser than what is measured here (test_patch.py guards it).
+        is coarser than what is measured here (test_image_region.py guards it).
         """
         values = cv2.remap(self.grey, x, y, cv2.INTER_LINEAR, borderMode=BORDER)
         return np.asarray(values, np.float32)

@@ -1,63 +1,215 @@
-"""What a camera is like: how long its shutter is open, and how its grey values follow the light."""
+"""Exposure time and tone curve of a camera, estimated from how it blurs a moving cube."""
+
+from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.geometry.image_region import Floats
 from tracking.refinement.alignment import Alignment
-from tracking.refinement.exposure import Shutter
-from tracking.refinement.tone_curve import Response
 
 Array = NDArray[np.float64]
 
-TELLING = 0.2
-"""Cells that edges must be swept over for their tones to tell of the camera's response."""
+FIRST_EXPOSURE_S = 0.010
+"""Exposure that is assumed before it is measured: roughly that of a webcam indoors."""
 
-CLEAR_SWEEP = 3.5
-"""And pixels: below, an unknown lens blurs as much."""
+MAX_EXPOSURE_S = 0.05
+"""No exposure is longer than this."""
 
-LESSONS = 60
-"""Sharp frames that are aligned as blurred ones at most, only to learn from them."""
+EXPOSURE_SAMPLES = 15
+"""The exposure is the median of this many measurements."""
+
+MIN_MOTION_INFORMATION = 100.0
+"""Information about the blur motion along the velocity, relative to its square, from which on a
+measurement counts: ten standard deviations."""
+
+FIRST_EXPONENT = 2.2
+"""Exponent of nearly every camera: light is the grey value to this power (sRGB)."""
+
+MIN_EXPONENT, MAX_EXPONENT = 1.0, 2.6
+"""Plausible exponents."""
+
+EXPONENT_SAMPLES = 9
+"""The exponent is the median of this many measurements."""
+
+MIN_EXPONENT_STEP = 0.15
+"""The exponent changes only by more than this: a new table shifts the poses by hundredths of a
+millimetre."""
+
+MIN_BLUR_CELLS = 0.2
+"""Blur extent from which on the tones of an edge tell of the camera's tone curve [cells]."""
+
+MIN_BLUR_PX = 3.5
+"""The same in pixels: below, an unknown lens blurs as much."""
+
+MAX_STUDIES = 60
+"""Sharp frames that are aligned as blurred ones at most, only to learn the camera from them."""
 
 
-class CameraHabits:
-    """Learns exposure and tone curve of one camera from pictures of a blurred cube."""
+@dataclass(frozen=True)
+class CameraModel:
+    """What is known of a camera at one moment."""
+
+    exposure: float
+    """Exposure time [s]."""
+
+    exposure_known: bool
+    """Whether it was measured often enough."""
+
+    tone: Floats
+    """Light for each grey value, (256,)."""
+
+    worth_studying: bool
+    """Whether a sharp frame is worth being aligned to learn more."""
+
+
+@dataclass(frozen=True)
+class BlurObservation:
+    """What the blurred image of one cube tells of the camera."""
+
+    aligned: Alignment
+    """The pose and the motion that explain the image."""
+
+    velocity: Array
+    """Velocity of the cube by its track, (6,)."""
+
+    blur_extent: float
+    """How far an edge moved during the exposure [cells]."""
+
+    pixels_per_cell: float
+    """Size of a marker's cell [px]."""
+
+
+def shows_exposure(blur_extent: float, pixels_per_cell: float) -> bool:
+    """Whether a cube whose edges cross this many cells is blurred enough to tell anything."""
+    return blur_extent >= MIN_BLUR_CELLS and blur_extent * pixels_per_cell >= MIN_BLUR_PX
+
+
+class CameraModelEstimator:
+    """Estimates exposure and tone curve of one camera from images of a blurred cube."""
 
     def __init__(self) -> None:
-        self.shutter = Shutter()
-        self.response = Response()
-        self.lessons = 0
-        """How many sharp frames were studied."""
+        self.exposure = ExposureEstimator()
+        self.tone_curve = ToneCurve()
+        self._studies = 0
 
     @property
-    def exposure(self) -> float:
-        """Exposure time [s]."""
-        return self.shutter.exposure
+    def model(self) -> CameraModel:
+        """What is known so far."""
+        known = self.exposure.known and self.tone_curve.known
+        return CameraModel(
+            self.exposure.exposure,
+            self.exposure.known,
+            self.tone_curve.table,
+            not known and self._studies < MAX_STUDIES,
+        )
 
-    @property
-    def exposure_known(self) -> bool:
-        """Whether it was measured often enough."""
-        return self.shutter.known
+    def learn(self, blur: BlurObservation | None, studied: bool) -> None:
+        """Learn from one frame.
 
-    @property
-    def tone(self) -> NDArray[np.float32]:
-        """Light for each grey value, (256,)."""
-        return self.response.table
-
-    @property
-    def curious(self) -> bool:
-        """Whether a sharp frame is worth being studied."""
-        return not (self.shutter.known and self.response.known) and self.lessons < LESSONS
-
-    def tells(self, streak: float, pixels_per_cell: float) -> bool:
-        """Whether a cube that edges cross by `streak` cells is blurred enough to tell anything."""
-        return streak >= TELLING and streak * pixels_per_cell >= CLEAR_SWEEP
-
-    def learn(
-        self, aligned: Alignment, velocity: Array, streak: float, pixels_per_cell: float
-    ) -> None:
-        """Take in an alignment of a cube that moved with a velocity, (6,)."""
-        if streak * pixels_per_cell < CLEAR_SWEEP:
+        Parameters
+        ----------
+        blur
+            What its blur tells, if anything.
+        studied
+            Whether a sharp image was aligned only for this, which is done `MAX_STUDIES` times.
+        """
+        self._studies += studied
+        if blur is None or blur.blur_extent * blur.pixels_per_cell < MIN_BLUR_PX:
             return
-        self.shutter.learn(*aligned.told, velocity)
-        if streak > TELLING:
-            self.response.learn(aligned.bend, aligned.black)
+        self.exposure.learn(*blur.aligned.told, blur.velocity)
+        if blur.blur_extent > MIN_BLUR_CELLS:
+            self.tone_curve.learn(blur.aligned.bend, blur.aligned.black)
+
+
+class ExposureEstimator:
+    """The exposure time of one camera.
+
+    A cube that moves with velocity v moves by v·τ during the exposure; the ratio of the two,
+    weighted by what the blur tells of each direction, is τ.
+    """
+
+    def __init__(self) -> None:
+        self._samples: deque[float] = deque(maxlen=EXPOSURE_SAMPLES)
+        self.exposure = FIRST_EXPOSURE_S
+        """The best estimate [s]."""
+
+    @property
+    def known(self) -> bool:
+        """Whether it was measured often enough."""
+        return len(self._samples) > EXPOSURE_SAMPLES // 2
+
+    def learn(self, weighted_motion: Array, information: Array, velocity: Array) -> None:
+        """Learn from one blurred image of a cube whose velocity is known.
+
+        Parameters
+        ----------
+        weighted_motion
+            Information times the blur motion that explains the image best, (6,).
+        information
+            About the blur motion, from the image alone, (6, 6).
+        velocity
+            Of the cube, (6,).
+        """
+        strength = float(velocity @ information @ velocity)
+        if strength * self.exposure**2 < MIN_MOTION_INFORMATION:
+            return
+        sample = np.clip(velocity @ weighted_motion / strength, 0.0, MAX_EXPOSURE_S)
+        self._samples.append(float(sample))
+        self.exposure = float(np.median(self._samples))
+
+
+class ToneCurve:
+    """The tone curve of one camera, as a power of the grey value.
+
+    Blur mixes light, not grey values: half black and half white is not the grey halfway between.
+    Where that is not undone, every blurred edge seems to lie too far in the black.
+    """
+
+    def __init__(self) -> None:
+        self.exponent = FIRST_EXPONENT
+        """Light is the grey value to this power."""
+        self.table = _table(FIRST_EXPONENT)
+        """Light for each grey value, 0…255, (256,)."""
+        self._samples: deque[float] = deque(maxlen=EXPONENT_SAMPLES)
+
+    @property
+    def known(self) -> bool:
+        """Whether it was measured often enough."""
+        return len(self._samples) == EXPONENT_SAMPLES
+
+    def learn(self, bend: float, black: float) -> None:
+        """Learn from by how much the middle between black and white is too bright for a mixture.
+
+        Parameters
+        ----------
+        bend
+            c of light = a + b·m + c·m(1 − m), with m the share of white in a mixture, over b.
+        black
+            a/(a + b): the light of black over that of white.
+        """
+        measured = _exponent(self.exponent, bend, black)
+        self._samples.append(np.clip(measured, MIN_EXPONENT, MAX_EXPONENT).item())
+        exponent = float(np.median(self._samples))
+        if self.known and abs(exponent - self.exponent) > MIN_EXPONENT_STEP:
+            self.exponent = exponent
+            self.table = _table(exponent)
+
+
+def _table(exponent: float) -> Floats:
+    return np.asarray(255 * (np.arange(256) / 255) ** exponent, np.float32)
+
+
+def _exponent(used: float, bend: float, black: float) -> float:
+    """Exponent that makes a mixture of half black and half white the middle of the two.
+
+    With the exponent used, the middle reads as h = (1 + black)/2 + bend (1 − black)/4 of white. The
+    grey values of black, middle and white are their `used`-th roots; the exponent sought makes
+    2 middle^e = black^e + 1.
+    """
+    black = min(max(black, 1e-3), 0.9)
+    middle = (1 + black) / 2 + bend * (1 - black) / 4
+    dark, grey = black ** (1 / used), min(max(middle, 1e-3), 0.999) ** (1 / used)
+    tried = np.linspace(0.6, 3.2, 105)
+    return float(tried[np.argmin(np.abs(2 * grey**tried - dark**tried - 1))])

@@ -1,6 +1,7 @@
-"""Finding a cube anywhere in a picture: first what is cheap, then what is thorough."""
+"""The search for a cube anywhere in an image: cheap methods first, thorough ones last."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -10,20 +11,22 @@ from tracking.cube.model import CubeModel
 from tracking.detection.markers import Marker, MarkerDetector, Observation, observed
 from tracking.detection.partly_hidden_markers import CoveredMarkerDetector
 from tracking.geometry.frame import Frame
-from tracking.geometry.image_region import Patch
+from tracking.geometry.image_region import Floats, Patch
 from tracking.geometry.projection import Projection
-from tracking.tracker.candidate import Candidate, close, decisive
-from tracking.tracker.local_search import Follower
-from tracking.tracker.marker_poses import CandidateFinder
+from tracking.refinement.blur_search import BlurSearch
+from tracking.refinement.candidate import Candidate
+from tracking.refinement.edge_search import EdgeSearch
+from tracking.refinement.footprint import Footprint
+from tracking.tracker.marker_poses import MarkerPoses
 
 Array = NDArray[np.float64]
 
-HALVED = 480
-"""Pictures with at least so many rows are searched at half their size first [px]."""
+MIN_HALVED_HEIGHT_PX = 480
+"""Images of at least this height are searched at half their size first."""
 
 
-class Search:
-    """The markers of one picture, read once for all cubes that are sought in it.
+class FrameMarkers:
+    """The markers of one frame, read when they are asked for, and once for all cubes.
 
     Parameters
     ----------
@@ -33,22 +36,24 @@ class Search:
         One for each dictionary, by its name.
     """
 
-    def __init__(self, frame: Frame, detectors: dict[str, MarkerDetector]) -> None:
-        self.image = frame.image
-        self.grey = np.asarray(cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY), np.uint8)
-        """The picture in grey, (H, W)."""
+    def __init__(self, frame: Frame, detectors: Mapping[str, MarkerDetector]) -> None:
+        self._image = frame.image
         self._detectors = detectors
         self._read: dict[tuple[str, bool], list[Marker]] = {}
 
-    def markers(self, dictionary: str, halved: bool) -> list[Marker]:
-        """Read all markers of a dictionary, in the picture or in one of half its size."""
+    @cached_property
+    def grey(self) -> NDArray[np.uint8]:
+        """The image in grey, (H, W)."""
+        return np.asarray(cv2.cvtColor(self._image, cv2.COLOR_BGR2GRAY), np.uint8)
+
+    def read(self, dictionary: str, halved: bool) -> list[Marker]:
+        """Read all markers of a dictionary, in the image or in one of half its size."""
         key = (dictionary, halved)
         if key not in self._read:
-            self._read[key] = self._detected(dictionary, halved)
+            self._read[key] = self._detect(self._detectors[dictionary], halved)
         return self._read[key]
 
-    def _detected(self, dictionary: str, halved: bool) -> list[Marker]:
-        detector = self._detectors[dictionary]
+    def _detect(self, detector: MarkerDetector, halved: bool) -> list[Marker]:
         if not halved:
             return detector.detect(self.grey)
         height, width = self.grey.shape
@@ -60,7 +65,7 @@ class Search:
         ]
 
 
-class Acquirer:
+class GlobalDetector:
     """Finds one cube without a past.
 
     Parameters
@@ -69,66 +74,85 @@ class Acquirer:
         The cube, as printed.
     projection
         The camera.
-    follower
-        What refines poses, and knows the camera's response.
+    edges
+        What proves poses by the edges.
+    blur
+        What aligns blurred images.
     """
 
-    def __init__(self, cube: CubeModel, projection: Projection, follower: Follower) -> None:
+    def __init__(
+        self, cube: CubeModel, projection: Projection, edges: EdgeSearch, blur: BlurSearch
+    ) -> None:
         self._cube = cube
-        self._follower = follower
-        self._finder = CandidateFinder(cube, projection, follower)
-        self._covered = CoveredMarkerDetector(cube)
+        self._footprint = Footprint(cube, projection)
+        self._poses = MarkerPoses(cube, projection, edges)
+        self._hidden = CoveredMarkerDetector(cube)
+        self._blur = blur
 
-    def find(self, search: Search, expected: Array | None, thorough: bool) -> list[Candidate]:
+    def detect(
+        self,
+        image: NDArray[np.uint8],
+        markers: FrameMarkers,
+        expected: Array | None,
+        tone: Floats,
+        thorough: bool,
+    ) -> list[Candidate]:
         """Propose up to two poses.
 
         Parameters
         ----------
-        search
-            The picture.
+        image
+            The image, (H, W, 3) BGR.
+        markers
+            The markers in it.
         expected
-            Where the cube should be by its past, (4, 4), if that is known.
+            Predicted pose of the cube, (4, 4), if there is one.
+        tone
+            Light for each grey value, (256,).
         thorough
-            Whether to look for markers with covered corners too, where no others prove the cube.
+            Whether to look for partly hidden markers too, where no others prove the cube.
 
         Returns
         -------
-        The first that edges prove and that leave no choice, else those of the most thorough search.
+        The first that edges prove without a choice, else those of the most thorough search.
         """
-        patch = Patch.of(search.grey, None, self._follower.camera.tone)
+        patch = Patch.of(markers.grey, None, tone)
         found: list[Candidate] = []
-        for observations in self._observations(search, thorough):
-            candidates = self._finder.find(patch, observations, expected) if observations else []
+        for observations in self._observations(markers, thorough):
+            candidates = self._poses.find(patch, observations, expected) if observations else []
             if any(each.certain for each in candidates):
-                if _clear(candidates):
+                if _is_unambiguous(candidates):
                     return candidates
                 found = candidates
             elif not any(each.certain for each in found):
                 found = candidates or found
         if any(each.certain for each in found):
             return found
-        return self._unblurred(search, found)
+        return self._align_blurred(image, tone, found)
 
-    def _observations(self, search: Search, thorough: bool) -> Iterator[list[Observation]]:
+    def _observations(self, markers: FrameMarkers, thorough: bool) -> Iterator[list[Observation]]:
+        """Read markers at half the size, at full size, and then partly hidden ones."""
         dictionary = self._cube.dictionary
-        if len(search.grey) >= HALVED:
-            yield observed(self._cube, search.markers(dictionary, halved=True))
-        yield observed(self._cube, search.markers(dictionary, halved=False))
+        if len(markers.grey) >= MIN_HALVED_HEIGHT_PX:
+            yield observed(self._cube, markers.read(dictionary, halved=True))
+        yield observed(self._cube, markers.read(dictionary, halved=False))
         if thorough:
-            yield self._covered.detect(search.grey)
+            yield self._hidden.detect(markers.grey)
 
-    def _unblurred(self, search: Search, candidates: list[Candidate]) -> list[Candidate]:
-        """Align the picture round poses that corners alone vouch for, where it shows the cube."""
+    def _align_blurred(
+        self, image: NDArray[np.uint8], tone: Floats, candidates: list[Candidate]
+    ) -> list[Candidate]:
+        """Align the blurred image at poses that rest on corners alone, where it shows the cube."""
         found = []
         for each in candidates:
-            region = self._follower.region(each.camera_from_cube)
-            if region is not None:
-                patch = Patch.of(search.image, region, self._follower.camera.tone)
-                found.append(self._follower.unblurred(patch, each.camera_from_cube))
+            patch = self._footprint.patch(image, each.camera_from_cube, tone)
+            aligned = patch and self._blur.align_unknown_motion(patch, each.camera_from_cube)
+            if patch and aligned:
+                found.append(self._blur.candidate(patch, aligned))
         return [each for each in found if each] or candidates
 
 
-def _clear(candidates: list[Candidate]) -> bool:
-    """Whether there is one pose, or one that is clearly better than the other."""
+def _is_unambiguous(candidates: list[Candidate]) -> bool:
+    """Whether there is one pose, or one that is clearly better than the others."""
     best, *others = sorted(candidates, key=lambda each: each.residual)
-    return all(close(best, other) or decisive(best, other) for other in others)
+    return all(best.same_pose(other) or best.clearly_better_than(other) for other in others)

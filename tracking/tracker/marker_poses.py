@@ -1,4 +1,4 @@
-"""Poses that the markers of one frame propose, refined on edges."""
+"""Candidate poses from the markers of one frame, refined on the edges."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,86 +9,106 @@ from tracking.detection.pose_from_points import CornerSolution, CornerSolver
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
-from tracking.refinement.edge_refinement import Refinement
-from tracking.tracker.candidate import Candidate, close
-from tracking.tracker.local_search import Follower
+from tracking.refinement.candidate import Candidate
+from tracking.refinement.edge_search import EdgeMatch, EdgeSearch
 
 Array = NDArray[np.float64]
 
-STRAY = 1.0
+MAX_CORNER_DISTANCE_CELLS = 1.0
 """Edges and corners must agree to this share of a cell, or the edges found something else."""
 
-LONE_CORNERS = 1.15
-"""Where only one marker was read, its corners must be as near as this to the edges [px]: blur pulls
-the two apart, and would put the cube centimetres too near or too far."""
+MAX_LONE_CORNER_DISTANCE_PX = 1.15
+"""The same where only one marker was read: blur moves the corners away from the edges, and would
+put the cube centimetres too near or too far."""
 
-SEEN = 0.3
-"""Share of the edges in view that must be found beside the markers; fingers cover the rest."""
+MIN_EDGE_SUPPORT = 0.3
+"""Share of the edges in view that must be found where markers were read; fingers cover the rest."""
 
-SEEN_ALONE = 0.6
-"""The same where no marker was read, so that the edges alone prove that this is the cube."""
+MIN_FACE_SUPPORT = 0.6
+"""The same for the edges of the best of the faces whose markers were read."""
 
-WHOLE_FACE = 0.85
-"""The same for the edges of the only face whose marker was read: blur that hides the other faces
-leaves less of it, fingers that do so leave all of it."""
+MIN_LONE_FACE_SUPPORT = 0.85
+"""The same for the only face whose marker was read: blur that hides the other faces leaves less of
+it, fingers that do so leave all of it."""
 
-STEEP = 0.75
-"""Edges that are duller than this show a blurred picture: it is aligned as one, since blur of which
-nothing is known puts a lone face centimetres too near or too far."""
+MIN_SHARPNESS = 0.75
+"""Edges that are duller than this show a blurred image. It is aligned as one, since unknown blur
+puts a lone face centimetres too near or too far."""
 
-FINE_CELL = 4.0
-"""Cells larger than this [px] have edges that a sharp picture shows."""
+MIN_FINE_CELL_PX = 4.0
+"""Cells larger than this have edges that a sharp image shows."""
+
+CELLS_PER_MARKER = 6
+"""Cells along a marker of 4×4 bits and its border."""
 
 
-class CandidateFinder:
-    """Proposes poses of one cube seen by one camera."""
+class MarkerPoses:
+    """Proposes poses of one cube seen by one camera from the corners of its markers.
 
-    def __init__(self, cube: CubeModel, projection: Projection, follower: Follower) -> None:
+    Parameters
+    ----------
+    cube
+        The cube, as printed.
+    projection
+        The camera.
+    edges
+        What refines the poses, and proves that they show the cube.
+    """
+
+    def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
         self._solver = CornerSolver(cube, projection)
-        self._follower = follower
+        self._edges = edges
 
     def find(
         self, patch: Patch, observations: list[Observation], expected: Array | None
     ) -> list[Candidate]:
-        """Propose up to two poses for the markers that were read in a picture.
+        """Propose up to two poses for the markers that were read in an image.
 
         Parameters
         ----------
         patch
-            The picture.
+            The image.
         observations
             The markers.
         expected
-            Where the cube should be by its past, (4, 4), if that is known.
+            Predicted pose of the cube, (4, 4), if there is one.
         """
         solutions = self._solver.solve(observations, expected)
-        solutions = [each for each in solutions if not _contradicted(each, observations)]
+        solutions = [each for each in solutions if not _is_contradicted(each, observations)]
         if expected is not None:
             solutions.sort(key=lambda each: se3.angle_between(each.camera_from_cube, expected))
-        refine = self._follower.refiner.refine
-        found = [
-            self._judged(patch, each, refine(patch, each.camera_from_cube)) for each in solutions
-        ]
+        matches = [self._edges.match(patch, each.camera_from_cube) for each in solutions]
+        found = [self._candidate(*each) for each in zip(solutions, matches, strict=True)]
         if any(each.certain for each in found):
             return self._with_mirrored(patch, found)
-        wide = [self._best_refinement(patch, each.camera_from_cube) for each in solutions]
-        return [self._judged(patch, *pair) for pair in zip(solutions, wide, strict=True)]
+        return [
+            self._candidate(solution, self._widely_matched(patch, solution, match))
+            for solution, match in zip(solutions, matches, strict=True)
+        ]
 
     def _with_mirrored(self, patch: Patch, found: list[Candidate]) -> list[Candidate]:
         """Add the other pose of a single face, where the corners alone did not propose it."""
         if len(found) > 1 or len(found[0].faces) > 1:
             return found
-        other = self._follower.mirrored(patch, found[0])
-        return [*found, other] if other and not close(found[0], other) else found
+        other = self._edges.search(patch, self._edges.mirrored_pose(found[0]))
+        return [*found, other] if other and not found[0].same_pose(other) else found
 
-    def _judged(
-        self, patch: Patch, solution: CornerSolution, refinement: Refinement | None
-    ) -> Candidate:
-        """Take the edges' pose where they agree with the corners, else the corners' own."""
+    def _widely_matched(
+        self, patch: Patch, solution: CornerSolution, precise: EdgeMatch | None
+    ) -> EdgeMatch | None:
+        """Search widely where the precise search found too few of the edges."""
+        support = precise.refinement.support if precise else 0.0
+        if support >= MIN_FACE_SUPPORT:
+            return precise
+        wide = self._edges.match(patch, solution.camera_from_cube, wide=True)
+        return wide if wide and wide.refinement.support > support else precise
+
+    def _candidate(self, solution: CornerSolution, match: EdgeMatch | None) -> Candidate:
+        """Take the pose of the edges where they agree with the corners, else the corners' own."""
         seen = solution.observations
         faces = tuple(each.face.name for each in seen)
-        if refinement is None or not self._agree(solution, refinement):
-            fine = min(each.size for each in seen) / 6 > FINE_CELL
+        if match is None or not self._agree(solution, match):
+            fine = min(each.size for each in seen) / CELLS_PER_MARKER > MIN_FINE_CELL_PX
             return Candidate(
                 camera_from_cube=solution.camera_from_cube,
                 covariance=solution.covariance,
@@ -99,40 +119,34 @@ class CandidateFinder:
                 certain=False,
                 blurred=fine or len(seen) == 1,
             )
+        refined = match.refinement
         return Candidate(
-            camera_from_cube=refinement.camera_from_cube,
-            covariance=self._follower.doubted(refinement, None),
+            camera_from_cube=refined.camera_from_cube,
+            covariance=match.covariance,
             source="markers",
             faces=faces,
-            error=self._solver.error(refinement.camera_from_cube, seen),
-            residual=refinement.residual / refinement.support,
-            certain=refinement.steep > STEEP and self._follower.proved(patch, refinement),
-            lines=refinement.lines,
+            error=self._solver.error(refined.camera_from_cube, seen),
+            residual=refined.residual / refined.support,
+            certain=refined.steep > MIN_SHARPNESS and match.proved,
+            measurements=refined.lines,
         )
 
-    def _agree(self, solution: CornerSolution, refinement: Refinement) -> bool:
+    def _agree(self, solution: CornerSolution, match: EdgeMatch) -> bool:
         """Whether the edges moved the pose by less than the corners allow."""
-        pose, seen = refinement.camera_from_cube, solution.observations
+        refined, seen = match.refinement, solution.observations
+        pose = refined.camera_from_cube
         if not all(self._solver.looks_at_camera(each.face.name, pose) for each in seen):
             return False
-        cell = min(each.size for each in seen) / 6
-        limit = solution.error + STRAY * cell if len(seen) > 1 else LONE_CORNERS
-        strays = self._solver.error(pose, seen) > limit
-        shares = [refinement.shares.get(each.face.name, 0.0) for each in seen]
-        whole = max(shares) > (WHOLE_FACE if len(seen) == 1 else SEEN_ALONE)
-        return refinement.support > SEEN and whole and not strays
-
-    def _best_refinement(self, patch: Patch, start: Array) -> Refinement | None:
-        """Refine precisely and, where that finds too few of the edges, with a wide search."""
-        best = self._follower.refiner.refine(patch, start)
-        if best is None or best.support < SEEN_ALONE:
-            wide = self._follower.refiner.refine(patch, start, wide=True)
-            if wide and (best is None or wide.support > best.support):
-                return wide
-        return best
+        alone = len(seen) == 1
+        cell = min(each.size for each in seen) / CELLS_PER_MARKER
+        limit = solution.error + MAX_CORNER_DISTANCE_CELLS * cell
+        far = self._solver.error(pose, seen) > (MAX_LONE_CORNER_DISTANCE_PX if alone else limit)
+        best = max(refined.shares.get(each.face.name, 0.0) for each in seen)
+        supported = best > (MIN_LONE_FACE_SUPPORT if alone else MIN_FACE_SUPPORT)
+        return refined.support > MIN_EDGE_SUPPORT and supported and not far
 
 
-def _contradicted(solution: CornerSolution, observations: list[Observation]) -> bool:
+def _is_contradicted(solution: CornerSolution, observations: list[Observation]) -> bool:
     """Whether a pose rests on one marker while others of the same cube say that it is elsewhere.
 
     A cube cut open and laid flat, its printed sheet, shows several; a cube never does.

@@ -1,6 +1,5 @@
-"""What the last seen poses say about now: velocity, and where the cube should be."""
+"""The track of one cube: its last trusted poses, its velocity, and where it should be now."""
 
-from collections import deque
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,26 +9,25 @@ from tracking.geometry import se3
 
 Array = NDArray[np.float64]
 
-MEMORY = 0.2
-"""How long a pose is carried on without being seen [s]; after that the cube may be anywhere."""
+MAX_PREDICTION_S = 0.2
+"""A pose is extrapolated for this long at most; after that the cube may be anywhere."""
 
 HAND_ACCELERATION = (8.0, 60.0)
-"""What a hand does to a cube that it plays with, one standard deviation [m/s², rad/s²]."""
+"""Acceleration of a cube in a playing hand, one standard deviation [m/s², rad/s²]."""
 
-FASTEST = (4.0, 40.0)
-"""Nobody moves a cube faster in front of a camera [m/s, rad/s]; what does so is another cube."""
+MAX_SPEED = (4.0, 40.0)
+"""No hand moves a cube faster in front of a camera [m/s, rad/s]."""
 
+MAX_ACCELERATION_SHARE, NOISE_FACTOR = 0.85, 2.0
+"""Share of a clear acceleration that is extrapolated, and the weight of its noise against it."""
 
-TRUST, NOISE = 0.85, 2.0
-"""Share of a clear acceleration that is carried on, and how much clearer than noise it must be."""
-
-LASTING = 0.07
-"""A hand does not accelerate the same way for longer than this [s]."""
+MAX_ACCELERATION_S = 0.07
+"""A hand does not accelerate in the same direction for longer than this."""
 
 
 @dataclass(frozen=True)
-class Sighting:
-    """A trusted pose."""
+class TrackedPose:
+    """A trusted pose of the past."""
 
     camera_from_cube: Array
     """Pose of the cube, (4, 4) [m]."""
@@ -44,98 +42,99 @@ class Sighting:
     """When [s]."""
 
     acceleration: Array = field(default_factory=lambda: np.zeros(6))
-    """How the velocity changes, as far as the poses tell, (6,) [m/s², rad/s²]."""
+    """Estimated change of the velocity, (6,) [m/s², rad/s²]."""
+
+    def reaches(self, camera_from_cube: Array, timestamp: float) -> bool:
+        """Whether a hand can have moved the cube from here to another pose by `timestamp`."""
+        elapsed = max(timestamp - self.timestamp, 0.0)
+        delta = se3.motion(self.camera_from_cube, camera_from_cube)
+        # The constants are the worst errors of a pose, for frames that follow at once.
+        return bool(
+            np.linalg.norm(delta[:3]) < MAX_SPEED[0] * elapsed + 0.02
+            and np.linalg.norm(delta[3:]) < min(MAX_SPEED[1] * elapsed + 0.1, np.pi + 0.1)
+        )
 
 
+@dataclass(frozen=True)
+class Prediction:
+    """Where the cube should be at one moment, if it goes on as before."""
+
+    camera_from_cube: Array
+    """Expected pose, (4, 4) [m]."""
+
+    velocity: Array
+    """Expected velocity, (6,) [m/s, rad/s]."""
+
+    covariance: Array
+    """Of the expected pose, (6, 6): the hand may have accelerated since the last pose."""
+
+    timestamp: float
+    """The moment [s]."""
+
+    def covers(self, camera_from_cube: Array) -> bool:
+        """Whether a pose lies within three standard deviations, along each axis."""
+        delta = se3.motion(self.camera_from_cube, camera_from_cube)
+        return bool((np.abs(delta) < 3 * np.sqrt(np.diag(self.covariance)) + 0.002).all())
+
+
+@dataclass(frozen=True)
 class Track:
-    """The last trusted poses of one cube, and what follows from them."""
+    """The last trusted poses of one cube."""
 
-    def __init__(self) -> None:
-        self._sightings: deque[Sighting] = deque(maxlen=3)
+    poses: tuple[TrackedPose, ...] = ()
+    """At most two, the latest one last."""
 
-    @property
-    def last(self) -> Sighting | None:
-        """The latest sighting, however old."""
-        return self._sightings[-1] if self._sightings else None
+    def add(self, pose: TrackedPose) -> "Track":
+        """Return the track with one more pose."""
+        return Track((*self.poses[-1:], pose))
 
-    def recent(self, timestamp: float) -> Sighting | None:
-        """Return the latest sighting, if it is not too old to tell where the cube is."""
-        last = self.last
-        return last if last and 0 <= timestamp - last.timestamp <= MEMORY else None
-
-    def add(self, sighting: Sighting) -> None:
-        """Remember a trusted pose."""
-        self._sightings.append(sighting)
-
-    def restart(self, sighting: Sighting) -> None:
-        """Forget the way so far: the cube has jumped."""
-        self._sightings.clear()
-        self._sightings.append(sighting)
+    def predict(self, timestamp: float) -> Prediction | None:
+        """Extrapolate the last pose; None where there is none, or it is too old."""
+        if not self.poses:
+            return None
+        last = self.poses[-1]
+        ahead = timestamp - last.timestamp
+        if not 0 <= ahead <= MAX_PREDICTION_S:
+            return None
+        accelerated = min(ahead, MAX_ACCELERATION_S)
+        delta = last.velocity * ahead + last.acceleration * (accelerated**2 / 2)
+        spread = np.repeat(HAND_ACCELERATION, 3) * ahead**2 / 2
+        return Prediction(
+            se3.moved(last.camera_from_cube, delta),
+            np.asarray(last.velocity + last.acceleration * accelerated, np.float64),
+            last.covariance * (1 + ahead / MAX_PREDICTION_S) ** 2 + np.diag(spread**2),
+            timestamp,
+        )
 
     def motion(
         self, camera_from_cube: Array, covariance: Array, timestamp: float
     ) -> tuple[Array, Array]:
-        """Velocity and acceleration at a new pose, (6,) each: of the parabola through three poses.
+        """Return velocity and acceleration at a new pose, (6,) each.
 
-        A plain difference would be the velocity of half a frame ago. The acceleration counts only
-        as far as it stands out from the noise of the poses (Wiener, 1949), each axis by itself: so
-        a cube at rest stays at rest. Zero after a pause so long that the way is not known.
+        They are those of the parabola through this pose and the last two: a plain difference would
+        be the velocity of half a frame ago. The acceleration counts only as far as it exceeds the
+        noise of the poses (Wiener, 1949), each axis by itself, so a cube at rest stays at rest.
+        Both are zero after a pause longer than `MAX_PREDICTION_S`.
         """
         still = np.zeros(6)
-        last = self.last
-        if last is None:
+        if not self.poses:
             return still, still
+        last = self.poses[-1]
         elapsed = timestamp - last.timestamp
-        if elapsed <= 0 or elapsed > MEMORY:
-            return (still, still) if elapsed > 0 else (last.velocity, last.acceleration)
+        if elapsed <= 0:
+            return last.velocity, last.acceleration
+        if elapsed > MAX_PREDICTION_S:
+            return still, still
         now = se3.motion(last.camera_from_cube, camera_from_cube) / elapsed
-        earlier = self._sightings[-2] if len(self._sightings) > 1 else None
+        earlier = self.poses[-2] if len(self.poses) > 1 else None
         before = last.timestamp - earlier.timestamp if earlier else 0.0
-        if earlier is None or not 0 < before <= MEMORY:
+        if earlier is None or not 0 < before <= MAX_PREDICTION_S:
             return now, still
         mean = se3.motion(earlier.camera_from_cube, last.camera_from_cube) / before
         span = (elapsed + before) / 2
-        change = (now - mean) / span
+        acceleration = (now - mean) / span
         variances = (np.diag(covariance) + np.diag(last.covariance)) / elapsed**2
         variances += (np.diag(earlier.covariance) + np.diag(last.covariance)) / before**2
-        noise = NOISE * variances / span**2
-        change *= TRUST * change**2 / (change**2 + noise)
-        return now + change * elapsed / 2, change
-
-
-def predicted(last: Sighting, timestamp: float) -> Array:
-    """Pose at `timestamp` if the cube goes on as it does, (4, 4)."""
-    ahead = timestamp - last.timestamp
-    bend = np.clip(ahead, -LASTING, LASTING) ** 2 / 2
-    return se3.moved(last.camera_from_cube, last.velocity * ahead + last.acceleration * bend)
-
-
-def velocity_at(last: Sighting, timestamp: float) -> Array:
-    """Velocity at `timestamp` if the cube goes on as it does, (6,)."""
-    ahead = np.clip(timestamp - last.timestamp, -LASTING, LASTING)
-    return np.asarray(last.velocity + last.acceleration * ahead, np.float64)
-
-
-def predicted_covariance(last: Sighting, timestamp: float) -> Array:
-    """Covariance of `predicted`, (6, 6): the hand may have accelerated ever since."""
-    elapsed = timestamp - last.timestamp
-    spread = np.repeat(HAND_ACCELERATION, 3) * elapsed**2 / 2
-    return last.covariance * (1 + elapsed / MEMORY) ** 2 + np.diag(spread**2)
-
-
-def near(last: Sighting, camera_from_cube: Array, timestamp: float) -> bool:
-    """Whether a pose lies within three standard deviations of `predicted`, each way."""
-    step = se3.motion(predicted(last, timestamp), camera_from_cube)
-    spread = np.sqrt(np.diag(predicted_covariance(last, timestamp)))
-    return bool((np.abs(step) < 3 * spread + 0.002).all())
-
-
-def plausible(last: Sighting, camera_from_cube: Array, timestamp: float) -> bool:
-    """Whether a hand can have brought the cube there since it was last seen."""
-    elapsed = max(timestamp - last.timestamp, 0.0)
-    step = se3.motion(last.camera_from_cube, camera_from_cube)
-    # The constants are what a pose may be wrong by at worst, for frames that follow at once.
-    return bool(
-        np.linalg.norm(step[:3]) < FASTEST[0] * elapsed + 0.02
-        and np.linalg.norm(step[3:]) < min(FASTEST[1] * elapsed + 0.1, np.pi + 0.1)
-    )
+        noise = NOISE_FACTOR * variances / span**2
+        acceleration *= MAX_ACCELERATION_SHARE * acceleration**2 / (acceleration**2 + noise)
+        return now + acceleration * elapsed / 2, acceleration

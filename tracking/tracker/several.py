@@ -1,4 +1,4 @@
-"""Several cubes in one picture, each with markers of its own."""
+"""Several cubes in one image, each with markers of its own."""
 
 from collections.abc import Sequence
 
@@ -8,15 +8,15 @@ from tracking.errors import TrackingError
 from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.state import CubeState
-from tracking.tracker.global_search import Search
+from tracking.tracker.global_search import FrameMarkers
 from tracking.tracker.tracker import CubeTracker
 
 
 class CubesTracker:
-    """Follows several cubes through the frames of one camera.
+    """Tracks several cubes through the frames of one camera.
 
-    Each is followed by itself. Where some are out of sight, the picture is searched once for the
-    markers of all of them.
+    Each has a tracker of its own. Where some are out of sight, the markers of the image are read
+    once for all of them.
 
     Parameters
     ----------
@@ -54,17 +54,11 @@ class CubesTracker:
         Raises
         ------
         TrackingError
-            The frame has not the size that the intrinsics hold for.
+            The size of the frame is not that of the intrinsics.
         """
-        self.trackers[0].check(frame)
-        states = [tracker.follow(frame) for tracker in self.trackers]
-        lost = [number for number, state in enumerate(states) if state is None]
-        if lost:
-            search = Search(frame, self._detectors)
-            for number in lost:
-                states[number] = self.trackers[number].acquire(frame, search)
-        return tuple(state for state in states if state is not None)
+        markers = FrameMarkers(frame, self._detectors)
+        return tuple(tracker.update(frame, markers) for tracker in self.trackers)
 
     def predict(self, timestamp: float) -> tuple[CubeState, ...]:
-        """Say where each cube will be at a time near that of the last frame."""
+        """Return where each cube will be at a time near that of the last frame."""
         return tuple(tracker.predict(timestamp) for tracker in self.trackers)

@@ -1,4 +1,4 @@
-"""A cube is found anywhere in a picture: cheaply where it can be, thoroughly where it must be."""
+"""A cube is found anywhere in an image: cheaply where possible, thoroughly where needed."""
 
 import cv2
 import numpy as np
@@ -12,9 +12,12 @@ from tracking.detection.markers import MarkerDetector, observed
 from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.projection import Projection
+from tracking.refinement.blur_search import BlurSearch
+from tracking.refinement.camera_model import CameraModelEstimator
+from tracking.refinement.candidate import Candidate
+from tracking.refinement.edge_search import EdgeSearch
 from tracking.synthetic import open_synthetic
-from tracking.tracker.global_search import Acquirer, Search
-from tracking.tracker.local_search import Follower
+from tracking.tracker.global_search import FrameMarkers, GlobalDetector
 from tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
@@ -35,6 +38,23 @@ class Counting(MarkerDetector):
     def detect(self, grey: Picture):
         self.rows.append(len(grey))
         return super().detect(grey)
+
+
+def detect(
+    cube: CubeModel,
+    camera: Intrinsics,
+    frame: Frame,
+    detector: MarkerDetector,
+    thorough: bool = True,
+) -> list[Candidate]:
+    """Poses that a cube without a past may have in a frame."""
+    projection = Projection(camera)
+    edges = EdgeSearch(cube, projection)
+    blur = BlurSearch(cube, projection, edges)
+    markers = FrameMarkers(frame, {cube.dictionary: detector})
+    tone = CameraModelEstimator().model.tone
+    search = GlobalDetector(cube, projection, edges, blur)
+    return search.detect(frame.image, markers, None, tone, thorough)
 
 
 def corners_of(cube: CubeModel, pose: Array, camera: Intrinsics) -> dict[str, Array]:
@@ -71,12 +91,12 @@ def test_corners_found_at_half_size_are_those_of_the_whole_picture(
 ) -> None:
     drawn = scene((CUBE, held(0.8, -0.5, 0.4, at=(0.1, 0.05, 0.45))), camera=WIDE)
     for frame in (static[0], Frame(photograph(drawn), 0.0, 0)):
-        search = Search(frame, DETECTORS)
+        markers = FrameMarkers(frame, DETECTORS)
         large, small = (
-            {each.face.name: each.corners for each in observed(CUBE, markers)}
-            for markers in (
-                search.markers(CUBE.dictionary, halved=False),
-                search.markers(CUBE.dictionary, halved=True),
+            {each.face.name: each.corners for each in observed(CUBE, read)}
+            for read in (
+                markers.read(CUBE.dictionary, halved=False),
+                markers.read(CUBE.dictionary, halved=True),
             )
         )
         assert len(large) >= 2
@@ -92,9 +112,9 @@ def test_a_picture_is_read_once_for_all_cubes(
     static: tuple[Frame, Array, CubeModel, Intrinsics],
 ) -> None:
     detector = Counting(CUBE.dictionary)
-    search = Search(static[0], {CUBE.dictionary: detector})
+    markers = FrameMarkers(static[0], {CUBE.dictionary: detector})
     for halved in (True, False, True, False):
-        search.markers(CUBE.dictionary, halved)
+        markers.read(CUBE.dictionary, halved)
     assert detector.rows == [360, 720]
 
 
@@ -102,10 +122,8 @@ def test_half_size_is_enough_where_the_cube_is_near(
     static: tuple[Frame, Array, CubeModel, Intrinsics],
 ) -> None:
     frame, truth, cube, camera = static
-    projection = Projection(camera)
     detector = Counting(cube.dictionary)
-    acquirer = Acquirer(cube, projection, Follower(cube, projection))
-    found = acquirer.find(Search(frame, {cube.dictionary: detector}), None, True)
+    found = detect(cube, camera, frame, detector)
     assert detector.rows == [360]
     assert any(each.certain and off(each.camera_from_cube, truth)[0] < 0.2 for each in found)
 
@@ -114,9 +132,8 @@ def test_the_whole_picture_is_read_where_the_cube_is_far() -> None:
     """Its markers are 20 px wide, and 10 px at half size."""
     pose = held(0.3, 0.5, 0.2, at=(0.1, 0.05, 1.7))
     frame = Frame(photograph(scene((CUBE, pose), camera=WIDE), noise=0.5), 0.0, 0)
-    projection, detector = Projection(WIDE), Counting(CUBE.dictionary)
-    acquirer = Acquirer(CUBE, projection, Follower(CUBE, projection))
-    found = acquirer.find(Search(frame, {CUBE.dictionary: detector}), None, False)
+    detector = Counting(CUBE.dictionary)
+    found = detect(CUBE, WIDE, frame, detector, thorough=False)
     assert detector.rows == [360, 720]
     assert min(off(each.camera_from_cube, pose)[0] for each in found) < 5
 
@@ -128,10 +145,10 @@ def test_a_cube_with_a_covered_corner_on_every_marker_is_found(
     frame, truth, cube, camera = static
     picture = patched(frame.image, corners_of(cube, truth, camera), seed)
     covered = Frame(picture, 0.0, 0)
-    search = Search(covered, DETECTORS)
+    markers = FrameMarkers(covered, DETECTORS)
     for halved in (True, False):
         # Or the patches would prove nothing.
-        assert observed(cube, search.markers(cube.dictionary, halved)) == []
+        assert observed(cube, markers.read(cube.dictionary, halved)) == []
     state = CubeTracker(cube, camera).update(covered)
     assert state.visible
     millimetres, degrees = off(state.camera_from_cube, truth)
@@ -144,16 +161,13 @@ def test_covered_markers_are_not_sought_where_that_is_not_asked_for(
 ) -> None:
     frame, truth, cube, camera = static
     picture = patched(frame.image, corners_of(cube, truth, camera), 0)
-    projection = Projection(camera)
-    acquirer = Acquirer(cube, projection, Follower(cube, projection))
-    search = Search(Frame(picture, 0.0, 0), DETECTORS)
-    assert acquirer.find(search, None, thorough=False) == []
-    assert any(each.certain for each in acquirer.find(search, None, thorough=True))
+    covered, detector = Frame(picture, 0.0, 0), DETECTORS[cube.dictionary]
+    assert detect(cube, camera, covered, detector, thorough=False) == []
+    assert any(each.certain for each in detect(cube, camera, covered, detector))
 
 
 def test_a_picture_without_the_cube_proposes_nothing() -> None:
     other = CubeModel.load("companion")
     frame = Frame(photograph(scene((other, held()), camera=WIDE)), 0.0, 0)
-    projection = Projection(WIDE)
-    acquirer = Acquirer(CUBE, projection, Follower(CUBE, projection))
-    assert not any(each.certain for each in acquirer.find(Search(frame, DETECTORS), None, True))
+    found = detect(CUBE, WIDE, frame, DETECTORS[CUBE.dictionary])
+    assert not any(each.certain for each in found)

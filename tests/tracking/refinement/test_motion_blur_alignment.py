@@ -13,17 +13,18 @@ from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.alignment import Alignment
-from tracking.refinement.camera_model import CLEAR_SWEEP
+from tracking.refinement.blur_search import MIN_CORRELATION, BlurSearch
+from tracking.refinement.camera_model import MIN_BLUR_PX, CameraModelEstimator, ToneCurve
+from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.motion_blur_alignment import SweptAligner
-from tracking.refinement.tone_curve import Response
-from tracking.tracker.local_search import LIKE, Follower
-from tracking.tracker.prediction import Sighting, Track
+from tracking.tracker.local_search import LocalTracker
+from tracking.tracker.prediction import Track, TrackedPose
 
 Array = NDArray[np.float64]
 
 CUBE, OTHER = CubeModel.load("locomotion"), CubeModel.load("companion")
 ALIGNER = SweptAligner(CUBE, Projection(CAMERA))
-LIGHT = Response().table
+LIGHT = ToneCurve().table
 VIEWS = [held(), held(0.8, -0.5, 0.4), held(0.4, 2.2, -0.3), held(-0.6, 0.7, 1.0)]
 WAYS = (0.0, 1.0, 2.0)
 FAR = 1.0 / 60
@@ -144,7 +145,7 @@ def test_a_cube_at_rest_sweeps_no_more_than_a_lens_blurs() -> None:
     alignment = still.found(se3.moved(VIEWS[0], np.array([4e-4, -3e-4, 5e-4, 4e-3, 0, 3e-3])))
     assert off(alignment.camera_from_cube, VIEWS[0])[0] < 0.2
     pixels = np.linalg.norm(alignment.sweep[:2]) * CAMERA.matrix[0, 0] / VIEWS[0][2, 3]
-    assert pixels < CLEAR_SWEEP
+    assert pixels < MIN_BLUR_PX
 
 
 def test_a_finger_on_a_face_does_not_pull_the_cube(shots: list[Shot]) -> None:
@@ -166,7 +167,7 @@ def test_another_cube_is_not_like_it(shots: list[Shot]) -> None:
         assert right.weakest > 0.95
         for coarse in (False, True):
             wrong = other.align(each.pose, coarse=coarse)
-            assert wrong is None or wrong.weakest < LIKE
+            assert wrong is None or wrong.weakest < MIN_CORRELATION
 
 
 def test_an_even_picture_is_not_like_it(shots: list[Shot]) -> None:
@@ -191,9 +192,14 @@ def test_a_finger_over_one_face_does_not_hide_two_others_in_motion() -> None:
     corners = CUBE.face("right").corners @ pose[:3, :3].T + pose[:3, 3]
     pixels = Projection(CAMERA).pixels(corners)
     cv2.fillConvexPoly(light, np.rint(pixels).astype(np.int32), 0.3)
-    track, follower = Track(), Follower(CUBE, Projection(CAMERA))
+    track, projection = Track(), Projection(CAMERA)
     for time in (-1 / 15, -1 / 30):
-        track.add(Sighting(se3.moved(pose, time * across), across, 1e-8 * np.eye(6), time))
-    found = follower.follow(photograph(light), track, 0.0)
+        past = se3.moved(pose, time * across)
+        track = track.add(TrackedPose(past, across, 1e-8 * np.eye(6), time))
+    edges = EdgeSearch(CUBE, projection)
+    tracker = LocalTracker(CUBE, projection, edges, BlurSearch(CUBE, projection, edges))
+    prediction, camera = track.predict(0.0), CameraModelEstimator().model
+    assert prediction is not None
+    found = tracker.search(photograph(light), track, prediction, camera).candidate
     assert found is not None
     assert off(found.camera_from_cube, pose)[0] < 0.5

@@ -1,0 +1,140 @@
+"""A cube found by its motion-blurred image, where its edges are smeared too far."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.cube.model import CubeModel
+from tracking.geometry.image_region import Patch
+from tracking.geometry.projection import Projection
+from tracking.refinement.alignment import Alignment
+from tracking.refinement.camera_model import CameraModel
+from tracking.refinement.candidate import Candidate
+from tracking.refinement.edge_search import EdgeSearch
+from tracking.refinement.footprint import Footprint
+from tracking.refinement.motion_blur_alignment import SweptAligner
+
+Array = NDArray[np.float64]
+
+MAX_EDGE_BLUR_CELLS = 0.6
+"""Cells that an edge may cross during the exposure and still be measured as an edge."""
+
+VISIBLE_EDGE_BLUR_CELLS = 0.3
+"""Below this blur extent the edges of the cube must be found."""
+
+MIN_CORRELATION = 0.85
+"""Correlation of a blurred image with the rendered one from which on it shows the cube."""
+
+MIN_CORRELATION_ALONE = 0.95
+"""The same where nothing else speaks for the cube."""
+
+MOTION_SPREAD, FIRST_MOTION_SPREAD = (0.12, 0.0025, 0.04), (0.35, 0.004, 0.06)
+"""Standard deviation of an expected blur motion: a share of it, and [m, rad] besides; the second
+holds while the exposure is not known."""
+
+UNKNOWN_MOTION_SPREAD = (1.5, 0.15)
+"""Standard deviation of the motion of a cube without a past [cells, rad]."""
+
+COVARIANCE_FACTORS = (2.5, 5.0)
+"""By how much the variance exceeds what the residuals tell: without blur, and more for each cell of
+blur extent. Measured as the coverage that `make bench-tracking` prints."""
+
+
+class BlurSearch:
+    """Aligns the image of one moving cube, and tells whether it shows the cube.
+
+    Parameters
+    ----------
+    cube
+        The cube, as printed.
+    projection
+        The camera.
+    edges
+        What refines a pose further where the edges are not smeared too far.
+    """
+
+    def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
+        self._aligner = SweptAligner(cube, projection)
+        self._footprint = Footprint(cube, projection)
+        self._edges = edges
+
+    def align(
+        self,
+        patch: Patch,
+        start: Array,
+        blur_motion: Array,
+        camera: CameraModel,
+        coarse: bool | None = None,
+    ) -> Alignment | None:
+        """Align the image of a cube whose motion is roughly known.
+
+        Parameters
+        ----------
+        patch
+            The image around the cube.
+        start
+            Expected pose, (4, 4).
+        blur_motion
+            Expected pose delta during the exposure, (6,).
+        camera
+            How well the exposure is known.
+        coarse
+            Whether to search coarsely first; None to do so only where the fine search fails.
+
+        Returns
+        -------
+        None where the image does not show the cube.
+        """
+        share, shift, turn = MOTION_SPREAD if camera.exposure_known else FIRST_MOTION_SPREAD
+        sizes = [np.linalg.norm(blur_motion[:3]), np.linalg.norm(blur_motion[3:])]
+        prior = np.hypot(share * np.repeat(sizes, 3), np.repeat([shift, turn], 3))
+        found = None
+        if not coarse:
+            found = self._aligner.align(patch, start, blur_motion, prior, coarse=False)
+        if coarse is None and not (found and found.weakest > MIN_CORRELATION_ALONE):
+            again = self._aligner.align(patch, start, blur_motion, prior)
+            if again and not (found and found.likeness > again.likeness):
+                found = again
+        return found if found and _shows_cube(found) else None
+
+    def align_unknown_motion(self, patch: Patch, start: Array) -> Alignment | None:
+        """Align a cube without a past, whose corners alone were read: it may move in any direction.
+
+        A motion and its reverse blur alike, so half of all directions are enough.
+        """
+        best: Alignment | None = None
+        shift, turn = UNKNOWN_MOTION_SPREAD
+        prior = np.repeat([shift * self._footprint.cell, turn], 3)
+        for angle in np.arange(4) * np.pi / 4:
+            direction = np.array([np.cos(angle), np.sin(angle), 0, 0, 0, 0])
+            found = self._aligner.align(patch, start, self._footprint.cell * direction, prior)
+            least = max(MIN_CORRELATION_ALONE, best.likeness if best else 0.0)
+            if found and found.likeness > least and _shows_cube(found):
+                best = found
+        return best
+
+    def candidate(self, patch: Patch, aligned: Alignment) -> Candidate | None:
+        """Refine an alignment on the edges; where those are not smeared they must be found."""
+        extent = self._footprint.blur_extent(aligned.sweep)
+        if extent < MAX_EDGE_BLUR_CELLS:
+            found = self._edges.search(patch, aligned.camera_from_cube, aligned.sweep)
+            if found is not None or extent < VISIBLE_EDGE_BLUR_CELLS:
+                return found
+        at_rest, per_cell = COVARIANCE_FACTORS
+        return Candidate(
+            camera_from_cube=aligned.camera_from_cube,
+            covariance=aligned.covariance[:6, :6] * (at_rest + per_cell * extent),
+            source="image",
+            faces=tuple(face for face, share in aligned.shares.items() if share > MIN_CORRELATION),
+            error=float("nan"),
+            residual=aligned.residual,
+            certain=True,
+            blur_motion=aligned.sweep,
+        )
+
+
+def _shows_cube(aligned: Alignment) -> bool:
+    """Whether all faces in view correlate with the image, or two do so beyond doubt."""
+    if aligned.weakest > MIN_CORRELATION:
+        return True
+    sure = sum(share > MIN_CORRELATION_ALONE for share in aligned.shares.values())
+    return aligned.likeness > MIN_CORRELATION and sure >= 2

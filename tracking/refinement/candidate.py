@@ -1,0 +1,70 @@
+"""A pose found in one frame, before it is trusted, and how two of them compare."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.geometry import se3
+
+Array = NDArray[np.float64]
+
+MIN_LOG_LIKELIHOOD_RATIO = 8.0
+"""Twice the logarithm of a likelihood ratio from which on the better of two poses is right."""
+
+SAME_POSE = (0.004, np.deg2rad(4))
+"""Two poses closer than this are the same for all purposes [m, rad]."""
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A pose found in one frame, before it is trusted."""
+
+    camera_from_cube: Array
+    """Pose of the cube, (4, 4) [m]."""
+
+    covariance: Array
+    """Of a pose delta, (6, 6)."""
+
+    source: Literal["markers", "image"]
+    """As in `CubeState.source`."""
+
+    faces: tuple[str, ...]
+    """As in `CubeState.faces`."""
+
+    error: float
+    """As in `CubeState.reprojection_error` [px]."""
+
+    residual: float
+    """Edge residual over the share of edges found, or the corner error [px]; smaller is better."""
+
+    certain: bool
+    """Whether the edges or the blurred image prove that this is the cube."""
+
+    blurred: bool = False
+    """Whether the edges, which a sharp image would show, were not found."""
+
+    blur_motion: Array | None = None
+    """Pose delta of the cube during the exposure, (6,), where it was measured."""
+
+    measurements: int = 8
+    """Roughly how many independent measurements the residual rests on."""
+
+    def same_pose(self, other: "Candidate") -> bool:
+        """Whether two candidates are the same pose for all purposes."""
+        delta = se3.motion(self.camera_from_cube, other.camera_from_cube)
+        return bool(
+            np.linalg.norm(delta[:3]) < SAME_POSE[0] and np.linalg.norm(delta[3:]) < SAME_POSE[1]
+        )
+
+    def clearly_better_than(self, other: "Candidate") -> bool:
+        """Whether the residuals tell that this pose is right, by their likelihood ratio."""
+        ratio = max(other.residual, 1e-6) / max(self.residual, 1e-6)
+        measurements = min(self.measurements, other.measurements)
+        return bool(measurements * 2 * np.log(ratio) > MIN_LOG_LIKELIHOOD_RATIO)
+
+    def widened_to(self, other: "Candidate") -> "Candidate":
+        """Return this pose with a covariance that covers another possible pose too."""
+        apart = se3.motion(self.camera_from_cube, other.camera_from_cube)
+        return replace(self, covariance=self.covariance + np.outer(apart, apart) / 4)

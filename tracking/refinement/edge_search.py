@@ -1,0 +1,164 @@
+"""A cube near an expected pose, found by the edges of its markers and proved by their cells."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.cube.faces import Faces
+from tracking.cube.model import CubeModel
+from tracking.detection.marker_check import CellReader, Reading
+from tracking.geometry.image_region import Patch
+from tracking.geometry.projection import Projection
+from tracking.refinement.candidate import Candidate
+from tracking.refinement.edge_refinement import EdgeRefiner, Refinement
+from tracking.refinement.footprint import Footprint
+
+Array = NDArray[np.float64]
+
+MIN_EDGE_SUPPORT = 0.55
+"""Share of the edges in view that must be found for the edges alone to prove the cube."""
+
+MIN_EDGE_SUPPORT_WITH_MARKERS = 0.25
+"""The same where the markers can be read as well; fingers cover the rest."""
+
+MIN_SHARPNESS_RATIO = 0.65
+"""Where the dullest edges are duller than this beside the sharpest, the cube moved in a way that
+was not expected."""
+
+MAX_RESIDUAL_PX, MAX_RESIDUAL_SHARE = 0.5, 0.0063
+"""Edges of a rigid cube lie within this of their places, or within this share of its edge,
+whichever is more: a cube folded 1 mm askew does, a cube on a screen seen from the side does not."""
+
+MIN_FACE_AGREEMENT = 0.6
+"""Share of a face's cells that must be as expected for its edges to count as its own."""
+
+MIN_READ_AGREEMENT = 0.95
+"""Share of a face's cells that must be as expected for its marker to count as read."""
+
+MIN_SUPPORTED_AGREEMENT = 0.75
+"""The same where the edges of the cube are found too."""
+
+COVARIANCE_FACTOR, DOUBLING_BLUR_EXTENT = 1.5, 0.25
+"""By how much the variance exceeds what the residuals tell, at rest, and the blur extent [cells]
+that doubles it. Measured as the coverage that `make bench-tracking` prints."""
+
+COMMON_ERROR_PX = (0.01, 0.002, 0.005)
+"""Error that all edges have in common: sideways, in size and in tilt, at the cube's border."""
+
+
+@dataclass(frozen=True)
+class EdgeMatch:
+    """A pose refined on edges, and whether it is the cube's."""
+
+    refinement: Refinement
+    """The pose with its residuals."""
+
+    covariance: Array
+    """Of a pose delta, (6, 6), with the errors that no residual shows."""
+
+    reading: Reading
+    """What the cells say at this pose; nothing where too few edges were found."""
+
+    proved: bool
+    """Whether edges and cells prove that this is the cube."""
+
+
+class EdgeSearch:
+    """Refines poses of one cube on its edges, and tells whether they prove that it is the cube."""
+
+    def __init__(self, cube: CubeModel, projection: Projection) -> None:
+        self._faces = Faces(cube)
+        self._refiner = EdgeRefiner(cube, projection)
+        self._reader = CellReader(cube, projection)
+        self._footprint = Footprint(cube, projection)
+
+    def match(
+        self, patch: Patch, start: Array, blur_motion: Array | None = None, wide: bool = False
+    ) -> EdgeMatch | None:
+        """Refine a pose on the edges; None where too few are found.
+
+        Parameters
+        ----------
+        patch
+            The image around the cube.
+        start
+            Pose of the cube, (4, 4), right to about half a cell.
+        blur_motion
+            Pose delta of the cube during the exposure, (6,); None for a cube at rest.
+        wide
+            Whether the pose is right to a whole cell only.
+        """
+        found = self._refiner.refine(patch, start, blur_motion, wide)
+        if found is None:
+            return None
+        reading = Reading({})
+        if found.support >= MIN_EDGE_SUPPORT_WITH_MARKERS:
+            reading = self._reader.read(patch, found.camera_from_cube)
+        covariance = self._inflate_covariance(found, blur_motion)
+        proved = self._is_rigid(found) and _prove(found, reading)
+        return EdgeMatch(found, covariance, reading, proved)
+
+    def search(
+        self, patch: Patch, start: Array, blur_motion: Array | None = None
+    ) -> Candidate | None:
+        """Refine a pose as `match` does; None where the edges do not prove that it is the cube."""
+        match = self.match(patch, start, blur_motion)
+        if match is None or not match.proved:
+            return None
+        found, reading = match.refinement, match.reading
+        return Candidate(
+            camera_from_cube=found.camera_from_cube,
+            covariance=match.covariance,
+            source="markers" if reading.best >= MIN_READ_AGREEMENT else "image",
+            faces=tuple(
+                face
+                for face, share in found.shares.items()
+                if share > MIN_EDGE_SUPPORT_WITH_MARKERS
+                and reading.agreement.get(face, 1.0) > MIN_FACE_AGREEMENT
+            ),
+            error=found.residual,
+            residual=found.residual / found.support,
+            certain=True,
+            measurements=found.lines,
+        )
+
+    def mirrored_pose(self, candidate: Candidate) -> Array:
+        """Return the other pose that a candidate of a single face could have, (4, 4), not refined.
+
+        Seen from afar, a square that tilts towards the camera looks like one that tilts away.
+        """
+        face = self._faces.names.index(candidate.faces[0])
+        return self._faces.mirrored(candidate.camera_from_cube, face)
+
+    def _inflate_covariance(self, found: Refinement, blur_motion: Array | None) -> Array:
+        """Covariance of a refined pose, (6, 6), with the errors that no residual shows.
+
+        Lens, paper and light displace all edges a little in common: sideways, in size and in tilt.
+        """
+        pose = found.camera_from_cube
+        extent = 0.0 if blur_motion is None else self._footprint.blur_extent(blur_motion)
+        half_edge = self._footprint.half_edge
+        pixel = self._footprint.metres_per_pixel(pose)
+        side, size, tilt = np.array(COMMON_ERROR_PX) * pixel
+        size, tilt = size * float(pose[2, 3]) / half_edge, tilt / half_edge
+        floor = np.square([side, side, size, tilt, tilt, tilt])
+        factor = 1 + (extent / DOUBLING_BLUR_EXTENT) ** 2
+        inflated = found.covariance * COVARIANCE_FACTOR * factor
+        return np.asarray(inflated + np.diag(floor), np.float64)
+
+    def _is_rigid(self, found: Refinement) -> bool:
+        """Whether the edges lie as those of one rigid cube, and not as on a picture of one."""
+        pixel = self._footprint.metres_per_pixel(found.camera_from_cube)
+        edge = 2 * self._footprint.half_edge
+        return found.residual < max(MAX_RESIDUAL_PX, MAX_RESIDUAL_SHARE * edge / pixel)
+
+
+def _prove(found: Refinement, reading: Reading) -> bool:
+    if found.crisp < MIN_SHARPNESS_RATIO:
+        return False
+    if min(found.support, found.inner) > MIN_EDGE_SUPPORT and reading.best > MIN_FACE_AGREEMENT:
+        return True
+    return reading.best >= MIN_READ_AGREEMENT or (
+        found.support > MIN_EDGE_SUPPORT and reading.best > MIN_SUPPORTED_AGREEMENT
+    )

@@ -1,0 +1,79 @@
+"""Where a cube at a pose appears in the image, and how large."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.cube.marker import marker_cells
+from tracking.cube.model import CubeModel
+from tracking.geometry.image_region import Floats, Patch, Region
+from tracking.geometry.projection import NEAREST, Projection
+
+Array = NDArray[np.float64]
+
+MARGIN_SHARE, MARGIN_PX = 0.15, 12
+"""Margin around the predicted cube, for the acceleration of a hand: a share of its size, and [px]
+besides."""
+
+MIN_REGION_PX = 32
+"""The cube is not searched in a region narrower or lower than this."""
+
+
+class Footprint:
+    """The image region and the image scale of one cube seen by one camera."""
+
+    def __init__(self, cube: CubeModel, projection: Projection) -> None:
+        self._projection = projection
+        self._focal_px = float(projection.matrix[0, 0])
+        signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+        self._corners = np.array(signs, np.float64) * cube.edge / 2
+        self.half_edge = cube.edge / 2
+        """Half the edge of the cube [m]."""
+        self.cell = cube.marker_size / len(marker_cells(cube.dictionary, cube.faces[0].marker_id))
+        """Edge of a marker's cell [m]."""
+
+    def metres_per_pixel(self, camera_from_cube: Array) -> float:
+        """Length at the cube's distance that one pixel covers [m]."""
+        return float(camera_from_cube[2, 3]) / self._focal_px
+
+    def pixels_per_cell(self, camera_from_cube: Array) -> float:
+        """Size of a marker's cell that faces the camera [px]."""
+        return self.cell * self._focal_px / float(camera_from_cube[2, 3])
+
+    def blur_extent(self, blur_motion: Array) -> float:
+        """Return how far an edge of the cube moves at most during the exposure [cells]."""
+        shift = float(np.linalg.norm(blur_motion[:3]))
+        turn = float(np.linalg.norm(blur_motion[3:]))
+        return (shift + self.half_edge * turn) / self.cell
+
+    def patch(
+        self, image: NDArray[np.uint8], camera_from_cube: Array, tone: Floats
+    ) -> Patch | None:
+        """Cut the cube at a pose out of an image; None where it is not in view.
+
+        Parameters
+        ----------
+        image
+            The image, (H, W, 3) BGR.
+        camera_from_cube
+            The pose, (4, 4).
+        tone
+            Light for each grey value, (256,).
+        """
+        region = self.region(camera_from_cube)
+        return Patch.of(image, region, tone) if region else None
+
+    def region(self, camera_from_cube: Array) -> Region | None:
+        """Bounds of the cube at a pose with a margin; None where it is not in view."""
+        points = self._corners @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
+        if points[:, 2].min() < NEAREST:
+            return None
+        pixels = self._projection.pixels(points)
+        low, high = pixels.min(axis=0), pixels.max(axis=0)
+        margin = MARGIN_SHARE * float((high - low).max()) + MARGIN_PX
+        width, height = self._projection.size
+        left, top = max(0, int(low[0] - margin)), max(0, int(low[1] - margin))
+        right = min(width, int(high[0] + margin + 1))
+        bottom = min(height, int(high[1] + margin + 1))
+        if right - left < MIN_REGION_PX or bottom - top < MIN_REGION_PX:
+            return None
+        return left, top, right, bottom

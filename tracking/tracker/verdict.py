@@ -1,0 +1,218 @@
+"""Which of the poses that one frame proposes is trusted, and why the others are not."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.cube.model import CubeModel
+from tracking.geometry import se3
+from tracking.geometry.image_region import Floats
+from tracking.geometry.projection import Projection
+from tracking.refinement.candidate import Candidate
+from tracking.refinement.edge_search import EdgeSearch
+from tracking.refinement.footprint import Footprint
+from tracking.tracker.prediction import MAX_PREDICTION_S, Prediction, Track, TrackedPose
+
+Array = NDArray[np.float64]
+
+MIN_DISTINCT_ANGLE, MIN_HARMFUL_ANGLE, MIN_LASTING_ANGLE = np.deg2rad((3, 7, 10))
+"""Angle between the two poses of one face [rad]: below the first they need not be told apart, below
+the second both are accurate enough, below the third one can become the other unnoticed."""
+
+MAX_POSE_SPREAD = (0.006, np.deg2rad(3.0))
+"""A pose with a greater standard deviation than this is not trusted [m, rad]."""
+
+MAX_LONE_FACE_SPEED = 0.65
+"""A single face that moves faster than this [m/s] is too blurred to tell its distance."""
+
+MAX_CHOICE_AGE_S, MAX_CHOICE_ANGLE = 0.07, np.deg2rad(15)
+"""The track tells two poses of a face apart no longer than this after its last pose, and only where
+one of them is closer than this to the predicted one [rad]."""
+
+MAX_JUMP_CHECK_AGE_S = 1.0
+"""After this time out of sight the cube may appear anywhere without confirmation."""
+
+
+@dataclass(frozen=True)
+class Past:
+    """What the tracker remembers from one frame to the next."""
+
+    track: Track = field(default_factory=Track)
+    """The last trusted poses."""
+
+    jump: TrackedPose | None = None
+    """The last pose that was refused as a jump, until a pose is trusted again."""
+
+    tilt_settled: bool = False
+    """Whether it is known which way a single face tilts."""
+
+    frames_lost: int = 0
+    """How many frames were searched as a whole since a pose was trusted."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """The pose of one frame, or why there is none."""
+
+    candidate: Candidate | None
+    """The best pose; None where none was found."""
+
+    refused: str
+    """Why it is not trusted, as in `CubeState.refused`; "" where it is."""
+
+    past: Past
+    """What the tracker remembers, without this pose."""
+
+
+class FollowedPoseJudge:
+    """Judges poses found near the predicted one: a single face may tilt towards the camera or away.
+
+    Parameters
+    ----------
+    cube
+        The cube, as printed.
+    projection
+        The camera.
+    edges
+        What refines the other pose of a face.
+    """
+
+    def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
+        self._footprint = Footprint(cube, projection)
+        self._edges = edges
+
+    def judge(
+        self, candidate: Candidate, image: NDArray[np.uint8], tone: Floats, past: Past
+    ) -> Verdict:
+        """Tell which way a face tilts: by its edges, else by its past, else not at all.
+
+        Once the tilt is known it stays known until the face comes square to the camera, where one
+        pose can become the other.
+
+        Parameters
+        ----------
+        candidate
+            The pose.
+        image
+            The image, (H, W, 3) BGR.
+        tone
+            Light for each grey value, (256,).
+        past
+            What is remembered of the frames before.
+        """
+        settled = replace(past, tilt_settled=True)
+        if len(candidate.faces) != 1:
+            return _unless_uncertain(candidate, settled)
+        if candidate.blur_motion is not None:
+            if past.tilt_settled:
+                return _unless_uncertain(candidate, past)
+            return Verdict(candidate, "ambiguous", past)
+        mirrored = self._edges.mirrored_pose(candidate)
+        planar_ambiguity_angle = se3.angle_between(candidate.camera_from_cube, mirrored)
+        unsettled = replace(past, tilt_settled=False)
+        if planar_ambiguity_angle < MIN_DISTINCT_ANGLE:
+            return _unless_uncertain(candidate, unsettled)
+        if past.tilt_settled and planar_ambiguity_angle > MIN_LASTING_ANGLE:
+            return _unless_uncertain(candidate, past)
+        patch = self._footprint.patch(image, candidate.camera_from_cube, tone)
+        other = self._edges.search(patch, mirrored) if patch else None
+        if other is None:
+            return _unless_uncertain(candidate, past)
+        if candidate.same_pose(other):
+            return _unless_uncertain(candidate, unsettled)
+        best, worse = sorted((candidate, other), key=lambda each: each.residual)
+        if best.clearly_better_than(worse):
+            return _unless_uncertain(best, settled)
+        if planar_ambiguity_angle < MIN_HARMFUL_ANGLE:
+            return _unless_uncertain(candidate.widened_to(other), past)
+        return Verdict(candidate, "ambiguous", past)
+
+
+def judge_detected(
+    candidates: Sequence[Candidate], prediction: Prediction | None, past: Past, now: float
+) -> Verdict:
+    """Choose between poses found anywhere in the image, and refuse those that cannot be.
+
+    Parameters
+    ----------
+    candidates
+        The poses, which explain the same markers.
+    prediction
+        Where the cube should be, if that is known.
+    past
+        What is remembered of the frames before.
+    now
+        Time of the frame [s].
+    """
+    fitting = [each for each in candidates if _fits(each, prediction)]
+    if not fitting:
+        return Verdict(None, "", past)
+    best, refused = _choose(fitting, prediction, past.track, now)
+    if refused:
+        return Verdict(best, refused, past)
+    track = _continued_track(best, past, now)
+    if track is None:
+        jump = TrackedPose(best.camera_from_cube, np.zeros(6), best.covariance, now)
+        return Verdict(best, "jump", replace(past, jump=jump))
+    return _unless_uncertain(best, replace(past, track=track))
+
+
+def _fits(candidate: Candidate, prediction: Prediction | None) -> bool:
+    """Whether a pose that rests on a single marker is where the cube should be."""
+    return (
+        prediction is None
+        or candidate.certain
+        or len(candidate.faces) > 1
+        or prediction.covers(candidate.camera_from_cube)
+    )
+
+
+def _choose(
+    candidates: Sequence[Candidate], prediction: Prediction | None, track: Track, now: float
+) -> tuple[Candidate, str]:
+    """Choose a pose; say why it is not trusted where the image does not prove it."""
+    best, *others = sorted(candidates, key=lambda each: each.residual)
+    if not best.certain:
+        return best, "blurred" if best.blurred else "unproved"
+    if len(best.faces) == 1:
+        velocity = track.motion(best.camera_from_cube, best.covariance, now)[0]
+        if np.linalg.norm(velocity[:3]) > MAX_LONE_FACE_SPEED:
+            return best, "blurred"
+    if not others or best.same_pose(others[0]) or best.clearly_better_than(others[0]):
+        return best, ""
+    if prediction is not None and now - track.poses[-1].timestamp < MAX_CHOICE_AGE_S:
+        near, far = sorted(
+            (se3.angle_between(prediction.camera_from_cube, each.camera_from_cube), number)
+            for number, each in enumerate((best, others[0]))
+        )
+        if near[0] < MAX_CHOICE_ANGLE and far[0] > 2 * near[0]:
+            return (best, others[0])[near[1]], ""
+    return best, "ambiguous"
+
+
+def _continued_track(candidate: Candidate, past: Past, now: float) -> Track | None:
+    """Return the track that a pose continues: its own, or that of a jump which it confirms.
+
+    None where no hand can have moved the cube there.
+    """
+    if not past.track.poses:
+        return past.track
+    pose, last, jump = candidate.camera_from_cube, past.track.poses[-1], past.jump
+    if now - last.timestamp > MAX_JUMP_CHECK_AGE_S:
+        return past.track
+    if jump and now - jump.timestamp <= MAX_PREDICTION_S and jump.reaches(pose, now):
+        return Track((jump,))
+    return past.track if last.reaches(pose, now) else None
+
+
+def _unless_uncertain(candidate: Candidate, past: Past) -> Verdict:
+    """Trust a pose, unless it may be off by more than a person would accept.
+
+    The prediction is better than such a pose.
+    """
+    shift = np.linalg.eigvalsh(candidate.covariance[:3, :3])[-1]
+    turn = np.linalg.eigvalsh(candidate.covariance[3:, 3:])[-1]
+    uncertain = shift > MAX_POSE_SPREAD[0] ** 2 or turn > MAX_POSE_SPREAD[1] ** 2
+    return Verdict(candidate, "unsure" if uncertain else "", past)
