@@ -8,7 +8,7 @@ import numpy as np
 import typer
 from rich.console import Console
 
-from app.commands.play import CAMERA, Cube
+from app.commands.play import DEFAULT_CAMERA, CubeOption
 from app.errors import AppError
 from app.running.opening import intrinsics_for
 from app.ui.calibration.coach_lines import FORMATS, CoachLines, write_coverage
@@ -67,8 +67,8 @@ Shown = Annotated[
 
 
 def calibrate(
-    source: Source = CAMERA,
-    cube: Cube = None,
+    source: Source = DEFAULT_CAMERA,
+    cube: CubeOption = None,
     output: Output = CAMERA_FILE,
     save_cube: SaveCube = None,
     board: BoardKind = "",

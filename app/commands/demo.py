@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.play import CAMERA, Personality
+from app.commands.play import DEFAULT_CAMERA, PersonalityOption
 from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
 from app.running.opening import open_session
 from app.running.options import SessionOptions
@@ -17,7 +17,7 @@ from app.session.bundled import bundled
 from app.ui.display import has_display
 from tracking import FrameSource, TrackingError, open_source
 
-VIDEO = Path("demo.mp4")
+DEFAULT_VIDEO = Path("demo.mp4")
 
 
 def demo(
@@ -30,19 +30,19 @@ def demo(
         Path | None,
         typer.Option("--output", "-o", help="Write this video even if there is a display."),
     ] = None,
-    personality: Personality = None,
+    personality: PersonalityOption = None,
 ) -> None:
     """See it work: with your camera, or with the bundled recording, or as a video.
 
     With a camera and a display the live window opens. With a display alone the bundled recording
     plays in it as if it were live. With neither, the recording is rendered to demo.mp4.
-    A simulated robot on a real serial port feels what the character does.
+    A simulated robot on a real serial port shows the mood.
 
     Example: [cyan]cubeling demo follow --recording[/]
     """
     console = Console()
     if output is not None or not has_display():
-        render(scenario, output or VIDEO, console, personality)
+        render(scenario, output or DEFAULT_VIDEO, console, personality)
         return
     with ExitStack() as closing:
         camera = None if recording else _open_camera(closing, console)
@@ -55,7 +55,9 @@ def demo(
                 f"[cyan]cubeling cube {scenario_cube(scenario)}[/], "
                 "or [cyan]cubeling demo --recording[/]"
             )
-            options = SessionOptions(scenario=scenario, source=CAMERA, personality=personality)
+            options = SessionOptions(
+                scenario=scenario, source=DEFAULT_CAMERA, personality=personality
+            )
         session = closing.enter_context(open_session(options, source=camera))
         report_guessed_lens(session, console)
         summary = run_with_progress(session, console, scenario)
@@ -85,7 +87,7 @@ def _recording_options(scenario: str, personality: str | None) -> SessionOptions
 def _open_camera(closing: ExitStack, console: Console) -> FrameSource | None:
     """Open the first camera, or say in one line why the recording plays instead."""
     try:
-        return closing.enter_context(open_source(CAMERA))
+        return closing.enter_context(open_source(DEFAULT_CAMERA))
     except TrackingError as error:
         console.print(f"[dim]No live picture: {error}[/]", soft_wrap=True)
         return None

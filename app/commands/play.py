@@ -16,9 +16,9 @@ from app.scenarios import scenario_cube
 from app.ui.display import require_display
 from robot.network import Credentials
 
-CAMERA = "camera:0"
+DEFAULT_CAMERA = "camera:0"
 
-Source = Annotated[
+SourceOption = Annotated[
     str,
     typer.Option(
         "--source",
@@ -27,64 +27,67 @@ Source = Annotated[
         "http://PHONE:8080/video, synthetic:NAME.",
     ),
 ]
-Cube = Annotated[str | None, typer.Option(help="A bundled cube, or the .toml file of your own.")]
-Actor = Annotated[str | None, typer.Option(help="A bundled character, or a .glb file.")]
-Personality = Annotated[
+CubeOption = Annotated[
+    str | None, typer.Option(help="A bundled cube, or the .toml file of your own.")
+]
+CharacterOption = Annotated[str | None, typer.Option(help="A bundled character, or a .glb file.")]
+PersonalityOption = Annotated[
     str | None,
-    typer.Option(help="Who feels: a bundled personality, or the .toml file of your own."),
+    typer.Option(help="A bundled personality, or the .toml file of your own."),
 ]
-Intrinsics = Annotated[
+IntrinsicsOption = Annotated[
     Path | None,
-    typer.Option(help="The camera's calibration (ROS camera_info YAML); guessed without."),
+    typer.Option(help="The camera's calibration (ROS camera_info YAML); guessed without it."),
 ]
-RobotUrl = Annotated[
+RobotOption = Annotated[
     str,
     typer.Option(
         "--robot",
         "-r",
-        help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT; with the protocol in "
-        "front where it is not ours: pleo:/dev/ttyACM0, opencat:COM3, sim:pleo.",
+        help="sim, none, or a port: /dev/ttyACM0, COM3, socket://HOST:PORT; with a prefix for "
+        "protocols other than ours: pleo:/dev/ttyACM0, opencat:COM3, sim:pleo.",
     ),
 ]
-RobotSettings = Annotated[
+RobotSettingsOption = Annotated[
     Path | None,
-    typer.Option(help="A .toml file for the robot: what a Pleo or an OpenCat does in each mood."),
+    typer.Option(help="A .toml file for the robot: what a Pleo or an OpenCat does for each mood."),
 ]
-Record = Annotated[Path | None, typer.Option(help="Record the session to this .mcap file.")]
-Codec = Annotated[
-    str, typer.Option(help="How a recording keeps the pictures: jpeg or h264 (smaller).")
+RecordOption = Annotated[Path | None, typer.Option(help="Record the session to this .mcap file.")]
+CodecOption = Annotated[
+    str, typer.Option(help="How a recording stores the pictures: jpeg or h264 (smaller).")
 ]
-Output = Annotated[
+OutputOption = Annotated[
     Path | None,
     typer.Option("--output", "-o", help="Write an .mp4 video instead of opening a window."),
 ]
-Pictures = Annotated[
-    bool, typer.Option("--pictures/--no-pictures", help="Draw nothing: only track.")
+PicturesOption = Annotated[
+    bool,
+    typer.Option("--pictures/--no-pictures", help="Draw the pictures, or only track the cube."),
 ]
 
 
 def play(
     scenario: Annotated[str, typer.Argument(help="follow, sketch or companion.")],
-    source: Source = CAMERA,
-    cube: Cube = None,
-    character: Actor = None,
-    intrinsics: Intrinsics = None,
-    robot: RobotUrl = "sim",
-    robot_settings: RobotSettings = None,
-    record: Record = None,
-    codec: Codec = "jpeg",
-    output: Output = None,
+    source: SourceOption = DEFAULT_CAMERA,
+    cube: CubeOption = None,
+    character: CharacterOption = None,
+    intrinsics: IntrinsicsOption = None,
+    robot: RobotOption = "sim",
+    robot_settings: RobotSettingsOption = None,
+    record: RecordOption = None,
+    codec: CodecOption = "jpeg",
+    output: OutputOption = None,
     speed_map: Annotated[
         str, typer.Option(help="corrected, or legacy as printed in the thesis.")
     ] = "corrected",
     turns: Annotated[
         float, typer.Option(help="Full turns from the least to the greatest intensity.")
     ] = 2.0,
-    personality: Personality = None,
+    personality: PersonalityOption = None,
     look: Annotated[
         str, typer.Option(help="What the character's eyes follow: auto, cube, hand, camera, none.")
     ] = "auto",
-    pictures: Pictures = True,
+    pictures: PicturesOption = True,
     mqtt: Broker = None,
     player: PlayerName = None,
     site: Site = SITE,
@@ -93,9 +96,9 @@ def play(
 ) -> None:
     """Play with the cube in front of a camera.
 
-    [bold]follow[/]     the character chases the cube; turn the cube to make it walk or run
+    [bold]follow[/]     the character follows the cube; turn the cube to make it walk or run
     [bold]sketch[/]     the cube draws a path of up to eight points, the character walks it
-    [bold]companion[/]  Vleo kisses or shouts, and the robot feels it
+    [bold]companion[/]  Vleo kisses or shouts, and changes the robot's mood
 
     Example: [cyan]cubeling play companion --source camera:0 --robot /dev/ttyACM0[/]
     """

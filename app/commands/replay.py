@@ -9,14 +9,14 @@ from rich.console import Console
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.play import (
-    Actor,
-    Codec,
-    Output,
-    Personality,
-    Pictures,
-    Record,
-    RobotSettings,
-    RobotUrl,
+    CharacterOption,
+    CodecOption,
+    OutputOption,
+    PersonalityOption,
+    PicturesOption,
+    RecordOption,
+    RobotOption,
+    RobotSettingsOption,
 )
 from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
 from app.running.network import SITE
@@ -33,14 +33,14 @@ def replay(
         Path, typer.Argument(help="A session recorded with --record, or a bundled one.")
     ],
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
-    character: Actor = None,
-    personality: Personality = None,
-    robot: RobotUrl = "sim",
-    robot_settings: RobotSettings = None,
-    record: Record = None,
-    codec: Codec = "jpeg",
-    output: Output = None,
-    pictures: Pictures = True,
+    character: CharacterOption = None,
+    personality: PersonalityOption = None,
+    robot: RobotOption = "sim",
+    robot_settings: RobotSettingsOption = None,
+    record: RecordOption = None,
+    codec: CodecOption = "jpeg",
+    output: OutputOption = None,
+    pictures: PicturesOption = True,
     start: Annotated[
         str,
         typer.Option(
@@ -50,10 +50,10 @@ def replay(
         ),
     ] = "camera",
     salvage: Annotated[
-        bool, typer.Option(help="Play what is whole of a session that was cut off.")
+        bool, typer.Option(help="Play what can be read of a session that was cut off.")
     ] = False,
     check: Annotated[
-        bool, typer.Option(help="Compare every recorded channel with what the frames lead to now.")
+        bool, typer.Option(help="Process the frames again and compare every recorded channel.")
     ] = False,
     mqtt: Broker = None,
     player: PlayerName = None,
