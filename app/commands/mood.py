@@ -11,8 +11,7 @@ from affect import LABEL_SETS, Personality
 from affect.labels import LabelSet
 from affect.personality_file import bundled, bundled_text
 from app.errors import AppError
-from app.moods import draw, felt_by, read_history, read_wire, write_table
-from app.moods.formats import checked, save
+from app.moods import felt_by, read_history, read_wire, write_table
 
 app = typer.Typer(
     help="Moods of recorded sessions, and the personalities that have them.",
@@ -20,8 +19,11 @@ app = typer.Typer(
     rich_markup_mode="rich",
 )
 
-MOST = 4
-"""Personalities that can be told apart in one picture."""
+MAX_PERSONALITIES = 4
+"""Personalities that can be told apart in one plot."""
+
+FORMATS = (".svg", ".pdf", ".png")
+"""Suffixes of the files that a plot can be written to."""
 
 Session = Annotated[Path, typer.Argument(help="A session recorded with --record.")]
 Salvage = Annotated[bool, typer.Option(help="Take what is whole of a session that was cut off.")]
@@ -32,7 +34,7 @@ def plot(
     session: Session,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Draw into this .svg, .pdf or .png file."),
+        typer.Option("--output", "-o", help="Write this .svg, .pdf or .png file."),
     ] = None,
     personality: Annotated[
         list[str] | None,
@@ -43,19 +45,31 @@ def plot(
     ] = None,
     salvage: Salvage = False,
 ) -> None:
-    """Draw what a session felt over time, what it did, and what the robot confirmed and showed.
+    """Plot what a session felt over time, what it did, and what the robot confirmed and showed.
+
+    Needs matplotlib, which comes with the extra "plots" of cubeling.
 
     Example: [cyan]cubeling mood plot today.mcap --personality lively --personality shy[/]
     """
-    output = checked(output or Path(f"{session.stem}-mood.svg"))
+    output = output or Path(f"{session.stem}-mood.svg")
+    if output.suffix.lower() not in FORMATS:
+        raise AppError(f"moods are plotted as {', '.join(FORMATS)}, not as '{output}'")
     who = [Personality.load(name) for name in personality or ()]
-    if len(who) > MOST:
-        raise AppError(f"{len(who)} personalities are too many for one picture: {MOST} at most")
+    if len(who) > MAX_PERSONALITIES:
+        raise AppError(
+            f"{len(who)} personalities are too many for one plot: {MAX_PERSONALITIES} at most"
+        )
+    try:
+        from app.moods.plot import save_plot
+    except ImportError as error:
+        if (error.name or "").split(".")[0] != "matplotlib":
+            raise
+        raise AppError('a plot needs matplotlib: pip install "cubeling[plots]"') from error
     history = read_history(session, salvage=salvage)
     again = [felt_by(history, each) for each in who]
     labels = who[0].label_set if who else fitting(history.felt.labels)
-    save(draw(history, again, read_wire(session), labels), output)
-    Console().print(f"Drawn: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
+    save_plot(output, history, again, read_wire(session), labels)
+    Console().print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
 
 
 @app.command()

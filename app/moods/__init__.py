@@ -1,7 +1,6 @@
-"""How a session felt: read from its file, felt again by someone else, drawn, and as a table."""
+"""Moods of a recorded session: read, computed for other personalities, plotted and tabulated."""
 
 from app.moods.history import Felt, History, felt_by, read_history
-from app.moods.picture import draw
 from app.moods.table import write_table
 from app.moods.wire import Trace, Wire, read_wire
 
@@ -10,7 +9,6 @@ __all__ = [
     "History",
     "Trace",
     "Wire",
-    "draw",
     "felt_by",
     "read_history",
     "read_wire",

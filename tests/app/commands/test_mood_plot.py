@@ -16,13 +16,10 @@ from PIL import Image
 
 from affect import LABEL_SETS, Personality
 from app.errors import AppError
-from app.moods import draw, felt_by, read_history, read_wire
+from app.moods import felt_by, read_history, read_wire
 from app.moods import wire as wires
-from app.moods.curves import spans
-from app.moods.drawing import Drawing, Line, thinned
-from app.moods.formats import dashed, pdf, png, save, svg
-from app.moods.picture import ticks
-from app.moods.plane import regions
+from app.moods.plot import save_plot
+from app.moods.regions import regions, runs
 from app.pipeline.playground import Playground
 from app.running.opening import intrinsics_for
 from app.session import START_OVER, Recorder
@@ -173,12 +170,14 @@ def test_a_wire_that_no_recorder_wrote_is_refused_in_one_line(monkeypatch, short
     assert "\n" not in str(refusal.value)
 
 
-def test_odd_names_do_not_spoil_a_picture(history, short_session):
+def test_odd_names_do_not_spoil_a_plot(history, short_session, tmp_path):
     about = dataclasses.replace(history.about, personality="a\x00\n<b>&\udcff")
-    odd = dataclasses.replace(history, name="\udcff\x1b.mcap", about=about)
-    drawing = draw(odd, (), read_wire(short_session), LABEL_SETS["thesis"])
-    assert any("recorded with a??<b>&?" in each for each in words_of(svg(drawing)))
-    assert pdf(drawing)
+    odd = dataclasses.replace(history, name="\udcff\x1b$x$.mcap", about=about)
+    for suffix in ("svg", "pdf"):
+        save_plot(tmp_path / f"m.{suffix}", odd, (), read_wire(short_session), THESIS)
+    words = words_of(tmp_path / "m.svg")
+    assert any("recorded with a??<b>&?" in each for each in words)
+    assert "Moods of ??$x$.mcap" in words
 
 
 def test_a_session_without_a_robot_has_nothing_to_acknowledge(short_session):
@@ -189,16 +188,19 @@ def test_a_session_without_a_robot_has_nothing_to_acknowledge(short_session):
     assert words == [""]
 
 
-# --- What is drawn -------------------------------------------------------------------------------
+# --- What is plotted -----------------------------------------------------------------------------
+
+THESIS = LABEL_SETS["thesis"]
 
 
-def words_of(content):
-    """All text of an SVG."""
-    return [each.text for each in ElementTree.fromstring(content).iter() if each.text]
+def words_of(path):
+    """Return all text of an SVG."""
+    return [each.text for each in ElementTree.parse(path).iter() if each.text]
 
 
-def test_the_picture_says_what_it_shows_and_in_which_units(history, bundled_session):
-    words = words_of(svg(draw(history, (), read_wire(bundled_session), LABEL_SETS["thesis"])))
+def test_the_plot_says_what_it_shows_and_in_which_units(history, bundled_session, tmp_path):
+    save_plot(tmp_path / "m.svg", history, (), read_wire(bundled_session), THESIS)
+    words = words_of(tmp_path / "m.svg")
     for expected in ("valence [1]", "arousal [1]", "time [s]", "neutral", "happy", "angry"):
         assert expected in words
     for expected in ("kiss", "shout", "idle", "observed on the robot"):
@@ -208,30 +210,59 @@ def test_the_picture_says_what_it_shows_and_in_which_units(history, bundled_sess
     assert any("scenario companion" in each for each in words)
 
 
-def test_the_picture_names_who_feels_again_and_in_whose_words(history, bundled_session):
+def test_the_plot_names_who_feels_again_and_in_whose_words(history, bundled_session, tmp_path):
     names = ("lively", "calm")
     again = [felt_by(history, Personality.load(name)) for name in names]
     wire = read_wire(bundled_session)
-    words = words_of(svg(draw(history, again, wire, LABEL_SETS["circumplex"])))
+    save_plot(tmp_path / "m.svg", history, again, wire, LABEL_SETS["circumplex"])
+    words = words_of(tmp_path / "m.svg")
     assert any("felt again by lively and calm" in each for each in words)
     assert {"lively", "calm", "as recorded", "excited", "distressed"} <= set(words)
     assert "observed on the robot" not in words
 
 
-def test_one_drawing_as_svg_pdf_and_png(history, bundled_session, tmp_path):
-    drawing = draw(history, (), read_wire(bundled_session), LABEL_SETS["thesis"])
-    for write in (svg, pdf):
-        assert write(drawing) == write(drawing)
-    save(drawing, tmp_path / "m.png")
-    page = pypdfium2.PdfDocument(pdf(drawing))[0]
+def test_the_same_plot_as_svg_pdf_and_png(history, bundled_session, tmp_path):
+    for suffix in ("svg", "pdf", "png"):
+        paths = tmp_path / f"m.{suffix}", tmp_path / f"again.{suffix}"
+        for path in paths:
+            save_plot(path, history, (), read_wire(bundled_session), THESIS)
+        assert paths[0].read_bytes() == paths[1].read_bytes()
+    page = pypdfium2.PdfDocument(tmp_path / "m.pdf")[0]
     assert "valence [1]" in page.get_textpage().get_text_range()
     printed = np.asarray(page.render(scale=1).to_pil().convert("L"), float)
     image = Image.open(tmp_path / "m.png")
-    assert image.width == 2 * drawing.width
+    assert image.width == 2 * printed.shape[1]
     pixels = np.asarray(image.convert("L").resize(printed.shape[::-1]), float)
-    # The same shapes in both: they differ in the letters' edges only.
     assert np.abs(pixels - printed).mean() < 4
     assert pixels.std() > 10
+
+
+def test_the_plot_of_a_long_session_is_a_small_file(history, bundled_session, tmp_path):
+    """Points that change no line are left out: half an hour takes about as much as a minute."""
+    times = 44
+    length = len(history.felt.times)
+    felt = dataclasses.replace(
+        history.felt,
+        times=np.arange(times * length) / 30.0,
+        emotion=np.repeat(history.felt.emotion, times, axis=0),
+        labels=tuple(np.repeat(history.felt.labels, times)),
+    )
+    commands = tuple(each for each in history.commands for _ in range(times))
+    long = dataclasses.replace(history, felt=felt, commands=commands)
+    save_plot(tmp_path / "long.svg", long, (), read_wire(bundled_session), THESIS)
+    save_plot(tmp_path / "short.svg", history, (), read_wire(bundled_session), THESIS)
+    sizes = [(tmp_path / f"{name}.svg").stat().st_size for name in ("long", "short")]
+    assert sizes[0] < 2 * sizes[1]
+
+
+def test_without_matplotlib_the_command_names_the_extra(cubeling, short_session, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.delitem(sys.modules, "app.moods.plot", raising=False)
+    code, out, told = cubeling("mood", "plot", short_session)
+    assert (code, out) == (2, "")
+    assert 'pip install "cubeling[plots]"' in told
+    assert told.count("\n") == 1
+    assert cubeling("mood", "table", short_session)[0] == 0
 
 
 @pytest.mark.parametrize("name", LABEL_SETS)
@@ -253,65 +284,10 @@ def test_the_regions_of_a_label_set_are_where_its_labels_win_and_fill_the_plane(
             assert min(distances, key=distances.__getitem__) == label
 
 
-def test_spans_are_runs_of_the_same_name_without_gaps():
+def test_runs_of_the_same_name_have_no_gaps():
     times = np.arange(6.0)
-    found = spans(("a", "a", "b", "b", "b", "a"), times)
+    found = runs(("a", "a", "b", "b", "b", "a"), times)
     assert found == [("a", 0.0, 2.0), ("b", 2.0, 5.0), ("a", 5.0, 5.0)]
-
-
-@pytest.mark.parametrize(("start", "end"), [(0.0, 41.0), (3.2, 3.9), (0.0, 3600.0), (10.0, 10.001)])
-def test_ticks_are_few_round_and_within(start, end):
-    marks = ticks(start, end)
-    assert 3 <= len(marks) <= 11
-    assert start <= marks[0]
-    assert marks[-1] <= end + 1e-9
-    assert len(set(np.diff(marks).round(9))) == 1
-
-
-def test_a_line_is_interrupted_where_nothing_is_known():
-    drawing = Drawing(10, 10, "")
-    drawing.line([(0, 0), (1, 1), (np.nan, 2), (3, 3), (4, 4), (5, np.nan)], "#000000", 1)
-    lines = [shape for shape in drawing.shapes if isinstance(shape, Line)]
-    assert [line.points.tolist() for line in lines] == [
-        [[0, 0], [1, 1]],
-        [[3, 3], [4, 4]],
-    ]
-
-
-def test_thinning_moves_no_line_by_more_than_its_grain():
-    across = np.linspace(0, 100, 5000)
-    whole = np.stack([across, 20 * np.sin(across)], axis=1)
-    thin = thinned(whole)
-    assert len(thin) < len(whole) / 4
-    steepest = np.hypot(1, 20)
-    assert np.abs(np.interp(across, thin[:, 0], thin[:, 1]) - whole[:, 1]).max() < 0.1 * steepest
-    assert thin[[0, -1]].tolist() == whole[[0, -1]].tolist()
-
-
-def test_dashes_cover_their_share_of_a_line():
-    line = np.array([(0.0, 0.0), (30.0, 0.0), (30.0, 40.0)])
-    pieces = dashed(line, (5.0, 2.0))
-    lengths = [np.hypot(*np.diff(piece, axis=0).T).sum() for piece in pieces]
-    assert sum(lengths) == pytest.approx(50.0)
-    assert dashed(line, ()) == [line]
-
-
-@pytest.mark.parametrize("upright", [False, True])
-@pytest.mark.parametrize("write", [pdf, png])
-@pytest.mark.parametrize("align", [0.0, 0.5, 1.0])
-def test_words_lie_about_their_point_as_they_are_aligned(write, align, upright):
-    drawing = Drawing(200, 200, "")
-    drawing.text("IMMMMI", 100, 100, 16, "#000000", align, upright=upright)
-    if write is pdf:
-        image = pypdfium2.PdfDocument(pdf(drawing))[0].render(scale=2).to_pil()
-    else:
-        image = Image.open(io.BytesIO(png(drawing)))
-    rows, columns = np.nonzero(np.asarray(image.convert("L")) < 128)
-    # Upright words run upwards, with their baseline to the right.
-    along, across = (400 - rows, columns) if upright else (columns, rows)
-    before = (200 - along.min()) / (along.max() - along.min())
-    assert before == pytest.approx(align, abs=0.06)
-    assert across.max() == pytest.approx(200, abs=3)
 
 
 # --- On the command line -------------------------------------------------------------------------
@@ -320,14 +296,14 @@ def test_words_lie_about_their_point_as_they_are_aligned(write, align, upright):
 @pytest.mark.parametrize("suffix", ["svg", "pdf", "png"])
 def test_plot_draws_a_session(cubeling, talking_session, tmp_path, suffix):
     code, out, _ = cubeling("mood", "plot", talking_session, "-o", f"m.{suffix}")
-    assert (code, out) == (0, f"Drawn: m.{suffix}\n")
+    assert (code, out) == (0, f"Plotted: m.{suffix}\n")
     assert (tmp_path / f"m.{suffix}").stat().st_size > 1000
 
 
 def test_plot_takes_the_session_name_and_other_personalities(cubeling, talking_session, tmp_path):
     code, _, _ = cubeling("mood", "plot", talking_session, "--personality", "shy")
     assert code == 0
-    words = words_of((tmp_path / "talking-mood.svg").read_bytes())
+    words = words_of(tmp_path / "talking-mood.svg")
     assert any("recorded with shy" in each and "felt again by shy" in each for each in words)
 
 
@@ -349,7 +325,7 @@ def test_table_has_a_row_a_frame_and_nothing_where_nothing_is_known(
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (("plot", "{session}", "-o", "m.gif"), "moods are drawn as .svg, .pdf, .png, not as"),
+        (("plot", "{session}", "-o", "m.gif"), "moods are plotted as .svg, .pdf, .png, not as"),
         (("plot", "{session}", "-o", "no/m.svg"), "cannot write 'no/m.svg'"),
         (("table", "{session}", "-o", "no/m.csv"), "cannot write 'no/m.csv'"),
         (("table", "{session}", "-o", "{session}"), "moods are tabled as .csv"),
