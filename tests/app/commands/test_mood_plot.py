@@ -22,7 +22,7 @@ from app.moods.plot import save_plot
 from app.moods.regions import regions, runs
 from app.pipeline.playground import Playground
 from app.running.opening import intrinsics_for
-from app.session import START_OVER, Recorder
+from app.session import START_OVER_EVENT, Recorder
 from robot.protocol import messages as m
 from robot.protocol.schema import pack
 from robot.protocol.wire import encode_frame
@@ -102,7 +102,7 @@ def test_who_starts_over_feels_anew(tmp_path, bundled_session):
     with open_source(str(bundled_session)) as source, Recorder(path, about) as recorder:
         playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         frames = list(itertools.islice(source, 8))
-        recorder.event(START_OVER, frames[5].timestamp)
+        recorder.event(START_OVER_EVENT, frames[5].timestamp)
         for frame in frames:
             recorder.write(playground.step(frame))
     lively = Personality.load("lively")
