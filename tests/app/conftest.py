@@ -1,4 +1,4 @@
-"""A hand that plays by numbers: controls as the gestures would give them."""
+"""A simulated hand that makes `CubeControls`, a command-line runner, and short sessions."""
 
 import dataclasses
 import itertools
@@ -23,7 +23,7 @@ FRAME = 1 / 30
 
 
 class Hand:
-    """Makes `CubeControls` frame after frame, as a real hand would change them."""
+    """Makes `CubeControls` frame by frame, as a real hand would change them."""
 
     def __init__(self) -> None:
         self.controls = CubeControls(
@@ -44,7 +44,7 @@ class Hand:
         self.frames = 0
 
     def frame(self, **changes: Any) -> CubeControls:
-        """The next frame: time goes on, events are over, and the rest stays unless given."""
+        """Return the next frame: without events, otherwise unchanged unless `changes` says so."""
         now = round(self.frames * FRAME, 9)
         events = {"placed": False, "shaken": False} if self.frames else {}
         fields: dict[str, Any] = {**events, **changes, "timestamp": now}
@@ -53,18 +53,18 @@ class Hand:
         return self.controls
 
     def heading(self, degrees: float) -> CubeControls:
-        """The next frame with the cube turned to an angle from the camera."""
+        """Return the next frame with the cube turned to an angle from the camera."""
         turned = math.radians((degrees + 180) % 360 - 180)
         return self.frame(heading=turned, camera_angle=abs(turned))
 
     def turn(self, turns: float, seconds: float) -> list[CubeControls]:
-        """Turn by so many turns, evenly."""
+        """Turn the cube by so many turns at constant speed."""
         count = round(seconds / FRAME)
         start = self.controls.turns
         return [self.frame(turns=start + turns * (i + 1) / count) for i in range(count)]
 
     def tip(self, face: str) -> list[CubeControls]:
-        """Lift, and put down on another face."""
+        """Lift the cube, and put it down with another face on top."""
         lifted = [self.frame(resting=False, lifted=True) for _ in range(10)]
         placements = self.controls.placements + 1
         down = self.frame(
@@ -85,7 +85,7 @@ def hand() -> Hand:
 
 @pytest.fixture(scope="session")
 def bundled_session() -> Path:
-    """A whole session that comes with the program."""
+    """A complete bundled session."""
     from app.session.bundled import bundled
 
     return bundled("companion")
@@ -93,7 +93,7 @@ def bundled_session() -> Path:
 
 @pytest.fixture
 def cubeling(monkeypatch, capsys, tmp_path):
-    """Run a command in an empty folder; gives its exit code, its output and its errors."""
+    """Run a command in an empty folder; return its exit code, output and error output."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
@@ -103,15 +103,15 @@ def cubeling(monkeypatch, capsys, tmp_path):
         monkeypatch.setattr(sys, "argv", ["cubeling", *map(str, arguments)])
         with pytest.raises(SystemExit) as caught:
             cli.main()
-        told = capsys.readouterr()
-        return caught.value.code, told.out, told.err
+        captured = capsys.readouterr()
+        return caught.value.code, captured.out, captured.err
 
     return run
 
 
 @pytest.fixture(scope="session")
 def short_session(tmp_path_factory: pytest.TempPathFactory, bundled_session: Path) -> Path:
-    """The first two seconds of a bundled session, recorded anew."""
+    """The first two seconds of a bundled session, recorded again."""
     path = tmp_path_factory.mktemp("sessions") / "short.mcap"
     about = {"scenario": "companion", "cube": "companion"}
     with open_source(str(bundled_session)) as source, Recorder(path, about) as recorder:
@@ -124,7 +124,7 @@ def short_session(tmp_path_factory: pytest.TempPathFactory, bundled_session: Pat
 
 @pytest.fixture
 def a_step(bundled_session: Path) -> Callable[[moderngl.Context | None], Step]:
-    """Make the first step of a bundled session, drawn if there is a context."""
+    """Return a function that makes the first step of a bundled session, drawn in a context."""
 
     def make(context: moderngl.Context | None) -> Step:
         with open_source(str(bundled_session)) as source:

@@ -1,4 +1,4 @@
-"""The command line: help that reads well, and one line for everything a person can put right."""
+"""The command line: its help, and one line for every error that the user can correct."""
 
 import subprocess
 import sys
@@ -32,7 +32,7 @@ def test_every_help_has_an_example(cubeling, command):
     assert "Example: cubeling" in out
 
 
-def test_a_bare_command_shows_the_help(cubeling):
+def test_cubeling_without_arguments_shows_the_help(cubeling):
     code, out, err = cubeling()
     assert (code, err) == (0, "")
     assert "companion" in out
@@ -79,7 +79,7 @@ TOO_LARGE = EQUAL_IDS.replace("marker_mm = 45", "marker_mm = 61")
 
 
 def wrong_inputs():
-    """Each bad input of the issue: its command, and what the line must name."""
+    """Return for each bad input its command and what the error message must name."""
     video = ["--output", "out.mp4", "--robot", "none"]
     return {
         "no such scenario": (["play", "dance"], "dance"),
@@ -157,7 +157,7 @@ def test_the_bundled_characters_are_there():
     assert {"idle", "kiss_head", "shout_tail"} <= set(Character.load("vleo").clips)
 
 
-def test_the_doctor_says_what_is_there(cubeling):
+def test_the_doctor_lists_what_it_checked(cubeling):
     code, out, _ = cubeling("doctor", "--no-cameras")
     assert code == 0
     for name in ("Python", "OpenCV", "drawing", "recordings", "display"):
@@ -176,10 +176,10 @@ def test_the_doctor_names_a_missing_driver_and_its_remedy(cubeling, monkeypatch)
     assert "apt-get install -y libegl1" in out
 
 
-def test_what_was_repaired_is_one_line(cubeling, monkeypatch):
+def test_a_repaired_character_is_one_warning_line(cubeling, monkeypatch):
     def repaired():
         for _ in range(2):
-            with warnings.catch_warnings():  # Python forgets what it has told
+            with warnings.catch_warnings():  # makes Python forget which warnings it has shown
                 pass
             warnings.warn("x.glb: weights\ndid not sum to one", CharacterWarning, stacklevel=1)
         raise CharacterError("cannot draw")
@@ -190,7 +190,7 @@ def test_what_was_repaired_is_one_line(cubeling, monkeypatch):
 
 
 @pytest.mark.parametrize("wrong", [OSError(28, "No space left on device", "x.png"), MemoryError()])
-def test_what_the_system_refuses_is_one_line(cubeling, monkeypatch, wrong):
+def test_an_error_of_the_operating_system_is_one_line(cubeling, monkeypatch, wrong):
     def load(name):
         raise wrong
 

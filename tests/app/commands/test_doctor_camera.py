@@ -1,12 +1,12 @@
-"""What the doctor says of a camera that is there."""
+"""What `cubeling doctor` reports about a camera."""
 
 from app.commands import doctor
 from tracking import Frame
 from tracking.sources.health import Health, Setting
 
 
-class Steady:
-    """A camera that gives 30 pictures a second for as long as it is asked."""
+class EndlessCamera:
+    """A camera that delivers 30 frames a second without end."""
 
     live, duration, intrinsics = True, None, None
     size, rate = (64, 48), 30.0
@@ -45,8 +45,8 @@ class Steady:
         self.close()
 
 
-def test_the_doctor_tells_a_cameras_figures(cubeling, monkeypatch):
-    camera = Steady()
+def test_the_doctor_reports_the_figures_of_a_camera(cubeling, monkeypatch):
+    camera = EndlessCamera()
     monkeypatch.setattr(doctor, "open_source", lambda uri: camera)
     code, out, err = cubeling("doctor")
     assert (code, err) == (0, "")

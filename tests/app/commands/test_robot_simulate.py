@@ -1,4 +1,4 @@
-"""`cubeling robot simulate`: any robot, with any faults, and one line for what there is not."""
+"""`cubeling robot simulate`: any robot with any faults; a wrong option is one line."""
 
 import signal
 import subprocess
@@ -17,7 +17,7 @@ def test_every_robot_can_be_put_behind_a_port(cubeling, name):
     assert "A robot listens on " in out
 
 
-def test_the_way_to_it_names_its_protocol(cubeling):
+def test_the_printed_url_names_the_protocol(cubeling):
     _, out, _ = cubeling("robot", "simulate", "pleo?babble=10", "--seconds", "0.05")
     assert "--robot pleo:" in out
 
@@ -33,7 +33,7 @@ def test_the_way_to_it_names_its_protocol(cubeling):
         (["--seconds", "-1"], "0 seconds or more, not for -1"),
     ],
 )
-def test_what_there_is_not_is_refused_in_one_line(cubeling, arguments, named):
+def test_wrong_options_are_refused_in_one_line(cubeling, arguments, named):
     code, out, err = cubeling("robot", "simulate", *arguments)
     assert (code, out) == (2, "")
     assert named in err
@@ -47,7 +47,7 @@ def test_the_help_explains_every_fault(cubeling):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
-def test_a_closed_terminal_and_kill_end_it_in_order():
+def test_sighup_and_sigterm_end_it_as_ctrl_c_does():
     program = "from app.cli import main; main()"
     command = [sys.executable, "-c", program, "robot", "simulate", "--seconds", "60"]
     for number in (signal.SIGHUP, signal.SIGTERM):

@@ -1,4 +1,4 @@
-"""Sessions on disk: exact, append-only, and honest about what is missing."""
+"""Sessions on disk: exact, append-only, and readable after damage."""
 
 import numpy as np
 import pytest
@@ -18,18 +18,18 @@ def frames(count=20, rate=30):
 
 
 @pytest.mark.parametrize("codec", ["jpeg", "h264"])
-def test_what_is_prepared_is_what_a_replay_decodes(codec, recorded):
-    path, prepared = recorded(codec)
+def test_an_encoded_frame_is_what_a_replay_decodes(codec, recorded):
+    path, frames_written = recorded(codec)
     from tracking import open_source
 
     with open_source(str(path)) as source:
         again = list(source)
-    assert [frame.timestamp for frame in again] == [frame.timestamp for frame in prepared]
-    for one, other in zip(prepared, again, strict=True):
+    assert [frame.timestamp for frame in again] == [frame.timestamp for frame in frames_written]
+    for one, other in zip(frames_written, again, strict=True):
         np.testing.assert_array_equal(one.image, other.image)
 
 
-def test_frames_that_come_with_bytes_keep_them():
+def test_an_encoded_frame_is_not_encoded_again():
     frame = next(frames())
     once = frame_encoder("jpeg", SIZE, 30)(frame)
     assert frame_encoder("jpeg", SIZE, 30)(once) is once
@@ -40,22 +40,22 @@ def test_an_unknown_codec_is_refused():
         frame_encoder("gif", SIZE, 30)
 
 
-def test_a_session_tells_what_it_holds(recorded):
-    path, prepared = recorded("jpeg")
-    told = session_info(path)
-    assert (told.scenario, told.turns, told.frames) == ("follow", 2.0, len(prepared))
+def test_a_session_describes_itself(recorded):
+    path, frames_written = recorded("jpeg")
+    info = session_info(path)
+    assert (info.scenario, info.turns, info.frames) == ("follow", 2.0, len(frames_written))
     assert events(path)[0] == (0.0, "started")
 
 
-def test_a_session_that_was_cut_off_says_how_much_is_whole(recorded):
-    path, prepared = recorded("jpeg", count=60)
+def test_the_error_for_a_cut_session_says_how_much_can_be_read(recorded):
+    path, frames_written = recorded("jpeg", count=60)
     data = path.read_bytes()
     path.write_bytes(data[: len(data) * 2 // 3])
     with pytest.raises(AppError, match=r"cut off: \d+ frames .* --salvage"):
         session_info(path)
-    told = session_info(path, salvage=True)
-    assert 0 < told.frames < len(prepared)
-    assert told.scenario == "follow"
+    info = session_info(path, salvage=True)
+    assert 0 < info.frames < len(frames_written)
+    assert info.scenario == "follow"
 
 
 @pytest.mark.parametrize("cut", range(0, 2600, 97))
@@ -79,7 +79,7 @@ def test_a_folder_that_is_not_there_is_one_line(tmp_path):
 
 
 def test_all_but_the_last_half_second_survives_a_kill(tmp_path, recorder_steps):
-    """What is on disk before `close` is what `kill -9` leaves."""
+    """The bytes on disk before `close` are what `kill -9` leaves."""
     path = tmp_path / "killed.mcap"
     recorder = Recorder(path, {"scenario": "follow"})
     recorder_steps(recorder, 120)
@@ -90,7 +90,7 @@ def test_all_but_the_last_half_second_survives_a_kill(tmp_path, recorder_steps):
 
 
 def messages_of(data, folder):
-    """Read a copy, as a reader after the kill would."""
+    """Read a copy of the file, as after a kill."""
     copy = folder / "copy.mcap"
     copy.write_bytes(data)
     return list(messages(copy, "/camera/image"))
@@ -98,7 +98,7 @@ def messages_of(data, folder):
 
 @pytest.fixture
 def recorder_steps(hand):
-    """Write so many steps of a real line, but for the pictures."""
+    """Return a function that records so many steps of a real pipeline, without pictures."""
     import dataclasses
 
     from app.pipeline.playground import Playground
@@ -106,28 +106,28 @@ def recorder_steps(hand):
     def write(recorder, count, codec="jpeg"):
         playground = Playground("follow", Intrinsics.guess(SIZE))
         prepare = frame_encoder(codec, SIZE, 30)
-        prepared = []
+        frames_written = []
         for frame in frames(count):
             step = playground.step(prepare(frame))
-            prepared.append(step.frame)
+            frames_written.append(step.frame)
             if frame.index == 0:
                 recorder.camera(playground.intrinsics, 0.0)
                 recorder.event("started", 0.0)
             recorder.write(dataclasses.replace(step))
-        return prepared
+        return frames_written
 
     return write
 
 
 @pytest.fixture
 def recorded(tmp_path, recorder_steps):
-    """A recorded session of noise: its path, and the frames that the tracker saw."""
+    """Record a session of noise; return its path and the frames that the tracker saw."""
 
     def record(codec, count=20):
         path = tmp_path / "session.mcap"
         with Recorder(path, {"scenario": "follow", "cube": "locomotion"}) as recorder:
-            prepared = recorder_steps(recorder, count, codec)
+            frames_written = recorder_steps(recorder, count, codec)
         assert recorder.problem is None
-        return path, prepared
+        return path, frames_written
 
     return record

@@ -23,8 +23,8 @@ RUNNING = Health("camera 0", "running", 0.0, rate=30.0, settings=(Setting("focus
 LOST = Health("camera 0", "lost", 0.0, "camera 0 gave no picture for 1 s")
 
 
-class Interrupted:
-    """Frames of a session with a gap of so many empty waits after the fifth."""
+class SourceWithGap:
+    """Frames of a session, with so many waits without a frame after the fifth."""
 
     def __init__(self, session, waits, patience=8):
         self._session = open_source(str(session))
@@ -56,7 +56,7 @@ class Interrupted:
         return LOST if self._given == 5 and self._left else RUNNING
 
     def __iter__(self):
-        raise AssertionError("a session asks by `wait`, so that its window lives on")
+        raise AssertionError("a session calls `wait`, so that its window stays alive")
 
     def close(self):
         self._session.close()
@@ -68,7 +68,7 @@ class Interrupted:
         self.close()
 
 
-class Watched(NullScreen):
+class NoticeScreen(NullScreen):
     """A screen that keeps the notices it was given."""
 
     def __init__(self, ends_after=None):
@@ -92,7 +92,7 @@ def run_with_gap(short_session, tmp_path):
         options = SessionOptions(
             scenario="companion", source="camera:0", robot="none", record=path, pictures=False
         )
-        with Interrupted(short_session, waits) as source:
+        with SourceWithGap(short_session, waits) as source:
             assert isinstance(source, LiveFrames)
             with open_session(options, source=source, screen=screen) as session:
                 summary = run(session)
@@ -102,7 +102,7 @@ def run_with_gap(short_session, tmp_path):
 
 
 def test_a_lost_camera_is_reported_on_the_screen_and_the_session_continues(run_with_gap):
-    screen = Watched()
+    screen = NoticeScreen()
     summary, path = run_with_gap(4, screen)
     assert summary.frames == 10
     titles = [notice.title for notice in screen.notices if notice]
@@ -116,7 +116,7 @@ def test_a_lost_camera_is_reported_on_the_screen_and_the_session_continues(run_w
 
 
 def test_the_window_can_be_closed_while_the_camera_is_lost(run_with_gap):
-    summary, _ = run_with_gap(7, Watched(ends_after=2))
+    summary, _ = run_with_gap(7, NoticeScreen(ends_after=2))
     assert summary.frames == 5
 
 

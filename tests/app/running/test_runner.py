@@ -13,7 +13,7 @@ from app.session import messages, session_info
 from tracking import TrackingError, open_source
 
 
-class Breaking:
+class FailingSource:
     """Gives some frames of a session, then an error, like a camera that is unplugged."""
 
     def __init__(self, session, frames, live):
@@ -46,7 +46,7 @@ def run_recorded(short_session, tmp_path):
             scenario="companion", source="camera:0", record=tmp_path / "out.mcap", pictures=False
         )
         with (
-            Breaking(short_session, frames, live) as source,
+            FailingSource(short_session, frames, live) as source,
             open_session(options, source=source) as session,
         ):
             return run(session)
