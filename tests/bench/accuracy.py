@@ -119,7 +119,7 @@ def measure(scene: str, frames: int) -> Report:
             continue
         states.append(state)
         if state.visible and state.camera_from_cube is not None:
-            errors.append(se3.motion(state.camera_from_cube, source.truth(index)))
+            errors.append(se3.delta(state.camera_from_cube, source.truth(index)))
     return Report(scene, states, np.array(errors), np.array(seconds))
 
 

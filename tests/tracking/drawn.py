@@ -80,7 +80,7 @@ def photograph(light: Light, exponent: float = 2.2, noise: float = 1.0, seed: in
 def off(pose: Array | None, truth: Array) -> tuple[float, float]:
     """Errors of a pose [mm, °]."""
     assert pose is not None
-    step = se3.motion(pose, truth)
+    step = se3.delta(pose, truth)
     return float(1000 * np.linalg.norm(step[:3])), float(np.rad2deg(np.linalg.norm(step[3:])))
 
 

@@ -12,7 +12,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tracking.cube.model import FACE_AXES, CubeModel, Face, aruco_dictionary
-from tracking.detection.partly_hidden_markers import CoveredMarkerDetector
+from tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
 from tracking.geometry import se3
 from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
@@ -155,7 +155,7 @@ def test_edges_on_a_real_board_agree_with_its_chessboard() -> None:
         state = watched(photograph(BOARD), model, camera("charuco"))[-1]
         if state.visible and len(state.faces) >= 4:
             assert state.camera_from_cube is not None
-            steps.append(se3.motion(state.camera_from_cube, camera_from_board @ body))
+            steps.append(se3.delta(state.camera_from_cube, camera_from_board @ body))
     millimetres = 1000 * np.linalg.norm(np.array(steps)[:, :3], axis=1)
     degrees = np.rad2deg(np.linalg.norm(np.array(steps)[:, 3:], axis=1))
     assert len(steps) >= 4
@@ -180,6 +180,6 @@ def test_a_covered_marker_is_read_in_a_photograph() -> None:
     assert hidden is None or len(hidden) <= 1
     found = 0
     for number, square in truth.items():
-        seen = CoveredMarkerDetector(one_marker(number, 40.0)).detect(np.asarray(picture))
+        seen = PartlyHiddenMarkerDetector(one_marker(number, 40.0)).detect(np.asarray(picture))
         found += any(np.abs(each.corners - square).max() < 1.5 for each in seen)
     assert found >= 4

@@ -115,7 +115,7 @@ def watched(picture: Picture, cube: CubeModel = CUBE, frames: int = 4) -> list[C
 def off(state: CubeState, *truths: Array) -> float:
     """Distance to the nearest of several cubes [m]; 1 m for a turn of more than 10°."""
     assert state.camera_from_cube is not None
-    steps = [se3.motion(state.camera_from_cube, truth) for truth in truths]
+    steps = [se3.delta(state.camera_from_cube, truth) for truth in truths]
     return min(
         float(np.linalg.norm(step[:3])) if np.linalg.norm(step[3:]) < np.deg2rad(10) else 1.0
         for step in steps

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from tracking.cube.marker import marker_loops
 from tracking.cube.model import aruco_dictionary
 from tracking.cube.printing.layout import PAPERS
-from tracking.cube.printing.pen import Pen
+from tracking.cube.printing.pdf_page import PdfPage
 from tracking.errors import TrackingError
 
 Array = NDArray[np.float64]
@@ -92,7 +92,7 @@ def write_board(path: str | Path, paper: str = "a4") -> Board:
     height, width = PAPERS[paper]  # the page is upright
     room = min((width - 2 * MARGIN_MM) / 5, (height - 2 * MARGIN_MM - 14) / 7)
     board = Board(square=float(np.floor(room)) / 1000)
-    pen = Pen(width, height, "ChArUco board")
+    pen = PdfPage(width, height, "ChArUco board")
     pen.fill(_black_areas(board, np.array([(width - 5000 * board.square) / 2, MARGIN_MM])), BLACK)
     _draw_ruler(pen, width, height - MARGIN_MM)
     try:
@@ -123,7 +123,7 @@ def _black_areas(board: Board, corner: Array) -> list[Array]:
     return loops
 
 
-def _draw_ruler(pen: Pen, width: float, y: float) -> None:
+def _draw_ruler(pen: PdfPage, width: float, y: float) -> None:
     left = (width - RULER_MM) / 2
     pen.stroke([(left, y), (left + RULER_MM, y)], 0.3, BLACK)
     for tick in (0.0, RULER_MM / 2, RULER_MM):

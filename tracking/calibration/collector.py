@@ -107,7 +107,7 @@ class ViewCollector:
         """Return whether no view shows the same plates in nearly the same pose."""
         distance = max(float(pose[2, 3]), 1e-3)
         for other, other_plates in self._poses:
-            step = se3.motion(other, pose)
+            step = se3.delta(other, pose)
             shift = float(np.linalg.norm(step[:2])) * self._camera[0] / distance / self.size[0]
             ratio_log = abs(float(np.log(distance / max(float(other[2, 3]), 1e-3))))
             rotation = float(np.linalg.norm(step[3:]))

@@ -101,7 +101,7 @@ def prior_cost(model: CalibrationModel, target: CalibrationTarget) -> float:
     rows, values = camera_vector.prior(target.size, model.camera[0], target.free)
     cost = float(((rows @ model.camera - values) ** 2).sum())
     for plate in model.plates if target.adjust_plates else ():
-        step = se3.motion(np.eye(4), plate)
+        step = se3.delta(np.eye(4), plate)
         cost += float((step[:3] ** 2).sum()) / PLATE_SHIFT_SIGMA_M**2
         cost += float((step[3:] ** 2).sum()) / PLATE_ROTATION_SIGMA_RAD**2
     return cost
@@ -118,7 +118,7 @@ def add_priors(
     for number, plate in enumerate(model.plates):
         at = slice(9 + 6 * number, 15 + 6 * number)
         normal[at, at] += np.diag(weights)
-        right[at] -= weights * se3.motion(np.eye(4), plate)
+        right[at] -= weights * se3.delta(np.eye(4), plate)
 
 
 def free_parameters(target: CalibrationTarget) -> NDArray[np.intp]:

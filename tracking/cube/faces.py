@@ -9,7 +9,7 @@ from tracking.geometry import se3
 Array = NDArray[np.float64]
 
 
-class Faces:
+class FacePlanes:
     """The planes of the cube's faces, measured corners and all.
 
     Parameters

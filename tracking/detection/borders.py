@@ -33,7 +33,7 @@ CONTRAST = 12.0
 """Least difference of the grey levels on both sides of a border."""
 
 MOST = 80
-"""Sides of one blob that are combined, the longest first."""
+"""Segments of one blob that are combined, the longest first."""
 
 SHARPEST = 0.25
 """Least sine of the angle between neighbouring sides of a quadrilateral."""
@@ -43,7 +43,7 @@ OVERLAP = 3.0
 
 
 @dataclass(frozen=True)
-class Sides:
+class BorderSegments:
     """Straight pieces of borders, dark on the right hand as one goes from start to end."""
 
     start: Array
@@ -63,12 +63,12 @@ class Sides:
         """Lengths, (N,) [px]."""
         return np.asarray(np.hypot(*(self.end - self.start).T))
 
-    def of(self, chosen: Index | NDArray[np.bool_]) -> "Sides":
+    def of(self, chosen: Index | NDArray[np.bool_]) -> "BorderSegments":
         """Choose some of them."""
-        return Sides(self.start[chosen], self.end[chosen], self.blob[chosen])
+        return BorderSegments(self.start[chosen], self.end[chosen], self.blob[chosen])
 
 
-def find_sides(grey: Picture) -> Sides:
+def find_border_segments(grey: Picture) -> BorderSegments:
     """Find the straight borders of the dark blobs in a picture, (H, W) grey, slightly blurred."""
     dark = cv2.adaptiveThreshold(
         grey, 255, cv2.ADAPTIVE_THRESH_MEAN_C, cv2.THRESH_BINARY_INV, WINDOW, DARKER
@@ -80,18 +80,18 @@ def find_sides(grey: Picture) -> Sides:
         if len(outline) >= SHORTEST_BLOB and min(cv2.boundingRect(outline)[2:]) >= THINNEST_BLOB
     ]
     if not loops:
-        return Sides(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, np.intp))
+        return BorderSegments(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, np.intp))
     counts = np.array([len(loop) for loop in loops])
     points = np.concatenate(loops).astype(np.float64)
     following = np.arange(1, len(points) + 1)
     following[np.cumsum(counts) - 1] -= counts
     # OpenCV walks round a blob with the dark on the left hand (y down): turn all round.
-    sides = Sides(points[following], points, np.repeat(np.arange(len(loops)), counts))
+    sides = BorderSegments(points[following], points, np.repeat(np.arange(len(loops)), counts))
     sides = sides.of(sides.length >= SHORTEST)
     return _longest(sides.of(_bordering(sides, grey)))
 
 
-def _bordering(sides: Sides, grey: Picture) -> NDArray[np.bool_]:
+def _bordering(sides: BorderSegments, grey: Picture) -> NDArray[np.bool_]:
     """Whether there is a step from dark to bright across the middle of each side."""
     height, width = grey.shape
     way = (sides.end - sides.start) / sides.length[:, None]
@@ -108,7 +108,7 @@ def _bordering(sides: Sides, grey: Picture) -> NDArray[np.bool_]:
     return np.asarray(np.median(table[1::2] - table[::2], axis=0) > CONTRAST)
 
 
-def _longest(sides: Sides) -> Sides:
+def _longest(sides: BorderSegments) -> BorderSegments:
     """Keep the longest sides of each blob, and blobs with three sides at least."""
     order = np.lexsort((-sides.length, sides.blob))
     blob = sides.blob[order]
@@ -118,7 +118,7 @@ def _longest(sides: Sides) -> Sides:
     return sides.of(np.sort(order[(rank < MOST) & (count > 2)]))
 
 
-def quadrilaterals(sides: Sides) -> tuple[Index, Array]:
+def quadrilaterals(sides: BorderSegments) -> tuple[Index, Array]:
     """Combine sides that can be the four sides of one dark square, parts of them hidden.
 
     Returns
@@ -143,7 +143,7 @@ def quadrilaterals(sides: Sides) -> tuple[Index, Array]:
     return chain[whole], corners
 
 
-def _neighbours(sides: Sides) -> tuple[Index, Index, Array]:
+def _neighbours(sides: BorderSegments) -> tuple[Index, Index, Array]:
     """Pairs of sides of one blob that meet clockwise, (P,), (P,), and where they do, (P, 2)."""
     begin = np.searchsorted(sides.blob, sides.blob, side="left")
     count = np.searchsorted(sides.blob, sides.blob, side="right") - begin

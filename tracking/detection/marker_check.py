@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.cube.faces import Faces
+from tracking.cube.faces import FacePlanes
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
 from tracking.geometry.image_region import Floats, Patch
@@ -25,7 +25,7 @@ DOUBT = 0.12
 
 
 @dataclass(frozen=True)
-class Reading:
+class CellReading:
     """What the markers say at a pose."""
 
     agreement: dict[str, float]
@@ -46,7 +46,7 @@ class CellReader:
     """Reads the markers of one cube seen by one camera."""
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
-        self._faces = Faces(cube)
+        self._faces = FacePlanes(cube)
         self._projection = projection
         patterns = [marker_cells(cube.dictionary, face.marker_id) for face in cube.faces]
         self._white = np.stack([~pattern.ravel() for pattern in patterns])
@@ -60,18 +60,18 @@ class CellReader:
             ]
         )
 
-    def read(self, patch: Patch, camera_from_cube: Array) -> Reading:
+    def read(self, patch: Patch, camera_from_cube: Array) -> CellReading:
         """Read all markers that look at the camera."""
         facing = list(self._faces.facing(camera_from_cube, GRAZING))
         if not facing:
-            return Reading({})
+            return CellReading({})
         points = self._centres[facing].reshape(-1, 3)
         points = points @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
-        pixels = self._projection.pixels(points)
+        pixels = self._projection.project(points)
         count = len(self._white[0])
         values = patch.at(pixels[:, None])[:, 0].reshape(-1, count)
         inside = (patch.room(pixels) > 0).reshape(-1, count)
-        return Reading(
+        return CellReading(
             {
                 self._faces.names[number]: _agreement(value[seen], self._white[number][seen])
                 for number, value, seen in zip(facing, values, inside, strict=True)

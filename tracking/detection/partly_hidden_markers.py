@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import Observation
-from tracking.detection.quads import Squares, find_squares, sampled
+from tracking.detection.quads import find_quads, sampled
 from tracking.geometry.image_region import Region
 
 Array = NDArray[np.float64]
@@ -36,7 +36,7 @@ AHEAD = 0.12
 """By what share of the cells the best marker must fit better than the second."""
 
 
-class CoveredMarkerDetector:
+class PartlyHiddenMarkerDetector:
     """Finds markers of one cube by what is seen of their four sides.
 
     OpenCV looks for whole squares: a finger on one corner loses the marker. Here four straight
@@ -71,7 +71,7 @@ class CoveredMarkerDetector:
         """
         left, top, right, bottom = region or (0, 0, grey.shape[1], grey.shape[0])
         soft = np.asarray(cv2.GaussianBlur(grey[top:bottom, left:right], (5, 5), 0), np.uint8)
-        squares = find_squares(soft)
+        squares = find_quads(soft)
         if not len(squares):
             return []
         number, fit = self._read(soft, squares)
@@ -87,7 +87,7 @@ class CoveredMarkerDetector:
                 found.append(seen)
         return found
 
-    def _read(self, soft: Picture, squares: Squares) -> tuple[NDArray[np.intp], Array]:
+    def _read(self, soft: Picture, squares: Quads) -> tuple[NDArray[np.intp], Array]:
         """Name the marker in each square: 4 × its place in the cube + its turn, or −1; its fit."""
         places = squares.at(self._places)
         values = sampled(soft, places)
@@ -118,7 +118,7 @@ class CoveredMarkerDetector:
         good &= most - next_most > AHEAD * cells
         return np.where(good, best, -1), np.asarray(most / cells, np.float64)
 
-    def _uncovered(self, squares: Squares) -> Flags:
+    def _uncovered(self, squares: Quads) -> Flags:
         """Which places are not near a corner at which the sides are not seen, (N, places)."""
         corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float64)
         away = np.linalg.norm(self._places[:, None] - corners, axis=-1)

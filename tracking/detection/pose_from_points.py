@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from tracking.cube.model import CubeModel, Face
 from tracking.detection.markers import Observation
 from tracking.geometry import se3
-from tracking.geometry.projection import NEAREST, Projection
+from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.geometry.robust_statistics import quantile
 
 Array = NDArray[np.float64]
@@ -23,7 +23,7 @@ LOOSE, STRICT = 0.15, 0.06
 
 
 @dataclass(frozen=True)
-class CornerSolution:
+class CornerPose:
     """A pose with the markers that support it."""
 
     camera_from_cube: Array
@@ -57,7 +57,7 @@ class _FaceGeometry:
         return cls(centre, face.normal, se3.inverse(frame), side)
 
 
-class CornerSolver:
+class CornerPoseSolver:
     """Solves for poses of one rigid cube seen by one camera."""
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
@@ -66,7 +66,7 @@ class CornerSolver:
 
     def solve(
         self, observations: Sequence[Observation], expected: Array | None = None
-    ) -> list[CornerSolution]:
+    ) -> list[CornerPose]:
         """Find the poses that explain the seen markers, the best first.
 
         Every marker alone proposes its two poses; the proposal that most other markers agree with
@@ -91,7 +91,7 @@ class CornerSolver:
             solution = self._grow(expected, observations)
             if solution and len(solution.observations) == len(observations):
                 return [solution]
-        solutions: list[CornerSolution] = []
+        solutions: list[CornerPose] = []
         for start in self._proposals(observations):
             solution = self._grow(start, observations)
             if solution and 1 < len(observations) == len(solution.observations):
@@ -107,16 +107,16 @@ class CornerSolver:
         turn, geometry = camera_from_cube[:3, :3], self._geometry[face]
         centre = turn @ geometry.centre + camera_from_cube[:3, 3]
         cosine = -(turn @ geometry.normal) @ centre
-        return bool(centre[2] > NEAREST and cosine > GRAZING * np.sqrt(centre @ centre))
+        return bool(centre[2] > MIN_DEPTH and cosine > GRAZING * np.sqrt(centre @ centre))
 
     def error(self, camera_from_cube: Array, observations: Sequence[Observation]) -> float:
         """Root mean square distance of the corners from where a pose puts them [px]."""
         points = np.concatenate([seen.face.corners for seen in observations])
         corners = np.concatenate([seen.corners for seen in observations])
         in_camera = points @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
-        if in_camera[:, 2].min() < NEAREST:
+        if in_camera[:, 2].min() < MIN_DEPTH:
             return np.inf
-        away = self._projection.pixels(in_camera) - corners
+        away = self._projection.project(in_camera) - corners
         return float(np.sqrt((away**2).sum(axis=1).mean()))
 
     def _proposals(self, observations: Sequence[Observation]) -> Iterator[Array]:
@@ -134,7 +134,7 @@ class CornerSolver:
                     marker = se3.pose(se3.rotation(vectors[0]), vectors[1])
                     yield marker @ geometry.marker_from_cube
 
-    def _grow(self, start: Array, observations: Sequence[Observation]) -> CornerSolution | None:
+    def _grow(self, start: Array, observations: Sequence[Observation]) -> CornerPose | None:
         """Refine a proposal on all markers that agree with it, until no other joins or leaves."""
         agreeing = self._agreeing(start, observations, LOOSE)
         for _ in range(3):
@@ -161,7 +161,7 @@ class CornerSolver:
                 best[name] = error, seen
         return [seen for _, seen in best.values()]
 
-    def _refine(self, start: Array, observations: Sequence[Observation]) -> CornerSolution:
+    def _refine(self, start: Array, observations: Sequence[Observation]) -> CornerPose:
         """Minimise the reprojection error by Gauss-Newton with Huber weights."""
         points = np.concatenate([seen.face.corners for seen in observations])
         corners = np.concatenate([seen.corners for seen in observations])
@@ -183,16 +183,16 @@ class CornerSolver:
         flat = rows.reshape(-1, 6)
         covariance = np.asarray(np.linalg.inv(flat.T @ flat), np.float64) * spread
         error = float(np.sqrt(squares / len(residuals)))
-        return CornerSolution(current, tuple(observations), error, covariance)
+        return CornerPose(current, tuple(observations), error, covariance)
 
     def _linearised(self, pose: Array, points: Array, corners: Array) -> tuple[Array, Array]:
         """Residuals, (N, 2) [px], and their slopes by a shift-turn, (N, 2, 6)."""
         turned = points @ pose[:3, :3].T
-        pixels, slopes = self._projection.pixels_and_slopes(turned + pose[:3, 3])
+        pixels, slopes = self._projection.project_with_jacobian(turned + pose[:3, 3])
         return corners - pixels, np.concatenate([slopes, -slopes @ se3.hat(turned)], axis=2)
 
 
-def _rank(solution: CornerSolution, expected: Array | None) -> tuple[float, ...]:
+def _rank(solution: CornerPose, expected: Array | None) -> tuple[float, ...]:
     """Sort by support, then by nearness to where the cube was expected, then by error."""
     far = 0.0
     if expected is not None:
@@ -201,6 +201,6 @@ def _rank(solution: CornerSolution, expected: Array | None) -> tuple[float, ...]
     return -len(solution.observations), far, solution.error
 
 
-def _same(a: CornerSolution, b: CornerSolution) -> bool:
-    step = se3.motion(a.camera_from_cube, b.camera_from_cube)
+def _same(a: CornerPose, b: CornerPose) -> bool:
+    step = se3.delta(a.camera_from_cube, b.camera_from_cube)
     return bool(np.linalg.norm(step[:3]) < 0.005 and np.linalg.norm(step[3:]) < np.deg2rad(4))

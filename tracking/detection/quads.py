@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.detection.borders import Sides, find_sides, quadrilaterals
+from tracking.detection.borders import BorderSegments, find_border_segments, quadrilaterals
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
@@ -28,7 +28,7 @@ REACH = 3.0
 
 
 @dataclass(frozen=True)
-class Squares:
+class Quads:
     """Squares, seen in perspective."""
 
     corners: Array
@@ -62,9 +62,9 @@ class Squares:
         return np.asarray(above / (g[:, None] * u + h[:, None] * v + 1.0)[..., None], np.float64)
 
 
-def find_squares(grey: Picture) -> Squares:
+def find_quads(grey: Picture) -> Quads:
     """Find dark squares in a picture, (H, W) grey, slightly blurred."""
-    sides = find_sides(grey)
+    sides = find_border_segments(grey)
     chosen, corners = quadrilaterals(sides)
     length = _side_lengths(corners)
     share = sides.length[chosen] / np.maximum(length, 1.0)
@@ -73,9 +73,9 @@ def find_squares(grey: Picture) -> Squares:
     keep &= (length < STRETCHED * length[:, [2, 3, 0, 1]]).all(axis=1)
     used = sides.of(chosen[keep].ravel())
     if not len(used):
-        return Squares(np.zeros((0, 4, 2)), np.zeros((0, 4)), np.zeros(0))
+        return Quads(np.zeros((0, 4, 2)), np.zeros((0, 4)), np.zeros(0))
     corners = _sharpened(grey, used)
-    return Squares(corners, _gaps(used, corners), share[keep].mean(axis=1))
+    return Quads(corners, _gaps(used, corners), share[keep].mean(axis=1))
 
 
 def sampled(grey: Picture, places: Array) -> Array:
@@ -95,7 +95,7 @@ def _side_lengths(corners: Array) -> Array:
     return np.asarray(np.hypot(edges[..., 0], edges[..., 1]), np.float64)
 
 
-def _sharpened(grey: Picture, used: Sides) -> Array:
+def _sharpened(grey: Picture, used: BorderSegments) -> Array:
     """Lay sides, four by four, along the greatest slope of the grey values; return corners."""
     way = (used.end - used.start) / used.length[:, None]
     across = np.stack([way[:, 1], -way[:, 0]], axis=1)  # towards the bright side
@@ -136,7 +136,7 @@ def _meetings(start: Array, end: Array) -> Array:
     return np.asarray(before + share[..., None] * way_before, np.float64)
 
 
-def _gaps(used: Sides, corners: Array) -> Array:
+def _gaps(used: BorderSegments, corners: Array) -> Array:
     """How much of its two sides is hidden at each corner, the greater share of the two."""
     start, end = used.start.reshape(-1, 4, 2), used.end.reshape(-1, 4, 2)
     length = _side_lengths(corners)

@@ -9,7 +9,7 @@ from tracking.geometry.intrinsics import Intrinsics
 Array = NDArray[np.float64]
 
 
-NEAREST = 0.03
+MIN_DEPTH = 0.03
 """A cube closer to the camera than this [m] cannot be seen whole; a pose that says so is wrong."""
 
 
@@ -26,12 +26,12 @@ class Projection:
         self.size = intrinsics.size
         self._zero = np.zeros(3)
 
-    def pixels(self, points: Array) -> Array:
+    def project(self, points: Array) -> Array:
         """Project points of the camera frame, (N, 3) [m] → (N, 2) [px]."""
         projected = cv2.projectPoints(points, self._zero, self._zero, self.matrix, self.distortion)
         return np.asarray(projected[0], np.float64).reshape(-1, 2)
 
-    def pixels_and_slopes(self, points: Array) -> tuple[Array, Array]:
+    def project_with_jacobian(self, points: Array) -> tuple[Array, Array]:
         """Project points and say how their pixels move with them, (N, 2) [px], (N, 2, 3) [px/m]."""
         projected, jacobian = cv2.projectPoints(
             points, self._zero, self._zero, self.matrix, self.distortion

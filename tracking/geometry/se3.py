@@ -1,6 +1,6 @@
 """Rigid motions: rotations as vectors, and the small motions that solvers and covariances speak of.
 
-A *shift-turn* is the six numbers of `CubeState.covariance`: a shift [m] and a turn [rad] along the
+A *pose delta* is the six numbers of `CubeState.covariance`: a shift [m] and a turn [rad] along the
 axes of the outer frame, the turn about the moving frame's own origin. It keeps place and attitude
 apart, so that a metre of distance never mixes with a radian of tilt.
 """
@@ -98,23 +98,23 @@ def inverse(transform: Array) -> Array:
     return pose(turn, -turn @ transform[:3, 3])
 
 
-def moved(transform: Array, shift_turn: Array) -> Array:
-    """Apply a shift-turn, (6,), to a pose, (4, 4).
+def moved(transform: Array, pose_delta: Array) -> Array:
+    """Apply a pose delta, (6,), to a pose, (4, 4).
 
     >>> moved(np.eye(4), np.array([1.0, 2.0, 3.0, 0.0, 0.0, 0.0]))[:3, 3].tolist()
     [1.0, 2.0, 3.0]
     """
-    return pose(rotation(shift_turn[3:]) @ transform[:3, :3], transform[:3, 3] + shift_turn[:3])
+    return pose(rotation(pose_delta[3:]) @ transform[:3, :3], transform[:3, 3] + pose_delta[:3])
 
 
-def along(transform: Array, shift_turn: Array, shares: Array) -> Array:
-    """Poses on the way of a shift-turn, `moved(transform, share * shift_turn)` for each share.
+def along(transform: Array, pose_delta: Array, shares: Array) -> Array:
+    """Poses on the way of a pose delta, `moved(transform, share * pose_delta)` for each share.
 
     Parameters
     ----------
     transform
         A pose, (4, 4).
-    shift_turn
+    pose_delta
         Where it goes, (6,).
     shares
         How far along, (N,).
@@ -128,23 +128,23 @@ def along(transform: Array, shift_turn: Array, shares: Array) -> Array:
     >>> bool(np.allclose(half, moved(np.eye(4), way / 2)))
     True
     """
-    angle = max(float(np.linalg.norm(shift_turn[3:])), 1e-12)
-    k = hat(shift_turn[3:] / angle)
+    angle = max(float(np.linalg.norm(pose_delta[3:])), 1e-12)
+    k = hat(pose_delta[3:] / angle)
     turned = shares[:, None, None] * angle
     turns = np.eye(3) + np.sin(turned) * k + (1 - np.cos(turned)) * (k @ k)
     poses = np.zeros((len(shares), 4, 4))
     poses[:, :3, :3] = turns @ transform[:3, :3]
-    poses[:, :3, 3] = transform[:3, 3] + shares[:, None] * shift_turn[:3]
+    poses[:, :3, 3] = transform[:3, 3] + shares[:, None] * pose_delta[:3]
     poses[:, 3, 3] = 1
     return poses
 
 
-def motion(start: Array, end: Array) -> Array:
-    """Shift-turn, (6,), from one pose to another: `moved(start, motion(start, end))` is `end`."""
+def delta(start: Array, end: Array) -> Array:
+    """Pose delta, (6,), from one pose to another: `moved(start, delta(start, end))` is `end`."""
     turn = rotation_vector(end[:3, :3] @ start[:3, :3].T)
     return np.concatenate([end[:3, 3] - start[:3, 3], turn])
 
 
 def angle_between(a: Array, b: Array) -> float:
     """Angle between the attitudes of two poses [rad], 0…π."""
-    return float(np.linalg.norm(motion(a, b)[3:]))
+    return float(np.linalg.norm(delta(a, b)[3:]))

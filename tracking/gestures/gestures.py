@@ -116,7 +116,7 @@ class CubeGestures:
     def _velocity(self, now: float, pose: Array) -> Array:
         if self._last is None or not 0 < now - self._last[0] <= GAP:
             return np.zeros(6)
-        return se3.motion(self._last[1], pose) / (now - self._last[0])
+        return se3.delta(self._last[1], pose) / (now - self._last[0])
 
     def _learn(self, state: CubeState, pose: Array) -> None:
         self._stillness.add(state.timestamp, pose, state.covariance)

@@ -76,4 +76,4 @@ class Stillness:
     def _steps(self) -> Array:
         """Shift-turns from the first moment to each, (moments, 6)."""
         first = self._moments[0].camera_from_cube
-        return np.stack([se3.motion(first, moment.camera_from_cube) for moment in self._moments])
+        return np.stack([se3.delta(first, moment.camera_from_cube) for moment in self._moments])

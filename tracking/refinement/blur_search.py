@@ -11,7 +11,7 @@ from tracking.refinement.camera_model import CameraModel
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
-from tracking.refinement.motion_blur_alignment import SweptAligner
+from tracking.refinement.motion_blur_alignment import MotionBlurAligner
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ class BlurSearch:
     """
 
     def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
-        self._aligner = SweptAligner(cube, projection)
+        self._aligner = MotionBlurAligner(cube, projection)
         self._footprint = Footprint(cube, projection)
         self._edges = edges
 

@@ -53,7 +53,7 @@ class Candidate:
 
     def same_pose(self, other: "Candidate") -> bool:
         """Whether two candidates are the same pose for all purposes."""
-        delta = se3.motion(self.camera_from_cube, other.camera_from_cube)
+        delta = se3.delta(self.camera_from_cube, other.camera_from_cube)
         return bool(
             np.linalg.norm(delta[:3]) < SAME_POSE[0] and np.linalg.norm(delta[3:]) < SAME_POSE[1]
         )
@@ -66,5 +66,5 @@ class Candidate:
 
     def widened_to(self, other: "Candidate") -> "Candidate":
         """Return this pose with a covariance that covers another possible pose too."""
-        apart = se3.motion(self.camera_from_cube, other.camera_from_cube)
+        apart = se3.delta(self.camera_from_cube, other.camera_from_cube)
         return replace(self, covariance=self.covariance + np.outer(apart, apart) / 4)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from tracking.geometry.image_region import Patch
 from tracking.geometry.robust_statistics import quantile, tukey
-from tracking.refinement.profiles import Measured, Profiles, offsets
+from tracking.refinement.profiles import EdgeMeasurements, EdgeProfiles, offsets
 
 Array = NDArray[np.float64]
 
@@ -39,10 +39,10 @@ SHARED_ERROR = 0.02
 
 
 @dataclass(frozen=True)
-class Fit:
+class EdgeFit:
     """The weighted least squares of one step."""
 
-    measured: Measured
+    measured: EdgeMeasurements
     """What all profiles show."""
 
     solution: Array
@@ -67,7 +67,9 @@ class Fit:
     """Normal matrix with its priors, (8, 8)."""
 
 
-def fit(patch: Patch, profiles: Profiles, shifts: Array | None, blur: float) -> "Fit | None":
+def fit(
+    patch: Patch, profiles: EdgeProfiles, shifts: Array | None, blur: float
+) -> "EdgeFit | None":
     """Measure all profiles, and solve for the shift-turn and the blooms with robust weights.
 
     Parameters
@@ -110,10 +112,10 @@ def fit(patch: Patch, profiles: Profiles, shifts: Array | None, blur: float) -> 
         robust = tukey(residual, max(4.685 * scale, 0.1))
         weights = information * robust
     weights = np.asarray(information * robust, np.float64)
-    return Fit(measured, solution, strong, rows, weights, robust, residual, normal)
+    return EdgeFit(measured, solution, strong, rows, weights, robust, residual, normal)
 
 
-def _printed(face: NDArray[np.intp], measured: Measured) -> NDArray[np.bool_]:
+def _printed(face: NDArray[np.intp], measured: EdgeMeasurements) -> NDArray[np.bool_]:
     """Whether an edge is as clear as the other edges of its face are, (N,).
 
     Contrast is taken beside the light there (Weber's): ink on paper keeps it in a shadow, where
@@ -128,7 +130,7 @@ def _printed(face: NDArray[np.intp], measured: Measured) -> NDArray[np.bool_]:
     return np.asarray((clear > least) & (measured.contrast > overall), np.bool_)
 
 
-def covariance(fit: Fit, lines: NDArray[np.intp], pixels: Array) -> Array:
+def covariance(fit: EdgeFit, lines: NDArray[np.intp], pixels: Array) -> Array:
     """Covariance of the shift-turn, (6, 6), by what the residuals of each line have in common.
 
     The points of one straight line do not err independently: they share the paper, the light and

@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.cube.edges import EdgeModel
-from tracking.cube.faces import Faces
+from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.geometry.robust_statistics import quantile
-from tracking.refinement.edge_fit import FEWEST, Fit, covariance, fit
-from tracking.refinement.profiles import Measured, Profiles, lay_out
+from tracking.refinement.edge_fit import FEWEST, EdgeFit, covariance, fit
+from tracking.refinement.profiles import EdgeMeasurements, EdgeProfiles, lay_out
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ LAYOUTS = 3
 
 
 @dataclass(frozen=True)
-class Refinement:
+class EdgeRefinement:
     """A pose that rests on edges."""
 
     camera_from_cube: Array
@@ -80,14 +80,14 @@ class EdgeRefiner:
     """Refines poses of one cube seen by one camera."""
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
-        self._faces = Faces(cube)
+        self._faces = FacePlanes(cube)
         self._model = EdgeModel.of(cube)
         self._projection = projection
         self._parts: dict[tuple[int, ...], EdgeModel] = {}
 
     def refine(
         self, patch: Patch, start: Array, sweep: Array | None = None, wide: bool = False
-    ) -> Refinement | None:
+    ) -> EdgeRefinement | None:
         """Refine a pose that is right to about half a cell in the picture, or a whole one.
 
         Parameters
@@ -126,14 +126,14 @@ class EdgeRefiner:
 
     def _profiles(
         self, patch: Patch, pose: Array, sweep: Array | None, wide: bool
-    ) -> Profiles | None:
+    ) -> EdgeProfiles | None:
         facing = self._faces.facing(pose, GRAZING)
         if facing not in self._parts:
             self._parts[facing] = self._model.of_faces(facing)
         profiles = lay_out(self._parts[facing], self._projection, pose, patch, sweep, wide)
         return profiles if profiles and len(profiles.numbers) >= FEWEST else None
 
-    def _judged(self, start: Array, profiles: Profiles, step: Fit) -> Refinement | None:
+    def _judged(self, start: Array, profiles: EdgeProfiles, step: EdgeFit) -> EdgeRefinement | None:
         kept = step.strong[step.robust > 0.1]
         if len(kept) < FEWEST:
             return None
@@ -144,7 +144,7 @@ class EdgeRefiner:
         count = len(self._faces.names)
         wanted = np.bincount(face, minlength=count)
         found = np.bincount(face[kept], minlength=count)
-        return Refinement(
+        return EdgeRefinement(
             se3.moved(start, step.solution[:6]),
             covariance(step, model.line[numbers[step.strong]], profiles.pixels[step.strong]),
             float(np.sqrt((step.robust * step.residual**2).sum() / step.robust.sum())),
@@ -161,7 +161,7 @@ class EdgeRefiner:
 
 
 def _sharpness(
-    measured: Measured, kept: NDArray[np.intp], lines: NDArray[np.intp]
+    measured: EdgeMeasurements, kept: NDArray[np.intp], lines: NDArray[np.intp]
 ) -> tuple[float, float]:
     """Compare the steepness of lines with each other, and with what it should be."""
     starts = np.flatnonzero(np.diff(lines, prepend=-1))
@@ -171,10 +171,10 @@ def _sharpness(
     return quantile(steep, 0.15) / max(quantile(steep, 0.85), 1e-9), quantile(steep, 0.5)
 
 
-def _converged(patch: Patch, profiles: Profiles, blurs: tuple[float, ...]) -> Fit | None:
+def _converged(patch: Patch, profiles: EdgeProfiles, blurs: tuple[float, ...]) -> EdgeFit | None:
     """Fit until the edges stay where they are: the profiles follow them, the geometry stays."""
     shifts: Array | None = None
-    step: Fit | None = None
+    step: EdgeFit | None = None
     for blur in (*blurs, *PRECISE[1:] * 2):
         step = fit(patch, profiles, shifts, blur)
         if step is None:

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.cube.faces import Faces
+from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
-from tracking.detection.marker_check import CellReader, Reading
+from tracking.detection.marker_check import CellReader, CellReading
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
-from tracking.refinement.edge_refinement import EdgeRefiner, Refinement
+from tracking.refinement.edge_refinement import EdgeRefinement, EdgeRefiner
 from tracking.refinement.footprint import Footprint
 
 Array = NDArray[np.float64]
@@ -51,13 +51,13 @@ COMMON_ERROR_PX = (0.01, 0.002, 0.005)
 class EdgeMatch:
     """A pose refined on edges, and whether it is the cube's."""
 
-    refinement: Refinement
+    refinement: EdgeRefinement
     """The pose with its residuals."""
 
     covariance: Array
     """Of a pose delta, (6, 6), with the errors that no residual shows."""
 
-    reading: Reading
+    reading: CellReading
     """What the cells say at this pose; nothing where too few edges were found."""
 
     proved: bool
@@ -68,7 +68,7 @@ class EdgeSearch:
     """Refines poses of one cube on its edges, and tells whether they prove that it is the cube."""
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
-        self._faces = Faces(cube)
+        self._faces = FacePlanes(cube)
         self._refiner = EdgeRefiner(cube, projection)
         self._reader = CellReader(cube, projection)
         self._footprint = Footprint(cube, projection)
@@ -92,7 +92,7 @@ class EdgeSearch:
         found = self._refiner.refine(patch, start, blur_motion, wide)
         if found is None:
             return None
-        reading = Reading({})
+        reading = CellReading({})
         if found.support >= MIN_EDGE_SUPPORT_WITH_MARKERS:
             reading = self._reader.read(patch, found.camera_from_cube)
         covariance = self._inflate_covariance(found, blur_motion)
@@ -131,7 +131,7 @@ class EdgeSearch:
         face = self._faces.names.index(candidate.faces[0])
         return self._faces.mirrored(candidate.camera_from_cube, face)
 
-    def _inflate_covariance(self, found: Refinement, blur_motion: Array | None) -> Array:
+    def _inflate_covariance(self, found: EdgeRefinement, blur_motion: Array | None) -> Array:
         """Covariance of a refined pose, (6, 6), with the errors that no residual shows.
 
         Lens, paper and light displace all edges a little in common: sideways, in size and in tilt.
@@ -147,14 +147,14 @@ class EdgeSearch:
         inflated = found.covariance * COVARIANCE_FACTOR * factor
         return np.asarray(inflated + np.diag(floor), np.float64)
 
-    def _is_rigid(self, found: Refinement) -> bool:
+    def _is_rigid(self, found: EdgeRefinement) -> bool:
         """Whether the edges lie as those of one rigid cube, and not as on a picture of one."""
         pixel = self._footprint.metres_per_pixel(found.camera_from_cube)
         edge = 2 * self._footprint.half_edge
         return found.residual < max(MAX_RESIDUAL_PX, MAX_RESIDUAL_SHARE * edge / pixel)
 
 
-def _prove(found: Refinement, reading: Reading) -> bool:
+def _prove(found: EdgeRefinement, reading: CellReading) -> bool:
     if found.crisp < MIN_SHARPNESS_RATIO:
         return False
     if min(found.support, found.inner) > MIN_EDGE_SUPPORT and reading.best > MIN_FACE_AGREEMENT:

@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 Image = NDArray[np.float32]
 
 
-class Drawing:
+class FaceTextures:
     """All faces of a cube, from black 0 to white 1.
 
     Parameters

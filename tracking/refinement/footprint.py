@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
 from tracking.geometry.image_region import Floats, Patch, Region
-from tracking.geometry.projection import NEAREST, Projection
+from tracking.geometry.projection import MIN_DEPTH, Projection
 
 Array = NDArray[np.float64]
 
@@ -65,9 +65,9 @@ class Footprint:
     def region(self, camera_from_cube: Array) -> Region | None:
         """Bounds of the cube at a pose with a margin; None where it is not in view."""
         points = self._corners @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
-        if points[:, 2].min() < NEAREST:
+        if points[:, 2].min() < MIN_DEPTH:
             return None
-        pixels = self._projection.pixels(points)
+        pixels = self._projection.project(points)
         low, high = pixels.min(axis=0), pixels.max(axis=0)
         margin = MARGIN_SHARE * float((high - low).max()) + MARGIN_PX
         width, height = self._projection.size

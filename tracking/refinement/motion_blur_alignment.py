@@ -13,15 +13,15 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.cube.faces import Faces, face_frame
+from tracking.cube.faces import FacePlanes, face_frame
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import NEAREST, Projection
+from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.refinement.alignment import Alignment
-from tracking.refinement.face_images import Drawing
-from tracking.refinement.photometric_fit import Mixture, Samples, fit
+from tracking.refinement.face_images import FaceTextures
+from tracking.refinement.photometric_fit import PhotometricFit, PhotometricSamples, fit
 
 Array = NDArray[np.float64]
 Image = NDArray[np.float32]
@@ -64,18 +64,18 @@ FEWEST = 40
 """Fewer samples than this do not make a pose."""
 
 
-class SweptAligner:
+class MotionBlurAligner:
     """Aligns one cube seen by one camera."""
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
-        self._faces = Faces(cube)
+        self._faces = FacePlanes(cube)
         self._projection = projection
         self._cell = cube.marker_size / len(marker_cells(cube.dictionary, cube.faces[0].marker_id))
         self._half = cube.edge / 2
         self._frames = np.stack([face_frame(face) for face in cube.faces])
         side = round(cube.edge / self._cell * TEXELS)
         self._side = side
-        self._drawing = Drawing(cube, side)
+        self._drawing = FaceTextures(cube, side)
         self._grids = {count: _grid(count, cube.edge) for count in (COARSE, FINE)}
 
     def align(
@@ -101,7 +101,7 @@ class SweptAligner:
         None where the cube is not in view.
         """
         pose, way = start, sweep
-        last: tuple[_Scene, Mixture, Array, Array] | None = None
+        last: tuple[_Scene, PhotometricFit, Array, Array] | None = None
         for blur, count, rounds in STAGES if coarse else STAGES[1:]:
             scene = self._scene(patch, pose, blur, count)
             if scene is None:
@@ -123,7 +123,7 @@ class SweptAligner:
         way: Array,
         prior: Array,
         scene: "_Scene",
-        mixture: Mixture,
+        mixture: PhotometricFit,
         before: Array,
         step: Array,
     ) -> Alignment:
@@ -147,10 +147,10 @@ class SweptAligner:
             return None
         frames = pose @ self._frames[facing]
         points = frames[:, :3] @ self._grids[count]
-        if points[:, 2].min() < NEAREST:
+        if points[:, 2].min() < MIN_DEPTH:
             return None
         flat = points.transpose(0, 2, 1).reshape(-1, 3)
-        pixels = self._projection.pixels(flat)
+        pixels = self._projection.project(flat)
         sigma = blur * self._cell * float(self._projection.matrix[0, 0]) / pose[2, 3]
         smooth = sigma > LENS
         seen = patch.smoothed(sigma) if smooth else patch
@@ -165,10 +165,10 @@ class SweptAligner:
     def _texels_to_pixels(self, frames: Array) -> Array:
         """How the picture of each face moves with its texels at its centre, (faces, 2, 2) [px]."""
         centres = frames[:, :3, 3]
-        _, slopes = self._projection.pixels_and_slopes(np.ascontiguousarray(centres))
+        _, slopes = self._projection.project_with_jacobian(np.ascontiguousarray(centres))
         return np.asarray(slopes @ frames[:, :3, :2] * (2 * self._half / self._side), np.float64)
 
-    def _mixture(self, scene: "_Scene", pose: Array, way: Array) -> Mixture | None:
+    def _mixture(self, scene: "_Scene", pose: Array, way: Array) -> PhotometricFit | None:
         """Draw the cube along its way, and fit the drawing's tones to the picture."""
         when = self._moments(way)
         poses = se3.along(pose, way, when)
@@ -188,7 +188,9 @@ class SweptAligner:
         block = (number * BLOCKS + row * BLOCKS // scene.count) * BLOCKS
         block += column * BLOCKS // scene.count
         drawn = means[0, :, 0].astype(np.float64)
-        samples = Samples(number, block, scene.values[use], drawn, np.concatenate(slopes, axis=1))
+        samples = PhotometricSamples(
+            number, block, scene.values[use], drawn, np.concatenate(slopes, axis=1)
+        )
         return fit(samples, len(scene.facing))
 
     def _moments(self, way: Array) -> Array:

@@ -18,7 +18,7 @@ much, and must not be taken for a finger."""
 
 
 @dataclass(frozen=True)
-class Samples:
+class PhotometricSamples:
     """What the drawing and the picture say at the samples that are in view."""
 
     face: NDArray[np.intp]
@@ -38,10 +38,10 @@ class Samples:
 
 
 @dataclass(frozen=True)
-class Mixture:
+class PhotometricFit:
     """The drawing's tones fitted to the picture, and the step towards a better drawing."""
 
-    samples: Samples
+    samples: PhotometricSamples
     """What was fitted."""
 
     rows: Array
@@ -149,7 +149,7 @@ class Mixture:
         return np.flatnonzero(np.diff(self.samples.block[order], prepend=-1)), order
 
 
-def fit(samples: Samples, faces: int) -> Mixture:
+def fit(samples: PhotometricSamples, faces: int) -> PhotometricFit:
     """Fit the tones of all faces with robust weights.
 
     Parameters
@@ -176,7 +176,7 @@ def fit(samples: Samples, faces: int) -> Mixture:
     rows = np.concatenate([samples.slopes * strength[:, None], tone], axis=1)
     weights = robust / scale**2
     weighted = rows * weights[:, None]
-    return Mixture(
+    return PhotometricFit(
         samples, rows, weighted.T @ rows, weighted.T @ residual, gain, residual, weights, scale
     )
 

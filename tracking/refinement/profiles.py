@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from tracking.cube.edges import EdgeModel
 from tracking.geometry.image_region import Floats, Patch
-from tracking.geometry.projection import NEAREST, Projection
+from tracking.geometry.projection import MIN_DEPTH, Projection
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ MODEL_ERROR = 0.04
 
 
 @dataclass(frozen=True)
-class Profiles:
+class EdgeProfiles:
     """Edge points in view, and the straight lines in the picture that cross them."""
 
     model: EdgeModel
@@ -69,7 +69,7 @@ def lay_out(
     patch: Patch,
     sweep: Array | None,
     wide: bool,
-) -> Profiles | None:
+) -> EdgeProfiles | None:
     """Lay profiles across the edges of a cube at a pose.
 
     Parameters
@@ -93,9 +93,9 @@ def lay_out(
     """
     turned = model.points @ camera_from_cube[:3, :3].T
     points = turned + camera_from_cube[:3, 3]
-    if not len(points) or points[:, 2].min() < NEAREST:
+    if not len(points) or points[:, 2].min() < MIN_DEPTH:
         return None
-    pixels, by_place = projection.pixels_and_slopes(points)
+    pixels, by_place = projection.project_with_jacobian(points)
     turn = camera_from_cube[:3, :3]
     along = _pushed(by_place, model.along @ turn.T)
     across = _pushed(by_place, model.across @ turn.T)
@@ -116,12 +116,14 @@ def lay_out(
     if wide:
         good &= model.outline
     found = np.flatnonzero(good)
-    return Profiles(
+    return EdgeProfiles(
         model, found, pixels[found], normals[found], slopes[found], reach[found], swept[found]
     )
 
 
-def offsets(patch: Patch, profiles: Profiles, shifts: Array | float, blur: float) -> "Measured":
+def offsets(
+    patch: Patch, profiles: EdgeProfiles, shifts: Array | float, blur: float
+) -> "EdgeMeasurements":
     """Fit a blurred step to the picture across each edge point.
 
     The model a + b·S(u/σ) − b·δ·s(u/σ)/σ, (S a smooth step, s its slope), is linear in a, b and
@@ -165,11 +167,11 @@ def offsets(patch: Patch, profiles: Profiles, shifts: Array | float, blur: float
     rise = (values[:, half + 1] - values[:, half - 1]).astype(np.float64)
     fitted = contrast * (step[:, half + 1] - step[:, half - 1])
     level = values.mean(axis=1).astype(np.float64)
-    return Measured(shifted / safe, contrast, level, 1 / variance, rise, fitted)
+    return EdgeMeasurements(shifted / safe, contrast, level, 1 / variance, rise, fitted)
 
 
 @dataclass(frozen=True)
-class Measured:
+class EdgeMeasurements:
     """What profiles show, each (N,)."""
 
     offset: Array

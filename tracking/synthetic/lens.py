@@ -32,7 +32,7 @@ class Lens:
 
     def pixels(self, points: Array) -> Array:
         """Project points of the camera frame, (n, 3) [m] → (n, 2) [px]."""
-        return self._projection.pixels(points)
+        return self._projection.project(points)
 
     def rays(self, region: "Region", finer: int) -> Rays:
         """Return points at z = 1 for every sample of a region.

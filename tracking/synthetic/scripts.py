@@ -157,7 +157,7 @@ def wave(edge: float, options: Options) -> Script:
         first = min(int(number), len(stations) - 1)
         second = min(first + 1, len(stations) - 1)
         pose = stations[first]
-        step = se3.motion(pose, stations[second]) * eased((since - stop) / move)
+        step = se3.delta(pose, stations[second]) * eased((since - stop) / move)
         tremble = 2 * np.pi * np.array([7.3, 8.9, 10.7]) * time
         step[:3] += 0.0002 * np.sin(tremble)
         step[3:] += np.deg2rad(0.1) * np.sin(tremble[::-1])

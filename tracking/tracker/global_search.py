@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import Marker, MarkerDetector, Observation, observed
-from tracking.detection.partly_hidden_markers import CoveredMarkerDetector
+from tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
 from tracking.geometry.frame import Frame
 from tracking.geometry.image_region import Floats, Patch
 from tracking.geometry.projection import Projection
@@ -86,7 +86,7 @@ class GlobalDetector:
         self._cube = cube
         self._footprint = Footprint(cube, projection)
         self._poses = MarkerPoses(cube, projection, edges)
-        self._hidden = CoveredMarkerDetector(cube)
+        self._hidden = PartlyHiddenMarkerDetector(cube)
         self._blur = blur
 
     def detect(

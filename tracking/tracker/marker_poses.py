@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import Observation
-from tracking.detection.pose_from_points import CornerSolution, CornerSolver
+from tracking.detection.pose_from_points import CornerPose, CornerPoseSolver
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
@@ -56,7 +56,7 @@ class MarkerPoses:
     """
 
     def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
-        self._solver = CornerSolver(cube, projection)
+        self._solver = CornerPoseSolver(cube, projection)
         self._edges = edges
 
     def find(
@@ -94,7 +94,7 @@ class MarkerPoses:
         return [*found, other] if other and not found[0].same_pose(other) else found
 
     def _widely_matched(
-        self, patch: Patch, solution: CornerSolution, precise: EdgeMatch | None
+        self, patch: Patch, solution: CornerPose, precise: EdgeMatch | None
     ) -> EdgeMatch | None:
         """Search widely where the precise search found too few of the edges."""
         support = precise.refinement.support if precise else 0.0
@@ -103,7 +103,7 @@ class MarkerPoses:
         wide = self._edges.match(patch, solution.camera_from_cube, wide=True)
         return wide if wide and wide.refinement.support > support else precise
 
-    def _candidate(self, solution: CornerSolution, match: EdgeMatch | None) -> Candidate:
+    def _candidate(self, solution: CornerPose, match: EdgeMatch | None) -> Candidate:
         """Take the pose of the edges where they agree with the corners, else the corners' own."""
         seen = solution.observations
         faces = tuple(each.face.name for each in seen)
@@ -131,7 +131,7 @@ class MarkerPoses:
             measurements=refined.lines,
         )
 
-    def _agree(self, solution: CornerSolution, match: EdgeMatch) -> bool:
+    def _agree(self, solution: CornerPose, match: EdgeMatch) -> bool:
         """Whether the edges moved the pose by less than the corners allow."""
         refined, seen = match.refinement, solution.observations
         pose = refined.camera_from_cube
@@ -146,7 +146,7 @@ class MarkerPoses:
         return refined.support > MIN_EDGE_SUPPORT and supported and not far
 
 
-def _is_contradicted(solution: CornerSolution, observations: list[Observation]) -> bool:
+def _is_contradicted(solution: CornerPose, observations: list[Observation]) -> bool:
     """Whether a pose rests on one marker while others of the same cube say that it is elsewhere.
 
     A cube cut open and laid flat, its printed sheet, shows several; a cube never does.

@@ -47,7 +47,7 @@ class TrackedPose:
     def reaches(self, camera_from_cube: Array, timestamp: float) -> bool:
         """Whether a hand can have moved the cube from here to another pose by `timestamp`."""
         elapsed = max(timestamp - self.timestamp, 0.0)
-        delta = se3.motion(self.camera_from_cube, camera_from_cube)
+        delta = se3.delta(self.camera_from_cube, camera_from_cube)
         # The constants are the worst errors of a pose, for frames that follow at once.
         return bool(
             np.linalg.norm(delta[:3]) < MAX_SPEED[0] * elapsed + 0.02
@@ -73,7 +73,7 @@ class Prediction:
 
     def covers(self, camera_from_cube: Array) -> bool:
         """Whether a pose lies within three standard deviations, along each axis."""
-        delta = se3.motion(self.camera_from_cube, camera_from_cube)
+        delta = se3.delta(self.camera_from_cube, camera_from_cube)
         return bool((np.abs(delta) < 3 * np.sqrt(np.diag(self.covariance)) + 0.002).all())
 
 
@@ -125,12 +125,12 @@ class Track:
             return last.velocity, last.acceleration
         if elapsed > MAX_PREDICTION_S:
             return still, still
-        now = se3.motion(last.camera_from_cube, camera_from_cube) / elapsed
+        now = se3.delta(last.camera_from_cube, camera_from_cube) / elapsed
         earlier = self.poses[-2] if len(self.poses) > 1 else None
         before = last.timestamp - earlier.timestamp if earlier else 0.0
         if earlier is None or not 0 < before <= MAX_PREDICTION_S:
             return now, still
-        mean = se3.motion(earlier.camera_from_cube, last.camera_from_cube) / before
+        mean = se3.delta(earlier.camera_from_cube, last.camera_from_cube) / before
         span = (elapsed + before) / 2
         acceleration = (now - mean) / span
         variances = (np.diag(covariance) + np.diag(last.covariance)) / elapsed**2

@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from tracking.cube.faces import Faces, face_frame, plane_normal
+from tracking.cube.faces import FacePlanes, face_frame, plane_normal
 from tracking.cube.model import FACE_AXES, CubeModel, Face, bundled, face_corners
 from tracking.geometry import se3
 from tracking.synthetic.folding import folded
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 CUBES = [CubeModel.load(name) for name in bundled()]
 CUBE = CubeModel.load("locomotion")
-FACES = Faces(CUBE)
+FACES = FacePlanes(CUBE)
 
 turns = st.tuples(*[st.floats(-3.1, 3.1)] * 3)
 places = st.tuples(st.floats(-0.4, 0.4), st.floats(-0.3, 0.3), st.floats(0.2, 1.5))
@@ -56,7 +56,7 @@ def test_a_mirrored_face_keeps_its_centre_and_leans_as_far_to_the_other_side(
 
 @pytest.mark.parametrize("cube", CUBES, ids=lambda cube: cube.name)
 def test_normals_of_the_bundled_cubes_are_those_of_their_axes(cube: CubeModel) -> None:
-    faces = Faces(cube)
+    faces = FacePlanes(cube)
     for name, normal, centre in zip(faces.names, faces.normals, faces.centres, strict=True):
         axis = np.cross(*FACE_AXES[name])
         assert np.allclose(normal, axis, atol=1e-12)

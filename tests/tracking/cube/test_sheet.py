@@ -12,7 +12,7 @@ from tracking.cube.icons import ICONS, INK, signed_area
 from tracking.cube.marker import marker_cells, marker_loops
 from tracking.cube.model import aruco_dictionary, bundled
 from tracking.cube.printing.layout import PAPERS, largest_edge_mm
-from tracking.cube.printing.unfolding import Net
+from tracking.cube.printing.unfolding import Unfolding
 
 DPI = 254
 PIXELS_PER_MM = DPI / 25.4
@@ -59,7 +59,7 @@ def test_all_six_markers_are_found_at_the_right_size(printed):
 def test_the_detected_page_folds_to_the_model_within_a_tenth_of_a_millimetre(printed):
     """Place and orientation at once: paper corners, folded as the net says, are the model's."""
     cube, _, corners = printed
-    net = Net(cube.edge)
+    net = Unfolding(cube.edge)
     middle = corners[cube.face("front").marker_id].mean(axis=0)
     for face in cube.faces:
         paper = (corners[face.marker_id] - middle) * (0.001, -0.001)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tracking.cube.model import FACE_AXES, CubeModel, bundled, face_corners
-from tracking.cube.printing.unfolding import Net
+from tracking.cube.printing.unfolding import Unfolding
 
 EDGE = 0.06
 
@@ -22,7 +22,7 @@ def carried(matrix, points):
 @pytest.mark.parametrize("name", bundled())
 def test_folding_the_net_in_numbers_puts_every_marker_where_the_model_has_it(name):
     cube = CubeModel.load(name)
-    net = Net(cube.edge)
+    net = Unfolding(cube.edge)
     assert {face.name for face in cube.faces} == set(FACE_AXES)
     for face in cube.faces:
         printed = face_corners("front", face.roll_deg, cube.marker_size, 0.0)[:, :2]
@@ -31,7 +31,7 @@ def test_folding_the_net_in_numbers_puts_every_marker_where_the_model_has_it(nam
 
 
 def test_unfolded_flat_the_faces_lie_where_the_paper_shows_them():
-    net = Net(EDGE)
+    net = Unfolding(EDGE)
     for face in FACE_AXES:
         flat = net.cube_from_face(face, angle=0.0)
         np.testing.assert_allclose(flat[:3, :3], np.eye(3), atol=1e-15)
@@ -40,7 +40,7 @@ def test_unfolded_flat_the_faces_lie_where_the_paper_shows_them():
 
 @pytest.mark.parametrize("angle", [0.0, 0.4, 1.0, math.pi / 2])
 def test_faces_stay_joined_at_their_hinges_while_they_fold(angle):
-    net = Net(EDGE)
+    net = Unfolding(EDGE)
     for start, end in net.folds():
         middle = (start + end) / 2
         places = []
@@ -60,7 +60,7 @@ def folded_tabs(net):
 
 
 def test_every_tab_ends_under_the_face_it_is_glued_to():
-    net = Net(EDGE)
+    net = Unfolding(EDGE)
     for tab, corners in folded_tabs(net):
         inside = np.linalg.inv(net.cube_from_face(tab.under))
         local = corners @ inside[:3, :3].T + inside[:3, 3]
@@ -69,7 +69,7 @@ def test_every_tab_ends_under_the_face_it_is_glued_to():
 
 
 def test_tabs_under_one_face_do_not_overlap():
-    net = Net(EDGE)
+    net = Unfolding(EDGE)
     under: dict[str, list[np.ndarray]] = {}
     for tab, corners in folded_tabs(net):
         inside = np.linalg.inv(net.cube_from_face(tab.under))
@@ -83,7 +83,7 @@ def test_tabs_under_one_face_do_not_overlap():
 
 
 def test_every_edge_of_the_cube_is_either_folded_or_glued():
-    net = Net(EDGE)
+    net = Unfolding(EDGE)
     held: dict[tuple[int, ...], list[str]] = {}
     for start, end in net.folds():
         middle = (start + end) / 2
@@ -95,7 +95,7 @@ def test_every_edge_of_the_cube_is_either_folded_or_glued():
 
 
 def test_the_outline_encloses_the_faces_and_tabs_and_nothing_else():
-    net = Net(EDGE)
+    net = Unfolding(EDGE)
     x, y = net.outline().T
     area = np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) / 2
     tabs = sum(

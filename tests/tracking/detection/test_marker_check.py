@@ -6,9 +6,9 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.tracking.drawn import CAMERA, held, photograph, scene
-from tracking.cube.faces import Faces
+from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
-from tracking.detection.marker_check import CellReader, Reading
+from tracking.detection.marker_check import CellReader, CellReading
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
 CUBE, OTHER = CubeModel.load("locomotion"), CubeModel.load("companion")
-FACES = Faces(CUBE)
+FACES = FacePlanes(CUBE)
 READER = CellReader(CUBE, Projection(CAMERA))
 CELL = CUBE.marker_size / 6
 VIEWS = [held(), held(0.8, -0.5, 0.4), held(0.4, 2.2, -0.3), held(-0.6, 0.7, 1.0)]
@@ -29,7 +29,7 @@ def square_enough(pose: Array) -> set[str]:
     return {FACES.names[number] for number in FACES.facing(pose, 0.35)}
 
 
-def read(picture: Picture, pose: Array, reader: CellReader = READER) -> Reading:
+def read(picture: Picture, pose: Array, reader: CellReader = READER) -> CellReading:
     return reader.read(Patch.of(picture), pose)
 
 
@@ -84,7 +84,7 @@ def half_covered(picture: Picture, pose: Array, name: str, side: int, grey: int)
     corners = np.roll(CUBE.face(name).corners, -side, axis=0)
     middles = [(corners[1] + corners[2]) / 2, (corners[0] + corners[3]) / 2]
     points = np.array([corners[0], corners[1], *middles]) @ pose[:3, :3].T + pose[:3, 3]
-    pixels = np.rint(Projection(CAMERA).pixels(points)).astype(np.int32)
+    pixels = np.rint(Projection(CAMERA).project(points)).astype(np.int32)
     covered = picture.copy()
     cv2.fillConvexPoly(covered, pixels, (grey, grey, grey))
     return covered
@@ -130,7 +130,7 @@ def test_a_face_that_is_cut_off_is_read_by_what_is_left() -> None:
     for x, there in ((-0.19, True), (-0.205, False)):
         pose = held(0.2, 0.0, 0.0, at=(x, 0, 0.4))
         points = CUBE.face("front").corners @ pose[:3, :3].T + pose[:3, 3]
-        outside = Projection(CAMERA).pixels(points)[:, 0] < 0
+        outside = Projection(CAMERA).project(points)[:, 0] < 0
         assert outside.sum() == 2
         reading = read(photograph(scene((CUBE, pose))), pose)
         assert reading.agreement.get("front") == (1.0 if there else None)

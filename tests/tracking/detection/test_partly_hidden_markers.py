@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from tracking.cube.faces import Faces
+from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel, aruco_dictionary
 from tracking.detection.markers import Observation
-from tracking.detection.partly_hidden_markers import CoveredMarkerDetector
+from tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.projection import Projection
 from tracking.synthetic import open_synthetic
@@ -21,16 +21,16 @@ SKIN, PALE, DARK = (90, 120, 170), (150, 175, 220), (45, 45, 48)
 
 FRAMES = tuple(range(0, 300, 30))
 CUBE = CubeModel.load("locomotion")
-DETECTOR = CoveredMarkerDetector(CUBE)
+DETECTOR = PartlyHiddenMarkerDetector(CUBE)
 
 
 def true_markers(cube: CubeModel, pose: Array, camera: Intrinsics) -> dict[str, Array]:
     """Corners of every marker that can be read, where they truly are [px]."""
     projection = Projection(camera)
     found = {}
-    for number in Faces(cube).facing(pose, 0.3):
+    for number in FacePlanes(cube).facing(pose, 0.3):
         face = cube.faces[number]
-        corners = projection.pixels(face.corners @ pose[:3, :3].T + pose[:3, 3])
+        corners = projection.project(face.corners @ pose[:3, :3].T + pose[:3, 3])
         if side_of(corners) > 28:
             found[face.name] = corners
     return found

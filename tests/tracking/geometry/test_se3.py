@@ -52,7 +52,7 @@ def test_motion_is_what_moved_applies(
     start = se3.pose(se3.rotation(vector(first, angle)), shift)
     step = np.concatenate([shift * 2, vector(second, other)])
     end = se3.moved(start, step)
-    assert np.allclose(se3.moved(start, se3.motion(start, end)), end, atol=1e-9)
+    assert np.allclose(se3.moved(start, se3.delta(start, end)), end, atol=1e-9)
     assert np.allclose(se3.inverse(start) @ start, np.eye(4), atol=1e-12)
 
 

@@ -90,7 +90,7 @@ def turning(start_deg: float, end_deg: float, seconds: float, top: str = "top") 
 
 def between(start: Array, end: Array, seconds: float, lift: float = 0.0) -> Iterator[Array]:
     """From pose to pose, with an arc above the table."""
-    step = se3.motion(start, end)
+    step = se3.delta(start, end)
     for share in np.linspace(0, 1, round(seconds * RATE)):
         yield se3.moved(start, step * share + np.eye(6)[1] * lift * np.sin(np.pi * share))
 

@@ -48,7 +48,7 @@ def test_a_rough_start_ends_at_the_truth(
     offset = np.random.default_rng(seed).uniform(-1, 1, 6) * ([1e-3] * 3 + [0.015] * 3)
     result = refiner.refine(patch, se3.moved(truth, offset))
     assert result is not None
-    step = se3.motion(result.camera_from_cube, truth)
+    step = se3.delta(result.camera_from_cube, truth)
     assert np.linalg.norm(step[:3]) < 1e-4
     assert np.linalg.norm(step[3:]) < np.deg2rad(0.05)
     assert result.support > 0.8
@@ -60,7 +60,7 @@ def test_a_wide_search_comes_from_a_whole_cell_away(
     refiner, patch, truth = scene
     result = refiner.refine(patch, se3.moved(truth, np.array([5e-3, 0, 0, 0, 0, 0.03])), wide=True)
     assert result is not None
-    assert np.linalg.norm(se3.motion(result.camera_from_cube, truth)[:3]) < 1e-4
+    assert np.linalg.norm(se3.delta(result.camera_from_cube, truth)[:3]) < 1e-4
 
 
 def test_other_markers_are_not_taken_for_the_cube(

@@ -6,14 +6,14 @@ import pytest
 from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel
-from tracking.refinement.face_images import Drawing
+from tracking.refinement.face_images import FaceTextures
 
 Array = NDArray[np.float64]
 Image = NDArray[np.float32]
 
 CUBE = CubeModel.load("locomotion")
 SIDE = 64
-DRAWING = Drawing(CUBE, SIDE)
+DRAWING = FaceTextures(CUBE, SIDE)
 
 SQUARE = np.diag([1.5, 1.5])
 LEANING = np.diag([1.5, 0.75])

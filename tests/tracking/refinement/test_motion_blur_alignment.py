@@ -16,14 +16,14 @@ from tracking.refinement.alignment import Alignment
 from tracking.refinement.blur_search import MIN_CORRELATION, BlurSearch
 from tracking.refinement.camera_model import MIN_BLUR_PX, CameraModelEstimator, ToneCurve
 from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.motion_blur_alignment import SweptAligner
+from tracking.refinement.motion_blur_alignment import MotionBlurAligner
 from tracking.tracker.local_search import LocalTracker
 from tracking.tracker.prediction import Track, TrackedPose
 
 Array = NDArray[np.float64]
 
 CUBE, OTHER = CubeModel.load("locomotion"), CubeModel.load("companion")
-ALIGNER = SweptAligner(CUBE, Projection(CAMERA))
+ALIGNER = MotionBlurAligner(CUBE, Projection(CAMERA))
 LIGHT = ToneCurve().table
 VIEWS = [held(), held(0.8, -0.5, 0.4), held(0.4, 2.2, -0.3), held(-0.6, 0.7, 1.0)]
 WAYS = (0.0, 1.0, 2.0)
@@ -40,7 +40,7 @@ class Shot:
     sweep: Array
 
     def align(
-        self, start: Array, aligner: SweptAligner = ALIGNER, coarse: bool = True
+        self, start: Array, aligner: MotionBlurAligner = ALIGNER, coarse: bool = True
     ) -> Alignment | None:
         """Align with a past that expects a sweep 15 % too short, and knows that it may be off."""
         expected = 0.85 * self.sweep
@@ -161,7 +161,7 @@ def test_a_finger_on_a_face_does_not_pull_the_cube(shots: list[Shot]) -> None:
 def test_another_cube_is_not_like_it(shots: list[Shot]) -> None:
     for each in shots[::3]:
         other = shot(each.pose, each.sweep, OTHER)
-        itself = SweptAligner(OTHER, Projection(CAMERA))
+        itself = MotionBlurAligner(OTHER, Projection(CAMERA))
         right = other.align(each.pose, itself, coarse=False)
         assert right is not None
         assert right.weakest > 0.95
@@ -190,7 +190,7 @@ def test_a_finger_over_one_face_does_not_hide_two_others_in_motion() -> None:
     across = 0.5 * np.eye(6)[0]
     light = scene((CUBE, pose), sweep=across / 60)
     corners = CUBE.face("right").corners @ pose[:3, :3].T + pose[:3, 3]
-    pixels = Projection(CAMERA).pixels(corners)
+    pixels = Projection(CAMERA).project(corners)
     cv2.fillConvexPoly(light, np.rint(pixels).astype(np.int32), 0.3)
     track, projection = Track(), Projection(CAMERA)
     for time in (-1 / 15, -1 / 30):

@@ -20,7 +20,7 @@ from tracking.refinement.camera_model import (
     ToneCurve,
 )
 from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.photometric_fit import Samples, fit
+from tracking.refinement.photometric_fit import PhotometricSamples, fit
 from tracking.synthetic import open_synthetic
 from tracking.tracker.local_search import LocalTracker
 from tracking.tracker.prediction import Track, TrackedPose
@@ -79,7 +79,7 @@ def test_noisy_mixtures_of_two_faces_give_the_exponent_too(exponent: float) -> N
         face = np.arange(800) % 2
         seen = seen_through(curve, exponent, drawn) + random.normal(0, 3, 800)
         blocks = np.arange(800) // 40
-        mixture = fit(Samples(face, blocks, seen, drawn, np.zeros((800, 12))), 2)
+        mixture = fit(PhotometricSamples(face, blocks, seen, drawn, np.zeros((800, 12))), 2)
         curve.learn(*mixture.tones)
     assert curve.exponent == pytest.approx(exponent, abs=0.2)
 
@@ -138,7 +138,7 @@ class Clip:
             match = tracker.search(picture, track, prediction, camera.model)
             camera.learn(match.blur, match.studied)
             if match.candidate is not None:
-                delta = se3.motion(match.candidate.camera_from_cube, poses[2])
+                delta = se3.delta(match.candidate.camera_from_cube, poses[2])
                 assert np.linalg.norm(delta[:3]) < 0.01
 
 

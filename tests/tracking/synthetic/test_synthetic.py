@@ -25,7 +25,7 @@ def truth_in_pixels(source: SyntheticSource, camera_from_cube: Array) -> dict[in
     projection = Projection(source.intrinsics)
     turn, shift = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
     return {
-        face.marker_id: projection.pixels(face.corners @ turn.T + shift)
+        face.marker_id: projection.project(face.corners @ turn.T + shift)
         for face in source.cube.faces
     }
 
@@ -174,7 +174,7 @@ def test_the_cube_is_in_the_picture_all_the_time() -> None:
         assert source.intrinsics is not None
         projection = Projection(source.intrinsics)
         centres = np.array([source.truth(i)[:3, 3] for i in range(0, source.count, 5)])
-        pixels = projection.pixels(centres)
+        pixels = projection.project(centres)
         assert (pixels > 60).all()
         assert (pixels < np.array(source.size) - 60).all()
 

@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tests.tracking.drawn import WIDE, held, off, photograph, scene
-from tracking.cube.faces import Faces
+from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import MarkerDetector, observed
 from tracking.geometry.frame import Frame
@@ -60,9 +60,9 @@ def detect(
 def corners_of(cube: CubeModel, pose: Array, camera: Intrinsics) -> dict[str, Array]:
     """Where the markers that look at the camera have their corners, (4, 2) [px]."""
     projection = Projection(camera)
-    faces = [cube.faces[number] for number in Faces(cube).facing(pose, 0.15)]
+    faces = [cube.faces[number] for number in FacePlanes(cube).facing(pose, 0.15)]
     return {
-        face.name: projection.pixels(face.corners @ pose[:3, :3].T + pose[:3, 3]) for face in faces
+        face.name: projection.project(face.corners @ pose[:3, :3].T + pose[:3, 3]) for face in faces
     }
 
 

@@ -161,7 +161,7 @@ def test_fifty_milliseconds_ahead_are_predicted_better_than_at_constant_velocity
         track = track.add(TrackedPose(pose, velocity, covariance, time, acceleration))
         if before is None or time < 3 / RATE:
             continue
-        step = se3.motion(before.camera_from_cube, pose) * RATE * ahead
+        step = se3.delta(before.camera_from_cube, pose) * RATE * ahead
         for name, guess in (
             ("held", pose),
             ("steady", se3.moved(pose, step)),

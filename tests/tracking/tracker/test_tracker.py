@@ -85,7 +85,7 @@ def show(picture: Picture, time: float = 0.0, tracker: CubeTracker | None = None
 def off(state: CubeState, truth: Array) -> tuple[float, float]:
     """Errors of a state [mm, °]."""
     assert state.camera_from_cube is not None
-    step = se3.motion(state.camera_from_cube, truth)
+    step = se3.delta(state.camera_from_cube, truth)
     return float(1000 * np.linalg.norm(step[:3])), float(np.rad2deg(np.linalg.norm(step[3:])))
 
 
@@ -97,7 +97,7 @@ def test_a_sharp_cube_is_found_to_a_tenth_of_a_millimetre() -> None:
         state = CubeTracker(source.cube, source.intrinsics).update(source.frame(index))
         assert state.visible
         assert state.camera_from_cube is not None
-        step = se3.motion(state.camera_from_cube, source.truth(index))
+        step = se3.delta(state.camera_from_cube, source.truth(index))
         errors.append(off(state, source.truth(index)))
         inside.append(step @ np.linalg.solve(state.covariance, step) < 12.6)
     millimetres, degrees = np.median(errors, axis=0)
@@ -115,7 +115,7 @@ def test_the_covariance_is_honest_where_edges_run_along_rows_of_pixels(scene: st
     for index in range(6):
         state = tracker.update(source.frame(index))
         assert state.camera_from_cube is not None
-        step = se3.motion(state.camera_from_cube, source.truth(index))
+        step = se3.delta(state.camera_from_cube, source.truth(index))
         assert step @ np.linalg.solve(state.covariance, step) < 12.6
         # Nor is it bought with a wide one.
         assert np.sqrt(np.diag(state.covariance)[:3]).max() < 4e-4

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracking.cube.model import CubeModel, Face
-from tracking.cube.printing.unfolding import TAB_DEPTH, Net
+from tracking.cube.printing.unfolding import TAB_DEPTH, Unfolding
 from tracking.errors import TrackingError
 
 Array = NDArray[np.float64]
@@ -19,7 +19,7 @@ UNPRINTED_MM = 5.0
 
 
 @dataclass(frozen=True)
-class Box:
+class PageArea:
     """Part of the page [mm from the top left]."""
 
     left: float
@@ -35,7 +35,7 @@ class Box:
     """Its lower side."""
 
 
-class Sheet:
+class SheetLayout:
     """Where everything stands on the page: the one place that turns metres into millimetres."""
 
     def __init__(self, cube: CubeModel, paper: str) -> None:
@@ -47,7 +47,7 @@ class Sheet:
                 f"do not fit its faces ({cube.edge * 1000:g} mm)"
             )
         self.cube = cube
-        self.net = Net(cube.edge)
+        self.net = Unfolding(cube.edge)
         self.page = PAPERS[paper]
         _check_fits(cube.edge, paper)
         corners = self.net.outline() * (1000, -1000)
@@ -58,14 +58,14 @@ class Sheet:
         """From the net's paper frame [m] to the page [mm from the top left], (…, 2)."""
         return np.asarray(np.asarray(points, float) * (1000.0, -1000.0) + self._origin)
 
-    def corner(self, row: str, column: str) -> "Box":
+    def corner(self, row: str, column: str) -> "PageArea":
         """Free space beside the cross: row "top" or "bottom", column "left" or "right"."""
         inset = UNPRINTED_MM + 4
         (right, upper), (left, lower) = self.place(self.net.square("front"))[[1, 3]]
         tab = TAB_DEPTH * self.cube.edge * 1000
         x = (inset, left - 7) if column == "left" else (right + 8, self.page[0] - inset)
         y = (inset, upper - tab - 3) if row == "top" else (lower + tab + 4, self.page[1] - inset)
-        return Box(float(x[0]), float(y[0]), float(x[1]), float(y[1]))
+        return PageArea(float(x[0]), float(y[0]), float(x[1]), float(y[1]))
 
     def marker_corners(self, face: Face) -> Array:
         """Corners of a face's marker on the page, (4, 2) [mm], by unfolding those of the cube."""
@@ -91,4 +91,4 @@ def _check_fits(edge: float, paper: str) -> None:
 def largest_edge_mm(paper: str) -> float:
     """Edge of the largest cube whose net fits a paper, in whole millimetres."""
     room = np.array(PAPERS[paper]) - 2 * UNPRINTED_MM
-    return float(np.floor(np.min(room / Net(1.0).size()) + 1e-9))
+    return float(np.floor(np.min(room / Unfolding(1.0).size()) + 1e-9))

@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 
 from tracking.cube.icons import INK, icon_paths
 from tracking.cube.model import FACE_AXES
-from tracking.cube.printing.layout import Box, Sheet
-from tracking.cube.printing.pen import Colour, Pen
+from tracking.cube.printing.layout import PageArea, SheetLayout
+from tracking.cube.printing.pdf_page import Colour, PdfPage
 
 Array = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ VIEW = np.array([[0.8, -0.45], [0.0, 1.0], [-0.8, -0.45]]) * (1, 0.9)
 """How the little cube is drawn: where one step along the cube's x, y, z goes on paper, y up."""
 
 
-def draw_notes(pen: Pen, sheet: Sheet) -> None:
+def draw_notes(pen: PdfPage, sheet: SheetLayout) -> None:
     """Fill the four corners that the cross leaves free."""
     _draw_little_cube(pen, sheet, sheet.corner("top", "left"))
     _draw_title(pen, sheet, sheet.corner("top", "right"))
@@ -36,7 +36,7 @@ def draw_notes(pen: Pen, sheet: Sheet) -> None:
     _draw_facts(pen, sheet, sheet.corner("bottom", "left"))
 
 
-def _draw_title(pen: Pen, sheet: Sheet, box: Box) -> None:
+def _draw_title(pen: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
     cube, width = sheet.cube, box.right - box.left
     title = f"The {cube.name} cube"
     size = min(10.0, 10.0 * width / pen.text_width(title, 10.0, bold=True))
@@ -55,7 +55,7 @@ def _draw_title(pen: Pen, sheet: Sheet, box: Box) -> None:
         pen.text(role, x + icon / 2, y + icon + 4.6, 4.0, INK[name], bold=True, align=0.5)
 
 
-def _draw_little_cube(pen: Pen, sheet: Sheet, box: Box) -> None:
+def _draw_little_cube(pen: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
     """Show the finished cube, with icons for markers, so that no camera takes it for the cube."""
     edge = min(19.0, (box.right - box.left) / 1.9, (box.bottom - box.top) / 2)
     middle = np.array([(box.left + box.right) / 2, (box.top + box.bottom) / 2])
@@ -78,7 +78,7 @@ def _draw_little_cube(pen: Pen, sheet: Sheet, box: Box) -> None:
         pen.stroke(square, 0.5, DARK, closed=True)
 
 
-def _draw_steps(pen: Pen, box: Box) -> None:
+def _draw_steps(pen: PdfPage, box: PageArea) -> None:
     column = (box.right - box.left) / len(STEPS)
     radius, size = 6.0, 3.4
     for number, (icon, words, colour) in enumerate(STEPS):
@@ -95,7 +95,7 @@ def _draw_steps(pen: Pen, box: Box) -> None:
             pen.text(line, left, y + 8 + 4.2 * row, size, WORDS)
 
 
-def _draw_ruler(pen: Pen, x: float, y: float) -> None:
+def _draw_ruler(pen: PdfPage, x: float, y: float) -> None:
     pen.text(RULER_WORDS, x, y, 3.2, WORDS)
     line = y - 5.5
     pen.stroke([(x, line), (x + 100, line)], 0.25, DARK)
@@ -107,7 +107,7 @@ def _draw_ruler(pen: Pen, x: float, y: float) -> None:
             pen.text(str(millimetre), at, line - 4.2, 2.6, WORDS, align=0.5)
 
 
-def _draw_facts(pen: Pen, sheet: Sheet, box: Box) -> None:
+def _draw_facts(pen: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
     cube = sheet.cube
     height = min(38.0, box.right - box.left, box.bottom - box.top - 16)
     if height > 10:

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from tracking.cube.icons import INK, icon_paths
 from tracking.cube.marker import marker_loops
 from tracking.cube.model import CubeModel, Face
-from tracking.cube.printing.layout import Sheet
+from tracking.cube.printing.layout import SheetLayout
 from tracking.cube.printing.unfolding import Tab
 from tracking.errors import TrackingError
 
 if TYPE_CHECKING:
-    from tracking.cube.printing.pen import Pen
+    from tracking.cube.printing.pdf_page import PdfPage
 
 Array = NDArray[np.float64]
 
@@ -49,20 +49,20 @@ def write_sheet(
         written.
     """
     from tracking.cube.printing.notes import draw_notes
-    from tracking.cube.printing.pen import (
-        Pen,  # its PDF library would slow the start of every other command
+    from tracking.cube.printing.pdf_page import (
+        PdfPage,  # its PDF library would slow the start of every other command
     )
 
     if edge_mm is not None:
         cube = cube.scaled(edge_mm / 1000)
-    sheet = Sheet(cube, paper.lower())
-    pen = Pen(*sheet.page, f"{cube.name} cube, {cube.edge * 1000:g} mm")
+    sheet = SheetLayout(cube, paper.lower())
+    pen = PdfPage(*sheet.page, f"{cube.name} cube, {cube.edge * 1000:g} mm")
     draw_net(pen, sheet)
     draw_notes(pen, sheet)
     _save(pen, Path(path))
 
 
-def draw_net(pen: "Pen", sheet: Sheet) -> None:
+def draw_net(pen: "PdfPage", sheet: SheetLayout) -> None:
     """Draw the cross: tabs, markers, captions, then the lines to fold and to cut."""
     for tab in sheet.net.tabs():
         _draw_tab(pen, sheet, tab)
@@ -77,7 +77,7 @@ def draw_net(pen: "Pen", sheet: Sheet) -> None:
     pen.stroke(sheet.place(sheet.net.outline()), 0.45, CUT, closed=True)
 
 
-def _draw_tab(pen: "Pen", sheet: Sheet, tab: Tab) -> None:
+def _draw_tab(pen: "PdfPage", sheet: SheetLayout, tab: Tab) -> None:
     corners = sheet.place(tab.corners)
     pen.fill([corners], TAB_FILL)
     x, y = corners.mean(axis=0)
@@ -89,7 +89,7 @@ def _draw_tab(pen: "Pen", sheet: Sheet, tab: Tab) -> None:
         pen.text("glue", x, y + size * 0.35, size, SOFT, align=0.5)
 
 
-def _draw_caption(pen: "Pen", sheet: Sheet, face: Face) -> None:
+def _draw_caption(pen: "PdfPage", sheet: SheetLayout, face: Face) -> None:
     """Put icon, role and name under the marker, close to the fold and away from the black.
 
     The gap to the marker is its quiet zone: a camera finds the black square by the white around it.
@@ -116,7 +116,7 @@ def _draw_caption(pen: "Pen", sheet: Sheet, face: Face) -> None:
         x += width + gap
 
 
-def _save(pen: "Pen", path: Path) -> None:
+def _save(pen: "PdfPage", path: Path) -> None:
     partial = path.with_name(path.name + ".partial")
     try:
         pen.save(partial)

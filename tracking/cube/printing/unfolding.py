@@ -77,7 +77,7 @@ class Tab:
 
 
 @dataclass(frozen=True)
-class Net:
+class Unfolding:
     """The six squares of a cube laid out as a cross around `front`."""
 
     edge: float
@@ -100,7 +100,7 @@ class Net:
 
         Right angles make the cube; 0 leaves the paper flat in the plane of `front`.
 
-        >>> Net(2.0).cube_from_face("right").round().astype(int).tolist()
+        >>> Unfolding(2.0).cube_from_face("right").round().astype(int).tolist()
         [[0, 0, 1, 1], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]]
         """
         if face == "front":

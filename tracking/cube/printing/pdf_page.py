@@ -13,7 +13,7 @@ Colour = tuple[int, int, int]
 Array = NDArray[np.float64]
 
 
-class Pen:
+class PdfPage:
     """Draws on one page of a PDF, as vectors.
 
     The same strokes give the same bytes on every machine: the date is fixed and nothing is packed.
