@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import Observation
-from tracking.detection.quads import find_quads, sampled
+from tracking.detection.quads import Quads, find_quads, sampled
 from tracking.geometry.image_region import Region
 
 Array = NDArray[np.float64]
