@@ -1,37 +1,77 @@
-"""What the document of the topic tree takes from the code.
+"""Update the tables of topics and messages in docs/many.md from the code.
 
-`python -m tools.network_reference` renews it; a test compares.
+`python -m tools.network_reference` writes them; a test compares them with the code.
 """
 
 import re
 from pathlib import Path
+from typing import Any
 
-from robot.network.messages import KINDS, RETAINED
-from robot.network.schema import table
+import msgspec
+
+from robot.network.messages import MAX_TEXT_BYTES, MESSAGE_TYPES, RETAINED_KINDS
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "many.md"
 """The document."""
 
 
 def topics() -> str:
-    """Return the table of topics, and one of fields for every message."""
+    """Return the table of topics, and a table of fields for every message."""
     lines = ["| topic | retained | message |", "|---|---|---|"]
-    for (role, kind), form in KINDS.items():
-        kept = "yes" if kind in RETAINED else "no"
-        says = (form.__doc__ or "").strip().splitlines()[0]
-        lines.append(f"| `cubeling/1/SITE/{role}/NAME/{kind}` | {kept} | {says} |")
-    sections: dict[str, list[str]] = {}
-    for (role, kind), form in KINDS.items():
-        sections.setdefault(table(form), []).append(f"`{role}/NAME/{kind}`")
-    for fields, names in sections.items():
-        lines += ["", f"### {', '.join(names)}", "", fields]
+    sections: dict[type[Any], list[str]] = {}
+    for (role, kind), message_type in MESSAGE_TYPES.items():
+        retained = "yes" if kind in RETAINED_KINDS else "no"
+        summary = (message_type.__doc__ or "").strip().splitlines()[0]
+        lines.append(f"| `cubeling/1/SITE/{role}/NAME/{kind}` | {retained} | {summary} |")
+        sections.setdefault(message_type, []).append(f"`{role}/NAME/{kind}`")
+    for message_type, names in sections.items():
+        lines += ["", f"### {', '.join(names)}", "", fields(message_type)]
     return "\n".join(lines)
 
 
+def fields(message_type: type[Any]) -> str:
+    """Return the table of a message's fields, from its JSON schema."""
+    (schema,) = msgspec.json.schema(message_type)["$defs"].values()
+    rows = ["| field | type | meaning |", "|---|---|---|"]
+    for name, field in schema["properties"].items():
+        optional = "" if name in schema["required"] else "; optional"
+        rows.append(f"| `{name}` | {type_text(field)}{optional} | {field['description']} |")
+    return "\n".join(rows)
+
+
+def type_text(schema: dict[str, Any]) -> str:
+    """Return a JSON schema in words.
+
+    >>> type_text({"type": "number", "minimum": -1, "maximum": 1})
+    'number −1 … 1'
+    """
+    match schema:
+        case {"title": title}:
+            return str(title)
+        case {"anyOf": [first, *_]}:
+            return type_text(first)
+        case {"enum": [*others, last]}:
+            quoted = [f'"{word}"' for word in others]
+            return f'{", ".join(quoted)} or "{last}"'
+        case {"type": "integer", "minimum": low}:
+            return f"integer ≥ {low}"
+        case {"type": "number", "minimum": low, "maximum": high}:
+            return f"number {low} … {high}".replace("-", "−")
+        case {"type": "number", "minimum": low}:
+            return f"number ≥ {low}"
+        case {"type": "array", "maxItems": most}:
+            return f"list of ≤ {most} texts"
+        case {"type": "string"}:
+            return f"text, ≤ {MAX_TEXT_BYTES} bytes"
+        case {"type": "boolean"}:
+            return "true or false"
+    raise ValueError(f"no words for {schema}")
+
+
 def renewed(text: str) -> str:
-    """Return the document with what is drawn from the code as the code has it now."""
+    """Return the document with its generated part updated."""
     return re.sub(
-        r"(<!-- topics: drawn from the code -->\n).*?(<!-- end of topics -->)",
+        r"(<!-- topics: generated from the code -->\n).*?(<!-- end of topics -->)",
         lambda found: f"{found[1]}{topics()}\n{found[2]}",
         text,
         flags=re.DOTALL,

@@ -1,4 +1,4 @@
-"""Options of every command that meets others over a broker."""
+"""Options of the commands that use an MQTT broker."""
 
 from contextlib import ExitStack
 from pathlib import Path
@@ -9,7 +9,7 @@ from rich.console import Console
 
 from app.errors import AppError
 from app.running.network import Access, Network
-from app.running.players import PlayerLine
+from app.running.players import PlayerPublisher
 from robot.network import Credentials
 
 Broker = Annotated[
@@ -18,9 +18,9 @@ Broker = Annotated[
 ]
 PlayerName = Annotated[
     str | None,
-    typer.Option(help="Publish over --mqtt, under this name, what the character does and feels."),
+    typer.Option(help="Publish the character's actions and emotions over --mqtt, under this name."),
 ]
-Site = Annotated[str, typer.Option(help="The place that we are at, for --mqtt.")]
+Site = Annotated[str, typer.Option(help="Our site on the network, for --mqtt.")]
 PasswordFile = Annotated[
     Path | None,
     typer.Option(
@@ -30,14 +30,14 @@ PasswordFile = Annotated[
 ]
 Ca = Annotated[
     Path | None,
-    typer.Option(help="The authority that signed the broker's certificate (PEM), for mqtts://."),
+    typer.Option(help="Certificate authority of the broker's certificate (PEM), for mqtts://."),
 ]
 
 
 def publisher(
     url: str | None, name: str | None, site: str, credentials: Credentials, closing: ExitStack
-) -> PlayerLine | None:
-    """Connect a player where one is asked for; `closing` closes it.
+) -> PlayerPublisher | None:
+    """Connect a player if the options ask for one; `closing` closes it.
 
     Raises
     ------
@@ -48,16 +48,16 @@ def publisher(
         return None
     if url is None or name is None:
         raise AppError(
-            "--mqtt needs --player NAME, so that others know who plays"
+            "--mqtt needs --player NAME, the name of the player on the network"
             if name is None
-            else "--player needs --mqtt URL, the broker where others are"
+            else "--player needs --mqtt URL, the broker"
         )
     network = closing.enter_context(Network(Access(url, site, credentials)))
-    return PlayerLine(network, name, say=away)
+    return PlayerPublisher(network, name, on_problem=report_problem)
 
 
-def away(trouble: str) -> None:
-    """Say in one line why nothing is published; a broker that is away is looked for."""
+def report_problem(problem: str) -> None:
+    """Print in one line why nothing is published; the connection is tried again."""
     Console(stderr=True, soft_wrap=True, highlight=False, markup=False).print(
-        f"cubeling: {trouble}; until that is right, nobody hears the player"
+        f"cubeling: {problem}; nothing is published until it is solved"
     )

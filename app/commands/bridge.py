@@ -13,117 +13,126 @@ from rich.live import Live
 
 from app.commands.access import Broker, Ca, PasswordFile, Site
 from app.errors import AppError
-from app.running.bridge import Bridge, Order
+from app.running.bridge import Bridge, BridgeOptions
 from app.running.network import SITE, Access, Network
 from app.ui.roster import line, table
 from robot.network import Credentials, Member
-from robot.network.following import HOLD
-from robot.network.messages import Status
-from robot.network.player import MAX_AGE
-from robot.network.topics import EVERYONE
+from robot.network.arbiter import HOLD_S
+from robot.network.messages import StatusMessage
+from robot.network.player import MAX_AGE_S
+from robot.network.topics import ANY
 
-TURN_EVERY = 0.02
-"""Recorded players are looked after this often [s]."""
+STEP_EVERY_S = 0.02
+"""Time between two steps of the recorded players [s]."""
 
-DRAW_EVERY = 0.25
-"""The table is drawn this often [s]."""
+DRAW_EVERY_S = 0.25
+"""Time between two updates of the table [s]."""
 
-FAREWELL = 1.0
-"""Wait after the last recorded session's end, so that robots take the last actions [s]."""
+FINAL_WAIT_S = 1.0
+"""Time for the robots to take the last actions after the end of the last session [s]."""
 
 
 def bridge(
     mqtt: Broker = None,
     robot: Annotated[
         list[str] | None,
-        typer.Option(help="NAME=URL: drive this robot, as --robot of `play` takes it; repeatable."),
+        typer.Option(
+            help="NAME=URL: drive this robot, a URL as for --robot of `play`; repeatable."
+        ),
     ] = None,
     play: Annotated[
         list[str] | None,
-        typer.Option(help="NAME=SESSION.mcap: a recorded session is this player; repeatable."),
+        typer.Option(
+            help="NAME=SESSION.mcap: publish a recorded session as this player; repeatable."
+        ),
     ] = None,
     follow: Annotated[
         list[str] | None,
-        typer.Option(help="Whom the robots follow: PLAYER, SITE/PLAYER, SITE/*; all of the site."),
+        typer.Option(
+            help="Players to follow: PLAYER, SITE/PLAYER, SITE/*; without, all of the site."
+        ),
     ] = None,
     site: Site = SITE,
     user: Annotated[str | None, typer.Option(help="The broker's user, if not in the URL.")] = None,
     password_file: PasswordFile = None,
     ca: Ca = None,
     cert: Annotated[
-        Path | None, typer.Option(help="Our own certificate (PEM), if the broker asks for one.")
+        Path | None, typer.Option(help="Client certificate (PEM), if the broker requires one.")
     ] = None,
-    key: Annotated[Path | None, typer.Option(help="Its private key (PEM).")] = None,
+    key: Annotated[Path | None, typer.Option(help="Private key of the certificate (PEM).")] = None,
     hold: Annotated[
-        float, typer.Option(min=0.0, help="Seconds for which a gone player's mood is kept.")
-    ] = HOLD,
+        float,
+        typer.Option(min=0.0, help="Seconds for which the mood of a player who is gone is kept."),
+    ] = HOLD_S,
     max_age: Annotated[
-        float, typer.Option(min=0.0, help="Seconds after which an action is too late.")
-    ] = MAX_AGE,
-    watch: Annotated[bool, typer.Option("--watch", help="Print every message in a line.")] = False,
+        float, typer.Option(min=0.0, help="Seconds after which an action expires.")
+    ] = MAX_AGE_S,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="Print every message, one per line.")
+    ] = False,
     seconds: Annotated[
-        float | None, typer.Option(min=0.0, help="End after this long; without, at Ctrl-C.")
+        float | None, typer.Option(min=0.0, help="Run for this time; without, until Ctrl-C.")
     ] = None,
 ) -> None:
-    """Let robots follow players in other places, over an MQTT broker; docs/many.md tells how.
+    """Let robots follow players on other computers, over an MQTT broker; see docs/many.md.
 
-    Without --mqtt, players and robots meet within this one program. With neither robots nor
-    players it shows who is there.
+    Without --mqtt, players and robots communicate within this program. With neither robots nor
+    players it shows the members of the network.
 
     Example: [cyan]cubeling bridge --mqtt mqtt://museum.local --robot rex=/dev/ttyACM0[/]
     """
-    order = Order(
+    options = BridgeOptions(
         named(robot or (), "--robot", "rex=sim"),
         {name: Path(path) for name, path in named(play or (), "--play", "ann=a.mcap").items()},
-        tuple(follow or (EVERYONE,)),
+        tuple(follow or (ANY,)),
         hold,
         max_age,
     )
-    if mqtt is None and not (order.robots and order.sessions):
+    if mqtt is None and not (options.robots and options.sessions):
         raise AppError(
-            "without --mqtt there is nobody else here: give both --robot and --play, "
+            "without --mqtt there are no other members: give both --robot and --play, "
             "or the broker with --mqtt URL"
         )
     access = Access(mqtt, site, Credentials(user, password_file, ca, cert, key))
     console = Console()
-    lines = Lines(console, every=watch)
-    with Network(access) as network, Bridge(order, network, lines.message) as at_work:
+    printer = EventPrinter(console, every=watch)
+    with Network(access) as network, Bridge(options, network, printer.message) as running:
         where = "within this program" if network.address is None else f"over {network.address}"
-        console.print(f"[dim]The site {site} meets {where}.      Ctrl-C ends it[/]")
+        console.print(f"[dim]Site {site}, {where}.      Ctrl-C ends it[/]")
         with suppress(KeyboardInterrupt):
-            run(at_work, console, lines, seconds, live=console.is_terminal and not watch)
-        lines.quiet = True
+            run(running, console, printer, seconds, live=console.is_terminal and not watch)
+        printer.quiet = True
 
 
 def run(
-    bridge: Bridge, console: Console, lines: "Lines", seconds: float | None, *, live: bool
+    bridge: Bridge, console: Console, printer: "EventPrinter", seconds: float | None, *, live: bool
 ) -> None:
-    """Keep a bridge at work until its time is over, or, without a broker, its players are done."""
+    """Run a bridge until its time is over or, without a broker, until its players are done."""
     began = time.monotonic()
     end = None if seconds is None else began + seconds
-    drawn = began - DRAW_EVERY
+    drawn = began - DRAW_EVERY_S
     with (
         Live(console=console, transient=True, auto_refresh=False) if live else nullcontext() as view
     ):
         while end is None or time.monotonic() < end:
             now = time.monotonic()
             if not bridge.advance(now) and bridge.network.address is None and end is None:
-                end = now + FAREWELL
-            lines.connections(bridge)
-            if isinstance(view, Live) and now - drawn >= DRAW_EVERY:
+                end = now + FINAL_WAIT_S
+            printer.connections(bridge)
+            if isinstance(view, Live) and now - drawn >= DRAW_EVERY_S:
                 drawn = now
                 with bridge.roster.lock:
                     view.update(table(bridge.roster.endpoint, now), refresh=True)
-            time.sleep(TURN_EVERY)
+            time.sleep(STEP_EVERY_S)
 
 
-class Lines:
-    """Prints in single lines who comes and goes, how the connections are, and what is said.
+class EventPrinter:
+    """Prints messages, changes of presence, and problems of connections, one per line.
 
     Parameters
     ----------
     console
-        Where.
+        Where to print.
     every
         Whether to print every message.
     """
@@ -131,35 +140,35 @@ class Lines:
     def __init__(self, console: Console, *, every: bool) -> None:
         self._console = console
         self.quiet = False
-        """Whether nothing more is to be said."""
+        """Whether to print nothing more."""
         self._every = every
         self._lock = threading.Lock()
         self._present: dict[Member, str] = {}
-        self._told: dict[str, str] = {}
+        self._problems: dict[str, str] = {}
 
     def message(self, member: Member, kind: str, message: Any) -> None:
-        """Take a message; called from a thread of the network's."""
+        """Print a message if it matters; called on a thread of the network."""
         if self.quiet:
             return
         if self._every:
             self._print(line(member, kind, message))
-        elif isinstance(message, Status) and self._present.get(member) != message.status:
+        elif isinstance(message, StatusMessage) and self._present.get(member) != message.status:
             if member in self._present or message.status == "online":
                 self._print(line(member, kind, message))
             self._present[member] = message.status
 
     def connections(self, bridge: Bridge) -> None:
-        """Say in one line each what is wrong with a connection, or is right again."""
-        shared = bridge.roster.trouble
-        for name, station in {"": bridge.roster, **bridge.stations}.items():
-            trouble = station.trouble
-            told, self._told[name] = self._told.get(name, ""), trouble
-            if name and trouble == shared:
-                continue  # the onlooker says it for all
-            if trouble and (not told or (station.state == "refused" and trouble != told)):
-                again = "; trying again" if station.state == "away" else ""
-                self._print(f"{trouble}{again}")
-            elif told and not trouble:
+        """Print the problems of connections, and their end."""
+        shared = bridge.roster.problem
+        for name, client in {"": bridge.roster, **bridge.clients}.items():
+            problem = client.problem
+            before, self._problems[name] = self._problems.get(name, ""), problem
+            if name and problem == shared:
+                continue  # the roster's connection reports it for all
+            if problem and (not before or (client.state == "refused" and problem != before)):
+                retry = "; trying again" if client.state == "away" else ""
+                self._print(f"{problem}{retry}")
+            elif before and not problem:
                 self._print("connected again")
 
     def _print(self, text: str) -> None:
@@ -168,18 +177,20 @@ class Lines:
 
 
 def named(given: Iterable[str], option: str, example: str) -> dict[str, str]:
-    """Return what options of the form NAME=VALUE say.
+    """Return the values of options of the form NAME=VALUE, by name.
 
     Raises
     ------
     AppError
-        If one has another form, or a name is given twice.
+        If an option has another form, or a name is used twice.
     """
     values: dict[str, str] = {}
     for text in given:
         name, equals, value = text.partition("=")
         if not (name and equals and value):
-            raise AppError(f"{option} {text}: a name and what it is, as in {option} {example}")
+            raise AppError(
+                f"{option} {text}: a name and a value are needed, as in {option} {example}"
+            )
         if name in values:
             raise AppError(f"{option}: {name} is named twice")
         values[name] = value

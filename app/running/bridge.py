@@ -1,112 +1,112 @@
-"""The bridge: robots that follow players elsewhere, and recorded sessions that are players."""
+"""The bridge: robots that follow players on other computers, and recorded sessions as players."""
 
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from app.errors import AppError
 from app.pipeline.scenario import EmotionTarget
 from app.running.network import Network
-from app.running.players import PlayerLine
+from app.running.players import PlayerPublisher
 from app.session import messages, session_info
 from app.session.encoding import decode
 from characters import CharacterCommand
 from robot import connect
-from robot.network import Pattern, RobotNode, Roster, Station
-from robot.network.following import HOLD
-from robot.network.player import MAX_AGE
-from robot.network.roster import Watcher
-from robot.network.schema import LIST_MAX
-from robot.network.topics import EVERYONE
+from robot.contract.closeable import Closeable
+from robot.network import BusClient, Pattern, RobotNode, Roster
+from robot.network.arbiter import HOLD_S
+from robot.network.messages import MAX_ENTRIES
+from robot.network.player import MAX_AGE_S
+from robot.network.roster import OnMessage
+from robot.network.topics import ANY
 
-ARROWS: dict[str, type[Any]] = {
+PUBLISHED_TOPICS: dict[str, type[Any]] = {
     "/character/command": CharacterCommand,
     "/robot/emotion": EmotionTarget,
 }
-"""What of a recorded session is published."""
+"""Topics of a recorded session that are published, and their types."""
 
 
 @dataclass(frozen=True)
-class Order:
-    """What a bridge is to do."""
+class BridgeOptions:
+    """Options of a bridge."""
 
     robots: dict[str, str]
-    """URL of every robot to drive, by its name."""
+    """URLs of the robots to drive, by name."""
 
     sessions: dict[str, Path]
-    """Session of every player to play, by its name."""
+    """Recorded sessions to publish, by the name of the player."""
 
-    follow: tuple[str, ...] = (EVERYONE,)
-    """Whom the robots follow, as `Pattern.parse` takes it."""
+    follow: tuple[str, ...] = (ANY,)
+    """Players that the robots follow; see `Pattern.parse`."""
 
-    hold: float = HOLD
-    """How long a robot keeps the mood of a player who is gone [s]."""
+    hold: float = HOLD_S
+    """How long a robot keeps the emotion of a player who is gone [s]."""
 
-    max_age: float = MAX_AGE
-    """After which time an action is too late for a robot that was away [s]."""
+    max_age: float = MAX_AGE_S
+    """Age at which an action is too late for a robot that was away [s]."""
 
 
 class RecordedPlayer:
-    """Lets a recorded session act and feel again, at the speed at which it was recorded.
+    """Publishes the actions and emotions of a recorded session, in its own time.
 
     Parameters
     ----------
-    line
-        Where to publish.
+    publisher
+        The player that publishes them.
     path
         The session.
 
     Raises
     ------
     AppError
-        If the file is no session.
+        If the file is not a session.
     """
 
-    def __init__(self, line: PlayerLine, path: Path) -> None:
-        self.line = line
-        """Where it is published."""
-        session_info(path)  # what is no session is refused here
-        self._arrows = _arrows(path)
-        self._next = next(self._arrows, None)
-        self._shift: float | None = None
+    def __init__(self, publisher: PlayerPublisher, path: Path) -> None:
+        session_info(path)  # raises AppError if it is not a session
+        self._publisher = publisher
+        self._messages = _messages(path)
+        self._next = next(self._messages, None)
+        self._time_offset: float | None = None
 
     def advance(self, now: float) -> bool:
-        """Publish what is due at time `now` [s]; whether there is more to come."""
+        """Publish the messages due at time `now` [s]; return whether there are more."""
         while self._next is not None:
-            time, arrow = self._next
-            if self._shift is None:
-                self._shift = now - time
-            if time + self._shift > now:
+            time, message = self._next
+            if self._time_offset is None:
+                self._time_offset = now - time
+            if time + self._time_offset > now:
                 return True
-            if isinstance(arrow, CharacterCommand):
-                self.line.command(arrow)
+            if isinstance(message, CharacterCommand):
+                self._publisher.publish_action(message)
             else:
-                self.line.feel(arrow)
-            self._next = next(self._arrows, None)
+                self._publisher.publish_emotion(message)
+            self._next = next(self._messages, None)
         return False
 
 
-def _arrows(path: Path) -> Iterator[tuple[float, CharacterCommand | EmotionTarget]]:
-    for topic, time, data in messages(path, *ARROWS):
+def _messages(path: Path) -> Iterator[tuple[float, CharacterCommand | EmotionTarget]]:
+    for topic, time, data in messages(path, *PUBLISHED_TOPICS):
         try:
-            yield time, decode(ARROWS[topic], data)
+            yield time, decode(PUBLISHED_TOPICS[topic], data)
         except ValueError as error:
-            raise AppError(f"the session '{path}' holds something else on {topic}") from error
+            raise AppError(f"the session '{path}' has an invalid message on {topic}") from error
 
 
-class Bridge:
+class Bridge(Closeable):
     """Robots and recorded players on a network. Close it, or use it in a `with` statement.
 
     Parameters
     ----------
-    order
-        What to do.
+    options
+        Robots, sessions and how to follow.
     network
-        Where; whoever opened it closes it.
-    watcher
-        Is given every message of the site, from a thread of the network's.
+        The network; the bridge closes it.
+    on_message
+        Called with every message of the site, on a thread of the network.
 
     Raises
     ------
@@ -114,53 +114,50 @@ class Bridge:
         If a name, a robot, a session or the broker cannot be used. Nothing is left open then.
     """
 
-    def __init__(self, order: Order, network: Network, watcher: Watcher | None = None) -> None:
-        follows = tuple(Pattern.parse(one, network.site) for one in order.follow)
-        if len(follows) > LIST_MAX:
-            raise AppError(f"a robot follows {LIST_MAX} at most; use * for all of a site")
-        for role, names in (("robot", order.robots), ("player", order.sessions)):
-            for name in names:
-                network.member("robot" if role == "robot" else "player", name)
+    def __init__(
+        self, options: BridgeOptions, network: Network, on_message: OnMessage | None = None
+    ) -> None:
+        follows = tuple(Pattern.parse(one, network.site) for one in options.follow)
+        if len(follows) > MAX_ENTRIES:
+            raise AppError(f"a robot follows at most {MAX_ENTRIES}; use * for all of a site")
+        for name in options.robots:
+            network.member("robot", name)  # raises RobotError if it is not a valid name
+        for name in options.sessions:
+            network.member("player", name)
         self.network = network
-        """Where its members meet the others."""
-        self.stations: dict[str, Station[Any]] = {}
-        """Its members by role and name: "robot rex"."""
+        """The network."""
+        self.clients: dict[str, BusClient[Any]] = {}
+        """Connections of its members by role and name: "robot rex"."""
         self._recorded: list[RecordedPlayer] = []
         self._closing = ExitStack()
         try:
-            self.roster: Station[Roster] = network.join(
-                Roster(watcher=watcher), f"{network.site}:onlooker"
+            self.roster: BusClient[Roster] = network.join(
+                Roster(on_message=on_message), f"{network.site}:roster"
             )
-            """Who is there."""
-            for name, url in order.robots.items():
-                self._drive(name, url, follows, order.hold)
-            for name, path in order.sessions.items():
-                line = PlayerLine(network, name, order.max_age)
-                self.stations[f"player {name}"] = line.station
-                self._recorded.append(RecordedPlayer(line, path))
+            """All members of the network."""
+            for name, url in options.robots.items():
+                self._drive(name, url, follows, options.hold)
+            for name, path in options.sessions.items():
+                publisher = PlayerPublisher(network, name, options.max_age)
+                self.clients[f"player {name}"] = publisher.client
+                self._recorded.append(RecordedPlayer(publisher, path))
         except BaseException:
             self.close()
             raise
 
     def advance(self, now: float) -> bool:
-        """Let recorded players do what is due at time `now` [s]; whether any has more to do."""
+        """Publish the recorded messages due at time `now` [s]; return whether there are more."""
         more = [player.advance(now) for player in self._recorded]
         return any(more)
 
     def close(self) -> None:
-        """Say goodbye, then let the robots go. A second call does nothing."""
+        """Disconnect all members, then the robots. A second call does nothing."""
         self.network.close()
         self._closing.close()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def _drive(self, name: str, url: str, follows: tuple[Pattern, ...], hold: float) -> None:
         network = self.network
         member = network.member("robot", name)
         robot = self._closing.enter_context(connect("sim:cubeling" if url == "sim" else url))
         node = RobotNode(member, robot, network.session, follows, hold)
-        self.stations[f"robot {name}"] = network.join(node, f"{member.site}:robot:{name}")
+        self.clients[f"robot {name}"] = network.join(node, f"{member.site}:robot:{name}")

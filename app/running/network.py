@@ -1,4 +1,4 @@
-"""Joining others: over a broker, or within this program where there is none."""
+"""The network of players and robots: over a broker, or within this program."""
 
 import time
 from contextlib import ExitStack
@@ -9,12 +9,12 @@ from robot.contract.closeable import Closeable
 from robot.network import (
     Address,
     Bus,
+    BusClient,
     Credentials,
     Endpoint,
     Member,
     MemoryBroker,
     MqttBus,
-    Station,
     check_name,
 )
 from robot.network.topics import Role
@@ -22,30 +22,30 @@ from robot.network.topics import Role
 E = TypeVar("E", bound=Endpoint)
 
 SITE = "home"
-"""The site of those who name none."""
+"""The default site."""
 
 
 @dataclass(frozen=True)
 class Access:
-    """Where to meet the others, as a person gives it."""
+    """Options for the network."""
 
     url: str | None = None
-    """The broker; None to stay within this program."""
+    """URL of the broker; None to stay within this program."""
 
     site: str = SITE
-    """Where we are."""
+    """Our site."""
 
     credentials: Credentials = field(default_factory=Credentials)
     """User, password file, certificates."""
 
 
 class Network(Closeable):
-    """Puts members on a bus. `close` it at the end; a second `close` does nothing.
+    """Connects members to each other. Close it, or use it in a `with` statement.
 
     Parameters
     ----------
     access
-        Where, and how to get in.
+        The broker and the credentials.
 
     Raises
     ------
@@ -55,32 +55,33 @@ class Network(Closeable):
 
     def __init__(self, access: Access) -> None:
         self.site = check_name(access.site, "site")
-        """Where we are."""
+        """Our site."""
         self.address = None if access.url is None else Address.of(access.url, access.credentials)
-        """The broker; None within one program."""
+        """The broker; None within this program."""
         self.session = time.time_ns() // 1_000_000
-        """The run of this program: a later one has a greater number."""
+        """Epoch of this program, the same for all its members; greater for a later start."""
         self._memory = MemoryBroker()
         self._closing = ExitStack()
 
     def member(self, role: Role, name: str) -> Member:
-        """Return one of our members."""
+        """Return a member of our site."""
         return Member(self.site, role, check_name(name, role))
 
-    def join(self, endpoint: E, name: str) -> Station[E]:
-        """Connect a member, under a client's id that is made from its name.
+    def join(self, endpoint: E, name: str) -> BusClient[E]:
+        """Connect an endpoint, with an MQTT client id that is made from a name.
 
         Raises
         ------
         RobotError
-            If the broker is there and refuses. One that is away is tried on.
+            If the broker can be reached and refuses. If it cannot be reached, the bus tries
+            again until `close`.
         """
-        station = Station(endpoint, self._bus(name), time.monotonic).open()
-        self._closing.callback(station.close)
-        return station
+        client = BusClient(endpoint, self._bus(name), time.monotonic).open()
+        self._closing.callback(client.close)
+        return client
 
     def close(self) -> None:
-        """Say goodbye for all members."""
+        """Disconnect all members. A second call does nothing."""
         self._closing.close()
 
     def _bus(self, name: str) -> Bus:

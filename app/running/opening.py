@@ -12,7 +12,7 @@ from app.pipeline.playground import Playground
 from app.pipeline.step import Given
 from app.running.clock import SessionClock
 from app.running.options import SessionOptions
-from app.running.players import PlayerLine
+from app.running.players import PlayerPublisher
 from app.running.robots import RobotLine, WireRecorder
 from app.scenarios import make_scenario, scenario_cube
 from app.session import Recorder, start_over_times
@@ -53,7 +53,7 @@ class OpenedSession:
     wire: WireRecorder | None
     """Records the robot's bytes, or None."""
 
-    player: PlayerLine | None
+    player: PlayerPublisher | None
     """Publishes the character's actions and emotions, or None."""
 
     paced: bool
@@ -72,7 +72,7 @@ def open_session(
     *,
     source: FrameSource | None = None,
     screen: Screen | None = None,
-    player: PlayerLine | None = None,
+    player: PlayerPublisher | None = None,
 ) -> Iterator[OpenedSession]:
     """Open all that a session needs, and close it in reverse order at the end.
 

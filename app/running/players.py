@@ -1,4 +1,4 @@
-"""A session's character as a player in the network: what it does and feels, for everyone."""
+"""The character of a session as a player: publishes its actions and emotions on the network."""
 
 import time
 from collections.abc import Callable
@@ -7,81 +7,72 @@ from contextlib import suppress
 from app.pipeline.scenario import EmotionTarget
 from app.running.network import Network
 from characters import CharacterCommand
-from robot.network import Player, Station
+from robot.network import BusClient, Player
 from robot.network.bus import BusState
-from robot.network.player import MAX_AGE
+from robot.network.player import MAX_AGE_S
 
-STANDING = frozenset({"idle", "move"})
-"""What a character does when it does nothing that a robot could do with it."""
+UNPUBLISHED_ACTIONS = frozenset({"idle", "move"})
+"""Actions of a character that robots do not repeat."""
 
 
-class PlayerLine:
-    """Publishes what a character does and feels. Nothing here waits for the network.
+class PlayerPublisher:
+    """Publishes the actions and emotions of a character. Never blocks on the network.
 
     Parameters
     ----------
     network
-        Where to publish; whoever opened it closes it, and this line with it.
+        The network; its owner closes it, and the player with it.
     name
-        What the player is called.
+        The player's name.
     max_age
-        After which time an action is too late for a robot that was away [s].
-    say
-        Is told in one line when the connection breaks; called within `tell`.
+        Age at which an action is too late for a robot that was away [s].
+    on_problem
+        Called with one line when the connection breaks, within `publish`.
     """
 
     def __init__(
         self,
         network: Network,
         name: str,
-        max_age: float = MAX_AGE,
-        say: Callable[[str], None] = lambda line: None,
+        max_age: float = MAX_AGE_S,
+        on_problem: Callable[[str], None] = lambda line: None,
     ) -> None:
         member = network.member("player", name)
-        self._station: Station[Player] = network.join(
+        self.client: BusClient[Player] = network.join(
             Player(member, network.session, max_age), f"{member.site}:player:{name}"
         )
-        self._doing = "idle"
-        self._say = say
-        self._told = False
+        """The player's connection."""
+        self._action = "idle"
+        self._on_problem = on_problem
+        self._reported = False
 
     @property
     def state(self) -> BusState:
-        """How the connection is."""
-        return self._station.state
+        """State of the connection."""
+        return self.client.state
 
-    @property
-    def trouble(self) -> str:
-        """Why there is none, in one line; "" when nothing is wrong."""
-        return self._station.trouble
-
-    def tell(self, command: CharacterCommand, emotion: EmotionTarget) -> None:
-        """Publish a frame's command, if it begins an action, and its emotion, if it has changed."""
-        self.command(command)
-        self.feel(emotion)
+    def publish(self, command: CharacterCommand, emotion: EmotionTarget) -> None:
+        """Publish a frame's action, if it begins one, and its emotion, if it has changed."""
+        self.publish_action(command)
+        self.publish_emotion(emotion)
         broken = self.state in ("away", "refused")
-        if broken and not self._told:
-            self._say(self.trouble)
-        self._told = broken
+        if broken and not self._reported:
+            self._on_problem(self.client.problem)
+        self._reported = broken
 
-    def command(self, command: CharacterCommand) -> None:
+    def publish_action(self, command: CharacterCommand) -> None:
         """Publish an action if this command begins one; a hidden character does nothing."""
-        doing = command.action if command.visible else "idle"
-        if doing == self._doing:
+        action = command.action if command.visible else "idle"
+        if action == self._action:
             return
-        self._doing = doing
-        if doing not in STANDING:
-            # A name that cannot be sent is no reason for the picture to end.
-            with self._station.lock, suppress(ValueError):
-                self._station.endpoint.act(doing, command.weight, time.monotonic())
-            self._station.wake()
+        self._action = action
+        if action not in UNPUBLISHED_ACTIONS:
+            # The picture goes on if a name cannot be sent.
+            with self.client.lock, suppress(ValueError):
+                self.client.endpoint.act(action, command.weight, time.monotonic())
+            self.client.wake()
 
-    def feel(self, target: EmotionTarget) -> None:
+    def publish_emotion(self, target: EmotionTarget) -> None:
         """Publish an emotion if it has changed."""
-        with self._station.lock:
-            self._station.endpoint.feel(target.emotion, target.label)
-
-    @property
-    def station(self) -> Station[Player]:
-        """Where it stands."""
-        return self._station
+        with self.client.lock:
+            self.client.endpoint.feel(target.emotion, target.label)

@@ -91,7 +91,7 @@ class _FrameLoop:
         view = session.robot.view()
         session.robot.feel(step.emotion)
         if session.player is not None:
-            session.player.tell(step.command, step.emotion)
+            session.player.publish(step.command, step.emotion)
         seconds = time.perf_counter() - began
         self._record(step, inputs)
         self._inputs = session.screen.show(step, view)

@@ -1,44 +1,43 @@
-"""Characters and robots in several places: players, robots' nodes, and the bus between them.
+"""Characters and robots on several computers: players, robot nodes, and the bus between them.
 
 >>> from robot import Emotion
 >>> broker, ann = MemoryBroker(), Member("hall", "player", "ann")
->>> bus = broker.bus()
->>> station = Station(Player(ann, session=1), bus, clock=lambda: 0.0)
->>> station.endpoint.feel(Emotion(0.8, 0.5), "happy")
->>> bus.open()
->>> station.turn()
+>>> client = BusClient(Player(ann, session=1), broker.bus(), clock=lambda: 0.0)
+>>> client.endpoint.feel(Emotion(0.8, 0.5), "happy")
+>>> client.bus.open()
+>>> client.step()
 >>> sorted(topic.rpartition("/")[2] for topic in broker.retained)
 ['emotion', 'status']
->>> station.close()
+>>> client.close()
 """
 
-from robot.network.bus import Bus, BusState, Letter
+from robot.network.bus import Bus, BusState, Message
+from robot.network.client import BusClient
 from robot.network.endpoint import Endpoint
 from robot.network.memory import MemoryBroker, MemoryBus
 from robot.network.mqtt.access import Address, Credentials
 from robot.network.mqtt.bus import MqttBus
 from robot.network.node import RobotNode
 from robot.network.player import Player
-from robot.network.roster import Roster, Seen
-from robot.network.station import Station
+from robot.network.roster import Roster, RosterEntry
 from robot.network.topics import Member, Pattern, check_name
 
 __all__ = [
     "Address",
     "Bus",
+    "BusClient",
     "BusState",
     "Credentials",
     "Endpoint",
-    "Letter",
     "Member",
     "MemoryBroker",
     "MemoryBus",
+    "Message",
     "MqttBus",
     "Pattern",
     "Player",
     "RobotNode",
     "Roster",
-    "Seen",
-    "Station",
+    "RosterEntry",
     "check_name",
 ]

@@ -1,4 +1,4 @@
-"""What carries messages: a broker's client, or the same within one process."""
+"""The publish/subscribe bus of a member: a broker's client, or the same within one process."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -6,78 +6,79 @@ from dataclasses import dataclass
 from typing import Literal
 
 BusState = Literal["connecting", "connected", "away", "refused", "closed"]
-"""connecting: nobody has answered yet. connected: what is published goes out. away: the broker is
-gone, and is tried again and again. refused: it does not want us, or another took our name.
+"""connecting: no answer yet. connected: messages are sent. away: the broker cannot be reached; the
+bus reconnects by itself. refused: the broker rejects our credentials or our certificate, or we its.
 closed: `close()` was called."""
 
 Handler = Callable[[str, bytes], None]
-"""Is given topic and payload; from the bus's thread, so it must be quick."""
+"""Called with topic and payload, on the bus's thread; must return quickly."""
 
 
 @dataclass(frozen=True)
-class Letter:
-    """A message on its way."""
+class Message:
+    """A message on the bus."""
 
     topic: str
-    """Where to."""
+    """Its topic."""
 
     payload: bytes
-    """What."""
+    """Its content."""
 
     retain: bool = False
-    """Whether the broker keeps it for those who come later."""
+    """Whether the broker keeps it for later subscribers."""
 
 
 class Bus(ABC):
-    """One member's connection. Nothing is kept while it is away: the member says all again.
+    """One member's connection to a broker.
 
-    What is subscribed, willed and hooked is said before `open`.
+    `subscribe`, `set_will` and `on_change` are called before `open`. After a reconnection the
+    member publishes its whole state again: the broker may have lost it.
     """
 
     def __init__(self) -> None:
-        self.handlers: list[tuple[str, Handler]] = []
-        """What is subscribed to: filters and who hears what fits them."""
+        self.subscriptions: list[tuple[str, Handler]] = []
+        """Topic filters, and the handlers of the messages that match them."""
         self.connections = 0
-        """How often it has been connected; a change means that all must be said again."""
-        self._will: Letter | None = None
-        self._hook: Callable[[], None] = lambda: None
+        """Number of connections so far; after a change everything must be published again."""
+        self._will: Message | None = None
+        self._on_change: Callable[[], None] = lambda: None
         self._state: BusState = "connecting"
-        self._trouble = ""
+        self._problem = ""
 
     @property
     def state(self) -> BusState:
-        """How the connection is."""
+        """State of the connection."""
         return self._state
 
     @property
-    def trouble(self) -> str:
-        """Why it is not connected, or what the broker did not allow, in one line; "" if nothing."""
-        return self._trouble
+    def problem(self) -> str:
+        """Why it is not connected, or what the broker refused, in one line; "" if nothing."""
+        return self._problem
 
     def subscribe(self, topic_filter: str, handler: Handler) -> None:
-        """Hear what is published there, now and after every reconnection."""
-        self.handlers.append((topic_filter, handler))
+        """Receive the messages of matching topics, also after every reconnection."""
+        self.subscriptions.append((topic_filter, handler))
 
-    def will(self, letter: Letter) -> None:
-        """Leave a last will, published by the broker when the connection breaks."""
-        self._will = letter
+    def set_will(self, message: Message) -> None:
+        """Set the last will, which the broker publishes when the connection breaks."""
+        self._will = message
 
-    def on_change(self, hook: Callable[[], None]) -> None:
+    def on_change(self, callback: Callable[[], None]) -> None:
         """Call this whenever `state` or `connections` changes."""
-        self._hook = hook
+        self._on_change = callback
 
-    def _change(self, state: BusState, trouble: str) -> None:
-        self._state, self._trouble = state, trouble
-        self._hook()
+    def _change(self, state: BusState, problem: str) -> None:
+        self._state, self._problem = state, problem
+        self._on_change()
 
     @abstractmethod
     def open(self) -> None:
-        """Connect; raises RobotError if the broker is there and refuses."""
+        """Connect; raises RobotError if the broker can be reached and refuses."""
 
     @abstractmethod
-    def publish(self, letter: Letter) -> bool:
-        """Hand over a message; False if that is not possible now. Never waits."""
+    def publish(self, message: Message) -> bool:
+        """Send a message; False if that is not possible now. Never blocks."""
 
     @abstractmethod
-    def close(self, farewell: tuple[Letter, ...] = ()) -> None:
-        """Publish the last words if possible, and end. A second call does nothing."""
+    def close(self, closing_messages: tuple[Message, ...] = ()) -> None:
+        """Publish the last messages if possible, and disconnect. A second call does nothing."""

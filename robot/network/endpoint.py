@@ -1,92 +1,143 @@
-"""What stands at a bus: a player, a robot's node or an onlooker, without clock, thread or bus."""
+"""Endpoints of the bus: a player, a robot's node or an observer, without clock, thread or bus."""
 
-from typing import Protocol
+import math
+from typing import Literal, Protocol
 
-from robot.network.bus import Letter
-from robot.network.messages import Status
-from robot.network.schema import COUNT_MAX
+from robot.network.bus import Message
+from robot.network.messages import MAX_INTEGER, StatusMessage, encode
+from robot.network.topics import Member, Pattern
 
-BEAT_EVERY = 2.0
-"""A member says this often that it is there [s]."""
+HEARTBEAT_EVERY_S = 2.0
+"""Time between two heartbeats of a member [s]."""
 
-SILENT_AFTER = 6.0
-"""A member not heard for so long is taken for lost [s]: three beats. The broker's word, the last
-will, mostly comes earlier."""
+LOST_AFTER_S = 6.0
+"""Silence after which a member counts as lost [s]: three heartbeats; a last will is faster."""
 
-
-SETTLE = 1.0
-"""So long after its first connection a run learns of earlier ones under its name [s]."""
+SETTLING_TIME_S = 1.0
+"""Time after the first connection in which a member learns of earlier epochs of its name [s]."""
 
 
-class Run:
-    """Which run of a member's program this is, among others under the same name.
+class SessionEpoch:
+    """The epoch of a member's program: a number that is greater for a later start.
 
-    A later run has a greater number, so that nobody mixes them up. The number comes from the time
-    of day; where that went back, the run learns of the earlier one from what the broker retained,
-    and goes beyond it. A run that meets a greater one after that has been replaced, and is silent.
+    The number comes from the time of day. Where that went back, the program learns of the earlier
+    epoch from retained messages, and takes a greater number. A program that meets a greater number
+    after that has been replaced, and stops publishing.
 
     Parameters
     ----------
     number
-        Of this run, ≥ 1.
+        Its number, ≥ 1.
     """
 
     def __init__(self, number: int) -> None:
         self.number = number
         """The session in every message."""
         self.replaced = False
-        """Whether another program speaks under the same name, and was started later."""
-        self._first: float | None = None
+        """Whether another program, started later, publishes under the same name."""
+        self._first_connected: float | None = None
 
     def connected(self, now: float) -> None:
-        """Take note of a connection."""
-        self._first = now if self._first is None else self._first
+        """Note the time of the first connection [s]."""
+        if self._first_connected is None:
+            self._first_connected = now
 
     def meet(self, other: int, now: float, *, alive: bool = False) -> bool:
-        """Take note of another run; whether this one has a new number now."""
-        if not self.number < other < COUNT_MAX:
+        """Note another epoch of our name; return whether our number has changed."""
+        if not self.number < other < MAX_INTEGER:
             return False
-        if self._first is None or now - self._first <= SETTLE:
+        if self._first_connected is None or now - self._first_connected <= SETTLING_TIME_S:
             self.number = other + 1
             return True
         self.replaced |= alive
         return False
 
-    def meet_status(self, status: Status, now: float) -> bool:
-        """Take note of what was said under our name; whether this one has a new number now."""
+    def meet_status(self, status: StatusMessage, now: float) -> bool:
+        """Note a status under our name; return whether our number has changed."""
         return self.meet(status.session, now, alive=status.status == "online")
 
 
-REPLACED = "another program, started later, speaks as {}: give one of them another name"
-"""What a member that was replaced says."""
-
-
 class Endpoint(Protocol):
-    """A member's part in the talk. Whoever owns clock and bus calls it; nothing here waits."""
+    """A member's part of the communication, driven by the owner of clock and bus. Never blocks."""
 
     @property
-    def will(self) -> Letter | None:
-        """What the broker is to publish when the connection breaks."""
+    def will(self) -> Message | None:
+        """The message that the broker publishes when the connection breaks."""
 
     @property
-    def filters(self) -> tuple[str, ...]:
-        """What it wants to hear, in the order in which it wants to hear what is retained."""
+    def topic_filters(self) -> tuple[str, ...]:
+        """Its subscriptions, in the order in which it needs the retained messages."""
 
     @property
-    def trouble(self) -> str:
-        """Why it has fallen silent for good, in one line; "" as long as it has not."""
+    def problem(self) -> str:
+        """Why it stopped publishing, in one line; "" while it publishes."""
 
     def connected(self, now: float) -> None:
-        """Say everything again: the broker may have forgotten all."""
+        """Publish everything again: the broker may have lost it."""
 
     def receive(self, topic: str, payload: bytes, now: float) -> None:
-        """Take a message; whatever it says, this does not raise."""
+        """Process a message; never raises, whatever the message is."""
 
     def tick(self, now: float) -> None:
-        """Do what is due."""
+        """Do what is due at time `now` [s]."""
 
-    def letters(self, now: float) -> list[Letter]:
-        """Return what is to be published now, each once."""
+    def outgoing(self, now: float) -> list[Message]:
+        """Return the messages to be published now, each once."""
 
-    def farewell(self) -> tuple[Letter, ...]:
-        """Return the last words."""
+    def closing_messages(self) -> tuple[Message, ...]:
+        """Return the last messages."""
+
+
+class MemberEndpoint:
+    """Base of players and robots' nodes: session epoch, heartbeat, last will.
+
+    Parameters
+    ----------
+    member
+        The member.
+    session
+        Number of its epoch, ≥ 1, greater than all earlier ones; see `SessionEpoch`.
+    follows
+        The players that it follows.
+    """
+
+    def __init__(self, member: Member, session: int, follows: tuple[Pattern, ...] = ()) -> None:
+        self.member = member
+        """The member."""
+        self._epoch = SessionEpoch(session)
+        self._follows = follows
+        self._heartbeats = 0
+        self._last_heartbeat = -math.inf
+
+    @property
+    def will(self) -> Message | None:
+        """The message that the broker publishes when the connection breaks."""
+        return self._status("lost")
+
+    @property
+    def problem(self) -> str:
+        """Why it stopped publishing; "" while it publishes."""
+        if not self._epoch.replaced:
+            return ""
+        return (
+            f"another program, started later, publishes as {self.member}: give one of them "
+            "another name"
+        )
+
+    def closing_messages(self) -> tuple[Message, ...]:
+        """Return the last messages."""
+        self._heartbeats += 1
+        return () if self._epoch.replaced else (self._status("closed"),)
+
+    def _heartbeat(self, now: float) -> list[Message]:
+        """Return the heartbeat if it is due."""
+        if now - self._last_heartbeat < HEARTBEAT_EVERY_S:
+            return []
+        self._last_heartbeat = now
+        self._heartbeats += 1
+        return [self._status("online")]
+
+    def _status(self, status: Literal["online", "lost", "closed"]) -> Message:
+        follows = tuple(map(str, self._follows))
+        content = StatusMessage(self._epoch.number, self._heartbeats, status, follows)
+        return Message(self.member.topic("status"), encode(content), retain=True)

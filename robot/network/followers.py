@@ -1,13 +1,13 @@
-"""The robots that follow a player, and how far each has taken its actions."""
+"""The robots that follow a player, and the last action that each of them took."""
 
 from dataclasses import dataclass
 
-from robot.network import messages as m
-from robot.network.endpoint import SILENT_AFTER
+from robot.network.endpoint import LOST_AFTER_S
+from robot.network.messages import StatusMessage
 from robot.network.topics import Member, Pattern
 
-ROBOTS_MAX = 64
-"""Most robots that one player keeps account of."""
+MAX_ROBOTS = 64
+"""Most robots in a player's table."""
 
 
 @dataclass
@@ -15,20 +15,20 @@ class Follower:
     """A robot that follows the player, as far as the player knows."""
 
     session: int
-    """The run of its node."""
+    """Epoch of its node."""
 
     status: str
-    """"online", "lost" or "closed"."""
+    """ "online", "lost" or "closed"."""
 
-    heard: float
-    """When it last said that it was there [s]."""
+    last_heartbeat: float
+    """Time of its last heartbeat [s]."""
 
     taken: int = 0
-    """Number of the last action of this session that it has taken."""
+    """Number of the last action of this session that it took."""
 
 
 class Followers:
-    """Keeps account of the robots that follow one player.
+    """The table of the robots that follow one player.
 
     Parameters
     ----------
@@ -38,59 +38,60 @@ class Followers:
 
     def __init__(self, player: Member) -> None:
         self.robots: dict[Member, Follower] = {}
-        """Those that are known."""
+        """The known robots."""
         self._player = player
 
-    def hear(self, robot: Member, status: m.Status, now: float) -> None:
-        """Take note of what a robot says of itself."""
+    def receive_status(self, robot: Member, status: StatusMessage, now: float) -> None:
+        """Process a robot's status."""
         known = self.robots.get(robot)
         if known is not None and status.session < known.session:
-            return  # of a run that is over
+            return  # of an earlier epoch
         if status.status != "online":
             if known is not None:
                 known.session, known.status = status.session, status.status
-        elif not any(self._is_meant(pattern) for pattern in status.follows):
+        elif not any(self._includes_player(pattern) for pattern in status.follows):
             self.robots.pop(robot, None)
         elif known is not None:
-            known.session, known.status, known.heard = status.session, "online", now
-        elif len(self.robots) < ROBOTS_MAX or self._forget_one():
+            known.session, known.status, known.last_heartbeat = status.session, "online", now
+        elif len(self.robots) < MAX_ROBOTS or self._remove_one():
             self.robots[robot] = Follower(status.session, "online", now)
 
     def acknowledge(self, robot: Member, number: int) -> bool:
-        """Take note of how far a robot has got; whether that is further than it was."""
+        """Note the last action that a robot took; return whether it is a later one than before."""
         known = self.robots.get(robot)
         if known is None or number <= known.taken:
             return False
         known.taken = number
         return True
 
-    def settle(self, now: float) -> None:
-        """Find who is silent."""
+    def find_lost(self, now: float) -> None:
+        """Mark the robots without heartbeat as lost."""
         for one in self.robots.values():
-            if one.status == "online" and now - one.heard > SILENT_AFTER:
+            if one.status == "online" and now - one.last_heartbeat > LOST_AFTER_S:
                 one.status = "lost"
 
-    def done(self) -> int:
-        """Return the number up to which all have taken the actions; a lost one is waited for."""
+    def taken_by_all(self) -> int:
+        """Return the number up to which all robots took the actions, also those that are lost."""
         taken = [one.taken for one in self.robots.values() if one.status != "closed"]
         return min(taken, default=0)
 
-    def is_behind(self, number: int) -> bool:
-        """Whether one that is there has not taken the action of this number."""
+    def any_behind(self, number: int) -> bool:
+        """Whether a robot that is online has not taken the action of this number."""
         return any(one.status == "online" and one.taken < number for one in self.robots.values())
 
-    def begin_anew(self) -> None:
-        """Take note that the player counts from 1 again."""
+    def restart_numbers(self) -> None:
+        """Note that the player numbers its actions from 1 again."""
         for one in self.robots.values():
             one.taken = 0
 
-    def _is_meant(self, pattern: str) -> bool:
+    def _includes_player(self, pattern: str) -> bool:
         site, _, name = pattern.partition("/")
         return Pattern(site, name).matches(self._player)
 
-    def _forget_one(self) -> bool:
-        """Forget a robot that is not there, to make room; whether there was one."""
-        gone = [robot for robot, one in self.robots.items() if one.status != "online"]
-        for robot in gone[:1]:
-            del self.robots[robot]
-        return bool(gone)
+    def _remove_one(self) -> bool:
+        """Remove a robot that is not online, to make room; return whether there was one."""
+        for robot, one in self.robots.items():
+            if one.status != "online":
+                del self.robots[robot]
+                return True
+        return False

@@ -1,68 +1,68 @@
-"""A broker within one process: for a place without a network, and for tests in virtual time."""
+"""A broker within one process: for use without a network, and for tests in virtual time."""
 
 import threading
 
-from robot.network.bus import Bus, Letter
-from robot.network.topics import fits
+from robot.network.bus import Bus, Message
+from robot.network.topics import topic_matches
 
 
 class MemoryBroker:
-    """Carries messages between the buses of one process. It may be used from any thread."""
+    """Carries messages between the buses of one process. Thread-safe."""
 
     def __init__(self) -> None:
-        self.retained: dict[str, Letter] = {}
+        self.retained: dict[str, Message] = {}
         """The last retained message of every topic."""
         self.running = True
-        """Whether it is there; see `kill`."""
+        """Whether it accepts connections; see `kill`."""
         self._buses: list[MemoryBus] = []
         self._lock = threading.RLock()
 
     def bus(self) -> "MemoryBus":
-        """Return a new connection to it."""
+        """Return a new bus of this broker."""
         return MemoryBus(self)
 
     def kill(self) -> None:
-        """Lose power: everything retained is forgotten, and no last will is published."""
+        """Simulate a crash: retained messages are lost, and no last will is published."""
         with self._lock:
             self.running = False
             self.retained.clear()
             buses, self._buses = self._buses, []
         for bus in buses:
-            bus.cut("the broker was killed")
+            bus.disconnect("the broker was killed")
 
     def start(self) -> None:
-        """Come back, knowing nothing. Buses come back by `MemoryBus.reconnect`."""
+        """Run again, without any state. Buses come back by `MemoryBus.reconnect`."""
         self.running = True
 
-    def join(self, bus: "MemoryBus") -> bool:
-        """Take in a bus and tell it what is retained; whether the broker is there."""
+    def add(self, bus: "MemoryBus") -> bool:
+        """Connect a bus and send it the retained messages; False if the broker does not run."""
         with self._lock:
             if not self.running:
                 return False
             self._buses.append(bus)
-            known = list(self.retained.values())
-        for topic_filter, handler in bus.handlers:  # in their order, as brokers do
-            for letter in known:
-                if fits(topic_filter, letter.topic):
-                    handler(letter.topic, letter.payload)
+            retained = list(self.retained.values())
+        for topic_filter, handler in bus.subscriptions:  # in this order, as brokers do
+            for message in retained:
+                if topic_matches(topic_filter, message.topic):
+                    handler(message.topic, message.payload)
         return True
 
-    def leave(self, bus: "MemoryBus") -> None:
-        """Let a bus go."""
+    def remove(self, bus: "MemoryBus") -> None:
+        """Disconnect a bus."""
         with self._lock:
             if bus in self._buses:
                 self._buses.remove(bus)
 
-    def carry(self, letter: Letter) -> None:
-        """Give a message to everyone who wants it."""
+    def publish(self, message: Message) -> None:
+        """Send a message to all subscribers."""
         with self._lock:
-            if letter.retain:
-                self.retained[letter.topic] = letter
+            if message.retain:
+                self.retained[message.topic] = message
             buses = list(self._buses)
         for bus in buses:
-            for topic_filter, handler in bus.handlers:
-                if fits(topic_filter, letter.topic):
-                    handler(letter.topic, letter.payload)
+            for topic_filter, handler in bus.subscriptions:
+                if topic_matches(topic_filter, message.topic):
+                    handler(message.topic, message.payload)
 
 
 class MemoryBus(Bus):
@@ -73,40 +73,40 @@ class MemoryBus(Bus):
         self._broker = broker
 
     def open(self) -> None:
-        """Connect; if the broker is not running, the bus is away."""
+        """Connect; if the broker does not run, the state is "away"."""
         self.reconnect()
 
     def reconnect(self) -> None:
         """Try again to connect."""
         if self._state in ("connected", "closed"):
             return
-        if self._broker.join(self):
+        if self._broker.add(self):
             self.connections += 1
             self._change("connected", "")
         else:
             self._change("away", "the broker is not running")
 
-    def cut(self, trouble: str = "the line was cut") -> None:
-        """Lose the connection; the broker, if it lives, publishes the will."""
+    def disconnect(self, problem: str = "the connection broke") -> None:
+        """Lose the connection; the broker, if it runs, publishes the last will."""
         if self._state != "connected":
             return
-        self._broker.leave(self)
-        self._change("away", trouble)
+        self._broker.remove(self)
+        self._change("away", problem)
         if self._will is not None and self._broker.running:
-            self._broker.carry(self._will)
+            self._broker.publish(self._will)
 
-    def publish(self, letter: Letter) -> bool:
-        """Hand over a message; False if there is no connection."""
+    def publish(self, message: Message) -> bool:
+        """Send a message; False if there is no connection."""
         if self._state != "connected":
             return False
-        self._broker.carry(letter)
+        self._broker.publish(message)
         return True
 
-    def close(self, farewell: tuple[Letter, ...] = ()) -> None:
-        """Publish the last words and end, without a last will."""
+    def close(self, closing_messages: tuple[Message, ...] = ()) -> None:
+        """Publish the last messages and disconnect, without a last will."""
         if self._state == "closed":
             return
-        for letter in farewell:
-            self.publish(letter)
-        self._broker.leave(self)
+        for message in closing_messages:
+            self.publish(message)
+        self._broker.remove(self)
         self._change("closed", "")

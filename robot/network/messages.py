@@ -1,93 +1,166 @@
-"""Every message of the tree: one frozen dataclass for each kind of topic."""
+"""The JSON messages of the topic tree: a struct for each kind of topic, encoded and validated.
 
-from dataclasses import dataclass
-from typing import Any
+`tools.network_reference` writes the tables in docs/many.md from their JSON schemas.
+"""
 
-from robot.network import schema as s
-from robot.network.schema import entry
+from collections.abc import Iterator
+from typing import Annotated, Any, Literal, TypeVar
 
+import msgspec
+from msgspec import Meta, Struct
 
-@dataclass(frozen=True)
-class Status:
-    """Who is there; repeated as a heartbeat."""
+from robot.errors import RobotError
 
-    session: int = entry(s.SERIAL, "which run of the program; a later run has a greater one")
-    number: int = entry(s.COUNT, "counts up by one with every heartbeat")
-    status: str = entry(
-        s.PRESENCE, "lost: the last will, sent by the broker; closed: it said goodbye"
-    )
-    follows: tuple[str, ...] = entry(
-        s.TEXTS, "of a robot: whom it follows, SITE/NAME, either may be *", ()
-    )
+MAX_PAYLOAD_BYTES = 4096
+"""Largest payload that is sent or read [bytes]."""
 
+MAX_TEXT_BYTES = 80
+"""Longest text in a message [bytes of UTF-8]."""
 
-@dataclass(frozen=True)
-class Action:
-    """Something that a character does, once."""
+MAX_INTEGER = 2**53 - 1
+"""Largest integer: beyond it, JSON readers that use doubles lose bits."""
 
-    session: int = entry(s.SERIAL, "the player's")
-    number: int = entry(s.SERIAL, "counts up by one with every action of the session")
-    oldest: int = entry(
-        s.SERIAL, "earlier actions than this one will not come again: all have them, or too late"
-    )
-    name: str = entry(s.TEXT, 'what is done: "kiss"')
-    weight: float = entry(s.UNIT, "how strongly", 0.0)
-    age: float = entry(s.SECONDS, "how long ago, when this was sent", 0.0)
+MAX_ENTRIES = 32
+"""Most entries of a list or a table in a message."""
 
+M = TypeVar("M", bound=Struct)
 
-@dataclass(frozen=True)
-class Feeling:
-    """What a character, and whoever follows it, feels from now on."""
-
-    session: int = entry(s.SERIAL, "the player's")
-    number: int = entry(s.SERIAL, "counts up by one with every change")
-    valence: float = entry(s.UNIT, "unpleasant to pleasant")
-    arousal: float = entry(s.UNIT, "calm to excited")
-    label: str | None = entry(s.TEXT, "the word for it, if it has one", None)
+Count = Annotated[int, Meta(ge=0, le=MAX_INTEGER)]
+Serial = Annotated[int, Meta(ge=1, le=MAX_INTEGER)]
+Unit = Annotated[float, Meta(ge=-1, le=1)]
+Share = Annotated[float, Meta(ge=0, le=1)]
+Text = Annotated[str, Meta(max_length=MAX_TEXT_BYTES)]
+Texts = Annotated[tuple[Text, ...], Meta(max_length=MAX_ENTRIES)]
+Point = Annotated[tuple[Unit, Unit], Meta(title="[valence, arousal], each −1 … 1")]
+Acks = Annotated[
+    dict[Text, tuple[Count, Count]],
+    Meta(
+        max_length=MAX_ENTRIES,
+        title=f"table of ≤ {MAX_ENTRIES}: SITE/NAME to [session, number]",
+    ),
+]
 
 
-@dataclass(frozen=True)
-class Taken:
-    """How far a robot has taken its players' actions: the acknowledgement."""
-
-    session: int = entry(s.SERIAL, "the robot's")
-    number: int = entry(s.COUNT, "counts up by one with every change")
-    players: dict[str, tuple[int, int]] = entry(  # noqa: RUF009 # a field
-        s.MARKS, "session and number of the last action taken of each"
-    )
+def _doc(description: str) -> Meta:
+    return Meta(description=description)
 
 
-@dataclass(frozen=True)
-class RobotState:
-    """What is known of a robot."""
-
-    session: int = entry(s.SERIAL, "the robot's")
-    number: int = entry(s.COUNT, "counts up by one with every change")
-    link: str = entry(s.TEXT, "of its line: connecting, ready, degraded, lost, closed")
-    player: str | None = entry(s.TEXT, "who has it, SITE/NAME", None)
-    commanded: tuple[float, float] | None = entry(s.POINT, "what it was asked to feel", None)
-    acknowledged: tuple[float, float] | None = entry(
-        s.POINT, "what it has confirmed to have taken", None
-    )
-    observed: tuple[float, float] | None = entry(s.POINT, "what it says that it shows", None)
-    label: str | None = entry(s.TEXT, "its own word for what it shows", None)
-    motion: str | None = entry(s.TEXT, "the motion being played", None)
-    battery: float | None = entry(s.SHARE, "empty to full", None)
-    charging: bool = entry(s.FLAG, "whether the battery is being charged", False)
-    played: int = entry(s.COUNT, "actions handed to the robot", 0)
-    unknown: int = entry(s.COUNT, "actions taken that it has no motion or sound for", 0)
-    missed: int = entry(s.COUNT, "actions taken while it could not be reached", 0)
+class MalformedError(RobotError):
+    """A payload that is not a valid message; it is counted and ignored."""
 
 
-KINDS: dict[tuple[str, str], type[Any]] = {
-    ("player", "status"): Status,
-    ("player", "action"): Action,
-    ("player", "emotion"): Feeling,
-    ("robot", "status"): Status,
-    ("robot", "taken"): Taken,
-    ("robot", "state"): RobotState,
+class StatusMessage(Struct, frozen=True, omit_defaults=True):
+    """Presence of a member; repeated as a heartbeat."""
+
+    session: Annotated[Serial, _doc("epoch of the program; greater for a later start")]
+    number: Annotated[Count, _doc("increases by one with every heartbeat")]
+    status: Annotated[
+        Literal["online", "lost", "closed"],
+        _doc("lost: the last will, sent by the broker; closed: by the member at its end"),
+    ]
+    follows: Annotated[
+        Texts, _doc("of a robot: players to follow, SITE/NAME, either may be *")
+    ] = ()
+
+
+class ActionMessage(Struct, frozen=True, omit_defaults=True):
+    """A single action of a character."""
+
+    session: Annotated[Serial, _doc("the player's")]
+    number: Annotated[Serial, _doc("increases by one with every action of the session")]
+    oldest: Annotated[Serial, _doc("first action still sent: the others are taken or expired")]
+    name: Annotated[Text, _doc('the action: "kiss"')]
+    weight: Annotated[Unit, _doc("its strength")] = 0.0
+    age: Annotated[float, Meta(ge=0), _doc("time since the action when this was sent [s]")] = 0.0
+
+
+class EmotionMessage(Struct, frozen=True, omit_defaults=True):
+    """Emotion of a character, and of the robots that follow it, from now on."""
+
+    session: Annotated[Serial, _doc("the player's")]
+    number: Annotated[Serial, _doc("increases by one with every change")]
+    valence: Annotated[Unit, _doc("unpleasant to pleasant")]
+    arousal: Annotated[Unit, _doc("calm to excited")]
+    label: Annotated[Text | None, _doc("its word, if it has one")] = None
+
+
+class AckMessage(Struct, frozen=True, omit_defaults=True):
+    """Acknowledgement: the last action that a robot took of each player."""
+
+    session: Annotated[Serial, _doc("the robot's")]
+    number: Annotated[Count, _doc("increases by one with every change")]
+    players: Annotated[Acks, _doc("session and number of the last action of each player")]
+
+
+class StateMessage(Struct, frozen=True, omit_defaults=True):
+    """State of a robot."""
+
+    session: Annotated[Serial, _doc("the robot's")]
+    number: Annotated[Count, _doc("increases by one with every change")]
+    link: Annotated[Text, _doc("state of its link: connecting, ready, degraded, lost, closed")]
+    player: Annotated[Text | None, _doc("the player it shows, SITE/NAME")] = None
+    commanded: Annotated[Point | None, _doc("the emotion commanded")] = None
+    acknowledged: Annotated[Point | None, _doc("the emotion that it acknowledged")] = None
+    observed: Annotated[Point | None, _doc("the emotion that it says it shows")] = None
+    label: Annotated[Text | None, _doc("its own word for what it shows")] = None
+    motion: Annotated[Text | None, _doc("the motion being played")] = None
+    battery: Annotated[Share | None, _doc("empty to full")] = None
+    charging: Annotated[bool, _doc("whether the battery is being charged")] = False
+    played: Annotated[Count, _doc("actions played")] = 0
+    unknown: Annotated[Count, _doc("actions without a motion or sound of that name")] = 0
+    missed: Annotated[Count, _doc("actions taken while it could not be reached")] = 0
+
+
+MESSAGE_TYPES: dict[tuple[str, str], type[Any]] = {
+    ("player", "status"): StatusMessage,
+    ("player", "action"): ActionMessage,
+    ("player", "emotion"): EmotionMessage,
+    ("robot", "status"): StatusMessage,
+    ("robot", "taken"): AckMessage,
+    ("robot", "state"): StateMessage,
 }
-"""What is said on which topic, by role and kind."""
+"""The message of each topic, by role and kind."""
 
-RETAINED = frozenset({"status", "emotion", "taken", "state"})
-"""Kinds of which the broker keeps the last one for whoever comes later."""
+RETAINED_KINDS = frozenset({"status", "emotion", "taken", "state"})
+"""Kinds of topics whose last message the broker keeps for later subscribers."""
+
+
+def encode(message: Struct) -> bytes:
+    """Return a message's payload; fields with default values are left out."""
+    return msgspec.json.encode(message)
+
+
+def decode(kind: type[M], payload: bytes) -> M:
+    """Return the message in a payload. Unknown fields are ignored: a later version added them.
+
+    Raises
+    ------
+    MalformedError
+        If the payload is too long, is not a JSON object, lacks a field, or has an invalid one.
+    """
+    if len(payload) > MAX_PAYLOAD_BYTES:
+        raise MalformedError(f"{len(payload)} bytes; a message has at most {MAX_PAYLOAD_BYTES}")
+    try:
+        message = msgspec.json.decode(payload, type=kind)
+    except (ValueError, RecursionError) as error:  # msgspec's errors are ValueErrors
+        raise MalformedError(str(error)) from error
+    for name, value in msgspec.structs.asdict(message).items():
+        if not all(map(is_text, _texts(value))):
+            raise MalformedError(
+                f"Expected text of {MAX_TEXT_BYTES} printable bytes - at `$.{name}`"
+            )
+    return message
+
+
+def is_text(text: str) -> bool:
+    """Whether a text may be sent: printable, and not too long in UTF-8."""
+    return text.isprintable() and len(text.encode()) <= MAX_TEXT_BYTES
+
+
+def _texts(value: Any) -> Iterator[str]:
+    match value:
+        case str():
+            yield value
+        case tuple() | dict():
+            for one in value:
+                yield from _texts(one)

@@ -1,100 +1,100 @@
-"""Who is there: an onlooker of the whole tree, or of one site."""
+"""The members that are online: an observer of the whole network, or of one site."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 from robot.network import messages as m
-from robot.network.bus import Letter
-from robot.network.endpoint import SILENT_AFTER
-from robot.network.schema import MalformedError, decode
-from robot.network.topics import EVERYONE, ROOT, Member, member_of
+from robot.network.bus import Message
+from robot.network.endpoint import LOST_AFTER_S
+from robot.network.messages import MalformedError, decode
+from robot.network.topics import ANY, ROOT, Member, member_of
 
-MEMBERS_MAX = 256
-"""Most members that are kept account of."""
+MAX_MEMBERS = 256
+"""Most members in the roster."""
 
-Watcher = Callable[[Member, str, Any], None]
-"""Is given who speaks, the kind of topic, and the message."""
+OnMessage = Callable[[Member, str, Any], None]
+"""Called with the sender, the kind of topic, and the message."""
 
 
 @dataclass
-class Seen:
-    """A member, as far as it has been heard."""
+class RosterEntry:
+    """A member, as far as it is known."""
 
-    heard: float
-    """When it was last heard [s]."""
+    last_heartbeat: float
+    """Time of its last heartbeat [s]."""
 
-    said: dict[str, Any] = field(default_factory=dict)
+    messages: dict[str, Any] = field(default_factory=dict)
     """Its last message of every kind."""
 
     def presence(self, now: float) -> str:
         """Return "online", "lost" or "closed"."""
-        status = self.said.get("status")
-        if not isinstance(status, m.Status):
+        status = self.messages.get("status")
+        if status is None:
             return "lost"
-        silent = now - self.heard > SILENT_AFTER
-        return "lost" if status.status == "online" and silent else status.status
+        silent = now - self.last_heartbeat > LOST_AFTER_S
+        return "lost" if status.status == "online" and silent else str(status.status)
 
 
 class Roster:
-    """Hears everyone and says nothing; an `Endpoint`.
+    """An observer of all members, which publishes nothing; an `Endpoint`.
 
     Parameters
     ----------
     site
-        Whose members, or `EVERYONE`.
-    watcher
-        Is given every message as it comes.
+        The site to observe, or `ANY`.
+    on_message
+        Called with every message.
     """
 
-    will: Letter | None = None
-    trouble = ""
+    will: Message | None = None
+    problem = ""
 
-    def __init__(self, site: str = EVERYONE, watcher: Watcher | None = None) -> None:
-        place = "+" if site == EVERYONE else site
-        self.filters: tuple[str, ...] = (f"{ROOT}/{place}/+/+/+",)
-        self.members: dict[Member, Seen] = {}
-        """Who has been heard."""
+    def __init__(self, site: str = ANY, on_message: OnMessage | None = None) -> None:
+        place = "+" if site == ANY else site
+        self.topic_filters: tuple[str, ...] = (f"{ROOT}/{place}/+/+/+",)
+        self.members: dict[Member, RosterEntry] = {}
+        """The known members."""
         self.malformed = 0
-        """Messages that could not be understood."""
-        self._watcher = watcher
+        """Messages that were not valid."""
+        self._on_message = on_message
 
     def connected(self, now: float) -> None:
-        """Nothing is to be said."""
+        """Do nothing: there is nothing to publish."""
 
     def receive(self, topic: str, payload: bytes, now: float) -> None:
-        """Take a message."""
+        """Process a message."""
         found = member_of(topic)
         if found is None:
             return
         member, kind = found
-        form = m.KINDS.get((member.role, kind))
-        if form is None:
-            return  # a later version says more
+        message_type = m.MESSAGE_TYPES.get((member.role, kind))
+        if message_type is None:
+            return  # of a later version
         try:
-            message = decode(form, payload)
+            message = decode(message_type, payload)
         except MalformedError:
             self.malformed += 1
             return
-        if member not in self.members and len(self.members) >= MEMBERS_MAX:
+        if member not in self.members and len(self.members) >= MAX_MEMBERS:
             return
-        seen = self.members.setdefault(member, Seen(now))
-        before = seen.said.get("status")
+        entry = self.members.setdefault(member, RosterEntry(now))
+        before = entry.messages.get("status")
         if before is not None and message.session < before.session:
-            return  # of a run that is over
-        seen.said[kind] = message
+            return  # of an earlier epoch
+        entry.messages[kind] = message
         if kind == "status":
-            seen.heard = now
-        if self._watcher is not None:
-            self._watcher(member, kind, message)
+            entry.last_heartbeat = now
+        if self._on_message is not None:
+            self._on_message(member, kind, message)
 
     def tick(self, now: float) -> None:
-        """Nothing is ever due."""
+        """Do nothing: nothing is ever due."""
 
-    def letters(self, now: float) -> list[Letter]:
-        """Nothing is said."""
+    def outgoing(self, now: float) -> list[Message]:
+        """Return no messages."""
         return []
 
-    def farewell(self) -> tuple[Letter, ...]:
-        """Nothing is said."""
+    def closing_messages(self) -> tuple[Message, ...]:
+        """Return no messages."""
         return ()

@@ -1,9 +1,9 @@
-"""The topic tree: who speaks where, and what a name may be.
+"""The topic tree, and the names in it.
 
     cubeling / 1 / SITE / player | robot / NAME / status | action | …
 
-The 1 is the version of the tree and of the messages in it. A later one that old programs would
-misunderstand gets another number, and both can share a broker.
+The 1 is the version of the tree and of its messages. An incompatible later version gets another
+number, so both can share a broker.
 """
 
 from dataclasses import dataclass
@@ -12,13 +12,13 @@ from typing import Literal
 from robot.errors import RobotError
 
 ROOT = "cubeling/1"
-"""Every topic begins with it."""
+"""Prefix of every topic."""
 
-NAME_BYTES = 32
+MAX_NAME_BYTES = 32
 """Longest name of a site, a player or a robot [bytes of UTF-8]."""
 
-EVERYONE = "*"
-"""In a pattern: every site, or everyone there."""
+ANY = "*"
+"""In a pattern: every site, or every member of a site."""
 
 Role = Literal["player", "robot"]
 ROLES: tuple[Role, ...] = ("player", "robot")
@@ -26,19 +26,19 @@ ROLES: tuple[Role, ...] = ("player", "robot")
 
 @dataclass(frozen=True, order=True)
 class Member:
-    """A player or a robot, by its place in the tree."""
+    """A player or a robot."""
 
     site: str
-    """Where it is: "north-hall"."""
+    """Its site: "north-hall"."""
 
     role: Role
-    """What it is."""
+    """Its role."""
 
     name: str
-    """What it is called there."""
+    """Its name, unique for its site and role."""
 
     def topic(self, kind: str) -> str:
-        """Return the topic of one kind of its messages.
+        """Return the topic of a kind of its messages.
 
         >>> Member("hall", "player", "ann").topic("status")
         'cubeling/1/hall/player/ann/status'
@@ -56,46 +56,46 @@ class Member:
 
 @dataclass(frozen=True)
 class Pattern:
-    """Members of one role: one of them, all of a site, or all."""
+    """One member, all members of a site, or all."""
 
     site: str
-    """A site, or `EVERYONE`."""
+    """A site, or `ANY`."""
 
     name: str
-    """A name, or `EVERYONE`."""
+    """A name, or `ANY`."""
 
     @classmethod
     def parse(cls, text: str, site: str) -> "Pattern":
-        """Read what a person writes: "ann", "*", "south/ann", "south/*", "*/*".
+        """Parse "ann", "*", "south/ann", "south/*" or "*/*".
 
         Parameters
         ----------
         text
-            A name, with its site in front if that is another than `site`.
+            A name, preceded by its site if that is not `site`.
 
         Raises
         ------
         RobotError
-            If it is none of these.
+            If it has another form.
         """
         place, slash, name = text.rpartition("/")
         found = cls(place if slash else site, name)
         for part in (found.site, found.name):
-            if part != EVERYONE:
+            if part != ANY:
                 check_name(part, "name to follow")
         return found
 
     def matches(self, member: Member) -> bool:
-        """Whether it means this one."""
-        return self.site in (EVERYONE, member.site) and self.name in (EVERYONE, member.name)
+        """Whether it includes a member."""
+        return self.site in (ANY, member.site) and self.name in (ANY, member.name)
 
     def filter(self, role: Role, kind: str) -> str:
-        """Return the topic filter for one kind of messages.
+        """Return the topic filter for a kind of messages.
 
         >>> Pattern("hall", "*").filter("player", "status")
         'cubeling/1/hall/player/+/status'
         """
-        site, name = ("+" if part == EVERYONE else part for part in (self.site, self.name))
+        site, name = ("+" if part == ANY else part for part in (self.site, self.name))
         return f"{ROOT}/{site}/{role}/{name}/{kind}"
 
     def __str__(self) -> str:
@@ -103,7 +103,7 @@ class Pattern:
 
 
 def member_of(topic: str) -> tuple[Member, str] | None:
-    """Return whose topic it is and of which kind; None if it is none of ours.
+    """Return member and kind of a topic; None if it is not of this tree.
 
     >>> member_of("cubeling/1/hall/robot/rex/state")
     (Member(site='hall', role='robot', name='rex'), 'state')
@@ -121,33 +121,33 @@ def member_of(topic: str) -> tuple[Member, str] | None:
 
 
 def is_name(text: str) -> bool:
-    """Whether this can be a name: letters and digits of any script, and - _ between them.
+    """Whether this is a valid name: letters and digits of any script, and - _ after the first.
 
-    Nothing that means something in a topic, a client's id, a command line or a terminal.
+    Such a name has no special meaning in a topic, a client's id, a command line or a terminal.
     """
     inner = text.replace("-", "x").replace("_", "x")
-    return inner.isalnum() and text[0].isalnum() and len(text.encode()) <= NAME_BYTES
+    return inner.isalnum() and text[0].isalnum() and len(text.encode()) <= MAX_NAME_BYTES
 
 
 def check_name(text: str, what: str) -> str:
-    """Return a name, or raise RobotError in one line that says what it must be."""
+    """Return a name; raises RobotError if it is not valid."""
     if not is_name(text):
         raise RobotError(
-            f"{text!r} cannot be a {what}: letters, digits, - and _, at most {NAME_BYTES} bytes, "
-            "beginning with a letter or digit"
+            f"{text!r} cannot be a {what}; use letters, digits, - and _, "
+            f"at most {MAX_NAME_BYTES} bytes, beginning with a letter or digit"
         )
     return text
 
 
-def fits(topic_filter: str, topic: str) -> bool:
-    """Whether a topic filter with its wildcards + and # means a topic (MQTT 5, section 4.7).
+def topic_matches(topic_filter: str, topic: str) -> bool:
+    """Whether a topic matches a filter with wildcards + and # (MQTT 5, section 4.7).
 
-    >>> fits("a/+/c", "a/b/c"), fits("a/#", "a/b/c"), fits("a/+", "a/b/c")
+    >>> topic_matches("a/+/c", "a/b/c"), topic_matches("a/#", "a/b"), topic_matches("a/+", "a/b/c")
     (True, True, False)
     """
-    wanted, given = topic_filter.split("/"), topic.split("/")
-    if wanted[-1] == "#":
-        wanted, given = wanted[:-1], given[: len(wanted) - 1]
-    return len(wanted) == len(given) and all(
-        part in ("+", there) for part, there in zip(wanted, given, strict=True)
+    pattern, parts = topic_filter.split("/"), topic.split("/")
+    if pattern[-1] == "#":
+        pattern, parts = pattern[:-1], parts[: len(pattern) - 1]
+    return len(pattern) == len(parts) and all(
+        one in ("+", part) for one, part in zip(pattern, parts, strict=True)
     )

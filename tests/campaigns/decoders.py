@@ -17,8 +17,7 @@ from robot.contract.driver import Driver
 from robot.drivers import DRIVERS
 from robot.drivers.cubeling.host import HostLink
 from robot.errors import RobotError
-from robot.network.messages import KINDS
-from robot.network.schema import MalformedError, decode, encode
+from robot.network.messages import MESSAGE_TYPES, MalformedError, decode, encode
 from robot.protocol.fields import MessageError
 from robot.protocol.schema import Sender, pack, unpack
 from robot.protocol.wire import (
@@ -214,7 +213,7 @@ TARGETS: dict[str, Target] = {
     **{f"driver:{name}": driver_of(name) for name in DRIVERS},
     **{f"simulator:{name}": simulator_named(name) for name in SIMULATORS},
     **{f"settings:{name}": settings_of(name) for name in DRIVERS},
-    **{f"payload:{'-'.join(key)}": payload_of(kind) for key, kind in KINDS.items()},
+    **{f"payload:{'-'.join(key)}": payload_of(kind) for key, kind in MESSAGE_TYPES.items()},
     "personality": personality,
     "url": fault_url,
 }

@@ -1,4 +1,4 @@
-"""Where a broker is, and how to get in: address, user and password, certificates."""
+"""The address of a broker, and the credentials: user, password, certificates."""
 
 import os
 import select
@@ -10,75 +10,75 @@ from urllib.parse import SplitResult, unquote, urlsplit
 
 from robot.errors import RobotError
 
-PORTS = {"mqtt": 1883, "mqtts": 8883}
-"""The usual port of each scheme (IANA)."""
+DEFAULT_PORTS = {"mqtt": 1883, "mqtts": 8883}
+"""Default port of each scheme (IANA)."""
 
 PASSWORD_VARIABLE = "CUBELING_MQTT_PASSWORD"
 """The environment variable that may hold the password."""
 
-PASSWORD_BYTES = 1024
-"""Longest password file that is read [bytes]."""
+MAX_PASSWORD_BYTES = 1024
+"""Most bytes read from a password file."""
 
-PASSWORD_WITHIN = 5.0
-"""Longest wait for a password that comes through a pipe, from a password manager say [s]."""
+PASSWORD_TIMEOUT_S = 5.0
+"""Longest wait for a password from a pipe [s], for example of a password manager."""
 
 
 @dataclass(frozen=True)
 class Credentials:
-    """What a person gives beside the URL; each may be None."""
+    """Options next to the URL; each may be None."""
 
     user: str | None = None
-    """Name of the user."""
+    """Name of the user, if not in the URL."""
 
     password_file: Path | None = None
     """A file whose first line is the password."""
 
     ca: Path | None = None
-    """The certificate authority that signed the broker's certificate (PEM); None: the system's."""
+    """Certificate authority of the broker's certificate (PEM); None for the system's."""
 
     certificate: Path | None = None
-    """Our own certificate (PEM), where the broker asks for one."""
+    """Client certificate (PEM), if the broker requires one."""
 
     key: Path | None = None
-    """Its private key (PEM); None if it is in the same file."""
+    """Private key of the certificate (PEM); None if it is in the same file."""
 
 
 @dataclass(frozen=True)
 class Address:
-    """Where a broker is, and how to get in. Its text never shows the password."""
+    """Address and credentials of a broker. Its text never contains the password."""
 
     host: str
-    """Name or number of its computer."""
+    """Host name or IP address."""
 
     port: int
-    """Its TCP port."""
+    """TCP port."""
 
     user: str | None = None
-    """Who we are; None for nobody."""
+    """User name; None for an anonymous client."""
 
     password: str | None = field(default=None, repr=False)
-    """The password of that user."""
+    """Password of that user."""
 
     tls: ssl.SSLContext | None = field(default=None, repr=False)
-    """How to encrypt; None for not at all."""
+    """TLS settings; None for an unencrypted connection."""
 
     @classmethod
     def of(cls, url: str, given: Credentials | None = None) -> "Address":
-        """Read "mqtt://[USER[:PASSWORD]@]HOST[:PORT]", or mqtts:// for TLS.
+        """Parse "mqtt://[USER[:PASSWORD]@]HOST[:PORT]", or mqtts:// for TLS.
 
-        The password is, in this order: that of the URL, the first line of the password file, the
-        environment variable `PASSWORD_VARIABLE`.
+        The password is, in this order, the one in the URL, the first line of the password file,
+        or the environment variable `PASSWORD_VARIABLE`.
 
         Raises
         ------
         RobotError
-            If the URL is none, or a file cannot be used; the line never shows a password.
+            If the URL is not valid, or a file cannot be used; never contains a password.
         """
         given = given or Credentials()
         parts = _split(url)
         shown = f"{parts.scheme}://{parts.hostname}"
         if parts.query or parts.fragment or parts.path not in ("", "/"):
-            raise RobotError(f"{shown}: only a host and a port stand in a broker's URL")
+            raise RobotError(f"{shown}: a broker's URL has only a host and a port")
         user = unquote(parts.username) if parts.username else given.user
         password = unquote(parts.password) if parts.password else _password(given)
         if user is None and parts.password:
@@ -87,7 +87,7 @@ class Address:
             )
         return cls(
             parts.hostname or "",
-            parts.port or PORTS[parts.scheme],
+            parts.port or DEFAULT_PORTS[parts.scheme],
             user,
             password if user is not None else None,
             _tls(parts.scheme, given),
@@ -105,9 +105,13 @@ def _split(url: str) -> SplitResult:
         port = parts.port
     except ValueError as error:
         raise RobotError("the broker's URL has no valid port; mqtt://HOST:1883 is one") from error
-    if parts.scheme not in PORTS or not parts.hostname or port == 0:
+    if parts.scheme not in DEFAULT_PORTS or not parts.hostname or port == 0:
         scheme = parts.scheme or "without a scheme"
-        raise RobotError(f"no broker's URL ({scheme}): mqtt://HOST[:PORT], or mqtts:// with TLS")
+        raise RobotError(f"not a broker's URL ({scheme}): mqtt://HOST[:PORT], or mqtts:// with TLS")
+    try:
+        parts.hostname.encode("idna")
+    except UnicodeError as error:
+        raise RobotError(f"{parts.hostname!r} cannot be a host name") from error
     return parts
 
 
@@ -124,12 +128,12 @@ def _password(given: Credentials) -> str | None:
 
 
 def _first_bytes(path: Path) -> bytes:
-    """Read a file's beginning; of a pipe what comes within `PASSWORD_WITHIN`."""
+    """Return the first bytes of a file; of a pipe those within `PASSWORD_TIMEOUT_S`."""
     file = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
     try:
         if stat.S_ISFIFO(os.fstat(file).st_mode):
-            select.select([file], [], [], PASSWORD_WITHIN)
-        return os.read(file, PASSWORD_BYTES)
+            select.select([file], [], [], PASSWORD_TIMEOUT_S)
+        return os.read(file, MAX_PASSWORD_BYTES)
     finally:
         os.close(file)
 
@@ -137,36 +141,36 @@ def _first_bytes(path: Path) -> bytes:
 def _tls(scheme: str, given: Credentials) -> ssl.SSLContext | None:
     if scheme == "mqtt":
         if given.ca or given.certificate or given.key:
-            raise RobotError("certificates are for TLS: write mqtts:// for mqtt://")
+            raise RobotError("certificates need TLS: write mqtts:// instead of mqtt://")
         return None
     for path in (given.ca, given.certificate, given.key):
         if path is not None and path.exists() and not path.is_file():
-            raise RobotError(f"cannot read {path}: it is no file")  # OpenSSL would wait for a pipe
+            raise RobotError(f"cannot read {path}: not a file")  # OpenSSL would block on a pipe
     if given.key is not None and given.certificate is None:
         raise RobotError(f"the key {given.key} needs the certificate that belongs to it")
     try:
         context = ssl.create_default_context(cafile=given.ca)
     except (OSError, ssl.SSLError) as error:
-        raise RobotError(f"{given.ca} holds no certificate (PEM) that can be read") from error
-    context.sslsocket_class = _WholeOrClosed
+        raise RobotError(f"{given.ca} contains no readable certificate (PEM)") from error
+    context.sslsocket_class = _ClosingSocket
     if given.certificate is not None:
         try:
-            # A key under a passphrase would make OpenSSL ask at the terminal, from any thread.
+            # For an encrypted key OpenSSL would prompt in the terminal, from any thread.
             context.load_cert_chain(given.certificate, given.key, password=_no_passphrase)
         except (OSError, ssl.SSLError, ValueError) as error:
             named = given.key or given.certificate
             raise RobotError(
-                f"{given.certificate} and the key in {named} do not fit together, cannot be read, "
+                f"{given.certificate} and the key in {named} do not match, cannot be read, "
                 "or need a passphrase"
             ) from error
     return context
 
 
-class _WholeOrClosed(ssl.SSLSocket):
-    """Is closed if the handshake fails; paho would leave it to the garbage collector."""
+class _ClosingSocket(ssl.SSLSocket):
+    """Closes itself if the handshake fails; paho leaves that to the garbage collector."""
 
     def do_handshake(self, block: bool = False) -> None:
-        """Shake hands, or close."""
+        """Do the handshake; close if it fails."""
         try:
             super().do_handshake(block)
         except OSError:

@@ -1,186 +1,224 @@
-"""The bus over a broker: one thread that connects, reads and writes, again and again."""
+"""The bus over an MQTT 5 broker: paho's client, its thread, its reconnection and its queue."""
 
 import contextlib
-import socket
 import ssl
+import sys
 import threading
-import time
-from collections import deque
+from typing import Any
+
+from paho.mqtt import client as paho
+from paho.mqtt.enums import CallbackAPIVersion, MQTTErrorCode
+from paho.mqtt.packettypes import PacketTypes
+from paho.mqtt.properties import Properties
+from paho.mqtt.reasoncodes import ReasonCode
+from paho.mqtt.subscribeoptions import SubscribeOptions
 
 from robot.errors import RobotError
-from robot.network.bus import Bus, BusState, Letter
+from robot.network.bus import Bus, BusState, Message
 from robot.network.mqtt.access import Address
-from robot.network.mqtt.connection import ANSWER_WITHIN, CLOSE_WITHIN, BrokerLine
+from robot.network.topics import topic_matches
 
-VERDICT_WITHIN = 6.0
-"""Longest wait of `open` [s]; then the broker counts as away, and is tried on."""
+KEEPALIVE_S = 4
+"""Keepalive interval [s]: the broker drops a client after 1.5 times as long without a packet."""
 
-RETRY_FIRST, RETRY_LAST = 0.1, 5.0
-"""Pause before the next attempt to connect: doubles from the one to the other [s]."""
+CONNECT_TIMEOUT_S = 5.0
+"""Longest wait for a TCP connection [s]; TLS and the answer to CONNECT each have `KEEPALIVE_S`."""
 
-WAITING_MAX = 100
-"""Most messages that wait to be sent; more are not taken."""
+OPEN_TIMEOUT_S = 6.0
+"""Longest wait of `open` [s]; then the broker counts as away, and is tried again."""
 
-POLL = 0.25
-"""Longest sleep of the thread [s]."""
+CLOSE_TIMEOUT_S = 1.0
+"""Longest wait for the confirmation of the last messages, and for paho's thread to end [s]."""
+
+MIN_RETRY_DELAY_S, MAX_RETRY_DELAY_S = 0.1, 5.0
+"""Delay before the next connection attempt: doubles from the first to the second [s]."""
+
+MAX_QUEUED = 100
+"""Most messages without the broker's confirmation; `publish` takes no more."""
+
+MAX_PACKET_BYTES = 8192
+"""Longest packet that the broker may send to us [bytes]."""
+
+QOS = 1
+"""The broker confirms every message."""
 
 _REASONS = {
-    "refused": "nobody listens there",
-    "timed out": "nobody answers there",
+    "refused": "no broker listens there",
+    "timed out": "no answer",
     "not known": "there is no such host",
     "No address": "there is no such host",
     "resolution": "there is no such host",
     "unreachable": "the network does not reach it",
     "reset": "it closed the connection",
 }
-"""Signs in the systems' messages, and what they mean."""
+"""Parts of the systems' error messages, and what they mean."""
 
 
 class MqttBus(Bus):
     """One member's connection to an MQTT 5 broker; see `Bus`.
 
-    Every connection begins with nothing: the broker keeps no session; the member says all again.
+    The broker keeps no session between connections. Messages without confirmation are sent again
+    after a reconnection, before everything that the member publishes then; so a topic always ends
+    with the latest message.
 
     Parameters
     ----------
     address
         The broker.
-    name
-        The client's id: another one for every member and run.
+    client_id
+        A different one for every member and session.
     """
 
-    def __init__(self, address: Address, name: str) -> None:
+    def __init__(self, address: Address, client_id: str) -> None:
         super().__init__()
         self._address = address
-        self._name = name
-        self._verdict = threading.Event()
-        self._closing = threading.Event()
-        self._waiting: deque[Letter] = deque()
-        self._farewell: tuple[Letter, ...] = ()
-        self._wake_reader, self._wake_writer = socket.socketpair()
-        self._wake_reader.setblocking(False)
-        self._wake_writer.setblocking(False)
-        self._thread = threading.Thread(target=self._run, name=f"mqtt {name}", daemon=True)
+        self._answered = threading.Event()
+        self._closing = False
+        self._topics: dict[int, str] = {}
+        self._last_sent: paho.MQTTMessageInfo | None = None
+        client = paho.Client(CallbackAPIVersion.VERSION2, client_id, protocol=paho.MQTTv5)
+        client.connect_timeout = CONNECT_TIMEOUT_S
+        client.max_inflight_messages_set(MAX_QUEUED)
+        client.max_queued_messages_set(MAX_QUEUED)
+        client.reconnect_delay_set(MIN_RETRY_DELAY_S, MAX_RETRY_DELAY_S)  # type: ignore[arg-type]
+        if address.user is not None:
+            client.username_pw_set(address.user, address.password)
+        if address.tls is not None:
+            client.tls_set_context(address.tls)
+        client.on_connect = self._on_connect
+        client.on_connect_fail = self._on_connect_fail
+        client.on_disconnect = self._on_disconnect
+        client.on_message = self._on_message
+        client.on_publish = self._on_publish
+        self._client = client
 
     def open(self) -> None:
-        """Connect, and wait for the broker's verdict, at most `VERDICT_WITHIN`.
+        """Connect, and wait for the broker's answer, at most `OPEN_TIMEOUT_S`.
 
         Raises
         ------
         RobotError
-            If the broker is there and refuses: user, password, certificate.
+            If the broker can be reached and refuses: user, password, certificate.
         """
-        self._thread.start()
-        self._verdict.wait(VERDICT_WITHIN)
+        client, will = self._client, self._will
+        if will is not None:
+            client.will_set(will.topic, will.payload, QOS, will.retain)
+        properties = Properties(PacketTypes.CONNECT)  # type: ignore[no-untyped-call] # paho's gap
+        properties.MaximumPacketSize = MAX_PACKET_BYTES
+        client.connect_async(
+            self._address.host,
+            self._address.port,
+            KEEPALIVE_S,
+            clean_start=True,
+            properties=properties,
+        )
+        client.loop_start()
+        self._answered.wait(OPEN_TIMEOUT_S)
         if self._state == "refused":
-            trouble = self._trouble
+            problem = self._problem
             self.close()
-            raise RobotError(trouble)
+            raise RobotError(problem)
 
-    def publish(self, letter: Letter) -> bool:
-        """Hand over a message; False if there is no connection, or too many wait. Never waits."""
-        if self._state != "connected" or len(self._waiting) >= WAITING_MAX:
+    def publish(self, message: Message) -> bool:
+        """Send a message; False if there is no connection, or the queue is full. Never blocks."""
+        if self._state != "connected":
             return False
-        self._waiting.append(letter)
-        self._wake()
+        info = self._client.publish(message.topic, message.payload, QOS, message.retain)
+        if info.rc == MQTTErrorCode.MQTT_ERR_QUEUE_SIZE:
+            return False
+        self._topics[info.mid] = message.topic
+        self._last_sent = info
         return True
 
-    def close(self, farewell: tuple[Letter, ...] = ()) -> None:
-        """Publish the last words if possible, and end. A second call does nothing."""
-        if self._closing.is_set():
+    def close(self, closing_messages: tuple[Message, ...] = ()) -> None:
+        """Publish the last messages if possible, and disconnect. A second call does nothing."""
+        if self._closing:
             return
-        self._farewell = farewell
-        self._closing.set()
-        self._wake()
-        if self._thread.ident is None:
-            self._close_wakers()  # never opened
-        else:
-            self._thread.join(CLOSE_WITHIN + POLL)
+        connected = self._state == "connected"
+        for message in closing_messages:
+            self.publish(message)
+        self._closing = True
+        if connected and self._last_sent is not None:
+            with contextlib.suppress(RuntimeError):  # the connection broke
+                self._last_sent.wait_for_publish(CLOSE_TIMEOUT_S)
+        self._client.disconnect()
+        # paho waits without a limit for its thread, which may be connecting or have a full queue.
+        stop = threading.Thread(target=self._client.loop_stop, daemon=True)
+        stop.start()
+        stop.join(CLOSE_TIMEOUT_S)
         self._change("closed", "")
 
-    # --- The thread ----------------------------------------------------------------------------
+    # --- Callbacks, on paho's thread -----------------------------------------------------------
 
-    def _run(self) -> None:
-        pause = RETRY_FIRST
-        while not self._closing.is_set():
-            line = BrokerLine(
-                self._address, self._name, self._will, self.handlers, self._wake_reader
-            )
-            try:
-                line.connect()
-                self._serve(line)
-            except Exception as error:  # whatever it is, the thread must go on
-                self._fail(error)
-            line.hang_up()
-            self._waiting.clear()
-            if line.connected:
-                pause = RETRY_FIRST
-            self._closing.wait(RETRY_LAST if self._state == "refused" else pause)
-            pause = min(2 * pause, RETRY_LAST)
-        self._close_wakers()
+    def _on_connect(
+        self, client: paho.Client, _: Any, flags: Any, reason: ReasonCode, *__: Any
+    ) -> None:
+        if self._closing:
+            client.disconnect()
+            return
+        if reason.is_failure:
+            user = self._address.user
+            identity = "without a user" if user is None else f"as {user!r}"
+            self._change("refused", f"{self._address} does not let us in {identity}: {reason}")
+            return
+        if self.subscriptions:
+            options = SubscribeOptions(qos=QOS)
+            client.subscribe([(topic_filter, options) for topic_filter, _ in self.subscriptions])
+        self.connections += 1
+        self._change("connected", "")
 
-    def _serve(self, line: BrokerLine) -> None:
-        """Read and write until the connection ends."""
-        began = time.monotonic()
-        ended = "the connection broke"
-        while not self._closing.is_set():
-            stands = line.exchange(self._waiting, POLL)
-            self._follow(line)
-            if not stands:
-                break
-            if not line.connected and time.monotonic() - began > ANSWER_WITHIN:
-                ended = "nobody speaks MQTT there"
-                break
-        if self._closing.is_set() and line.connected:
-            line.say_goodbye((*self._waiting, *self._farewell))
-        elif line.refusal:
-            self._change("refused", line.refusal)
-        else:
-            if line.wordless:
-                ended = "it closed the connection without a word; does it want TLS (mqtts://)?"
-            self._change("away", f"{self._address}: {ended}")
-
-    def _follow(self, line: BrokerLine) -> None:
-        """Take over what has become of the connection."""
-        if line.connected and self._state != "connected":
-            self.connections += 1
-            self._change("connected", "")
-        if line.denial and line.denial != self._trouble:
-            self._change(self._state, line.denial)
-
-    def _fail(self, error: Exception) -> None:
-        """Say why no connection came about; a bad certificate is a refusal."""
+    def _on_connect_fail(self, *_: Any) -> None:
+        """Report why there is no connection; paho calls this while it handles the exception."""
+        error = sys.exc_info()[1]
         if isinstance(error, ssl.SSLCertVerificationError):
-            why = error.verify_message or error.reason
+            reason = error.verify_message or error.reason
             self._change(
                 "refused",
-                f"{self._address} shows a certificate that is not to be trusted: {why}; "
-                "is the CA file the right one?",
+                f"{self._address} has an untrusted certificate: {reason}; is the CA file right?",
             )
         elif isinstance(error, ssl.SSLError):
-            self._change("refused", f"{self._address}: no TLS comes about: {error.reason}")
+            self._change("refused", f"{self._address}: the TLS handshake failed: {error.reason}")
         else:
-            secret = self._address.tls is not None and isinstance(error, ConnectionResetError)
-            hint = "; does it speak TLS there?" if secret else ""
-            self._change("away", f"{self._address}: {_reason(error)}{hint}")
+            reset = self._address.tls is not None and isinstance(error, ConnectionResetError)
+            hint = "; does it speak TLS there?" if reset else ""
+            self._change("away", f"{self._address}: {_describe(error)}{hint}")
 
-    def _change(self, state: BusState, trouble: str) -> None:
-        super()._change(state, trouble)
-        if state != "connecting":
-            self._verdict.set()
+    def _on_disconnect(
+        self, client: paho.Client, _: Any, flags: Any, reason: ReasonCode, *__: Any
+    ) -> None:
+        if self._state == "connected":
+            self._change("away", f"{self._address}: the connection broke")
+        elif self._state != "refused":
+            timeout = reason.getName() == "Keep alive timeout"
+            hint = "is there an MQTT broker" if timeout else "does it want TLS (mqtts://)"
+            self._change("away", f"{self._address}: no answer to CONNECT; {hint}?")
 
-    def _close_wakers(self) -> None:
-        for end in (self._wake_reader, self._wake_writer):
-            end.close()
+    def _on_message(self, client: paho.Client, _: Any, message: paho.MQTTMessage) -> None:
+        for topic_filter, handler in self.subscriptions:
+            if topic_matches(topic_filter, message.topic):
+                handler(message.topic, bytes(message.payload))
+                return  # overlapping filters deliver it once
 
-    def _wake(self) -> None:
-        with contextlib.suppress(OSError):  # full: it is awake already; closed: it has ended
-            self._wake_writer.send(b"\0")
+    def _on_publish(
+        self, client: paho.Client, _: Any, mid: int, reason: ReasonCode, *__: Any
+    ) -> None:
+        # In theory the confirmation can arrive before `publish` has noted the topic.
+        topic = self._topics.pop(mid, "a topic")
+        if reason.is_failure:
+            problem = f"{self._address} does not let us publish to {topic}: {reason}"
+            if problem != self._problem:
+                self._change(self._state, problem)
+
+    def _change(self, state: BusState, problem: str) -> None:
+        if self._closing and state != "closed":
+            return
+        super()._change(state, problem)
+        self._answered.set()
 
 
-def _reason(error: Exception) -> str:
+def _describe(error: BaseException | None) -> str:
     text = " ".join(str(error).split())
-    for sign, words in _REASONS.items():
-        if sign in text:
-            return words
+    for part, meaning in _REASONS.items():
+        if part in text:
+            return meaning
     return text or type(error).__name__

@@ -16,9 +16,9 @@ import recordings
 from affect import Emotion
 from app.errors import AppError
 from app.pipeline.scenario import EmotionTarget
-from app.running.bridge import Bridge, Order, RecordedPlayer
+from app.running.bridge import Bridge, BridgeOptions, RecordedPlayer
 from app.running.network import Access, Network
-from app.running.players import PlayerLine
+from app.running.players import PlayerPublisher
 from app.ui.roster import table
 from characters import CharacterCommand
 from robot.network import Member
@@ -49,25 +49,25 @@ def command(action: str, **changes: Any) -> CharacterCommand:
 
 def test_an_action_is_published_when_it_begins_and_only_if_it_is_seen():
     with Network(Access()) as network:
-        line = PlayerLine(network, "ann")
+        line = PlayerPublisher(network, "ann")
         for what in (
             command("idle"), command("kiss", weight=0.5), command("kiss"), command("move"),
             command("shout", visible=False), command("shout"), command("idle"), command("kiss"),
         ):  # fmt: skip
-            line.command(what)
-        assert line.station.endpoint.counts.made == 3
+            line.publish_action(what)
+        assert line.client.endpoint.counts.made == 3
 
 
 def test_a_recorded_session_drives_robots_without_a_broker():
-    order = Order({"rex": "sim", "max": "sim:cubeling?seed=2"}, {"ann": COMPANION})
-    with Network(Access()) as network, Bridge(order, network) as bridge:
+    options = BridgeOptions({"rex": "sim", "max": "sim:cubeling?seed=2"}, {"ann": COMPANION})
+    with Network(Access()) as network, Bridge(options, network) as bridge:
         roster = bridge.roster.endpoint
         assert bridge.advance(0.0)
         soon(lambda: len(roster.members) == 3)
         assert not bridge.advance(1000.0)
 
         def state(name: str) -> Any:
-            return roster.members[Member("home", "robot", name)].said.get("state")
+            return roster.members[Member("home", "robot", name)].messages.get("state")
 
         def is_done(name: str) -> bool:  # two kisses, and a shout that it has no motion for
             return (state(name).played, state(name).unknown) == (2, 1)
@@ -81,12 +81,12 @@ def test_a_recorded_session_drives_robots_without_a_broker():
 
 def test_a_recorded_session_plays_in_its_own_time():
     with Network(Access()) as network:
-        line = PlayerLine(network, "ann")
+        line = PlayerPublisher(network, "ann")
         player = RecordedPlayer(line, COMPANION)
         made = []
         for second in range(60):
             player.advance(100.0 + second)
-            made.append(line.station.endpoint.counts.made)
+            made.append(line.client.endpoint.counts.made)
         assert (made[2], made[5], made[-1]) == (0, 1, 3)
 
 
@@ -125,7 +125,7 @@ def test_a_session_that_is_none_is_refused_and_leaves_nothing_open(tmp_path):
     text = tmp_path / "text.mcap"
     text.write_text("no session")
     with Network(Access()) as network, pytest.raises(AppError, match="not a session"):
-        Bridge(Order({"rex": "sim"}, {"ann": text}), network)
+        Bridge(BridgeOptions({"rex": "sim"}, {"ann": text}), network)
 
 
 def test_a_broker_that_is_away_is_said_in_one_line(cubeling):
@@ -168,7 +168,7 @@ def test_a_bridge_that_is_killed_is_lost_by_its_last_will(broker):
         rex = Member("home", "robot", "rex")
 
         def status() -> str:
-            return roster.members[rex].said["status"].status if rex in roster.members else ""
+            return roster.members[rex].messages["status"].status if rex in roster.members else ""
 
         bridge = start()
         soon(lambda: status() == "online", within=30.0)
@@ -181,36 +181,36 @@ def test_a_bridge_that_is_killed_is_lost_by_its_last_will(broker):
 def test_a_player_says_once_that_the_broker_is_gone(broker):
     said: list[str] = []
     with Network(Access(broker.url)) as network:
-        line = PlayerLine(network, "ann", say=said.append)
+        line = PlayerPublisher(network, "ann", on_problem=said.append)
         calm = EmotionTarget(Emotion(0.0, 0.0), "neutral", 0.0)
-        line.tell(command("idle"), calm)
+        line.publish(command("idle"), calm)
         broker.kill()
         soon(lambda: line.state == "away")
         for _ in range(3):
-            line.tell(command("kiss"), calm)
+            line.publish(command("kiss"), calm)
         assert len(said) == 1
         assert broker.url in said[0]
         broker.start()
         soon(lambda: line.state == "connected")
-        line.tell(command("idle"), calm)
+        line.publish(command("idle"), calm)
         broker.kill()
         soon(lambda: line.state == "away")
-        line.tell(command("idle"), calm)
+        line.publish(command("idle"), calm)
         assert len(said) == 2
 
 
 @needs_mosquitto
 def test_a_broker_that_hangs_does_not_hold_up_the_picture(broker):
     with Network(Access(broker.url)) as network:
-        line = PlayerLine(network, "ann")
+        line = PlayerPublisher(network, "ann")
         soon(lambda: line.state == "connected")
         os.kill(broker.pid, signal.SIGSTOP)
         took = []
         for frame in range(600):
             emotion = EmotionTarget(Emotion(frame / 600, 0.0), "neutral", frame / 30)
             began = time.perf_counter()
-            line.tell(command("kiss" if frame % 2 else "idle"), emotion)
+            line.publish(command("kiss" if frame % 2 else "idle"), emotion)
             took.append(time.perf_counter() - began)
         os.kill(broker.pid, signal.SIGCONT)
         assert statistics.median(took) < 0.001  # of 0.033 for a frame
-        assert line.station.endpoint.waiting <= 64
+        assert line.client.endpoint.pending <= 64

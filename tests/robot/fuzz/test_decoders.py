@@ -1,6 +1,5 @@
 """No decoder fails in a way that is not documented, and none keeps more than its bound."""
 
-import dataclasses
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robot.drivers import DRIVERS
-from robot.network.messages import KINDS
+from robot.network.messages import MESSAGE_TYPES
 from robot.simulators import SIMULATORS
 from tests.campaigns.decoders import GROWTH_MAX, HELD_MAX, TARGETS
 from tests.campaigns.soak import weight
@@ -65,7 +64,7 @@ def nearly_right(draw, name: str) -> bytes:
 @st.composite
 def nearly_a_payload(draw) -> bytes:
     """Write JSON with the names that messages have, and any values."""
-    names = sorted({field.name for kind in KINDS.values() for field in dataclasses.fields(kind)})
+    names = sorted({name for kind in MESSAGE_TYPES.values() for name in kind.__struct_fields__})
     values: list[object] = [
         None,
         True,

@@ -12,7 +12,7 @@ from affect.emotion import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.telemetry import LinkState, Telemetry
 from robot.errors import RobotError
-from robot.network import Member, MemoryBroker, MemoryBus, Pattern, Player, RobotNode, Station
+from robot.network import BusClient, Member, MemoryBroker, MemoryBus, Pattern, Player, RobotNode
 from robot.network.bus import Handler
 from tests.robot.network.mosquitto import Mosquitto
 
@@ -61,7 +61,7 @@ class Room:
         self.harm = Harm()
         self.random = np.random.default_rng(seed)
         self.buses: dict[str, MemoryBus] = {}
-        self.stations: dict[str, Station[Any]] = {}
+        self.stations: dict[str, BusClient[Any]] = {}
         self.robots: dict[str, FakeRobot] = {}
         self.made: dict[str, list[str]] = {}
         self.held: set[str] = set()  # who cannot reconnect
@@ -97,12 +97,12 @@ class Room:
             for name, station in self.stations.items():
                 if self.buses[name].state == "away" and name not in self.held:
                     self.buses[name].reconnect()
-                station.turn()
+                station.step()
 
     def vanish(self, name: str) -> None:
         """Kill a member's program: no goodbye."""
         del self.stations[name]
-        self.buses.pop(name).cut()
+        self.buses.pop(name).disconnect()
 
     def _session(self) -> int:
         self._sessions += 1
@@ -111,7 +111,7 @@ class Room:
     def _put(self, name: str, endpoint: Player | RobotNode) -> None:
         bus = HarmedBus(self)
         self.buses[name] = bus
-        self.stations[name] = Station(endpoint, bus, lambda: self.now)
+        self.stations[name] = BusClient(endpoint, bus, lambda: self.now)
         bus.open()
 
 

@@ -5,11 +5,17 @@ import pytest
 from affect.emotion import Emotion
 from robot.errors import RobotError
 from robot.network import Member, Pattern, RobotNode
-from robot.network.endpoint import SILENT_AFTER
-from robot.network.followers import ROBOTS_MAX
-from robot.network.following import HOLD, PLAYERS_MAX
-from robot.network.messages import Action, Feeling, RobotState, Status
-from robot.network.schema import decode, encode
+from robot.network.arbiter import HOLD_S, MAX_PLAYERS
+from robot.network.endpoint import LOST_AFTER_S
+from robot.network.followers import MAX_ROBOTS
+from robot.network.messages import (
+    ActionMessage,
+    EmotionMessage,
+    StateMessage,
+    StatusMessage,
+    decode,
+    encode,
+)
 from tests.robot.network.conftest import FakeRobot
 
 HAPPY, ANGRY, NEUTRAL = Emotion(0.8, 0.5), Emotion(-0.8, 0.5), Emotion(0.0, 0.0)
@@ -47,11 +53,11 @@ def test_a_player_who_is_gone_keeps_its_mood_on_the_robot_for_a_while(room, end)
         room.stations.pop("a").close()
     elif end == "last will":
         room.held.add("a")
-        room.buses["a"].cut()
+        room.buses["a"].disconnect()
     else:  # its program hangs: no beat, and a connection that stands
         del room.stations["a"]
-        noticed = SILENT_AFTER
-    room.run(noticed + HOLD - 2.2)
+        noticed = LOST_AFTER_S
+    room.run(noticed + HOLD_S - 2.2)
     assert rex.felt[-1] == HAPPY
     room.run(2.5)
     assert rex.felt[-1] == NEUTRAL
@@ -65,7 +71,7 @@ def test_a_robot_goes_from_a_player_who_is_gone_to_one_who_is_there(room):
     bob.feel(ANGRY)
     room.run(0.5)
     room.stations.pop("a").close()
-    room.run(HOLD + 0.5)
+    room.run(HOLD_S + 0.5)
     assert room.robots["rex"].felt[-1] == ANGRY
 
 
@@ -75,7 +81,7 @@ def test_a_robot_cut_off_from_the_broker_is_neutral_in_the_end(room):
     ann.feel(HAPPY)
     room.run(0.5)
     room.broker.kill()
-    room.run(SILENT_AFTER + HOLD + 0.5)
+    room.run(LOST_AFTER_S + HOLD_S + 0.5)
     assert room.robots["rex"].felt[-1] == NEUTRAL
     room.broker.start()
     room.run(0.5)
@@ -85,15 +91,17 @@ def test_a_robot_cut_off_from_the_broker_is_neutral_in_the_end(room):
 def test_what_comes_late_from_an_earlier_run_moves_nothing(room):
     node = room.node("rex")
     for session, number in ((2, 1), (1, 1), (1, 2), (2, 2), (1, 3)):
-        action = Action(session, number, 1, f"a{session}{number}")
+        action = ActionMessage(session, number, 1, f"a{session}{number}")
         node.receive("cubeling/1/hall/player/a/action", encode(action), room.now)
-        feeling = Feeling(session, number, session / 10, 0.0)
+        feeling = EmotionMessage(session, number, session / 10, 0.0)
         node.receive("cubeling/1/hall/player/a/emotion", encode(feeling), room.now)
-        node.receive("cubeling/1/hall/player/a/status", encode(Status(1, 9, "closed")), room.now)
+        node.receive(
+            "cubeling/1/hall/player/a/status", encode(StatusMessage(1, 9, "closed")), room.now
+        )
         node.tick(room.now)
     assert room.robots["rex"].played == ["a21", "a22"]
     assert room.robots["rex"].felt == [Emotion(0.2, 0.0)]
-    room.now += HOLD
+    room.now += HOLD_S
     node.tick(room.now)
     assert room.robots["rex"].felt == [Emotion(0.2, 0.0)]
 
@@ -125,9 +133,9 @@ def test_the_state_tells_what_the_robot_does_only_when_it_changes_and_not_too_of
     ann = room.player("a")
     room.node("rex")
     topic = "cubeling/1/hall/robot/rex/state"
-    told: list[RobotState] = []
+    told: list[StateMessage] = []
     onlooker = room.broker.bus()
-    onlooker.subscribe(topic, lambda _, payload: told.append(decode(RobotState, payload)))
+    onlooker.subscribe(topic, lambda _, payload: told.append(decode(StateMessage, payload)))
     onlooker.open()
     room.run(3.0)
     assert len(told) == 1
@@ -139,29 +147,29 @@ def test_the_state_tells_what_the_robot_does_only_when_it_changes_and_not_too_of
     assert len(told) < 2.0 / 0.2 + 5
     assert [state.number for state in told] == list(range(1, len(told) + 1))
     assert (told[-1].link, told[-1].player, told[-1].commanded) == ("lost", "hall/a", (0.99, 0.5))
-    status = decode(Status, room.broker.retained["cubeling/1/hall/robot/rex/status"].payload)
+    status = decode(StatusMessage, room.broker.retained["cubeling/1/hall/robot/rex/status"].payload)
     assert status.status == "online"  # the node is, the robot is not
 
 
 def test_more_players_than_a_robot_can_count_make_no_memory_grow(room):
     node = RobotNode(Member("hall", "robot", "rex"), FakeRobot(), 1, (Pattern.parse("*", "hall"),))
-    for number in range(10 * PLAYERS_MAX):
+    for number in range(10 * MAX_PLAYERS):
         for kind, message in (
-            ("emotion", Feeling(1, 1, 0.1, 0.1)),
-            ("status", Status(1, 1, "online")),
+            ("emotion", EmotionMessage(1, 1, 0.1, 0.1)),
+            ("status", StatusMessage(1, 1, "online")),
         ):
             topic = f"cubeling/1/hall/player/p{number}/{kind}"
             node.receive(topic, encode(message), number / 1000)
-    assert len(node.following.players) == PLAYERS_MAX
+    assert len(node.arbiter.players) == MAX_PLAYERS
 
 
 def test_more_robots_than_a_player_can_count_make_no_memory_grow(room):
     ann = room.player("a")
-    for number in range(10 * ROBOTS_MAX):
+    for number in range(10 * MAX_ROBOTS):
         for status in ("online", "lost") if number % 2 else ("online",):
-            said = Status(1, 1, status, ("hall/*",))
+            said = StatusMessage(1, 1, status, ("hall/*",))
             ann.receive(f"cubeling/1/hall/robot/r{number}/status", encode(said), room.now)
-    assert len(ann.followers.robots) == ROBOTS_MAX
+    assert len(ann.followers.robots) == MAX_ROBOTS
 
 
 @pytest.mark.parametrize(

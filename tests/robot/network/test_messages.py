@@ -1,6 +1,5 @@
 """Messages in the tree: what is written is read, what is wrong is refused, the document is true."""
 
-import dataclasses
 import json
 
 import pytest
@@ -8,23 +7,22 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.network import messages as m
-from robot.network import schema
-from robot.network.schema import MalformedError, decode, encode
-from robot.network.topics import Member, fits, is_name, member_of
+from robot.network.messages import MalformedError, decode, encode
+from robot.network.topics import Member, is_name, member_of, topic_matches
 from tools.network_reference import DOCUMENT, renewed
 
-KINDS = list(dict.fromkeys(m.KINDS.values()))
-COUNTS = st.integers(1, schema.COUNT_MAX)
+MESSAGE_TYPES = list(dict.fromkeys(m.MESSAGE_TYPES.values()))
+COUNTS = st.integers(1, m.MAX_INTEGER)
 UNITS = st.floats(-1, 1)
 TEXTS = st.text(max_size=20).filter(lambda text: text.isprintable())
 MESSAGES = st.one_of(
-    st.builds(m.Status, COUNTS, COUNTS, st.sampled_from(["online", "lost", "closed"]),
+    st.builds(m.StatusMessage, COUNTS, COUNTS, st.sampled_from(["online", "lost", "closed"]),
               st.lists(TEXTS, max_size=5).map(tuple)),
-    st.builds(m.Action, COUNTS, COUNTS, COUNTS, TEXTS, UNITS, st.floats(0, 1e6)),
-    st.builds(m.Feeling, COUNTS, COUNTS, UNITS, UNITS, st.none() | TEXTS),
-    st.builds(m.Taken, COUNTS, COUNTS,
+    st.builds(m.ActionMessage, COUNTS, COUNTS, COUNTS, TEXTS, UNITS, st.floats(0, 1e6)),
+    st.builds(m.EmotionMessage, COUNTS, COUNTS, UNITS, UNITS, st.none() | TEXTS),
+    st.builds(m.AckMessage, COUNTS, COUNTS,
               st.dictionaries(TEXTS, st.tuples(COUNTS, COUNTS), max_size=5)),
-    st.builds(m.RobotState, COUNTS, COUNTS, TEXTS, observed=st.none() | st.tuples(UNITS, UNITS),
+    st.builds(m.StateMessage, COUNTS, COUNTS, TEXTS, observed=st.none() | st.tuples(UNITS, UNITS),
               battery=st.none() | st.floats(0, 1)),
 )  # fmt: skip
 
@@ -36,11 +34,12 @@ def test_what_is_written_is_read(message):
 
 @given(MESSAGES, st.dictionaries(st.text(max_size=8), st.integers() | st.text(max_size=8)))
 def test_fields_of_a_later_version_are_skipped(message, later):
-    fields = {field.name for field in dataclasses.fields(message)}
+    fields = set(message.__struct_fields__)
     document = {k: v for k, v in later.items() if k not in fields} | json.loads(encode(message))
     assert decode(type(message), json.dumps(document).encode()) == message
 
 
+ACTION = m.ActionMessage
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=8),
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=4), inner),
@@ -48,9 +47,9 @@ JSON = st.recursive(
 )
 
 
-@given(st.sampled_from(KINDS), st.data())
+@given(st.sampled_from(MESSAGE_TYPES), st.data())
 def test_whatever_comes_is_read_or_refused_with_the_one_error(kind, data):
-    names = [field.name for field in dataclasses.fields(kind)]
+    names = list(kind.__struct_fields__)
     document = data.draw(st.dictionaries(st.sampled_from(names), JSON))
     for payload in (json.dumps(document).encode(), data.draw(st.binary(max_size=60))):
         try:
@@ -63,17 +62,25 @@ def test_whatever_comes_is_read_or_refused_with_the_one_error(kind, data):
 @pytest.mark.parametrize(
     ("kind", "payload", "says"),
     [
-        (m.Action, b"x" * 4097, "4097 bytes"),
-        (m.Action, b"[]", "no JSON object"),
-        (m.Action, b'{"session":1,"number":1,"oldest":1}', "name is missing"),
-        (m.Action, b'{"session":1,"number":0,"oldest":1,"name":"a"}', "number must be"),
-        (m.Action, b'{"session":1,"number":true,"oldest":1,"name":"a"}', "number must be"),
-        (m.Action, b'{"session":1,"number":9007199254740993,"oldest":1,"name":"a"}', "number"),
-        (m.Action, b'{"session":1,"number":1,"oldest":1,"name":"a\\n"}', "name must be"),
-        (m.Action, b'{"session":1,"number":1,"oldest":1,"name":"a","weight":1.1}', "weight"),
-        (m.Feeling, b'{"session":1,"number":1,"valence":NaN,"arousal":0}', "valence must be"),
-        (m.Status, b'{"session":1,"number":1,"status":"here"}', "status must be"),
-        (m.Taken, b'{"session":1,"number":1,"players":{"a/b":[1]}}', "players must be"),
+        (ACTION, b"x" * 4097, "4097 bytes"),
+        (ACTION, b"[]", "Expected `object`"),
+        (ACTION, b'{"session":1,"number":1,"oldest":1}', "missing required field `name`"),
+        (ACTION, b'{"session":1,"number":0,"oldest":1,"name":"a"}', "number"),
+        (ACTION, b'{"session":1,"number":true,"oldest":1,"name":"a"}', "number"),
+        (
+            m.ActionMessage,
+            b'{"session":1,"number":9007199254740993,"oldest":1,"name":"a"}',
+            "number",
+        ),
+        (ACTION, b'{"session":1,"number":1,"oldest":1,"name":"a\\n"}', "name"),
+        (ACTION, b'{"session":1,"number":1,"oldest":1,"name":"a","weight":1.1}', "weight"),
+        (
+            m.EmotionMessage,
+            b'{"session":1,"number":1,"valence":NaN,"arousal":0}',
+            "JSON is malformed",
+        ),
+        (m.StatusMessage, b'{"session":1,"number":1,"status":"here"}', "status"),
+        (m.AckMessage, b'{"session":1,"number":1,"players":{"a/b":[1]}}', "players"),
     ],
 )
 def test_what_is_not_allowed_is_refused(kind, payload, says):
@@ -83,18 +90,21 @@ def test_what_is_not_allowed_is_refused(kind, payload, says):
 
 def test_the_largest_messages_fit():
     place = "ä" * 16 + "/" + "ä" * 16
-    marks = {f"{place[:-1]}{n:02}": (schema.COUNT_MAX,) * 2 for n in range(schema.LIST_MAX)}
+    marks = {f"{place[:-1]}{n:02}": (m.MAX_INTEGER,) * 2 for n in range(m.MAX_ENTRIES)}
     follows = tuple(marks)
-    for message in (m.Taken(1, schema.COUNT_MAX, marks), m.Status(1, 1, "online", follows)):
+    for message in (
+        m.AckMessage(1, m.MAX_INTEGER, marks),
+        m.StatusMessage(1, 1, "online", follows),
+    ):
         assert decode(type(message), encode(message)) == message
 
 
 def test_the_document_says_what_the_code_says():
     text = DOCUMENT.read_text("utf-8")
     assert renewed(text) == text, "run python -m tools.network_reference"
-    for form in KINDS:
-        for field in dataclasses.fields(form):
-            assert f"| `{field.name}` |" in text
+    for form in MESSAGE_TYPES:
+        for name in form.__struct_fields__:
+            assert f"| `{name}` |" in text
 
 
 @given(st.text(max_size=40))
@@ -103,7 +113,7 @@ def test_a_name_never_means_anything_in_a_topic(text):
         topic = Member(text, "robot", text).topic("state")
         assert member_of(topic) == (Member(text, "robot", text), "state")
         assert not set(text) & set("/+#$\0 :=")
-        assert fits("cubeling/1/+/robot/+/state", topic)
+        assert topic_matches("cubeling/1/+/robot/+/state", topic)
 
 
 @pytest.mark.parametrize(

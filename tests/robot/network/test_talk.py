@@ -6,11 +6,10 @@ from hypothesis import strategies as st
 
 from affect.emotion import Emotion
 from robot.network import Member, Player
-from robot.network.endpoint import SILENT_AFTER
+from robot.network.endpoint import LOST_AFTER_S
 from robot.network.followers import Followers
-from robot.network.messages import Action, Status, Taken
-from robot.network.player import CAPACITY, EMOTION_EVERY, MAX_AGE
-from robot.network.schema import decode, encode
+from robot.network.messages import AckMessage, ActionMessage, StatusMessage, decode, encode
+from robot.network.player import EMOTION_EVERY_S, MAX_AGE_S, MAX_PENDING_ACTIONS
 from tests.robot.network.conftest import Harm, Room
 
 STEPS = st.lists(
@@ -57,7 +56,7 @@ def test_every_action_is_done_once_and_in_order_whatever_the_bus_does(
             room.run(amount * 0.02)
             room.broker.start()
         elif what == "cut":
-            room.buses[who].cut()
+            room.buses[who].disconnect()
         elif what == "wait":
             room.run(amount * 0.02, step=0.04)
         room.run(0.12, step=0.04)
@@ -70,7 +69,7 @@ def test_every_action_is_done_once_and_in_order_whatever_the_bus_does(
             shown = [side * e.valence for e in robot.felt if side * e.valence > 0]
             changes = [value for i, value in enumerate(shown) if i == 0 or value != shown[i - 1]]
             assert changes == sorted(changes)
-    assert room.stations["a"].endpoint.waiting == room.stations["b"].endpoint.waiting == 0
+    assert room.stations["a"].endpoint.pending == room.stations["b"].endpoint.pending == 0
 
 
 def test_the_last_feeling_is_on_the_robot_after_the_broker_lost_its_memory(room):
@@ -107,22 +106,22 @@ def test_feelings_are_rate_limited_and_the_latest_wins(room):
     room.run(0.2)
     felt = room.robots["rex"].felt
     assert felt[-1].valence == 0.99
-    assert len(felt) <= 2.0 / EMOTION_EVERY + 2
+    assert len(felt) <= 2.0 / EMOTION_EVERY_S + 2
 
 
 def test_an_action_too_old_is_given_up_and_counted(room):
-    ann = room.player("a", max_age=MAX_AGE)
+    ann = room.player("a", max_age=MAX_AGE_S)
     room.node("rex")
     room.run(0.5)
     room.broker.kill()
     room.act("a")
-    room.run(MAX_AGE - 1.0)
+    room.run(MAX_AGE_S - 1.0)
     room.act("a")
     room.run(2.0)
     room.broker.start()
     room.run(2.0)
     assert room.robots["rex"].played == ["a2"]
-    assert (ann.counts.expired, ann.waiting) == (1, 0)
+    assert (ann.counts.expired, ann.pending) == (1, 0)
 
 
 def test_only_so_many_actions_wait_and_those_given_up_are_counted(room):
@@ -130,9 +129,9 @@ def test_only_so_many_actions_wait_and_those_given_up_are_counted(room):
     room.node("rex")
     room.run(0.5)
     room.broker.kill()
-    for _ in range(CAPACITY + 3):
+    for _ in range(MAX_PENDING_ACTIONS + 3):
         room.act("a")
-    assert (ann.waiting, ann.counts.overrun) == (CAPACITY, 3)
+    assert (ann.pending, ann.counts.overrun) == (MAX_PENDING_ACTIONS, 3)
     room.broker.start()
     room.run(2.0)
     assert room.robots["rex"].played == room.made["a"][3:]
@@ -143,7 +142,7 @@ def test_a_robot_whose_line_broke_gets_what_it_missed(room):
     room.node("rex")
     room.node("max")
     room.run(0.5)
-    room.buses["rex"].cut()
+    room.buses["rex"].disconnect()
     room.held.add("rex")
     for _ in range(3):
         room.act("a")
@@ -192,8 +191,8 @@ def test_of_two_programs_under_one_name_the_one_started_last_speaks(room):
     room.stations["first"], room.buses["first"] = old, room.buses["a"]
     second = room.player("a", session=5)  # by a clock that is behind
     room.run(0.5)
-    assert "another program" in first.trouble
-    assert second.trouble == ""
+    assert "another program" in first.problem
+    assert second.problem == ""
     room.act("a")
     first.feel(Emotion(-1.0, 1.0))
     room.run(3.0)
@@ -202,7 +201,7 @@ def test_of_two_programs_under_one_name_the_one_started_last_speaks(room):
     room.stations["old"], room.buses["old"] = room.stations["rex"], room.buses["rex"]
     room.node("rex")
     room.run(0.5)
-    assert "another program" in rex.trouble
+    assert "another program" in rex.problem
     room.act("a")
     room.run(1.0)
     assert room.robots["rex"].played == ["a1", "a2"]
@@ -231,16 +230,16 @@ def test_a_lost_robot_misses_the_action_and_its_node_says_so(room):
     room.robots["rex"].link = "ready"
     room.run(2.0)
     assert room.robots["rex"].played == []
-    assert (node.counts["missed"], room.stations["a"].endpoint.waiting) == (1, 0)
+    assert (node.counts["missed"], room.stations["a"].endpoint.pending) == (1, 0)
 
 
 def test_what_nobody_follows_is_not_waited_for_for_ever(room):
-    ann = room.player("a", max_age=MAX_AGE)
+    ann = room.player("a", max_age=MAX_AGE_S)
     room.node("rex", follow="b")
     room.run(0.5)
     room.act("a")
-    room.run(MAX_AGE + 1.0)
-    assert (ann.waiting, ann.counts.sent) == (0, 1)
+    room.run(MAX_AGE_S + 1.0)
+    assert (ann.pending, ann.counts.sent) == (0, 1)
     assert room.robots["rex"].played == []
 
 
@@ -252,7 +251,7 @@ def test_a_robot_that_said_goodbye_is_not_waited_for(room):
     room.stations.pop("max").close()
     room.act("a")
     room.run(0.5)
-    assert ann.waiting == 0
+    assert ann.pending == 0
 
 
 def test_a_robot_that_is_silent_is_waited_for_but_not_pestered(room):
@@ -261,39 +260,39 @@ def test_a_robot_that_is_silent_is_waited_for_but_not_pestered(room):
     room.run(0.5)
     del room.stations["rex"]  # its program hangs, and the connection stands
     room.act("a")
-    room.run(SILENT_AFTER)
+    room.run(LOST_AFTER_S)
     sent = ann.counts.sent
     assert 3 < sent < 10
     room.run(10.0)
-    assert (ann.counts.sent, ann.waiting) == (sent, 1)
+    assert (ann.counts.sent, ann.pending) == (sent, 1)
 
 
 def test_a_late_acknowledgement_takes_nothing_back():
     ann, rex = Member("hall", "player", "a"), Member("hall", "robot", "rex")
     followers = Followers(ann)
-    followers.hear(rex, Status(1, 1, "online", ("hall/a",)), 0.0)
+    followers.receive_status(rex, StatusMessage(1, 1, "online", ("hall/a",)), 0.0)
     assert followers.acknowledge(rex, 5)
     assert not followers.acknowledge(rex, 3)
-    assert followers.done() == 5
+    assert followers.taken_by_all() == 5
 
 
 def test_an_acknowledgement_of_the_session_before_says_nothing_of_this_one(room):
     ann = Player(Member("hall", "player", "a"), session=5)
     ann.connected(0.0)
     robot = "cubeling/1/hall/robot/rex"
-    ann.receive(f"{robot}/status", encode(Status(1, 1, "online", ("*/*",))), 0.0)
+    ann.receive(f"{robot}/status", encode(StatusMessage(1, 1, "online", ("*/*",))), 0.0)
     ann.act("a1", 0.0, 0.0)
-    ann.letters(0.0)
-    ann.receive(f"{robot}/taken", encode(Taken(1, 1, {"hall/a": (5, 1)})), 0.1)
+    ann.outgoing(0.0)
+    ann.receive(f"{robot}/taken", encode(AckMessage(1, 1, {"hall/a": (5, 1)})), 0.1)
     ann.tick(0.1)
-    assert ann.waiting == 0
-    ann.receive("cubeling/1/hall/player/a/status", encode(Status(900, 1, "lost")), 0.2)
+    assert ann.pending == 0
+    ann.receive("cubeling/1/hall/player/a/status", encode(StatusMessage(900, 1, "lost")), 0.2)
     ann.act("a2", 0.0, 0.3)
-    ann.receive(f"{robot}/taken", encode(Taken(1, 1, {"hall/a": (5, 1)})), 0.3)
+    ann.receive(f"{robot}/taken", encode(AckMessage(1, 1, {"hall/a": (5, 1)})), 0.3)
     ann.tick(0.4)
-    assert ann.waiting == 1
-    (action,) = [letter for letter in ann.letters(0.4) if letter.topic.endswith("action")]
-    assert decode(Action, action.payload).session == 901
+    assert ann.pending == 1
+    (action,) = [letter for letter in ann.outgoing(0.4) if letter.topic.endswith("action")]
+    assert decode(ActionMessage, action.payload).session == 901
 
 
 def test_nothing_that_arrives_stops_a_member(room):
