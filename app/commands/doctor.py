@@ -203,7 +203,7 @@ def camera_report(uri: str, source: FrameSource) -> str:
     if not isinstance(source, LiveFrames):
         return size
     health = source.health
-    settings = [f"{setting.name} {setting.told}" for setting in health.settings]
+    settings = [f"{setting.name} {setting.detail}" for setting in health.settings]
     return "\n".join([f"{size}, {camera_line(health)}", *settings])
 
 

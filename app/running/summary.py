@@ -145,7 +145,7 @@ def camera_line(health: Health) -> str:
     '30.0 pictures/s, 41 ms old (since arrival), 2 left out for newer ones, none waited'
     """
     clock = "since exposure" if health.stamped_by == "driver" else "since arrival"
-    waited = f"at most {health.deepest} waited" if health.deepest else "none waited"
+    waited = f"at most {health.max_queue} waited" if health.max_queue else "none waited"
     return (
         f"{health.rate:.1f} pictures/s, {1000 * health.latency:.0f} ms old ({clock}), "
         f"{health.dropped} left out for newer ones, {waited}"

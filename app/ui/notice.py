@@ -26,6 +26,6 @@ def notice(health: Health) -> Notice | None:
         return None
     if health.name.startswith("http"):
         return Notice("No picture from the phone", "Is its camera app open, and in this network?")
-    if health.still:
+    if health.frozen:
         return Notice("The picture stands still", "Uncover the camera, or plug it in again.")
     return Notice("Camera lost: plug it in again", "The play goes on by itself.")

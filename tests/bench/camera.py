@@ -107,7 +107,7 @@ def threaded(driver: Driver, work: float, count: int) -> tuple[list[float], int,
             if len(ages) >= count:
                 break
         health = source.health
-    return ages, health.dropped, health.deepest
+    return ages, health.dropped, health.max_queue
 
 
 def delays(driver: Driver, table: Table) -> None:

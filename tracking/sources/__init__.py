@@ -1,26 +1,37 @@
-"""Where frames come from: `open_source` turns a URI into a `FrameSource`.
+"""Frame sources: `open_source` turns a URI into a `FrameSource`.
 
-Each kind is imported when it is asked for, so that a camera starts without a video library.
+A new kind of source is one module with a function `open_uri(uri, size, clock)` and one line in
+`SCHEMES` or `SUFFIXES`. The module is imported when the first such source is opened, so a camera
+starts without loading the video libraries.
 """
 
 import time
-from collections.abc import Callable
+from importlib import import_module
+from pathlib import PurePath
 
 from tracking.errors import TrackingError
 from tracking.sources.base import FrameSource, LiveFrames
-from tracking.sources.health import Health
+from tracking.sources.device import Clock, Health
 
-CAMERA_SIZE = (1280, 720)
-"""What a camera is asked for where the caller does not say."""
+SCHEMES = {
+    "camera": "tracking.sources.camera",
+    "http": "tracking.sources.http",
+    "https": "tracking.sources.http",
+    "synthetic": "tracking.synthetic.source",
+}
+"""Module that opens the URIs of a scheme."""
+
+SUFFIXES = {".mcap": "tracking.sources.session"}
+"""Module that opens files with a suffix."""
+
+OTHER_FILES = "tracking.sources.video"
+"""Module that opens all other files."""
 
 
 def open_source(
-    uri: str,
-    *,
-    size: tuple[int, int] | None = None,
-    clock: Callable[[], float] = time.monotonic,
+    uri: str, *, size: tuple[int, int] | None = None, clock: Clock = time.monotonic
 ) -> FrameSource:
-    """Open whatever the URI names.
+    """Open the source that a URI names.
 
     Parameters
     ----------
@@ -28,37 +39,21 @@ def open_source(
         "camera:0", "camera:/dev/video0", "camera:0?exposure=8&focus=30&lock=0", "take.mp4",
         "session.mcap", "http://phone:8080/video", or "synthetic:NAME".
     size
-        Width and height to ask of a camera [px]; other sources have their own.
+        Width and height to request from a camera [px]; other sources ignore it.
     clock
-        Seconds; stamps the frames of live sources and tells when they fell silent.
+        Returns the time [s]; timestamps the frames of live sources and detects their loss.
 
     Raises
     ------
     TrackingError
-        There is nothing to read: one line says why.
+        The source cannot be opened.
     """
-    scheme, _, rest = uri.partition(":")
-    if scheme == "camera":
-        from tracking.sources.camera import CameraSource
-
-        return CameraSource.from_uri(rest, size or CAMERA_SIZE, clock)
-    if scheme in ("http", "https"):
-        from tracking.sources.http import HttpSource
-
-        return HttpSource(uri, clock=clock)
-    if scheme == "synthetic":
-        from tracking.synthetic import open_synthetic
-
-        return open_synthetic(rest)
-    if "://" in uri:
-        raise TrackingError(f"cannot open '{uri}': '{scheme}' is not camera, http or synthetic")
-    if uri.endswith(".mcap"):
-        from tracking.sources.session import SessionSource
-
-        return SessionSource(uri)
-    from tracking.sources.video import VideoSource
-
-    return VideoSource(uri)
+    scheme = uri.partition(":")[0]
+    if scheme not in SCHEMES and "://" in uri:
+        raise TrackingError(f"cannot open '{uri}': use {', '.join(SCHEMES)} or a file's path")
+    module = SCHEMES.get(scheme) or SUFFIXES.get(PurePath(uri).suffix, OTHER_FILES)
+    source: FrameSource = import_module(module).open_uri(uri, size, clock)
+    return source
 
 
 __all__ = ["FrameSource", "Health", "LiveFrames", "open_source"]

@@ -1,56 +1,57 @@
-"""What every source of frames offers, and the rule for its timestamps."""
+"""The interfaces of frame sources, and the rule for their timestamps."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from types import TracebackType
 from typing import Protocol, Self, runtime_checkable
 
+from tracking.errors import TrackingError
 from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
-from tracking.sources.health import Health
+from tracking.sources.device import Health
 
 
 @runtime_checkable
 class FrameSource(Protocol):
-    """Something that frames come out of: a camera, a file, a recording, a phone, a drawing.
+    """A source of frames: a camera, a video, a recorded session, a phone, a renderer.
 
-    Lifecycle: whoever opens a source closes it, best with `with`. `close` may be called twice, and
-    of a live source from another thread than the one that iterates; the iteration then ends.
-    A source is iterated once.
+    Lifecycle: the caller that opens a source closes it, best with `with`. `close` may be called
+    twice, and for a live source also from another thread, which ends the iteration. A source is
+    iterated once.
 
-    A device that is lost while it is iterated (unplugged, silent, frozen) is no error at once: the
-    source opens it anew until it is back, and goes on with the same clock; `LiveFrames` shows the
-    gap. A plain iteration waits through a gap of up to 30 s, then it ends with the error.
+    If the device of a live source is lost (unplugged, silent, frozen), the source opens it again
+    until it is back and continues on the same clock; `LiveFrames` shows the gap. A plain iteration
+    waits through a gap of up to 30 s, then raises.
 
     Raises
     ------
     TrackingError
-        While opening: there is nothing to read. While iterating: the source fell silent or broke.
-        Every frame that could be read has been given out before.
+        While opening: there is nothing to read. While iterating: the source fell silent or broke;
+        all readable frames have been returned before.
     """
 
     intrinsics: Intrinsics | None
-    """Of the camera that took the frames; None where the source does not know them."""
+    """Intrinsics of the camera that took the frames; None if the source does not know them."""
 
     size: tuple[int, int]
     """Width and height of every frame [px]."""
 
     rate: float
-    """Nominal rate [frames/s]; the timestamps say what really came."""
+    """Nominal rate [frames/s]; the timestamps give the actual one."""
 
     live: bool
-    """Whether frames arrive by themselves and late ones are dropped (True), or each waits until
-    it is asked for (False)."""
+    """Whether frames arrive by themselves and old ones are dropped (True), or each frame waits
+    until it is requested (False)."""
 
     duration: float | None
-    """Length [s]; None where it has no end or none is known."""
+    """Length [s]; None if it is unlimited or unknown."""
 
     def __iter__(self) -> Iterator[Frame]:
-        """Give out the frames in order."""
+        """Return the frames in order."""
         ...
 
     def close(self) -> None:
-        """Let go of the device, file or connection. Safe to call again."""
+        """Release the device, file or connection. May be called again."""
         ...
 
     def __enter__(self) -> Self:
@@ -67,40 +68,71 @@ class FrameSource(Protocol):
 
 @runtime_checkable
 class LiveFrames(FrameSource, Protocol):
-    """A live source that says how it fares, for who must not be blocked: a window, a robot.
+    """A live source that reports its health, for callers that must not block: a window, a robot.
 
-    Whatever happens to the device, `wait` returns within its timeout, and `health` says within a
-    second that nothing new comes: "lost" (unplugged, silent, garbage), "frozen" (the very same
-    picture again and again) or, once the device is open again, "recovering"; all three last
-    until a new picture comes, however often the device is tried. Timestamps go on increasing
-    across a gap. `wait` and iterating may be mixed; one thread does either.
+    `wait` always returns within its timeout. `health` reports within a second that no new images
+    arrive: "lost" (unplugged, silent, undecodable), "frozen" (identical images) or, once the device
+    is open again, "recovering". The state lasts until a new image arrives. Timestamps keep
+    increasing across a gap. `wait` and iteration may be mixed, in one thread.
     """
 
     def wait(self, timeout: float, patience: float | None = None) -> Frame | None:
-        """Wait for a frame newer than the last.
+        """Wait for a frame newer than the last one.
 
         Parameters
         ----------
         timeout
-            Return None when none came for so long [s].
+            Return None if no frame arrives within this time [s].
         patience
-            How long the source may be lost or frozen [s]; None: for ever.
+            How long the source may be lost or frozen [s]; None: without limit.
 
         Raises
         ------
         TrackingError
-            It was lost for longer than `patience`, or came back with pictures of another size.
+            It was lost for longer than `patience`, or the size of its images changed.
         """
         ...
 
     @property
     def health(self) -> Health:
-        """How the source fares at this moment; callable from any thread."""
+        """The current state of the source. May be called from any thread."""
         ...
 
 
+class StoredFrames(FrameSource):
+    """Frames that are decoded on request from a file; the first one is decoded while opening."""
+
+    live = False
+
+    def start(self, frames: Generator[Frame, None, None], if_empty: str) -> None:
+        """Decode the first frame, to know the size.
+
+        Raises
+        ------
+        TrackingError
+            There is no frame; `if_empty` is the message.
+        """
+        self._frames = frames
+        self._first = next(frames, None)
+        if self._first is None:
+            raise TrackingError(if_empty)
+        height, width = self._first.image.shape[:2]
+        self.size = (width, height)
+
+    def __iter__(self) -> Iterator[Frame]:
+        if self._first is not None:
+            first, self._first = self._first, None
+            yield first
+        yield from self._frames
+
+    def close(self) -> None:
+        """End the iteration. May be called again."""
+        self._first = None
+        self._frames.close()
+
+
 class Timeline:
-    """Turns a source's raw times into timestamps that a session file keeps exactly.
+    """Turns a source's times into timestamps that a session file stores exactly.
 
     >>> line = Timeline()
     >>> [line.stamp(t) for t in (0.1234567891234, 0.5, 0.4)]
@@ -111,15 +143,15 @@ class Timeline:
         self._last = -float("inf")
 
     def stamp(self, seconds: float) -> float:
-        """Round to whole nanoseconds, and never go back."""
+        """Round a time to whole nanoseconds; never return less than before."""
         self._last = max(self._last, seconds_of(nanoseconds_of(seconds)))
         return self._last
 
 
 def nanoseconds_of(seconds: float) -> int:
-    """Return the whole nanoseconds nearest to a time.
+    """Return a time in whole nanoseconds.
 
-    `seconds * 1e9` alone would be off after 26 days, the age at which some computers are rebooted.
+    `seconds * 1e9` alone loses precision once a computer has run for 26 days.
 
     >>> nanoseconds_of(9_000_000.123456789)
     9000000123456789
@@ -129,5 +161,5 @@ def nanoseconds_of(seconds: float) -> int:
 
 
 def seconds_of(nanoseconds: int) -> float:
-    """Return a whole number of nanoseconds in seconds, the inverse of `nanoseconds_of`."""
+    """Return a time in seconds, the inverse of `nanoseconds_of`."""
     return nanoseconds / 1_000_000_000

@@ -1,29 +1,68 @@
-"""Frames from a webcam; its own JPEG bytes where the driver gives them."""
+"""Frames from a webcam, with the camera's own JPEG data if the driver provides it."""
 
 import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
-from typing import TypeAlias
+from dataclasses import dataclass
+from typing import ClassVar, TypeAlias
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from tracking.errors import TrackingError
-from tracking.sources.camera_options import CameraOptions
-from tracking.sources.device import Clock
-from tracking.sources.devices import check_present, device_path, lasting_path
-from tracking.sources.health import Setting
+from tracking.sources.camera_controls import (
+    EXPOSURE,
+    EXPOSURE_UNITS_PER_MS,
+    FOCUS,
+    ControlLock,
+)
+from tracking.sources.device import Clock, DeviceSetting, Image
 from tracking.sources.live import LiveSource
-from tracking.sources.locking import EXPOSURE, FOCUS, MS, Lock
-from tracking.sources.pictures import Picture
-from tracking.sources.videocapture import VideoCapture, open_capture
+from tracking.sources.options import UriOptions
+from tracking.sources.video_device import (
+    VideoCapture,
+    check_present,
+    device_path,
+    open_capture,
+    persistent_path,
+)
 
 MJPG = cv2.VideoWriter.fourcc(*"MJPG")
-"""At 1280x720 most cameras reach 30 frames a second only in this format."""
+"""The only format in which most cameras reach 30 frames/s at 1280x720."""
+
+DEFAULT_SIZE_PX = (1280, 720)
+"""Size that is requested unless the caller says otherwise."""
+
+DEFAULT_BUFFERS = 2
+"""One is filled while the other is read. With a single buffer many drivers drop every other image
+(nokhwa#128, horus#60). As the capture thread always reads, a second one adds no delay."""
 
 OpenCapture: TypeAlias = Callable[[int | str], VideoCapture]
+
+
+@dataclass(frozen=True)
+class CameraOptions(UriOptions):
+    """Settings of a camera.
+
+    >>> CameraOptions.parse("camera:/dev/video2?exposure=8&lock=0")
+    ('/dev/video2', CameraOptions(lock=False, exposure=8.0, focus=None, buffers=2))
+    """
+
+    LIMITS: ClassVar = {"exposure": (0.1, 1000.0), "focus": (0.0, 10000.0), "buffers": (1.0, 10.0)}
+
+    lock: bool = True
+    """Whether exposure and focus are locked once they have settled."""
+
+    exposure: float | None = None
+    """Exposure time [ms]: short against motion blur, long in the dark; None: as the automatic
+    control has settled."""
+
+    focus: float | None = None
+    """In the driver's unit, often 0 (far) to 255 (near); None: as the automatic has settled."""
+
+    buffers: int = DEFAULT_BUFFERS
+    """Number of images that the driver may queue."""
 
 
 class CameraSource(LiveSource):
@@ -32,21 +71,21 @@ class CameraSource(LiveSource):
     Parameters
     ----------
     device
-        Its number, or its path such as "/dev/video0". Unplugged and plugged in again, it is found
-        by its own name, where Linux knows that, even if its number has moved.
+        Its number, or its path such as "/dev/video0". On Linux, a camera that is plugged in again
+        is found by its name even if its number has changed.
     size
-        Width and height to ask for [px]; the camera may answer with others.
+        Width and height to request [px]; the camera may choose others.
     options
-        What else to ask of it.
+        Further settings.
     clock
-        Seconds; stamps the frames where the driver does not.
+        Returns the time [s]; timestamps the frames if the driver does not.
     capture
-        Opens the device; another one serves tests.
+        Opens the device; tests replace it.
 
     Raises
     ------
     TrackingError
-        The camera is not there, or gave no picture for 2 s.
+        The camera does not exist, or delivered no image for 2 s.
     """
 
     def __init__(
@@ -59,22 +98,16 @@ class CameraSource(LiveSource):
         capture: OpenCapture | None = None,
     ) -> None:
         name = f"camera {device}"
-        opener = capture or _finder(device)
-        asked = options or CameraOptions()
-        super().__init__(lambda: CaptureDevice(opener(device), name, size, asked), name, clock)
+        opener = capture or _capture_opener(device)
+        chosen = options or CameraOptions()
+        super().__init__(lambda: CaptureDevice(opener(device), name, size, chosen), name, clock)
 
-    @classmethod
-    def from_uri(cls, rest: str, size: tuple[int, int], clock: Clock) -> "CameraSource":
-        """Open what stands behind "camera:"; nothing means the first camera.
 
-        Raises
-        ------
-        TrackingError
-            An option behind "?" is unknown or has no such value, or the camera does not open.
-        """
-        device, options = CameraOptions.parse(rest)
-        number = int(device or 0) if (device or "0").isdecimal() else device
-        return cls(number, size, options=options, clock=clock)
+def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> CameraSource:
+    """Open "camera:DEVICE?key=value"; without a device, the first camera."""
+    text, options = CameraOptions.parse(uri)
+    device = int(text or 0) if (text or "0").isdecimal() else text
+    return CameraSource(device, size or DEFAULT_SIZE_PX, options=options, clock=clock)
 
 
 class CaptureDevice:
@@ -87,98 +120,100 @@ class CaptureDevice:
         if not capture.isOpened():
             capture.release()
             raise TrackingError(
-                f"{name} does not open: another program may use it, or it is no camera; "
+                f"{name} does not open: another program may use it, or it is not a camera; "
                 "close the other program, or try the next number"
             )
         self.exposed: float | None = None
-        # The format first: the sizes that a camera offers depend on it.
+        # The format first: the available sizes depend on it.
         capture.set(cv2.CAP_PROP_FOURCC, MJPG)
         capture.set(cv2.CAP_PROP_FRAME_WIDTH, size[0])
         capture.set(cv2.CAP_PROP_FRAME_HEIGHT, size[1])
-        # Only V4L2 hands out the JPEG bytes; settings are read back, as drivers refuse silently.
-        honoured = int(capture.get(cv2.CAP_PROP_FOURCC)) == MJPG
-        if sys.platform == "linux" and honoured:
+        # Only V4L2 returns the JPEG data. Read the format back: drivers refuse silently.
+        gives_jpeg = int(capture.get(cv2.CAP_PROP_FOURCC)) == MJPG
+        if sys.platform == "linux" and gives_jpeg:
             capture.set(cv2.CAP_PROP_CONVERT_RGB, 0)
         rate = capture.get(cv2.CAP_PROP_FPS)
         self.rate = float(rate) if 1 <= rate <= 1000 else 30.0
-        self._buffers = _ask_buffers(capture, options.buffers)
+        self._buffers = _request_buffers(capture, options.buffers)
         self._locks = _locks(capture, options)
 
     @property
-    def settings(self) -> tuple[Setting, ...]:
-        """What the camera was asked for, and what became of it."""
+    def settings(self) -> tuple[DeviceSetting, ...]:
+        """What was requested from the camera, and the result."""
         return self._buffers, *(lock.setting for lock in self._locks)
 
-    def read(self) -> Picture | bytes | None:
-        """Wait for the next picture."""
-        good, given = self._capture.read()
-        picture = _picture(given) if good and given is not None else None
-        if picture is not None:
-            # V4L2: the buffer's own time, milliseconds of CLOCK_MONOTONIC; elsewhere anything,
-            # so `ExposureClock` holds it against the clock.
+    def read(self) -> Image | bytes | None:
+        """Wait for the next image."""
+        success, data = self._capture.read()
+        image = _converted(data) if success and data is not None else None
+        if image is not None:
+            # V4L2 gives the buffer's time in milliseconds of CLOCK_MONOTONIC. Other systems give
+            # arbitrary numbers, so `ExposureClock` compares them with the clock.
             self.exposed = self._capture.get(cv2.CAP_PROP_POS_MSEC) / 1000.0
             for lock in self._locks:
-                lock.look(picture)
-        return picture
+                lock.update(image)
+        return image
 
     def interrupt(self) -> None:
-        """Nothing can stop a driver that waits."""
+        """Do nothing: a blocked driver cannot be interrupted."""
 
     def close(self) -> None:
-        """Release the camera, and leave its automatics on for whoever opens it next."""
+        """Release the camera, with its automatic controls on for the next program."""
         for lock in self._locks:
             lock.release()
         self._capture.release()
 
 
-def _finder(device: int | str) -> OpenCapture:
-    """Return what opens a camera, and opens the same one again wherever it was plugged in."""
-    given = device_path(device)
-    check_present(device, given)
+def _capture_opener(device: int | str) -> OpenCapture:
+    """Return a function that opens a camera, also after it was plugged in elsewhere."""
+    path = device_path(device)
+    check_present(device, path)
     if sys.platform != "linux":
         return open_capture
-    path = lasting_path(given)
+    path = persistent_path(path)
 
-    def find(_: int | str) -> VideoCapture:
+    def reopen(_: int | str) -> VideoCapture:
         check_present(device, path)
-        return open_capture(str(Path(path).resolve()))
+        return open_capture(str(path.resolve()))
 
-    return find
+    return reopen
 
 
-def _ask_buffers(capture: VideoCapture, count: int) -> Setting:
+def _request_buffers(capture: VideoCapture, count: int) -> DeviceSetting:
     capture.set(cv2.CAP_PROP_BUFFERSIZE, count)
-    given = int(capture.get(cv2.CAP_PROP_BUFFERSIZE))
-    if given <= 0:
-        return Setting("buffers", False, "the driver does not tell how many it has")
-    return Setting("buffers", given == count, f"{given}, asked for {count}")
+    actual = int(capture.get(cv2.CAP_PROP_BUFFERSIZE))
+    if actual <= 0:
+        return DeviceSetting("buffers", False, "the driver does not report their number")
+    return DeviceSetting("buffers", actual == count, f"{actual}, requested {count}")
 
 
-def _locks(capture: VideoCapture, options: CameraOptions) -> tuple[Lock, ...]:
-    if sys.platform != "linux":  # the other systems' drivers take and tell other numbers
+def _locks(capture: VideoCapture, options: CameraOptions) -> tuple[ControlLock, ...]:
+    if sys.platform != "linux":  # other systems' drivers use other units
         return ()
-    exposure = None if options.exposure is None else options.exposure * MS
+    exposure = None if options.exposure is None else options.exposure * EXPOSURE_UNITS_PER_MS
     wanted = ((EXPOSURE, exposure), (FOCUS, options.focus))
     return tuple(
-        Lock(capture, knob, value) for knob, value in wanted if options.lock or value is not None
+        ControlLock(capture, control, value)
+        for control, value in wanted
+        if options.lock or value is not None
     )
 
 
-def _picture(given: NDArray[np.uint8]) -> Picture | bytes | None:
-    """Tell a JPEG from pixels by the shape in which OpenCV gives it."""
-    if 1 in given.shape[:2] or given.ndim == 1:
-        return _trimmed(given.tobytes())
-    if given.ndim == 2:
-        return np.asarray(cv2.cvtColor(given, cv2.COLOR_GRAY2BGR), np.uint8)
-    if given.shape[2] == 2:  # the camera does not do MJPG after all
-        return np.asarray(cv2.cvtColor(given, cv2.COLOR_YUV2BGR_YUY2), np.uint8)
-    return given
+def _converted(data: NDArray[np.uint8]) -> Image | bytes:
+    """Tell JPEG data from pixels by its shape in OpenCV; convert pixels to BGR."""
+    if 1 in data.shape[:2] or data.ndim == 1:
+        return _trimmed(data.tobytes())
+    if data.ndim == 2:
+        return np.asarray(cv2.cvtColor(data, cv2.COLOR_GRAY2BGR), np.uint8)
+    if data.shape[2] == 2:  # the camera does not use MJPG after all
+        return np.asarray(cv2.cvtColor(data, cv2.COLOR_YUV2BGR_YUY2), np.uint8)
+    return data
 
 
 def _trimmed(data: bytes) -> bytes:
-    """Drop what follows the picture: some drivers give their whole buffer, old frames and all.
+    """Cut the data off after the JPEG: some drivers return their whole buffer.
 
-    Behind the start of scan (FF DA), FF D9 can be nothing but the end of the picture.
+    After the start of scan (FF DA), FF D9 can only be the end of the image.
     """
     end = data.find(b"\xff\xd9", max(data.find(b"\xff\xda"), 0))
     return data if end < 0 else data[: end + 2]

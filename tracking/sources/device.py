@@ -1,56 +1,131 @@
-"""What a capture thread reads from."""
+"""A live device that delivers images, and the health of the source that reads it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, TypeAlias
+from typing import Literal, Protocol, TypeAlias
 
-from tracking.sources.health import Setting
-from tracking.sources.pictures import Picture
+import numpy as np
+from numpy.typing import NDArray
 
 Clock: TypeAlias = Callable[[], float]
+"""Returns the time [s]."""
+
+Image: TypeAlias = NDArray[np.uint8]
+"""(H, W, 3) BGR."""
+
+SourceState: TypeAlias = Literal["running", "lost", "frozen", "recovering", "closed"]
+"""Running; disconnected or silent; repeating the same image; open again, but no image yet."""
+
+
+@dataclass(frozen=True)
+class DeviceSetting:
+    """A setting that was requested from a device, and the result."""
+
+    name: str
+    """ "exposure", "focus", "buffers"."""
+
+    applied: bool
+    """Whether the device uses it, according to the value read back."""
+
+    detail: str
+    """The result as text: "locked at 15.6 ms", "the camera has no such setting"."""
+
+
+@dataclass(frozen=True)
+class Health:
+    """The state of a live source at one moment."""
+
+    name: str
+    """Name of the source in messages: "camera 0"."""
+
+    state: SourceState
+    """Whether new images arrive, and if not, why."""
+
+    since: float
+    """On the source's clock [s]: since when it runs; while it does not, when the last new image
+    arrived."""
+
+    problem: str = ""
+    """Why it does not run, one line; "" if it runs."""
+
+    frames: int = 0
+    """Number of frames returned."""
+
+    dropped: int = 0
+    """Number of images that were replaced by newer ones before they were requested."""
+
+    gaps: int = 0
+    """How often the source was lost or frozen."""
+
+    rate: float = 0.0
+    """Recent rate [images/s]; 0 if unknown."""
+
+    latency: float = 0.0
+    """Recent median time from an image's timestamp until it was returned [s]."""
+
+    mean_queue: float = 0.0
+    """Recent mean number of images waiting in the driver's queue."""
+
+    max_queue: int = 0
+    """Largest number of images ever waiting in the driver's queue."""
+
+    stamped_by: Literal["driver", "arrival"] = "arrival"
+    """Origin of the last timestamp: the driver, or the arrival, which is later by the delay of
+    camera and cable."""
+
+    settings: tuple[DeviceSetting, ...] = ()
+    """What was requested from the device."""
+
+    frozen: bool = False
+    """Whether the current loss is, or before reopening was, a frozen image."""
+
+    @property
+    def running(self) -> bool:
+        """Whether new images arrive."""
+        return self.state == "running"
+
+
+@dataclass(frozen=True)
+class CapturedImage:
+    """An image as delivered by a device."""
+
+    data: Image | bytes
+    """Pixels, or a JPEG."""
+
+    taken: float
+    """Best known time of exposure [s]."""
 
 
 class Device(Protocol):
-    """What pictures come from. Only the capture thread uses it, but for `interrupt`."""
+    """A device that delivers images. Used by the capture thread only, except for `interrupt`."""
 
     rate: float
-    """Nominal rate [frames/s]."""
+    """Nominal rate [images/s]."""
 
     @property
-    def settings(self) -> tuple[Setting, ...]:
-        """What it was asked for, and what became of it."""
+    def settings(self) -> tuple[DeviceSetting, ...]:
+        """What was requested from the device."""
         ...
 
     @property
     def exposed(self) -> float | None:
-        """When the last picture was taken, as the driver says [s]; None where it says nothing."""
+        """Exposure time of the last image according to the driver [s]; None if unknown."""
         ...
 
-    def read(self) -> Picture | bytes | None:
-        """Wait for the next picture: pixels or a JPEG; None where there was none.
+    def read(self) -> Image | bytes | None:
+        """Wait for the next image: pixels or a JPEG; None if there was none.
 
         Raises
         ------
         TrackingError
-            There will be no more.
+            No more images will come.
         """
         ...
 
     def interrupt(self) -> None:
-        """Make a waiting `read` return soon, if that can be done. Called from another thread."""
+        """Make a blocked `read` return soon, if possible. Called from another thread."""
         ...
 
     def close(self) -> None:
-        """Let go of the device."""
+        """Release the device."""
         ...
-
-
-@dataclass(frozen=True)
-class Shot:
-    """A picture as it came."""
-
-    picture: Picture | bytes
-    """Pixels, or a JPEG."""
-
-    taken: float
-    """When it was taken, as well as that is known [s]."""

@@ -1,4 +1,4 @@
-"""Frames from a phone or network camera: JPEG pictures in one endless HTTP answer."""
+"""Frames from a phone or network camera: JPEG images in one endless HTTP response (MJPEG)."""
 
 import base64
 import contextlib
@@ -8,16 +8,15 @@ from http.client import HTTPConnection, HTTPException, HTTPResponse, HTTPSConnec
 from urllib.parse import SplitResult, unquote, urlsplit
 
 from tracking.errors import TrackingError
-from tracking.sources.device import Clock
-from tracking.sources.health import Setting
+from tracking.sources.device import Clock, DeviceSetting
 from tracking.sources.live import LiveSource
 from tracking.sources.multipart import MultipartError, MultipartParser
 
-READ_SIZE = 64 * 1024
+READ_SIZE_BYTES = 64 * 1024
 
-QUIET_S = 3.0
-"""A connection on which nothing came for so long is made anew; a wireless network stalls for a
-second now and then, and the stream then goes on by itself."""
+SOCKET_TIMEOUT_S = 3.0
+"""A silent connection is closed and opened again after this time. A wireless network may stall for
+a second, after which the stream continues by itself."""
 
 
 class HttpSource(LiveSource):
@@ -26,15 +25,15 @@ class HttpSource(LiveSource):
     Parameters
     ----------
     url
-        "http://phone:8080/video"; a name and password may stand before the host.
+        "http://phone:8080/video"; a name and password may precede the host.
     clock
-        Seconds; stamps the frames as they arrive.
+        Returns the time [s]; timestamps the frames on arrival.
 
     Raises
     ------
     TrackingError
-        Nobody answers, the answer is no stream of JPEG pictures, or none came for 2 s.
-        A stream that breaks off later is connected to anew: see `base.LiveFrames`.
+        There is no answer, the answer is not a stream of JPEG images, or no image came for 2 s.
+        A stream that breaks later is opened again: see `base.LiveFrames`.
     """
 
     def __init__(self, url: str, *, clock: Clock = time.monotonic) -> None:
@@ -43,30 +42,35 @@ class HttpSource(LiveSource):
             name = f"{address.scheme}://{address.hostname}"
             name += f":{address.port}{address.path}" if address.port else address.path
         except ValueError as error:
-            raise TrackingError(f"'{url}' is no web address: {error}") from error
+            raise TrackingError(f"'{url}' is not a web address: {error}") from error
         if not address.hostname:
             raise TrackingError(f"'{url}' names no host; write http://HOST:PORT/PATH")
-        # A phone that films a wall may well compress it to the same bytes again and again.
-        super().__init__(lambda: _Stream(address, name), name, clock, tell_frozen=False)
+        # A phone that films a wall may send identical bytes again and again.
+        super().__init__(lambda: _MjpegStream(address, name), name, clock, detect_frozen=False)
 
 
-class _Stream:
-    """One HTTP answer that goes on and on."""
+def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> HttpSource:
+    """Open "http://HOST:PORT/PATH"; the size is the server's."""
+    return HttpSource(uri, clock=clock)
+
+
+class _MjpegStream:
+    """One endless HTTP response."""
 
     rate = 30.0
-    settings: tuple[Setting, ...] = ()
+    settings: tuple[DeviceSetting, ...] = ()
     exposed: float | None = None
 
     def __init__(self, address: SplitResult, name: str) -> None:
         self._name = name
         kind = HTTPSConnection if address.scheme == "https" else HTTPConnection
-        self._connection = kind(address.hostname or "", address.port, timeout=QUIET_S)
+        self._connection = kind(address.hostname or "", address.port, timeout=SOCKET_TIMEOUT_S)
         try:
             self._connection.connect()
             self._socket: socket.socket = self._connection.sock
             self._connection.request("GET", _target(address), headers=_headers(address))
-            self._answer = self._connection.getresponse()
-            self._parser = MultipartParser(_boundary(self._answer, name))
+            self._response = self._connection.getresponse()
+            self._parser = MultipartParser(_boundary(self._response, name))
         except (OSError, HTTPException) as error:
             self._connection.close()
             raise TrackingError(
@@ -78,30 +82,31 @@ class _Stream:
             raise
 
     def read(self) -> bytes:
-        """Wait for the next JPEG; the newest where several came at once."""
+        """Wait for the next JPEG; the newest one if several have arrived."""
         while True:
             try:
-                data = self._answer.read1(READ_SIZE)
-                pictures = self._parser.feed(data)
+                data = self._response.read1(READ_SIZE_BYTES)
+                images = self._parser.feed(data)
             except TimeoutError as error:
-                raise TrackingError(f"{self._name} sent nothing for {QUIET_S:g} s") from error
+                message = f"{self._name} sent nothing for {SOCKET_TIMEOUT_S:g} s"
+                raise TrackingError(message) from error
             except (OSError, HTTPException, ValueError) as error:
-                raise TrackingError(f"{self._name} broke off: {_reason(error)}") from error
+                raise TrackingError(f"{self._name} failed: {_reason(error)}") from error
             except MultipartError as error:
                 raise TrackingError(f"{self._name} {error}") from error
-            if pictures:
-                return pictures[-1]
+            if images:
+                return images[-1]
             if not data or self._parser.ended:
                 raise TrackingError(f"{self._name} ended its stream")
 
     def interrupt(self) -> None:
-        """Wake a read that waits."""
-        with contextlib.suppress(OSError):  # the other side may have closed it already
+        """Wake a blocked read."""
+        with contextlib.suppress(OSError):  # the peer may have closed it already
             self._socket.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
-        """Hang up."""
-        self._answer.close()
+        """Close the connection."""
+        self._response.close()
         self._connection.close()
 
 
@@ -116,26 +121,27 @@ def _headers(address: SplitResult) -> dict[str, str]:
     return {"Authorization": f"Basic {base64.b64encode(secret).decode()}"}
 
 
-def _boundary(answer: HTTPResponse, name: str) -> str:
-    """Check that the answer is a stream of pictures; return what separates them."""
-    if answer.status == 401:
-        raise TrackingError(f"{name} wants a password: write http://NAME:PASSWORD@HOST:PORT/PATH")
-    if answer.status in (301, 302, 303, 307, 308):
-        raise TrackingError(f"{name} has moved: open {answer.headers['Location']} instead")
-    if answer.status != 200:
-        raise TrackingError(f"{name} answers {answer.status} {answer.reason}: check the address")
-    kind = answer.headers.get_content_type()
-    boundary = answer.headers.get_param("boundary")
+def _boundary(response: HTTPResponse, name: str) -> str:
+    """Check that the response is a stream of parts; return their boundary."""
+    if response.status == 401:
+        raise TrackingError(f"{name} needs a password: write http://NAME:PASSWORD@HOST:PORT/PATH")
+    if response.status in (301, 302, 303, 307, 308):
+        raise TrackingError(f"{name} has moved: open {response.headers['Location']} instead")
+    if response.status != 200:
+        reason = f"{response.status} {response.reason}"
+        raise TrackingError(f"{name} answers {reason}: check the address")
+    kind = response.headers.get_content_type()
+    boundary = response.headers.get_param("boundary")
     if not kind.startswith("multipart/") or not isinstance(boundary, str) or not boundary:
         raise TrackingError(
-            f"{name} is {kind}, not a stream of JPEG pictures: "
+            f"{name} is {kind}, not a stream of JPEG images: "
             "give the address of the stream itself, such as http://PHONE:8080/video"
         )
     return boundary
 
 
 def _reason(error: Exception) -> str:
-    """Return the system's words without its error number."""
+    """Return the system's message without its error number."""
     if isinstance(error, TimeoutError):
         return "no answer"
     return str(getattr(error, "strerror", None) or error or type(error).__name__).lower()

@@ -1,4 +1,4 @@
-"""A source that hands out the newest picture of a device that may come and go."""
+"""A source that returns the newest image of a device that may be lost and come back."""
 
 import statistics
 import time
@@ -9,43 +9,42 @@ from tracking.errors import TrackingError
 from tracking.geometry.frame import Frame
 from tracking.sources.base import FrameSource, Timeline
 from tracking.sources.capture import (
-    FIRST_S,
-    OPENING_S,
+    FIRST_IMAGE_TIMEOUT_S,
+    OPEN_TIMEOUT_S,
     POLL_S,
     SILENCE_S,
-    Capture,
+    CaptureThread,
 )
-from tracking.sources.device import Clock, Device, Shot
-from tracking.sources.health import Health, SourceState
-from tracking.sources.pictures import decode_jpeg
-from tracking.sources.timing import RECENT
+from tracking.sources.capture_timing import RECENT_IMAGES
+from tracking.sources.decoding import decode_jpeg
+from tracking.sources.device import CapturedImage, Clock, Device, Health, SourceState
 
-PATIENCE_S = 30.0
-"""A plain iteration waits so long for a lost device to come back."""
+MAX_ITERATION_GAP_S = 30.0
+"""How long a plain iteration waits for a lost device."""
 
 
 class LiveSource(FrameSource):
-    """Frames that arrive by themselves; late ones are dropped for newer ones.
+    """Frames that arrive by themselves; old ones are dropped in favour of newer ones.
 
-    Opening waits for the first frame. The device is opened, read and closed by one thread, so that
-    a driver that never returns blocks nobody. A device that is lost later is opened anew until it
-    is back: `base.LiveFrames` says what the one who iterates sees of that.
+    Opening waits for the first frame. One thread opens, reads and closes the device, so a driver
+    that blocks does not block the caller. A lost device is opened again until it is back:
+    `base.LiveFrames` describes what the caller sees.
 
     Parameters
     ----------
     connect
         Opens the device; called in the capture thread, again after each loss.
     name
-        How errors call the source: "camera 0".
+        Name of the source in messages: "camera 0".
     clock
-        Seconds; stamps the frames, and tells when the source fell silent.
-    tell_frozen
-        Whether the very same picture for `SILENCE_S` counts as none.
+        Returns the time [s]; timestamps the frames and detects silence.
+    detect_frozen
+        Whether identical images for `SILENCE_S` count as a loss.
 
     Raises
     ------
     TrackingError
-        While opening: the device does not open, or gives no picture.
+        While opening: the device does not open, or delivers no image.
     """
 
     live = True
@@ -58,18 +57,18 @@ class LiveSource(FrameSource):
         name: str,
         clock: Clock = time.monotonic,
         *,
-        tell_frozen: bool = True,
+        detect_frozen: bool = True,
     ) -> None:
         self._name = name
         self._clock = clock
         self._timeline = Timeline()
         self._count = 0
         self._closed = False
-        self._garbage: float | None = None
-        self._ages: deque[float] = deque(maxlen=RECENT)
-        self._capture = Capture(connect, name, clock, tell_frozen)
+        self._undecodable_since: float | None = None
+        self._latencies: deque[float] = deque(maxlen=RECENT_IMAGES)
+        self._capture = CaptureThread(connect, name, clock, detect_frozen)
         try:
-            self._first: Frame | None = self._open()
+            self._first: Frame | None = self._wait_for_first()
         except BaseException:
             self.close()
             raise
@@ -79,7 +78,7 @@ class LiveSource(FrameSource):
 
     def __iter__(self) -> Iterator[Frame]:
         while not self._closed:
-            frame = self.wait(SILENCE_S, PATIENCE_S)
+            frame = self.wait(SILENCE_S, MAX_ITERATION_GAP_S)
             if frame is not None:
                 yield frame
 
@@ -90,44 +89,44 @@ class LiveSource(FrameSource):
             return first
         frame = self._next(timeout)
         if frame is None:
-            self._lose_patience(patience)
+            self._check_patience(patience)
         elif frame.image.shape[1::-1] != self.size:
             width, height = frame.image.shape[1::-1]
             raise TrackingError(
-                f"the picture of {self._name} changed from {self.size[0]}x{self.size[1]} to "
-                f"{width}x{height}: keep the camera as it was when you started"
+                f"the image of {self._name} changed from {self.size[0]}x{self.size[1]} to "
+                f"{width}x{height}: do not rotate or reconfigure the camera while it is in use"
             )
         return frame
 
     @property
     def health(self) -> Health:
-        """How the source fares at this moment."""
+        """The current state of the source."""
         capture = self._capture
         state, since, problem = self._state()
         return Health(
-            self._name,
-            state,
-            since,
-            problem,
-            self._count,
-            capture.dropped,
-            capture.gaps,
-            capture.gauge.rate,
-            statistics.median(self._ages) if self._ages else 0.0,
-            capture.gauge.depth,
-            capture.gauge.deepest,
-            "driver" if capture.by_driver else "arrival",
-            capture.settings,
-            capture.frozen and state in ("frozen", "recovering"),
+            name=self._name,
+            state=state,
+            since=since,
+            problem=problem,
+            frames=self._count,
+            dropped=capture.dropped,
+            gaps=capture.gaps,
+            rate=capture.gauge.rate,
+            latency=statistics.median(self._latencies) if self._latencies else 0.0,
+            mean_queue=capture.gauge.mean_depth,
+            max_queue=capture.gauge.max_depth,
+            stamped_by="driver" if capture.by_driver else "arrival",
+            settings=capture.settings,
+            frozen=capture.frozen and state in ("frozen", "recovering"),
         )
 
     def close(self) -> None:
-        """Stop capturing. Safe to call again, and from another thread; the iteration then ends."""
+        """Stop capturing. May be called again, and from another thread; the iteration ends."""
         self._closed = True
         self._first = None
         self._capture.stop()
 
-    def _open(self) -> Frame:
+    def _wait_for_first(self) -> Frame:
         while True:
             frame = self._next(POLL_S)
             if frame is not None:
@@ -135,82 +134,83 @@ class LiveSource(FrameSource):
             now, capture = self._clock(), self._capture
             if capture.failed_to_open:
                 raise TrackingError(capture.problem)
-            if self._garbage is not None and now - self._garbage >= FIRST_S:
-                raise TrackingError(self._undecodable)
-            if not capture.came and now - capture.heard >= (
-                OPENING_S if capture.opening else FIRST_S
-            ):
-                if capture.opening:
-                    raise TrackingError(
-                        f"{self._name} did not open within {OPENING_S:g} s: plug it in again"
-                    )
-                raise TrackingError(self._silent(FIRST_S))
+            undecodable_since = self._undecodable_since
+            if undecodable_since is not None and now - undecodable_since >= FIRST_IMAGE_TIMEOUT_S:
+                raise TrackingError(self._undecodable_text)
+            if capture.delivered:
+                continue
+            waited = now - capture.last_arrival
+            if capture.opening and waited >= OPEN_TIMEOUT_S:
+                raise TrackingError(
+                    f"{self._name} did not open within {OPEN_TIMEOUT_S:g} s: plug it in again"
+                )
+            if not capture.opening and waited >= FIRST_IMAGE_TIMEOUT_S:
+                raise TrackingError(self._silence_text(FIRST_IMAGE_TIMEOUT_S))
 
     def _next(self, timeout: float) -> Frame | None:
         began = self._clock()
-        while (shot := self._capture.newest(timeout)) is not None:
-            frame = self._decoded(shot)
+        while (captured := self._capture.newest(timeout)) is not None:
+            frame = self._decode(captured)
             if frame is not None:
                 return frame
             now = self._clock()
-            if self._garbage is not None and now - self._garbage >= SILENCE_S:
-                self._capture.reject(self._undecodable)
+            if self._undecodable_since is not None and now - self._undecodable_since >= SILENCE_S:
+                self._capture.reject(self._undecodable_text)
             if now - began >= timeout:
                 return None
         return None
 
-    def _decoded(self, shot: Shot) -> Frame | None:
-        jpeg = shot.picture if isinstance(shot.picture, bytes) else None
-        image = shot.picture if jpeg is None else decode_jpeg(jpeg)
+    def _decode(self, captured: CapturedImage) -> Frame | None:
+        jpeg = captured.data if isinstance(captured.data, bytes) else None
+        image = captured.data if jpeg is None else decode_jpeg(jpeg)
         now = self._clock()
         if image is None or isinstance(image, bytes):
-            self._garbage = now if self._garbage is None else self._garbage
+            if self._undecodable_since is None:
+                self._undecodable_since = now
             return None
-        self._garbage = None
-        self._ages.append(now - shot.taken)
-        stamp, index = self._timeline.stamp(shot.taken), self._count
+        self._undecodable_since = None
+        self._latencies.append(now - captured.taken)
+        stamp, index = self._timeline.stamp(captured.taken), self._count
         self._count += 1
         return Frame(image, stamp, index, jpeg, "jpeg" if jpeg else "")
 
     def _state(self) -> tuple[SourceState, float, str]:
-        """Return what the source does, since when, and why.
+        """Return the state, since when it lasts, and the problem.
 
-        The thread may sit in a driver and see nothing; then silence is seen from here.
+        Silence is detected here, because the thread may be blocked in a driver.
         """
         capture, now = self._capture, self._clock()
         if self._closed:
             return "closed", capture.since, ""
-        if self._garbage is not None and now - self._garbage >= SILENCE_S:
-            return "lost", self._garbage, self._undecodable
+        if self._undecodable_since is not None and now - self._undecodable_since >= SILENCE_S:
+            return "lost", self._undecodable_since, self._undecodable_text
         if capture.state == "running":
-            if now - capture.heard >= SILENCE_S:
-                return "lost", capture.heard, self._silent(now - capture.heard)
+            silence = now - capture.last_arrival
+            if silence >= SILENCE_S:
+                return "lost", capture.last_arrival, self._silence_text(silence)
             return "running", capture.since, ""
-        lasted = now - capture.since
-        if capture.problem:
-            return capture.state, capture.since, capture.problem
-        words = self._still(lasted) if capture.frozen else self._silent(lasted)
-        return capture.state, capture.since, words
+        elapsed = now - capture.since
+        problem = capture.problem
+        if not problem and capture.frozen:
+            problem = (
+                f"{self._name} has repeated the same image for {elapsed:.0f} s: "
+                "it is covered, frozen or unplugged"
+            )
+        return capture.state, capture.since, problem or self._silence_text(elapsed)
 
-    def _lose_patience(self, patience: float | None) -> None:
+    def _check_patience(self, patience: float | None) -> None:
         if patience is None:
             return
         state, since, problem = self._state()
         if state not in ("running", "closed") and self._clock() - since >= patience:
             raise TrackingError(problem)
 
-    def _silent(self, seconds: float) -> str:
+    def _silence_text(self, seconds: float) -> str:
         return (
-            f"{self._name} gave no picture for {seconds:.0f} s: "
+            f"{self._name} delivered no image for {seconds:.0f} s: "
             "check that it is connected and that no other program uses it"
         )
 
-    def _still(self, seconds: float) -> str:
-        return (
-            f"{self._name} has given the very same picture for {seconds:.0f} s: "
-            "it is covered, frozen or unplugged"
-        )
-
     @property
-    def _undecodable(self) -> str:
-        return f"{self._name} sends pictures that cannot be decoded"
+    def _undecodable_text(self) -> str:
+        return f"{self._name} sends images that cannot be decoded"

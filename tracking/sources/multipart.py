@@ -1,18 +1,18 @@
-"""The parts of a multipart stream, cut at any byte by the network."""
+"""A parser of multipart streams, fed with chunks of any size."""
 
-LARGEST_PART = 32 * 2**20
-"""A picture larger than this is no picture."""
+MAX_PART_BYTES = 32 * 2**20
+"""Larger parts are not images."""
 
 
 class MultipartError(Exception):
-    """The stream is not multipart; says why."""
+    """The stream is not multipart; the message says why."""
 
 
 class MultipartParser:
-    r"""Cuts a `multipart/x-mixed-replace` stream into its parts (RFC 2046, section 5.1).
+    r"""Splits a `multipart/x-mixed-replace` stream into its parts (RFC 2046, section 5.1).
 
-    Cameras bend the standard, so this takes what they send: boundaries with their dashes in the
-    header already, parts with and without Content-Length, lines ended by LF alone.
+    Accepts what cameras send against the standard: boundaries that include their dashes in the
+    header, parts with and without Content-Length, lines that end with LF alone.
 
     >>> parser = MultipartParser("frame")
     >>> parser.feed(b"--frame\r\nContent-Length: 2\r\n\r\nab\r\n--fra")
@@ -30,15 +30,15 @@ class MultipartParser:
         self._searched = 0
         self._in_part = False
         self.ended = False
-        """Whether the closing boundary came."""
+        """Whether the closing boundary has been received."""
 
     def feed(self, data: bytes) -> list[bytes]:
-        """Take the next bytes; give out the bodies of the parts that they complete.
+        """Add the next bytes; return the bodies of the parts that they complete.
 
         Raises
         ------
         MultipartError
-            No boundary came for more bytes than a picture can have.
+            A part is larger than an image can be.
         """
         self._buffer += data
         bodies = []
@@ -50,12 +50,12 @@ class MultipartParser:
                 break
             bodies.append(body)
             self._in_part = False
-        if len(self._buffer) > LARGEST_PART:
+        if len(self._buffer) > MAX_PART_BYTES:
             raise MultipartError("sends parts of more than 32 MB")
         return bodies
 
     def _enter_part(self) -> bool:
-        """Drop everything up to the next delimiter; True once its line and what ends it are in."""
+        """Drop everything up to the next delimiter; return whether it has been received."""
         start = self._find_delimiter()
         if start < 0:
             return False
@@ -71,10 +71,10 @@ class MultipartParser:
         return True
 
     def _take_body(self) -> bytes | None:
-        head_end, body_start = _blank_line(self._buffer)
+        header_end, body_start = _blank_line(self._buffer)
         if body_start < 0:
             return None
-        length = _content_length(bytes(self._buffer[:head_end]))
+        length = _content_length(bytes(self._buffer[:header_end]))
         if length is not None:
             end = body_start + length
             if len(self._buffer) < end:
@@ -98,14 +98,14 @@ class MultipartParser:
 
 
 def _blank_line(buffer: bytearray) -> tuple[int, int]:
-    """Where the head of a part ends, and where its body starts; −1 where neither is in yet."""
+    """Return where a part's header ends and its body starts; −1 if not received yet."""
     ends = [(buffer.find(mark), len(mark)) for mark in (b"\r\n\r\n", b"\n\n")]
     found = [(at, at + size) for at, size in ends if at >= 0]
     return min(found, default=(-1, -1))
 
 
-def _content_length(head: bytes) -> int | None:
-    for line in head.splitlines():
+def _content_length(header: bytes) -> int | None:
+    for line in header.splitlines():
         name, _, value = line.partition(b":")
         if name.strip().lower() == b"content-length" and value.strip().isdigit():
             return int(value)
@@ -113,6 +113,6 @@ def _content_length(head: bytes) -> int | None:
 
 
 def _without_line_end(body: bytes) -> bytes:
-    """Drop the line end that belongs to the delimiter, and dashes that came before its own two."""
+    """Drop the line end that belongs to the delimiter, and extra dashes before it."""
     body = body.rstrip(b"-")
     return body[:-2] if body.endswith(b"\r\n") else body.removesuffix(b"\n")

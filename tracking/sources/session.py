@@ -1,4 +1,4 @@
-"""Frames from a recorded session: the very pixels that the tracker saw live."""
+"""Frames from a recorded session: the same pixels that the tracker saw live."""
 
 import itertools
 from collections.abc import Generator, Iterator
@@ -8,27 +8,26 @@ import numpy as np
 
 from tracking.errors import TrackingError
 from tracking.geometry.frame import Frame
-from tracking.sources.base import FrameSource, Timeline
-from tracking.sources.channels import IMAGE_TOPIC, BrokenFileError, CameraChannels
-from tracking.sources.pictures import EncodedPicture, Picture, PictureDecoder, UndecodableError
+from tracking.sources.base import StoredFrames, Timeline
+from tracking.sources.decoding import EncodedImage, ImageDecodeError, ImageDecoder
+from tracking.sources.device import Clock, Image
+from tracking.sources.mcap_camera import IMAGE_TOPIC, BrokenFileError, CameraChannels
 
-PEEKED = 30
-"""Pictures looked at while opening, to learn the rate and the calibration."""
+PEEKED_IMAGES = 30
+"""Number of images read while opening, to find the rate and the calibration."""
 
 
-class SessionSource(FrameSource):
+class SessionSource(StoredFrames):
     """The camera of an `.mcap` session.
 
-    Reads forwards only, so a file that was cut off serves all its whole frames.
+    Reads forwards only, so all complete frames of a truncated file are returned.
 
     Raises
     ------
     TrackingError
-        While opening: the file is absent, is not MCAP, or holds no camera frame. While iterating:
-        it is cut short or damaged, after every frame that could be read.
+        While opening: the file does not exist, is not MCAP, or holds no camera frame. While
+        iterating: it is truncated or damaged, after every readable frame.
     """
-
-    live = False
 
     def __init__(self, path: str | Path) -> None:
         self._where = f"the session '{path}'"
@@ -39,78 +38,71 @@ class SessionSource(FrameSource):
         try:
             channels = CameraChannels(self._file)
             self.duration = channels.duration()
-            self.rate, pictures = _nominal_rate(channels.pictures())
-            self._frames = self._decoded(pictures)
-            self._first = next(self._frames, None)
-            if self._first is None:
-                raise TrackingError(f"{self._where} holds no camera frame on {IMAGE_TOPIC}")
+            self.rate, images = _nominal_rate(channels.images())
+            self.start(
+                self._decoded(images), f"{self._where} holds no camera frame on {IMAGE_TOPIC}"
+            )
         except BaseException:
             self._file.close()
             raise
-        height, width = self._first.image.shape[:2]
-        self.size = (width, height)
-        lens = channels.intrinsics
-        self.intrinsics = lens.scaled(self.size) if lens and lens.size != self.size else lens
-
-    def __iter__(self) -> Iterator[Frame]:
-        if self._first is not None:
-            first, self._first = self._first, None
-            yield first
-        yield from self._frames
+        found = channels.intrinsics
+        self.intrinsics = found.scaled(self.size) if found and found.size != self.size else found
 
     def close(self) -> None:
-        """Close the file. Safe to call again; the iteration then ends."""
-        self._first = None
-        self._frames.close()
+        """Close the file and end the iteration. May be called again."""
+        super().close()
         self._file.close()
 
-    def _decoded(self, pictures: Iterator[EncodedPicture]) -> Generator[Frame, None, None]:
+    def _decoded(self, images: Iterator[EncodedImage]) -> Generator[Frame, None, None]:
         timeline, count = Timeline(), 0
         try:
-            for picture, image in _decode(pictures):
-                stamp = timeline.stamp(picture.timestamp)
-                yield Frame(image, stamp, count, picture.data, picture.encoding)
+            for encoded, image in _decode(images):
+                stamp = timeline.stamp(encoded.timestamp)
+                yield Frame(image, stamp, count, encoded.data, encoded.encoding)
                 count += 1
         except BrokenFileError as broken:
             raise TrackingError(f"{self._where} {broken}: {_readable(count)}") from broken
 
 
-def _decode(pictures: Iterator[EncodedPicture]) -> Iterator[tuple[EncodedPicture, Picture]]:
-    """Pair each picture with its pixels; what the decoder still holds comes out before an error."""
-    decoder = PictureDecoder()
-    broken: Exception | None = None
+def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> SessionSource:
+    """Open the path of a session; size and times are those of the recording."""
+    return SessionSource(uri)
+
+
+def _decode(images: Iterator[EncodedImage]) -> Iterator[tuple[EncodedImage, Image]]:
+    """Pair each image with its pixels; images still in the decoder are returned before an error."""
+    decoder = ImageDecoder()
+    broken: BrokenFileError | None = None
     try:
-        for picture in pictures:
-            yield from decoder.decode(picture)
-    except (BrokenFileError, UndecodableError) as error:
+        for encoded in images:
+            yield from decoder.decode(encoded)
+    except BrokenFileError as error:
         broken = error
+    except ImageDecodeError as error:
+        broken = BrokenFileError(f"has {error}")
     yield from decoder.flush()
-    if isinstance(broken, UndecodableError):
-        raise BrokenFileError(f"has {broken}") from broken
     if broken is not None:
         raise broken
 
 
-def _nominal_rate(
-    pictures: Iterator[EncodedPicture],
-) -> tuple[float, Iterator[EncodedPicture]]:
-    """Look at the first pictures' times [frames/s]; give back the same pictures, and any error."""
-    peeked: list[EncodedPicture] = []
+def _nominal_rate(images: Iterator[EncodedImage]) -> tuple[float, Iterator[EncodedImage]]:
+    """Return the rate by the first images [frames/s], and the same images, with any error."""
+    peeked: list[EncodedImage] = []
+    broken: BrokenFileError | None = None
+    try:
+        peeked.extend(itertools.islice(images, PEEKED_IMAGES))
+    except BrokenFileError as error:
+        broken = error
 
-    def replayed() -> Iterator[EncodedPicture]:
+    def all_images() -> Iterator[EncodedImage]:
         yield from peeked
         if broken is not None:
             raise broken
-        yield from pictures
+        yield from images
 
-    broken: BrokenFileError | None = None
-    try:
-        peeked.extend(itertools.islice(pictures, PEEKED))
-    except BrokenFileError as error:
-        broken = error
-    steps = np.diff([picture.timestamp for picture in peeked])
+    steps = np.diff([encoded.timestamp for encoded in peeked])
     step = float(np.median(steps)) if len(steps) else 0.0
-    return (round(1 / step, 3) if step > 0 else 30.0), replayed()
+    return (round(1 / step, 3) if step > 0 else 30.0), all_images()
 
 
 def _readable(count: int) -> str:

@@ -1,6 +1,6 @@
-"""Frames from a video file, with the times of its container."""
+"""Frames from a video file, with the timestamps of its container."""
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from pathlib import Path
 
 import av
@@ -8,77 +8,70 @@ from av.container import InputContainer
 
 from tracking.errors import TrackingError
 from tracking.geometry.frame import Frame
-from tracking.sources.base import FrameSource, Timeline
-from tracking.sources.pictures import from_video_frame
+from tracking.sources.base import StoredFrames, Timeline
+from tracking.sources.decoding import bgr_of
+from tracking.sources.device import Clock
 
 
-class VideoSource(FrameSource):
+class VideoSource(StoredFrames):
     """A video file that FFmpeg can read: mp4, mkv, avi, webm.
 
-    Frames wait until they are asked for. Timestamps count from the file's first frame.
+    Timestamps count from the first frame.
 
     Raises
     ------
     TrackingError
-        While opening: the file is absent or is no video. While iterating: it breaks off, after all
-        frames that could be read.
+        While opening: the file does not exist or is not a video. While iterating: it is damaged,
+        after every readable frame.
     """
 
-    live = False
+    intrinsics = None
 
     def __init__(self, path: str | Path) -> None:
         self._path = Path(path)
-        self._container: InputContainer | None = _open(self._path)
+        self._container = _open(self._path)
         stream = self._container.streams.video[0]
         stream.thread_type = "AUTO"
-        self._frames = self._decoded(self._container)
         try:
-            self._first = next(self._frames, None)
+            frames = self._decoded(self._container)
+            self.start(frames, f"the video '{path}' has no frame that can be decoded")
         except BaseException:
-            self.close()
+            self._container.close()
             raise
-        if self._first is None:
-            self.close()
-            raise TrackingError(f"the video '{path}' has no frame that can be decoded")
-        height, width = self._first.image.shape[:2]
-        self.size = (width, height)
-        self.intrinsics = None
         self.rate = float(stream.average_rate or 30)
-        self.duration = _duration(self._container)
-
-    def __iter__(self) -> Iterator[Frame]:
-        if self._first is not None:
-            first, self._first = self._first, None
-            yield first
-        yield from self._frames
+        length = self._container.duration
+        self.duration = None if length is None else length / av.time_base
 
     def close(self) -> None:
-        """Close the file. Safe to call again; the iteration then ends."""
-        container, self._container = self._container, None
-        if container is not None:
-            self._frames.close()
-            container.close()
+        """Close the file and end the iteration. May be called again."""
+        super().close()
+        self._container.close()
 
     def _decoded(self, container: InputContainer) -> Generator[Frame, None, None]:
         timeline, start, count = Timeline(), None, 0
         stream = container.streams.video[0]
-        # AVI holds times of packets only, and B frames come out in another order than packets.
+        # AVI has timestamps of packets only, and B frames are decoded in another order.
         untimed = container.format.name == "avi" and stream.codec_context.has_b_frames
         try:
             for picture in container.decode(stream):
                 if untimed or picture.pts is None or picture.time_base is None:
                     seconds = count / float(stream.average_rate or 30)
                 else:
-                    # A ratio of whole numbers, divided once: no error builds up.
+                    # A ratio of integers, divided once, so that no error accumulates.
                     start = picture.pts if start is None else start
                     seconds = float((picture.pts - start) * picture.time_base)
-                yield Frame(from_video_frame(picture), timeline.stamp(seconds), count)
+                yield Frame(bgr_of(picture), timeline.stamp(seconds), count)
                 count += 1
         except av.FFmpegError as error:
             raise TrackingError(
                 f"the video '{self._path}' is damaged ({_reason(error)}): "
                 f"its first {count} frames could be read"
             ) from error
+
+
+def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> VideoSource:
+    """Open the path of a video; size and times are those of the file."""
+    return VideoSource(uri)
 
 
 def _open(path: Path) -> InputContainer:
@@ -90,14 +83,10 @@ def _open(path: Path) -> InputContainer:
         raise TrackingError(f"'{path}' is not a video: {_reason(error)}") from error
     if not container.streams.video:
         container.close()
-        raise TrackingError(f"'{path}' is not a video: it holds no moving picture")
+        raise TrackingError(f"'{path}' is not a video: it has no video stream")
     return container
 
 
-def _duration(container: InputContainer) -> float | None:
-    return None if container.duration is None else container.duration / av.time_base
-
-
 def _reason(error: av.FFmpegError) -> str:
-    """FFmpeg's own words without its numbers and paths."""
+    """Return FFmpeg's message without its numbers and paths."""
     return (error.strerror or type(error).__name__).lower()

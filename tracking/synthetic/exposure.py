@@ -8,7 +8,7 @@ from tracking.synthetic.choreography import Moment
 from tracking.synthetic.desk import add_things, desk_picture, seen_through
 from tracking.synthetic.hand import Hand, draw_hand, hand_at, hand_region
 from tracking.synthetic.lens import Lens, Region
-from tracking.synthetic.options import Options
+from tracking.synthetic.options import SyntheticOptions
 from tracking.synthetic.paper_cube import TO_LIGHT, PaperCube
 
 Array = NDArray[np.float64]
@@ -38,7 +38,7 @@ class Exposure:
     """
 
     def __init__(
-        self, lens: Lens, cube: PaperCube, camera_from_table: Array, options: Options
+        self, lens: Lens, cube: PaperCube, camera_from_table: Array, options: SyntheticOptions
     ) -> None:
         self._lens = lens
         self._cube = cube

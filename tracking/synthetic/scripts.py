@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from tracking.cube.model import FACE_AXES
 from tracking.geometry import se3
 from tracking.synthetic.choreography import Choreography, Moment, eased
-from tracking.synthetic.options import Options
+from tracking.synthetic.options import SyntheticOptions
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ class Script:
     frame, as they are where it is `loose`."""
 
 
-def follow(edge: float, options: Options) -> Script:
+def follow(edge: float, options: SyntheticOptions) -> Script:
     """Turn to walking, lead the character round, then to running, once round, and to rest."""
     c = Choreography(edge).stand(0.0, 0.0)
     c.rest(2.2).turn(90, 1.6).hold(0.3).slide(0.21, 0.09, 2.3, -0.02).hold(0.8)
@@ -49,7 +49,7 @@ def follow(edge: float, options: Options) -> Script:
     return _script("locomotion", c)
 
 
-def sketch(edge: float, options: Options) -> Script:
+def sketch(edge: float, options: SyntheticOptions) -> Script:
     """Draw eight points round the desk, put the cube aside, and turn it once round the gaits."""
     c = Choreography(edge).stand(-0.20, 0.02).rest(1.4)
     ring = np.deg2rad(np.arange(45, 360, 45))
@@ -61,7 +61,7 @@ def sketch(edge: float, options: Options) -> Script:
     return _script("locomotion", c)
 
 
-def companion(edge: float, options: Options) -> Script:
+def companion(edge: float, options: SyntheticOptions) -> Script:
     """Kisses until the robot is happy, shouts until it is angry, kisses again, and peace."""
     c = Choreography(edge).stand(0.06, 0.02).rest(2.4)
     c.tip(FRONT).rest(2.0).turn(180, 1.5).turn(180, 1.5).rest(4.2)
@@ -70,14 +70,14 @@ def companion(edge: float, options: Options) -> Script:
     return _script("companion", c.tip(TOP).rest(2.6))
 
 
-def static(edge: float, options: Options) -> Script:
+def static(edge: float, options: SyntheticOptions) -> Script:
     """Rest somewhere on the desk, turned somehow."""
     random = np.random.default_rng(options.seed)
     x, z, heading = random.uniform(-0.15, 0.15), random.uniform(-0.12, 0.15), random.uniform(0, 360)
     return _script("locomotion", Choreography(edge).stand(x, z, heading).rest(2.0))
 
 
-def turn(edge: float, options: Options) -> Script:
+def turn(edge: float, options: SyntheticOptions) -> Script:
     """One whole turn clockwise, and back."""
     c = Choreography(edge).stand(0.0, 0.0).rest(1.0)
     for _ in range(4):
@@ -88,7 +88,7 @@ def turn(edge: float, options: Options) -> Script:
     return _script("locomotion", c.rest(1.0))
 
 
-def turns(edge: float, options: Options) -> Script:
+def turns(edge: float, options: SyntheticOptions) -> Script:
     """Put a kiss face down, then two turns up, four down, two up: from end to end of the knob."""
     c = Choreography(edge).stand(0.0, 0.0).rest(1.2).tip(FRONT).rest(0.8)
     for count in (2, -4, 2):
@@ -98,7 +98,7 @@ def turns(edge: float, options: Options) -> Script:
     return _script("companion", c)
 
 
-def tip(edge: float, options: Options) -> Script:
+def tip(edge: float, options: SyntheticOptions) -> Script:
     """Every face on top in turn, resting."""
     c = Choreography(edge).stand(0.0, 0.0).rest(1.4)
     for face in (FRONT, RIGHT, BACK, BOTTOM, LEFT, TOP):
@@ -106,12 +106,12 @@ def tip(edge: float, options: Options) -> Script:
     return _script("companion", c)
 
 
-def shake(edge: float, options: Options) -> Script:
+def shake(edge: float, options: SyntheticOptions) -> Script:
     """Rest, a shake in the air, and rest again."""
     return _script("locomotion", Choreography(edge).stand(0.0, 0.0).rest(1.4).shake(1.6).rest(1.2))
 
 
-def sweep(edge: float, options: Options) -> Script:
+def sweep(edge: float, options: SyntheticOptions) -> Script:
     """Slide to and fro, as fast as asked at the fastest."""
     reach = 0.30
     seconds = 1.875 * reach / options.speed  # a minimum-jerk move peaks at 15/8 of its mean speed
@@ -121,14 +121,14 @@ def sweep(edge: float, options: Options) -> Script:
     return _script("locomotion", c.rest(0.8))
 
 
-def fingers(edge: float, options: Options) -> Script:
+def fingers(edge: float, options: SyntheticOptions) -> Script:
     """Keep hold of the cube, turning and sliding it a little."""
     c = Choreography(edge).stand(0.0, 0.0).rest(1.0).hold(0.8)
     c.turn(60, 1.2).hold(0.4).slide(0.06, 0.05, 1.0).hold(0.4).turn(-100, 1.4).hold(0.6)
     return _script("locomotion", c)
 
 
-def poses(edge: float, options: Options) -> Script:
+def poses(edge: float, options: SyntheticOptions) -> Script:
     """Another pose in every frame, 0.3 to 0.7 m away: for statistics of the tracker's error."""
 
     def at(time: float) -> Moment:
@@ -147,7 +147,7 @@ def poses(edge: float, options: Options) -> Script:
     return Script("locomotion", 10.0, at, loose=True)
 
 
-def wave(edge: float, options: Options) -> Script:
+def wave(edge: float, options: SyntheticOptions) -> Script:
     """Wave the cube before the camera for 20 s, with stops, as one does to calibrate it."""
     stations = _stations(edge, options)
     move, stop = 0.49, 0.25
@@ -166,7 +166,7 @@ def wave(edge: float, options: Options) -> Script:
     return Script("locomotion", len(stations) * (move + stop), at, aloft=True)
 
 
-def _stations(edge: float, options: Options) -> list[Array]:
+def _stations(edge: float, options: SyntheticOptions) -> list[Array]:
     """Return the stops of `wave`: every face, tilted every way, everywhere, near and far."""
     random = np.random.default_rng([options.seed, 5])
     # To and fro in rows, from one end of the picture to the other and back: no long ways.
@@ -189,7 +189,7 @@ def _stations(edge: float, options: Options) -> list[Array]:
     return stations
 
 
-SCRIPTS: dict[str, Callable[[float, Options], Script]] = {
+SCRIPTS: dict[str, Callable[[float, SyntheticOptions], Script]] = {
     script.__name__: script
     for script in (
         follow, sketch, companion, static, turn, turns, tip, shake, sweep, fingers, poses,

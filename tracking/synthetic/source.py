@@ -1,8 +1,6 @@
 """The synthetic camera as a source of frames, with the truth beside it."""
 
 from collections.abc import Iterator
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +10,13 @@ from tracking.errors import TrackingError
 from tracking.geometry import se3
 from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
+from tracking.sources.base import FrameSource
+from tracking.sources.device import Clock
 from tracking.synthetic.choreography import Moment
 from tracking.synthetic.exposure import Exposure, moments_of
 from tracking.synthetic.folding import folded
 from tracking.synthetic.lens import Lens
-from tracking.synthetic.options import Options
+from tracking.synthetic.options import SyntheticOptions
 from tracking.synthetic.paper_cube import PaperCube
 from tracking.synthetic.scripts import SCRIPTS, Script
 
@@ -29,39 +29,32 @@ LOOKS_AT = np.array([0.0, 0.05, -0.02])
 """What it looks at, in the table frame [m]."""
 
 
-def open_synthetic(name: str) -> "SyntheticSource":
-    """Open "NAME" or "NAME?key=value&…"; see `SCRIPTS` and `Options`.
+class SyntheticSource(FrameSource):
+    """A source that renders a cube on a desk, so that the true poses are known.
 
-    Raises
-    ------
-    TrackingError
-        There is no such script or option.
-    """
-    chosen, options = Options.parse(name)
-    if chosen not in SCRIPTS:
-        known = ", ".join(SCRIPTS)
-        raise TrackingError(f"no synthetic scene is called '{chosen}': choose one of {known}")
-    return SyntheticSource(chosen, options)
-
-
-class SyntheticSource:
-    """A `FrameSource` that draws a cube on a desk, exactly where it says it is.
-
-    The same name and options give the same pictures. It may be iterated more than once.
+    The same name and options give the same images. It may be iterated more than once.
 
     Parameters
     ----------
     name
         Name of a script.
     options
-        How the camera sees and how the script goes.
+        How the camera sees and how the script runs.
+
+    Raises
+    ------
+    TrackingError
+        There is no such script.
     """
 
     live = False
 
-    def __init__(self, name: str, options: Options | None = None) -> None:
+    def __init__(self, name: str, options: SyntheticOptions | None = None) -> None:
+        if name not in SCRIPTS:
+            known = ", ".join(SCRIPTS)
+            raise TrackingError(f"there is no synthetic scene '{name}': choose one of {known}")
         self.name = name
-        self.options = options = options or Options()
+        self.options = options = options or SyntheticOptions()
         self.intrinsics: Intrinsics | None = webcam(options)
         self.size = (options.width, options.height)
         self.rate = options.rate
@@ -83,19 +76,8 @@ class SyntheticSource:
         for index in range(self.count):
             yield self.frame(index)
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
-
     def close(self) -> None:
-        """Do nothing: there is nothing to let go of."""
+        """Do nothing: nothing is open."""
 
     def time(self, index: int) -> float:
         """Return the time of a frame, the middle of its exposure [s]."""
@@ -140,7 +122,23 @@ class SyntheticSource:
         return self._lens, self._paper, self._exposure
 
 
-def webcam(options: Options) -> Intrinsics:
+def open_synthetic(name: str) -> SyntheticSource:
+    """Open "NAME" or "NAME?key=value&…"; see `SCRIPTS` and `SyntheticOptions`.
+
+    Raises
+    ------
+    TrackingError
+        There is no such script or option.
+    """
+    return SyntheticSource(*SyntheticOptions.parse(f"synthetic:{name}"))
+
+
+def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> SyntheticSource:
+    """Open "synthetic:NAME?key=value"; size and times are the script's."""
+    return open_synthetic(uri.partition(":")[2])
+
+
+def webcam(options: SyntheticOptions) -> Intrinsics:
     """Return the camera: focal length 900 px at 1280 × 720, a little off centre, mild barrel."""
     scale = options.width / 1280
     matrix = np.array(

@@ -2,7 +2,7 @@
 
 from app.commands import doctor
 from tracking import Frame
-from tracking.sources.health import Health, Setting
+from tracking.sources.device import DeviceSetting, Health
 
 
 class EndlessCamera:
@@ -18,8 +18,8 @@ class EndlessCamera:
         latency=0.041,
         stamped_by="driver",
         settings=(
-            Setting("exposure", True, "locked at 15.6 ms"),
-            Setting("focus", False, "the camera has no such setting"),
+            DeviceSetting("exposure", True, "locked at 15.6 ms"),
+            DeviceSetting("focus", False, "the camera has no such setting"),
         ),
     )
 

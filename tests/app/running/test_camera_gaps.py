@@ -17,10 +17,12 @@ from app.ui.overlay import interrupted
 from app.ui.screen import NullScreen
 from tracking import TrackingError, open_source
 from tracking.sources.base import LiveFrames
-from tracking.sources.health import Health, Setting
+from tracking.sources.device import DeviceSetting, Health
 
-RUNNING = Health("camera 0", "running", 0.0, rate=30.0, settings=(Setting("focus", True, "30"),))
-LOST = Health("camera 0", "lost", 0.0, "camera 0 gave no picture for 1 s")
+RUNNING = Health(
+    "camera 0", "running", 0.0, rate=30.0, settings=(DeviceSetting("focus", True, "30"),)
+)
+LOST = Health("camera 0", "lost", 0.0, "camera 0 delivered no image for 1 s")
 
 
 class SourceWithGap:
@@ -123,7 +125,7 @@ def test_the_window_can_be_closed_while_the_camera_is_lost(run_with_gap):
 def test_a_camera_that_does_not_come_back_ends_the_session_and_keeps_the_recording(run_with_gap):
     summary, path = run_with_gap(20, NullScreen())
     assert session_info(path).frames == 5
-    with pytest.raises(TrackingError, match="gave no picture"):
+    with pytest.raises(TrackingError, match="delivered no image"):
         summary.check()
 
 
@@ -132,7 +134,7 @@ def test_a_camera_that_does_not_come_back_ends_the_session_and_keeps_the_recordi
     [
         (LOST, "Camera lost"),
         (replace(LOST, state="recovering"), "Camera lost"),
-        (replace(LOST, state="frozen", still=True), "stands still"),
+        (replace(LOST, state="frozen", frozen=True), "stands still"),
         (replace(LOST, name="http://phone:8080/video"), "phone"),
     ],
 )
@@ -154,7 +156,7 @@ def test_the_last_picture_stays_under_the_card_and_is_not_changed():
 
 
 def test_the_summary_names_drops_gaps_and_latency():
-    health = replace(RUNNING, latency=0.0412, dropped=3, deepest=2, stamped_by="driver")
+    health = replace(RUNNING, latency=0.0412, dropped=3, max_queue=2, stamped_by="driver")
     summary = Summary("follow", camera=health, gaps=[(1.0, 6.25)])
     console = Console(width=140)
     with console.capture() as capture:

@@ -147,7 +147,7 @@ def test_of_a_session_cut_at_any_byte_every_whole_frame_is_read(session, tmp_pat
     for cut in np.linspace(0, len(data) - 1, 30).astype(int):
         path.write_bytes(data[:cut])
         frames, error = read(path)
-        assert "cut short" in error or "is not MCAP" in error
+        assert "truncated" in error or "is not MCAP" in error
         assert "\n" not in error
         if frames:
             amount = f"its first {len(frames)} frames" if len(frames) > 1 else "one frame"
@@ -177,7 +177,7 @@ def test_a_flipped_bit_never_gives_a_wrong_picture(session, tmp_path_factory, pl
     [
         (b"", "is not MCAP"),
         (b"a letter to grandmother", "is not MCAP"),
-        (b"\x89MCAP0\r\n", "is cut short: no frame could be read"),
+        (b"\x89MCAP0\r\n", "is truncated: no frame could be read"),
     ],
 )
 def test_what_is_no_session_is_one_line(tmp_path, content, words):
@@ -190,11 +190,11 @@ def test_sessions_without_pictures_or_with_strange_ones_are_one_line(tmp_path):
     path = tmp_path / "take.mcap"
     assert "holds no camera frame on /camera/image" in read(write_session(path, []))[1]
     webp = CompressedImage(format="webp", data=b"RIFF")
-    assert "pictures in 'webp', not jpeg or h264" in read(write_session(path, [webp]))[1]
+    assert "images in 'webp', not jpeg or h264" in read(write_session(path, [webp]))[1]
     torn = CompressedImage(format="jpeg", data=jpeg(2)[:300])
     frames, error = read(write_session(path, [*jpegs(2), torn]))
     assert len(frames) == 2
-    assert "has a picture that is no JPEG: its first 2 frames could be read" in error
+    assert "has an image that is not JPEG: its first 2 frames could be read" in error
 
 
 def write_video(path, count=20, rate=25, **options):
@@ -241,7 +241,7 @@ def test_what_is_no_video_is_one_line(tmp_path):
 
 
 def test_an_unknown_kind_of_address_is_one_line():
-    with pytest.raises(TrackingError, match="'rtsp' is not camera, http or synthetic"):
+    with pytest.raises(TrackingError, match="use camera, http, https, synthetic or a file"):
         open_source("rtsp://phone/video")
 
 

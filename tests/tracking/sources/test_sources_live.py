@@ -161,7 +161,7 @@ def fails(make, words):
 def test_a_camera_that_opens_but_never_gives_a_frame_is_one_line(capture, patience):
     """Whether `read` fails at once, or blocks for ever."""
     capture.patience = patience
-    fails(lambda: open_camera(capture, fast_clock()), "camera 0 gave no picture for 2 s")
+    fails(lambda: open_camera(capture, fast_clock()), "camera 0 delivered no image for 2 s")
 
 
 def test_a_driver_that_blocks_for_ever_while_opening_hangs_nobody():
@@ -210,7 +210,7 @@ def test_a_camera_that_is_unplugged_gives_its_last_frame_and_then_one_line(captu
         frames = iter(source)
         assert next(frames).encoded == jpeg(0)
         capture.patience = 0.0
-        fails(lambda: next(frames), "camera 0 gave no picture for 3")
+        fails(lambda: next(frames), "camera 0 delivered no image for 3")
 
 
 def test_a_camera_that_repeats_its_last_frame_for_ever_counts_as_gone(capture):
@@ -222,14 +222,14 @@ def test_a_camera_that_repeats_its_last_frame_for_ever_counts_as_gone(capture):
             for _ in source:
                 pass
 
-    fails(watch, "camera 0 has given the very same picture for 3")
+    fails(watch, "camera 0 has repeated the same image for 3")
 
 
 def test_garbage_that_goes_on_is_one_line(capture):
     capture.patience = 0.001
     garbage = (np.full((1, 500), number % 256, np.uint8) for number in itertools.count())
     wait, capture.frames.get = capture.frames.get, lambda timeout: next(garbage)
-    fails(lambda: open_camera(capture, fast_clock()), "pictures that cannot be decoded")
+    fails(lambda: open_camera(capture, fast_clock()), "images that cannot be decoded")
     capture.frames.get = wait
 
 
@@ -358,14 +358,14 @@ def test_name_and_password_go_to_the_phone_and_into_no_message(phone):
         open_source(f"http://anna:s%20cret@{phone}/secret")
     assert Phone.heard == ["Basic YW5uYTpzIGNyZXQ="]
     assert "cret" not in str(caught.value).replace("/secret", "")
-    assert "wants a password" in str(caught.value)
+    assert "needs a password" in str(caught.value)
 
 
 @pytest.mark.parametrize(
     ("path", "words"),
     [
-        ("/page", "is text/html, not a stream of JPEG pictures"),
-        ("/photo", "is image/jpeg, not a stream of JPEG pictures"),
+        ("/page", "is text/html, not a stream of JPEG images"),
+        ("/photo", "is image/jpeg, not a stream of JPEG images"),
         ("/moved", "has moved: open http://elsewhere/video instead"),
         ("/none", "answers 404"),
     ],
@@ -375,9 +375,7 @@ def test_an_answer_that_is_no_stream_is_one_line(phone, path, words):
 
 
 def test_a_phone_that_falls_silent_is_one_line(phone):
-    fails(
-        lambda: HttpSource(f"http://{phone}/silent", clock=fast_clock(0.05)), "no picture for 2 s"
-    )
+    fails(lambda: HttpSource(f"http://{phone}/silent", clock=fast_clock(0.05)), "no image for 2 s")
 
 
 def test_a_phone_that_hangs_up_is_one_line_after_its_last_frame(phone):
@@ -400,4 +398,4 @@ def test_a_phone_that_hangs_up_is_connected_to_again(phone):
 def test_addresses_where_nobody_answers_are_one_line(phone):
     fails(lambda: open_source("http://127.0.0.1:1/video"), "cannot connect to http://127.0.0.1:1")
     fails(lambda: open_source("http://"), "names no host")
-    fails(lambda: open_source("http://phone:ninety/"), "is no web address")
+    fails(lambda: open_source("http://phone:ninety/"), "is not a web address")

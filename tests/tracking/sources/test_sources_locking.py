@@ -4,11 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-from tracking import TrackingError
-from tracking.sources.camera import CameraSource, CaptureDevice
-from tracking.sources.camera_options import CameraOptions
-from tracking.sources.health import Setting
-from tracking.sources.locking import HOPELESS
+from tracking import TrackingError, open_source
+from tracking.sources.camera import CameraOptions, CameraSource, CaptureDevice
+from tracking.sources.camera_controls import MAX_SETTLING_IMAGES
+from tracking.sources.device import DeviceSetting
 
 SIZE = (64, 48)
 
@@ -78,7 +77,7 @@ def test_nothing_is_locked_before_it_has_settled():
     driver = Driver()
     settings = after(driver, 29)
     assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
-    assert settings["exposure"] == Setting("exposure", False, "still automatic")
+    assert settings["exposure"] == DeviceSetting("exposure", False, "still automatic")
 
 
 def test_exposure_and_focus_are_locked_where_they_settled():
@@ -86,8 +85,8 @@ def test_exposure_and_focus_are_locked_where_they_settled():
     settings = after(driver, 100)
     assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 1.0
     assert driver.controls[cv2.CAP_PROP_AUTOFOCUS] == 0.0
-    assert settings["exposure"] == Setting("exposure", True, "locked at 15.6 ms")
-    assert settings["focus"] == Setting("focus", True, "locked at 30")
+    assert settings["exposure"] == DeviceSetting("exposure", True, "locked at 15.6 ms")
+    assert settings["focus"] == DeviceSetting("focus", True, "locked at 30")
 
 
 def test_an_exposure_that_the_camera_misreports_is_left_automatic():
@@ -95,8 +94,8 @@ def test_an_exposure_that_the_camera_misreports_is_left_automatic():
     driver.manual_light = 40
     settings = after(driver, 100)
     assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
-    assert not settings["exposure"].honoured
-    assert "does not tell" in settings["exposure"].told
+    assert not settings["exposure"].applied
+    assert "does not report the value" in settings["exposure"].detail
 
 
 def test_the_automatics_are_on_again_when_the_camera_is_closed():
@@ -116,15 +115,15 @@ def test_an_exposure_that_a_killed_program_left_locked_settles_anew():
     driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] = 1.0
     after(driver, 10)
     assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
-    assert after(driver, 100)["exposure"].honoured
+    assert after(driver, 100)["exposure"].applied
 
 
 def test_a_focus_that_hunts_is_left_automatic():
     driver = Driver()
     driver.hunting = True
-    settings = after(driver, HOPELESS + 30)
+    settings = after(driver, MAX_SETTLING_IMAGES + 30)
     assert driver.controls[cv2.CAP_PROP_AUTOFOCUS] == 1.0
-    assert "does not come to rest" in settings["focus"].told
+    assert "does not settle" in settings["focus"].detail
 
 
 def test_what_a_driver_refuses_is_said():
@@ -132,21 +131,21 @@ def test_what_a_driver_refuses_is_said():
     driver.refused = {cv2.CAP_PROP_AUTO_EXPOSURE}
     driver.absent = {cv2.CAP_PROP_FOCUS, cv2.CAP_PROP_AUTOFOCUS}
     settings = after(driver, 100)
-    assert settings["exposure"].told == "refused: the camera keeps its automatic on"
-    assert settings["focus"].told == "the camera has no such setting"
-    assert not settings["exposure"].honoured
-    assert not settings["focus"].honoured
+    assert settings["exposure"].detail == "refused: the camera stays automatic"
+    assert settings["focus"].detail == "the camera has no such setting"
+    assert not settings["exposure"].applied
+    assert not settings["focus"].applied
 
 
 def test_a_short_exposure_is_set_at_once_and_read_back():
     driver = Driver()
     settings = after(driver, 0, exposure=5.0, focus=60.0)
     assert driver.controls[cv2.CAP_PROP_EXPOSURE] == 50.0
-    assert settings["exposure"] == Setting("exposure", True, "set to 5 ms")
-    assert settings["focus"] == Setting("focus", True, "set to 60")
+    assert settings["exposure"] == DeviceSetting("exposure", True, "set to 5 ms")
+    assert settings["focus"] == DeviceSetting("focus", True, "set to 60")
     clamped = Driver()
     clamped.clamp = 20.0
-    assert after(clamped, 0, exposure=5.0)["exposure"].told == "refused: the camera answers 2 ms"
+    assert after(clamped, 0, exposure=5.0)["exposure"].detail == "refused: the camera reports 2 ms"
     assert clamped.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
 
 
@@ -158,13 +157,13 @@ def test_nothing_is_touched_without_the_lock():
 
 
 def test_the_queue_is_asked_for_and_what_the_driver_gives_is_said():
-    assert after(Driver(), 0)["buffers"] == Setting("buffers", True, "2, asked for 2")
+    assert after(Driver(), 0)["buffers"] == DeviceSetting("buffers", True, "2, requested 2")
     stubborn = Driver()
     stubborn.refused = {cv2.CAP_PROP_BUFFERSIZE}
-    assert after(stubborn, 0)["buffers"] == Setting("buffers", False, "4, asked for 2")
+    assert after(stubborn, 0)["buffers"] == DeviceSetting("buffers", False, "4, requested 2")
     silent = Driver()
     silent.absent = {cv2.CAP_PROP_BUFFERSIZE}
-    assert "does not tell" in after(silent, 0)["buffers"].told
+    assert "does not report" in after(silent, 0)["buffers"].detail
 
 
 def test_the_drivers_milliseconds_become_the_frames_timestamp():
@@ -182,12 +181,12 @@ def test_the_drivers_milliseconds_become_the_frames_timestamp():
         ("0?zoom=3", "has no option 'zoom': it has lock, exposure, focus, buffers"),
         ("0?exposure=0", "exposure must be from 0.1 to 1000, not 0"),
         ("0?exposure=nan", "exposure must be"),
-        ("0?exposure=short", "exposure=short is no number"),
+        ("0?exposure=short", "exposure=short is not a number"),
         ("0?lock=maybe", "lock=maybe is neither 0 nor 1"),
         ("0?buffers=99", "buffers must be from 1 to 10"),
     ],
 )
 def test_a_wrong_option_is_one_line(uri, words):
     with pytest.raises(TrackingError) as caught:
-        CameraSource.from_uri(uri, SIZE, lambda: 0.0)
+        open_source(f"camera:{uri}")
     assert words in str(caught.value)

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.sources.multipart import LARGEST_PART, MultipartError, MultipartParser
+from tracking.sources.multipart import MAX_PART_BYTES, MultipartError, MultipartParser
 
 bodies = st.lists(
     st.binary(max_size=60)
@@ -74,7 +74,7 @@ def test_garbage_gives_no_exception(chunks):
 
 def test_a_stream_without_boundaries_does_not_fill_the_memory():
     parser = MultipartParser("cut")
-    for _ in range(LARGEST_PART // 2**20):
+    for _ in range(MAX_PART_BYTES // 2**20):
         assert parser.feed(bytes(2**20)) == []
     with pytest.raises(MultipartError, match="more than 32 MB"):
         parser.feed(b"!")

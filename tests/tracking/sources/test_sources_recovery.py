@@ -8,10 +8,10 @@ import pytest
 
 from tracking import Frame, TrackingError
 from tracking.sources.base import LiveFrames
-from tracking.sources.capture import LEFT_BEHIND, STUCK_S
-from tracking.sources.devices import lasting_path
+from tracking.sources.capture import MAX_ABANDONED_THREADS, STUCK_TIMEOUT_S
+from tracking.sources.capture_timing import DISTRUST_IMAGES, ExposureClock, QueueGauge
 from tracking.sources.live import LiveSource
-from tracking.sources.timing import DISTRUST, ExposureClock, QueueGauge
+from tracking.sources.video_device import persistent_path
 
 ENOUGH_S = 10.0
 """Real time after which a test that waits for another thread has failed."""
@@ -47,7 +47,7 @@ class Bench:
     def __call__(self):
         self.tried.release()
         if not self.plugged:
-            raise TrackingError("camera 0 is not there")
+            raise TrackingError("camera 0 does not exist")
         self.opened += 1
         self.held += 1
         self.most_held = max(self.most_held, self.held)
@@ -127,7 +127,7 @@ def awaited(source, bench):
     found: list[Frame] = []
 
     def came():
-        found.extend(frame for frame in [source._next(0.0)] if frame is not None)
+        found.extend(frame for frame in [source.wait(0.0)] if frame is not None)
         return bool(found)
 
     bench.until(came)
@@ -139,7 +139,7 @@ def test_silence_is_told_within_a_second_though_the_driver_never_returns(bench, 
     assert at(bench, 0.7, source).state == "running"
     health = at(bench, 1.0, source)
     assert (health.state, health.since) == ("lost", 100.0)
-    assert "gave no picture for 1 s" in health.problem
+    assert "delivered no image for 1 s" in health.problem
     assert source.wait(0.0) is None  # blocks nobody
 
 
@@ -173,7 +173,7 @@ def test_patience_that_is_over_is_one_line(bench, source):
     bench.pictures.put(GONE)
     bench.until(lambda: source.health.state == "lost")
     bench.clock.now += 5.0
-    with pytest.raises(TrackingError, match=r"^camera 0 is not there$|^camera 0 was pulled out$"):
+    with pytest.raises(TrackingError, match=r"^camera 0 does not exist$|^camera 0 was pulled out$"):
         source.wait(0.0, patience=5.0)
 
 
@@ -182,7 +182,7 @@ def test_a_frozen_picture_is_told_within_a_second_and_only_another_one_ends_it(b
     bench.put(1)
     bench.until(lambda: source.health.state == "frozen")
     assert source.health.since == 100.0
-    assert "the very same picture" in source.health.problem
+    assert "repeated the same image" in source.health.problem
 
     def reopened():
         bench.clock.now += 0.05
@@ -214,7 +214,7 @@ def test_a_thread_that_never_returns_is_left_behind_and_another_opens_the_camera
     while bench.asked.acquire(blocking=False):
         pass
     assert bench.asked.acquire(timeout=ENOUGH_S)
-    bench.clock.now += STUCK_S - 1.0
+    bench.clock.now += STUCK_TIMEOUT_S - 1.0
     source.wait(0.0)
     assert bench.opened == 1, "opened while the old thread may yet return"
     bench.blocks = False
@@ -231,11 +231,12 @@ def test_a_thread_that_never_returns_is_left_behind_and_another_opens_the_camera
 def test_only_so_many_threads_are_left_behind(bench, source):
     bench.blocks = True
     bench.until(lambda: bench.asked.acquire(blocking=False))
-    for _ in range(LEFT_BEHIND + 3):
-        bench.clock.now += STUCK_S
+    for number in range(MAX_ABANDONED_THREADS + 3):
+        bench.clock.now += STUCK_TIMEOUT_S
         source.wait(0.0)
-        bench.until(lambda: source._capture._reader.entered is not None)
-    assert source._capture._left == LEFT_BEHIND
+        if number < MAX_ABANDONED_THREADS:
+            bench.until(lambda: bench.asked.acquire(blocking=False))
+    assert bench.opened == 1 + MAX_ABANDONED_THREADS
 
 
 def test_the_drivers_time_is_taken_where_it_is_sane(bench, source):
@@ -254,9 +255,9 @@ def test_a_wrong_driver_time_gives_way_to_the_arrival_for_a_while(wrong):
     clock = ExposureClock()
     assert clock.stamp(99.9, 99.87) == 99.87
     assert clock.stamp(100.0, wrong) == 100.0
-    given = [clock.stamp(100.0 + n, 99.96 + n) for n in range(1, DISTRUST + 3)]
-    assert given[:DISTRUST] == [100.0 + n for n in range(1, DISTRUST + 1)]
-    assert given[DISTRUST + 1] == 99.96 + DISTRUST + 2
+    given = [clock.stamp(100.0 + n, 99.96 + n) for n in range(1, DISTRUST_IMAGES + 3)]
+    assert given[:DISTRUST_IMAGES] == [100.0 + n for n in range(1, DISTRUST_IMAGES + 1)]
+    assert given[DISTRUST_IMAGES + 1] == 99.96 + DISTRUST_IMAGES + 2
 
 
 def test_a_driver_time_that_stands_still_or_goes_back_is_not_believed():
@@ -278,7 +279,7 @@ def test_the_depth_of_the_queue_is_measured_with_and_without_the_drivers_time():
         late = [4 / 30 + 0.03 - n / 30 for n in range(1, 4)]
         depths = [gauge.add(0.0, 9 / 30, age if stamped else None) for age in late]
         assert depths == ([3, 2, 1] if stamped else [1, 2, 3])
-        assert gauge.deepest == 3
+        assert gauge.max_depth == 3
 
 
 def test_the_rate_is_that_of_the_arrivals():
@@ -302,10 +303,10 @@ def test_a_camera_whose_number_moved_is_found_by_its_name(tmp_path):
     first.touch()
     link = links / "usb-Webcam-index0"
     link.symlink_to(first)
-    path = lasting_path(first, links)
+    path = persistent_path(first, links)
     link.unlink()
     first.unlink()
     second.touch()
     link.symlink_to(second)
     assert path.resolve() == second.resolve()
-    assert lasting_path(tmp_path / "video9", links) == tmp_path / "video9"
+    assert persistent_path(tmp_path / "video9", links) == tmp_path / "video9"

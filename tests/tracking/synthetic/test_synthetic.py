@@ -9,7 +9,7 @@ from tracking import CubeModel, TrackingError
 from tracking.geometry.projection import Projection
 from tracking.sources import open_source
 from tracking.sources.base import FrameSource
-from tracking.synthetic import SCRIPTS, Options, SyntheticSource, open_synthetic
+from tracking.synthetic import SCRIPTS, SyntheticOptions, SyntheticSource, open_synthetic
 from tracking.synthetic.lens import Lens
 from tracking.synthetic.paper_cube import PaperCube
 from tracking.synthetic.source import webcam
@@ -41,7 +41,7 @@ def edge_crossing(profile: Array, middle: float) -> float:
 @pytest.mark.parametrize("shift", [0.0, 0.25, 0.5, 0.8])
 def test_pixel_centres_are_at_whole_numbers(shift: float) -> None:
     """The borders of a large marker that looks at the camera lie where they are projected to."""
-    options = Options(noise=0, defocus=0.7, distortion=0, clutter=False, shadow=False)
+    options = SyntheticOptions(noise=0, defocus=0.7, distortion=0, clutter=False, shadow=False)
     lens = Lens(webcam(options))
     cube = CubeModel.load("locomotion")
     pose = np.diag([1.0, -1.0, -1.0, 1.0])  # the front face looks at the camera, upright
@@ -214,7 +214,7 @@ def test_it_is_a_source_like_any_other() -> None:
 @pytest.mark.parametrize(
     ("name", "says"),
     [
-        ("nowhere", "no synthetic scene is called 'nowhere'"),
+        ("nowhere", "there is no synthetic scene 'nowhere'"),
         ("turn?colour=red", "has no option 'colour'"),
         ("turn?rate=fast", "rate=fast is not a"),
         ("turn?noise=-1", "noise must be from 0 to 50"),
