@@ -11,10 +11,8 @@ from rich.tree import Tree
 from app.errors import AppError
 from characters import Animator, Character
 from characters.control.builtin_tree import built_in
-from characters.motion.trees import Node, Plan
-from characters.motion.trees.diagram import draw
-from characters.motion.trees.layout import described, plain
-from characters.motion.trees.plan import Change
+from characters.motion.trees import Node, Plan, Transition
+from characters.motion.trees.dot import to_dot
 
 
 def graph(
@@ -22,34 +20,37 @@ def graph(
         str, typer.Argument(help="A bundled character, or a .glb, .gltf or .vrm file.")
     ],
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Draw it into this .svg file.")
+        Path | None,
+        typer.Option("--output", "-o", help="Write the graph to this .dot file (Graphviz)."),
     ] = None,
 ) -> None:
-    """Show how a character's motions are put together: blend trees, layers, states.
+    """Show how a character's motions are composed: blend trees, layers, states.
 
-    They come from the .toml file beside the character (docs/motions.md); without one, what every
-    character with such clips does is shown.
+    They are described in the .toml file next to the character (docs/motion-files.md); without one,
+    the built-in motions for its clips are shown.
 
-    Example: [cyan]cubeling character graph human -o human.svg[/]
+    Graphviz turns the .dot file into a picture: [cyan]dot -Tsvg human.dot -o human.svg[/]
+
+    Example: [cyan]cubeling character graph human -o human.dot[/]
     """
-    if output is not None and output.suffix != ".svg":
-        raise AppError(f"a graph is drawn as an .svg file, not as '{output}'")
+    if output is not None and output.suffix != ".dot":
+        raise AppError(f"a graph is written to a .dot file, not to '{output}'")
     loaded = Character.load(character)
     plan = loaded.plan or built_in(loaded)
     if loaded.plan is not None:
-        Animator(loaded)  # what cannot be played is told before it is played
+        Animator(loaded)  # refuses plans that cannot be played
     Console().print(outline(plan, loaded.name))
     if output is None:
         return
     try:
-        output.write_text(draw(plan, loaded.name), encoding="utf-8")
+        output.write_text(to_dot(plan, loaded.name), encoding="utf-8")
     except OSError as error:
         raise AppError(f"cannot write '{output}' ({error.strerror}): check the folder") from None
-    Console().print(f"[bold]{escape(str(output))}[/] is drawn; a web browser shows it.")
+    Console().print(f"[bold]{escape(str(output))}[/] is written; Graphviz draws it.")
 
 
 def outline(plan: Plan, name: str) -> Tree:
-    """Return a plan as an indented list."""
+    """Return a plan as an indented list for the console."""
     tree = Tree(f"[bold]{escape(name)}[/]  [dim]from {escape(plan.source)}[/]")
     if plan.machine is None:
         for root in plan.roots:
@@ -59,24 +60,21 @@ def outline(plan: Plan, name: str) -> Tree:
         first = "first state" if state == plan.machine.start else "state"
         branch = tree.add(f"[bold yellow]{escape(state)}[/]  [dim]{first}[/]")
         _grow(branch, node, "")
-        for change in plan.machine.changes:
-            if change.start == state:
-                branch.add(f"[yellow]→ {_told(change)}", highlight=True)
-    for change in plan.machine.changes:
-        if change.start == "*":
-            tree.add(f"[yellow]any → {_told(change)}", highlight=True)
+        for transition in plan.machine.transitions:
+            if transition.start == state:
+                branch.add(f"[yellow]→ {_described(transition)}", highlight=True)
+    for transition in plan.machine.transitions:
+        if transition.start == "*":
+            tree.add(f"[yellow]any → {_described(transition)}", highlight=True)
     return tree
 
 
-def _told(change: Change) -> str:
-    return f"{escape(change.end)}[/] when {escape(change.when.text)}"
+def _described(transition: Transition) -> str:
+    return f"{escape(transition.end)}[/] when {escape(transition.when.text)}"
 
 
 def _grow(tree: Tree, node: Node, label: str) -> None:
     at = f"[cyan]{escape(label)}[/] " if label else ""
-    branch = tree.add(f"{at}{escape(node.name or node.kind)}  [dim]{escape(described(node))}[/]")
-    for key, child in node.motions.items():
-        _grow(branch, child, "" if key == "of" else key)
-    for row in node.rows:
-        at = row.said.get("value", row.said.get("start", row.said.get("weight", "")))
-        _grow(branch, row.motion, plain(at))
+    branch = tree.add(f"{at}{escape(node.name or node.kind)}  [dim]{escape(node.description)}[/]")
+    for inner, child in zip(node.labels, node.children, strict=True):
+        _grow(branch, child, inner)

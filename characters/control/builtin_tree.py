@@ -7,7 +7,7 @@ from characters.control.walker import NO_ACTS, Walker
 from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS, WALK_RUN_SPEEDS
 from characters.model.character import Character
 from characters.motion.trees.conditions import Condition
-from characters.motion.trees.plan import PARAMETERS, Change, Machine, Node, Plan, Row
+from characters.motion.trees.plan import PARAMETERS, Node, Plan, Row, StateGraph, Transition
 
 
 def built_in(character: Character) -> Plan:
@@ -19,7 +19,7 @@ def built_in(character: Character) -> Plan:
     states = _walker(character) if Walker.suits(character) else _actor(character)
     start = next(iter(states))
     changes = [
-        Change(
+        Transition(
             start,
             name,
             _condition("speed > 0.5" if name == "move" else f"action == {name!r}"),
@@ -29,13 +29,13 @@ def built_in(character: Character) -> Plan:
         if name != start
     ]
     changes += [
-        Change(
+        Transition(
             name, start, _condition("speed < 0.5" if name == "move" else "action == 'idle'"), 0.25
         )
         for name in states
         if name != start
     ]
-    return Plan(character.name, None, Machine(states, start, tuple(changes)))
+    return Plan(character.name, None, StateGraph(states, start, tuple(changes)))
 
 
 def _walker(character: Character) -> dict[str, Node]:

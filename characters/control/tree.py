@@ -10,7 +10,7 @@ from characters.motion.motion import Motion, RootDelta
 from characters.motion.state_machine import StateMachine
 from characters.motion.trees.building import Builder
 from characters.motion.trees.parametric import ParameterBindings
-from characters.motion.trees.plan import PARAMETERS, Change, Plan
+from characters.motion.trees.plan import PARAMETERS, Plan, Transition
 from characters.skeleton.pose import Pose
 from characters.smoothing import low_pass
 
@@ -80,7 +80,7 @@ class TreePlayer:
         now, self._time = self._time, self._time + elapsed
         self._change(command, now)
         state = self._machine.state
-        self._steering[state].steer(self._values, now - self._machine.entered)
+        self._steering[state].set_values(self._values, now - self._machine.entered)
         self._report(command)
         step = self._machine.travel(now, self._time)
         self.place = self.place.then(
@@ -129,12 +129,12 @@ class TreePlayer:
         ended = spent >= self._motions[state].duration
         values: dict[str, float | str | bool] = {**self._values, "time": spent, "done": ended}
         values["action"] = command.action
-        for change in machine.changes:
+        for change in machine.transitions:
             if _leads_on(change, state) and change.when.holds(values):
                 self._enter(change, now)
                 return
 
-    def _enter(self, change: Change, now: float) -> None:
+    def _enter(self, change: Transition, now: float) -> None:
         """Enter a state; its motion starts over once the old one has been looked at."""
         steering = self._steering[change.end]
         self._machine.length = change.seconds
@@ -142,7 +142,7 @@ class TreePlayer:
             change.end,
             now,
             change.seconds if change.crossfade else 0.0,
-            lambda: steering.restart(self._values),
+            lambda: steering.restart_with(self._values),
         )
 
     def _report(self, command: CharacterCommand) -> None:
@@ -151,5 +151,5 @@ class TreePlayer:
         self.angular = math.radians(self._values["angular"])
 
 
-def _leads_on(change: Change, state: str) -> bool:
+def _leads_on(change: Transition, state: str) -> bool:
     return change.end != state and change.start in (state, "*")

@@ -1,16 +1,25 @@
-"""Blend trees and state machines as a file describes them; `plan` has the vocabulary."""
+"""Blend trees and state machines that are described in a file; `plan` defines the format."""
 
-from characters.motion.trees.plan import KINDS, PARAMETERS, Change, Kind, Machine, Node, Plan, Row
+from characters.motion.trees.plan import (
+    KINDS,
+    PARAMETERS,
+    Node,
+    NodeKind,
+    Plan,
+    Row,
+    StateGraph,
+    Transition,
+)
 from characters.motion.trees.reading import read_plan
 
 __all__ = [
     "KINDS",
     "PARAMETERS",
-    "Change",
-    "Kind",
-    "Machine",
     "Node",
+    "NodeKind",
     "Plan",
     "Row",
+    "StateGraph",
+    "Transition",
     "read_plan",
 ]

@@ -1,4 +1,4 @@
-"""From a plan to something that plays."""
+"""Builds motions from plans."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -34,11 +34,11 @@ class Builder:
     Parameters
     ----------
     plan
-        What is built.
+        The plan.
     skeleton, clips, anatomy
-        The character's.
+        Those of the character.
     mirror
-        Gives its mirror; called only if something in the plan is mirrored.
+        Returns its mirror; called only if the plan contains a mirrored motion.
     """
 
     def __init__(
@@ -57,60 +57,60 @@ class Builder:
         self._constant: dict[int, Motion] = {}
 
     def build(self, node: Node, values: Values) -> tuple[Motion, ParameterBindings]:
-        """Return what plays a node, and what its parameters change.
+        """Return the motion of a node, and the bindings that set its parameters.
 
         Parameters
         ----------
         node
-            Of the plan.
+            A node of the plan.
         values
-            The parameters to begin with.
+            The initial values of the parameters.
 
         Raises
         ------
         CharacterError
-            If something in the plan cannot be played; the message names its place in the file.
+            If a part of the plan cannot be played; the message names its place in the file.
         """
-        steering = ParameterBindings()
-        motion = self._playing(node, values, steering)
-        steering.restart(values)
-        return motion, steering
+        bindings = ParameterBindings()
+        motion = self._bound(node, values, bindings)
+        bindings.restart_with(values)
+        return motion, bindings
 
-    def _playing(self, node: Node, values: Values, steering: ParameterBindings) -> Motion:
-        """Return a motion that stays the same object while its parameters change."""
+    def _bound(self, node: Node, values: Values, bindings: ParameterBindings) -> Motion:
+        """Return a motion that remains the same object while its parameters change."""
         if not node.parametric:
-            return self._made(node, values)
-        if node.kind in ("layer", "add"):
+            return self._fixed(node, values)
+        if node.group == "layer":
             base, over = (
-                self._playing(node.motions[key], values, steering) for key in ("base", "over")
+                self._bound(node.motions[key], values, bindings) for key in ("base", "over")
             )
-            weight = node.said["weight"]
+            weight = node.fields["weight"]
             if isinstance(weight, str):
                 weight = ParametricWeight(weight, 0.0 if node.kind == "layer" else -1.0)
-                steering.weights.append(weight)
-            return self._laid(node, base, over, weight)
+                bindings.weights.append(weight)
+            return self._layer_over(node, base, over, weight)
         self._refuse_layers(node, node)
-        parametric = ParametricMotion(lambda now: self._made(node, now), values)
-        steering.motions.append(parametric)
+        parametric = ParametricMotion(lambda now: self._fixed(node, now), values)
+        bindings.motions.append(parametric)
         return parametric
 
     def _refuse_layers(self, node: Node, inside: Node) -> None:
-        """Refuse layers with a steered part in what is not a layer: their time is not its own."""
+        """Refuse parametric layers in a node that is not a layer: their times would differ."""
         for child in inside.children:
-            if child.parametric and child.kind in ("layer", "add"):
+            if child.parametric and child.group == "layer":
                 self._refuse(
                     child,
                     f"a layer that parameters change cannot be inside the {node.kind} at "
-                    f"{node.place}; put the {node.kind} inside the layer",
+                    f"{node.path}; put the {node.kind} inside the layer",
                 )
             self._refuse_layers(node, child)
 
-    def _made(self, node: Node, values: Values) -> Motion:
-        """Return a node's motion for fixed parameters; one without any is made once."""
+    def _fixed(self, node: Node, values: Values) -> Motion:
+        """Return the motion of a node for fixed parameters; without parameters it is built once."""
         if id(node) in self._constant:
             return self._constant[id(node)]
         try:
-            motion = _MAKERS[node.kind](self, node, values)
+            motion = _BUILDERS[node.kind](self, node, values)
             if not node.parametric:
                 self._constant[id(node)] = motion
             return motion
@@ -121,19 +121,19 @@ class Builder:
         raise AssertionError("refused above")
 
     def _of(self, node: Node, values: Values, key: str = "of") -> Motion:
-        return self._made(node.motions[key], values)
+        return self._fixed(node.motions[key], values)
 
     def _clip(self, node: Node, values: Values) -> Motion:
-        return self._clips[node.said["clip"]]
+        return self._clips[node.fields["clip"]]
 
     def _hold(self, node: Node, values: Values) -> Motion:
-        return StaticPose(self._of(node, values).sample(node.said["at"]), 1.0)
+        return StaticPose(self._of(node, values).sample(node.fields["at"]), 1.0)
 
     def _stretch(self, node: Node, values: Values) -> Motion:
-        return Stretch(self._of(node, values), node.said["seconds"])
+        return Stretch(self._of(node, values), node.fields["seconds"])
 
     def _window(self, node: Node, values: Values) -> Motion:
-        return Window(self._of(node, values), node.said["start"], node.said["end"])
+        return Window(self._of(node, values), node.fields["start"], node.fields["end"])
 
     def _loop(self, node: Node, values: Values) -> Motion:
         return Loop(self._of(node, values))
@@ -141,78 +141,80 @@ class Builder:
     def _mirrored(self, node: Node, values: Values) -> Motion:
         return Mirrored(self._of(node, values), self._mirror())
 
-    def _displaced(self, node: Node, values: Values) -> Motion:
-        turn = math.radians(node.said["yaw_deg"])
+    def _root_offset(self, node: Node, values: Values) -> Motion:
+        yaw = math.radians(node.fields["yaw_deg"])
         roots = tuple(j for j, parent in enumerate(self._skeleton.parents) if parent < 0)
-        step = RootDelta(node.said["x"], node.said["z"], turn)
-        return RootOffset(self._of(node, values), step, roots)
+        offset = RootDelta(node.fields["x"], node.fields["z"], yaw)
+        return RootOffset(self._of(node, values), offset, roots)
 
     def _warped(self, node: Node, values: Values) -> Motion:
-        return Warped(self._of(node, values), TimeCurve(node.said["times"], node.said["sources"]))
+        return Warped(
+            self._of(node, values), TimeCurve(node.fields["times"], node.fields["sources"])
+        )
 
-    def _paced(self, node: Node, values: Values) -> Motion:
-        rate, stride = node.said["rate"], node.said["stride"]
+    def _time_scaled(self, node: Node, values: Values) -> Motion:
+        rate, stride = node.fields["rate"], node.fields["stride"]
         if rate <= 0.0:
             self._refuse(node, f"a rate of {rate}; give more than 0")
         return TimeScaled(as_cyclic(self._of(node, values)), rate, stride)
 
     def _blend(self, node: Node, values: Values) -> Motion:
-        weights = shares([row.said["weight"] for row in node.rows])
+        weights = shares([row.fields["weight"] for row in node.rows])
         return Blend(self._rows(node, values), weights)
 
     def _space(self, node: Node, values: Values) -> Motion:
-        knots = [row.said["value"] for row in node.rows]
+        knots = [row.fields["value"] for row in node.rows]
         order = np.argsort(knots, kind="stable")
         motions = self._rows(node, values)
         space = BlendSpace1D(
             tuple(knots[number] for number in order), tuple(motions[number] for number in order)
         )
-        return space.at(values[node.said["by"]])
+        return space.at(values[node.fields["by"]])
 
     def _plane(self, node: Node, values: Values) -> Motion:
-        rows = [row.said["value"] for row in node.rows]
+        rows = [row.fields["value"] for row in node.rows]
         if any(len(value) != 2 for value in rows):
             self._refuse(node, "each value must be two numbers, one for each parameter")
         points = np.array(rows, float)
-        along, across = node.said["by"]
+        along, across = node.fields["by"]
         space = BlendSpace2D(points, self._rows(node, values))
         return space.at([values[along], values[across]])
 
     def _layered(self, node: Node, values: Values) -> Motion:
-        return self._laid(
+        return self._layer_over(
             node,
             self._of(node, values, "base"),
             self._of(node, values, "over"),
-            node.said["weight"],
+            node.fields["weight"],
         )
 
     def _crossfade(self, node: Node, values: Values) -> Motion:
         return CrossFade(
             self._of(node, values, "first"),
             self._of(node, values, "second"),
-            node.said["start"],
-            node.said["seconds"],
-            node.said["shape"],
+            node.fields["start"],
+            node.fields["seconds"],
+            node.fields["shape"],
         )
 
     def _schedule(self, node: Node, values: Values) -> Motion:
         actions = []
         for row in node.rows:
-            said = row.said
-            fade = FadeCurve(said["fade_in"], said["fade_out"], said["shape"])
+            fields = row.fields
+            fade = FadeCurve(fields["fade_in"], fields["fade_out"], fields["shape"])
             actions.append(
                 Action(
-                    self._made(row.motion, values),
-                    said["start"],
-                    Product((said["weight"], fade)),
-                    self._mask(said["mask"]),
-                    always=said["always"],
+                    self._fixed(row.motion, values),
+                    fields["start"],
+                    Product((fields["weight"], fade)),
+                    self._mask(fields["mask"]),
+                    always=fields["always"],
                 )
             )
         return Schedule(tuple(actions), self._skeleton.rest)
 
-    def _laid(self, node: Node, base: Motion, over: Motion, weight: Weight) -> Motion:
-        mask = self._mask(node.said["mask"])
+    def _layer_over(self, node: Node, base: Motion, over: Motion, weight: Weight) -> Motion:
+        mask = self._mask(node.fields["mask"])
         try:
             if node.kind == "layer":
                 return MaskedLayer(base, over, mask, weight)
@@ -222,7 +224,7 @@ class Builder:
         raise AssertionError("refused above")
 
     def _rows(self, node: Node, values: Values) -> tuple[Motion, ...]:
-        return tuple(self._made(row.motion, values) for row in node.rows)
+        return tuple(self._fixed(row.motion, values) for row in node.rows)
 
     def _mask(self, name: str) -> Mask | None:
         if not name:
@@ -236,19 +238,19 @@ class Builder:
             raise CharacterError(f"{self._plan.source}: masks.{name}: {error}") from None
 
     def _refuse(self, node: Node, what: str) -> None:
-        raise CharacterError(f"{self._plan.source}: {node.place}: {what}")
+        raise CharacterError(f"{self._plan.source}: {node.path}: {what}")
 
 
-_MAKERS: Mapping[str, Callable[[Builder, Node, Values], Motion]] = {
+_BUILDERS: Mapping[str, Callable[[Builder, Node, Values], Motion]] = {
     "clip": Builder._clip,
     "hold": Builder._hold,
     "stretch": Builder._stretch,
     "window": Builder._window,
     "loop": Builder._loop,
     "mirror": Builder._mirrored,
-    "displace": Builder._displaced,
+    "displace": Builder._root_offset,
     "warp": Builder._warped,
-    "pace": Builder._paced,
+    "pace": Builder._time_scaled,
     "blend": Builder._blend,
     "space": Builder._space,
     "plane": Builder._plane,

@@ -1,7 +1,7 @@
-"""Conditions of state machines: comparisons of parameters, as a person writes them.
+"""Conditions of state machines: comparisons of parameters.
 
-`speed > 0.5 and action == "move"`, `done or not weight >= 0`. Read with Python's own grammar, of
-which only this much is let through; nothing is ever executed.
+Examples are `speed > 0.5 and action == "move"` and `done or not weight >= 0`. They are parsed with
+Python's grammar, restricted to comparisons and logic; nothing is executed.
 """
 
 import ast
@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 Values = Mapping[str, "float | str | bool"]
 
-_COMPARED: dict[type[ast.cmpop], Callable[[float, float], bool]] = {
+_OPERATORS: dict[type[ast.cmpop], Callable[[float, float], bool]] = {
     ast.Lt: lambda a, b: a < b,
     ast.LtE: lambda a, b: a <= b,
     ast.Gt: lambda a, b: a > b,
@@ -18,11 +18,11 @@ _COMPARED: dict[type[ast.cmpop], Callable[[float, float], bool]] = {
     ast.Eq: lambda a, b: a == b,
     ast.NotEq: lambda a, b: a != b,
 }
-_LONGEST = 500  # characters: a longer one is no condition that a person wrote
+_MAX_LENGTH = 500  # characters
 
 
 class ConditionError(ValueError):
-    """A condition that cannot be read; the message lacks where it stands."""
+    """A condition that cannot be read; the message does not name its place in the file."""
 
 
 @dataclass(frozen=True)
@@ -30,10 +30,10 @@ class Condition:
     """A condition over named values; see `Condition.read`."""
 
     text: str
-    """As it was written."""
+    """Its text in the file."""
 
     names: frozenset[str] = field(compare=False)
-    """Of the values that it looks at."""
+    """Names of the values that it uses."""
 
     _tree: ast.expr = field(compare=False, repr=False)
 
@@ -44,17 +44,17 @@ class Condition:
         Parameters
         ----------
         text
-            "speed > 0.5 and not done".
+            Such as "speed > 0.5 and not done".
         texts, numbers
-            Names of the values that there are; those in `numbers` may also stand alone, as yes/no.
+            Names of the values by type; those in `numbers` may also be used as truth values.
 
         Raises
         ------
         ConditionError
-            If it says something else, or names a value that does not exist.
+            If it is not a condition, or names an unknown value.
         """
-        if len(text) > _LONGEST:
-            raise ConditionError(f"is longer than {_LONGEST} characters")
+        if len(text) > _MAX_LENGTH:
+            raise ConditionError(f"is longer than {_MAX_LENGTH} characters")
         try:
             tree = ast.parse(text.strip(), mode="eval").body
         except (SyntaxError, ValueError, MemoryError, RecursionError):
@@ -66,7 +66,7 @@ class Condition:
         return Condition(text, frozenset(names), tree)
 
     def holds(self, values: Values) -> bool:
-        """Return whether it is true of some values.
+        """Return whether it is true for given values.
 
         >>> numbers, texts = frozenset({"speed", "done"}), frozenset({"action"})
         >>> Condition.read('0 < speed <= 3 and action != "run"', texts, numbers).holds(
@@ -80,7 +80,7 @@ class Condition:
 def _check(
     tree: ast.expr, text: str, texts: frozenset[str], numbers: frozenset[str], names: set[str]
 ) -> None:
-    """Refuse what is no condition, and collect the names."""
+    """Refuse expressions that are not conditions, and collect the names."""
     match tree:
         case ast.BoolOp(values=values):
             for each in values:
@@ -90,15 +90,15 @@ def _check(
         case ast.Compare(left=left, ops=ops, comparators=others):
             kinds = {_operand(each, text, texts, numbers, names) for each in (left, *others)}
             ordered = any(not isinstance(op, (ast.Eq, ast.NotEq)) for op in ops)
-            if any(type(op) not in _COMPARED for op in ops):
-                raise ConditionError(f"{text!r} compares otherwise than by < <= > >= == !=")
+            if any(type(op) not in _OPERATORS for op in ops):
+                raise ConditionError(f"{text!r} uses a comparison other than < <= > >= == !=")
             if len(kinds) > 1 or (ordered and kinds == {str}):
-                raise ConditionError(f"{text!r} compares a text with a number, or which is greater")
+                raise ConditionError(f"{text!r} compares a text with a number, or texts by order")
         case ast.Name(id=name) if name in numbers:
             names.add(name)
         case _:
             known = ", ".join(sorted(numbers | texts))
-            raise ConditionError(f"{text!r} is more than comparisons of {known} with and, or, not")
+            raise ConditionError(f"{text!r} may only compare {known}, joined by and, or, not")
 
 
 def _operand(
@@ -119,11 +119,11 @@ def _operand(
             known = ", ".join(sorted(numbers | texts))
             raise ConditionError(f"{text!r} names {name!r}; there are {known}")
         case _:
-            raise ConditionError(f"{text!r} compares something that is no name, number or text")
+            raise ConditionError(f"{text!r} compares something other than names, numbers and texts")
 
 
 def _value(tree: ast.expr, values: Values) -> "float | str | bool":
-    """Return what a checked expression comes to."""
+    """Return the value of a checked expression."""
     match tree:
         case ast.BoolOp(op=op, values=parts):
             together = all if isinstance(op, ast.And) else any
@@ -135,7 +135,7 @@ def _value(tree: ast.expr, values: Values) -> "float | str | bool":
         case ast.Compare(left=left, ops=ops, comparators=others):
             sides = [_value(each, values) for each in (left, *others)]
             pairs = zip(ops, sides, sides[1:], strict=False)
-            return all(_COMPARED[type(op)](a, b) for op, a, b in pairs)  # type: ignore[arg-type]
+            return all(_OPERATORS[type(op)](a, b) for op, a, b in pairs)  # type: ignore[arg-type]
         case ast.Name(id=name):
             return values[name]
         case ast.Constant(value=value):

@@ -1,81 +1,72 @@
-"""Motions and weights that parameters change while they play."""
+"""Motions and weights that depend on parameters while they play."""
 
 from collections.abc import Callable, Mapping
 
-from characters.motion.motion import Motion, RootDelta
+from characters.motion.motion import Motion
 from characters.motion.phase import RetimedMotion, as_cyclic
-from characters.skeleton.pose import Pose
 
 Values = Mapping[str, float]
-"""Parameters by name."""
-
-Maker = Callable[[Values], Motion]
-"""Gives the motion for some parameters."""
+"""Values of parameters by name."""
 
 
-class ParametricMotion:
-    """A motion that parameters change while it plays, without losing its phase; a `Motion`."""
+class ParametricMotion(RetimedMotion):
+    """A motion that depends on parameters and keeps its phase when they change; a `Motion`.
 
-    def __init__(self, make: Maker, values: Values) -> None:
+    Parameters
+    ----------
+    make
+        Returns the motion for given values.
+    values
+        The initial values.
+    """
+
+    def __init__(self, make: Callable[[Values], Motion], values: Values) -> None:
+        super().__init__(as_cyclic(make(values)))
         self._make = make
-        self._live = RetimedMotion(as_cyclic(make(values)))
 
-    @property
-    def duration(self) -> float:
-        """Length of one cycle of what plays now [s]."""
-        return self._live.duration
+    def set_values(self, values: Values, time: float) -> None:
+        """Continue with other values from a time [s] on."""
+        self.change(as_cyclic(self._make(values)), time)
 
-    def steer(self, values: Values, time: float) -> None:
-        """Go on from a time on [s] with other parameters."""
-        self._live.change(as_cyclic(self._make(values)), time)
-
-    def restart(self, values: Values) -> None:
-        """Start over at time 0."""
-        self._live.restart(as_cyclic(self._make(values)), 0.0)
-
-    def sample(self, time: float) -> Pose:
-        """Return the pose at a time [s]."""
-        return self._live.sample(time)
-
-    def travel(self, start: float, end: float) -> RootDelta:
-        """Return how the root moves over the ground between two times [s]."""
-        return self._live.travel(start, end)
+    def restart_with(self, values: Values) -> None:
+        """Start again at time 0."""
+        self.restart(as_cyclic(self._make(values)), 0.0)
 
 
 class ParametricWeight:
-    """A weight that a parameter sets; a `Curve`."""
+    """A weight that is the value of a parameter, limited to `lowest`…1; a `Curve`."""
 
-    def __init__(self, parameter: str, low: float) -> None:
+    def __init__(self, parameter: str, lowest: float) -> None:
         self._parameter = parameter
-        self._low = low
+        self._lowest = lowest
         self._value = 0.0
 
     def at(self, time: float, duration: float) -> float:
-        """Return what was set last."""
+        """Return the present value."""
         return self._value
 
-    def steer(self, values: Values) -> None:
+    def set_values(self, values: Values) -> None:
         """Take the parameter's value."""
-        self._value = min(max(values[self._parameter], self._low), 1.0)
+        self._value = min(max(values[self._parameter], self._lowest), 1.0)
 
 
 class ParameterBindings:
-    """All that parameters change in one motion of a plan."""
+    """All motions and weights in one motion of a plan that depend on parameters."""
 
     def __init__(self) -> None:
         self.motions: list[ParametricMotion] = []
         self.weights: list[ParametricWeight] = []
 
-    def steer(self, values: Values, time: float) -> None:
+    def set_values(self, values: Values, time: float) -> None:
         """Set the parameters from a time [s] of the motion on."""
         for weight in self.weights:
-            weight.steer(values)
+            weight.set_values(values)
         for motion in self.motions:
-            motion.steer(values, time)
+            motion.set_values(values, time)
 
-    def restart(self, values: Values) -> None:
-        """Set the parameters and start over at time 0."""
+    def restart_with(self, values: Values) -> None:
+        """Set the parameters and start again at time 0."""
         for weight in self.weights:
-            weight.steer(values)
+            weight.set_values(values)
         for motion in self.motions:
-            motion.restart(values)
+            motion.restart_with(values)

@@ -1,7 +1,6 @@
-"""What a file says of how motions are put together: a tree of plain nodes, checked.
+"""Plans: descriptions of blend trees and state machines, as read from a file and checked.
 
-The kinds of nodes and what each may say stand in one table, `KINDS`. From it files are read and
-checked, and diagrams drawn.
+The kinds of nodes and their fields are in one table, `KINDS`.
 """
 
 from collections.abc import Mapping
@@ -12,63 +11,71 @@ from typing import Any, Literal
 from characters.motion.trees.conditions import Condition
 
 PARAMETERS: Mapping[str, str] = {
-    "speed": "AvatAR's Speed that is asked for, 0 to 5; 0 where it has arrived",
-    "angular": "how far to the right of where it looks the target is, twice, −90 to 90 degrees",
-    "distance": "to the target, in metres of the character",
-    "bearing": "to the left of where it looks, −180 to 180 degrees: the point to look at",
+    "speed": "requested Speed of AvatAR, 0 to 5; 0 after arrival",
+    "angular": "twice the angle to the target, −90 to 90 degrees, to the right",
+    "distance": "distance of the target, in metres of the character",
+    "bearing": "direction of the point to look at, −180 to 180 degrees, to the left",
     "weight": "intensity of the action, −1 to 1",
 }
-"""What steers a tree: numbers that follow from each command."""
+"""Parameters of trees; their values follow from each command."""
 
 Field = Literal["motion", "number", "numbers", "weight", "mask", "name", "names", "flag", "shape"]
-"""What a field of a node holds; "weight" is a number or the name of a parameter."""
+"""Type of a field of a node; "weight" is a number or the name of a parameter."""
+
+Group = Literal["clip", "mix", "layer", "modifier"]
+"""What a kind of node does with its motions."""
 
 
 @dataclass(frozen=True)
-class Kind:
-    """What nodes of a kind may say."""
+class NodeKind:
+    """The fields that nodes of a kind have."""
 
     fields: Mapping[str, Field]
-    """Of the node."""
+    """Fields of the node."""
 
     rows: str = ""
-    """Name of the field that holds a list of tables, one for each motion; "" if there is none."""
+    """Name of the field with a list of tables, one for each motion; "" if there is none."""
 
     row_fields: Mapping[str, Field] = field(default_factory=dict)
-    """Of each of them, besides `motion`."""
+    """Fields of each of these tables, besides `motion`."""
 
     optional: Mapping[str, object] = field(default_factory=dict)
-    """Fields that may be left out, with what they are then."""
+    """Default values of optional fields, of nodes and of rows."""
+
+    group: Group = "modifier"
+    """What it does with its motions."""
 
 
-KINDS: Mapping[str, Kind] = {
-    "clip": Kind({"clip": "name"}),
-    "hold": Kind({"of": "motion", "at": "number"}, optional={"at": 0.0}),
-    "stretch": Kind({"of": "motion", "seconds": "number"}),
-    "window": Kind({"of": "motion", "start": "number", "end": "number"}, optional={"start": 0.0}),
-    "loop": Kind({"of": "motion"}),
-    "mirror": Kind({"of": "motion"}),
-    "displace": Kind(
+_LAYER = NodeKind(
+    {"base": "motion", "over": "motion", "mask": "mask", "weight": "weight"},
+    optional={"mask": "", "weight": 1.0},
+    group="layer",
+)
+
+KINDS: Mapping[str, NodeKind] = {
+    "clip": NodeKind({"clip": "name"}, group="clip"),
+    "hold": NodeKind({"of": "motion", "at": "number"}, optional={"at": 0.0}),
+    "stretch": NodeKind({"of": "motion", "seconds": "number"}),
+    "window": NodeKind(
+        {"of": "motion", "start": "number", "end": "number"}, optional={"start": 0.0}
+    ),
+    "loop": NodeKind({"of": "motion"}),
+    "mirror": NodeKind({"of": "motion"}),
+    "displace": NodeKind(
         {"of": "motion", "x": "number", "z": "number", "yaw_deg": "number"},
         optional={"x": 0.0, "z": 0.0, "yaw_deg": 0.0},
     ),
-    "warp": Kind({"of": "motion", "times": "numbers", "sources": "numbers"}),
-    "pace": Kind(
+    "warp": NodeKind({"of": "motion", "times": "numbers", "sources": "numbers"}),
+    "pace": NodeKind(
         {"of": "motion", "rate": "number", "stride": "number"},
         optional={"rate": 1.0, "stride": 1.0},
     ),
-    "blend": Kind({}, "of", {"weight": "number"}),
-    "space": Kind({"by": "name"}, "at", {"value": "number"}),
-    "plane": Kind({"by": "names"}, "at", {"value": "numbers"}),
-    "layer": Kind(
-        {"base": "motion", "over": "motion", "mask": "mask", "weight": "weight"},
-        optional={"mask": "", "weight": 1.0},
-    ),
-    "add": Kind(
-        {"base": "motion", "over": "motion", "mask": "mask", "weight": "weight"},
-        optional={"mask": "", "weight": 1.0},
-    ),
-    "crossfade": Kind(
+    "blend": NodeKind({}, "of", {"weight": "number"}, group="mix"),
+    "space": NodeKind({"by": "name"}, "at", {"value": "number"}, group="mix"),
+    "plane": NodeKind({"by": "names"}, "at", {"value": "numbers"}, group="mix"),
+    "layer": _LAYER,
+    "add": _LAYER,
+    "crossfade": NodeKind(
         {
             "first": "motion",
             "second": "motion",
@@ -77,8 +84,9 @@ KINDS: Mapping[str, Kind] = {
             "shape": "shape",
         },
         optional={"seconds": 0.25, "shape": "gonio"},
+        group="mix",
     ),
-    "schedule": Kind(
+    "schedule": NodeKind(
         {},
         "actions",
         {
@@ -99,9 +107,10 @@ KINDS: Mapping[str, Kind] = {
             "shape": "gonio",
             "always": False,
         },
+        group="mix",
     ),
 }
-"""Every kind of node. What stands in `optional` may be left out of nodes and of rows."""
+"""All kinds of nodes. `characters.motion.trees.building` builds a motion for each."""
 
 
 @dataclass(frozen=True)
@@ -109,10 +118,10 @@ class Row:
     """One of several motions of a node."""
 
     motion: "Node"
-    """What is played."""
+    """The motion."""
 
-    said: Mapping[str, Any]
-    """What the row says of it."""
+    fields: Mapping[str, Any]
+    """Its other fields, such as "value" or "weight"."""
 
 
 @dataclass(frozen=True)
@@ -122,14 +131,14 @@ class Node:
     kind: str
     """One of `KINDS`."""
 
-    place: str
-    """Where it stands in the file, as "motions.walk.at[2].motion"."""
+    path: str
+    """Its place in the file, such as "motions.walk.at[2].motion"."""
 
     name: str = ""
-    """What the file calls it; "" if it stands where it is used."""
+    """Its name in the file, or "" for a motion that is defined where it is used."""
 
-    said: Mapping[str, Any] = field(default_factory=dict)
-    """Its fields but for motions."""
+    fields: Mapping[str, Any] = field(default_factory=dict)
+    """Its fields that are not motions."""
 
     motions: Mapping[str, "Node"] = field(default_factory=dict)
     """Its fields that are motions."""
@@ -139,91 +148,135 @@ class Node:
 
     @property
     def children(self) -> tuple["Node", ...]:
-        """What it is made of."""
+        """The motions that it uses."""
         return (*self.motions.values(), *(row.motion for row in self.rows))
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """The role of each of the `children`, such as "base", "2.75" or "0.5 s"; "" if trivial."""
+        return (
+            *("" if key == "of" else key for key in self.motions),
+            *(_row_label(row.fields) for row in self.rows),
+        )
+
+    @property
+    def group(self) -> Group:
+        """What it does with its motions."""
+        return KINDS[self.kind].group
+
+    @property
+    def description(self) -> str:
+        """Kind and fields in a few words, without fields of default value."""
+        if "by" in self.fields:
+            by = self.fields["by"]
+            return "over " + (by if isinstance(by, str) else " and ".join(by))
+        if self.kind == "clip":
+            return "clip"
+        defaults = KINDS[self.kind].optional
+        fields = [
+            f"{key.removesuffix('_deg')} {_formatted(value)}"
+            for key, value in self.fields.items()
+            if value not in ("", None) and (key not in defaults or defaults[key] != value)
+        ]
+        return " ".join([self.kind, *fields])
 
     @cached_property
     def size(self) -> int:
-        """How many motions it is, itself and each in it counted as often as it is used."""
+        """Number of motions in it and itself, each counted as often as it is used."""
         return 1 + sum(child.size for child in self.children)
 
     @property
     def parametric(self) -> bool:
-        """Whether a parameter changes it or something in it."""
-        own = self.kind in ("space", "plane") or isinstance(self.said.get("weight"), str)
+        """Whether it depends on a parameter, itself or through its motions."""
+        own = "by" in self.fields or isinstance(self.fields.get("weight"), str)
         return own or any(child.parametric for child in self.children)
 
 
 @dataclass(frozen=True)
-class Change:
-    """A way from one state to another."""
+class Transition:
+    """A transition from one state to another."""
 
     start: str
-    """The state that is left; "*" for any."""
+    """The state that it leaves; "*" for any."""
 
     end: str
-    """The state that is entered."""
+    """The state that it enters."""
 
     when: Condition
-    """What must hold."""
+    """Its condition."""
 
     seconds: float
-    """How long it takes [s]."""
+    """Its length [s]."""
 
     crossfade: bool = False
-    """Whether both play meanwhile and are mixed; else the new state takes over at once and what
-    the two differ by fades (inertialisation)."""
+    """Whether both states play and are mixed; otherwise inertialization is used."""
 
 
 @dataclass(frozen=True)
-class Machine:
-    """States and how they follow each other."""
+class StateGraph:
+    """States and transitions of a state machine."""
 
     states: Mapping[str, Node]
-    """What plays in each."""
+    """The motion of each state."""
 
     start: str
-    """The first."""
+    """The first state."""
 
-    changes: tuple[Change, ...]
+    transitions: tuple[Transition, ...]
     """Tried in this order."""
 
 
 @dataclass(frozen=True)
 class MaskPlan:
-    """Which joints a layer moves."""
+    """Arguments of `mask_of`: the joints that a layer moves."""
 
     subtrees: Mapping[str, float]
-    """Joint to the weight of it and all below."""
+    """Weight of a joint and all its descendants."""
 
     joints: Mapping[str, float]
-    """Joint to the weight of it alone."""
+    """Weight of a joint alone."""
 
     default: float
-    """Of all others."""
+    """Weight of all other joints."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How the motions of a character are put together."""
+    """How the motions of a character are composed: of one motion, or of states."""
 
     source: str
-    """The file that says so, for messages."""
+    """The file it is from, for messages."""
 
     root: Node | None
-    """What plays all the time; None where a machine does."""
+    """The only motion; None if there is a state graph."""
 
-    machine: Machine | None
-    """What plays by states; None where one motion does."""
+    machine: StateGraph | None
+    """The state graph; None if there is only one motion."""
 
     masks: Mapping[str, MaskPlan] = field(default_factory=dict)
-    """By name."""
+    """Masks by name."""
 
     lags: Mapping[str, float] = field(default_factory=dict)
-    """How slowly parameters follow [s]; of others `characters.control.tree.LAGS` says so."""
+    """Time constants of parameters [s]; defaults are `characters.control.tree.LAGS`."""
 
     @property
     def roots(self) -> tuple[Node, ...]:
-        """Return the motions that nothing else is made of."""
+        """The motions that no other motion uses."""
         states = () if self.machine is None else tuple(self.machine.states.values())
         return (*(() if self.root is None else (self.root,)), *states)
+
+
+def _row_label(fields: Mapping[str, Any]) -> str:
+    """Return the position, start or weight of a row's motion."""
+    if "start" in fields:
+        return f"{_formatted(fields['start'])} s"
+    return _formatted(fields.get("value", fields.get("weight", "")))
+
+
+def _formatted(value: object) -> str:
+    """Return a value as text for people."""
+    if isinstance(value, float):
+        return f"{value:g}".replace("-", "−")
+    if isinstance(value, tuple):
+        return ", ".join(map(_formatted, value))
+    return str(value)

@@ -184,16 +184,16 @@ def test_a_graph_shows_names_as_they_are(cubeling):
     name = "[/red] & <b>"
     a_character_beside(f"play = 'x'\n[motions]\n\"{name}\" = {{kind = 'loop', of = 'idle'}}\n"
                        f"x = {{kind = 'loop', of = \"{name}\"}}\n")  # fmt: skip
-    code, out, err = cubeling("character", "graph", "one.glb", "-o", "[x] one.svg")
+    code, out, err = cubeling("character", "graph", "one.glb", "-o", "[x] one.dot")
     assert (code, err) == (0, "")
     assert name in out
-    assert "[x] one.svg is drawn" in out
-    assert "&lt;b&gt;" in Path("[x] one.svg").read_text(encoding="utf-8")
+    assert "[x] one.dot is written" in out
+    assert f'"{name}\\nloop"' in Path("[x] one.dot").read_text(encoding="utf-8")
 
 
 def test_a_graph_tells_what_cannot_be_played(cubeling):
     a_character_beside("play = {kind = 'stretch', of = 'idle', seconds = -1}")
-    code, _, err = cubeling("character", "graph", "one.glb", "-o", "one.svg")
+    code, _, err = cubeling("character", "graph", "one.glb", "-o", "one.dot")
     assert code == 2
     assert err == "cubeling: one.toml: play: stretch to -1.0 s; give a positive duration\n"
-    assert not Path("one.svg").exists()
+    assert not Path("one.dot").exists()

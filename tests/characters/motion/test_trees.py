@@ -1,7 +1,6 @@
 import tomllib
 from dataclasses import replace
 from pathlib import Path
-from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ from characters.model.sidecar import read_sidecar
 from characters.motion.trees import KINDS, PARAMETERS, read_plan
 from characters.motion.trees.building import Builder
 from characters.motion.trees.conditions import Condition, ConditionError
-from characters.motion.trees.diagram import draw
+from characters.motion.trees.dot import to_dot
 
 HUMAN_TOML = """
 [parameters]
@@ -135,26 +134,26 @@ topped = { kind = "layer", base = "flat", over = "bent", mask = "top", weight = 
 def test_every_kind_of_motion_plays(human):
     read, made = builder(human, EVERY_KIND)
     assert read.root is not None
-    motion, steering = made.build(read.root, dict.fromkeys(PARAMETERS, 0.0))
+    motion, bindings = made.build(read.root, dict.fromkeys(PARAMETERS, 0.0))
     named = tomllib.loads(EVERY_KIND)["motions"]
     assert {table["kind"] for table in named.values()} | {"clip", "add", "space"} == set(KINDS)
     for time in (0.0, 0.4, 0.9, 3.0):
         pose = motion.sample(time)
         assert np.allclose(np.linalg.norm(pose.rotations, axis=-1), 1.0)
         assert np.isfinite(motion.travel(0.0, time).z)
-    assert not steering.motions
+    assert not bindings.motions
 
 
 def test_steered_motions_follow_their_parameters_and_keep_their_phase(human):
     read, made = builder(human, EVERY_KIND.replace('play = "all"', 'play = "topped"'))
     assert read.root is not None
     values = dict.fromkeys(PARAMETERS, 0.0)
-    motion, steering = made.build(read.root, values)
+    motion, bindings = made.build(read.root, values)
     standing = motion.travel(0.0, 1.0)
-    steering.steer({**values, "speed": 2.0}, 1.0)
+    bindings.set_values({**values, "speed": 2.0}, 1.0)
     assert motion.travel(1.0, 2.0).z > standing.z + 0.3
     before = motion.sample(1.5)
-    steering.steer({**values, "speed": 2.0}, 1.5)
+    bindings.set_values({**values, "speed": 2.0}, 1.5)
     assert np.allclose(motion.sample(1.5).rotations, before.rotations, atol=1e-9)
 
 
@@ -296,31 +295,39 @@ def test_a_file_beside_that_cannot_be_read_is_refused(tmp_path, text, told):
 
 
 @pytest.mark.parametrize("name", Character.bundled())
-def test_a_diagram_shows_every_clip_that_a_character_plays(name):
+def test_a_graph_shows_every_clip_that_a_character_plays(name):
     character = Character.load(name)
     shown = built_in(character)
-    picture = ElementTree.fromstring(draw(shown, name))
-    texts = {element.text for element in picture.iter() if element.text}
-    assert name in texts
-    assert "idle" in texts
-    used = {row.motion.name for root in shown.roots for row in root.rows}
-    assert {each for each in used if each in character.clips} <= texts
+    graph = to_dot(shown, name)
+    assert graph.startswith(f'digraph "{name}" {{')
+    used = {row.motion.name for root in shown.roots for row in root.rows} | {"idle"}
+    for each in used & set(character.clips):
+        assert f'"{each}\\nclip"' in graph
 
 
-def test_a_diagram_draws_a_motion_that_is_used_twice_only_once():
+def test_a_motion_that_is_used_twice_is_one_box_with_two_edges():
     text = "play = {kind = 'blend', of = [{motion = 'a', weight = 1}, {motion = 'a', weight = 1}]}"
     read = plan(text + "\n[motions]\na = {kind = 'loop', of = 'Walk'}")
     assert read is not None
-    texts = [e.text for e in ElementTree.fromstring(draw(read)).iter() if e.text]
-    assert texts.count("Walk") == 1
-    assert texts.count("as above") == 1
+    graph = to_dot(read)
+    assert graph.count('"a\\nloop"') == 1
+    assert graph.count("motion0 -> motion1") == 2
 
 
-def test_a_diagram_says_what_was_set(human):
+def test_a_graph_shows_states_transitions_and_fields(human):
     read, _ = builder(human, HUMAN_TOML)
-    texts = {e.text for e in ElementTree.fromstring(draw(read)).iter() if e.text}
-    assert {"rest", "move", "speed > 0.5", "over angular", "add mask upper weight weight"} <= texts
-    assert {"−60", "2.75", "base", "over"} <= texts
+    lines = to_dot(read).splitlines()
+    assert '  state0 [label="rest\\nfirst state", fillcolor="#fde7c8"]' in lines
+    assert '  state0 -> state1 [label="speed > 0.5", style=dashed, constraint=false]' in lines
+    for text in ("over angular", "add mask upper weight weight", '"−60"', '"2.75"', '"base"'):
+        assert any(text in line for line in lines)
+
+
+def test_quotes_in_a_condition_are_escaped():
+    text = "machine = {states = {a = 'Walk'}, changes = [{to = 'a', when = 'action == \"a\"'}]}"
+    read = plan(text)
+    assert read is not None
+    assert '  any -> state0 [label="action == \\"a\\"", style=dashed' in to_dot(read)
 
 
 def test_the_example_in_the_documents_is_sound():
