@@ -13,7 +13,7 @@ from rich.table import Table
 
 from app.errors import AppError
 from characters import Character
-from characters.retargeting import Found, load_recording, make_locomotion
+from characters.retargeting import GaitReport, load_recording, make_locomotion
 
 Files = Annotated[
     list[str] | None,
@@ -77,7 +77,7 @@ def _same(one: Path, other: Path) -> bool:
         return False
 
 
-def table(title: str, found: Sequence[Found], seams: bool = False) -> Table:
+def table(title: str, found: Sequence[GaitReport], seams: bool = False) -> Table:
     """Return what was found or made, one a row."""
     rows = Table(title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD)
     rows.add_column("recording" if seams else "clip", no_wrap=not seams)

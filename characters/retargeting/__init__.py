@@ -1,16 +1,20 @@
-"""A motion of one skeleton on another, by what their joints are; feet hold where they held.
+"""Retargeting: motions of one skeleton for another, matched by body parts.
 
-`retarget` moves one clip; `make_locomotion` makes of a few recordings all the clips that a
+`retarget` converts one clip. `make_locomotion` makes from a few recordings all the clips that a
 character needs to walk and run where it is sent.
 """
 
-from characters.retargeting.locomotion.locomotion import Found, Locomotion, make_locomotion
+from characters.retargeting.locomotion.locomotion_clips import (
+    GaitReport,
+    LocomotionResult,
+    make_locomotion,
+)
 from characters.retargeting.recording import Recording, load_recording
 from characters.retargeting.retarget import retarget
 
 __all__ = [
-    "Found",
-    "Locomotion",
+    "GaitReport",
+    "LocomotionResult",
     "Recording",
     "load_recording",
     "make_locomotion",

@@ -1,4 +1,4 @@
-"""Motions from files, with what they are of."""
+"""Motions with skeleton and anatomy, read from files."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,32 +15,32 @@ from characters.skeleton.pose import Skeleton
 
 @dataclass(frozen=True)
 class Recording:
-    """A motion, and what it is of."""
+    """A motion with the skeleton and the anatomy of its performer."""
 
     origin: str
-    """What to call it."""
+    """Its file or clip, for messages and reports."""
 
     clip: Clip
     """The motion."""
 
     skeleton: Skeleton
-    """What it moves, resting as it was modelled."""
+    """The skeleton of the clip; it rests in the bind pose."""
 
     anatomy: Anatomy
-    """Which joint is which part."""
+    """Which joint is which body part."""
 
 
 def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording:
     """Read a motion: a .bvh or .amc file, or a clip of a character.
 
-    What its joints are may be said in a [joints] table of a .toml file beside it.
+    A [joints] table in the sidecar .toml file may state the body parts.
 
     Parameters
     ----------
     name
-        A file, or a file or bundled character and one of its clips: "fox.glb#Walk".
+        A file, or a character (file or bundled) and one of its clips: "fox.glb#Walk".
     skeleton
-        The .asf file of an .amc, where it does not lie beside it.
+        The .asf file of an .amc, if it is in another folder.
 
     Raises
     ------
@@ -50,21 +50,21 @@ def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording
     file, _, clip = name.partition("#")
     if is_motion_only(file):
         motion = load_motion(file, clip or None, skeleton=skeleton)
-        beside = Path(file).with_suffix(".toml")
-        joints = read_sidecar(beside, (motion.clip.name,)).semantics
+        sidecar = Path(file).with_suffix(".toml")
+        joints = read_sidecar(sidecar, (motion.clip.name,)).semantics
         try:
             anatomy = Anatomy.guess(motion.skeleton, joints)
         except CharacterError as error:
-            raise CharacterError(f"{beside}: {error}") from None
+            raise CharacterError(f"{sidecar}: {error}") from None
         return Recording(Path(name).name, motion.clip, motion.skeleton, anatomy)
     character = Character.load(file)
     if not clip and len(character.clips) == 1:
         clip = next(iter(character.clips))
     if clip not in character.clips:
-        there = ", ".join(character.clips) or "none"
+        known = ", ".join(character.clips) or "none"
         raise CharacterError(
-            f"{file}: which clip? write {file}#CLIP with one of its clips: {there}"
+            f"{file}: which clip? write {file}#CLIP with one of its clips: {known}"
         )
     found = character.clips[clip]
-    modelled = replace(character, skeleton=with_bind_pose(character))
-    return Recording(Path(name).name, found, modelled.skeleton, modelled.anatomy)
+    bound = replace(character, skeleton=with_bind_pose(character))
+    return Recording(Path(name).name, found, bound.skeleton, bound.anatomy)

@@ -1,20 +1,23 @@
-"""Retargeting: the whole line from one clip to another."""
+"""Retargeting a clip from one skeleton to another."""
 
 import numpy as np
 
 from characters.errors import CharacterError
 from characters.motion.clip import Clip
-from characters.retargeting.body import Body, Leg
-from characters.retargeting.feet import find_footing, hold
-from characters.retargeting.ground import way_of
+from characters.retargeting.footskate import find_foot_contacts, hold_feet_in_contact
+from characters.retargeting.ground_motion import find_ground_motion
 from characters.retargeting.mapping import map_joints
-from characters.retargeting.root import root_way
-from characters.retargeting.transfer import ankle_heights, hips_way, posed, turned
+from characters.retargeting.rig import Rig, leg_pairs
+from characters.retargeting.root import root_trajectory
+from characters.retargeting.transfer import build_poses, hips_trajectory, transferred_rotations
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Skeleton
 
-_STRETCH, _LOWER = 0.99, 0.06  # parts of a leg's length: how far it reaches, and hips may come down
+# Of an animal's steps, in parts of the length of its legs.
+_MAX_REACH = 0.99
+_HIPS_DROP = 0.06
+_MIN_STEP = 0.2
 
 
 def retarget(
@@ -26,96 +29,84 @@ def retarget(
     *,
     hold_feet: bool = True,
 ) -> Clip:
-    """Return a clip of one skeleton as one of another.
+    """Return a clip of one skeleton for another.
 
-    Joints turn as their partners do, whatever their axes, rest poses and names; ways are in
-    proportion to the legs. A target with a root joint on the ground gets root motion, if the
-    source goes anywhere. Joints without a partner stay as they rest.
+    Joints rotate as their partners do, whatever their axes, rest poses and names; distances are
+    in proportion to the legs. A target with a root joint on the ground gets root motion. Joints
+    without a partner stay at rest.
 
     Parameters
     ----------
     clip, source, source_anatomy
-        The motion, and what it is of.
+        The motion, its skeleton and body parts.
     target, target_anatomy
-        What is to move.
+        The skeleton to move, and its body parts.
     hold_feet
-        Whether feet that stand in the source are held in their places on the target, on its
-        ground.
+        Whether the feet of the target are held in place on the ground while those of the source
+        stand.
 
     Raises
     ------
     CharacterError
-        If a person's motion is to go on a quadruped or the other way round, or either lacks hips
-        or legs.
+        If one is a person and the other a quadruped, or either lacks hips or legs.
     """
-    ours, theirs = Body(target, target_anatomy), Body(source, source_anatomy)
     try:
-        return _retarget(clip, theirs, ours, hold_feet)
+        return _retarget(clip, Rig(source, source_anatomy), Rig(target, target_anatomy), hold_feet)
     except CharacterError as error:
         raise CharacterError(f"clip {clip.name!r}: {error}") from None
 
 
-def _retarget(clip: Clip, source: Body, target: Body, hold_feet: bool) -> Clip:
+def _retarget(clip: Clip, source: Rig, target: Rig, hold_feet: bool) -> Clip:
     mapping = map_joints(source, target)
     ratio = target.leg_length / source.leg_length
-    share = stride_share(clip, source, target)
-    heights = ankle_heights(clip, source, target)
-    hips = hips_way(clip, source, target, heights) * [share, 1.0, share]
+    share = _stride_share(clip, source, target)
+    hips = hips_trajectory(clip, source, target) * [share, 1.0, share]
     hips_joint = target.anatomy.joints["hips"]
     rooted = target.skeleton.has_root_motion and hips_joint != 0
-    root = root_way(clip, source, ratio * share) if rooted else None
-    pose = posed(target, turned(clip, source, target, mapping), hips, root)
+    root = root_trajectory(clip, source, ratio * share) if rooted else None
+    pose = build_poses(target, transferred_rotations(clip, source, target, mapping), hips, root)
     if hold_feet:
         pairs = leg_pairs(source, target)
-        theirs, ours = [a for a, _ in pairs], [b for _, b in pairs]
+        source_legs, target_legs = [a for a, _ in pairs], [b for _, b in pairs]
         ends = None
         if target.anatomy.kind == "quadruped":
-            ends = _paw_ways(clip, source, target, ratio * np.array([share, 1.0, share]))
-        footing = find_footing(clip, source, theirs)
-        way = way_of(clip, source, theirs, footing.ball, ratio * share)
-        pose = hold(pose, target, ours, footing, way, ends)
+            ends = _paw_positions(clip, source, target, ratio * np.array([share, 1.0, share]))
+        contacts = find_foot_contacts(clip, source, source_legs)
+        ground = find_ground_motion(clip, source, source_legs, contacts.ball, ratio * share)
+        pose = hold_feet_in_contact(pose, target, target_legs, contacts, ground, ends)
     return Clip(clip.name, clip.rate, pose, clip.loop, rooted)
 
 
-def leg_pairs(source: Body, target: Body) -> list[tuple[Leg, Leg]]:
-    """Return the legs that both bodies have."""
-    by_part = {source.anatomy.parts[leg.foot]: leg for leg in source.legs}
-    return [
-        (by_part[part], leg)
-        for leg in target.legs
-        if (part := target.anatomy.parts[leg.foot]) in by_part
-    ]
+def _stride_share(clip: Clip, source: Rig, target: Rig) -> float:
+    """Return how long the steps may be relative to the proportion of the legs, 0…1.
 
-
-def stride_share(clip: Clip, source: Body, target: Body) -> float:
-    """Return how long steps may be, as a part of what is in proportion to the legs, 0…1.
-
-    A beast that stands on straight legs cannot step as far as one on bent legs.
+    A quadruped with straight legs cannot step as far as one with bent legs.
     """
     if target.anatomy.kind != "quadruped":
         return 1.0
     ratio = target.leg_length / source.leg_length
-    globals_ = clip.poses.globals(source.skeleton)
+    placements = clip.poses.globals(source.skeleton)
     share = 1.0
-    for theirs, ours in leg_pairs(source, target):
-        at = rotations.rotate(source.upright, globals_[:, [theirs.upper, theirs.end]][..., :3, 3])
-        rest = source.rest_places[theirs.end] - source.rest_places[theirs.upper]
-        away = np.linalg.norm((at[:, 1] - at[:, 0] - rest)[:, [0, 2]], axis=-1).max() * ratio
-        limb = target.rest_places[ours.upper] - target.rest_places[ours.foot]
-        length = _STRETCH * sum(target.bones(ours))
-        reach = np.sqrt(max(length**2 - (limb[1] - _LOWER * length) ** 2, 0.0))
+    for theirs, own in leg_pairs(source, target):
+        ends = placements[:, [theirs.upper, theirs.end]][..., :3, 3]
+        at = rotations.rotate(source.common_from_skeleton, ends)
+        rest = source.rest_positions[theirs.end] - source.rest_positions[theirs.upper]
+        step = np.linalg.norm((at[:, 1] - at[:, 0] - rest)[:, [0, 2]], axis=-1).max() * ratio
+        limb = target.rest_positions[own.upper] - target.rest_positions[own.foot]
+        length = _MAX_REACH * sum(target.bone_lengths(own))
+        reach = np.sqrt(max(length**2 - (limb[1] - _HIPS_DROP * length) ** 2, 0.0))
         reach -= np.hypot(limb[0], limb[2])
-        share = min(share, max(reach, 0.2 * length) / max(away, 1e-9))
+        share = min(share, max(reach, _MIN_STEP * length) / max(step, 1e-9))
     return float(share)
 
 
-def _paw_ways(clip: Clip, source: Body, target: Body, ratio: Array) -> Array:
-    """Return where the paws go, (frames, legs, 3) [m]: away from where they rest, in proportion.
+def _paw_positions(clip: Clip, source: Rig, target: Rig, ratio: Array) -> Array:
+    """Return the positions of the paws, (frames, legs, 3) [m]: offsets from rest in proportion.
 
-    Beasts' legs have their bones in other places, so angles say little about where paws are.
+    The legs of animals have different bones, so their angles do not determine the paws.
     """
-    globals_ = clip.poses.globals(source.skeleton)
+    placements = clip.poses.globals(source.skeleton)
     pairs = leg_pairs(source, target)
-    theirs, ours = [a.end for a, _ in pairs], [b.end for _, b in pairs]
-    at = rotations.rotate(source.upright, globals_[:, theirs][..., :3, 3])
-    return target.rest_places[ours] + ratio * (at - source.rest_places[theirs])
+    theirs, own = [a.end for a, _ in pairs], [b.end for _, b in pairs]
+    at = rotations.rotate(source.common_from_skeleton, placements[:, theirs][..., :3, 3])
+    return target.rest_positions[own] + ratio * (at - source.rest_positions[theirs])

@@ -1,57 +1,144 @@
-"""The way over the ground of a body whose clip has no root for it.
+"""Root trajectories: for clips without root motion, and root joints for characters without one.
 
-Hips sway with every step; a root does not. It follows the hips, smoothed over a stride.
+A root trajectory is (frames, 3): x, z [m] and yaw [rad]. Hips sway with every step; the root
+follows them smoothed over a stride.
 """
 
+from dataclasses import replace
+
 import numpy as np
+from numpy.typing import NDArray
 
+from characters.model.character import Character
 from characters.motion.clip import Clip
-from characters.retargeting.body import Body
+from characters.retargeting.rig import Rig, global_rotations
 from characters.skeleton import rotations
-from characters.skeleton.pose import Array
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Array, Pose, Skeleton
 
-_BREADTH = 0.3  # [s]: standard deviation of the smoothing, which a stride's sway does not survive
+_SMOOTHING_S = 0.3  # standard deviation; removes the sway of a stride
 
 
-def root_way(clip: Clip, source: Body, ratio: float) -> Array:
-    """Return where the root is, (frames, 3): x, z [m of the target] and yaw [rad].
+def root_trajectory(clip: Clip, source: Rig, ratio: float) -> Array:
+    """Return the root trajectory of a clip, its lengths multiplied by a ratio.
 
-    The clip's own root if it has one, else the hips' way over the ground, smoothed.
+    It is that of the clip's root motion, else the smoothed path of the hips over the ground.
     """
     if clip.root_motion:
         return clip.track * [ratio, ratio, 1.0]
     joint = source.anatomy.joints["hips"]
-    globals_ = clip.poses.globals(source.skeleton)[:, joint]
-    places = rotations.rotate(source.upright, globals_[:, :3, 3]) * ratio
-    yaw = np.unwrap(rotations.heading(hips_turns(clip, source)))
-    way = np.stack([places[:, 0], places[:, 2], yaw], axis=-1)
-    return smoothed(way, _BREADTH * clip.rate)
+    hips = clip.poses.globals(source.skeleton)[:, joint]
+    positions = rotations.rotate(source.common_from_skeleton, hips[:, :3, 3]) * ratio
+    turned = rotations.multiply(source.common_from_skeleton, global_rotations(hips))
+    from_rest = rotations.multiply(turned, rotations.conjugate(source.rest_rotations[joint]))
+    yaw = np.unwrap(rotations.heading(from_rest))
+    path = np.stack([positions[:, 0], positions[:, 2], yaw], axis=-1)
+    return gaussian_smoothed(path, _SMOOTHING_S * clip.rate)
 
 
-def hips_turns(clip: Clip, body: Body) -> Array:
-    """Return how the hips are turned away from rest, (frames, 4), in the common axes."""
-    joint = body.anatomy.joints["hips"]
-    globals_ = clip.poses.globals(body.skeleton)[:, joint]
-    lengths = np.linalg.norm(globals_[:, :3, :3], axis=-2, keepdims=True)
-    now = rotations.multiply(
-        body.upright, rotations.from_matrix(globals_[:, :3, :3] / np.where(lengths > 0, lengths, 1))
-    )
-    return rotations.multiply(now, rotations.conjugate(body.rest_turns[joint]))
+def gaussian_smoothed(values: Array, deviation: float) -> Array:
+    """Return values (frames, n) under a Gaussian of a standard deviation [frames].
 
-
-def smoothed(way: Array, deviation: float) -> Array:
-    """Return a way (frames, n) under a Gaussian of a standard deviation [frames].
-
-    At the ends it goes on as it came, mirrored through the last point, so that a body that enters
-    or leaves at full speed keeps it.
+    The values are continued by point reflection at both ends, so that a body that enters or
+    leaves at full speed keeps its speed.
     """
-    reach = min(int(3 * deviation), len(way) - 1)
+    reach = min(int(3 * deviation), len(values) - 1)
     if reach < 1:
-        return way.copy()
-    before = 2 * way[0] - way[reach:0:-1]
-    after = 2 * way[-1] - way[-2 : -2 - reach : -1]
-    padded = np.concatenate([before, way, after])
+        return values.copy()
+    before = 2 * values[0] - values[reach:0:-1]
+    after = 2 * values[-1] - values[-2 : -2 - reach : -1]
+    padded = np.concatenate([before, values, after])
     offsets = np.arange(-reach, reach + 1)
     kernel = np.exp(-0.5 * (offsets / deviation) ** 2)
     kernel /= kernel.sum()
     return np.stack([np.convolve(column, kernel, mode="valid") for column in padded.T], axis=-1)
+
+
+def has_root_joint(skeleton: Skeleton, anatomy: Anatomy) -> bool:
+    """Return whether joint 0 is a root on the ground, and not the hips under that name."""
+    return skeleton.has_root_motion and anatomy.joint("hips") != 0
+
+
+def with_root_joint(character: Character) -> Character:
+    """Return a character whose joint 0 is a root on the ground; itself if it has one."""
+    if has_root_joint(character.skeleton, character.anatomy):
+        return character
+    skeleton = character.skeleton
+    names = tuple(f"{name}_" if name == "root" else name for name in skeleton.names)
+    parents = (-1, *(parent + 1 for parent in skeleton.parents))
+    meshes = tuple(
+        replace(
+            mesh,
+            joints=(mesh.joints + 1).astype(mesh.joints.dtype),
+            inverse_bind=np.concatenate([np.eye(4)[None], mesh.inverse_bind]),
+        )
+        for mesh in character.meshes
+    )
+    clips = {
+        name: replace(clip, poses=_with_static_root(clip.poses), root_motion=True)
+        for name, clip in character.clips.items()
+    }
+    renamed = dict(zip(skeleton.names, names, strict=True))
+    semantics = {part: renamed.get(j, j) for part, j in character.semantics.items()}
+    return replace(
+        character,
+        skeleton=Skeleton(("root", *names), parents, _with_static_root(skeleton.rest)),
+        clips=clips,
+        meshes=meshes,
+        semantics=semantics,
+    )
+
+
+def clip_with_root(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> Clip:
+    """Return a clip of a character without a root joint for the same character with one.
+
+    The root follows the hips smoothly; every joint stays where it was.
+    """
+    trajectory = root_trajectory(clip, Rig(skeleton, anatomy), 1.0)
+    children = np.flatnonzero(np.array(skeleton.parents) < 0) + 1
+    poses = with_root_trajectory(_with_static_root(clip.poses), children, trajectory)
+    return replace(clip, poses=poses, root_motion=True)
+
+
+def with_root_trajectory(pose: Pose, children: NDArray[np.intp], trajectory: Array) -> Pose:
+    """Return poses with another root trajectory; `children` of the root stay in the world."""
+    turn = rotations.about("y", trajectory[:, 2])
+    at = ground_positions(trajectory)
+    old_turn, old_at = pose.rotations[:, 0], pose.translations[:, 0]
+    change = rotations.multiply(rotations.conjugate(turn), old_turn)
+    shift = rotations.rotate(rotations.conjugate(turn), old_at - at)
+    translations, turns = pose.translations.copy(), pose.rotations.copy()
+    translations[:, children] = (
+        rotations.rotate(change[:, None], translations[:, children]) + shift[:, None]
+    )
+    turns[:, children] = rotations.multiply(change[:, None], turns[:, children])
+    translations[:, 0], turns[:, 0] = at, turn
+    return replace(pose, translations=translations, rotations=rotations.continuous(turns))
+
+
+def moved_to_trajectory(pose: Pose, trajectory: Array) -> Pose:
+    """Return poses with another root trajectory; the whole body moves with the root."""
+    translations, turns = pose.translations.copy(), pose.rotations.copy()
+    translations[:, 0] = ground_positions(trajectory)
+    turns[:, 0] = rotations.about("y", trajectory[:, 2])
+    return replace(pose, translations=translations, rotations=rotations.continuous(turns))
+
+
+def ground_positions(trajectory: Array) -> Array:
+    """Return the positions (frames, 3) of a root trajectory, on the ground."""
+    return np.stack([trajectory[:, 0], np.zeros(len(trajectory)), trajectory[:, 1]], axis=-1)
+
+
+def _with_static_root(pose: Pose) -> Pose:
+    """Return poses (…, joints) with a root that does not move before all joints."""
+
+    def prepended(values: Array, first: Array) -> Array:
+        shape = (*values.shape[:-2], 1, values.shape[-1])
+        return np.concatenate([np.broadcast_to(first, shape), values], axis=-2)
+
+    return Pose(
+        prepended(pose.translations, np.zeros(3)),
+        prepended(pose.rotations, rotations.IDENTITY),
+        None if pose.scales is None else prepended(pose.scales, np.ones(3)),
+        pose.morphs,
+    )

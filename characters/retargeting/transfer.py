@@ -1,7 +1,7 @@
-"""The motion of one body on another: turns as they are, ways in proportion to the legs.
+"""Transfer of joint rotations and of the hips' trajectory from one rig to another.
 
-Every joint turns away from the common reference pose as its partner does, seen in the axes that
-both bodies share. Which way the axes of a joint point, and how it rests, therefore does not matter.
+Every joint rotates away from the common reference pose as its partner does, seen in the axes that
+both rigs share. So the axes and the rest rotations of joints do not matter.
 """
 
 from dataclasses import replace
@@ -11,126 +11,125 @@ from numpy.typing import NDArray
 
 from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts
-from characters.retargeting.body import Body, Leg, turns_of
-from characters.retargeting.mapping import Mapping
+from characters.retargeting.mapping import JointMapping
+from characters.retargeting.rig import LegJoints, Rig, global_rotations
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
 
-def turned(clip: Clip, source: Body, target: Body, mapping: Mapping) -> Array:
-    """Return how each joint of the target is turned, (frames, joints, 4), in the common axes."""
-    globals_ = clip.poses.globals(source.skeleton)
+def transferred_rotations(clip: Clip, source: Rig, target: Rig, mapping: JointMapping) -> Array:
+    """Return the global rotations of the target, (frames, joints, 4), in the common axes."""
+    placements = clip.poses.globals(source.skeleton)
     used, places = np.unique(mapping.sources, return_inverse=True)
-    now = rotations.multiply(source.upright, turns_of(globals_[:, used]))
-    away = rotations.multiply(now, rotations.conjugate(source.rest_turns[used]))
-    first, second = (away[:, column] for column in places.reshape(-1, 2).T)
-    moved = np.where(
+    now = rotations.multiply(source.common_from_skeleton, global_rotations(placements[:, used]))
+    from_rest = rotations.multiply(now, rotations.conjugate(source.rest_rotations[used]))
+    first, second = (from_rest[:, column] for column in places.reshape(-1, 2).T)
+    mapped = np.where(
         mapping.shares[:, None] > 0, rotations.slerp(first, second, mapping.shares), first
     )
-    reference = rotations.multiply(mapping.corrections, target.rest_turns[mapping.joints])
-    moved = rotations.multiply(moved, reference)
-    # What has no partner rides on the nearest ancestor that has one.
-    carrier = _carriers(target, mapping.joints)
-    every = np.tile(target.rest_turns, (len(clip), 1, 1))
-    rides = carrier >= 0
-    above = mapping.joints[carrier[rides]]
-    own = rotations.multiply(
-        rotations.conjugate(target.rest_turns[above]), target.rest_turns[rides]
+    reference = rotations.multiply(mapping.corrections, target.rest_rotations[mapping.joints])
+    mapped = rotations.multiply(mapped, reference)
+    # Joints without a partner follow the nearest ancestor that has one.
+    carrier = _nearest_mapped_ancestors(target, mapping.joints)
+    result = np.tile(target.rest_rotations, (len(clip), 1, 1))
+    carried = carrier >= 0
+    ancestors = mapping.joints[carrier[carried]]
+    relative = rotations.multiply(
+        rotations.conjugate(target.rest_rotations[ancestors]), target.rest_rotations[carried]
     )
-    every[:, rides] = rotations.multiply(moved[:, carrier[rides]], own)
-    return every
+    result[:, carried] = rotations.multiply(mapped[:, carrier[carried]], relative)
+    return result
 
 
-def _carriers(body: Body, joints: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Return for each joint the place in `joints` of its nearest ancestor or itself, or −1."""
-    place = {int(joint): number for number, joint in enumerate(joints)}
-    carriers = np.full(len(body.skeleton), -1)
-    for joint, parent in enumerate(body.skeleton.parents):
-        carriers[joint] = place.get(joint, carriers[parent] if parent >= 0 else -1)
-    return carriers
+def _nearest_mapped_ancestors(rig: Rig, joints: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return for each joint the index in `joints` of itself or its nearest ancestor, or −1."""
+    index = {int(joint): number for number, joint in enumerate(joints)}
+    nearest = np.full(len(rig.skeleton), -1)
+    for joint, parent in enumerate(rig.skeleton.parents):
+        nearest[joint] = index.get(joint, nearest[parent] if parent >= 0 else -1)
+    return nearest
 
 
-def hips_way(clip: Clip, source: Body, target: Body, heights: Array) -> Array:
-    """Return where the target's hips are, (frames, 3) [m], in the common axes.
+def hips_trajectory(clip: Clip, source: Rig, target: Rig) -> Array:
+    """Return the positions of the target's hips, (frames, 3) [m], in the common axes."""
+    ratio = target.leg_length / source.leg_length
+    source_height, target_height = _ankle_heights(clip, source, target)
+    positions = clip.poses.globals(source.skeleton)[:, source.anatomy.joints["hips"], :3, 3]
+    trajectory = rotations.rotate(source.common_from_skeleton, positions) * ratio
+    own, others = _hips_height(target), _hips_height(source)
+    trajectory[:, 1] += own + target_height - ratio * (others + source_height)
+    return trajectory
 
-    Parameters
-    ----------
-    heights
-        How high the source's and the target's ankles are above the ground when they stand, (2,).
+
+def _hips_height(rig: Rig) -> float:
+    """Return the rest height of the hips joint above the thighs [m]; above the ankles of animals.
+
+    The legs of people are aligned with each other, however they rest. Animals keep their stance,
+    so its whole height counts.
+    """
+    hips = rig.rest_positions[rig.anatomy.joints["hips"], 1]
+    low = [leg.upper if rig.anatomy.kind == "humanoid" else leg.foot for leg in rig.legs[:2]]
+    return float(hips - rig.rest_positions[low, 1].mean())
+
+
+def _ankle_heights(clip: Clip, source: Rig, target: Rig) -> tuple[float, float]:
+    """Return the heights of the standing ankles of source and target above the ground [m].
+
+    They are measured at rest if the rig rests on its feet, else in the clip.
     """
     ratio = target.leg_length / source.leg_length
-    places = clip.poses.globals(source.skeleton)[:, source.anatomy.joints["hips"], :3, 3]
-    way = rotations.rotate(source.upright, places)
-    mine, theirs = _seat(target), _seat(source)
-    way = way * ratio
-    way[:, 1] += mine + heights[1] - ratio * (theirs + heights[0])
-    return way
+    source_height = _ankle_height_at_rest(source)
+    if source_height is None:
+        source_height = _ankle_height_in(clip, source)
+    target_height = _ankle_height_at_rest(target)
+    return source_height, ratio * source_height if target_height is None else target_height
 
 
-def _seat(body: Body) -> float:
-    """Return how high the hips' joint is above those of the thighs [m]; for a beast, its ankles.
-
-    Where people differ in how they stand at rest their legs are laid along each other; beasts
-    keep their stance, so the whole height of it counts.
-    """
-    hips = body.rest_places[body.anatomy.joints["hips"], 1]
-    low = [leg.upper if body.anatomy.kind == "humanoid" else leg.foot for leg in body.legs[:2]]
-    return float(hips - body.rest_places[low, 1].mean())
-
-
-def ankle_heights(clip: Clip, source: Body, target: Body) -> Array:
-    """Return how high the ankles are above the ground when they stand, of both bodies, (2,) [m].
-
-    Of a body that stands at rest, as there; of a recorded skeleton, whose rest pose hangs in the
-    air, as in the clip.
-    """
-    ratio = target.leg_length / source.leg_length
-    theirs = _rest_height(source)
-    if theirs is None:
-        theirs = _height_in(clip, source)
-    mine = _rest_height(target)
-    return np.array([theirs, ratio * theirs if mine is None else mine])
-
-
-def _rest_height(body: Body) -> float | None:
-    if not body.stands:
+def _ankle_height_at_rest(rig: Rig) -> float | None:
+    if not rig.rests_on_feet:
         return None
-    return float(np.mean([body.rest_places[leg.foot, 1] for leg in body.legs[:2]]))
+    return float(np.mean([rig.rest_positions[leg.foot, 1] for leg in rig.legs[:2]]))
 
 
-def _height_in(clip: Clip, body: Body) -> float:
-    """Return how high the ankles are in a clip while they stand [m]."""
-    legs = body.legs[:2]
-    clip = upright_clip(clip, body)
-    feet = [leg.foot for leg in legs]
-    heights = clip.poses.globals(body.skeleton)[:, feet, 1, 3]
-    down = find_contacts(clip, body.skeleton, [[foot] for foot in feet])
-    return float(np.median(heights[down] if down.any() else heights.min(0)))
+def _ankle_height_in(clip: Clip, rig: Rig) -> float:
+    """Return the median height of the standing ankles in a clip [m]."""
+    clip = clip_in_common_axes(clip, rig)
+    feet = [leg.foot for leg in rig.legs[:2]]
+    heights = clip.poses.globals(rig.skeleton)[:, feet, 1, 3]
+    contacts = find_contacts(clip, rig.skeleton, [[foot] for foot in feet])
+    return float(np.median(heights[contacts] if contacts.any() else heights.min(0)))
 
 
-def upright_clip(clip: Clip, body: Body) -> Clip:
-    """Return a clip with its root turned so that +y is up and +z ahead."""
-    if np.allclose(body.upright, rotations.IDENTITY):
+def clip_in_common_axes(clip: Clip, rig: Rig) -> Clip:
+    """Return a clip with its roots turned so that +y is up and +z ahead."""
+    turn = rig.common_from_skeleton
+    if np.allclose(turn, rotations.IDENTITY):
         return clip
-    roots = np.flatnonzero(np.array(body.skeleton.parents) < 0)
+    roots = np.flatnonzero(np.array(rig.skeleton.parents) < 0)
     poses = clip.poses
     translations, turns = poses.translations.copy(), poses.rotations.copy()
-    translations[:, roots] = rotations.rotate(body.upright, translations[:, roots])
-    turns[:, roots] = rotations.multiply(body.upright, turns[:, roots])
+    translations[:, roots] = rotations.rotate(turn, translations[:, roots])
+    turns[:, roots] = rotations.multiply(turn, turns[:, roots])
     return replace(clip, poses=replace(poses, translations=translations, rotations=turns))
 
 
-def posed(body: Body, turns: Array, hips: Array, root: Array | None) -> Pose:
-    """Return poses from turns (frames, joints, 4) and the hips' way (frames, 3), common axes.
+def build_poses(rig: Rig, turns: Array, hips: Array, root: Array | None) -> Pose:
+    """Return poses from global rotations and hips positions in the common axes.
 
     Parameters
     ----------
+    rig
+        The target.
+    turns
+        Global rotations, (frames, joints, 4).
+    hips
+        Positions of the hips, (frames, 3) [m].
     root
-        Where the root is on the ground, (frames, 3): x, z [m] and yaw [rad]; None without root
-        motion.
+        Root trajectory, (frames, 3): x, z [m] and yaw [rad]; None without root motion.
     """
-    skeleton, frames = body.skeleton, len(turns)
-    own = rotations.multiply(rotations.conjugate(body.upright), turns)
+    skeleton, frames = rig.skeleton, len(turns)
+    skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)
+    own = rotations.multiply(skeleton_from_common, turns)
     translations = np.tile(skeleton.rest.translations, (frames, 1, 1))
     scales = skeleton.rest.scales
     if scales is not None:
@@ -138,39 +137,41 @@ def posed(body: Body, turns: Array, hips: Array, root: Array | None) -> Pose:
     if root is not None:
         own[:, 0] = rotations.multiply(rotations.about("y", root[:, 2]), skeleton.rest.rotations[0])
         translations[:, 0] = np.stack([root[:, 0], 0 * root[:, 0], root[:, 1]], axis=-1)
-    pose = Pose(translations, locals_of(own, skeleton.parents), scales)
-    joint = body.anatomy.joints["hips"]
-    place(pose, body, joint, rotations.rotate(rotations.conjugate(body.upright), hips))
-    for leg in body.legs:
+    pose = Pose(translations, _local_rotations(own, skeleton.parents), scales)
+    set_joint_positions(
+        pose, rig, rig.anatomy.joints["hips"], rotations.rotate(skeleton_from_common, hips)
+    )
+    for leg in rig.legs:
         if not leg.attached:
-            place(pose, body, leg.foot, ankle(pose.globals(skeleton), body, leg))
+            ankles = ankle_positions(pose.globals(skeleton), rig, leg)
+            set_joint_positions(pose, rig, leg.foot, ankles)
     return pose
 
 
-def place(pose: Pose, body: Body, joint: int, at: Array) -> None:
-    """Put a joint of poses at places (frames, 3) [m] of the skeleton's axes."""
-    parent = body.skeleton.parents[joint]
+def set_joint_positions(pose: Pose, rig: Rig, joint: int, positions: Array) -> None:
+    """Move a joint of poses to positions (frames, 3) [m] in the skeleton's axes, in place."""
+    parent = rig.skeleton.parents[joint]
     if parent >= 0:
-        above: Array = pose.globals(body.skeleton)[:, parent]
-        from_parent = (at - above[:, :3, 3])[..., None]
-        at = np.asarray(np.linalg.solve(above[:, :3, :3], from_parent)[..., 0], float)
-    pose.translations[:, joint] = at
+        above: Array = pose.globals(rig.skeleton)[:, parent]
+        from_parent = (positions - above[:, :3, 3])[..., None]
+        positions = np.asarray(np.linalg.solve(above[:, :3, :3], from_parent)[..., 0], float)
+    pose.translations[:, joint] = positions
 
 
-def ankle(globals_: Array, body: Body, leg: Leg) -> Array:
-    """Return where the ankle is, (frames, 3) [m]: a point that is fast to the shin."""
-    rest = body.skeleton.rest.globals(body.skeleton)
+def ankle_positions(placements: Array, rig: Rig, leg: LegJoints) -> Array:
+    """Return the positions of an ankle, (frames, 3) [m]: a fixed point of the shin."""
+    rest = rig.skeleton.rest.globals(rig.skeleton)
     local = np.linalg.inv(rest[leg.lower]) @ rest[leg.foot, :, 3]
-    point: Array = globals_[..., leg.lower, :3, :] @ local
-    return point
+    positions: Array = placements[..., leg.lower, :3, :] @ local
+    return positions
 
 
-def locals_of(turns: Array, parents: tuple[int, ...]) -> Array:
-    """Return rotations relative to the parent (frames, joints, 4) from those in the character."""
+def _local_rotations(turns: Array, parents: tuple[int, ...]) -> Array:
+    """Return rotations relative to the parents, (frames, joints, 4), from global ones."""
     above = np.array(parents)
     relative = turns.copy()
-    below = above >= 0
-    relative[:, below] = rotations.multiply(
-        rotations.conjugate(turns[:, above[below]]), turns[:, below]
+    children = above >= 0
+    relative[:, children] = rotations.multiply(
+        rotations.conjugate(turns[:, above[children]]), turns[:, children]
     )
     return rotations.continuous(relative)

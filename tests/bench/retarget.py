@@ -12,9 +12,8 @@ from rich.table import Table
 from characters import Character, Clip
 from characters.model.bind_pose import with_bind_pose
 from characters.retargeting import Recording, load_recording, retarget
-from characters.retargeting.body import Body
-from characters.retargeting.feet import find_footing
-from characters.retargeting.retarget import leg_pairs
+from characters.retargeting.footskate import find_foot_contacts
+from characters.retargeting.rig import Rig, leg_pairs
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 PERSON = 1.7
@@ -43,36 +42,36 @@ CASES += [
 ]
 
 
-def directions(clip: Clip, body: Body) -> NDArray[np.float64]:
+def directions(clip: Clip, rig: Rig) -> NDArray[np.float64]:
     """Return unit vectors of the limbs, (frames, limbs, 3); zeros where a limb is missing."""
-    at = clip.poses.globals(body.skeleton)[..., :3, 3]
+    at = clip.poses.globals(rig.skeleton)[..., :3, 3]
     found = np.zeros((len(clip), len(LIMBS), 3))
     for number, (start, end) in enumerate(LIMBS):
-        a, b = body.part(start), body.part(end)
+        a, b = rig.part(start), rig.part(end)
         if a is not None and b is not None:
             bone = at[:, b] - at[:, a]
             found[:, number] = bone / np.linalg.norm(bone, axis=-1, keepdims=True)
     return found
 
 
-def limb_error(source: Recording, made: Clip, body: Body) -> float:
+def limb_error(source: Recording, made: Clip, rig: Rig) -> float:
     """Return the mean angle between limbs of both bodies [degrees]."""
-    theirs = directions(source.clip, Body(source.skeleton, source.anatomy))
-    cosines = np.clip((directions(made, body) * theirs).sum(-1), -1.0, 1.0)
+    theirs = directions(source.clip, Rig(source.skeleton, source.anatomy))
+    cosines = np.clip((directions(made, rig) * theirs).sum(-1), -1.0, 1.0)
     return float(np.degrees(np.arccos(cosines)).mean())
 
 
-def feet(source: Recording, made: Clip, body: Body, height: float) -> tuple[float, float, float]:
+def feet(source: Recording, made: Clip, rig: Rig, height: float) -> tuple[float, float, float]:
     """Return mean and greatest slide of standing feet [cm/s], and how deep feet sink [cm].
 
     All as of a person 1.7 m tall; a foot stands when its ball does in the source.
     """
-    theirs = Body(source.skeleton, source.anatomy)
-    pairs = leg_pairs(theirs, body)
-    down = find_footing(source.clip, theirs, [leg for leg, _ in pairs]).ball
+    theirs = Rig(source.skeleton, source.anatomy)
+    pairs = leg_pairs(theirs, rig)
+    down = find_foot_contacts(source.clip, theirs, [leg for leg, _ in pairs]).ball
     ends = [leg.end for _, leg in pairs]
-    at = made.poses.globals(body.skeleton)[:, ends][..., :3, 3]
-    rest = body.rest_places[ends, 1]
+    at = made.poses.globals(rig.skeleton)[:, ends][..., :3, 3]
+    rest = rig.rest_positions[ends, 1]
     speeds = np.linalg.norm(np.diff(at[..., [0, 2]], axis=0), axis=-1) * made.rate
     held = speeds[down[1:] & down[:-1]] if down.any() else np.zeros(1)
     scale = 100 * PERSON / height
@@ -95,21 +94,21 @@ def main() -> None:
         source = load_recording(str(SHARED / motion))
         character = Character.load(name)
         character = replace(character, skeleton=with_bind_pose(character))
-        body = Body(character.skeleton, character.anatomy)
-        args = (source.clip, source.skeleton, source.anatomy, body.skeleton, body.anatomy)
+        rig = Rig(character.skeleton, character.anatomy)
+        args = (source.clip, source.skeleton, source.anatomy, rig.skeleton, rig.anatomy)
         bare = retarget(*args, hold_feet=False)
         start = time.perf_counter()
         made = retarget(*args)
         took = (time.perf_counter() - start) / max(made.duration, 1e-9)
-        before, _, _ = feet(source, bare, body, character.height)
-        mean, worst, sunk = feet(source, made, body, character.height)
-        person = body.anatomy.kind == "humanoid"
+        before, _, _ = feet(source, bare, rig, character.height)
+        mean, worst, sunk = feet(source, made, rig, character.height)
+        person = rig.anatomy.kind == "humanoid"
         in_place = source.clip.root_motion and source.clip.cycle.length < 0.1 * character.height
         table.add_row(
             Path(motion).name,
             Path(model).stem,
-            f"{limb_error(source, bare, body):.2f}°" if person else "",
-            f"{limb_error(source, made, body):.2f}°" if person else "",
+            f"{limb_error(source, bare, rig):.2f}°" if person else "",
+            f"{limb_error(source, made, rig):.2f}°" if person else "",
             "treadmill" if in_place else f"{before:.1f} cm/s",
             "treadmill" if in_place else f"{mean:.2f} cm/s",
             "treadmill" if in_place else f"{worst:.2f} cm/s",

@@ -1,1 +1,1 @@
-"""From a few recordings of walking and running to clips that can be steered."""
+"""Locomotion clips that can be steered, made from a few recordings of walking and running."""

@@ -1,7 +1,7 @@
-"""Finding in a recording one cycle of walking or running that closes best.
+"""Finding the cycle of walking or running in a recording that closes best.
 
-Where a person is in the same pose, and moves the same way, one step of each foot later, there the
-recording is cut. What is left of a difference is spread over the whole cycle.
+A recording is cut where pose and velocity repeat after one step of each foot. The remaining
+difference is spread over the whole cycle.
 """
 
 from dataclasses import dataclass, replace
@@ -11,114 +11,114 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.motion.clip import Clip
-from characters.retargeting.body import Body
+from characters.retargeting.rig import Rig
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
-_PERIODS = (0.3, 2.4)  # [s] that a cycle may take
-_AHEAD = 0.1  # [s]: how far ahead poses must agree, as much as now: their velocities
-_MOST_STARTS = 400  # frames that are tried as the first
+_CYCLE_DURATION_S = (0.3, 2.4)
+_PAUSE_DURATION_S = (2.0, 10.0)
+_VELOCITY_INTERVAL_S = 0.1
+_MAX_STARTS = 400  # first frames that are tried
 
 
 @dataclass(frozen=True)
-class Cut:
-    """A part of a clip that is one cycle."""
+class LoopCut:
+    """A part of a clip that repeats."""
 
     start: int
     """First frame."""
 
     end: int
-    """The frame that is like the first, one cycle later."""
+    """The frame that matches the first, one cycle later."""
 
     seam: float
-    """How far joints are apart between both, root mean square [leg lengths]."""
+    """Distance of the joints between both, root mean square [leg lengths]."""
 
 
-def find_cycle(clip: Clip, body: Body, down: NDArray[np.bool_]) -> Cut:
+def find_cycle(clip: Clip, rig: Rig, contacts: NDArray[np.bool_]) -> LoopCut:
     """Return the cycle that closes best, with one landing of each foot.
 
     Parameters
     ----------
     clip
-        With root motion, on the body.
-    body
-        Whose joints are compared.
-    down
+        With root motion, on the rig.
+    rig
+        Its joints are compared.
+    contacts
         When the left and the right foot stand, (frames, 2).
 
     Raises
     ------
     CharacterError
-        If in no part of the clip each foot lands just once.
+        If the clip has no part in which each foot lands just once.
     """
-    features = _features(clip, body)
-    landed = np.cumsum(down[1:] & ~down[:-1], axis=0)
-    landed = np.concatenate([np.zeros((1, 2), int), landed])
-    shortest, longest = (round(seconds * clip.rate) for seconds in _PERIODS)
-    stride = max(1, (len(clip) - shortest) // _MOST_STARTS)
-    best: Cut | None = None
+    features = _features(clip, rig)
+    landings = np.cumsum(contacts[1:] & ~contacts[:-1], axis=0)
+    landings = np.concatenate([np.zeros((1, 2), int), landings])
+    shortest, longest = (round(seconds * clip.rate) for seconds in _CYCLE_DURATION_S)
+    stride = max(1, (len(clip) - shortest) // _MAX_STARTS)
+    best: LoopCut | None = None
     for start in range(0, len(clip) - shortest, stride):
         ends = np.arange(start + shortest, min(start + longest, len(clip) - 1) + 1)
-        once = (landed[ends] - landed[start] == 1).all(-1)
-        ends = ends[once]
+        ends = ends[(landings[ends] - landings[start] == 1).all(-1)]
         if not len(ends):
             continue
-        apart = np.sqrt(np.square(features[ends] - features[start]).mean((-1, -2)))
-        nearest = int(apart.argmin())
-        if best is None or apart[nearest] < best.seam:
-            best = Cut(start, int(ends[nearest]), float(apart[nearest]))
+        seams = _seams(features, start, ends)
+        nearest = int(seams.argmin())
+        if best is None or seams[nearest] < best.seam:
+            best = LoopCut(start, int(ends[nearest]), float(seams[nearest]))
     if best is None:
-        counts = " and ".join(str(int(number)) for number in landed[-1])
+        counts = " and ".join(str(int(number)) for number in landings[-1])
         raise CharacterError(
             f"clip {clip.name!r}: no whole cycle found; its left and right foot land {counts} "
-            "times, and both must land once between two like poses; give a longer clip"
+            "times, and both must land once between two similar poses; give a longer clip"
         )
     return best
 
 
-def find_pause(clip: Clip, body: Body) -> Cut:
+def find_pause(clip: Clip, rig: Rig) -> LoopCut:
     """Return the part of a clip that closes best and is long enough to idle."""
-    features = _features(clip, body)
-    shortest = min(round(2.0 * clip.rate), (len(clip) - 1) // 2)
-    longest = round(10.0 * clip.rate)
-    stride = max(1, (len(clip) - shortest) // _MOST_STARTS)
-    best = Cut(0, len(clip) - 1, float("inf"))
+    features = _features(clip, rig)
+    shortest = min(round(_PAUSE_DURATION_S[0] * clip.rate), (len(clip) - 1) // 2)
+    longest = round(_PAUSE_DURATION_S[1] * clip.rate)
+    stride = max(1, (len(clip) - shortest) // _MAX_STARTS)
+    best, best_cost = LoopCut(0, len(clip) - 1, float("inf")), float("inf")
     for start in range(0, max(len(clip) - shortest, 1), stride):
         ends = np.arange(start + max(shortest, 1), min(start + longest, len(clip) - 1) + 1)
         if not len(ends):
             continue
-        apart = np.sqrt(np.square(features[ends] - features[start]).mean((-1, -2)))
-        # Of loops that close alike the longer one is the better.
-        cost = apart / np.sqrt(ends - start)
-        nearest = int(cost.argmin())
-        if apart[nearest] / np.sqrt(ends[nearest] - start) < best.seam / np.sqrt(
-            max(best.end - best.start, 1)
-        ):
-            best = Cut(start, int(ends[nearest]), float(apart[nearest]))
+        seams = _seams(features, start, ends)
+        costs = seams / np.sqrt(ends - start)  # longer loops are better
+        nearest = int(costs.argmin())
+        if costs[nearest] < best_cost:
+            best_cost = costs[nearest]
+            best = LoopCut(start, int(ends[nearest]), float(seams[nearest]))
     return best
 
 
-def closed(clip: Clip, cut: Cut) -> Clip:
+def close_loop(clip: Clip, cut: LoopCut) -> Clip:
     """Return a cycle as a loop in place, its seam spread evenly over it."""
-    frames = slice(cut.start, cut.end + 1)
-    poses = clip.in_place[frames]
+    poses = clip.in_place[slice(cut.start, cut.end + 1)]
     part = np.linspace(-0.5, 0.5, len(poses.rotations))[:, None, None]
     turns = rotations.align(poses.rotations, poses.rotations[0])
     first, last = turns[0], turns[-1]
     gap = rotations.to_rotation_vector(rotations.multiply(rotations.conjugate(last), first))
     turns = rotations.multiply(turns, rotations.from_rotation_vector(gap * part))
-    shift = poses.translations[0] - poses.translations[-1]
-    translations = poses.translations + shift * part
-    morphs = poses.morphs
-    if morphs is not None:
-        morphs = morphs + (morphs[0] - morphs[-1]) * part[..., 0]
-    scales = poses.scales
-    if scales is not None:
-        scales = scales + (scales[0] - scales[-1]) * part
-    return replace(clip, poses=Pose(translations, turns, scales, morphs), loop=True)
+
+    def closed(values: Array) -> Array:
+        weight = part if values.ndim == 3 else part[..., 0]
+        return np.asarray(values + (values[0] - values[-1]) * weight)
+
+    loop = Pose(
+        closed(poses.translations),
+        turns,
+        None if poses.scales is None else closed(poses.scales),
+        None if poses.morphs is None else closed(poses.morphs),
+    )
+    return replace(clip, poses=loop, loop=True)
 
 
-def resampled(clip: Clip, rate: float) -> Clip:
+def resample_loop(clip: Clip, rate: float) -> Clip:
     """Return a loop at another rate; its duration is rounded to whole frames."""
     frames = max(round(clip.duration * rate), 2)
     at = np.linspace(0.0, len(clip) - 1, frames + 1)
@@ -127,25 +127,30 @@ def resampled(clip: Clip, rate: float) -> Clip:
     poses = clip.poses
     turns = rotations.continuous(poses.rotations)
 
-    def mixed(values: Array) -> Array:
+    def interpolated(values: Array) -> Array:
         weight = part if values.ndim == 3 else part[..., 0]
         return np.asarray(values[before] * (1 - weight) + values[before + 1] * weight)
 
-    fine = Pose(
-        mixed(poses.translations),
-        rotations.normalize(mixed(turns)),
-        None if poses.scales is None else mixed(poses.scales),
-        None if poses.morphs is None else mixed(poses.morphs),
+    resampled = Pose(
+        interpolated(poses.translations),
+        rotations.normalize(interpolated(turns)),
+        None if poses.scales is None else interpolated(poses.scales),
+        None if poses.morphs is None else interpolated(poses.morphs),
     )
-    return replace(clip, rate=rate, poses=fine)
+    return replace(clip, rate=rate, poses=resampled)
 
 
-def _features(clip: Clip, body: Body) -> Array:
-    """Return what is compared of each frame: joints now and a little later, (frames, n, 3)."""
-    joints = sorted(set(body.anatomy.joints.values()))
-    placed = clip.in_place.globals(body.skeleton)[:, joints][..., :3, 3] / body.leg_length
-    later = min(max(round(_AHEAD * clip.rate), 1), len(clip) - 1)
-    # At the end of the clip the velocity is that of before.
-    ahead = np.minimum(np.arange(len(clip)) + later, len(clip) - 1)
-    velocity = placed[ahead] - placed[ahead - later]
-    return np.concatenate([placed, velocity], axis=1)
+def _features(clip: Clip, rig: Rig) -> Array:
+    """Return the compared features of each frame: positions and velocities, (frames, n, 3)."""
+    joints = sorted(set(rig.anatomy.joints.values()))
+    positions = clip.in_place.globals(rig.skeleton)[:, joints][..., :3, 3] / rig.leg_length
+    interval = min(max(round(_VELOCITY_INTERVAL_S * clip.rate), 1), len(clip) - 1)
+    # At the end of the clip, the velocity is the last known one.
+    later = np.minimum(np.arange(len(clip)) + interval, len(clip) - 1)
+    velocities = positions[later] - positions[later - interval]
+    return np.concatenate([positions, velocities], axis=1)
+
+
+def _seams(features: Array, start: int, ends: NDArray[np.intp]) -> Array:
+    """Return the root mean square differences between a frame and others, (ends,)."""
+    return np.asarray(np.sqrt(np.square(features[ends] - features[start]).mean((-1, -2))))

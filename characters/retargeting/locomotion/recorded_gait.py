@@ -1,95 +1,103 @@
-"""One even cycle of a recording, on a character: from its first step to a `Gait`."""
+"""Extraction of one regular gait cycle from a recording, on a character."""
 
 import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.model.character import Character
 from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
-from characters.retargeting.body import Body
-from characters.retargeting.feet import Footing, find_footing
-from characters.retargeting.ground import way_of
-from characters.retargeting.locomotion.arcs import Course
-from characters.retargeting.locomotion.cycle import Cut, closed, find_cycle, resampled
-from characters.retargeting.locomotion.gait import Gait, held
+from characters.retargeting.footskate import FootContacts, find_foot_contacts
+from characters.retargeting.ground_motion import find_ground_motion
+from characters.retargeting.locomotion.arc_path import ArcPath
+from characters.retargeting.locomotion.cycle import LoopCut, close_loop, find_cycle, resample_loop
+from characters.retargeting.locomotion.gait_cycle import GaitCycle
 from characters.retargeting.recording import Recording
-from characters.retargeting.retarget import leg_pairs, retarget
-from characters.retargeting.rooted import is_rooted, on_way, rooted_clip
-from characters.skeleton.pose import Array, Pose, Skeleton
+from characters.retargeting.retarget import retarget
+from characters.retargeting.rig import Rig, leg_pairs
+from characters.retargeting.root import (
+    clip_with_root,
+    has_root_joint,
+    moved_to_trajectory,
+    with_root_trajectory,
+)
+from characters.skeleton.pose import Skeleton
 
-RATE = 60.0
-"""Frames a second of what is made from finer recordings [Hz]."""
+MAX_RATE_HZ = 60.0
+"""Finer recordings are resampled."""
 
-_SLOWEST = 0.1  # leg lengths a second: what is slower goes nowhere
+_MIN_SPEED = 0.1  # leg lengths a second
 
 
-def gait_of(recording: Recording, character: Character, walker: Character) -> Gait:
-    """Return the best cycle of a recording on a character, on an arc of even speed.
+def extract_gait(recording: Recording, character: Character, walker: Character) -> GaitCycle:
+    """Return the best cycle of a recording on a character, on an arc at constant speed.
 
     Parameters
     ----------
     recording
-        What to take it from.
+        The source.
     character, walker
-        Whose it is to be, before and after it got a root.
+        The target without and with a root joint.
     """
-    body = Body(walker.skeleton, walker.anatomy)
-    clip, footing = on_character(recording, character, walker)
-    clip = _carried(clip, body, footing)
-    cut = Cut(0, len(clip) - 1, 0.0)
+    rig = Rig(walker.skeleton, walker.anatomy)
+    clip, contacts = on_character(recording, character, walker)
+    clip = _without_treadmill(clip, rig, contacts)
+    cut = LoopCut(0, len(clip) - 1, 0.0)
     if not clip.loop:
-        cut = find_cycle(clip, body, (footing.heel | footing.ball)[:, :2])
-    step = RootDelta(*clip.track[cut.start]).inverse().then(RootDelta(*clip.track[cut.end]))
+        cut = find_cycle(clip, rig, contacts.any[:, :2])
+    start, end = (RootDelta(*clip.track[frame]) for frame in (cut.start, cut.end))
+    delta = start.inverse().then(end)
     seconds = (cut.end - cut.start) / clip.rate
-    course = Course.of(step, seconds)
-    if course.speed < _SLOWEST * body.leg_length:
+    path = ArcPath.of(delta, seconds)
+    if path.speed < _MIN_SPEED * rig.leg_length:
         raise CharacterError(
-            f"{recording.origin}: goes nowhere ({course.speed:.2f} m/s), and its "
-            "feet do not stand as on an even treadmill; give a clip that walks"
+            f"{recording.origin}: goes nowhere ({path.speed:.2f} m/s), and its feet do not stand "
+            "as on a treadmill of constant speed; give a clip that walks"
         )
     # The root looks along the arc: half of the turn is before the middle of its chord.
-    aside = math.atan2(step.x, step.z) - step.yaw / 2
-    loop = closed(_turned_root(clip, body, aside), cut)
-    footing = _cut_footing(footing, cut)
-    first = _first_landing(footing)
-    loop, footing = _rolled(loop, footing, first)
-    if clip.rate > RATE:
-        loop, footing = _coarser(loop, footing)
-    course = Course(course.speed * seconds / loop.duration, step.yaw / loop.duration)
+    yaw = math.atan2(delta.x, delta.z) - delta.yaw / 2
+    loop = close_loop(_with_turned_root(clip, rig, yaw), cut)
+    # The last frame of the cycle is the first again.
+    contacts = contacts.at(np.array([*range(cut.start, cut.end), cut.start]))
+    order = (np.arange(len(loop)) + _first_left_landing(contacts)) % (len(loop) - 1)
+    loop, contacts = replace(loop, poses=loop.poses[order]), contacts.at(order)
+    if clip.rate > MAX_RATE_HZ:
+        fine = len(loop)
+        loop = resample_loop(loop, MAX_RATE_HZ)
+        contacts = contacts.at(np.linspace(0, fine - 1, len(loop)).round().astype(int))
+    path = ArcPath(path.speed * seconds / loop.duration, delta.yaw / loop.duration)
     times = np.arange(len(loop)) / loop.rate
-    pose = on_course(loop.poses, course.at(times))
-    loop = replace(loop, poses=pose, root_motion=True)
-    seam = cut.seam * body.leg_length
-    return held(Gait(recording.origin, loop, body, footing, course, seam))
+    poses = moved_to_trajectory(loop.poses, path.at(times))
+    loop = replace(loop, poses=poses, root_motion=True)
+    seam = cut.seam * rig.leg_length
+    return GaitCycle(recording.origin, loop, rig, contacts, path, seam).with_held_feet()
 
 
 def on_character(
     recording: Recording, character: Character, walker: Character
-) -> tuple[Clip, Footing]:
-    """Return a recording as a clip of the walker, and when its feet stand."""
-    theirs = Body(recording.skeleton, recording.anatomy)
-    ours = Body(walker.skeleton, walker.anatomy)
-    legs = [leg for leg, _ in leg_pairs(theirs, ours)]
+) -> tuple[Clip, FootContacts]:
+    """Return a recording as a clip of the walker, and its foot contacts."""
+    source = Rig(recording.skeleton, recording.anatomy)
+    target = Rig(walker.skeleton, walker.anatomy)
+    legs = [leg for leg, _ in leg_pairs(source, target)]
     try:
-        footing = find_footing(recording.clip, theirs, legs)
+        contacts = find_foot_contacts(recording.clip, source, legs)
     except CharacterError as error:
         raise CharacterError(f"{recording.origin}: {error}") from None
-    if not _alike(recording.skeleton, character.skeleton):
+    if not _are_same(recording.skeleton, character.skeleton):
         args = (recording.skeleton, recording.anatomy, walker.skeleton, walker.anatomy)
         clip = retarget(recording.clip, *args)
-    elif is_rooted(character.skeleton, character.anatomy):
+    elif has_root_joint(character.skeleton, character.anatomy):
         clip = replace(recording.clip, root_motion=True)
     else:
-        clip = rooted_clip(recording.clip, character.skeleton, character.anatomy)
-    return clip, footing
+        clip = clip_with_root(recording.clip, character.skeleton, character.anatomy)
+    return clip, contacts
 
 
-def _alike(one: Skeleton, other: Skeleton) -> bool:
-    """Return whether a clip of one skeleton is a clip of the other."""
+def _are_same(one: Skeleton, other: Skeleton) -> bool:
+    """Return whether clips of one skeleton fit the other without retargeting."""
     return (
         one.names == other.names
         and one.parents == other.parents
@@ -98,58 +106,29 @@ def _alike(one: Skeleton, other: Skeleton) -> bool:
     )
 
 
-def _carried(clip: Clip, body: Body, footing: Footing) -> Clip:
-    """Return a clip that walks in place as one that gets on."""
-    legs = body.legs[: footing.ball.shape[1]]
-    way = way_of(replace(clip, loop=False), body, legs, footing.ball, 1.0).carried
-    if not way.any():
+def _without_treadmill(clip: Clip, rig: Rig, contacts: FootContacts) -> Clip:
+    """Return a clip that walks in place as one that moves over the ground."""
+    legs = rig.legs[: contacts.ball.shape[1]]
+    once = replace(clip, loop=False)
+    frame_poses = find_ground_motion(once, rig, legs, contacts.ball, 1.0).frame_poses
+    if not frame_poses.any():
         return clip
-    steps = [RootDelta(*w).then(RootDelta(*t)) for w, t in zip(way, clip.track, strict=True)]
-    track = np.array([[step.x, step.z, step.yaw] for step in steps])
-    return replace(clip, poses=on_course(clip.in_place, track))
+    deltas = [
+        RootDelta(*frame).then(RootDelta(*root))
+        for frame, root in zip(frame_poses, clip.track, strict=True)
+    ]
+    trajectory = np.array([[delta.x, delta.z, delta.yaw] for delta in deltas])
+    return replace(clip, poses=moved_to_trajectory(clip.in_place, trajectory))
 
 
-def on_course(pose: Pose, way: Array) -> Pose:
-    """Return poses in place with their root on a way (frames, 3)."""
-    still = np.zeros_like(way)
-    root = on_way(pose, np.zeros(0, np.intp), still)
-    moved = on_way(root, np.zeros(0, np.intp), way)
-    translations = pose.translations.copy()
-    translations[:, 0] = moved.translations[:, 0] + pose.translations[:, 0] * [0.0, 1.0, 0.0]
-    turns = pose.rotations.copy()
-    turns[:, 0] = moved.rotations[:, 0]
-    return replace(pose, translations=translations, rotations=turns)
+def _with_turned_root(clip: Clip, rig: Rig, yaw: float) -> Clip:
+    """Return a clip whose root is turned by an angle [rad]; the body stays in the world."""
+    children = np.flatnonzero(np.array(rig.skeleton.parents) == 0)
+    trajectory = clip.track + [0.0, 0.0, yaw]
+    return replace(clip, poses=with_root_trajectory(clip.poses, children, trajectory))
 
 
-def _turned_root(clip: Clip, body: Body, aside: float) -> Clip:
-    """Return a clip whose root looks elsewhere by an angle [rad]; the body stays in the world."""
-    below = np.flatnonzero(np.array(body.skeleton.parents) == 0)
-    return replace(clip, poses=on_way(clip.poses, below, clip.track + [0.0, 0.0, aside]))
-
-
-def _cut_footing(footing: Footing, cut: Cut) -> Footing:
-    """Return when feet stand in a cycle; its last frame is its first."""
-
-    def part(down: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        return np.concatenate([down[cut.start : cut.end], down[cut.start : cut.start + 1]])
-
-    return Footing(part(footing.heel), part(footing.ball))
-
-
-def _first_landing(footing: Footing) -> int:
+def _first_left_landing(contacts: FootContacts) -> int:
     """Return the frame of a loop at which the left foot lands, 0 if it never does."""
-    down = (footing.heel | footing.ball)[:-1, 0]
+    down = contacts.any[:-1, 0]
     return int(np.argmax(down & ~np.roll(down, 1)))
-
-
-def _rolled(clip: Clip, footing: Footing, first: int) -> tuple[Clip, Footing]:
-    """Return a loop in place that starts at another frame."""
-    order = (np.arange(len(clip)) + first) % (len(clip) - 1)
-    return replace(clip, poses=clip.poses[order]), Footing(footing.heel[order], footing.ball[order])
-
-
-def _coarser(clip: Clip, footing: Footing) -> tuple[Clip, Footing]:
-    """Return a loop at the rate of what is made."""
-    coarse = resampled(clip, RATE)
-    nearest = np.linspace(0, len(clip) - 1, len(coarse)).round().astype(int)
-    return coarse, Footing(footing.heel[nearest], footing.ball[nearest])

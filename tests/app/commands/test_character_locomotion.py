@@ -24,7 +24,7 @@ def test_one_command_makes_a_character_that_walks(cubeling, tmp_path):
         (["human", "--walk", "human#Walk", "-o", "mine.fbx"], "not as 'mine.fbx'"),
         (["human", "--walk", "human#Stroll"], "which clip? write human#CLIP"),
         (["human", "--walk", "nowhere.bvh"], "nowhere.bvh"),
-        (["vleo", "--walk", "human#Walk"], "take a motion of its kind"),
+        (["vleo", "--walk", "human#Walk"], "use a motion of the same kind"),
         (["human", "--walk", "human#idle"], "goes nowhere"),
     ],
 )

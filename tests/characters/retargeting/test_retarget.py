@@ -7,9 +7,9 @@ import pytest
 from characters import Character, CharacterError, Pose, Skeleton
 from characters.formats import load_motion
 from characters.retargeting import retarget
-from characters.retargeting.body import Body
-from characters.retargeting.feet import find_footing
-from characters.retargeting.limb import bend
+from characters.retargeting.footskate import find_foot_contacts
+from characters.retargeting.leg_ik import place_ankle
+from characters.retargeting.rig import Rig
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 
@@ -164,13 +164,13 @@ def with_more_spine(skeleton):
 
 def test_a_man_is_no_dinosaur(human):
     vleo = Character.load("vleo")
-    with pytest.raises(CharacterError, match=r"'Walk': .*humanoid's and the character is a quadr"):
+    with pytest.raises(CharacterError, match=r"'Walk': .*humanoid and the character is a quadr"):
         retarget(human.clips["Walk"], human.skeleton, human.anatomy, vleo.skeleton, vleo.anatomy)
 
 
 def test_a_body_without_legs_is_refused_in_one_line(human):
     lamp = Skeleton(("base",), (-1,), Pose(np.zeros((1, 3)), rotations.IDENTITY[None]))
-    with pytest.raises(CharacterError, match="the source has neither"):
+    with pytest.raises(CharacterError, match="the source is neither"):
         retarget(human.clips["Walk"], lamp, Anatomy.guess(lamp), human.skeleton, human.anatomy)
 
 
@@ -198,11 +198,11 @@ def test_a_recorded_walk_stands_on_the_ground_with_feet_that_hold(human):
     toes = [human.anatomy.joints[side + "Toes"] for side in ("left", "right")]
     rest = skeleton.rest.globals(skeleton)[toes, 1, 3]
     assert (at[:, toes, 1] > rest - 1e-3).all()
-    performer = Body(source, anatomy)
-    footing = find_footing(clip, performer, performer.legs)
+    performer = Rig(source, anatomy)
+    contacts = find_foot_contacts(clip, performer, performer.legs)
     for foot, joint in enumerate(toes):
-        assert footing.ball[:, foot].mean() > 0.3
-        assert slide(walk, skeleton, joint, footing.ball[:, foot]) < 0.01
+        assert contacts.ball[:, foot].mean() > 0.3
+        assert slide(walk, skeleton, joint, contacts.ball[:, foot]) < 0.01
 
 
 def test_a_recorded_walk_moves_the_limbs_as_they_moved(human):
@@ -213,8 +213,8 @@ def test_a_recorded_walk_moves_the_limbs_as_they_moved(human):
 
 
 def test_a_leg_that_is_stretched_too_far_bends_to_the_side_to_which_it_usually_does(human):
-    body = Body(human.skeleton, human.anatomy)
-    leg = body.legs[0]
+    rig = Rig(human.skeleton, human.anatomy)
+    leg = rig.legs[0]
     rest = human.skeleton.rest
     angles = np.radians(np.linspace(40.0, -20.0, 61))  # the knee goes beyond straight
     turns = np.tile(rest.rotations, (len(angles), 1, 1))
@@ -225,7 +225,7 @@ def test_a_leg_that_is_stretched_too_far_bends_to_the_side_to_which_it_usually_d
     globals_ = pose.globals(human.skeleton)
     hip, at = globals_[:, leg.upper, :3, 3], globals_[:, leg.foot, :3, 3]
     target = at + 0.06 * (hip - at)  # nearer to the hip, so that the knee has to bend
-    bent = bend(pose, body, leg, target)
+    bent = place_ankle(pose, rig, leg, target)
     world = bent.globals(human.skeleton)[:, :, :3, 3]
     assert np.abs(world[:, leg.foot] - target).max() < 1e-9
     ahead = world[:, leg.lower, 2] - (world[:, leg.upper, 2] + world[:, leg.foot, 2]) / 2
@@ -234,14 +234,14 @@ def test_a_leg_that_is_stretched_too_far_bends_to_the_side_to_which_it_usually_d
 
 
 def test_a_leg_whose_foot_is_sent_through_its_hip_does_not_spin(human):
-    body = Body(human.skeleton, human.anatomy)
-    leg = body.legs[0]
+    rig = Rig(human.skeleton, human.anatomy)
+    leg = rig.legs[0]
     still = human.clips["idle"].sample(0.0)
     pose = Pose(np.tile(still.translations, (41, 1, 1)), np.tile(still.rotations, (41, 1, 1)))
     globals_ = pose.globals(human.skeleton)
     hip, at = globals_[:, leg.upper, :3, 3], globals_[:, leg.foot, :3, 3]
     past = np.array([0.01, 0.0, 0.2]) * np.linspace(-1.0, 1.0, 41)[:, None]
-    bent = bend(pose, body, leg, hip + past + [0.01, 0.0, 0.0])
+    bent = place_ankle(pose, rig, leg, hip + past + [0.01, 0.0, 0.0])
     turned = np.abs(np.einsum("fji,fji->fj", bent.rotations[1:], bent.rotations[:-1]))
     assert 2 * np.arccos(np.minimum(turned.min(), 1.0)) < np.radians(25)
     assert np.linalg.norm(bent.globals(human.skeleton)[:, leg.foot, :3, 3] - hip, axis=1).min() > (

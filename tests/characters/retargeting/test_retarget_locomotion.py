@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from characters import Animator, Character, CharacterCommand, CharacterError, Pose
 from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
 from characters.retargeting import Recording, load_recording, make_locomotion
-from characters.retargeting.locomotion.arcs import Course
-from characters.retargeting.rooted import rooted_clip, with_root
+from characters.retargeting.locomotion.arc_path import ArcPath
+from characters.retargeting.root import clip_with_root, with_root_joint
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 
@@ -166,11 +166,11 @@ def test_a_clip_must_be_named_where_there_are_many():
 def test_a_root_is_put_under_a_character_without_moving_it(human):
     names = ("pelvis_parent", *human.skeleton.names[1:])
     bare = replace(human, skeleton=replace(human.skeleton, names=names), semantics={})
-    rooted = with_root(bare)
+    rooted = with_root_joint(bare)
     assert rooted.skeleton.has_root_motion
-    assert with_root(rooted) is rooted
+    assert with_root_joint(rooted) is rooted
     recording = exported(human, "WalkLeftMedium")
-    clip = rooted_clip(recording.clip, recording.skeleton, recording.anatomy)
+    clip = clip_with_root(recording.clip, recording.skeleton, recording.anatomy)
     there = clip.poses.globals(rooted.skeleton)[:, 1:, :3, 3]
     assert np.allclose(there, recording.clip.poses.globals(recording.skeleton)[..., :3, 3])
     assert np.ptp(clip.track[:, 2]) > 1.0
@@ -183,13 +183,13 @@ def test_a_root_is_put_under_a_character_without_moving_it(human):
     st.floats(0.3, 4), st.floats(-2.5, 2.5), st.floats(-0.5, 0.5), st.floats(0, 2), st.floats(0, 1)
 )
 def test_a_place_beside_an_arc_is_told_and_found_again(speed, yaw_rate, left, time, height):
-    course = Course(speed, yaw_rate)
-    if abs(left * course.curvature) > 0.9:
+    path = ArcPath(speed, yaw_rate)
+    if abs(left * path.curvature) > 0.9:
         return
     times = np.array([time])
-    place = course.places(np.array([[speed * time + 0.2, height, left]]))
-    beside = course.beside(place, times)
-    assert np.allclose(beside, [[speed * time + 0.2, height, left]], atol=1e-6)
+    point = path.from_arc(np.array([[speed * time + 0.2, height, left]]))
+    coordinates = path.to_arc(point, times)
+    assert np.allclose(coordinates, [[speed * time + 0.2, height, left]], atol=1e-6)
 
 
 def captured(name):

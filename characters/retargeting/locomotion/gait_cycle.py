@@ -1,0 +1,140 @@
+"""One cycle of a gait on an arc, which can be bent to any other arc."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from characters.motion.clip import Clip
+from characters.retargeting.footskate import FootContacts, hold_feet_in_contact
+from characters.retargeting.ground_motion import GroundMotion
+from characters.retargeting.locomotion.arc_path import ArcPath
+from characters.retargeting.rig import LegJoints, Rig, global_rotations
+from characters.retargeting.root import moved_to_trajectory
+from characters.retargeting.transfer import ankle_positions
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose
+
+_GRAVITY = 9.81 / 0.92  # [leg lengths/s²], for legs of 0.92 m
+_LEAN_SHARE, _MAX_LEAN = 0.6, 0.22  # of the angle that balances a curve; [rad]
+_LOOK_AHEAD_S, _MAX_LOOK_YAW = 0.25, 0.4  # of the head in a curve; [rad]
+
+
+@dataclass(frozen=True)
+class GaitCycle:
+    """A loop of walking or running."""
+
+    origin: str
+    """The recording that it is made from."""
+
+    clip: Clip
+    """One cycle from a left landing on, its root on the path from the origin."""
+
+    rig: Rig
+    """The skeleton of the clip."""
+
+    contacts: FootContacts
+    """When its feet stand."""
+
+    path: ArcPath
+    """Its path over the ground."""
+
+    seam: float
+    """Distance of the joints where the loop was closed, root mean square [m]."""
+
+    @property
+    def legs(self) -> tuple[LegJoints, ...]:
+        """The legs with contacts."""
+        return self.rig.legs[: self.contacts.ball.shape[1]]
+
+    @property
+    def mean_slide(self) -> float:
+        """Mean speed of standing balls of feet over the ground [m/s]."""
+        speeds: list[Array] = []
+        for number, leg in enumerate(self.legs):
+            at = self._end_positions(leg)[:, [0, 2]]
+            down = self.contacts.ball[:, number]
+            speed = np.linalg.norm(np.diff(at, axis=0), axis=-1) * self.clip.rate
+            speeds.append(speed[down[1:] & down[:-1]])
+        every = np.concatenate(speeds)
+        return float(every.mean()) if len(every) else 0.0
+
+    def bent_to(self, path: ArcPath) -> "GaitCycle":
+        """Return the gait on another path, its footprints bent with it."""
+        times = np.arange(len(self.clip)) / self.clip.rate
+        share = path.speed / self.path.speed
+        curvature_change = path.curvature * share - self.path.curvature
+        pose = moved_to_trajectory(self.clip.poses, path.at(times))
+        pose = self._with_lean(pose, path)
+        ends = np.empty((len(times), len(self.legs), 3))
+        for number, leg in enumerate(self.legs):
+            coordinates = self.path.to_arc(self._end_positions(leg), times)
+            yaw = curvature_change * (coordinates[:, 0] - self.path.speed * times)
+            pose = _turned(pose, self.rig, leg.foot, rotations.about("y", yaw))
+            coordinates[:, 0] *= share
+            ends[:, number] = path.from_arc(coordinates)
+        return replace(self, path=path)._with_held_feet(pose, ends)
+
+    def with_held_feet(self) -> "GaitCycle":
+        """Return the gait with feet that do not slide on its own path."""
+        return self._with_held_feet(self.clip.poses)
+
+    def _with_held_feet(self, pose: Pose, ends: Array | None = None) -> "GaitCycle":
+        times = np.arange(len(self.clip)) / self.clip.rate
+        cycle = self.path.at(times[-1:])[0]
+        ground = GroundMotion(np.zeros((len(times), 3)), cycle, self.clip.rate)
+        held = hold_feet_in_contact(pose, self.rig, self.legs, self.contacts, ground, ends)
+        return replace(self, clip=replace(self.clip, poses=_with_exact_end(held)))
+
+    def _end_positions(self, leg: LegJoints) -> Array:
+        """Return the positions of the end of a leg, (frames, 3) [m]."""
+        placements = self.clip.poses.globals(self.rig.skeleton)
+        if leg.toes is not None and leg.foot in self.rig.chain_to(leg.toes):
+            return np.asarray(placements[:, leg.toes, :3, 3])
+        return ankle_positions(placements, self.rig, leg)
+
+    def _with_lean(self, pose: Pose, path: ArcPath) -> Pose:
+        """Return poses that lean into a curve and look ahead in it."""
+        new, old = (
+            np.clip(
+                _LEAN_SHARE * np.arctan(p.speed * p.yaw_rate / (_GRAVITY * self.rig.leg_length)),
+                -_MAX_LEAN,
+                _MAX_LEAN,
+            )
+            for p in (path, self.path)
+        )
+        look_yaw = _LOOK_AHEAD_S * (path.yaw_rate - self.path.yaw_rate)
+        look_yaw = np.clip(look_yaw, -_MAX_LOOK_YAW, _MAX_LOOK_YAW)
+        translations, turns = pose.translations.copy(), pose.rotations.copy()
+        lean = rotations.about("z", old - new)
+        children = _children_of_root(self.rig)
+        translations[:, children] = rotations.rotate(lean, translations[:, children])
+        turns[:, children] = rotations.multiply(lean, turns[:, children])
+        pose = replace(pose, translations=translations, rotations=turns)
+        necks = [j for part in ("neck", "head") if (j := self.rig.part(part)) is not None]
+        for joint in necks:
+            turn = rotations.about("y", look_yaw / len(necks))
+            pose = _turned(pose, self.rig, joint, turn)
+        return pose
+
+
+def _with_exact_end(pose: Pose) -> Pose:
+    """Return a cycle whose last pose equals its first exactly, except for the root."""
+    translations, turns = pose.translations.copy(), pose.rotations.copy()
+    translations[-1, 1:] = translations[0, 1:]
+    turns[-1, 1:] = rotations.align(turns[0, 1:], turns[-1, 1:])
+    return replace(pose, translations=translations, rotations=turns)
+
+
+def _children_of_root(rig: Rig) -> Sequence[int]:
+    return [joint for joint, parent in enumerate(rig.skeleton.parents) if parent == 0]
+
+
+def _turned(pose: Pose, rig: Rig, joint: int, turn: Array) -> Pose:
+    """Return poses with a joint turned in the world by rotations (frames, 4)."""
+    pair = [rig.skeleton.parents[joint], joint]
+    placements = global_rotations(pose.globals(rig.skeleton)[:, pair])
+    turns = pose.rotations.copy()
+    above, own = placements[:, 0], placements[:, 1]
+    turns[:, joint] = rotations.multiply(rotations.conjugate(above), rotations.multiply(turn, own))
+    return replace(pose, rotations=rotations.continuous(turns))

@@ -1,0 +1,242 @@
+"""The clips of the movement trees of a character, made from a few recordings.
+
+Each recording is retargeted to the character, cut to one cycle and put on an arc at constant speed.
+Every clip of a tree is then bent from the recording whose turn is nearest.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
+from characters.model.bind_pose import with_bind_pose
+from characters.model.character import Character
+from characters.model.mirroring import mirror_of
+from characters.motion.clip import Clip
+from characters.motion.mirror import Mirror
+from characters.retargeting.footskate import FootContacts
+from characters.retargeting.locomotion.arc_path import ArcPath
+from characters.retargeting.locomotion.cycle import (
+    LoopCut,
+    close_loop,
+    find_pause,
+    resample_loop,
+)
+from characters.retargeting.locomotion.gait_cycle import GaitCycle
+from characters.retargeting.locomotion.recorded_gait import (
+    MAX_RATE_HZ,
+    extract_gait,
+    on_character,
+)
+from characters.retargeting.recording import Recording
+from characters.retargeting.rig import Rig
+from characters.retargeting.root import moved_to_trajectory, with_root_joint
+from characters.skeleton.pose import Pose
+
+YAW_RATE_PER_ANGULAR = 1.5
+"""Yaw rate of the movement trees [°/s], for each degree of their parameter Angular."""
+
+_MAX_STRAIGHT_ANGULAR = 8.0  # degrees; less is straight
+_MIRROR_COST = 1.0  # degrees of Angular by which a gait that needs no mirror is preferred
+_IDLE_RATE_HZ, _IDLE_FRAMES = 30.0, 31
+# Speed in a curve relative to straight on, by Angular: people slow down to turn.
+_CURVE_SPEED: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {
+    "walk": ((0.0, 30.0, 60.0, 90.0), (1.0, 0.97, 0.86, 0.72)),
+    "run": ((0.0, 45.0, 90.0), (1.0, 0.94, 0.82)),
+}
+
+
+@dataclass(frozen=True)
+class GaitReport:
+    """A gait found in a recording, or made for a movement tree."""
+
+    name: str
+    """Name of the file, or of the clip."""
+
+    origin: str
+    """The recording that it is made from, and how."""
+
+    duration: float
+    """Duration of one cycle [s]."""
+
+    speed: float
+    """Speed over the ground [m/s of the character]."""
+
+    angular: float
+    """Turn to the right, as the parameter Angular of the movement trees [degrees]."""
+
+    seam: float
+    """Distance of the joints where the cycle was closed, root mean square [m]."""
+
+    slide: float
+    """Mean speed of standing feet over the ground [m/s]."""
+
+    @classmethod
+    def of(cls, name: str, gait: GaitCycle) -> "GaitReport":
+        """Measure a gait."""
+        path = gait.path
+        angular, duration = _angular(path), gait.clip.duration
+        return cls(name, gait.origin, duration, path.speed, angular, gait.seam, gait.mean_slide)
+
+
+@dataclass(frozen=True)
+class LocomotionResult:
+    """A character with locomotion clips, and how they were made."""
+
+    character: Character
+    """With the clips of the movement trees."""
+
+    recordings: tuple[GaitReport, ...]
+    """The gaits found in the recordings."""
+
+    clips: tuple[GaitReport, ...]
+    """The clips made."""
+
+
+def make_locomotion(
+    character: Character,
+    walks: Sequence[Recording],
+    runs: Sequence[Recording] = (),
+    idle: Recording | None = None,
+) -> LocomotionResult:
+    """Return a character with the clips of the movement trees, made from recordings.
+
+    Parameters
+    ----------
+    character
+        The character; it gets a root joint on the ground if it has none.
+    walks, runs
+        Straight or curved; at least one walk.
+    idle
+        Standing; left out, the character keeps its clip "idle", or gets a static one.
+
+    Raises
+    ------
+    CharacterError
+        If a recording does not fit the character, or contains no cycle.
+    """
+    original = character
+    character = replace(character, skeleton=with_bind_pose(character))
+    walker = with_root_joint(character)
+    clips, recordings, made = dict(walker.clips), [], []
+    mirror = _mirror(walker)
+    for kind, names, given in (("walk", WALK_CLIPS, walks), ("run", RUN_CLIPS, runs)):
+        gaits = [extract_gait(recording, character, walker) for recording in given]
+        recordings += [GaitReport.of(gait.origin, gait) for gait in gaits]
+        for gait in gaits and _tree_gaits(kind, names, gaits, mirror):
+            clips[gait.clip.name] = gait.clip
+            made.append(GaitReport.of(gait.clip.name, gait))
+    if idle is not None:
+        clips["idle"] = _idle_from(idle, character, walker)
+    elif "idle" not in clips:
+        clips["idle"] = _static_idle(clips["Walk"], Rig(walker.skeleton, walker.anatomy))
+    rooted = replace(with_root_joint(original), clips=clips)
+    return LocomotionResult(rooted, tuple(recordings), tuple(made))
+
+
+def _angular(path: ArcPath) -> float:
+    return -math.degrees(path.yaw_rate) / YAW_RATE_PER_ANGULAR
+
+
+def _tree_gaits(
+    kind: str, names: Mapping[float, str], gaits: Sequence[GaitCycle], mirror: Mirror | None
+) -> list[GaitCycle]:
+    """Return the gaits of a tree, each bent from the one with the nearest turn."""
+    knots, speeds = _CURVE_SPEED[kind]
+    made: list[GaitCycle] = []
+    for angular, name in names.items():
+        gait, mirrored = _nearest_gait(angular, gaits, mirror)
+        sign = -1.0 if mirrored else 1.0
+        own_angular = sign * _angular(gait.path)
+        share = np.interp(abs(angular), knots, speeds) / np.interp(abs(own_angular), knots, speeds)
+        yaw_rate = -math.radians(YAW_RATE_PER_ANGULAR * angular)
+        bent = gait.bent_to(ArcPath(gait.path.speed * float(share), sign * yaw_rate))
+        changes = "" if abs(own_angular - angular) < _MAX_STRAIGHT_ANGULAR else ", bent"
+        bent = replace(bent, clip=replace(bent.clip, name=name))
+        if mirrored and mirror is not None:
+            bent = _mirrored(bent, mirror)
+            changes += ", mirrored"
+        made.append(replace(bent, origin=gait.origin + changes))
+    return made
+
+
+def _nearest_gait(
+    angular: float, gaits: Sequence[GaitCycle], mirror: Mirror | None
+) -> tuple[GaitCycle, bool]:
+    """Return the gait with the nearest turn, and whether to mirror it.
+
+    Curved gaits are mirrored if that brings the turn to the right side. Straight gaits are bent to
+    the left and mirrored for the right, so that both sides are alike.
+    """
+    options: list[tuple[float, int, bool]] = []
+    for number, gait in enumerate(gaits):
+        own = _angular(gait.path)
+        straight = abs(own) < _MAX_STRAIGHT_ANGULAR
+        difference = max(abs(own - angular), _MAX_STRAIGHT_ANGULAR)  # the first of similar ones
+        options.append((difference, number, straight and angular > 0 and mirror is not None))
+        if mirror is not None and not straight:
+            options.append((abs(-own - angular) + _MIRROR_COST, number, True))
+    _, number, mirrored = min(options)
+    return gaits[number], mirrored
+
+
+def _mirror(character: Character) -> Mirror | None:
+    """Return the mirror of a character, or None if it is not symmetric."""
+    try:
+        return mirror_of(character)
+    except CharacterError:
+        return None
+
+
+def _mirrored(gait: GaitCycle, mirror: Mirror) -> GaitCycle:
+    """Return a gait mirrored and shifted by half a cycle, so that it begins with the left foot."""
+    clip = gait.clip
+    image = mirror.clip(clip)
+    # Bones keep their lengths if a body is not exactly symmetric.
+    rigid = np.flatnonzero(np.ptp(clip.in_place.translations, axis=0).max(-1) < 1e-9)
+    rigid = rigid[rigid > 0]
+    image.poses.translations[:, rigid] = clip.poses.translations[:, rigid]
+    count = len(image) - 1
+    order = (np.arange(len(image)) + count // 2) % count
+    poses = moved_to_trajectory(image.in_place[order], image.track)
+    sides = [leg + 1 - 2 * (leg % 2) for leg in range(gait.contacts.ball.shape[1])]
+    heel, ball = gait.contacts.heel[order][:, sides], gait.contacts.ball[order][:, sides]
+    mirrored = replace(
+        gait,
+        clip=replace(image, poses=poses),
+        path=ArcPath(gait.path.speed, -gait.path.yaw_rate),
+        contacts=FootContacts(heel, ball),
+    )
+    # A body that is not exactly symmetric steps elsewhere.
+    return mirrored.with_held_feet()
+
+
+def _idle_from(recording: Recording, character: Character, walker: Character) -> Clip:
+    """Return a recording of standing as a loop in place."""
+    clip, _ = on_character(recording, character, walker)
+    rig = Rig(walker.skeleton, walker.anatomy)
+    cut = LoopCut(0, len(clip) - 1, 0.0) if clip.loop else find_pause(clip, rig)
+    loop = close_loop(clip, cut)
+    loop = resample_loop(loop, MAX_RATE_HZ) if loop.rate > MAX_RATE_HZ else loop
+    return replace(loop, name="idle", root_motion=True)
+
+
+def _static_idle(walk: Clip, rig: Rig) -> Clip:
+    """Return a standing clip: legs and trunk at rest, arms in their mean pose of a walk."""
+    rest = rig.skeleton.rest
+    mean = walk.in_place.rotations.sum(0)
+    mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1e-9)
+    arms = {j for side in ("left", "right") if (j := rig.part(side + "UpperArm")) is not None}
+    arm_joints = [j for j in range(len(rig.skeleton)) if set(rig.chain_to(j)) & arms]
+    turns = rest.rotations.copy()
+    turns[arm_joints] = mean[arm_joints]
+    scales = None if rest.scales is None else np.tile(rest.scales, (_IDLE_FRAMES, 1, 1))
+    poses = Pose(
+        np.tile(rest.translations, (_IDLE_FRAMES, 1, 1)),
+        np.tile(turns, (_IDLE_FRAMES, 1, 1)),
+        scales,
+    )
+    return Clip("idle", _IDLE_RATE_HZ, poses, loop=True, root_motion=True)

@@ -1,0 +1,204 @@
+"""A skeleton with its anatomy, in axes that all skeletons share: +y up and +z ahead."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from characters.errors import CharacterError
+from characters.skeleton import rotations
+from characters.skeleton.anatomy import SIDES, Anatomy
+from characters.skeleton.pose import Array, Skeleton
+
+_STANDING_HEIGHT = (-0.02, 0.12)  # of the lowest joint of a standing rest pose, in body sizes
+_MAX_STANDING_SPREAD = 0.2  # [rad]: legs farther apart at rest do not stand; see `Rig.flat_foot`
+
+
+@dataclass(frozen=True)
+class LegJoints:
+    """The joints of a leg; its ankle is a point of the shin, even if the foot is detached."""
+
+    upper: int
+    """Joint of the thigh."""
+
+    lower: int
+    """Joint of the shin."""
+
+    foot: int
+    """Joint of the foot."""
+
+    toes: int | None
+    """Joint of the toes, at the ball of the foot, if there is one."""
+
+    attached: bool
+    """Whether the foot is below the shin in the tree; some IK rigs have it elsewhere."""
+
+    @property
+    def end(self) -> int:
+        """The joint that is nearest to the ground."""
+        return self.foot if self.toes is None else self.toes
+
+
+@dataclass(frozen=True)
+class Rig:
+    """A skeleton with its anatomy; measures are in the common axes."""
+
+    skeleton: Skeleton
+    """Its joints."""
+
+    anatomy: Anatomy
+    """Which joint is which body part."""
+
+    def part(self, name: str) -> int | None:
+        """Return the joint of a body part, or None."""
+        return self.anatomy.joint(name)
+
+    @cached_property
+    def common_from_skeleton(self) -> Array:
+        """The rotation (4,) from the skeleton's axes to the common ones, by quarter turns.
+
+        A file may face along any axis at rest; hips, limbs and head tell which one.
+        """
+        positions = self.skeleton.rest.globals(self.skeleton)[:, :3, 3]
+        left, right = self._side_centre(positions, "left"), self._side_centre(positions, "right")
+        legs = [positions[leg.end] for leg in self.legs]
+        trunk = [positions[j] for j in (self.part("hips"), self.part("head")) if j is not None]
+        if not legs or left is None or right is None:
+            return rotations.IDENTITY
+        up = _nearest_axis(np.mean(trunk, axis=0) - np.mean(legs, axis=0))
+        across = left - right
+        across = _nearest_axis(across - up * float(across @ up))
+        return rotations.from_matrix(np.stack([across, up, np.cross(across, up)]))
+
+    def _side_centre(self, positions: Array, side: str) -> Array | None:
+        joints = [j for part, j in self.anatomy.joints.items() if part.startswith(side)]
+        return positions[joints].mean(0) if joints else None
+
+    @cached_property
+    def rest_rotations(self) -> Array:
+        """Global rotations at rest, (joints, 4)."""
+        rest = self.skeleton.rest.globals(self.skeleton)
+        return rotations.multiply(self.common_from_skeleton, global_rotations(rest))
+
+    @cached_property
+    def rest_positions(self) -> Array:
+        """Positions at rest, (joints, 3) [m]."""
+        rest = self.skeleton.rest.globals(self.skeleton)
+        return rotations.rotate(self.common_from_skeleton, rest[:, :3, 3])
+
+    @cached_property
+    def legs(self) -> tuple[LegJoints, ...]:
+        """Its legs, left before right, hind before front."""
+        return tuple(
+            leg
+            for front in ("", "Front")
+            for side in SIDES
+            if (leg := self._leg(side + front)) is not None
+        )
+
+    def _leg(self, side: str) -> LegJoints | None:
+        upper, lower, foot = (self.part(side + p) for p in ("UpperLeg", "LowerLeg", "Foot"))
+        if upper is None or lower is None or foot is None:
+            return None
+        if upper not in self.chain_to(lower):
+            return None
+        return LegJoints(upper, lower, foot, self.part(side + "Toes"), lower in self.chain_to(foot))
+
+    def chain_to(self, joint: int) -> list[int]:
+        """Return the ancestors of a joint from the root down, and the joint itself."""
+        chain = [joint]
+        while self.skeleton.parents[chain[-1]] >= 0:
+            chain.append(self.skeleton.parents[chain[-1]])
+        return chain[::-1]
+
+    def direction(self, start: str, end: str) -> Array | None:
+        """Return the unit vector (3,) from one body part to another at rest, or None."""
+        a, b = self.part(start), self.part(end)
+        if a is None or b is None:
+            return None
+        bone = self.rest_positions[b] - self.rest_positions[a]
+        length = float(np.linalg.norm(bone))
+        return bone / length if length > 1e-9 else None
+
+    @cached_property
+    def leg_length(self) -> float:
+        """Mean length of the legs [m]: along the bones from hip to ankle for a person.
+
+        Quadrupeds stand on bent legs, on toes or on soles: for them, the standing height of the
+        hip counts.
+        """
+        if self.anatomy.kind == "quadruped":
+            lengths = [
+                float(self.rest_positions[leg.upper, 1] - self.rest_positions[leg.end, 1])
+                for leg in self.legs
+            ]
+        else:
+            lengths = [sum(self.bone_lengths(leg)) for leg in self.legs]
+        if not lengths or not min(lengths) > 0:
+            raise CharacterError(
+                "retargeting needs legs, but of thigh, shin and foot "
+                f"{', '.join(self.anatomy.missing) or 'some'} are missing; "
+                "say which joints they are in a [joints] table"
+            )
+        return float(np.mean(lengths))
+
+    def bone_lengths(self, leg: LegJoints) -> tuple[float, float]:
+        """Return the lengths of thigh and shin [m]."""
+        hip, knee, ankle = self.rest_positions[[leg.upper, leg.lower, leg.foot]]
+        return float(np.linalg.norm(knee - hip)), float(np.linalg.norm(ankle - knee))
+
+    @cached_property
+    def rests_on_feet(self) -> bool:
+        """Whether its feet are on the ground at rest, as those of models are."""
+        size = float(np.ptp(self.rest_positions, axis=0).max()) or 1.0
+        lowest = min(float(self.rest_positions[leg.end, 1]) for leg in self.legs) / size
+        return _STANDING_HEIGHT[0] < lowest < _STANDING_HEIGHT[1]
+
+    def flat_foot(self, leg: LegJoints) -> Array:
+        """Return the rotation (4,) from +z ahead and +y up to those of a flat foot at rest.
+
+        Models rest on flat feet. The soles of a recorded skeleton, whose legs are spread in its
+        zero pose, are perpendicular to the shin.
+        """
+        shin = self.rest_positions[leg.upper] - self.rest_positions[leg.foot]
+        up = np.array([0.0, 1.0, 0.0])
+        if self._leg_spread > _MAX_STANDING_SPREAD:
+            up = np.array([shin[0], shin[1], 0.0]) / float(np.hypot(shin[0], shin[1]))
+        ahead = np.array([0.0, 0.0, 1.0])
+        if leg.toes is not None:
+            ahead = self.rest_positions[leg.toes] - self.rest_positions[leg.foot]
+        ahead = ahead - up * float(ahead @ up)
+        ahead = ahead / max(float(np.linalg.norm(ahead)), 1e-9)
+        return rotations.from_matrix(np.stack([np.cross(up, ahead), up, ahead], axis=-1))
+
+    @cached_property
+    def _leg_spread(self) -> float:
+        """Greatest angle between a leg and the vertical, seen from the front [rad]."""
+        positions = self.rest_positions
+        bones = [positions[leg.upper] - positions[leg.foot] for leg in self.legs]
+        return max(abs(float(np.arctan2(bone[0], bone[1]))) for bone in bones)
+
+
+def leg_pairs(source: Rig, target: Rig) -> list[tuple[LegJoints, LegJoints]]:
+    """Return the legs that both rigs have."""
+    by_part = {source.anatomy.parts[leg.foot]: leg for leg in source.legs}
+    return [
+        (by_part[part], leg)
+        for leg in target.legs
+        if (part := target.anatomy.parts[leg.foot]) in by_part
+    ]
+
+
+def global_rotations(placements: Array) -> Array:
+    """Return the rotations (…, 4) of placements (…, 4, 4) without their scale."""
+    matrices = placements[..., :3, :3]
+    lengths = np.linalg.norm(matrices, axis=-2, keepdims=True)
+    return rotations.from_matrix(matrices / np.where(lengths > 0, lengths, 1.0))
+
+
+def _nearest_axis(direction: Array) -> Array:
+    """Return the one of ±x, ±y, ±z that is nearest to a direction."""
+    axis = np.zeros(3)
+    number = int(np.abs(direction).argmax())
+    axis[number] = np.sign(direction[number]) or 1.0
+    return axis
