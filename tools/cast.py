@@ -18,8 +18,8 @@ from app.ui.album import Album, Image, save, stacked
 from characters import Animator, Character, CharacterCommand, Pose, PosedCharacter, RootDelta
 from characters.face.lids import Lids
 from characters.rendering import SceneCharacter, Stage, View, create_context
-from characters.rendering.framing import Extent, Framing
-from characters.rendering.portrait import PAPER
+from characters.rendering.portrait import PAPER_BGR
+from characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures" / "cast"
 
@@ -58,12 +58,12 @@ def draw_group(context: moderngl.Context, size: tuple[int, int] = (1100, 520)) -
     for name, action, seconds, place in GROUP:
         character = Character.load(name)
         posed = _after(Animator(character, place=place), action, seconds)
-        reach = Extent(character).points(posed.pose)
+        reach = CharacterExtent(character).points(posed.pose)
         matrix = posed.table_from_character
         points.append(reach @ matrix[:3, :3].T + matrix[:3, 3])
         actors.append(SceneCharacter(character, posed))
-    framing = Framing.around(np.concatenate(points), 0.2, size, 0.05)
-    paper = np.full((size[1], size[0], 3), PAPER, np.uint8)
+    framing = PortraitCamera.around(np.concatenate(points), 0.2, size, 0.05)
+    paper = np.full((size[1], size[0], 3), PAPER_BGR, np.uint8)
     stage = Stage(context, size)
     try:
         view = View(paper, framing.matrix, np.zeros(0), framing.camera_from_table)

@@ -13,7 +13,7 @@ from app.errors import AppError
 from app.ui.canvas import Canvas, text_width
 from app.ui.palette import INK, QUIET
 from characters import Character, Clip, Pose
-from characters.rendering.portrait import PAPER, PortraitRenderer, side_by_side
+from characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_side
 
 Image = NDArray[np.uint8]
 
@@ -62,7 +62,7 @@ class Album:
         pictures = []
         for name, shown in zip(("at rest", *names), poses, strict=True):
             face = self._faces.portrait(
-                character, shown, around=0.3, above=0.05, focus="face", reach=poses
+                character, shown, azimuth=0.3, elevation=0.05, focus="face", extent=poses
             )
             pictures.append(_captioned(face, name))
         return _sheet(character.name, "its face", [side_by_side(pictures, FACES)])
@@ -71,8 +71,8 @@ class Album:
         """Return how a character looks in some moods: whole, and its face below, a column each."""
         columns, reach = [], list(poses.values())
         for name, pose in poses.items():
-            whole = self._large.portrait(character, pose, around=0.5, above=0.1, reach=reach)
-            face = self._faces.portrait(character, pose, around=0.3, above=0.05, focus="face")
+            whole = self._large.portrait(character, pose, azimuth=0.5, elevation=0.1, extent=reach)
+            face = self._faces.portrait(character, pose, azimuth=0.3, elevation=0.05, focus="face")
             columns.append(_captioned(stacked(whole, face), name))
         return _sheet(character.name, "its moods", [side_by_side(columns, len(columns))])
 
@@ -95,7 +95,7 @@ def standing(character: Character) -> Pose:
 
 def trimmed(picture: Image) -> Image:
     """Return a picture without the rows of paper above and below what is on it."""
-    there = (np.abs(picture.astype(int) - PAPER).max(axis=2) > 6).any(axis=1)
+    there = (np.abs(picture.astype(int) - PAPER_BGR).max(axis=2) > 6).any(axis=1)
     rows = np.flatnonzero(there)
     if not rows.size:
         return picture
@@ -132,7 +132,7 @@ def save(picture: Image, path: Path, most: int | None = None) -> None:
 
 def _blank(width: int, height: int) -> Canvas:
     canvas = Canvas(width, height, 1.0)
-    canvas.color[:] = PAPER
+    canvas.color[:] = PAPER_BGR
     return canvas
 
 
@@ -170,5 +170,5 @@ def _widened(row: Image, width: int) -> Image:
 
 def _bordered(picture: Image, top: int, foot: int, left: int, right: int) -> Image:
     """Return a picture with so many pixels of paper more on each side."""
-    wide = cv2.copyMakeBorder(picture, top, foot, left, right, cv2.BORDER_CONSTANT, value=PAPER)
+    wide = cv2.copyMakeBorder(picture, top, foot, left, right, cv2.BORDER_CONSTANT, value=PAPER_BGR)
     return np.asarray(wide, np.uint8)

@@ -1,4 +1,4 @@
-"""Where a picture can be drawn: an OpenGL context, with or without a window."""
+"""The OpenGL context to draw with, in a window or off screen."""
 
 import platform
 from ctypes.util import find_library
@@ -8,8 +8,8 @@ import moderngl
 
 from characters.errors import CharacterError
 
-REQUIRED = 330
-"""OpenGL 3.3 core: every driver of the last ten years has it, Mesa's software one included."""
+OPENGL_VERSION = 330
+"""OpenGL 3.3 core: every driver of the last ten years has it, including Mesa's software driver."""
 
 
 def create_context(window: bool = False) -> moderngl.Context:
@@ -18,27 +18,27 @@ def create_context(window: bool = False) -> moderngl.Context:
     Parameters
     ----------
     window
-        Whether to take over the context of a window that the caller has made current. Otherwise a
-        context of its own is made that needs no display.
+        Whether to use the context of a window that the caller has made current. Otherwise a new
+        context is created that needs no display.
 
     Raises
     ------
     CharacterError
-        There is none; the message names the missing library and how to get it.
+        There is none; the message names the missing library and how to install it.
     """
     try:
         if window:
-            return moderngl.create_context(require=REQUIRED)
-        # Linux has EGL, which needs no display; elsewhere the native way opens none.
+            return moderngl.create_context(require=OPENGL_VERSION)
+        # On Linux, EGL needs no display; on other systems the native backend needs none.
         settings: dict[str, Any] = {"backend": "egl"} if platform.system() == "Linux" else {}
-        return moderngl.create_context(REQUIRED, standalone=True, **settings)
+        return moderngl.create_context(OPENGL_VERSION, standalone=True, **settings)
     except Exception as error:
-        # glcontext raises bare exceptions of many types, all with one terse line.
+        # glcontext raises exceptions of many types, each with one terse line.
         raise CharacterError(_diagnosis(window, str(error))) from error
 
 
 def _diagnosis(window: bool, reason: str) -> str:
-    """Say what is missing, and the command that installs it."""
+    """Return what is missing, and the command that installs it."""
     if window:
         return (
             f"the window has no OpenGL 3.3 ({reason}): update the graphics driver, or play without "

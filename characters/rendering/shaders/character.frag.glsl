@@ -1,7 +1,7 @@
 #version 330 core
 
-// A key light with wrapped diffuse and a highlight, a hemisphere of sky and table, a rim.
-// All sums are of linear light; the last lines encode to sRGB, blue first.
+// A key light with wrapped diffuse and specular, hemispheric ambient light, a Fresnel rim.
+// All sums are of linear light; the last lines encode to sRGB, in BGR order.
 
 uniform vec3 to_light;      // in the table frame
 uniform vec3 key;           // linear RGB
@@ -40,22 +40,22 @@ in vec3 tint;
 
 out vec4 color;
 
-// Two roots are some times as fast as a power; fitted to sRGB over 0.004…1.1, there within 0.2 of 255.
+// Two roots are several times as fast as a power; fitted to sRGB over 0.004…1.1, error below 0.2 of 255.
 vec3 encoded(vec3 light) {
     vec3 a = sqrt(light), b = sqrt(a);
     return 0.82443678 * a + 0.30650353 * b - 0.05245525 * light - 0.07884886;
 }
 
 #ifdef BUMPS
-// Leans a normal as the normal map says. The tangents come from how place and texture coordinates change
-// from pixel to pixel, so the mesh needs none (C. Schüler, "Normal mapping without precomputed tangents",
-// ShaderX5, 2006); mirrored and stretched coordinates are right too. Green is up, which is along -v.
+// Perturbs a normal by the normal map. The tangents are the derivatives of position and texture
+// coordinates on screen, so the mesh needs none (C. Schüler, "Normal mapping without precomputed tangents",
+// ShaderX5, 2006); mirrored and stretched coordinates work too. Green is up, which is along -v.
 vec3 bumped(vec3 n) {
     vec3 lean = texture(bump_map, where).xyz * 2.0 - 1.0;
     vec3 across = dFdx(place), down = dFdy(place);
     vec2 u = dFdx(where), v = dFdy(where);
     float area = u.x * v.y - u.y * v.x;
-    if (abs(area) < 1e-13) return n;  // the texture is one point here
+    if (abs(area) < 1e-13) return n;  // the texture is a single point here
     float turned = sign(area);
     vec3 along_u = turned * (across * v.y - down * u.y);
     vec3 along_v = turned * (down * u.x - across * v.x);
@@ -76,7 +76,7 @@ void main() {
 #ifdef CUTOFF
     float alpha = opacity * covering;
 #ifdef TEXTURED
-    // Smaller mipmaps mix holes and hair, and hair would thin out with distance: its alpha grows with them.
+    // Smaller mipmaps mix holes and hair, which would thin hair out with distance: alpha grows with the level.
     vec2 a_column = dFdx(where) * vec2(textureSize(base_texture, 0));
     vec2 a_row = dFdy(where) * vec2(textureSize(base_texture, 0));
     float level = 0.5 * log2(max(max(dot(a_column, a_column), dot(a_row, a_row)), 1.0));
@@ -98,10 +98,10 @@ void main() {
     float nl = dot(n, to_light), nv = dot(n, toward);
     float vl = dot(toward, to_light);
 
-    // Skin, cloth and plastic let light round the corner: a wrap of a quarter.
+    // Skin, cloth and plastic scatter light around the terminator: a wrap of a quarter.
     float wrapped = max((nl + 0.25) / 1.25, 0.0);
     float up = 0.5 + 0.5 * n.y;
-    // Near the feet the character itself keeps light from the table, and the table from it.
+    // Near the feet, the character occludes the table, and the table the character.
     float near = clamp(above, 0.0, 1.0);
     near *= 2.0 - near;
     float open = mix(0.45 + 0.45 * up, 1.0, near);
@@ -124,7 +124,7 @@ void main() {
 #ifdef GLOW
     light += glow;
 #endif
-    // A shoulder instead of a cliff where the light is strong.
+    // Soft shoulder for strong light instead of clipping.
     light *= 1.06 / (1.0 + 0.12 * light);
     color = vec4(clamp(encoded(light), 0.0, 1.0).bgr, 1.0);
 }

@@ -9,8 +9,8 @@ in vec3 normal;
 in vec4 color;
 in vec2 uv;
 
-out vec3 toward;            // the eye; triangles are small, so it stays a unit vector
-out float above;            // the ground, as a share of what is near it
+out vec3 toward;            // to the eye; stays a unit vector, since triangles are small
+out float above;            // height above the ground, as a share of what counts as near it
 out vec3 facing;
 out vec3 tint;
 #ifdef MAPPED

@@ -1,9 +1,9 @@
 #version 330 core
 
-// A rectangle of the picture into a window, which counts its rows from below.
+// A rectangle of the picture, copied into a window, whose rows count from below.
 
-uniform vec4 place;     // left, top, width, height, as shares of the picture
-uniform vec2 filled;    // share of the texture that is in use
+uniform vec4 place;     // left, top, width, height, as shares of the picture's size
+uniform vec2 filled;    // share of the texture's size that is in use
 
 out vec2 at;
 

@@ -1,8 +1,8 @@
-// How much of a place on the table is not behind a real cube: outside of all outlines, whose sides tell how
-// far inside a place is [px]. It is soft over one pixel.
+// Share of a pixel on the table that no real cube hides: it is outside of all outlines. A side of an outline
+// gives the distance inside of it [px]; the transition is one pixel wide.
 const int MAX_CUBES = 8, MAX_SIDES = 10;
-uniform int cube_count;      // how many there are
-uniform int longest;    // how many sides they have at most
+uniform int cube_count;      // number of outlines
+uniform int longest;    // number of sides of the longest
 uniform vec3 outlines[MAX_CUBES * MAX_SIDES];
 
 float not_hidden() {

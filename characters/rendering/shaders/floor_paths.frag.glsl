@@ -1,9 +1,9 @@
 #version 330 core
 
 // A capsule about the x axis: half its length, its radius, and the radius of a hole (a disc and a ring
-// are capsules without length). Paint answers the light of the room as the table does.
+// are capsules without length). The paint is lit as the table is.
 
-uniform vec3 light;     // what a white sheet returns, linear RGB
+uniform vec3 light;     // light that a white sheet reflects, linear RGB
 
 in vec2 at;
 in vec3 capsule;

@@ -1,12 +1,12 @@
 #version 330 core
 
-// The figures, drawn twice as fine: between four of their texels, the filter returns the mean.
+// The supersampled characters: halfway between four texels, the linear filter returns their mean.
 
-uniform sampler2D figures;
-uniform vec2 corner;    // of the place where they belong
+uniform sampler2D characters;
+uniform vec2 corner;    // of their area in the region [px]
 
 out vec4 color;
 
 void main() {
-    color = texture(figures, 2.0 * (gl_FragCoord.xy - corner) / vec2(textureSize(figures, 0)));
+    color = texture(characters, 2.0 * (gl_FragCoord.xy - corner) / vec2(textureSize(characters, 0)));
 }

@@ -1,6 +1,6 @@
 #version 330 core
 
-// Multiplies the table by what a character leaves of its light.
+// Multiplies the table by the light that a character leaves.
 
 uniform sampler2D factors;
 

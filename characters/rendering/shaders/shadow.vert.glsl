@@ -2,7 +2,7 @@
 
 uniform mat4 clip_from_table;
 uniform vec4 area;      // origin x, z and side of the square that the map covers
-uniform vec4 extent;     // lowest x and z, highest x and z that there is a shadow
+uniform vec4 extent;     // lowest x and z, highest x and z of the shadow
 
 out vec2 at;
 

@@ -1,6 +1,6 @@
 #version 330 core
 
-// One direction of a Gaussian whose width differs between the four heights. The map's halves do not mix.
+// One direction of a Gaussian blur; its width differs between the four levels. The map's halves do not mix.
 
 const int BLUR_TAPS = 10;
 

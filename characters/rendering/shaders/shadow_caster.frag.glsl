@@ -1,8 +1,8 @@
 #version 330 core
 
-// Shares the surface out between four heights, which are blurred apart.
+// Distributes the surface over four levels of height, which are blurred separately.
 
-uniform vec4 levels;    // the four heights, as shares of the character's
+uniform vec4 levels;    // heights of the levels, as shares of the character's height
 
 in float height;
 

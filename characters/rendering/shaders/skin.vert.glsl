@@ -1,7 +1,7 @@
 #version 330 core
 
-// Linear blend skinning. The palette has a row a joint, each the first three rows of
-// table_from_bind; the normal goes through the cofactors, which are right under any scale.
+// Linear blend skinning. The palette has one row for each joint: the first three rows of
+// table_from_bind. Normals are transformed by the cofactors, which are right under any scale.
 
 uniform sampler2D palette;
 

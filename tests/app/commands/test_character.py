@@ -12,7 +12,7 @@ from characters import Character
 from characters.formats import load_motion
 from characters.model.stick_figure import stick_figure
 from characters.rendering import create_context
-from characters.rendering.portrait import PAPER
+from characters.rendering.portrait import PAPER_BGR
 from tools.cast import draw_cast
 
 BVH = """HIERARCHY
@@ -59,7 +59,7 @@ def album():
 
 def paper(picture):
     """Return which pixels nothing is drawn on."""
-    return np.abs(picture.astype(int) - PAPER).max(axis=2) <= 6
+    return np.abs(picture.astype(int) - PAPER_BGR).max(axis=2) <= 6
 
 
 def test_a_bundled_character_is_told_and_drawn(cubeling):
@@ -150,7 +150,7 @@ def test_each_morph_has_a_face(album):
 
 
 def test_paper_above_and_below_is_trimmed():
-    picture = np.full((100, 20, 3), PAPER, np.uint8)
+    picture = np.full((100, 20, 3), PAPER_BGR, np.uint8)
     assert trimmed(picture).shape == picture.shape
     picture[40:50] = 0
     assert trimmed(picture).shape == (30, 20, 3)
