@@ -8,18 +8,9 @@ from here.
 """
 
 from affect.dynamics import Feelings
-from affect.emotion import Emotion
+from affect.emotion import NEUTRAL, Emotion
 from affect.errors import AffectError
 from affect.labels import LABEL_SETS
-from affect.mood_line import Mood, MoodLine
 from affect.personality import Personality
 
-__all__ = [
-    "LABEL_SETS",
-    "AffectError",
-    "Emotion",
-    "Feelings",
-    "Mood",
-    "MoodLine",
-    "Personality",
-]
+__all__ = ["LABEL_SETS", "NEUTRAL", "AffectError", "Emotion", "Feelings", "Personality"]

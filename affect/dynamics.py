@@ -1,136 +1,144 @@
-"""What a character feels: moved by what it does and what happens to it, and drawn home."""
+"""How an emotion changes: actions and events move it, and it decays to the temperament."""
 
 import math
 
 from affect.emotion import Emotion
-from affect.mood_line import Mood, time_counted
-from affect.personality import Personality, in_range
+from affect.errors import AffectError
+from affect.personality import Personality, check_range
 
 TOP_SPEED = 5.0
 """AvatAR's Speed at which a character moves as fast as it can."""
 
+MAX_TIME_STEP_S = 0.5
+"""Longest time that one update accounts for [s]: a camera that hung saw no kisses."""
+
 
 class Feelings:
-    """One character's feelings; everything that shows them shows this one object's.
+    """The emotional state of one character; everything that shows an emotion takes it from here.
 
     Between two updates valence and arousal obey x′ = g·(1 + w)/2 + (home − x)·ln 2/half-life, each
-    with its own numbers, and stop at ±1. The solution is exact, so nothing depends on how often
-    `update` is called, but for when a label is looked at.
+    with its own numbers, and stop at ±1. The solution is exact: the result does not depend on how
+    often `update` is called, except for the times at which a label may change.
 
     Parameters
     ----------
     personality
-        Who feels. "thesis" gives the law of `MoodLine`, bit for bit.
+        A personality, or the name of a bundled one or a .toml file.
     """
 
     def __init__(self, personality: Personality | str = "thesis") -> None:
         if isinstance(personality, str):
             personality = Personality.load(personality)
         self.personality = personality
-        """Who feels."""
+        """What sets how the emotion changes."""
         home = personality.temperament
         self._valence, self._arousal = home.valence, home.arousal
-        self._labels = personality.label_set
-        self._wanted = self._shown = self._labels.start
-        self._since = -math.inf
-        self._speed = 0.0
+        self._label_set = personality.label_set
+        self._next_word = self._word = self._label_set.start
+        self._word_since = -math.inf
+        self._movement = 0.0
         self._timestamp: float | None = None
 
-    def update(self, action: str, weight: float, timestamp: float, speed: float = 0.0) -> Mood:
-        """Account for what was done since the last update.
+    def update(self, action: str, weight: float, timestamp: float, speed: float = 0.0) -> Emotion:
+        """Account for what the character did since the last update.
 
         Parameters
         ----------
         action
-            What the character did. One that the personality has no gain for moves nothing.
+            What the character did. An action without a gain in the personality has no effect.
         weight
             Intensity of the action, −1…1: the rate is gain · (1 + weight) / 2.
         timestamp
-            Now [s]. The first update only starts the clock; one more than `GAP_MAX` after the last
-            counts as `GAP_MAX`.
+            Now [s]. The first update only starts the clock; at most `MAX_TIME_STEP_S` counts.
         speed
             AvatAR's Speed, 0…5; more counts as 5.
 
         Raises
         ------
         AffectError
-            If the weight or the speed is out of range, or time runs backwards; nothing has changed.
+            If the weight or the speed is out of range, or time runs backwards. The state is then
+            unchanged.
         """
-        in_range(f"the weight of {action!r}", weight, -1.0, 1.0)
-        in_range("the speed", speed, 0.0, math.inf)
+        check_range(f"the weight of {action!r}", weight, -1.0, 1.0)
+        check_range("the speed", speed, 0.0, math.inf)
         elapsed = self._elapsed(timestamp)
-        who, push = self.personality, self.personality.gain(action)
-        self._speed = min(speed / TOP_SPEED, 1.0) * who.movement
-        home = who.temperament
+        personality, gain = self.personality, self.personality.gain(action)
+        self._movement = min(speed / TOP_SPEED, 1.0) * personality.movement
+        home = personality.temperament
         strength = 1.0 + weight
-        rate = push.valence * strength / 2.0
-        self._valence = _moved(self._valence, home.valence, rate, who.valence_half_life, elapsed)
-        if who.arousal == "own":
-            rate, level = push.arousal * strength / 2.0, home.arousal + self._speed
-            self._arousal = _moved(self._arousal, level, rate, who.arousal_half_life, elapsed)
-        self._name_it(timestamp)
-        return Mood(self._valence, self._shown, self.emotion, timestamp)
+        rate = gain.valence * strength / 2.0
+        self._valence = _decayed(
+            self._valence, home.valence, rate, personality.valence_half_life, elapsed
+        )
+        if personality.arousal == "own":
+            rate, level = gain.arousal * strength / 2.0, home.arousal + self._movement
+            self._arousal = _decayed(
+                self._arousal, level, rate, personality.arousal_half_life, elapsed
+            )
+        self._choose_word(timestamp)
+        return self.emotion
 
-    def strike(self, event: str, strength: float = 1.0) -> bool:
-        """Let something happen at once: it is shaken, say, or petted.
+    def apply_event(self, event: str, strength: float = 1.0) -> bool:
+        """Apply an event, which takes effect at once: the cube is shaken, say.
 
         Parameters
         ----------
         event
-            What happens. One that the personality does not know moves nothing.
+            Its name. One that the personality does not know has no effect.
         strength
-            How strongly, 0…1.
+            How strong it is, 0…1.
 
         Returns
         -------
         bool
-            Whether the personality knows the event. The next update shows what it did.
+            Whether the personality knows the event. The next update shows the effect.
         """
-        in_range(f"the strength of {event!r}", strength, 0.0, 1.0)
-        push = self.personality.event(event).times(strength)
-        self._valence = _kept(self._valence + push.valence)
-        self._arousal = _kept(self._arousal + push.arousal)
+        check_range(f"the strength of {event!r}", strength, 0.0, 1.0)
+        impulse = self.personality.event(event).times(strength)
+        self._valence = _clamped(self._valence + impulse.valence)
+        self._arousal = _clamped(self._arousal + impulse.arousal)
         return event in self.personality.events
 
     @property
     def emotion(self) -> Emotion:
-        """Where in the plane the feeling is now."""
+        """The emotion now; its word has hysteresis and dwell."""
+        arousal = self._arousal
         if self.personality.arousal == "magnitude":
-            return Emotion(self._valence, _kept(max(abs(self._valence), self._speed)))
-        return Emotion(self._valence, self._arousal)
+            arousal = _clamped(max(abs(self._valence), self._movement))
+        return Emotion(self._valence, arousal, self._word)
 
-    @property
-    def label(self) -> str:
-        """The word for it, with hysteresis and dwell."""
-        return self._shown
-
-    def _name_it(self, now: float) -> None:
-        """Choose the label wanted, and show it as soon as the one before has had its time."""
-        labels, who = self._labels, self.personality
-        self._wanted = labels.next(self._wanted, self.emotion, who.hysteresis)
-        if self._wanted == self._shown or now - self._since < who.dwell:
+    def _choose_word(self, now: float) -> None:
+        """Choose the next word, and take it once the present one has lasted its dwell time."""
+        labels, personality = self._label_set, self.personality
+        self._next_word = labels.next(self._next_word, self.emotion, personality.hysteresis)
+        if self._next_word == self._word or now - self._word_since < personality.dwell:
             return
-        passes = labels.hub not in (None, self._wanted, self._shown)
-        self._shown = str(labels.hub) if passes else self._wanted
-        self._since = now
+        through_hub = labels.hub not in (None, self._next_word, self._word)
+        self._word = str(labels.hub) if through_hub else self._next_word
+        self._word_since = now
 
-    def _elapsed(self, timestamp: float) -> float:
-        elapsed = time_counted(self._timestamp, timestamp, "feelings", "Feelings")
-        self._timestamp = timestamp
-        return elapsed
+    def _elapsed(self, now: float) -> float:
+        last = now if self._timestamp is None else self._timestamp
+        if not last <= now < math.inf:  # also refuses NaN
+            raise AffectError(
+                f"feelings at {last} s cannot go back to {now} s: "
+                "give each recording its own Feelings"
+            )
+        self._timestamp = now
+        return min(now - last, MAX_TIME_STEP_S)
 
 
-def _moved(value: float, home: float, rate: float, half_life: float, elapsed: float) -> float:
-    """Return the value after `elapsed` [s]: the exact solution, kept in the plane.
+def _decayed(value: float, home: float, rate: float, half_life: float, elapsed: float) -> float:
+    """Return the value after `elapsed` [s]: the exact solution, clamped to −1…1.
 
-    It is monotone, so where it meets ±1 it stays, and keeping its end there is exact too.
+    The solution is monotone, so clamping its end is exact too.
     """
     if half_life == math.inf:
-        return _kept(value + rate * elapsed)
+        return _clamped(value + rate * elapsed)
     decay = math.log(2.0) / half_life
     share = -math.expm1(-decay * elapsed)
-    return _kept(value + (home - value) * share + rate * share / decay)
+    return _clamped(value + (home - value) * share + rate * share / decay)
 
 
-def _kept(value: float) -> float:
+def _clamped(value: float) -> float:
     return min(max(value, -1.0), 1.0)

@@ -1,16 +1,20 @@
-"""What a robot feels, as numbers and as words."""
+"""An emotion: a point in the plane of valence and arousal, and the word for it."""
 
 from dataclasses import dataclass
+
+from affect.hysteresis import ANGRY_BELOW, HAPPY_ABOVE
 
 
 @dataclass(frozen=True)
 class Emotion:
-    """A point in the plane of valence and arousal (Russell 1980).
+    """A point in the plane of valence and arousal (Russell 1980), and the word for it.
+
+    It is one value from the scenario to the character's face, the virtual robot and the wire.
 
     >>> Emotion(0.8, 0.2).label
     'happy'
-    >>> Emotion(-0.8, 0.2).label
-    'angry'
+    >>> Emotion(0.8, 0.8, "excited").label
+    'excited'
     """
 
     valence: float
@@ -19,6 +23,9 @@ class Emotion:
     arousal: float
     """From calm, −1, to excited, 1."""
 
+    word: str | None = None
+    """The word chosen for it, with hysteresis, from a label set; None where nobody has chosen."""
+
     def __post_init__(self) -> None:
         for name, value in (("valence", self.valence), ("arousal", self.arousal)):
             if not -1.0 <= value <= 1.0:  # also refuses NaN
@@ -26,18 +33,13 @@ class Emotion:
 
     @property
     def label(self) -> str:
-        """The word for it, without memory: "neutral", "happy" or "angry".
-
-        `MoodLine` gives the same words with hysteresis.
-        """
+        """The word for it; without a chosen one "neutral", "happy" or "angry" by the valence."""
+        if self.word is not None:
+            return self.word
         if self.valence > HAPPY_ABOVE:
             return "happy"
         return "angry" if self.valence < ANGRY_BELOW else "neutral"
 
 
-HAPPY_ABOVE = 0.33
-"""Valence above which the mood is called happy (Fernández-Baena 2015, section 5.3, names the moods;
-the value is the specification's)."""
-
-ANGRY_BELOW = -0.33
-"""Valence below which the mood is called angry."""
+NEUTRAL = Emotion(0.0, 0.0, "neutral")
+"""The origin of the plane."""

@@ -1,7 +1,7 @@
-"""Sets of words for feelings, and where each word lies in the plane of valence and arousal.
+"""Label sets: words for emotions, and where each lies in the plane of valence and arousal.
 
-One table holds every word: `TABLE`. A label set is the rows that name it, in their order; what
-robots call their moods (`affect.words`) is found in the same rows.
+`TABLE` holds every word. A label set is the rows that name it, in their order; the words that
+robots have for their moods (`affect.words`) are in the same table.
 """
 
 import math
@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 
 from affect.emotion import Emotion
 from affect.errors import AffectError
-from affect.mood_line import Label, next_label
+from affect.hysteresis import Label, next_label
 
 Face = Literal["neutral", "happy", "sad", "angry", "surprised", "afraid", "disgusted"]
 Simple = Literal["neutral", "happy", "angry"]
@@ -28,13 +28,13 @@ SIMPLE_FACES: Mapping[Face, Simple] = MappingProxyType(
         "disgusted": "angry",
     }
 )
-"""What a robot with the three moods of the thesis shows for each face. For anger, fear and disgust
-angry: something is disliked, and it stirs. For sadness and surprise neutral: the angry loop would
-be a lie, and the happy one a worse."""
+"""What a robot with the three moods of the thesis shows for each face. Anger, fear and disgust are
+shown as angry: unpleasant and aroused. Sadness and surprise are shown as neutral: neither the angry
+nor the happy motion fits them."""
 
 
 class Word(NamedTuple):
-    """A word for a feeling: one row of the table."""
+    """A word for an emotion: one row of the table."""
 
     word: str
     """The word."""
@@ -46,7 +46,7 @@ class Word(NamedTuple):
     """From calm, −1, to excited, 1."""
 
     face: Face
-    """Which of Ekman's faces shows it (specification S18, table 5.2; for other words, ours)."""
+    """Which of Ekman's faces shows it (specification S18, table 5.2; other words are ours)."""
 
     set: str
     """The label set that it belongs to; "words" for what robots call their moods."""
@@ -56,12 +56,12 @@ _RIM = 0.8
 _SLANT = round(_RIM * math.sqrt(0.5), 3)
 
 TABLE: tuple[Word, ...] = (
-    # The thesis' three (Fernández-Baena 2015, section 5.3). Their places are what a robot is told;
-    # which of them is shown depends on the valence alone (`next_label`).
+    # The three of the thesis (Fernández-Baena 2015, section 5.3). Robots receive these places;
+    # which of the three is shown depends on the valence alone (`next_label`).
     Word("neutral", 0.0, 0.0, "neutral", "thesis"),
     Word("happy", 0.7, 0.6, "happy", "thesis"),
     Word("angry", -0.7, 0.6, "angry", "thesis"),
-    # Words that robots have for their moods; afraid and disgusted as below, the others are ours.
+    # Words that robots have for their moods; afraid and disgusted as in OCC, the others are ours.
     Word("sad", -0.6, -0.4, "sad", "words"),
     Word("surprised", 0.1, 0.8, "surprised", "words"),
     Word("afraid", -0.64, 0.6, "afraid", "words"),
@@ -82,9 +82,8 @@ TABLE: tuple[Word, ...] = (
     Word("depressed", -_SLANT, -_SLANT, "sad", "circumplex"),
     Word("sleepy", 0.0, -_RIM, "neutral", "circumplex"),
     Word("relaxed", _SLANT, -_SLANT, "neutral", "circumplex"),
-    # Ekman's six basic emotions (1992). The plane does not tell fear from anger (ALMA's places for
-    # them are 0.13 apart; they differ in dominance), so ours are pulled apart: of two that dislike
-    # something, the more stirred is afraid.
+    # Ekman's six basic emotions (1992). The plane hardly separates fear from anger (ALMA's places
+    # are 0.13 apart; they differ in dominance), so ours are further apart: fear has more arousal.
     Word("neutral", 0.0, 0.0, "neutral", "ekman"),
     Word("happy", 0.7, 0.4, "happy", "ekman"),
     Word("sad", -0.6, -0.5, "sad", "ekman"),
@@ -94,7 +93,7 @@ TABLE: tuple[Word, ...] = (
     Word("disgusted", -0.75, -0.05, "disgusted", "ekman"),
     # The 22 emotions of Ortony, Clore and Collins (1988), and surprise and disgust; places:
     # pleasure and arousal of ALMA (Gebhard 2005), surprise and disgust by specification S18. Where
-    # several share a place the first stands for all: a place does not say what it is about.
+    # several share a place, the first stands for all.
     Word("neutral", 0.0, 0.0, "neutral", "occ"),
     Word("joy", 0.4, 0.2, "happy", "occ"),
     Word("happy-for", 0.4, 0.2, "happy", "occ"),
@@ -126,29 +125,28 @@ TABLE: tuple[Word, ...] = (
 
 @dataclass(frozen=True)
 class LabelSet:
-    """Words to describe a feeling by, and how one gives way to another."""
+    """The words that describe an emotion, and how one follows another."""
 
     name: str
-    """How a personality names it."""
+    """Its name, as personalities refer to it."""
 
     places: Mapping[str, tuple[float, float]]
     """(valence, arousal) of every label."""
 
     hub: str | None = None
-    """The label that lies on the way between any two others; None if there is none."""
+    """The label between any two others; None if there is none."""
 
     by_valence: bool = False
     """Whether valence alone decides, by the thresholds of the thesis."""
 
     start: str = field(default="neutral")
-    """The label before anything is felt."""
+    """The initial label."""
 
     def next(self, label: str, emotion: Emotion, hysteresis: float) -> str:
-        """Return the label of a feeling that had `label` before.
+        """Return the label that follows `label` at an emotion.
 
-        The nearest place wins, but only once the feeling is `hysteresis` past the border, so
-        that noise of a smaller amplitude around any point never brings a label back that it left.
-        (By valence: `next_label`.)
+        It is the one with the nearest place, once the emotion is `hysteresis` past the border:
+        noise of a smaller amplitude never switches back and forth. (By valence: `next_label`.)
 
         >>> LABEL_SETS["circumplex"].next("neutral", Emotion(0.5, 0.5), 0.05)
         'excited'
@@ -163,17 +161,17 @@ class LabelSet:
         return nearest if lead > 2.0 * hysteresis else label
 
 
-def _the(name: str, hub: str | None = None, by_valence: bool = False) -> LabelSet:
+def _label_set(name: str, hub: str | None = None, by_valence: bool = False) -> LabelSet:
     places = {row.word: (row.valence, row.arousal) for row in TABLE if row.set == name}
     return LabelSet(name, MappingProxyType(places), hub, by_valence)
 
 
 LABEL_SETS: Mapping[str, LabelSet] = MappingProxyType(
     {
-        "thesis": _the("thesis", hub="neutral", by_valence=True),
-        "circumplex": _the("circumplex"),
-        "ekman": _the("ekman", hub="neutral"),
-        "occ": _the("occ"),
+        "thesis": _label_set("thesis", hub="neutral", by_valence=True),
+        "circumplex": _label_set("circumplex"),
+        "ekman": _label_set("ekman", hub="neutral"),
+        "occ": _label_set("occ"),
     }
 )
 """Every label set by its name."""

@@ -1,4 +1,4 @@
-"""Who feels: the numbers that make one character lively and another shy."""
+"""Personality: the numbers that make one character lively and another shy."""
 
 import math
 from collections.abc import Mapping
@@ -11,69 +11,68 @@ from affect.emotion import Emotion
 from affect.errors import AffectError
 from affect.labels import LabelSet, label_set
 from affect.personality_file import bundled_text, parse_fields, read_fields
-from affect.traits import Ocean, Push
+from affect.traits import AffectImpulse, Ocean
 
 ArousalLaw = Literal["own", "magnitude"]
 
-GAIN_MAX = 10.0
-"""Fastest that an action may move a feeling [1/s]: across the whole plane in 0.2 s."""
+MAX_GAIN_PER_S = 10.0
+"""Largest gain of an action [1/s]: it crosses the whole plane in 0.2 s."""
 
-NEUTRAL = Emotion(0.0, 0.0)
-"""The origin of the plane."""
+MAX_DWELL_S = 60.0
+"""Longest dwell time of a label [s]."""
 
-DWELL_MAX = 60.0
-"""Longest time that a label may be held [s]."""
+_ORIGIN = Emotion(0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Personality:
-    """Everything that sets how one character feels; `affect.Feelings` lives by it.
+    """Everything that sets how the emotion of one character changes; see `affect.Feelings`.
 
     Raises
     ------
     AffectError
-        Where a number is out of its range: one line that names it.
+        If a number is out of its range: one line that names it.
     """
 
     name: str
-    """What it is called."""
+    """Its name."""
 
     description: str = ""
-    """What it is like, in a sentence."""
+    """A sentence about it."""
 
-    temperament: Emotion = NEUTRAL
-    """Where it is at home, and comes back to when nothing happens."""
+    temperament: Emotion = _ORIGIN
+    """The emotion that it decays to when nothing happens."""
 
     valence_half_life: float = 15.0
-    """Time in which half the way home is made [s]; infinite: what was done stays."""
+    """Time in which half of the distance to the temperament is covered [s]; infinite: no decay."""
 
     arousal_half_life: float = 6.0
-    """The same for the arousal [s]."""
+    """The same for arousal [s]."""
 
-    gains: Mapping[str, Push] = field(default_factory=dict)
-    """What an action of full intensity does, by its name [1/s]. Others leave the feeling alone."""
+    gains: Mapping[str, AffectImpulse] = field(default_factory=dict)
+    """Rate at which an action of full intensity moves the emotion, by its name [1/s]."""
 
-    events: Mapping[str, Push] = field(default_factory=dict)
-    """What happens once, by its name, and how far it moves the feeling at once."""
+    events: Mapping[str, AffectImpulse] = field(default_factory=dict)
+    """How far an event moves the emotion at once, by its name."""
 
     movement: float = 0.0
-    """How far moving at top speed shifts the home of the arousal."""
+    """How far top speed raises the arousal that it decays to."""
 
     arousal: ArousalLaw = "own"
-    """"own": arousal has its own state. "magnitude": it is the magnitude of the valence, or what
-    movement makes of it where that is more; the law of the thesis."""
+    """"own": arousal has a state of its own. "magnitude": it is the magnitude of the valence, or
+    that of the movement where that is larger; the law of the thesis."""
 
     labels: str = "thesis"
-    """Name of the label set that it is described by."""
+    """Name of its label set."""
 
     hysteresis: float = 0.05
-    """How far past a border a feeling must be for the next label (thesis: to come back)."""
+    """How far past a border an emotion must be for the next label (thesis: to return)."""
 
     dwell: float = 0.0
-    """Shortest time that a label lasts [s]."""
+    """Shortest time for which a label lasts [s]."""
 
     ocean: Ocean | None = None
-    """Traits; with them every gain and event is taken times their response (specification S17)."""
+    """Traits; they scale every gain and event by their response (specification S17)."""
 
     def __post_init__(self) -> None:
         for name in ("gains", "events"):
@@ -82,7 +81,7 @@ class Personality:
         if self.arousal not in ("own", "magnitude"):
             raise AffectError(f"arousal must be 'own' or 'magnitude', not {self.arousal!r}")
         for key, push in self.gains.items():
-            _within(f"gains.{key}", push, GAIN_MAX)
+            _within(f"gains.{key}", push, MAX_GAIN_PER_S)
         for key, push in self.events.items():
             _within(f"events.{key}", push, 2.0)
         for key, value, low, high in (
@@ -90,27 +89,27 @@ class Personality:
             ("half_life_s.arousal", self.arousal_half_life, 0.05, math.inf),
             ("movement.arousal", self.movement, -2.0, 2.0),
             ("hysteresis", self.hysteresis, 0.0, 0.25),
-            ("dwell_s", self.dwell, 0.0, DWELL_MAX),
+            ("dwell_s", self.dwell, 0.0, MAX_DWELL_S),
         ):
-            in_range(key, value, low, high)
+            check_range(key, value, low, high)
         if self.ocean is not None:
             for trait, value in vars(self.ocean).items():
-                in_range(f"ocean.{trait}", value, 0.0, 1.0)
+                check_range(f"ocean.{trait}", value, 0.0, 1.0)
 
     @property
     def label_set(self) -> LabelSet:
-        """The words that it is described by."""
+        """Its label set."""
         return label_set(self.labels)
 
-    def gain(self, action: str) -> Push:
-        """Return what an action of full intensity does [1/s]; nothing where it is not known."""
-        return self._taken(self.gains.get(action, Push()))
+    def gain(self, action: str) -> AffectImpulse:
+        """Return the rate of an action of full intensity [1/s]; zero for an unknown action."""
+        return self._scaled(self.gains.get(action, AffectImpulse()))
 
-    def event(self, name: str) -> Push:
-        """Return how far an event moves the feeling; nowhere where it is not known."""
-        return self._taken(self.events.get(name, Push()))
+    def event(self, name: str) -> AffectImpulse:
+        """Return how far an event moves the emotion; zero for an unknown event."""
+        return self._scaled(self.events.get(name, AffectImpulse()))
 
-    def _taken(self, push: Push) -> Push:
+    def _scaled(self, push: AffectImpulse) -> AffectImpulse:
         if self.ocean is None:
             return push
         good, bad = self.ocean.responses
@@ -142,12 +141,12 @@ class Personality:
             raise AffectError(f"{source}: {error}") from None
 
 
-def in_range(key: str, value: float, low: float, high: float) -> None:
+def check_range(key: str, value: float, low: float, high: float) -> None:
     """Refuse a number outside its range, or NaN, in one line that names its key."""
     if not low <= value <= high:
         raise AffectError(f"{key} must be from {low:g} to {high:g}, not {value:g}")
 
 
-def _within(key: str, push: Push, most: float) -> None:
-    in_range(f"{key}.valence", push.valence, -most, most)
-    in_range(f"{key}.arousal", push.arousal, -most, most)
+def _within(key: str, push: AffectImpulse, most: float) -> None:
+    check_range(f"{key}.valence", push.valence, -most, most)
+    check_range(f"{key}.arousal", push.arousal, -most, most)

@@ -7,7 +7,7 @@ from typing import Any
 from affect.emotion import Emotion
 from affect.errors import AffectError
 from affect.settings import Table, parsed, read
-from affect.traits import Ocean, Push
+from affect.traits import AffectImpulse, Ocean
 
 FOLDER = Path(__file__).parent / "personalities"
 """Where the bundled ones lie."""
@@ -56,14 +56,15 @@ def _fields(document: Mapping[str, Any], source: str) -> dict[str, Any]:
         found["temperament"] = found["ocean"].temperament
     if "temperament" in said:
         home = said.table("temperament", *_PLANE)
-        found["temperament"] = Emotion(*(home.number(axis, -1.0, 1.0, 0.0) for axis in _PLANE))
+        valence, arousal = (home.number(axis, -1.0, 1.0, 0.0) for axis in _PLANE)
+        found["temperament"] = Emotion(valence, arousal)
     half_lives = said.table("half_life_s", *_PLANE)
     found |= {f"{axis}_half_life": half_lives.number(axis) for axis in half_lives.names()}
     for key in ("gains", "events"):
-        found[key] = {name: _push(push) for name, push in said.tables(key, *_PLANE).items()}
+        found[key] = {name: _impulse(push) for name, push in said.tables(key, *_PLANE).items()}
     found["movement"] = said.table("movement", "arousal").number("arousal", default=0.0)
     return found
 
 
-def _push(said: Table) -> Push:
-    return Push(**{axis: said.number(axis) for axis in said.names()})
+def _impulse(said: Table) -> AffectImpulse:
+    return AffectImpulse(**{axis: said.number(axis) for axis in said.names()})

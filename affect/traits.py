@@ -6,8 +6,8 @@ from affect.emotion import Emotion
 
 
 @dataclass(frozen=True)
-class Push:
-    """A way in the plane: of an action [1/s], or of an event, at once."""
+class AffectImpulse:
+    """A displacement in the plane: the rate of an action [1/s], or the effect of an event."""
 
     valence: float = 0.0
     """Towards pleasant; negative towards unpleasant."""
@@ -15,9 +15,9 @@ class Push:
     arousal: float = 0.0
     """Towards excited; negative towards calm."""
 
-    def times(self, factor: float) -> "Push":
-        """Return a push so many times as strong."""
-        return Push(self.valence * factor, self.arousal * factor)
+    def times(self, factor: float) -> "AffectImpulse":
+        """Return the impulse scaled by a factor."""
+        return AffectImpulse(self.valence * factor, self.arousal * factor)
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Ocean:
 
     @property
     def responses(self) -> tuple[float, float]:
-        """How strongly it takes what pleases and what displeases, (u₊, u₋), each 0…1.
+        """Strength of the response to pleasant and to unpleasant impulses, (u₊, u₋), each 0…1.
 
         u = P₀ p (Egges, as in specification S17, which gives the rows of P₀).
 
@@ -61,9 +61,9 @@ class Ocean:
 
     @property
     def temperament(self) -> Emotion:
-        """Where it is at home: pleasure and arousal by Mehrabian (1996), a third of the way out.
+        """The emotion at rest: pleasure and arousal by Mehrabian (1996), scaled by a third.
 
-        A third, so that the ordinary word at rest is still "neutral" (ours).
+        The factor is ours: the label at rest stays "neutral".
         """
         o, e, a = (
             2.0 * trait - 1.0 for trait in (self.openness, self.extraversion, self.agreeableness)

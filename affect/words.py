@@ -1,4 +1,4 @@
-"""Words for emotions, and where each lies in the plane of valence and arousal."""
+"""Words for emotions: where each lies in the plane, and which of several is closest."""
 
 import math
 from collections.abc import Sequence
@@ -10,50 +10,51 @@ from affect.labels import SIMPLE_FACES, TABLE, Simple
 PLACES = MappingProxyType(
     {row.word: (row.valence, row.arousal) for row in reversed(TABLE)}  # the first row counts
 )
-"""(valence, arousal) of every word that is known here; `affect.labels` says whence."""
+"""(valence, arousal) of every known word; `affect.labels` gives the sources."""
 
 FACES = MappingProxyType({row.word: row.face for row in reversed(TABLE)})
 """Which of Ekman's faces shows each word."""
 
 SIMPLE = MappingProxyType({word: SIMPLE_FACES[face] for word, face in FACES.items()})
-"""What a robot shows for each word that knows neutral, happy and angry only."""
+"""What a robot that knows only neutral, happy and angry shows for each word."""
 
 
-def closest_word(words: Sequence[str], emotion: Emotion, label: str | None = None) -> str | None:
-    """Return which of a robot's words comes closest to a feeling.
+def closest_word(words: Sequence[str], emotion: Emotion) -> str | None:
+    """Return which of the words that a robot or character has comes closest to an emotion.
 
-    The label itself where the robot has it. Else one with the same face as the label; else one that
-    a robot with three moods would show alike (`SIMPLE`); else any; of several, the one whose place
-    is nearest to the label's. Without a label that is known, the nearest to the emotion. None if
-    the robot has no word that is known.
+    The emotion's own word, if it is among them. Else one with the same face; else one that a robot
+    with three moods shows alike (`SIMPLE`); else any; of several, the one nearest to the place of
+    the emotion's word. For an emotion without a known word, the word nearest to its place. None if
+    none of the words is known.
 
-    >>> closest_word(("neutral", "happy", "angry"), Emotion(-0.5, -0.3), "sad")
+    >>> closest_word(("neutral", "happy", "angry"), Emotion(-0.5, -0.3, "sad"))
     'neutral'
     >>> closest_word(("neutral", "happy", "angry"), Emotion(-0.9, 0.9))
     'angry'
     """
-    if label in words:
-        return label
+    own = emotion.word
+    if own in words:
+        return own
     known = [word for word in words if word in PLACES]
-    if label is None or label not in PLACES:
+    if own is None or own not in PLACES:
         place = (emotion.valence, emotion.arousal)
         return min(known, key=lambda word: math.dist(PLACES[word], place), default=None)
 
-    def strangeness(word: str) -> tuple[bool, bool, float]:
-        other_face, otherwise = FACES[word] != FACES[label], SIMPLE[word] != SIMPLE[label]
-        return other_face, otherwise, math.dist(PLACES[word], PLACES[label])
+    def difference(word: str) -> tuple[bool, bool, float]:
+        other_face, other_mood = FACES[word] != FACES[own], SIMPLE[word] != SIMPLE[own]
+        return other_face, other_mood, math.dist(PLACES[word], PLACES[own])
 
-    return min(known, key=strangeness, default=None)
+    return min(known, key=difference, default=None)
 
 
-def simple_mood(emotion: Emotion, label: str | None = None) -> Simple:
-    """Return which of neutral, happy and angry a feeling is shown as.
+def simple_mood(emotion: Emotion) -> Simple:
+    """Return which of neutral, happy and angry an emotion is shown as.
 
-    >>> simple_mood(Emotion(0.6, 0.7), "excited")
+    >>> simple_mood(Emotion(0.6, 0.7, "excited"))
     'happy'
     """
-    if label is not None and label in SIMPLE:
-        return SIMPLE[label]
+    if emotion.word is not None and emotion.word in SIMPLE:
+        return SIMPLE[emotion.word]
     word = closest_word(("neutral", "happy", "angry"), emotion)
     assert word is not None
     return SIMPLE[word]

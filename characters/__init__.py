@@ -5,7 +5,12 @@ and no robot. Start with `Character.load` and `Animator`.
 """
 
 from characters.control.animator import Animator
-from characters.control.command import CharacterCommand, PosedCharacter
+from characters.control.command import (
+    ActionIntent,
+    CharacterCommand,
+    LocomotionIntent,
+    PosedCharacter,
+)
 from characters.errors import CharacterError, CharacterWarning
 from characters.formats import load_motion  # importing formats registers the file readers
 from characters.locomotion.paths import ClosedPath
@@ -27,6 +32,7 @@ from characters.skeleton.pose import Pose, Skeleton
 
 __all__ = [
     "Action",
+    "ActionIntent",
     "AdditiveLayer",
     "Adsr",
     "Animator",
@@ -44,6 +50,7 @@ __all__ = [
     "FadeCurve",
     "Keyed",
     "LiveSchedule",
+    "LocomotionIntent",
     "Loop",
     "Mask",
     "MaskedLayer",

@@ -15,7 +15,15 @@ from rich.console import Console
 from affect import Emotion
 from affect.words import PLACES, closest_word
 from app.ui.album import Album, Image, save, stacked
-from characters import Animator, Character, CharacterCommand, Pose, PosedCharacter, RootDelta
+from characters import (
+    ActionIntent,
+    Animator,
+    Character,
+    CharacterCommand,
+    Pose,
+    PosedCharacter,
+    RootDelta,
+)
 from characters.face.lids import Lids
 from characters.rendering import SceneCharacter, Stage, View, create_context
 from characters.rendering.portrait import PAPER_BGR
@@ -87,13 +95,14 @@ def draw_moods(album: Album, cast: Iterable[Character]) -> Image:
 def _moody(character: Character, word: str) -> Pose:
     """Return how a character stands that has felt so for a while, with its eyes open."""
     animator = Animator(character, place=RootDelta())
-    known = closest_word(animator.actions, Emotion(*PLACES[word]), word)
+    emotion = Emotion(*PLACES[word], word)
+    known = closest_word(animator.actions, emotion)
     action = known if known in PLACES and known is not None else "idle"
-    feeling, gaze = np.array(PLACES[word]), np.array([0.1, 0.16, 1.0])
+    gaze = np.array([0.1, 0.16, 1.0])
     first, last = (round(time * 30) for time in SETTLED)
     poses = [
         animator.update(
-            CharacterCommand(number / 30, action, gaze=gaze, feeling=feeling, mood=word)
+            CharacterCommand(number / 30, action=ActionIntent(action), gaze=gaze, emotion=emotion)
         ).pose
         for number in range(last + 1)
     ]
@@ -105,7 +114,7 @@ def _after(animator: Animator, action: str, seconds: float) -> PosedCharacter:
     """Return a character that has acted for a while, and looks at the camera."""
     gaze = np.array([0.0, 0.2, 1.0])
     commands = (
-        CharacterCommand(number / 60, action, weight=1.0, gaze=gaze)
+        CharacterCommand(number / 60, action=ActionIntent(action, 1.0), gaze=gaze)
         for number in range(round(seconds * 60) + 1)
     )
     *_, posed = (animator.update(command) for command in commands)

@@ -6,7 +6,7 @@
 
 from pathlib import Path
 
-from affect.emotion import ANGRY_BELOW, HAPPY_ABOVE
+from affect.hysteresis import ANGRY_BELOW, HAPPY_ABOVE
 from robot.contract.motions import JointSine, SineMotion
 from robot.protocol import messages as m
 from robot.protocol import timing

@@ -55,7 +55,7 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
             if not waiting or step.picture is None:
                 break
             emotion = step.emotion
-            view = RobotView("ready", emotion.emotion.valence, emotion.label)
+            view = RobotView("ready", emotion.emotion.valence, emotion.emotion.label)
             picture = overlay(
                 step.picture, step, view, virtual_robot
             )  # each time: the virtual robot is alive

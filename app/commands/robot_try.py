@@ -68,16 +68,16 @@ def _introduction(robot: Robot) -> str:
 
 def _show(robot: Robot, word: str, seconds: float, console: Console) -> str:
     """Ask for a mood, watch for a while, and say what came of it in a line."""
-    emotion = Emotion(*PLACES.get(word, (0.0, 0.0)))
+    emotion = Emotion(*PLACES.get(word, (0.0, 0.0)), word)
     began = time.monotonic()
-    robot.express(emotion, word)
+    robot.express(emotion)
     taken = shown = math.nan
     with Live(console=console, transient=True, refresh_per_second=10) as live:
         while (now := time.monotonic()) < began + seconds:
             known = robot.telemetry
             if math.isnan(taken) and known.acknowledged == emotion:
                 taken = now - began
-            if math.isnan(shown) and known.observed is not None and known.label == word:
+            if math.isnan(shown) and known.label == word:
                 shown = now - began
             if console.is_terminal:
                 live.update(_state(known))

@@ -79,7 +79,7 @@ class History:
 def _action(command: CharacterCommand) -> str:
     if not command.visible:
         return ""
-    return gait(command.speed) if command.action == "move" else command.action
+    return gait(command.speed) if command.activity == "move" else command.activity
 
 
 def read_history(path: Path, *, salvage: bool = False) -> History:
@@ -133,7 +133,7 @@ def felt_by(history: History, personality: Personality) -> Felt:
             temper.forget()
         action, weight, speed = "idle", 0.0, 0.0
         if command.visible:
-            action, speed = command.action, command.speed
+            action, speed = command.activity, command.speed
             weight = command.weight if intense else 1.0
         targets.append(temper.update(controls, action, weight, speed))
     return _felt(personality.name, targets)
@@ -144,5 +144,5 @@ def _felt(who: str, targets: list[EmotionTarget]) -> Felt:
         who,
         np.array([target.timestamp for target in targets]),
         np.array([(target.emotion.valence, target.emotion.arousal) for target in targets]),
-        tuple(target.label for target in targets),
+        tuple(target.emotion.label for target in targets),
     )

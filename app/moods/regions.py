@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from affect.emotion import ANGRY_BELOW, HAPPY_ABOVE
+from affect.hysteresis import ANGRY_BELOW, HAPPY_ABOVE
 from affect.labels import LabelSet
 
 Array = NDArray[np.float64]

@@ -54,7 +54,7 @@ def write_table(path: Path, history: History, felt: Felt, wire: Wire) -> int:
                         f"{felt.times[row]:.6f}",
                         *(_cell(value) for value in felt.emotion[row]),
                         felt.labels[row],
-                        command.action,
+                        command.activity,
                         _cell(command.weight),
                         _cell(command.speed),
                         int(command.visible),

@@ -82,7 +82,7 @@ class Attention:
     def _chosen(self, controls: CubeControls, command: CharacterCommand) -> str:
         """Return what deserves attention."""
         now = controls.timestamp
-        if command.action == "move":
+        if command.activity == "move":
             return "cube"
         if controls.lifted:
             return "hand"

@@ -109,7 +109,7 @@ class Playground:
         Nothing else says so: character, virtual robot and robot show one emotion.
         """
         gaze = self._attention.update(state, controls, outcome.command)
-        command = outcome.emotion.shown_by(replace(outcome.command, gaze=gaze))
+        command = replace(outcome.command, gaze=gaze, emotion=outcome.emotion.emotion)
         return replace(outcome, command=command)
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:

@@ -1,10 +1,8 @@
 """What every scenario is, and the table of those there are."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Protocol
-
-import numpy as np
 
 from affect import Emotion, Personality
 from app.errors import AppError
@@ -26,21 +24,13 @@ class Inputs:
 
 @dataclass(frozen=True)
 class EmotionTarget:
-    """What character, virtual robot and robot feel, and are asked to show."""
+    """The emotion that character, virtual robot and robot show."""
 
     emotion: Emotion
-    """Valence and arousal."""
-
-    label: str
-    """The word for it, with hysteresis: one of the personality's label set."""
+    """The emotion, with a word of the personality's label set."""
 
     timestamp: float
-    """That of the frame [s]."""
-
-    def shown_by(self, command: CharacterCommand) -> CharacterCommand:
-        """Return a command to a character that shows this too."""
-        feeling = np.array([self.emotion.valence, self.emotion.arousal])
-        return replace(command, feeling=feeling, mood=self.label)
+    """Time of the frame [s]."""
 
 
 @dataclass(frozen=True)

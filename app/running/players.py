@@ -62,7 +62,7 @@ class PlayerPublisher:
 
     def publish_action(self, command: CharacterCommand) -> None:
         """Publish an action if this command begins one; a hidden character does nothing."""
-        action = command.action if command.visible else "idle"
+        action = command.activity if command.visible else "idle"
         if action == self._action:
             return
         self._action = action
@@ -75,4 +75,4 @@ class PlayerPublisher:
     def publish_emotion(self, target: EmotionTarget) -> None:
         """Publish an emotion if it has changed."""
         with self.client.lock:
-            self.client.endpoint.feel(target.emotion, target.label)
+            self.client.endpoint.feel(target.emotion)

@@ -11,7 +11,7 @@ from app.pipeline.scenario import Inputs
 from app.running.opening import open_session
 from app.running.options import SessionOptions
 from app.session import messages
-from app.session.encoding import ARROWS, encode
+from app.session.encoding import ARROWS, encode, upgraded
 
 
 @dataclass
@@ -45,7 +45,9 @@ def check_session(path: Path, options: SessionOptions) -> ComparisonResult:
     """Process a session's frames again and compare every message with the recorded one."""
     result = ComparisonResult()
     options = replace(options, pictures=False, robot="none", record=None, output=None)
-    recorded = messages(path, *ARROWS)
+    recorded = (
+        (topic, time, upgraded(topic, data)) for topic, time, data in messages(path, *ARROWS)
+    )
     with open_session(options) as session:
         made = (
             (topic, step.frame.timestamp, encode(message))

@@ -6,7 +6,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Self
 
-from affect import Emotion
+from affect import NEUTRAL, Emotion
 from affect.words import closest_word
 from app.pipeline.scenario import EmotionTarget
 from app.pipeline.step import RobotView
@@ -20,9 +20,6 @@ OnBytes = Callable[[str, bytes, float], None]
 Clock = Callable[[], float]
 """Returns the time of the session [s]."""
 
-MAX_REMEMBERED_EMOTIONS = 1000
-"""Emotions whose labels are remembered [frames]; a robot never acknowledges an older one."""
-
 
 class RobotLine(Closeable):
     """Sends the emotions of a session to a robot, and reads its state.
@@ -35,7 +32,6 @@ class RobotLine(Closeable):
         self._closing = ExitStack()
         self._robot: Robot | None = None
         self._target: EmotionTarget | None = None
-        self._labels: dict[Emotion, str] = {}
         self._real = False
         self._stepper: RobotStepper | None = None
 
@@ -92,25 +88,19 @@ class RobotLine(Closeable):
     def feel(self, target: EmotionTarget) -> None:
         """Ask the robot to express an emotion; return at once."""
         self._target = target
-        self._labels.pop(target.emotion, None)  # keep the latest last
-        self._labels[target.emotion] = target.label
-        if len(self._labels) > MAX_REMEMBERED_EMOTIONS:
-            del self._labels[next(iter(self._labels))]
         if self._stepper is not None:
             self._stepper.advance_to(target.timestamp)
         if self._robot is not None:
-            self._robot.express(target.emotion, target.label)
+            self._robot.express(target.emotion)
 
     def view(self) -> RobotView:
         """Return what the robot reports, or the requested emotion where there is no robot."""
         if self._robot is None:
-            mood = 0.0 if self._target is None else self._target.emotion.valence
-            return RobotView(
-                "none", mood, "neutral" if self._target is None else self._target.label
-            )
+            asked = NEUTRAL if self._target is None else self._target.emotion
+            return RobotView("none", asked.valence, asked.label)
         telemetry = self._robot.telemetry
         # Pleo and OpenCat do not report what they show; what they acknowledged is the best guess.
-        shown = telemetry.observed or telemetry.acknowledged or Emotion(0.0, 0.0)
+        shown = telemetry.observed or telemetry.acknowledged or NEUTRAL
         label = telemetry.label or self._label_of(shown)
         return RobotView(telemetry.state, shown.valence, label, self._real)
 
@@ -121,7 +111,7 @@ class RobotLine(Closeable):
             moods = self._robot.catalogue.moods
         except RobotError:  # the handshake is not over yet
             return emotion.label
-        return closest_word(moods, emotion, self._labels.get(emotion)) or emotion.label
+        return closest_word(moods, emotion) or emotion.label
 
     def check(self) -> None:
         """Raise `RobotError` if the robot cannot be reached now."""

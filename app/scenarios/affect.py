@@ -44,10 +44,10 @@ class Temper:
             AvatAR's Speed of its feet, 0…5.
         """
         if controls.shaken:
-            self._feelings.strike("shaken")
+            self._feelings.apply_event("shaken")
         if controls.lifted and not self._lifted:
-            self._feelings.strike("lifted")
+            self._feelings.apply_event("lifted")
         self._lifted = controls.lifted
         self._now = max(self._now, controls.timestamp)  # time that runs backwards counts as none
-        mood = self._feelings.update(action, weight, self._now, speed)
-        return EmotionTarget(mood.emotion, mood.label, controls.timestamp)
+        emotion = self._feelings.update(action, weight, self._now, speed)
+        return EmotionTarget(emotion, controls.timestamp)

@@ -10,7 +10,7 @@ from affect import Personality
 from app.pipeline.scenario import Inputs, Outcome
 from app.scenarios.affect import Temper
 from app.scenarios.presence import Presence
-from characters import CharacterCommand, PosedCharacter, RootDelta
+from characters import ActionIntent, CharacterCommand, LocomotionIntent, PosedCharacter, RootDelta
 from tracking import CubeControls, CubeModel
 
 Action = Literal["idle", "kiss", "shout"]
@@ -73,10 +73,10 @@ class Companion:
         emotion = self._temper.update(controls, acting, self._weight)
         command = CharacterCommand(
             timestamp=controls.timestamp,
-            action=self._action,
-            target=self._place,
-            look_at=None if self._place is None else self._place + FACING,
-            weight=self._weight,
+            locomotion=LocomotionIntent(
+                target=self._place, facing=None if self._place is None else self._place + FACING
+            ),
+            action=ActionIntent(self._action, self._weight),
             visible=visible,
         )
         return Outcome(command, emotion, self._hint(controls), self._action)

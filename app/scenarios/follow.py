@@ -8,13 +8,11 @@ from app.pipeline.scenario import Inputs, Outcome
 from app.scenarios.affect import Temper
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
-from characters import CharacterCommand, PosedCharacter, RootDelta
+from characters import ActionIntent, CharacterCommand, LocomotionIntent, PosedCharacter, RootDelta
+from characters.control.command import IDLE_SPEED
 from tracking import CubeControls
 
 Point = NDArray[np.float64]
-
-IDLE_BELOW = 0.5
-"""Speed below which the character stands (AvatAR)."""
 
 RUN_ABOVE = 3.0
 """Speed above which it runs (AvatAR)."""
@@ -62,10 +60,10 @@ class Follow:
         treat = self._shaken(controls, character, inputs)
         command = CharacterCommand(
             timestamp=controls.timestamp,
-            action=treat or ("move" if speed > IDLE_BELOW else "idle"),
-            speed=speed,
-            target=_beside(controls.position, character),
-            look_at=CAMERA,
+            locomotion=LocomotionIntent(
+                speed, _beside(controls.position, character), facing=CAMERA
+            ),
+            action=_action(treat, speed),
             visible=visible,
         )
         # Out of sight it goes nowhere, and does nothing that it could feel.
@@ -99,9 +97,16 @@ def _beside(cube: Point | None, character: PosedCharacter | None) -> Point | Non
     return cube + way * (min(ELBOW_ROOM, distance) / max(distance, 1e-9))
 
 
+def _action(treat: str, speed: float) -> ActionIntent | None:
+    """Return the action for a treat, or for standing; None to move."""
+    if treat:
+        return ActionIntent(treat)
+    return None if speed > IDLE_SPEED else ActionIntent("idle")
+
+
 def gait(speed: float) -> str:
     """Name of the icon for a Speed: "stand", "walk" or "run"."""
-    if speed <= IDLE_BELOW:
+    if speed <= IDLE_SPEED:
         return "stand"
     return "walk" if speed <= RUN_ABOVE else "run"
 
@@ -111,6 +116,6 @@ def _hint(controls: CubeControls, speed: float) -> str:
         return "Show me the cube"
     if controls.position is None:
         return "Put the cube on the table"
-    if speed <= IDLE_BELOW:
+    if speed <= IDLE_SPEED:
         return "Turn the cube to walk"
     return "Move the cube: I follow you" if speed <= RUN_ABOVE else "I run after you!"

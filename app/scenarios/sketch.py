@@ -6,10 +6,18 @@ from numpy.typing import NDArray
 from affect import Personality
 from app.pipeline.scenario import Inputs, Outcome
 from app.scenarios.affect import Temper
-from app.scenarios.follow import CAMERA, IDLE_BELOW, gait
+from app.scenarios.follow import CAMERA, gait
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
-from characters import CharacterCommand, ClosedPath, PosedCharacter, RootDelta
+from characters import (
+    ActionIntent,
+    CharacterCommand,
+    ClosedPath,
+    LocomotionIntent,
+    PosedCharacter,
+    RootDelta,
+)
+from characters.control.command import IDLE_SPEED
 from characters.rendering import FloorPath
 from tracking import CubeControls
 
@@ -72,11 +80,8 @@ class Sketch:
         visible = self._presence.update(controls)
         command = CharacterCommand(
             timestamp=controls.timestamp,
-            action="move" if speed > IDLE_BELOW else "idle",
-            speed=speed,
-            target=self._target(character),
-            stop=False,
-            look_at=CAMERA,
+            locomotion=LocomotionIntent(speed, self._target(character), False, CAMERA),
+            action=None if speed > IDLE_SPEED else ActionIntent("idle"),
             visible=visible,
         )
         emotion = self._temper.update(controls, "idle", speed=speed if visible else 0.0)
@@ -115,4 +120,4 @@ class Sketch:
             left = MOST_POINTS - len(self._points)
             again = "another point" if self._points else "a point"
             return f"Slide the cube and pause to leave {again} ({left} to go)"
-        return "Turn the cube to walk" if speed <= IDLE_BELOW else "Shake the cube for a new path"
+        return "Turn the cube to walk" if speed <= IDLE_SPEED else "Shake the cube for a new path"

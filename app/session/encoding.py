@@ -42,15 +42,46 @@ def decode(kind: type[T], document: bytes) -> T:
         The document is no JSON, or not of that type.
     """
     try:
-        value = _typed(kind, json.loads(document))
+        value = _typed(kind, _upgraded(kind, json.loads(document)))
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"not a {kind.__name__}: {error}") from error
     return typing.cast(T, value)
 
 
+def upgraded(topic: str, document: bytes) -> bytes:
+    """Return a channel's document as this version writes it, whichever version wrote it."""
+    kind = ARROWS[topic]
+    content = json.loads(document)
+    newer = _upgraded(kind, content)
+    return document if newer is content else encode(decode(kind, document))
+
+
 def schema(kind: type[Any]) -> bytes:
     """Return the JSON Schema of a dataclass."""
     return json.dumps({"title": kind.__name__, **_schema(kind)}, separators=(",", ":")).encode()
+
+
+def _upgraded(kind: type[Any], old: Any) -> Any:
+    """Return the content of a document in today's fields; sessions before 0.2 have others.
+
+    There a command had its intents side by side, and an emotion its word beside it.
+    """
+    if kind is EmotionTarget and "label" in old:
+        emotion = {**old["emotion"], "word": old["label"]}
+        return {"emotion": emotion, "timestamp": old["timestamp"]}
+    if kind is CharacterCommand and "look_at" in old:
+        action, feeling = old["action"], old.get("feeling")
+        emotion = feeling and {"valence": feeling[0], "arousal": feeling[1]}
+        return {
+            "timestamp": old["timestamp"],
+            "locomotion": {key: old[key] for key in ("speed", "target", "stop")}
+            | {"facing": old["look_at"]},
+            "action": None if action == "move" else {"name": action, "weight": old["weight"]},
+            "gaze": old.get("gaze"),
+            "emotion": emotion and {**emotion, "word": old["mood"] or None},
+            "visible": old["visible"],
+        }
+    return old
 
 
 def _plain(value: object) -> object:

@@ -7,11 +7,12 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from affect.emotion import HAPPY_ABOVE
+from affect import Emotion
+from affect.hysteresis import HAPPY_ABOVE
 from affect.words import closest_word
 from app.pipeline.scenario import EmotionTarget
 from app.ui.palette import PAPER, between, mood_color
-from characters import Animator, Character, CharacterCommand, RootDelta
+from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
 from characters.rendering import SceneCharacter, Stage, View
 
 LARGEST = 216
@@ -94,14 +95,13 @@ class VirtualRobot:
         It plays the mood that a robot with the same words would; what that leaves out is in its
         face and its bearing, as in any other character's.
         """
-        action = closest_word(self._animator.actions, target.emotion, target.label)
-        command = CharacterCommand(
+        action = closest_word(self._animator.actions, target.emotion)
+        return CharacterCommand(
             timestamp=target.timestamp,
-            action=action or "idle",
-            weight=intensity(target, action),
+            action=ActionIntent(action or "idle", intensity(target.emotion, action)),
             gaze=self._eye,
+            emotion=target.emotion,
         )
-        return target.shown_by(command)
 
     def close(self) -> None:
         """Give the card's memory back."""
@@ -110,25 +110,24 @@ class VirtualRobot:
             self._stage = None
 
 
-def intensity(target: EmotionTarget, played: str | None = None) -> float:
+def intensity(emotion: Emotion, played: str | None = None) -> float:
     """Return how strongly an emotion is to be shown, −1…1.
 
     From where a mood begins to where it cannot be stronger; within neutral, from calm to stirred.
     `played` is the mood that shows it, where that has another name.
 
-    >>> from robot import Emotion
-    >>> [round(intensity(EmotionTarget(Emotion(v, abs(v)), "happy", 0.0)), 2) for v in (0.3, 1.0)]
+    >>> [round(intensity(Emotion(v, abs(v), "happy")), 2) for v in (0.3, 1.0)]
     [-1.0, 1.0]
-    >>> intensity(EmotionTarget(Emotion(0.0, 0.0), "neutral", 0.0))
+    >>> intensity(Emotion(0.0, 0.0, "neutral"))
     -1.0
-    >>> round(intensity(EmotionTarget(Emotion(-0.6, -0.4), "sad", 0.0), "neutral"), 2)
+    >>> round(intensity(Emotion(-0.6, -0.4, "sad"), "neutral"), 2)
     -0.4
     """
-    strength = max(abs(target.emotion.valence), target.emotion.arousal)
-    if target.label == "neutral":
+    strength = max(abs(emotion.valence), emotion.arousal)
+    if emotion.label == "neutral":
         share = strength / HAPPY_ABOVE
     elif played == "neutral":
-        share = (target.emotion.arousal + 1.0) / 2.0
+        share = (emotion.arousal + 1.0) / 2.0
     else:
         share = (strength - HAPPY_ABOVE) / (1.0 - HAPPY_ABOVE)
     return float(np.clip(2.0 * share - 1.0, -1.0, 1.0))

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from affect import Emotion
 from characters.body.axes import body_axes, turned
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Skeleton
@@ -116,9 +117,9 @@ class Bearing:
         self.manner = PLAIN
         """How the body moves now."""
 
-    def update(self, elapsed: float, feeling: tuple[float, float] | None) -> Manner:
-        """Advance by a time [s] towards a feeling, valence and arousal −1…1, or to none."""
-        valence, arousal = feeling or (0.0, 0.0)
+    def update(self, elapsed: float, emotion: Emotion | None) -> Manner:
+        """Advance by a time [s] towards an emotion, or to none."""
+        valence, arousal = (emotion.valence, emotion.arousal) if emotion else (0.0, 0.0)
         if self.manner is PLAIN and valence == arousal == 0.0:
             return PLAIN
         self._valence = damped_spring(*self._valence, valence, elapsed, LAG)

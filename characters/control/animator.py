@@ -5,7 +5,7 @@ from typing import Protocol
 
 import numpy as np
 
-from characters.control.command import CharacterCommand, PosedCharacter
+from characters.control.command import CharacterCommand, LocomotionIntent, PosedCharacter
 from characters.control.in_place import Actor
 from characters.control.liveliness import Life
 from characters.control.tree import TreePlayer
@@ -139,8 +139,7 @@ class Animator:
                 target=None if command.gaze is None else _seen_from(placed, command.gaze),
                 effort=performer.speed / TOP_SPEED,
                 busy=float(performer.state not in ("idle", "walk", "run")),
-                feeling=_felt(command),
-                mood=command.mood,
+                emotion=command.emotion,
                 played=performer.state in RECIPES,
             )
         return PosedCharacter(
@@ -158,26 +157,16 @@ class Animator:
 def _check(command: CharacterCommand) -> None:
     """Refuse numbers that would stay with the character for ever."""
     numbers = [command.timestamp, command.speed, command.weight]
-    for point in (command.target, command.look_at, command.gaze):
+    going = command.locomotion or LocomotionIntent()
+    for point in (going.target, going.facing, command.gaze):
         if point is not None:
             numbers += [float(value) for value in point]
-    if command.feeling is not None:
-        numbers += command.feeling.tolist()
     if not all(map(math.isfinite, numbers)):
         raise CharacterError(
             f"command at {command.timestamp} s has a number that is not finite: speed "
-            f"{command.speed}, weight {command.weight}, target {command.target}, look_at "
-            f"{command.look_at}, gaze {command.gaze}, feeling {command.feeling}; leave out what is "
-            "not known"
+            f"{command.speed}, weight {command.weight}, target {going.target}, facing "
+            f"{going.facing}, gaze {command.gaze}; leave out what is not known"
         )
-
-
-def _felt(command: CharacterCommand) -> tuple[float, float] | None:
-    """Return valence and arousal within their range, or None."""
-    if command.feeling is None:
-        return None
-    valence, arousal = command.feeling.tolist()
-    return min(max(valence, -1.0), 1.0), min(max(arousal, -1.0), 1.0)
 
 
 def _placed(place: RootDelta, height: float, scale: float) -> Array:

@@ -5,45 +5,83 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from affect import Emotion
 from characters.skeleton.pose import Pose
+
+IDLE_SPEED = 0.5
+"""AvatAR's Speed up to which a character stands."""
 
 
 @dataclass(frozen=True)
-class CharacterCommand:
-    """What a scenario asks of a character in one frame."""
-
-    timestamp: float
-    """That of the frame [s]."""
-
-    action: str = "idle"
-    """"idle", "move", or the name of an action that the character knows ("kiss", "shout")."""
+class LocomotionIntent:
+    """Where to go and how fast, and where to face when standing."""
 
     speed: float = 0.0
-    """AvatAR's Speed, 0…5: below 0.5 idle, to 3 walking, above running."""
+    """AvatAR's Speed, 0…5: up to `IDLE_SPEED` standing, to 3 walking, above running."""
 
     target: NDArray[np.float64] | None = None
     """Where to go, (x, z) in the table frame [m]; None to stay."""
 
-    look_at: NDArray[np.float64] | None = None
-    """A point to turn to when standing, (x, z) in the table frame [m], or None."""
+    stop: bool = True
+    """Whether to stop at the target; False for a point that moves ahead along a path."""
 
-    gaze: NDArray[np.float64] | None = None
-    """A point that head and eyes follow, (x, y, z) in the table frame [m], or None."""
+    facing: NDArray[np.float64] | None = None
+    """A point to turn to when standing, (x, z) in the table frame [m]; None to keep the heading."""
+
+
+@dataclass(frozen=True)
+class ActionIntent:
+    """An action to perform."""
+
+    name: str
+    """The name of an action that the character knows ("kiss", "shout"), or "idle" to stand."""
 
     weight: float = 0.0
-    """Intensity of the action, −1…1."""
+    """Intensity, −1…1."""
 
-    feeling: NDArray[np.float64] | None = None
-    """What face and bearing show: (valence, arousal), each −1…1; None for what the clips have."""
 
-    mood: str = ""
-    """The word for that feeling, "happy", "angry" …, as everyone else shows it; "" for none."""
+@dataclass(frozen=True)
+class CharacterCommand:
+    """What a scenario asks of a character in one frame: intents, each optional."""
+
+    timestamp: float
+    """Time of the frame [s]."""
+
+    locomotion: LocomotionIntent | None = None
+    """Where to go; None to stay."""
+
+    action: ActionIntent | None = None
+    """What to do instead of going somewhere; None for nothing."""
+
+    gaze: NDArray[np.float64] | None = None
+    """A point that head and eyes follow, (x, y, z) in the table frame [m]; None for none."""
+
+    emotion: Emotion | None = None
+    """What face and posture show; None for what the clips have."""
 
     visible: bool = True
-    """Whether the character is to be seen."""
+    """Whether the character is drawn."""
 
-    stop: bool = True
-    """Whether to stop at the target; False for a point that runs ahead along a path."""
+    @property
+    def activity(self) -> str:
+        """The name of the action, else "move" or "idle".
+
+        >>> CharacterCommand(0.0, LocomotionIntent(speed=2.0)).activity
+        'move'
+        """
+        if self.action is not None:
+            return self.action.name
+        return "move" if self.speed > IDLE_SPEED else "idle"
+
+    @property
+    def speed(self) -> float:
+        """AvatAR's Speed that is asked for; 0 without locomotion."""
+        return 0.0 if self.locomotion is None else self.locomotion.speed
+
+    @property
+    def weight(self) -> float:
+        """Intensity of the action; 0 without one."""
+        return 0.0 if self.action is None else self.action.weight
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 from characters.control.actions import WEIGHT_LAG, acts_of, proceed
-from characters.control.command import CharacterCommand
+from characters.control.command import CharacterCommand, LocomotionIntent
 from characters.errors import CharacterError
 from characters.model.character import Character
 from characters.motion.motion import Motion, RootDelta
@@ -79,7 +79,7 @@ class Actor:
 
     def _act(self, command: CharacterCommand, elapsed: float, now: float) -> None:
         wish = min(max(command.weight, -1.0), 1.0)
-        action = "idle" if command.action == "move" else command.action
+        action = "idle" if command.activity == "move" else command.activity
         if action != "idle" and action not in self._acts:
             raise CharacterError(
                 f"the character does not know {action!r}; it knows "
@@ -97,12 +97,12 @@ class Actor:
 
     def _move(self, command: CharacterCommand, elapsed: float) -> None:
         """Hop to the target and turn to what is to be looked at."""
-        target = self.place
-        if command.target is not None:
-            target = RootDelta(float(command.target[0]), float(command.target[1]), self.place.yaw)
-        if not self._placed and command.target is not None:
+        going, target = command.locomotion or LocomotionIntent(), self.place
+        if going.target is not None:
+            target = RootDelta(float(going.target[0]), float(going.target[1]), self.place.yaw)
+        if not self._placed and going.target is not None:
             self.place, self._placed = target, True
-            if command.look_at is not None:
+            if going.facing is not None:
                 self.place = RootDelta(target.x, target.z, target.yaw + _bearing(target, command))
         if self._hop is None:
             self._hop = self._start_hop(target, command)
@@ -140,9 +140,10 @@ class Actor:
 
 def _bearing(place: RootDelta, command: CharacterCommand) -> float:
     """Return how far to turn to look where it is to look [rad]."""
-    if command.look_at is None:
+    if command.locomotion is None or command.locomotion.facing is None:
         return 0.0
-    return wrap(place.bearing(float(command.look_at[0]), float(command.look_at[1])))
+    x, z = command.locomotion.facing
+    return wrap(place.bearing(float(x), float(z)))
 
 
 def _idle(character: Character) -> Motion:

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from affect import Emotion
 from characters.body.gaze import HUMAN, Gaze, Limits
 from characters.body.posture import PLAIN, Bearing
 from characters.body.sway import Stirring
@@ -79,8 +80,7 @@ class Life:
         target: Array | None = None,
         effort: float = 0.0,
         busy: float = 0.0,
-        feeling: tuple[float, float] | None = None,
-        mood: str = "",
+        emotion: Emotion | None = None,
         played: bool = False,
     ) -> Pose:
         """Advance by a time [s] and return the pose with what lives in it.
@@ -97,18 +97,16 @@ class Life:
             How hard the body works, 0 at rest … 1 at a full run.
         busy
             How much head and trunk have to do otherwise, 0 … 1 in the midst of an action.
-        feeling
-            Valence and arousal, each −1…1, or None to leave face and bearing to the clips.
-        mood
-            The word for that feeling.
+        emotion
+            What face and posture show, or None to leave them to the clips.
         played
             Whether the clips are those of a mood, so that the face need not show one.
         """
         self._calm = low_pass(
             self._calm, 1.0 - max(busy, min(2.0 * effort, 1.0)), elapsed, _CALM_LAG
         )
-        manner = self._bearing.update(elapsed, feeling)
-        self._face.update(elapsed, None if played else feeling, mood)
+        manner = self._bearing.update(elapsed, emotion)
+        self._face.update(elapsed, None if played else emotion)
         share = _HELD_IN_ACTION + (1.0 - _HELD_IN_ACTION) * self._calm
         joints, borne = self._stirring.joints, None
         if manner is not PLAIN:

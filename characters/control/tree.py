@@ -2,7 +2,7 @@
 
 import math
 
-from characters.control.command import CharacterCommand
+from characters.control.command import CharacterCommand, LocomotionIntent
 from characters.locomotion.steering import ARRIVAL_DISTANCE_M, DEPARTURE_DISTANCE_M
 from characters.model.character import Character
 from characters.model.mirroring import mirror_of
@@ -92,27 +92,28 @@ class TreePlayer:
         """Take the parameters from a command."""
         wish = dict.fromkeys(PARAMETERS, 0.0)
         wish["weight"] = min(max(command.weight, -1.0), 1.0)
-        if command.look_at is not None:
-            wish["bearing"] = math.degrees(self.place.bearing(*map(float, command.look_at)))
-        if command.action == "move" and command.target is not None:
-            x, z = map(float, command.target)
+        going = command.locomotion or LocomotionIntent()
+        if going.facing is not None:
+            wish["bearing"] = math.degrees(self.place.bearing(*map(float, going.facing)))
+        if command.activity == "move" and going.target is not None:
+            x, z = map(float, going.target)
             away = math.hypot(x - self.place.x, z - self.place.z)
-            self._arrived = command.stop and away < (
+            self._arrived = going.stop and away < (
                 DEPARTURE_DISTANCE_M if self._arrived else ARRIVAL_DISTANCE_M
             )
             if not self._arrived:
-                wish |= self._course(command, (x, z), away)
+                wish |= self._course(going, (x, z), away)
         for name, value in wish.items():
             lag = self._plan.lags.get(name, LAGS.get(name, 0.0))
             self._values[name] = low_pass(self._values[name], value, elapsed, lag) if lag else value
 
     def _course(
-        self, command: CharacterCommand, target: tuple[float, float], away: float
+        self, going: LocomotionIntent, target: tuple[float, float], away: float
     ) -> dict[str, float]:
         """Return the parameters that lead to a target."""
         right = -self.place.bearing(*target)
-        speed = min(max(command.speed, 0.0), 5.0)
-        if command.stop:
+        speed = min(max(going.speed, 0.0), 5.0)
+        if going.stop:
             speed = min(speed, 0.6 + _BRAKING * max(away - ARRIVAL_DISTANCE_M, 0.0))
         if abs(right) > _SLOW_TURN:
             speed = min(speed, _TURNING_SPEED)
@@ -128,7 +129,7 @@ class TreePlayer:
         spent = now - self._machine.entered
         ended = spent >= self._motions[state].duration
         values: dict[str, float | str | bool] = {**self._values, "time": spent, "done": ended}
-        values["action"] = command.action
+        values["action"] = command.activity
         for change in machine.transitions:
             if _leads_on(change, state) and change.when.holds(values):
                 self._enter(change, now)
@@ -146,7 +147,7 @@ class TreePlayer:
         )
 
     def _report(self, command: CharacterCommand) -> None:
-        self.state = self._machine.state or command.action
+        self.state = self._machine.state or command.activity
         self.speed, self.weight = self._values["speed"], self._values["weight"]
         self.angular = math.radians(self._values["angular"])
 

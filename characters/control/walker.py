@@ -87,10 +87,10 @@ class Walker:
 
     def update(self, command: CharacterCommand, elapsed: float) -> Pose:
         """Advance by a time [s] under a command and return the pose, with the root in place."""
-        wish = "idle" if command.action == "move" else command.action
+        wish = "idle" if command.activity == "move" else command.activity
         if wish != "idle" and wish not in self._acts:
             raise CharacterError(
-                f"the character does not know {command.action!r}; it knows "
+                f"the character does not know {wish!r}; it knows "
                 f"{', '.join(['idle', 'move', *self._acts])}"
             )
         act, self._done = proceed(self._machine, self._acts, wish, self._done, self._time)
@@ -139,10 +139,11 @@ class Walker:
     def _course(self, command: CharacterCommand) -> SteeringOutput:
         """Return where to go, or how to turn on the spot."""
         course = STANDSTILL
-        if command.action == "move" and command.target is not None and command.speed > IDLE_SPEED:
-            x, z = (float(value) for value in command.target)
-            speed = min(command.speed, TOP_SPEED)
-            course = self._steering.course(self.place, (x, z), speed, command.stop)
+        going = command.locomotion
+        if command.activity == "move" and going is not None and going.target is not None:
+            x, z = (float(value) for value in going.target)
+            speed = min(going.speed, TOP_SPEED)
+            course = self._steering.course(self.place, (x, z), speed, going.stop)
         if course.speed > 0.0:
             self._turning = False
             return course
@@ -150,10 +151,10 @@ class Walker:
 
     def _look(self, command: CharacterCommand) -> SteeringOutput:
         """Return the course of turning on the spot to what it is to look at."""
-        if command.look_at is None:
+        if command.locomotion is None or command.locomotion.facing is None:
             self._turning = False
             return STANDSTILL
-        error = -self.place.bearing(*(float(value) for value in command.look_at))
+        error = -self.place.bearing(*(float(value) for value in command.locomotion.facing))
         self._turning = abs(error) > (_TURN_UNTIL if self._turning else _TURN_FROM)
         if not self._turning:
             return STANDSTILL

@@ -8,6 +8,7 @@ import math
 from collections.abc import Sequence
 from operator import mul
 
+from affect import Emotion
 from characters.face.expressions import EXPRESSIONS, Expressions
 from characters.skeleton.pose import Array
 from characters.smoothing import low_pass
@@ -62,23 +63,20 @@ _SURPRISED = EXPRESSIONS.index("surprised")
 _GONE = 1e-4  # of an expression that is not seen any more
 
 
-def wish(feeling: tuple[float, float], mood: str) -> tuple[float, ...]:
+def wish(emotion: Emotion) -> tuple[float, ...]:
     """Return how far each of `EXPRESSIONS` is to be on, and how far the lids are to hang, (6,).
 
-    Parameters
-    ----------
-    feeling
-        Valence and arousal, each −1…1.
-    mood
-        The word for it, one of `RECIPES`; "neutral" shows a hint of the feeling, and another word
-        or none all of it, as its place tells.
+    A word of `RECIPES` has a face of its own. "neutral" shows a hint of the place in the plane of
+    valence and arousal; another word, or none, all of it.
     """
-    strength = math.hypot(*feeling) / FULL
-    recipe = RECIPES.get(mood)
+    place = emotion.valence, emotion.arousal
+    strength = math.hypot(*place) / FULL
+    recipe = RECIPES.get(emotion.word or "")
     if recipe is not None:
         strength = min(max(strength, LEAST), 1.0)
         return tuple(strength * part for part in recipe)
-    return tuple((HINTED if mood == "neutral" else 1.0) * part for part in _from_place(*feeling))
+    share = HINTED if emotion.word == "neutral" else 1.0
+    return tuple(share * part for part in _from_place(*place))
 
 
 def _from_place(valence: float, arousal: float) -> tuple[float, ...]:
@@ -125,9 +123,9 @@ class Face:
         self.felt = False
         """Whether there is anything to be shown."""
 
-    def update(self, elapsed: float, feeling: tuple[float, float] | None, mood: str) -> None:
-        """Advance by a time [s] towards the face of a feeling; None for that of the clips."""
-        wished = _NOTHING if feeling is None else wish(feeling, mood)
+    def update(self, elapsed: float, emotion: Emotion | None) -> None:
+        """Advance by a time [s] towards the face of an emotion; None for that of the clips."""
+        wished = _NOTHING if emotion is None else wish(emotion)
         stirred = any(wished)
         if not self.felt and not stirred:
             return

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.port import Clock, Opener
 from robot.contract.telemetry import LinkState, Telemetry
@@ -25,8 +25,8 @@ class Driver(Protocol):
     catalogue: Catalogue | None
     """What the robot has; None until it is known."""
 
-    def express(self, emotion: Emotion, label: str | None = None) -> None:
-        """Request an emotion; only the latest counts. `label` is the mood's word, if it has one."""
+    def express(self, emotion: Emotion) -> None:
+        """Request an emotion; only the latest counts."""
 
     def play(self, item: int, index: int) -> bool:
         """Request a motion or a sound of the catalogue once; return False if too many wait."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Literal
 
-from affect.emotion import Emotion
+from affect import Emotion
 
 MAX_COMPLAINT_CHARS = 80
 """Longest error message of a robot that is kept [characters]."""
@@ -66,10 +66,8 @@ class Telemetry:
     A robot that knows only words has taken every emotion that is requested while its word plays."""
 
     observed: Emotion | None = None
-    """The emotion that the robot last reported to show; None before its first report."""
-
-    label: str | None = None
-    """The robot's word for what it shows, "neutral", "happy", "angry" …"""
+    """The emotion that the robot last reported to show, with its own word; None before its first
+    report."""
 
     battery: float | None = None
     """Charge from 0, empty, to 1, full."""
@@ -109,6 +107,11 @@ class Telemetry:
 
     counts: LinkCounts = field(default_factory=LinkCounts)
     """Counts of the link."""
+
+    @property
+    def label(self) -> str | None:
+        """The robot's own word for what it shows: "neutral", "happy", "angry" and so on."""
+        return None if self.observed is None else self.observed.word
 
 
 def complaint_of(line: str) -> str:

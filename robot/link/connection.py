@@ -4,7 +4,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.closeable import Closeable
 from robot.contract.driver import DRIVERS, Driver
@@ -125,24 +125,19 @@ class Robot(Closeable):
         self._driver = driver
         self._clock = clock
         self._exchange = exchange
-        self._wish: tuple[Emotion, str | None] | None = None
+        self._wish: Emotion | None = None
 
-    def express(self, emotion: Emotion, label: str | None = None) -> None:
-        """Let the robot feel this from now on; the latest wins. Never waits and never raises.
+    def express(self, emotion: Emotion) -> None:
+        """Let the robot show an emotion from now on; the latest wins. Never waits, never raises.
 
-        Parameters
-        ----------
-        emotion
-            Where in the plane of valence and arousal.
-        label
-            The mood's word, "happy", so that the robot shows the same as everyone else; the one of
-            its own words that is closest is taken. None: the robot chooses.
+        Of the robot's own words for its moods, the one closest to the emotion's word is shown.
+        Without a word, the robot chooses.
         """
-        if self._wish == (emotion, label):
-            return  # every frame of a session asks; only a new wish is worth waking the link
+        if self._wish == emotion:
+            return  # every frame of a session asks; only a new emotion is worth waking the link
         with self._exchange.lock:
-            self._wish = emotion, label
-            self._driver.express(emotion, label)
+            self._wish = emotion
+            self._driver.express(emotion)
         self._exchange.wake()
 
     def play(self, name: str) -> None:

@@ -3,7 +3,7 @@
 >>> from robot import Emotion
 >>> broker, ann = MemoryBroker(), Member("hall", "player", "ann")
 >>> client = BusClient(Player(ann, session=1), broker.bus(), clock=lambda: 0.0)
->>> client.endpoint.feel(Emotion(0.8, 0.5), "happy")
+>>> client.endpoint.feel(Emotion(0.8, 0.5, "happy"))
 >>> client.bus.open()
 >>> client.step()
 >>> sorted(topic.rpartition("/")[2] for topic in broker.retained)

@@ -3,7 +3,7 @@
 import math
 from typing import Protocol
 
-from affect.emotion import Emotion
+from affect import NEUTRAL, Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.telemetry import Telemetry
 from robot.errors import RobotError
@@ -14,8 +14,6 @@ from robot.network.endpoint import MemberEndpoint
 from robot.network.messages import MalformedError, decode, encode
 from robot.network.state_publisher import StatePublisher
 from robot.network.topics import Member, Pattern, member_of
-
-NEUTRAL = Emotion(0.0, 0.0)
 
 
 class RobotControl(Protocol):
@@ -29,7 +27,7 @@ class RobotControl(Protocol):
     def telemetry(self) -> Telemetry:
         """The robot's state."""
 
-    def express(self, emotion: Emotion, label: str | None = None) -> None:
+    def express(self, emotion: Emotion) -> None:
         """Show an emotion."""
 
     def play(self, name: str) -> None:
@@ -77,7 +75,6 @@ class RobotNode(MemberEndpoint):
         )
         self._robot = robot
         self._expressed: Emotion | None = None
-        self._label: str | None = None
         self._state_publisher = StatePublisher()
         self._acks = 0
         self._ack_due = False
@@ -113,9 +110,9 @@ class RobotNode(MemberEndpoint):
         """Show the emotion of the active player."""
         emotion = self.arbiter.select(now)
         if emotion is not None:
-            self._express(Emotion(emotion.valence, emotion.arousal), emotion.label)
+            self._express(Emotion(emotion.valence, emotion.arousal, emotion.label))
         elif self.arbiter.active is None and self._expressed is not None:
-            self._express(NEUTRAL, "neutral")
+            self._express(NEUTRAL)
 
     def outgoing(self, now: float) -> list[Message]:
         """Return the messages to be published now."""
@@ -191,10 +188,10 @@ class RobotNode(MemberEndpoint):
         self.counts["played"] += 1
         return True
 
-    def _express(self, emotion: Emotion, label: str | None) -> None:
-        if (emotion, label) != (self._expressed, self._label):
-            self._expressed, self._label = emotion, label
-            self._robot.express(emotion, label)
+    def _express(self, emotion: Emotion) -> None:
+        if emotion != self._expressed:
+            self._expressed = emotion
+            self._robot.express(emotion)
 
     # --- Epochs and acknowledgements -----------------------------------------------------------
 

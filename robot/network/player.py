@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from msgspec import structs
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.network import messages as m
 from robot.network.bus import Message
 from robot.network.endpoint import MemberEndpoint
@@ -114,7 +114,7 @@ class Player(MemberEndpoint):
         self._pending.append(_PendingAction(self._number, name, weight, now))
         self.counts.made += 1
 
-    def feel(self, emotion: Emotion, label: str | None = None) -> None:
+    def feel(self, emotion: Emotion) -> None:
         """Publish an emotion; the latest wins."""
         known = self._emotion
         message = m.EmotionMessage(
@@ -122,7 +122,7 @@ class Player(MemberEndpoint):
             1 if known is None else known.number,
             round(emotion.valence, 4),
             round(emotion.arousal, 4),
-            label,
+            emotion.word,
         )
         if message == known:
             return

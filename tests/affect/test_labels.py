@@ -30,8 +30,8 @@ def test_a_robot_with_three_moods_shows_the_sensible_one_for_every_word():
     assert expected.keys() == {row.word for row in TABLE}
     for word, mood in expected.items():
         for robot in itertools.permutations(THREE):
-            assert closest_word(robot, Emotion(0, 0), word) == mood, word
-        assert simple_mood(Emotion(0, 0), word) == mood
+            assert closest_word(robot, Emotion(0, 0, word)) == mood, word
+        assert simple_mood(Emotion(0, 0, word)) == mood
 
 
 @pytest.mark.parametrize(
@@ -48,14 +48,14 @@ def test_a_robot_with_three_moods_shows_the_sensible_one_for_every_word():
     ],
 )
 def test_a_robot_with_other_moods_shows_the_closest(words, label, closest):
-    assert closest_word(words, Emotion(0, 0), label) == closest
+    assert closest_word(words, Emotion(0, 0, label)) == closest
 
 
 @given(st.floats(-1, 1), st.floats(-1, 1), st.sampled_from([None, "snarky"]))
 def test_without_a_known_label_the_emotion_decides(valence, arousal, label):
-    word = closest_word(THREE, Emotion(valence, arousal), label)
+    word = closest_word(THREE, Emotion(valence, arousal, label))
     assert word == min(THREE, key=lambda each: math.dist(PLACES[each], (valence, arousal)))
-    assert simple_mood(Emotion(valence, arousal), label) == word
+    assert simple_mood(Emotion(valence, arousal, label)) == word
 
 
 def test_the_24_emotions_have_the_faces_of_table_5_2():

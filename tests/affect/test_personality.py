@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from affect import Emotion, Personality
 from affect.errors import AffectError
 from affect.personality_file import bundled, bundled_text
-from affect.traits import Ocean, Push
+from affect.traits import AffectImpulse, Ocean
 
 trait = st.floats(0, 1)
 anyone = st.builds(Ocean, trait, trait, trait, trait, trait)
@@ -92,7 +92,7 @@ def test_the_thesis_example_responds_as_the_specification_computes():
 
 @given(anyone, st.floats(0.01, 2), st.floats(0.01, 2))
 def test_the_response_of_two_personalities_is_in_the_ratio_of_their_traits(ocean, up, down):
-    gains = {"kiss": Push(valence=up), "shout": Push(valence=-down)}
+    gains = {"kiss": AffectImpulse(valence=up), "shout": AffectImpulse(valence=-down)}
     plain = Personality("w", gains=gains)
     who = dataclasses.replace(plain, ocean=ocean)
     good, bad = ocean.responses
@@ -104,8 +104,8 @@ def test_the_response_of_two_personalities_is_in_the_ratio_of_their_traits(ocean
 
 
 def test_who_has_no_personality_does_not_respond():
-    who = Personality("w", gains={"kiss": Push(1.0, 1.0)}, ocean=Ocean(0, 0, 0, 0, 0))
-    assert who.gain("kiss") == Push(0.0, 0.0)
+    who = Personality("w", gains={"kiss": AffectImpulse(1.0, 1.0)}, ocean=Ocean(0, 0, 0, 0, 0))
+    assert who.gain("kiss") == AffectImpulse(0.0, 0.0)
 
 
 @given(anyone)

@@ -15,7 +15,15 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from characters import Animator, Character, CharacterCommand, mask_of
+from affect import Emotion
+from characters import (
+    ActionIntent,
+    Animator,
+    Character,
+    CharacterCommand,
+    LocomotionIntent,
+    mask_of,
+)
 from characters.motion.layers import overlaid
 
 FRAMES = 600
@@ -42,7 +50,7 @@ def wandering(animator: Animator, speed: float) -> Callable[[int], object]:
     def work(number: int) -> object:
         angle = number / 60
         target = 0.4 * np.array([np.sin(angle), np.cos(angle)])
-        return animator.update(CharacterCommand(number / 30, "move", speed, target))
+        return animator.update(CharacterCommand(number / 30, LocomotionIntent(speed, target)))
 
     return work
 
@@ -60,10 +68,10 @@ def everything(animator: Animator, speed: float, mood: str = "happy") -> Callabl
         angle, time = number / 60, number / 30
         target = 0.4 * np.array([np.sin(angle), np.cos(angle)])
         gaze = np.array([0.3 * np.sin(time), 0.1, 0.4])
-        command = CharacterCommand(time, "move", speed, target, gaze=gaze)
+        command = CharacterCommand(time, LocomotionIntent(speed, target), gaze=gaze)
         if mood:
-            feeling = np.array([np.sin(time / 3), np.cos(time / 5)])
-            command = replace(command, feeling=feeling, mood=mood)
+            emotion = Emotion(float(np.sin(time / 3)), float(np.cos(time / 5)), mood)
+            command = replace(command, emotion=emotion)
         posed = animator.update(command)
         return overlaid(posed.pose, wave.sample(time % wave.duration), arms, 0.0)
 
@@ -75,7 +83,7 @@ def acting(animator: Animator, action: str) -> Callable[[int], object]:
 
     def work(number: int) -> object:
         weight = float(np.sin(number / 40))
-        return animator.update(CharacterCommand(number / 30, action, weight=weight))
+        return animator.update(CharacterCommand(number / 30, action=ActionIntent(action, weight)))
 
     return work
 
@@ -86,7 +94,7 @@ def switching(animator: Animator) -> Callable[[int], object]:
     def work(number: int) -> object:
         speed = 2.0 if number // 6 % 2 else 0.0
         target = np.array([0.0, 99.0])
-        return animator.update(CharacterCommand(number / 30, "move", speed, target))
+        return animator.update(CharacterCommand(number / 30, LocomotionIntent(speed, target)))
 
     return work
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from characters import Character, CharacterCommand, Pose
+from characters import Character, CharacterCommand, LocomotionIntent, Pose
 from characters.control.walker import Walker
 from characters.locomotion.steering import SteeringOutput
 from characters.motion.contacts import spans
@@ -173,18 +173,18 @@ def _upward(character: Character, joint: int) -> list[int]:
 
 def _start_stop(number: int, _: Walker) -> CharacterCommand:
     speed = (0.0, 2.0, 0.0, 4.5)[number // 75 % 4]
-    return CharacterCommand(number / RATE, "move", speed, np.array([0.0, 1e4]))
+    return CharacterCommand(number / RATE, LocomotionIntent(speed, np.array([0.0, 1e4])))
 
 
 def _speed_changes(number: int, _: Walker) -> CharacterCommand:
     speed = 2.75 + 2.0 * math.sin(number / 40)
-    return CharacterCommand(number / RATE, "move", speed, np.array([0.0, 1e4]))
+    return CharacterCommand(number / RATE, LocomotionIntent(speed, np.array([0.0, 1e4])))
 
 
 def _turn_on_the_spot(number: int, _: Walker) -> CharacterCommand:
     way = number // 180 * 2.2
     look = np.array([math.sin(way), math.cos(way)]) * 1e3
-    return CharacterCommand(number / RATE, look_at=look)
+    return CharacterCommand(number / RATE, LocomotionIntent(facing=look))
 
 
 def _slalom(number: int, _: Walker) -> SteeringOutput:
@@ -199,13 +199,13 @@ def _jumps_of_course(number: int, _: Walker) -> SteeringOutput:
 def _follow(number: int, _: Walker) -> CharacterCommand:
     angle = number / RATE / 2
     target = np.array([3.0 * math.sin(angle), 3.0 * math.sin(2 * angle)])
-    return CharacterCommand(number / RATE, "move", 3.0, target)
+    return CharacterCommand(number / RATE, LocomotionIntent(3.0, target))
 
 
 def _near_targets(number: int, _: Walker) -> CharacterCommand:
     turn = number // 150 * 2.4
     target = np.array([math.sin(turn), math.cos(turn)])
-    return CharacterCommand(number / RATE, "move", 2.0, target)
+    return CharacterCommand(number / RATE, LocomotionIntent(2.0, target))
 
 
 SCRIPTS: dict[str, Script] = {

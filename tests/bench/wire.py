@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 import robot
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers.cubeling.host import HostLink
 from robot.protocol.messages import Beat
 from robot.protocol.schema import pack, unpack

@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from affect import AffectError, Personality
-from affect.emotion import Emotion
+from affect import AffectError, Emotion, Personality
 from robot.contract.driver import Driver
 from robot.drivers import DRIVERS
 from robot.drivers.cubeling.host import HostLink
@@ -109,7 +108,7 @@ def run_driver(driver: Driver, data: bytes, whole: Callable[[bytes], bytes] = by
         driver.receive(whole(piece), now)
         driver.tick(now)
         if len(piece) % 16 == 3:
-            driver.express(Emotion(len(piece) / 100, -0.5), "happy")
+            driver.express(Emotion(len(piece) / 100, -0.5, "happy"))
         elif len(piece) == 9:
             driver.play(1, piece[0])
         elif len(piece) == 17:

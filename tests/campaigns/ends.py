@@ -5,7 +5,7 @@ They are the product's own; a few of their methods tell the witness what they do
 
 from typing import Any
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.contract.catalogue import Catalogue, JointLimits
 from robot.drivers import DRIVERS
 from robot.drivers.cubeling.commands import Command, CommandLane

@@ -20,7 +20,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.contract.driver import Driver
 from robot.drivers import DRIVERS
 from robot.link.exchange import REOPEN_INTERVAL_S

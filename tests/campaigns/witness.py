@@ -3,7 +3,7 @@
 from collections import Counter
 from typing import Any, Protocol
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers.cubeling.commands import Command
 from robot.protocol import messages as m
 from robot.protocol import timing

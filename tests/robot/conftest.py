@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 from hypothesis import settings
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers.cubeling.host import HostLink
 from robot.protocol import messages as m
 from robot.simulators.channel import FaultyChannel

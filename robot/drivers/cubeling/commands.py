@@ -7,9 +7,8 @@ each is sent in its turn, at most once, and dropped when the session breaks.
 
 from collections import deque
 from dataclasses import dataclass
-from typing import NamedTuple
 
-from affect.emotion import Emotion
+from affect import Emotion
 from affect.words import closest_word
 from robot.protocol import messages as m
 from robot.protocol import timing
@@ -17,17 +16,7 @@ from robot.protocol import timing
 Command = m.Express | m.Play | m.Stop
 
 
-class Feeling(NamedTuple):
-    """What `express` asks for."""
-
-    emotion: Emotion
-    """Where in the plane."""
-
-    label: str | None
-    """The word for it, if there is one."""
-
-
-Order = Feeling | None
+Order = Emotion | None
 """A standing order; None is the order to stop."""
 
 
@@ -73,7 +62,7 @@ class CommandLane:
     @property
     def commanded(self) -> Emotion | None:
         """The emotion that was last asked for; None before, and after a stop."""
-        return self._order.emotion if self._order else None
+        return self._order
 
     @property
     def tries(self) -> int:
@@ -85,10 +74,10 @@ class CommandLane:
         """Whether the command on its way has been sent as often as the protocol allows."""
         return self.tries >= timing.TRIES_MAX
 
-    def express(self, emotion: Emotion, label: str | None = None) -> None:
-        """Order an emotion, and the word for it."""
-        if Feeling(emotion, label) != self._order:
-            self._set_order(Feeling(emotion, label))
+    def express(self, emotion: Emotion) -> None:
+        """Order an emotion."""
+        if emotion != self._order:
+            self._set_order(emotion)
 
     def stop(self) -> None:
         """Order a stop, before and instead of everything that waits or is on its way."""
@@ -127,7 +116,7 @@ class CommandLane:
         if result != m.TAKEN:
             self.refused += 1
         elif not isinstance(flight.command, m.Play):
-            self.acknowledged = flight.order.emotion if flight.order else None
+            self.acknowledged = flight.order
 
     def break_off(self) -> None:
         """Lose the session: actions that wait or fly are dropped, the standing order stays."""
@@ -170,10 +159,9 @@ class CommandLane:
         order = self._order
         if order is None:
             return self._fly(m.Stop(number), order, now, tries)
-        emotion = order.emotion
-        word = order.label and closest_word(self.moods, emotion, order.label)
+        word = order.word and closest_word(self.moods, order)
         mood = self.moods.index(word) if word else m.NOTHING
-        express = m.Express(number, emotion.valence, emotion.arousal, mood)
+        express = m.Express(number, order.valence, order.arousal, mood)
         return self._fly(express, order, now, tries)
 
     def _fly(self, command: Command, order: Order, now: float, tries: int = 1) -> Command:

@@ -9,7 +9,7 @@ is never acknowledged makes it greet again, under the next session number, for a
 from dataclasses import replace
 from typing import Any, Literal
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.cubeling.commands import CommandLane
@@ -57,9 +57,9 @@ class HostLink:
 
     # --- What the owner asks for ---------------------------------------------------------------
 
-    def express(self, emotion: Emotion, label: str | None = None) -> None:
+    def express(self, emotion: Emotion) -> None:
         """Ask for an emotion; only the latest counts, and it is kept through every break."""
-        self._lane.express(emotion, label)
+        self._lane.express(emotion)
 
     def play(self, item: int, index: int) -> bool:
         """Ask for a motion or a sound once; False if too many wait already.

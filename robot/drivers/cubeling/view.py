@@ -3,7 +3,7 @@
 from dataclasses import replace
 from types import MappingProxyType
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.telemetry import Telemetry
 from robot.protocol import messages as m
@@ -16,8 +16,7 @@ def view_of(link: Telemetry, state: m.State | None, catalogue: Catalogue | None)
     names = (joint.name for joint in catalogue.joints)
     return replace(
         link,
-        observed=Emotion(state.valence, state.arousal),
-        label=_name(catalogue.moods, state.mood),
+        observed=Emotion(state.valence, state.arousal, _name(catalogue.moods, state.mood)),
         battery=state.battery,
         charging=bool(state.flags & m.CHARGING),
         stopped=bool(state.flags & m.STILL),

@@ -2,7 +2,7 @@
 
 from collections import deque
 
-from affect.emotion import Emotion
+from affect import Emotion
 from affect.words import closest_word
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.exchange import Command
@@ -38,7 +38,6 @@ class StandingOrder:
         self.number = 0
         """Counts orders; 0 while there is none."""
         self._behaviour = behaviour
-        self._label: str | None = None
         self._word: str | None = None  # the mood ordered; None for a stop
         self._due: deque[Command] = deque()
         self._taken: str | None = None  # the mood acknowledged, while nothing displaces it
@@ -47,9 +46,9 @@ class StandingOrder:
         self._refusals = 0
         self._again = False  # whether it is due again once it has landed
 
-    def express(self, emotion: Emotion, label: str | None) -> bool:
+    def express(self, emotion: Emotion) -> bool:
         """Order a mood; return whether that is another order than the one that stands."""
-        self.commanded, self._label = emotion, label
+        self.commanded = emotion
         word = self._closest(emotion)
         if self.number and word == self._word:  # it would be the very same order
             if self._sent == self.number:
@@ -62,7 +61,7 @@ class StandingOrder:
 
     def stop(self) -> None:
         """Order the posture for a stop."""
-        self.commanded = self._label = None
+        self.commanded = None
         self._set(None)
 
     def behave(self, behaviour: Behaviour) -> None:
@@ -167,7 +166,7 @@ class StandingOrder:
         self.acknowledged, self._taken, self.stopped = None, None, False
 
     def _closest(self, emotion: Emotion) -> str:
-        return closest_word(tuple(self._behaviour.moods), emotion, self._label) or "neutral"
+        return closest_word(tuple(self._behaviour.moods), emotion) or "neutral"
 
     def _posture(self, name: str, whole: bool) -> Command:
         line = tokens.skill(name)

@@ -7,7 +7,7 @@ robot of which nobody wants anything is let lie down.
 
 from collections import deque
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.contract.driver import MAX_QUEUED_ACTIONS
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.exchange import Command
@@ -59,9 +59,9 @@ class Wishes:
 
     # --- What the owner asks for ---------------------------------------------------------------
 
-    def express(self, emotion: Emotion, label: str | None) -> None:
+    def express(self, emotion: Emotion) -> None:
         """Order a mood. Nothing is sent where the robot's word for it stays the same."""
-        if self.order.express(emotion, label):
+        if self.order.express(emotion):
             mood = self.order.ordered
             self._melody = mood.sound if mood else None
             self._begin_order()

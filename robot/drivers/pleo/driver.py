@@ -11,7 +11,7 @@ import math
 from collections import deque
 from typing import Literal
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.pleo import commands, timing
@@ -53,9 +53,9 @@ class PleoDriver:
 
     # --- What the owner asks for ---------------------------------------------------------------
 
-    def express(self, emotion: Emotion, label: str | None = None) -> None:
+    def express(self, emotion: Emotion) -> None:
         """Ask for an emotion; only the latest counts, and it is kept through every break."""
-        self._wishes.express(emotion, label)
+        self._wishes.express(emotion)
 
     def play(self, item: int, index: int) -> bool:
         """Ask for a motion or a sound of the catalogue once; False if too many wait already.

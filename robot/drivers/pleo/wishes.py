@@ -8,7 +8,7 @@ motion anew, at worst. A sound, and a motion asked for by `play`, is sent once a
 from collections import deque
 from collections.abc import Iterator
 
-from affect.emotion import Emotion
+from affect import Emotion
 from affect.words import closest_word
 from robot.contract.driver import MAX_QUEUED_ACTIONS
 from robot.drivers.pleo import commands, timing
@@ -63,10 +63,10 @@ class Wishes:
 
     # --- What is asked for ---------------------------------------------------------------------
 
-    def express(self, emotion: Emotion, label: str | None = None) -> None:
+    def express(self, emotion: Emotion) -> None:
         """Want the mood that is closest."""
         self.commanded = emotion
-        self._wanted = closest_word(tuple(self._settings.moods), emotion, label)
+        self._wanted = closest_word(tuple(self._settings.moods), emotion)
         if self._wanted == self._doing:  # it would be the very same command
             self._feeling = emotion
             if self._taken == self._doing:

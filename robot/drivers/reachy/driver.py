@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from affect.emotion import Emotion
+from affect import Emotion
 from affect.words import closest_word
 from robot.contract.catalogue import Catalogue
 from robot.contract.driver import MAX_QUEUED_ACTIONS
@@ -79,10 +79,10 @@ class ReachyDriver:
 
     # --- What the owner asks for -----------------------------------------------------------------
 
-    def express(self, emotion: Emotion, label: str | None = None) -> None:
+    def express(self, emotion: Emotion) -> None:
         """Ask for an emotion; only the latest counts."""
         words = tuple(motion.name for motion in moves.MOODS)
-        word = closest_word(words, emotion, label) or words[0]
+        word = closest_word(words, emotion) or words[0]
         mood = moves.MOODS[words.index(word)]
         if mood is not self._mood and self._playing is None:
             self._motion_time = 0.0

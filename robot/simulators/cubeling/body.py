@@ -4,8 +4,8 @@ from math import hypot
 
 import numpy as np
 
-from affect.emotion import Emotion
-from affect.mood_line import LABELS, next_label
+from affect import Emotion
+from affect.hysteresis import LABELS, next_label
 from robot.contract.motions import SineMotion
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur

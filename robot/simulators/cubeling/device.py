@@ -6,7 +6,7 @@ The owner calls `receive` and `tick` with the time.
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.protocol import messages as m
 from robot.protocol import timing

@@ -20,7 +20,7 @@ from app.running.bridge import Bridge, BridgeOptions, RecordedPlayer
 from app.running.network import Access, Network
 from app.running.players import PlayerPublisher
 from app.ui.roster import table
-from characters import CharacterCommand
+from characters import ActionIntent, CharacterCommand, LocomotionIntent
 from robot.network import Member
 from robot.network.roster import Roster
 from tests.robot.network.mosquitto import Mosquitto, needs_mosquitto
@@ -44,7 +44,9 @@ def broker(tmp_path: Path) -> Iterator[Mosquitto]:
 
 
 def command(action: str, **changes: Any) -> CharacterCommand:
-    return CharacterCommand(timestamp=0.0, action=action, **changes)
+    weight = changes.pop("weight", 0.0)
+    intent = None if action == "move" else ActionIntent(action, weight)
+    return CharacterCommand(0.0, LocomotionIntent(1.0), intent, **changes)
 
 
 def test_an_action_is_published_when_it_begins_and_only_if_it_is_seen():
@@ -182,7 +184,7 @@ def test_a_player_says_once_that_the_broker_is_gone(broker):
     said: list[str] = []
     with Network(Access(broker.url)) as network:
         line = PlayerPublisher(network, "ann", on_problem=said.append)
-        calm = EmotionTarget(Emotion(0.0, 0.0), "neutral", 0.0)
+        calm = EmotionTarget(Emotion(0.0, 0.0, "neutral"), 0.0)
         line.publish(command("idle"), calm)
         broker.kill()
         soon(lambda: line.state == "away")
@@ -207,7 +209,7 @@ def test_a_broker_that_hangs_does_not_hold_up_the_picture(broker):
         os.kill(broker.pid, signal.SIGSTOP)
         took = []
         for frame in range(600):
-            emotion = EmotionTarget(Emotion(frame / 600, 0.0), "neutral", frame / 30)
+            emotion = EmotionTarget(Emotion(frame / 600, 0.0, "neutral"), frame / 30)
             began = time.perf_counter()
             line.publish(command("kiss" if frame % 2 else "idle"), emotion)
             took.append(time.perf_counter() - began)

@@ -23,6 +23,7 @@ from app.moods.regions import regions, runs
 from app.pipeline.playground import Playground
 from app.running.opening import intrinsics_for
 from app.session import START_OVER_EVENT, Recorder
+from characters import LocomotionIntent
 from robot.protocol import messages as m
 from robot.protocol.schema import pack
 from robot.protocol.wire import encode_frame
@@ -110,7 +111,9 @@ def test_who_starts_over_feels_anew(tmp_path, bundled_session):
     assert history.started_over == {frames[5].timestamp}
     excited = Personality("w", temperament=lively.temperament, movement=2.0, arousal_half_life=0.1)
     commands = tuple(
-        dataclasses.replace(each, visible=True, speed=5.0 if index < 5 else 0.0)
+        dataclasses.replace(
+            each, visible=True, locomotion=LocomotionIntent(5.0 if index < 5 else 0.0)
+        )
         for index, each in enumerate(history.commands)
     )
     felt = felt_by(dataclasses.replace(history, commands=commands), excited)

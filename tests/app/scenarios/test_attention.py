@@ -7,6 +7,7 @@ import pytest
 from app.errors import AppError
 from app.pipeline.attention import LOOKS, Attention
 from characters import CharacterCommand
+from tests.characters.commands import command
 from tracking import CubeControls, CubeState
 
 EDGE = 0.06
@@ -32,9 +33,11 @@ def controls(time, **fields):
     return replace(plain, **fields)
 
 
-def look(attention, time, place=(0.1, 0.03, 0.0), speed=0.0, action="idle", **fields):
+def look(attention, time, place=(0.1, 0.03, 0.0), speed=0.0, activity="idle", **fields):
     return attention.update(
-        state(place, speed), controls(time, **fields), CharacterCommand(time, action)
+        state(place, speed),
+        controls(time, **fields),
+        command(time, activity, 1.0),
     )
 
 
@@ -72,7 +75,7 @@ def test_quiet_it_glances_at_the_cube_and_mostly_at_the_person():
 def test_going_somewhere_it_looks_where_it_goes():
     attention = Attention("auto", EDGE)
     for number in range(200):
-        assert look(attention, number / 30, action="move")[1] == pytest.approx(0.03)
+        assert look(attention, number / 30, activity="move")[1] == pytest.approx(0.03)
 
 
 def test_it_looks_at_nothing_before_the_table_is_known_or_when_told_so():

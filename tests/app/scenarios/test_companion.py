@@ -23,7 +23,7 @@ def play(companion, frames):
 def test_a_newly_placed_face_starts_in_the_middle(companion, hand):
     play(companion, [hand.frame(), *hand.tip("front"), *hand.turn(0.8, 1)])
     outcome = play(companion, hand.tip("right"))
-    assert outcome.command.action == "shout"
+    assert outcome.command.activity == "shout"
     assert outcome.command.weight == 0.0
 
 
@@ -52,8 +52,8 @@ def test_the_action_changes_only_when_the_cube_rests_again(companion, hand):
     play(companion, [hand.frame()])
     frames = hand.tip("front")
     for controls in frames[:-1]:
-        assert companion.update(controls, None, Inputs()).command.action == "idle"
-    assert companion.update(frames[-1], None, Inputs()).command.action == "kiss"
+        assert companion.update(controls, None, Inputs()).command.activity == "idle"
+    assert companion.update(frames[-1], None, Inputs()).command.activity == "kiss"
 
 
 def test_kisses_lead_from_angry_over_neutral_to_happy_and_shouts_back(companion, hand):
@@ -61,7 +61,7 @@ def test_kisses_lead_from_angry_over_neutral_to_happy_and_shouts_back(companion,
 
     def live(frames):
         for controls in frames:
-            label = companion.update(controls, None, Inputs()).emotion.label
+            label = companion.update(controls, None, Inputs()).emotion.emotion.label
             if not labels or labels[-1] != label:
                 labels.append(label)
 
@@ -87,11 +87,11 @@ def test_idle_and_a_hidden_cube_leave_the_mood(companion, hand):
 
 def test_full_intensity_makes_a_neutral_robot_happy_in_about_three_seconds(companion, hand):
     play(companion, [hand.frame(), *hand.tip("front"), *hand.turn(-1, 1)])
-    assert play(companion, hand.wait(30)).emotion.label == "neutral"  # at −1 it never does
+    assert play(companion, hand.wait(30)).emotion.emotion.label == "neutral"  # at −1 it never does
     before = play(companion, hand.turn(2, 0.1)).emotion.emotion.valence
     needed = (0.33 - before) / 0.1
-    assert play(companion, hand.wait(needed - 0.2)).emotion.label == "neutral"
-    assert play(companion, hand.wait(0.4)).emotion.label == "happy"
+    assert play(companion, hand.wait(needed - 0.2)).emotion.emotion.label == "neutral"
+    assert play(companion, hand.wait(0.4)).emotion.emotion.label == "happy"
 
 
 def test_a_cube_that_lacks_a_role_idles():

@@ -21,7 +21,7 @@ class Play:
             inputs = Inputs(actions=self.animator.actions)
             command = self.follow.update(controls, self.posed, inputs).command
             self.posed = self.animator.update(command)
-            asked.append(command.action)
+            asked.append(command.activity)
             done.append(self.posed.state)
         return asked, done
 
@@ -46,9 +46,9 @@ def test_a_second_shake_meanwhile_changes_nothing(hand):
 def test_a_character_that_knows_no_such_thing_goes_on(hand):
     follow = Follow()
     outcome = follow.update(hand.frame(shaken=True), None, Inputs(actions=("kiss",)))
-    assert outcome.command.action == "idle"
+    assert outcome.command.activity == "idle"
     turned = hand.frame(shaken=True, camera_angle=np.pi / 2)
     for _ in range(30):
         outcome = follow.update(turned, None, Inputs())
         turned = hand.frame()
-    assert outcome.command.action == "move"
+    assert outcome.command.activity == "move"

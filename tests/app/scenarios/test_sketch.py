@@ -61,9 +61,9 @@ def test_a_shake_starts_over(sketch, hand):
 
 def test_the_cube_draws_while_the_path_is_open_and_only_then_moves_the_character(sketch, hand):
     hand.heading(180)
-    assert draw(sketch, hand, 4).command.action == "idle"
+    assert draw(sketch, hand, 4).command.activity == "idle"
     sketch.update(hand.frame(lifted=True, resting=False), None, Inputs())
     for _ in range(30):
         outcome = sketch.update(hand.frame(lifted=False), None, Inputs())
-    assert outcome.command.action == "move"
+    assert outcome.command.activity == "move"
     assert outcome.command.speed > 3

@@ -45,7 +45,7 @@ def two_turns():
     with open_synthetic(f"turns?{SMALL}") as source:
         playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         steps = [playground.step(frame) for frame in source]
-    return [(step.command, step.controls) for step in steps if step.command.action == "kiss"]
+    return [(step.command, step.controls) for step in steps if step.command.activity == "kiss"]
 
 
 def test_a_new_face_starts_at_zero_and_two_turns_span_the_intensity(two_turns):
@@ -70,11 +70,13 @@ def companion_session(bundled_session):
 
 
 def test_kisses_make_happy_and_shouts_angry_never_skipping_neutral(companion_session):
-    told = [(step.emotion.label, step.command.action) for step in companion_session]
+    told = [(step.emotion.emotion.label, step.command.activity) for step in companion_session]
     labels = [label for label, _ in itertools.groupby(told, key=lambda one: one[0])]
     assert labels == ["neutral", "happy", "neutral", "angry", "neutral"]
     by_action = {
-        action: [s.emotion.emotion.valence for s in companion_session if s.command.action == action]
+        action: [
+            s.emotion.emotion.valence for s in companion_session if s.command.activity == action
+        ]
         for action in ("kiss", "shout", "idle")
     }
     assert all(b >= a for a, b in itertools.pairwise(_runs(companion_session, "kiss")))
@@ -83,13 +85,15 @@ def test_kisses_make_happy_and_shouts_angry_never_skipping_neutral(companion_ses
 
 def _runs(steps, action):
     """Valences of the first stretch of frames with an action."""
-    first = next(i for i, step in enumerate(steps) if step.command.action == action)
-    stretch = itertools.takewhile(lambda step: step.command.action == action, steps[first:])
+    first = next(i for i, step in enumerate(steps) if step.command.activity == action)
+    stretch = itertools.takewhile(lambda step: step.command.activity == action, steps[first:])
     return [step.emotion.emotion.valence for step in stretch]
 
 
 def test_idle_leaves_the_mood(companion_session):
-    start = list(itertools.takewhile(lambda step: step.command.action == "idle", companion_session))
+    start = list(
+        itertools.takewhile(lambda step: step.command.activity == "idle", companion_session)
+    )
     assert {step.emotion.emotion.valence for step in start} == {0.0}
 
 
@@ -97,7 +101,7 @@ def test_a_tipped_cube_resets_the_intensity(companion_session):
     changes = [
         after
         for before, after in itertools.pairwise(companion_session)
-        if before.command.action != after.command.action
+        if before.command.activity != after.command.activity
     ]
     assert len(changes) == 4
     assert all(step.command.weight == 0.0 for step in changes)

@@ -44,7 +44,7 @@ def test_a_cube_state_keeps_every_bit(numbers, timestamp, seen):
 
 
 def test_an_emotion_nests():
-    target = EmotionTarget(Emotion(0.25, -0.5), "neutral", 1.5)
+    target = EmotionTarget(Emotion(0.25, -0.5, "neutral"), 1.5)
     assert decode(EmotionTarget, encode(target)) == target
 
 

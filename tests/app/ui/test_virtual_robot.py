@@ -31,7 +31,7 @@ def context() -> Iterator[moderngl.Context]:
 
 
 def felt(valence: float, label: str, time: float) -> EmotionTarget:
-    return EmotionTarget(Emotion(valence, abs(valence)), label, time)
+    return EmotionTarget(Emotion(valence, abs(valence), label), time)
 
 
 def played(context: moderngl.Context, moods: list[tuple[float, str]]) -> list[np.ndarray]:
@@ -93,7 +93,7 @@ def test_a_session_that_starts_over_in_time_is_followed(context):
 
 def test_intensity_rises_with_the_mood_and_never_leaves_its_range():
     for sign, label in ((1, "happy"), (-1, "angry"), (1, "neutral")):
-        values = [intensity(felt(sign * v, label, 0.0)) for v in np.linspace(0, 1, 21)]
+        values = [intensity(felt(sign * v, label, 0.0).emotion) for v in np.linspace(0, 1, 21)]
         assert values == sorted(values)
         assert (values[0], values[-1]) == (-1.0, 1.0)
 

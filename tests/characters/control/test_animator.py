@@ -6,11 +6,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Animator, Character, CharacterCommand, CharacterError
+from characters import (
+    ActionIntent,
+    Animator,
+    Character,
+    CharacterCommand,
+    CharacterError,
+    LocomotionIntent,
+)
 from characters.locomotion.gaits import Gaits
 from characters.locomotion.steering import ARRIVAL_DISTANCE_M
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
+from tests.characters.commands import command
 
 RATE = 30
 
@@ -24,16 +32,16 @@ def place(posed):
     return posed.table_from_character[[0, 2], 3]
 
 
-def play(animator, seconds, start=0.0, rate=RATE, **command):
+def play(animator, seconds, start=0.0, rate=RATE, **asked):
     """Give one command for a while and return every frame."""
     times = start + np.arange(round(seconds * rate)) / rate
-    return [animator.update(CharacterCommand(float(t), **command)) for t in times]
+    return [animator.update(command(float(t), **asked)) for t in times]
 
 
 def arrival(character, speed, target, place=None, seconds=40):
     animator = Animator(character, place=place)
     for number in range(seconds * RATE):
-        posed = animator.update(CharacterCommand(number / RATE, "move", speed, target))
+        posed = animator.update(CharacterCommand(number / RATE, LocomotionIntent(speed, target)))
         if number and posed.state == "idle":
             assert np.hypot(*(posed.table_from_character[[0, 2], 3] - target)) < ARRIVAL_DISTANCE_M
             return number / RATE
@@ -51,7 +59,9 @@ def anyone(request, walker, human):
 
 
 def test_the_first_frame_stands_at_rest(anyone):
-    posed = Animator(anyone).update(CharacterCommand(100.0, "move", 5.0, np.array([1.0, 0.0])))
+    posed = Animator(anyone).update(
+        CharacterCommand(100.0, LocomotionIntent(5.0, np.array([1.0, 0.0])))
+    )
     assert np.allclose(place(posed), 0)
     assert posed.timestamp == 100.0
 
@@ -89,8 +99,8 @@ def test_the_faster_the_sooner_and_running_before_walking(anyone, degrees):
 
 def test_a_target_that_is_left_behind_is_turned_to_on_one_side(human):
     animator = Animator(human)
-    play(animator, 1.0, action="move", speed=2.0, target=np.array([0.0, 9.0]))
-    frames = play(animator, 2.0, 1.0, action="move", speed=2.0, target=np.array([0.0, -9.0]))
+    play(animator, 1.0, activity="move", speed=2.0, target=np.array([0.0, 9.0]))
+    frames = play(animator, 2.0, 1.0, activity="move", speed=2.0, target=np.array([0.0, -9.0]))
     turned = np.unwrap([heading(posed) for posed in frames])
     assert abs(turned[-1]) > math.radians(150)
     around = turned[np.abs(turned) < math.radians(150)]
@@ -102,20 +112,20 @@ def test_a_target_that_is_left_behind_is_turned_to_on_one_side(human):
 )
 def test_the_state_follows_speed(anyone, speed, state):
     target = np.array([0.0, 50.0])
-    frames = play(Animator(anyone), 2.0, action="move", speed=speed, target=target)
+    frames = play(Animator(anyone), 2.0, activity="move", speed=speed, target=target)
     assert frames[-1].state == state
     assert frames[-1].speed == pytest.approx(0.0 if state == "idle" else speed, abs=1e-3)
 
 
 def test_angular_is_positive_to_the_right(anyone):
-    frames = play(Animator(anyone), 0.5, action="move", speed=2.0, target=np.array([-9.0, 0.0]))
+    frames = play(Animator(anyone), 0.5, activity="move", speed=2.0, target=np.array([-9.0, 0.0]))
     assert frames[-1].angular > 1.0
     assert heading(frames[-1]) < 0.0  # +x is to the left of a character that looks along +z
 
 
 def test_a_walk_straight_on_covers_the_ground_at_the_pace_of_its_speed(walker):
     animator = Animator(walker)
-    frames = play(animator, 3.0, action="move", speed=2.0, target=np.array([0.0, 99.0]))
+    frames = play(animator, 3.0, activity="move", speed=2.0, target=np.array([0.0, 99.0]))
     moved = np.linalg.norm(place(frames[-1]) - place(frames[-31]))
     assert moved == pytest.approx(animator.scale * 1.39, rel=0.05)
 
@@ -125,7 +135,7 @@ def test_planted_feet_do_not_slide(human):
 
     left, _ = foot_joints_by_side(human.skeleton)
     animator = Animator(human)
-    frames = play(animator, 4.0, rate=60, action="move", speed=2.0, target=np.array([0.0, 99.0]))
+    frames = play(animator, 4.0, rate=60, activity="move", speed=2.0, target=np.array([0.0, 99.0]))
     feet = np.array(
         [(f.table_from_character @ f.pose.globals(human.skeleton))[left] for f in frames]
     )
@@ -154,10 +164,10 @@ def test_no_joint_jumps_whatever_is_asked(human):
             length,
             time,
             rate,
-            action="move",
+            activity="move",
             speed=speed,
             target=target,
-            look_at=np.array([0.0, 2.0]),
+            facing=np.array([0.0, 2.0]),
         )
         time += round(length * rate) / rate
     running = human.clips["Run"].in_place.rotations
@@ -170,7 +180,7 @@ def test_no_joint_jumps_whatever_is_asked(human):
 
 
 def test_standing_it_turns_to_what_it_is_to_look_at(anyone):
-    frames = play(Animator(anyone), 6.0, look_at=np.array([-1.0, -1.0]))
+    frames = play(Animator(anyone), 6.0, facing=np.array([-1.0, -1.0]))
     assert abs(math.remainder(heading(frames[-1]) + 3 * math.pi / 4, math.tau)) < 0.12
     assert np.linalg.norm(place(frames[-1])) < 0.01
     assert {frame.state for frame in frames} == {"idle"}
@@ -179,7 +189,7 @@ def test_standing_it_turns_to_what_it_is_to_look_at(anyone):
 def test_the_same_commands_give_the_same_frames(human):
     rng = np.random.default_rng(0)
     commands = [
-        CharacterCommand(i / 30, "move", rng.uniform(0, 5), rng.uniform(-0.3, 0.3, 2))
+        CharacterCommand(i / 30, LocomotionIntent(rng.uniform(0, 5), rng.uniform(-0.3, 0.3, 2)))
         for i in range(60)
     ]
     one, two = ([a.update(c) for c in commands] for a in (Animator(human), Animator(human)))
@@ -191,7 +201,7 @@ def test_the_same_commands_give_the_same_frames(human):
 def test_the_frame_rate_hardly_matters(walker):
     target = np.array([0.3, 0.3])
     ends = [
-        place(play(Animator(walker), 2.0, 0.0, rate, action="move", speed=2.0, target=target)[-1])
+        place(play(Animator(walker), 2.0, 0.0, rate, activity="move", speed=2.0, target=target)[-1])
         for rate in (30, 60, 120)
     ]
     assert np.linalg.norm(ends[0] - ends[2]) < 0.02
@@ -202,8 +212,8 @@ def test_the_frame_rate_hardly_matters(walker):
 def test_gaps_in_time_make_no_leap(anyone, gap):
     animator = Animator(anyone)
     far = np.array([0.0, 9.0])
-    before = play(animator, 2.0, action="move", speed=5.0, target=far)[-1]
-    after = animator.update(CharacterCommand(before.timestamp + gap, "move", 5.0, far))
+    before = play(animator, 2.0, activity="move", speed=5.0, target=far)[-1]
+    after = animator.update(CharacterCommand(before.timestamp + gap, LocomotionIntent(5.0, far)))
     assert np.linalg.norm(place(after) - place(before)) <= 0.25 * 4.3 * animator.scale
 
 
@@ -213,7 +223,9 @@ def test_a_point_that_runs_ahead_is_not_stopped_at(walker):
     for number in range(1, 120):
         x, z = place(posed)
         posed = animator.update(
-            CharacterCommand(number / 30, "move", 2.0, np.array([x, z + 0.03]), stop=False)
+            CharacterCommand(
+                number / 30, LocomotionIntent(speed=2.0, target=np.array([x, z + 0.03]), stop=False)
+            )
         )
     assert posed.state == "walk"
     assert posed.speed == pytest.approx(2.0, abs=0.01)
@@ -226,15 +238,15 @@ def performer(request, actor):
 
 def test_an_action_plays_and_says_its_name(performer):
     animator = Animator(performer)
-    frames = play(animator, 1.0, action="kiss", weight=1.0)
+    frames = play(animator, 1.0, activity="kiss", weight=1.0)
     assert frames[-1].state == "kiss"
     assert frames[-1].weight == pytest.approx(1.0)
-    assert play(animator, 1.0, 1.0, action="idle")[-1].state == "idle"
+    assert play(animator, 1.0, 1.0, activity="idle")[-1].state == "idle"
 
 
 @pytest.mark.parametrize(("weight", "ending"), [(-1.0, "head"), (0.0, "legs"), (1.0, "tail")])
 def test_each_intensity_is_its_clip(performer, weight, ending):
-    frames = play(Animator(performer, alive=False), 1.0, action="shout", weight=weight)
+    frames = play(Animator(performer, alive=False), 1.0, activity="shout", weight=weight)
     clip = performer.clips[f"shout_{ending}"]
     expected = clip.sample(29 / RATE)
     shown = rotations.align(frames[-1].pose.rotations, expected.rotations)
@@ -243,7 +255,7 @@ def test_each_intensity_is_its_clip(performer, weight, ending):
 
 def test_more_weight_moves_more(performer):
     def liveliness(weight):
-        frames = play(Animator(performer), 2.0, action="kiss", weight=weight)
+        frames = play(Animator(performer), 2.0, activity="kiss", weight=weight)
         return np.abs(velocities(frames[15:], RATE)).sum()
 
     effort = [liveliness(weight) for weight in (-1.0, -0.5, 0.0, 0.5, 1.0)]
@@ -256,7 +268,7 @@ def test_no_joint_jumps_between_actions(performer):
     for _ in range(20):
         length, weight = rng.uniform(0.1, 1.2), rng.uniform(-1, 1)
         action = rng.choice(["idle", "kiss", "shout"])
-        frames += play(animator, length, time, rate, action=str(action), weight=weight)
+        frames += play(animator, length, time, rate, activity=str(action), weight=weight)
         time += round(length * rate) / rate
     fastest = 0.0
     for clip in performer.clips.values():
@@ -269,7 +281,7 @@ def test_no_joint_jumps_between_actions(performer):
 
 def test_it_starts_on_its_target_and_hops_to_another(performer):
     animator = Animator(performer)
-    first = animator.update(CharacterCommand(0.0, target=np.array([0.2, 0.1])))
+    first = animator.update(CharacterCommand(0.0, LocomotionIntent(target=np.array([0.2, 0.1]))))
     assert np.allclose(place(first), [0.2, 0.1])
     frames = play(animator, 3.0, 0.1, target=np.array([0.0, 0.0]))
     ways = np.array([place(frame) for frame in frames])
@@ -282,32 +294,32 @@ def test_it_starts_on_its_target_and_hops_to_another(performer):
 
 
 def test_it_turns_to_what_it_is_to_look_at(performer):
-    frames = play(Animator(performer), 5.0, look_at=np.array([1.0, 0.0]))
+    frames = play(Animator(performer), 5.0, facing=np.array([1.0, 0.0]))
     assert heading(frames[-1]) == pytest.approx(math.pi / 2, abs=0.05)
 
 
 def test_an_action_that_it_does_not_know_is_refused(performer):
     with pytest.raises(CharacterError, match="does not know 'sing'; it knows idle, kiss, shout"):
-        Animator(performer).update(CharacterCommand(0.0, "sing"))
+        Animator(performer).update(CharacterCommand(0.0, action=ActionIntent("sing")))
 
 
 def test_a_walker_knows_no_actions(anyone):
     with pytest.raises(CharacterError, match="does not know 'kiss'; it knows idle, move"):
-        Animator(anyone).update(CharacterCommand(0.0, "kiss"))
+        Animator(anyone).update(CharacterCommand(0.0, action=ActionIntent("kiss")))
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf])
 def test_numbers_that_are_none_are_refused_and_leave_no_trace(anyone, bad):
     animator, target = Animator(anyone), np.array([0.0, 1.0])
-    play(animator, 0.5, action="move", speed=2.0, target=target)
-    for command in (
-        CharacterCommand(0.6, "move", 2.0, np.array([bad, 0.0])),
-        CharacterCommand(0.6, "move", bad, target),
-        CharacterCommand(bad, "move", 2.0, target),
+    play(animator, 0.5, activity="move", speed=2.0, target=target)
+    for asked in (
+        CharacterCommand(0.6, LocomotionIntent(2.0, np.array([bad, 0.0]))),
+        CharacterCommand(0.6, LocomotionIntent(bad, target)),
+        CharacterCommand(bad, LocomotionIntent(2.0, target)),
     ):
         with pytest.raises(CharacterError, match="not finite"):
-            animator.update(command)
-    assert np.isfinite(place(animator.update(CharacterCommand(0.6, "move", 2.0, target)))).all()
+            animator.update(asked)
+    assert np.isfinite(place(animator.update(command(0.6, "move", 2.0, target)))).all()
 
 
 def test_a_walker_can_also_be_asked_to_hide(anyone):
@@ -317,7 +329,7 @@ def test_a_walker_can_also_be_asked_to_hide(anyone):
 def test_a_walker_does_what_its_other_clips_are_once(human):
     animator = Animator(human)
     assert set(animator.actions) == {"wave", "cheer", "jump", "nod", "shake"}
-    frames = play(animator, 6.0, action="jump")
+    frames = play(animator, 6.0, activity="jump")
     states = [frame.state for frame in frames]
     ended = states.index("jump") + states.count("jump")
     assert states.count("jump") / RATE == pytest.approx(human.clips["jump"].duration, abs=0.1)
@@ -325,14 +337,16 @@ def test_a_walker_does_what_its_other_clips_are_once(human):
     toes = human.skeleton.index("LeftToe")
     heights = [frame.pose.globals(human.skeleton)[toes, 1, 3] for frame in frames]
     assert max(heights) > min(heights) + 0.1
-    again = play(animator, 0.5, start=7.0, action="idle") + play(animator, 1.0, 8.0, action="jump")
+    again = play(animator, 0.5, start=7.0, activity="idle") + play(
+        animator, 1.0, 8.0, activity="jump"
+    )
     assert again[-1].state == "jump"
 
 
 def test_a_walker_that_is_called_away_from_an_action_goes_without_a_jump(human):
     animator = Animator(human, alive=False)
-    frames = play(animator, 0.9, rate=60, action="cheer")
-    frames += play(animator, 1.0, 0.9, 60, action="move", speed=2.0, target=np.array([9.0, 0.0]))
+    frames = play(animator, 0.9, rate=60, activity="cheer")
+    frames += play(animator, 1.0, 0.9, 60, activity="move", speed=2.0, target=np.array([9.0, 0.0]))
     assert frames[-1].state == "walk"
     assert np.abs(velocities(frames, 60)).max() < 40
     assert np.ptp([place(frame) for frame in frames[:54]], axis=0).max() < 1e-9
@@ -366,7 +380,7 @@ def test_it_does_not_matter_in_which_unit_a_body_is(walker, factor):
         animator, target = Animator(character), np.array([0.3, 0.4])
         told = [("idle", 0.0), ("move", 2.0), ("move", 5.0), ("idle", 0.0)]
         return [
-            place(animator.update(CharacterCommand(frame / 15, *told[frame // 15], target)))
+            place(animator.update(command(frame / 15, *told[frame // 15], target)))
             for frame in range(60)
         ]
 
@@ -378,8 +392,8 @@ def test_feet_hold_alike_in_whatever_unit_a_body_is(human):
     def turns(factor):
         animator, target = Animator(in_other_units(human, factor)), np.array([0.3, 0.4])
         told = ["idle"] * 30 + ["move"] * 30  # a foot steps over as it sets off
-        commands = [CharacterCommand(n / 30, do, 2.0, target) for n, do in enumerate(told)]
-        return np.array([animator.update(command).pose.rotations for command in commands])
+        commands = [command(n / 30, do, 2.0, target) for n, do in enumerate(told)]
+        return np.array([animator.update(each).pose.rotations for each in commands])
 
     assert np.abs((turns(0.01) * turns(1.0)).sum(-1)).min() > 1 - 1e-5
 

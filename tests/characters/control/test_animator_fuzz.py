@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Animator, Character, CharacterCommand, CharacterError
+from characters import Animator, Character, CharacterError
 from characters.control.animator import LONGEST_STEP
 from characters.motion.motion import RootDelta
+from tests.characters.commands import command
 
 DATA = Path(__file__).parents[3].parent / "shared" / "data" / "gltf"
 CAST = ("human", "vleo", "robot", "RobotExpressive.glb", "Fox.glb")
@@ -48,7 +49,7 @@ def stories(draw):
                 {
                     "speed": draw(st.sampled_from([0.0, 0.4, 1.0, 2.9, 3.1, 5.0, -1.0, 1e3])),
                     "target": draw(points(2, 3.0)),
-                    "look_at": draw(points(2, 3.0)),
+                    "facing": draw(points(2, 3.0)),
                     "gaze": draw(points(3, 3.0)),
                     "weight": draw(st.sampled_from([-1.0, 0.0, 0.3, 1.0, 9.0])),
                     "stop": draw(st.booleans()),
@@ -63,12 +64,12 @@ def played(someone, story):
     character, actions = someone
     animator, time, elapsed = Animator(character, place=RootDelta()), 0.0, 0.0
     for gap, count, number, said in story:
-        command = CharacterCommand(time, actions[number % len(actions)], **said)
+        asked = command(time, actions[number % len(actions)], **said)
         for _ in range(count):
             time += gap
             elapsed += min(max(gap, 0.0), LONGEST_STEP)
             try:
-                yield elapsed, animator.update(replace(command, timestamp=time))
+                yield elapsed, animator.update(replace(asked, timestamp=time))
                 elapsed = 0.0
             except CharacterError as error:
                 assert "does not know" in str(error)  # noqa: PT017 (only some are refused)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from characters import Animator, Character, CharacterCommand
+from characters import Animator, Character, CharacterCommand, LocomotionIntent
 from characters.control.walker import Walker
 from characters.locomotion.steering import SteeringOutput
 from tests.bench.feet import LIMIT, RATE, SCRIPTS, at_point, film, measure, points
@@ -68,7 +68,9 @@ def test_feet_hold_at_any_frame_rate(human, rate):
     level = human.skeleton.rest.globals(human.skeleton)[toes, 1, 3]
     places = []
     for number in range(2 * rate):
-        posed = animator.update(CharacterCommand(number / rate, "move", 2.0, np.array([9.0, 9.0])))
+        posed = animator.update(
+            CharacterCommand(number / rate, LocomotionIntent(2.0, np.array([9.0, 9.0])))
+        )
         seen = posed.table_from_character @ posed.pose.globals(human.skeleton)[toes]
         places.append(seen[:, :3, 3] / animator.scale)
     feet = np.array(places)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Animator, Character, CharacterCommand, CharacterError
+from characters import Animator, Character, CharacterCommand, CharacterError, LocomotionIntent
 from characters.control.builtin_tree import built_in
 from characters.model.mirroring import mirror_of
 from characters.model.sidecar import read_sidecar
@@ -79,7 +79,7 @@ def test_a_character_walks_as_the_file_beside_it_says(human, tmp_path):
     target = np.array([0.2, 0.25])
     states = []
     for number in range(180):
-        posed = animator.update(CharacterCommand(number / 30, "move", 2.0, target))
+        posed = animator.update(CharacterCommand(number / 30, LocomotionIntent(2.0, target)))
         states.append(posed.state)
     assert states[3] == "move"
     assert states[-1] == "rest"
@@ -94,9 +94,7 @@ def test_no_joint_jumps_while_states_and_parameters_change(human):
     for number in range(600):
         if number % 25 == 0:
             speed, target = rng.uniform(0.0, 4.5), rng.uniform(-0.6, 0.6, 2)
-        command = CharacterCommand(
-            number / 60, "move", float(speed), target, weight=float(np.sin(number / 9))
-        )
+        command = CharacterCommand(number / 60, LocomotionIntent(float(speed), target))
         turns.append(animator.update(command).pose.rotations)
     dots = np.abs(np.einsum("fji,fji->fj", turns[1:], turns[:-1]))
     assert 2 * np.arccos(np.clip(dots, 0, 1)).max() < np.radians(25)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from characters import Animator, Character, CharacterCommand, CharacterError, Pose
+from characters import Animator, Character, CharacterCommand, CharacterError, LocomotionIntent, Pose
 from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
 from characters.retargeting import Recording, load_recording, make_locomotion
 from characters.retargeting.locomotion.arc_path import ArcPath
@@ -119,7 +119,7 @@ def test_left_and_right_are_mirror_images(taught):
 def test_it_goes_where_it_is_sent(taught):
     animator = Animator(taught.character)
     for frame in range(100):
-        command = CharacterCommand(frame / 12, "move", speed=2.0, target=np.array([0.25, -0.2]))
+        command = CharacterCommand(frame / 12, LocomotionIntent(2.0, np.array([0.25, -0.2])))
         posed = animator.update(command)
     x, _, z = posed.table_from_character[:3, 3]
     assert math.hypot(x - 0.25, z + 0.2) < 0.07
@@ -207,7 +207,7 @@ def test_captured_people_lend_their_walk_and_run(tmp_path):
     made.character.save(tmp_path / "walks.glb")
     walker = Animator(Character.load(tmp_path / "walks.glb"))
     for frame in range(20):
-        command = CharacterCommand(frame / 10, "move", speed=2.0, target=np.array([0.0, 2.0]))
+        command = CharacterCommand(frame / 10, LocomotionIntent(2.0, np.array([0.0, 2.0])))
         posed = walker.update(command)
     assert posed.state == "walk"
     assert posed.table_from_character[2, 3] > 0.1

@@ -117,7 +117,7 @@ def test_when_time_is_up_the_rest_is_left_out_and_the_robot_does_not_conform():
 
 
 def test_a_robot_that_takes_five_seconds_for_an_emotion_has_time_enough(monkeypatch):
-    monkeypatch.setattr(body, "FEELING_SPEED", 0.31)
+    monkeypatch.setattr(body, "MAX_EMOTION_SPEED", 0.31)
     report = run_checks(SimulatedChannel(Simulator()), all_checks(), 1)
     assert report.conforms
     assert 40 < report.seconds < MAX_DURATION_S

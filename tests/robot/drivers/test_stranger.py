@@ -8,7 +8,7 @@ import struct
 
 import pytest
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.conformance import SimulatedChannel, all_checks, run_checks
 from robot.protocol.messages import ITEM_MOTION
 
@@ -227,7 +227,8 @@ def test_a_strangers_robot_introduces_itself_and_obeys(strange_world):
     assert (w.telemetry.label, w.telemetry.motion, w.telemetry.sound) == ("plain", "hop", None)
     w.run(1.0)
     telemetry = w.telemetry
-    assert telemetry.observed == telemetry.acknowledged == Emotion(0.5, -0.25)
+    assert telemetry.acknowledged == Emotion(0.5, -0.25)
+    assert telemetry.observed == Emotion(0.5, -0.25, telemetry.label)
     assert telemetry.motion is None
     assert (telemetry.battery, dict(telemetry.joints)) == (0.5, {"head": 0.123})
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affect.mood_line import Label, next_label
+from affect.hysteresis import Label, next_label
 from robot.firmware.dino import body, motions, servos, sounds
 from robot.firmware.dino.joints import RETRY, STAGGER
 from robot.firmware.dino.robot import live, run

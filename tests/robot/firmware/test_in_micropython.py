@@ -17,7 +17,7 @@ import pytest
 
 import robot.firmware
 import robot.protocol
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.conformance import SimulatedChannel, all_checks, run_checks
 
 FOLDER = Path(robot.firmware.__file__).parent
@@ -171,7 +171,7 @@ def test_in_micropython_it_obeys_our_host_on_a_bad_line(in_micropython, world):
     w = world(seed=6, drop=0.05, flip=0.001, dup=0.05)
     w.robot = in_micropython
     w.run_until(lambda: w.telemetry.state == "ready", within=2)
-    w.host.express(Emotion(0.8, 0.5), "happy")
+    w.host.express(Emotion(0.8, 0.5, "happy"))
     w.run(1.5)
     assert w.telemetry.observed == w.telemetry.acknowledged == Emotion(0.8, 0.5)
     assert (w.telemetry.label, w.telemetry.motion) == ("happy", "happy")

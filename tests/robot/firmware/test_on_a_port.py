@@ -15,7 +15,7 @@ pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no ps
 
 def test_it_is_connected_feels_plays_and_stops(desk, soon):
     with robot.connect(desk.url) as dino:
-        dino.express(robot.Emotion(0.5, 0.2), "happy")
+        dino.express(robot.Emotion(0.5, 0.2, "happy"))
         soon(lambda: dino.telemetry.label == "happy")
         assert dino.telemetry.acknowledged == robot.Emotion(0.5, 0.2)
         dino.play("wag tail")

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.conformance import SimulatedChannel, all_checks, run_checks
 from robot.firmware.dino import servos
 from robot.protocol import messages as m
@@ -51,7 +51,7 @@ def test_our_host_gets_to_know_it_and_is_obeyed(dino_world):
     catalogue = w.host.catalogue
     assert catalogue.name == "Dino"
     assert "eyes and mouth" in [joint.name for joint in catalogue.joints]
-    w.host.express(Emotion(0.8, 0.5), "happy")
+    w.host.express(Emotion(0.8, 0.5, "happy"))
     w.run(1.5)
     assert w.telemetry.observed == w.telemetry.acknowledged == Emotion(0.8, 0.5)
     assert (w.telemetry.label, w.telemetry.motion) == ("happy", "happy")

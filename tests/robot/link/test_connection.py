@@ -12,7 +12,7 @@ from typing import Literal
 import pytest
 
 import robot
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.errors import RobotError
 from robot.protocol.timing import FAILSAFE_PROMISE
 from robot.protocol.wire import FrameReader

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 import robot
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.link.transport import UsbIdentity, find_port, usb_identity
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.port import SimulatedPort

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.telemetry import LinkState, Telemetry
 from robot.errors import RobotError

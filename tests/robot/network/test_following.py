@@ -2,7 +2,7 @@
 
 import pytest
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.errors import RobotError
 from robot.network import Member, Pattern, RobotNode
 from robot.network.arbiter import HOLD_S, MAX_PLAYERS
@@ -18,15 +18,17 @@ from robot.network.messages import (
 )
 from tests.robot.network.conftest import FakeRobot
 
-HAPPY, ANGRY, NEUTRAL = Emotion(0.8, 0.5), Emotion(-0.8, 0.5), Emotion(0.0, 0.0)
+HAPPY = Emotion(0.8, 0.5, "happy")
+ANGRY = Emotion(-0.8, 0.5, "angry")
+NEUTRAL = Emotion(0.0, 0.0, "neutral")
 
 
 def test_an_action_gives_the_robot_to_who_did_it(room):
     ann, bob = room.player("a"), room.player("b")
     room.node("rex")
-    ann.feel(HAPPY, "happy")
+    ann.feel(HAPPY)
     room.run(0.5)
-    bob.feel(ANGRY, "angry")
+    bob.feel(ANGRY)
     room.run(0.5)
     felt = room.robots["rex"].felt
     assert felt[-1] == HAPPY  # a mere feeling takes nobody's robot
@@ -45,7 +47,7 @@ def test_an_action_gives_the_robot_to_who_did_it(room):
 def test_a_player_who_is_gone_keeps_its_mood_on_the_robot_for_a_while(room, end):
     ann = room.player("a")
     room.node("rex")
-    ann.feel(HAPPY, "happy")
+    ann.feel(HAPPY)
     room.run(3.0)
     rex = room.robots["rex"]
     noticed = 0.0

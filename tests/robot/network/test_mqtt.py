@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 import robot
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.errors import RobotError
 from robot.network import (
     Address,
@@ -153,14 +153,18 @@ def test_a_broker_killed_in_the_middle_costs_no_action_and_doubles_none(
     act("bob", SOUNDS, 2)
     act("ann", MOTIONS, 3)
     with players["ann"].lock:
-        players["ann"].endpoint.feel(Emotion(0.75, 0.5), "happy")
+        players["ann"].endpoint.feel(Emotion(0.75, 0.5, "happy"))
     soon(lambda: all(station.state == "away" for station in players.values()))
     assert "127.0.0.1" in players["ann"].problem
     broker.start()
     soon(all_have_taken_all, within=10.0)
     act("ann", MOTIONS, 1)  # it acts last, so it has the robots
     soon(all_have_taken_all, within=10.0)
-    soon(lambda: all(one.telemetry.commanded == Emotion(0.75, 0.5) for one in robots.values()))
+    soon(
+        lambda: all(
+            one.telemetry.commanded == Emotion(0.75, 0.5, "happy") for one in robots.values()
+        )
+    )
     for one in robots.values():
         for name, words in (("ann", MOTIONS), ("bob", SOUNDS)):
             assert [did for did in one.played if did in words] == one.can(done[name])

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.network import Member, Player
 from robot.network.endpoint import LOST_AFTER_S
 from robot.network.followers import Followers
@@ -78,12 +78,12 @@ def test_the_last_feeling_is_on_the_robot_after_the_broker_lost_its_memory(room)
     ann.feel(Emotion(0.2, 0.2))
     room.run(0.2)
     room.broker.kill()
-    ann.feel(Emotion(0.9, 0.9), "happy")
+    ann.feel(Emotion(0.9, 0.9, "happy"))
     room.run(1.0)
     assert room.robots["rex"].felt[-1] == Emotion(0.2, 0.2)
     room.broker.start()
     room.run(0.2)
-    assert room.robots["rex"].felt[-1] == Emotion(0.9, 0.9)
+    assert room.robots["rex"].felt[-1] == Emotion(0.9, 0.9, "happy")
 
 
 def test_a_feeling_is_said_again_to_a_broker_that_forgot_it(room):

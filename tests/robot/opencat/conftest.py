@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers.opencat.host import OpenCatHost
 from robot.drivers.opencat.settings import Settings
 from robot.drivers.opencat.settings_file import load_settings
@@ -20,10 +20,10 @@ POLITE = re.compile(rb"(?:[?jd]|k[a-z][A-Za-z]+|i\d+ -?\d+(?: \d+ -?\d+)*|b\d+ \
 """What a line may look like, said a second time and simpler than in the driver."""
 
 FEELINGS = {
-    "neutral": Emotion(0.0, 0.0),
-    "happy": Emotion(0.7, 0.6),
-    "angry": Emotion(-0.7, 0.6),
-    "sad": Emotion(-0.6, -0.4),
+    "neutral": Emotion(0.0, 0.0, "neutral"),
+    "happy": Emotion(0.7, 0.6, "happy"),
+    "angry": Emotion(-0.7, 0.6, "angry"),
+    "sad": Emotion(-0.6, -0.4, "sad"),
 }
 """Emotions by words that the robot has."""
 
@@ -88,7 +88,7 @@ class Desk:
         return self
 
     def feel(self, word: str) -> None:
-        self.host.express(FEELINGS[word], word)
+        self.host.express(FEELINGS[word])
 
     def settle(self, within: float = 20.0) -> float:
         """Run until the robot has confirmed what was last asked for."""

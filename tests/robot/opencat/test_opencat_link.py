@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers.opencat.exchange import LOST_TRIES, QUESTION_WITHIN
 from robot.drivers.opencat.host import REST_ASK_EVERY, OpenCatHost
 from robot.drivers.opencat.settings_file import load_settings, settings_of
@@ -14,7 +14,7 @@ from robot.protocol import messages as m
 from robot.simulators.opencat.quirks import BoardQuirks
 from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
 
-HAPPY = Emotion(0.7, 0.6)
+HAPPY = Emotion(0.7, 0.6, "happy")
 
 
 def test_a_whole_session_line_by_line(desk):
@@ -135,8 +135,8 @@ def test_the_same_mood_again_is_not_sent_again_but_counts_as_taken(desk):
     d.settle()
     d.run(1.0)
     before = len(d.sent)
-    d.host.express(Emotion(0.8, 0.7), "happy")
-    assert d.telemetry.acknowledged == Emotion(0.8, 0.7)
+    d.host.express(Emotion(0.8, 0.7, "happy"))
+    assert d.telemetry.acknowledged == Emotion(0.8, 0.7, "happy")
     d.run(2.0)
     assert len(d.sent) == before
 
@@ -157,10 +157,10 @@ def test_what_is_acknowledged_stays_until_the_next_mood_is(desk):
     d = desk().ready()
     d.feel("happy")
     d.settle()
-    d.host.express(Emotion(0.8, 0.7), "happy")
+    d.host.express(Emotion(0.8, 0.7, "happy"))
     d.feel("sad")  # a posture, and then a pose
-    while d.telemetry.acknowledged != Emotion(-0.6, -0.4):
-        assert d.telemetry.acknowledged == Emotion(0.8, 0.7)
+    while d.telemetry.acknowledged != Emotion(-0.6, -0.4, "sad"):
+        assert d.telemetry.acknowledged == Emotion(0.8, 0.7, "happy")
         d.turn()
     assert "i0 -40" in d.lines
     d.host.stop()
@@ -175,22 +175,24 @@ def test_what_is_felt_while_another_posture_is_taken_is_not_acknowledged_yet(des
     d.feel("neutral")
     d.until(lambda: d.lines[-1] == "kbalance", 5.0)
     for valence in (0.8, 0.9):  # happy again, but it has left that posture
-        d.host.express(Emotion(valence, 0.6), "happy")
+        d.host.express(Emotion(valence, 0.6, "happy"))
         assert d.telemetry.acknowledged == HAPPY
     d.until(lambda: d.telemetry.acknowledged != HAPPY, 5.0)
-    assert d.telemetry.acknowledged == Emotion(0.0, 0.0), "its echo came, displaced or not"
+    assert d.telemetry.acknowledged == Emotion(0.0, 0.0, "neutral"), (
+        "its echo came, displaced or not"
+    )
     d.settle()
-    assert d.telemetry.acknowledged == Emotion(0.9, 0.6)
+    assert d.telemetry.acknowledged == Emotion(0.9, 0.6, "happy")
 
 
 def test_what_was_last_felt_of_a_displaced_mood_is_acknowledged_with_its_echo(desk):
     d = desk().ready()
     d.feel("happy")
     d.until(lambda: d.lines[-1] == "kbuttUp", 5.0)
-    d.host.express(Emotion(0.9, 0.7), "happy")
+    d.host.express(Emotion(0.9, 0.7, "happy"))
     d.feel("neutral")
     d.until(lambda: d.telemetry.acknowledged is not None, 5.0)
-    assert d.telemetry.acknowledged == Emotion(0.9, 0.7)
+    assert d.telemetry.acknowledged == Emotion(0.9, 0.7, "happy")
 
 
 def test_half_an_order_that_was_displaced_is_no_acknowledgement(desk):
@@ -202,7 +204,7 @@ def test_half_an_order_that_was_displaced_is_no_acknowledgement(desk):
     d.feel("angry")
     while d.telemetry.acknowledged == HAPPY:
         d.turn()
-    assert d.telemetry.acknowledged == Emotion(-0.7, 0.6)
+    assert d.telemetry.acknowledged == Emotion(-0.7, 0.6, "angry")
     assert "i0 -40" not in d.lines
 
 
@@ -214,7 +216,7 @@ def test_what_a_board_complained_of_before_it_started_anew_is_still_told():
 
 def test_a_fall_ends_what_is_acknowledged():
     host = _introduced()
-    host.express(HAPPY, "happy")
+    host.express(HAPPY)
     host.tick(3.0)
     host.bytes_to_send()
     host.receive(b"k\r\n", 3.5)
@@ -257,7 +259,7 @@ def test_a_late_echo_counts_for_its_own_command_and_for_no_later_one(desk, quiet
     d.until(lambda: "ksit" in d.lines, 5.0)
     assert d.telemetry.acknowledged == HAPPY, "the late echo was the happy posture's"
     d.settle()
-    assert d.telemetry.acknowledged == Emotion(-0.6, -0.4)
+    assert d.telemetry.acknowledged == Emotion(-0.6, -0.4, "sad")
     assert d.lines.count("kbuttUp") == 1
 
 
@@ -267,7 +269,7 @@ def test_an_echo_after_the_questions_is_no_echo_of_the_command_given_up(desk, qu
     host.tick(2.0)
     assert host.bytes_to_send() == b"?\n"
     host.receive(b"Bittle\r\nN11_230101\r\n?\r\n", 2.1)
-    host.express(HAPPY, "happy")
+    host.express(HAPPY)
     host.tick(3.0)
     assert host.bytes_to_send() == b"kbuttUp\n"
     host.tick(8.5)
@@ -292,7 +294,7 @@ def test_the_echo_of_what_a_falling_robot_did_by_itself_counts_for_nothing():
     host.port_opened(0.0)
     host.tick(2.0)
     host.receive(b"Bittle X\r\nB10_241013\r\n?\r\n", 2.1)
-    host.express(HAPPY, "happy")
+    host.express(HAPPY)
     host.tick(3.0)
     host.bytes_to_send()
     host.receive(
@@ -506,7 +508,7 @@ def test_a_question_asked_before_a_fall_does_not_tell_when_the_fall_is_over():
     host = _introduced()
     host.tick(13.0)
     assert host.bytes_to_send() == b"j\n"
-    host.express(HAPPY, "happy")
+    host.express(HAPPY)
     host.receive(b"EXCEPTION: Fall over\r\nj\r\n", 13.1)
     host.tick(14.0)
     assert host.bytes_to_send() == b"?\n", "not the posture yet: another echo is to come"
@@ -517,7 +519,7 @@ def test_a_question_asked_before_a_fall_does_not_tell_when_the_fall_is_over():
 
 def test_an_echo_from_a_board_without_power_is_no_acknowledgement():
     host = _introduced()
-    host.express(HAPPY, "happy")
+    host.express(HAPPY)
     host.tick(3.0)
     assert host.bytes_to_send() == b"kbuttUp\n"
     host.receive(b"Low power: 6.71V. The robot won't move.\r\nk\r\n", 3.5)

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import robot
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers import DRIVERS
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.host import OpenCatHost
@@ -55,7 +55,7 @@ class Watch:
                 if word in WORDS
             }
             taken = [postures[skill] for skill in skills if skill in postures]
-            wanted = {Emotion(*place): word for word, place in PLACES.items()}
+            wanted = {Emotion(*place, word): word for word, place in PLACES.items()}
             assert taken[-1] == wanted[now.acknowledged], "acknowledged before it was taken"
             self.claims += 1
         self.before = now.acknowledged
@@ -98,7 +98,7 @@ def test_an_hour_with_an_ugly_board(kind, seed, desk):
 
 
 def _word(emotion) -> str:
-    return next(word for word, place in PLACES.items() if Emotion(*place) == emotion)
+    return next(word for word, place in PLACES.items() if Emotion(*place, word) == emotion)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -135,7 +135,7 @@ def test_garbage_raises_nothing_sends_nothing_wrong_and_is_recovered_from(garbag
     host = OpenCatHost()
     now = 0.0
     host.port_opened(now)
-    host.express(Emotion(0.7, 0.6), "happy")
+    host.express(Emotion(0.7, 0.6, "happy"))
     for data, pause in garbage:
         host.receive(data, now)
         now += pause
@@ -149,7 +149,7 @@ def test_garbage_raises_nothing_sends_nothing_wrong_and_is_recovered_from(garbag
         host.tick(now)
         out = host.bytes_to_send()
         host.receive(b"Bittle\r\nN11_230101\r\n" * (out == b"?\n") + out[:1] + b"\r\n", now)
-    assert host.telemetry(now).acknowledged == Emotion(0.7, 0.6)
+    assert host.telemetry(now).acknowledged == Emotion(0.7, 0.6, "happy")
 
 
 @settings(max_examples=40)
@@ -162,7 +162,7 @@ def test_how_the_stream_is_cut_makes_no_difference(data):
     for index, (now, heard) in enumerate(session):
         if index == 200:
             for host in (whole, cut):
-                host.express(Emotion(0.7, 0.6), "happy")
+                host.express(Emotion(0.7, 0.6, "happy"))
         whole.receive(heard, now)
         places = data.draw(st.lists(st.integers(0, len(heard)), max_size=4)) if heard else []
         ends = [0, *sorted(places), len(heard)]
@@ -181,7 +181,7 @@ def _session() -> list[tuple[float, bytes]]:
     for index in range(1, 1500):
         now = index * 0.02
         if index == 200:
-            host.express(Emotion(0.7, 0.6), "happy")
+            host.express(Emotion(0.7, 0.6, "happy"))
         board.advance(now)
         data = board.bytes_to_send()
         if data or index % 10 == 0:
@@ -239,7 +239,7 @@ def test_over_a_real_port(soon):
     with robot.SimulatedPort(simulator, clock=fast) as port:
         with robot.connect(port.url, "opencat", clock=fast) as bittle:
             assert bittle.catalogue.name == "Bittle X"
-            bittle.express(Emotion(0.7, 0.6), "happy")
+            bittle.express(Emotion(0.7, 0.6, "happy"))
             soon(lambda: bittle.telemetry.acknowledged is not None)
             bittle.play("chirp")
             with pytest.raises(RobotError, match="cannot play 'calib'"):

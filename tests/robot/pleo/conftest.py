@@ -6,7 +6,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers.pleo.driver import PleoDriver
 from robot.drivers.pleo.settings_file import load_settings
 from robot.simulators.pleo.simulator import PleoSimulator
@@ -73,7 +73,7 @@ class Script:
         return self
 
     def express(self, label: str) -> None:
-        self.driver.express(Emotion(0.0, 0.0), label)
+        self.driver.express(Emotion(0.0, 0.0, label))
 
     @property
     def state(self) -> str:
@@ -113,7 +113,7 @@ class PleoWorld:
         return self.now - start
 
     def express(self, label: str) -> None:
-        self.driver.express(Emotion(0.0, 0.0), label)
+        self.driver.express(Emotion(0.0, 0.0, label))
 
     @property
     def state(self) -> str:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers.pleo import timing
 from robot.drivers.pleo.driver import PleoDriver
 from robot.drivers.pleo.settings_file import load_settings
@@ -200,5 +200,5 @@ def test_whatever_befalls_the_line_moods_go_on_being_taken(faults):
         known = driver.telemetry(now)
         if known.acknowledged == known.commanded:
             taken += 1
-            driver.express(Emotion(0.0, taken / 1000), MOODS[taken % 3])
+            driver.express(Emotion(0.0, taken / 1000, MOODS[taken % 3]))
     assert taken > 20  # in two minutes, where a mood takes 1 to 2 s and a lost answer up to 9

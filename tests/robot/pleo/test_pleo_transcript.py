@@ -1,8 +1,8 @@
 """The very bytes of a start and of a mood change, and what the link says of itself meanwhile."""
 
-from affect.emotion import Emotion
+from affect import Emotion
 
-HAPPY = Emotion(0.8, 0.5)
+HAPPY = Emotion(0.8, 0.5, "happy")
 
 
 def test_the_bytes_of_a_start(script):
@@ -26,7 +26,7 @@ def test_the_bytes_of_a_start(script):
 
 def test_the_bytes_of_a_mood_change(script):
     pleo = script().started()
-    pleo.driver.express(HAPPY, "happy")
+    pleo.driver.express(HAPPY)
     assert pleo.run(0.005) == b"MOTION SPEED 100\n"  # at once: the prompt is free
     assert pleo.say("> ", 0.1) == b"MOTION PLAY a:happy.umf\n"
     known = pleo.telemetry

@@ -110,9 +110,9 @@ def test_moods_follow_each_other_no_faster_than_the_settings_say(script):
 
 def test_the_same_mood_is_not_sent_again_but_what_was_felt_is_acknowledged(script):
     pleo = shown(script().started(), "happy")
-    pleo.driver.express(robot.Emotion(0.5, 0.7), "happy")
+    pleo.driver.express(robot.Emotion(0.5, 0.7, "happy"))
     assert pleo.auto(1.0) == []
-    assert pleo.telemetry.acknowledged == robot.Emotion(0.5, 0.7)
+    assert pleo.telemetry.acknowledged == robot.Emotion(0.5, 0.7, "happy")
 
 
 def test_a_loop_is_played_again_when_it_has_ended_and_its_sound_is_not(script):
@@ -356,11 +356,11 @@ def test_what_is_acknowledged_stays_until_the_next_mood_is(script):
     pleo = shown(script().started(), "happy")
     felt = pleo.telemetry.acknowledged
     assert felt is not None
-    pleo.driver.express(robot.Emotion(0.1, 0.2), "neutral")
+    pleo.driver.express(robot.Emotion(0.1, 0.2, "neutral"))
     assert pleo.run(0.1) == b"MOTION PLAY a:neutral.umf\n"
     assert pleo.telemetry.acknowledged == felt
     pleo.say(OK)
-    assert pleo.telemetry.acknowledged == robot.Emotion(0.1, 0.2)
+    assert pleo.telemetry.acknowledged == robot.Emotion(0.1, 0.2, "neutral")
     pleo.driver.stop()
     pleo.auto(0.5)
     assert pleo.telemetry.acknowledged is None
@@ -372,26 +372,26 @@ def test_what_is_felt_while_another_mood_is_on_its_way_is_not_acknowledged_yet(s
     pleo.express("neutral")
     assert pleo.run(0.1) == b"MOTION PLAY a:neutral.umf\n"
     for valence in (0.6, 0.7):  # happy again, but neutral may play by now
-        pleo.driver.express(robot.Emotion(valence, 0.5), "happy")
+        pleo.driver.express(robot.Emotion(valence, 0.5, "happy"))
         assert pleo.telemetry.acknowledged == felt
     assert pleo.say(OK, 0.5) == b"MOTION PLAY a:happy.umf\n"
-    assert pleo.telemetry.acknowledged == robot.Emotion(0.0, 0.0)
+    assert pleo.telemetry.acknowledged == robot.Emotion(0.0, 0.0, "neutral")
     pleo.say(OK)
-    assert pleo.telemetry.acknowledged == robot.Emotion(0.7, 0.5)
+    assert pleo.telemetry.acknowledged == robot.Emotion(0.7, 0.5, "happy")
 
 
 def test_half_a_pose_is_no_acknowledgement_of_it_and_ends_the_one_before(poses):
     poses.express("angry")
     poses.auto(5.0)
-    poses.driver.express(robot.Emotion(-0.6, -0.4), "sad")
+    poses.driver.express(robot.Emotion(-0.6, -0.4, "sad"))
     assert b"JOINT MOVE" in poses.run(0.1)
     assert b"JOINT MOVE" in poses.say(OK)
     for valence in (-0.8, -0.9):
-        poses.driver.express(robot.Emotion(valence, 0.5), "angry")
-        assert poses.telemetry.acknowledged == robot.Emotion(0.0, 0.0)
+        poses.driver.express(robot.Emotion(valence, 0.5, "angry"))
+        assert poses.telemetry.acknowledged == robot.Emotion(0.0, 0.0, "angry")
         poses.say(OK, 0.1)
     poses.auto(5.0)
-    assert poses.telemetry.acknowledged == robot.Emotion(-0.9, 0.5)
+    assert poses.telemetry.acknowledged == robot.Emotion(-0.9, 0.5, "angry")
 
 
 def test_an_action_waits_until_the_one_before_has_ended(script):

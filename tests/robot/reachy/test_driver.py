@@ -1,13 +1,14 @@
 """Reachy Mini's driver without a robot: what it asks for, how often, and how far it trusts."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers.reachy import moves
 from robot.drivers.reachy.driver import (
     LINE_MAX,
@@ -18,7 +19,7 @@ from robot.drivers.reachy.driver import (
 )
 from robot.protocol import messages as m
 
-HAPPY = Emotion(0.8, 0.6)
+HAPPY = Emotion(0.8, 0.6, "happy")
 MOODS = tuple(motion.name for motion in moves.MOODS)
 
 
@@ -50,7 +51,7 @@ class Desk:
 def test_targets_come_no_faster_than_the_robot_wants_them_however_often_it_is_asked():
     desk = Desk()
     for index in range(500):
-        desk.driver.express(Emotion(index / 1000, 0.5), "happy")
+        desk.driver.express(Emotion(index / 1000, 0.5, "happy"))
         desk.run(0.01)
     times = np.array([when for when, _ in desk.asked])
     assert len(times) > 80
@@ -62,7 +63,7 @@ def test_targets_come_no_faster_than_the_robot_wants_them_however_often_it_is_as
 def test_no_joint_leaves_its_limits_or_is_faster_than_allowed(wishes):
     desk = Desk()
     for word, seconds in wishes:
-        desk.driver.express(HAPPY, word)
+        desk.driver.express(replace(HAPPY, word=word))
         desk.driver.play(m.ITEM_MOTION, len(desk.asked) % len(moves.MOTIONS))
         desk.run(seconds)
     times = np.array([when for when, _ in desk.asked])
@@ -78,7 +79,7 @@ def test_every_mood_moves_and_neutral_is_where_a_stopped_robot_stands():
     seen = {}
     for word in MOODS:
         desk = Desk()
-        desk.driver.express(HAPPY, word)
+        desk.driver.express(replace(HAPPY, word=word))
         desk.run(6.0)
         seen[word] = np.array([target for _, target in desk.asked])
         desk.driver.stop()
@@ -93,7 +94,7 @@ def test_every_mood_moves_and_neutral_is_where_a_stopped_robot_stands():
 def test_what_is_acknowledged_is_what_the_robot_took():
     desk = Desk()
     desk.deaf = True
-    desk.driver.express(HAPPY, "happy")
+    desk.driver.express(HAPPY)
     desk.run(1.0)
     assert desk.driver.telemetry(desk.now).acknowledged is None
     assert len(desk.asked) <= 1.0 / TARGET_WITHIN + 1  # one on its way at a time
@@ -106,10 +107,10 @@ def test_what_is_acknowledged_is_what_the_robot_took():
 
 def test_what_is_acknowledged_stays_until_the_next_is_taken_or_the_robot_is_lost():
     desk = Desk()
-    desk.driver.express(HAPPY, "happy")
+    desk.driver.express(HAPPY)
     desk.run(1.0)
     desk.deaf = True
-    desk.driver.express(Emotion(-0.6, -0.4), "sad")
+    desk.driver.express(Emotion(-0.6, -0.4, "sad"))
     desk.run(0.2)
     assert desk.driver.telemetry(desk.now).acknowledged == HAPPY
     desk.run(LOST_AFTER)
@@ -119,21 +120,21 @@ def test_what_is_acknowledged_stays_until_the_next_is_taken_or_the_robot_is_lost
 
 def test_a_robot_is_not_called_stopped_before_it_stands_still():
     desk = Desk()
-    desk.driver.express(HAPPY, "happy")
+    desk.driver.express(HAPPY)
     desk.run(1.0)
     desk.driver.stop()
     assert not desk.driver.telemetry(desk.now).stopped
     desk.run(3.0)
     known = desk.driver.telemetry(desk.now)
     assert (known.stopped, known.acknowledged) == (True, None)
-    desk.driver.express(HAPPY, "happy")
+    desk.driver.express(HAPPY)
     desk.run(0.3)
     assert not desk.driver.telemetry(desk.now).stopped
 
 
 def test_a_motion_is_played_once_and_the_mood_goes_on():
     desk = Desk()
-    desk.driver.express(HAPPY, "sad")
+    desk.driver.express(replace(HAPPY, word="sad"))
     desk.run(2.0)
     assert desk.driver.play(m.ITEM_MOTION, [one.name for one in moves.MOTIONS].index("nod"))
     desk.run(0.5)
@@ -160,7 +161,7 @@ def test_silence_is_degraded_then_lost_and_a_new_hello_brings_it_back():
     desk.driver.port_opened(desk.now)
     assert desk.driver.state(desk.now) == "lost"
     desk.deaf = False
-    desk.driver.express(HAPPY, "happy")
+    desk.driver.express(HAPPY)
     desk.tell(hello="daemon 1.12.0", joints=[0.3] * 6)
     desk.run(1.0)
     assert desk.driver.state(desk.now) == "ready"

@@ -16,13 +16,13 @@ import pytest
 import serial
 
 import robot
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers import DRIVERS
 from robot.drivers.reachy.hand import head_angles, head_pose
 from robot.drivers.reachy.line import ReachyLine, open_reachy
 from robot.errors import RobotError
 
-HAPPY = Emotion(0.8, 0.6)
+HAPPY = Emotion(0.8, 0.6, "happy")
 INSTALLED = importlib.util.find_spec("reachy_mini") is not None
 
 
@@ -83,7 +83,7 @@ def test_a_mood_reaches_the_robot_and_what_it_measures_comes_back(connected, soo
     mini = StandIn()
     with connected(mini) as reachy:
         assert reachy.catalogue.firmware == "daemon 9.9"
-        reachy.express(HAPPY, "happy")
+        reachy.express(HAPPY)
         soon(lambda: reachy.telemetry.acknowledged == HAPPY)
         soon(lambda: len(mini.targets) > 3)
         joints = reachy.telemetry.joints
@@ -108,7 +108,7 @@ def test_a_daemon_that_dies_is_a_port_that_is_unplugged_and_comes_back(connected
         mini.dead = True
         soon(lambda: reachy.telemetry.state == "lost")
         mini.dead = False
-        reachy.express(HAPPY, "happy")
+        reachy.express(HAPPY)
         soon(lambda: reachy.telemetry.acknowledged == HAPPY)
 
 
@@ -166,7 +166,7 @@ def test_its_own_simulator_shows_moods_dies_and_comes_back(soon):
             reachy = reachy or connected()
         assert reachy is not None
         with reachy:
-            reachy.express(HAPPY, "happy")
+            reachy.express(HAPPY)
             soon(lambda: reachy.telemetry.acknowledged == HAPPY)
             soon(lambda: abs(reachy.telemetry.joints["right antenna"]) > 0.2, within=10)
             os.kill(daemon.pid, signal.SIGKILL)

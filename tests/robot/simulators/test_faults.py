@@ -14,7 +14,7 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers import DRIVERS
 from robot.protocol import messages as m
 from robot.protocol import timing

@@ -4,7 +4,7 @@ import pytest
 import serial
 
 import robot
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.drivers.cubeling.host import HostLink
 from robot.errors import RobotError
 from robot.protocol import timing

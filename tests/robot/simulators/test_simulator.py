@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
 from robot.simulators.cubeling.body import MAX_EMOTION_SPEED, STEP_S, Battery, DinosaurBody

@@ -13,7 +13,7 @@ def lived(url: str) -> tuple[list[tuple[str, bytes, float]], SteppedRobot]:
     wire: list[tuple[str, bytes, float]] = []
     robot = SteppedRobot(url, on_bytes=lambda *one: wire.append(one))
     for index in range(400):
-        robot.express(Emotion(index / 400, 0.5), "happy")
+        robot.express(Emotion(index / 400, 0.5, "happy"))
         robot.advance(0.05)
     return wire, robot
 
@@ -29,13 +29,13 @@ def test_the_same_calls_give_the_same_bytes_at_the_same_times(url):
 
 def test_time_goes_on_only_when_it_is_told():
     robot = SteppedRobot("sim:cubeling")
-    robot.express(Emotion(0.8, 0.5), "happy")
+    robot.express(Emotion(0.8, 0.5, "happy"))
     before = robot.telemetry
     assert before.acknowledged is None
     assert robot.telemetry == before
     robot.advance(0.02)
     after = robot.telemetry
-    assert after.acknowledged == Emotion(0.8, 0.5)
+    assert after.acknowledged == Emotion(0.8, 0.5, "happy")
 
 
 @pytest.mark.parametrize("seconds", [-0.1, float("nan"), float("inf")])
@@ -49,11 +49,11 @@ def test_a_time_that_has_no_end_or_is_none_is_refused(seconds):
 
 def test_whatever_befalls_the_line_the_last_emotion_is_on_the_robot_in_the_end():
     _, robot = lived(FAULTS)
-    robot.express(Emotion(-0.9, 0.7), "angry")
+    robot.express(Emotion(-0.9, 0.7, "angry"))
     for _ in range(400):
         robot.advance(0.05)
         known = robot.telemetry
-        if known.acknowledged == Emotion(-0.9, 0.7) and known.label == "angry":
+        if known.acknowledged == Emotion(-0.9, 0.7, "angry") and known.label == "angry":
             break
     else:
         pytest.fail("not within 20 s of virtual time")

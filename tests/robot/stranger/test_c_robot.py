@@ -124,7 +124,7 @@ def url(build) -> Iterator[str]:
 def test_our_host_is_connected_and_obeyed_on_a_real_line(url, soon):
     with robot.connect(url) as stranger:
         assert stranger.catalogue.motions == ("nod", "wag", "prick up")
-        stranger.express(robot.Emotion(-0.6, -0.4), "sad")
+        stranger.express(robot.Emotion(-0.6, -0.4, "sad"))
         soon(lambda: stranger.telemetry.label == "sad")
         stranger.play("wag")
         soon(lambda: stranger.telemetry.motion == "wag")

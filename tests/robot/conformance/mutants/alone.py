@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import sin
 from typing import Any
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.protocol import messages as m
 from robot.protocol.schema import pack, unpack
 from robot.protocol.wire import encode_frame

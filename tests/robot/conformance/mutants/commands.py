@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import sin
 from typing import Any
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.protocol import messages as m
 from robot.protocol.schema import unpack
 from tests.robot.conformance.mutants.base import Mutant, breaks

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.protocol import messages as m
 from robot.protocol.schema import MESSAGES
 from tests.robot.conformance.mutants.base import Mutant, breaks

@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import sin
 from typing import Any
 
-from affect.emotion import Emotion
+from affect import Emotion
 from robot.protocol import messages as m
 from tests.robot.conformance.mutants.base import Mutant, breaks
 from tests.robot.conformance.mutants.commands import Commanded

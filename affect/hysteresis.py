@@ -1,0 +1,39 @@
+"""The three labels of the thesis, chosen by the valence with hysteresis."""
+
+from typing import Literal
+
+Label = Literal["angry", "neutral", "happy"]
+
+LABELS: tuple[Label, ...] = ("neutral", "happy", "angry")
+"""The labels; the first is the initial one."""
+
+HAPPY_ABOVE = 0.33
+"""Valence above which an emotion is called happy (Fernández-Baena 2015, section 5.3, names the
+moods; the value is the specification's)."""
+
+ANGRY_BELOW = -0.33
+"""Valence below which it is called angry."""
+
+
+def next_label(
+    label: Label,
+    valence: float,
+    happy_above: float = HAPPY_ABOVE,
+    angry_below: float = ANGRY_BELOW,
+    hysteresis: float = 0.05,
+) -> Label:
+    """Return the label that follows `label` at a valence.
+
+    Happy is entered above `happy_above` and left below `happy_above` − `hysteresis`; angry
+    likewise. The label between happy and angry is always neutral, however far the valence jumps.
+
+    >>> next_label("neutral", 0.30), next_label("happy", 0.30), next_label("happy", -1.0)
+    ('neutral', 'happy', 'neutral')
+    """
+    if label == "happy":
+        return "happy" if valence >= happy_above - hysteresis else "neutral"
+    if label == "angry":
+        return "angry" if valence <= angry_below + hysteresis else "neutral"
+    if valence > happy_above:
+        return "happy"
+    return "angry" if valence < angry_below else "neutral"
