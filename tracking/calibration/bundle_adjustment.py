@@ -12,17 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.calibration.model import (
-    BLOOM_SIGMA_PX,
-    CalibrationModel,
-    CalibrationTarget,
-    add_priors,
-    apply_step,
-    free_parameters,
-    linearise,
-    prior_cost,
-    residuals,
-)
+from tracking.calibration.model import BLOOM_SIGMA_PX, CalibrationModel
 from tracking.calibration.view import View
 
 Array = NDArray[np.float64]
@@ -58,17 +48,15 @@ class AdjustmentResult:
     """The minimum: squared residuals in units of their standard deviations, priors included."""
 
 
-def adjust(
-    views: Sequence[View], start: CalibrationModel, target: CalibrationTarget
-) -> AdjustmentResult:
+def adjust(views: Sequence[View], model: CalibrationModel) -> AdjustmentResult:
     """Return the unknowns that fit the measurements best, from a first guess."""
-    model, damping = start, 1e-3
-    sigma = _robust_sigma(views, model, target)
-    shared, blocks = _normal_equations(views, model, target, sigma)
-    cost = _cost(views, model, target, sigma)
+    damping = 1e-3
+    sigma = _robust_sigma(views, model)
+    equations = _normal_equations(views, model, sigma)
+    cost = _cost(views, model, sigma)
     for _ in range(MAX_ITERATIONS):
-        moved = apply_step(model, target, *_solve(shared, blocks, damping, target))
-        new_cost = _cost(views, moved, target, sigma)
+        moved = model.moved(*equations.solve(damping, model.free_parameters))
+        new_cost = _cost(views, moved, sigma)
         if new_cost > cost:
             damping *= 8
             if damping > 1e6:
@@ -76,18 +64,19 @@ def adjust(
             continue
         gain = cost - new_cost
         model, damping = moved, max(1e-9, damping / 5)
-        sigma = _robust_sigma(views, model, target)
-        shared, blocks = _normal_equations(views, model, target, sigma)
-        cost = _cost(views, model, target, sigma)
+        sigma = _robust_sigma(views, model)
+        equations = _normal_equations(views, model, sigma)
+        cost = _cost(views, model, sigma)
         if gain < MIN_GAIN * max(1.0, cost):
             break
-    return _result(views, model, target, sigma, cost)
-
-
-def _all_residuals(
-    views: Sequence[View], model: CalibrationModel, target: CalibrationTarget
-) -> list[Array]:
-    return [residuals(view, model, number, target) for number, view in enumerate(views)]
+    residuals = model.residuals(views)
+    clipped = [np.minimum(np.abs(residual), 3.0) for residual in residuals]
+    view_residuals = np.array([np.sqrt((part**2).mean()) for part in clipped])
+    inflation = _correlation_inflation(views, residuals, sigma)
+    equations = _normal_equations(views, model, sigma * np.sqrt(inflation))
+    return AdjustmentResult(
+        model, equations.covariance(model.free_parameters), sigma, view_residuals, cost
+    )
 
 
 def _huber_weights(residual: Array, sigma: float) -> Array:
@@ -95,43 +84,30 @@ def _huber_weights(residual: Array, sigma: float) -> Array:
     return np.asarray(1 / np.maximum(1.0, np.abs(residual) / (2 * sigma)), np.float64)
 
 
-def _robust_sigma(
-    views: Sequence[View], model: CalibrationModel, target: CalibrationTarget
-) -> float:
+def _robust_sigma(views: Sequence[View], model: CalibrationModel) -> float:
     """Return the robust standard deviation of a row [px], corrected for degrees of freedom."""
-    residual = np.concatenate(_all_residuals(views, model, target))
-    unknowns = 7 * len(views) + len(free_parameters(target))
+    residual = np.concatenate(model.residuals(views))
+    unknowns = 7 * len(views) + len(model.free_parameters)
     correction = len(residual) / max(len(residual) - unknowns, 0.25 * len(residual))
     sigma = 1.4826 * float(np.median(np.abs(residual))) * float(np.sqrt(correction))
     return max(MIN_SIGMA_PX, sigma)
 
 
-def _cost(
-    views: Sequence[View], model: CalibrationModel, target: CalibrationTarget, sigma: float
-) -> float:
+def _cost(views: Sequence[View], model: CalibrationModel, sigma: float) -> float:
     total = 0.0
-    for residual in _all_residuals(views, model, target):
+    for residual in model.residuals(views):
         scaled = np.abs(residual) / sigma
         total += float(np.where(scaled < 2, scaled**2, 4 * scaled - 4).sum())
-    return total + float((model.blooms**2).sum()) / BLOOM_SIGMA_PX**2 + prior_cost(model, target)
-
-
-NormalEquations = tuple[Array, Array]
-"""Normal matrix and right side."""
+    return total + float((model.blooms**2).sum()) / BLOOM_SIGMA_PX**2 + model.prior_cost
 
 
 @dataclass(frozen=True)
 class _ViewBlock:
-    """The normal equations of one view's own unknowns."""
+    """Normal equations of one view's own unknowns, and their coupling to the shared ones."""
 
     normal: Array
-    """(7, 7)."""
-
     right: Array
-    """(7,)."""
-
     cross: Array
-    """Coupling to the shared unknowns, (7, 9 + 6 P)."""
 
     def solve(self, right: Array, damping: float) -> Array:
         """Solve the damped equations for one or several right sides."""
@@ -139,13 +115,47 @@ class _ViewBlock:
         return np.asarray(np.linalg.solve(damped, right))
 
 
+@dataclass(frozen=True)
+class _NormalEquations:
+    """Normal equations of the shared unknowns, and those of each view."""
+
+    normal: Array
+    right: Array
+    blocks: list[_ViewBlock]
+
+    def reduced(self, damping: float) -> tuple[Array, Array]:
+        """Eliminate the views."""
+        normal, right = self.normal.copy(), self.right.copy()
+        normal[np.diag_indices(len(normal))] *= 1 + damping
+        for block in self.blocks:
+            solved = block.solve(np.column_stack([block.cross, block.right]), damping)
+            normal -= block.cross.T @ solved[:, :-1]
+            right -= block.cross.T @ solved[:, -1]
+        return normal, right
+
+    def solve(self, damping: float, free: NDArray[np.intp]) -> tuple[Array, list[Array]]:
+        """Return the step of the shared unknowns and that of each view."""
+        normal, right = self.reduced(damping)
+        step = np.zeros(len(right))
+        step[free] = np.linalg.solve(normal[np.ix_(free, free)], right[free])
+        by_view = [block.solve(block.right - block.cross @ step, damping) for block in self.blocks]
+        return step, by_view
+
+    def covariance(self, free: NDArray[np.intp]) -> Array:
+        """Return the covariance of the shared unknowns; zero for those that are not free."""
+        normal, _ = self.reduced(0.0)
+        covariance = np.zeros_like(normal)
+        covariance[np.ix_(free, free)] = np.linalg.inv(normal[np.ix_(free, free)])
+        return covariance
+
+
 def _normal_equations(
-    views: Sequence[View], model: CalibrationModel, target: CalibrationTarget, sigma: float
-) -> tuple[NormalEquations, list[_ViewBlock]]:
+    views: Sequence[View], model: CalibrationModel, sigma: float
+) -> _NormalEquations:
     count = 9 + 6 * len(model.plates)
     normal, right, blocks = np.zeros((count, count)), np.zeros(count), []
     for number, view in enumerate(views):
-        residual, by_camera, by_plate, by_view = linearise(view, model, number, target)
+        residual, by_camera, by_plate, by_view = model.linearise(view, number)
         rows = np.zeros((len(residual), count))
         rows[:, :9] = by_camera
         columns = 9 + 6 * view.plates[:, None] + np.arange(6)
@@ -158,65 +168,21 @@ def _normal_equations(
         own_normal[6, 6] += 1 / BLOOM_SIGMA_PX**2
         own_right[6] -= model.blooms[number] / BLOOM_SIGMA_PX**2
         blocks.append(_ViewBlock(own_normal, own_right, by_view.T @ (rows * weights)))
-    add_priors(normal, right, model, target)
-    return (normal, right), blocks
+    model.add_priors(normal, right)
+    return _NormalEquations(normal, right, blocks)
 
 
-def _reduce(
-    shared: NormalEquations, blocks: Sequence[_ViewBlock], damping: float
-) -> NormalEquations:
-    """Eliminate the views."""
-    normal, right = shared[0].copy(), shared[1].copy()
-    normal[np.diag_indices(len(normal))] *= 1 + damping
-    for block in blocks:
-        solved = block.solve(np.column_stack([block.cross, block.right]), damping)
-        normal -= block.cross.T @ solved[:, :-1]
-        right -= block.cross.T @ solved[:, -1]
-    return normal, right
-
-
-def _solve(
-    shared: NormalEquations,
-    blocks: Sequence[_ViewBlock],
-    damping: float,
-    target: CalibrationTarget,
-) -> tuple[Array, list[Array]]:
-    """Return the step of the shared unknowns and that of each view."""
-    normal, right = _reduce(shared, blocks, damping)
-    free = free_parameters(target)
-    step = np.zeros(len(right))
-    step[free] = np.linalg.solve(normal[np.ix_(free, free)], right[free])
-    return step, [block.solve(block.right - block.cross @ step, damping) for block in blocks]
-
-
-def _result(
-    views: Sequence[View],
-    model: CalibrationModel,
-    target: CalibrationTarget,
-    sigma: float,
-    cost: float,
-) -> AdjustmentResult:
-    residual = _all_residuals(views, model, target)
-    inflation = _correlation_inflation(views, residual, sigma)
-    shared, blocks = _normal_equations(views, model, target, sigma * np.sqrt(inflation))
-    normal, _ = _reduce(shared, blocks, 0.0)
-    free = free_parameters(target)
-    covariance = np.zeros_like(normal)
-    covariance[np.ix_(free, free)] = np.linalg.inv(normal[np.ix_(free, free)])
-    clipped = [np.minimum(np.abs(part), 3.0) for part in residual]
-    view_residuals = np.array([np.sqrt((part**2).mean()) for part in clipped])
-    return AdjustmentResult(model, covariance, sigma, view_residuals, cost)
-
-
-def _correlation_inflation(views: Sequence[View], residual: Sequence[Array], sigma: float) -> float:
+def _correlation_inflation(
+    views: Sequence[View], residuals: Sequence[Array], sigma: float
+) -> float:
     """Return by how much the variance of an edge's mean exceeds that of independent rows, ≥ 1.
 
     The rows of one edge share pixels, light and errors of the model. Treating them as independent
     would understate the uncertainty.
     """
     correlated = independent = 0.0
-    for view, part in zip(views, residual, strict=True):
-        clipped = np.clip(part, -3 * sigma, 3 * sigma)
+    for view, residual in zip(views, residuals, strict=True):
+        clipped = np.clip(residual, -3 * sigma, 3 * sigma)
         sums = np.bincount(view.lines, weights=clipped)
         correlated += float((sums**2).sum())
         independent += float((clipped**2).sum())

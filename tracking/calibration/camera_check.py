@@ -75,8 +75,8 @@ def check(views: Sequence[View], saved: Intrinsics, target: CalibrationTarget) -
     now.check()
     pinhole = camera_vector.from_intrinsics(replace(saved, distortion=np.zeros(5)))
     fixed = replace(target, free=np.zeros(9, np.bool_))
-    model, kept = fit_poses(kept, pinhole, target, now.plates)
-    with_saved = adjust(kept, model, fixed)
+    model, kept = fit_poses(kept, pinhole, fixed, now.plates)
+    with_saved = adjust(kept, model)
     change = now.intrinsics.matrix - saved.matrix
     return CameraCheck(
         with_saved.residual,

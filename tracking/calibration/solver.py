@@ -108,16 +108,14 @@ def solve(views: Sequence[View], target: CalibrationTarget) -> tuple[Calibration
     The calibration, and the views that agree with it.
     """
     _check_count(len(views))
-    model, kept = fit_poses(views, initial_camera(views, target.size), target)
     rigid = replace(target, adjust_plates=False)
-    model = adjust(kept, model, _with_free(rigid, "focal length")).model
+    model, kept = fit_poses(views, initial_camera(views, target.size), rigid)
+    model = _adjusted(kept, model, "focal length").model
     model, kept = fit_poses(kept, model.camera, target)
-    result = adjust(kept, model, _with_free(target, "radial"))
-    model, kept = _drop_outliers(result, kept)
-    result = adjust(kept, model, _with_free(target, "all but k3"))
-    model, kept = _drop_outliers(result, kept)
-    best = adjust(kept, model, _with_free(target, "all but k3"))
-    with_k3 = adjust(kept, best.model, _with_free(target, "all"))
+    model, kept = _without_outliers(kept, _adjusted(kept, model, "radial"))
+    model, kept = _without_outliers(kept, _adjusted(kept, model, "all but k3"))
+    best = _adjusted(kept, model, "all but k3")
+    with_k3 = _adjusted(kept, best.model, "all")
     if best.cost * (best.residual / with_k3.residual) ** 2 - with_k3.cost > MIN_K3_GAIN:
         best = with_k3
     intrinsics = camera_vector.to_intrinsics(best.model.camera, target.size)
@@ -136,11 +134,17 @@ def fit_poses(
     poses = np.array([pose for _, pose in pairs if pose is not None])
     if plates is None:
         plates = np.tile(np.eye(4), (len(target.centres), 1, 1))
-    return CalibrationModel(camera, plates, poses, np.zeros(len(kept))), kept
+    return CalibrationModel(target, camera, plates, poses, np.zeros(len(kept))), kept
 
 
-def _drop_outliers(
-    result: AdjustmentResult, views: Sequence[View]
+def _adjusted(views: Sequence[View], model: CalibrationModel, stage: str) -> AdjustmentResult:
+    free = np.zeros(9, np.bool_)
+    free[list(FREE_PARAMETERS[stage])] = True
+    return adjust(views, replace(model, target=replace(model.target, free=free)))
+
+
+def _without_outliers(
+    views: Sequence[View], result: AdjustmentResult
 ) -> tuple[CalibrationModel, list[View]]:
     """Drop views with large residuals: a misread marker, motion blur, a second cube."""
     usual = max(float(np.median(result.view_residuals)), 0.1)
@@ -165,12 +169,6 @@ def measured_cube(cube: CubeModel, plates: Array) -> CubeModel:
         corners = (face.corners - centre) @ plate[:3, :3].T + centre + plate[:3, 3]
         faces.append(replace(face, corners=corners))
     return replace(cube, faces=tuple(faces))
-
-
-def _with_free(target: CalibrationTarget, stage: str) -> CalibrationTarget:
-    free = np.zeros(9, np.bool_)
-    free[list(FREE_PARAMETERS[stage])] = True
-    return replace(target, free=free)
 
 
 def _check_count(count: int) -> None:

@@ -18,7 +18,7 @@ from tracking.calibration import (
     measured_cube,
     write_board,
 )
-from tracking.calibration.model import CalibrationTarget, residuals
+from tracking.calibration.model import CalibrationTarget
 from tracking.calibration.solver import fit_poses
 from tracking.calibration.view import view_of_corners
 from tracking.geometry import se3
@@ -150,7 +150,7 @@ def test_a_photograph_of_a_charuco_board_fits_its_camera_but_makes_none_alone():
     target = finder.target(camera.size)
     numbers = np.array([*camera.matrix[[0, 1, 0, 1], [0, 1, 2, 2]], *camera.distortion])
     model, kept = fit_poses([view] * 8, numbers, target)
-    away = residuals(kept[0], model, 0, target)
+    away = model.residuals(kept)[0]
     assert np.sqrt((away**2).mean()) < 0.8
     with pytest.raises(TrackingError, match="tilted more"):
         calibrate([view] * 8, target).check()
