@@ -54,11 +54,6 @@ MOTION_READERS: dict[str, MotionReader] = {}
 """Readers of one motion, by the suffix of the file; `characters.formats` registers its own."""
 
 
-def load_clip(path: "str | Path", name: str | None = None) -> Clip:
-    """Read one motion; see `load_motion`."""
-    return load_motion(path, name).clip
-
-
 def load_motion(
     path: "str | Path",
     name: str | None = None,

@@ -17,8 +17,6 @@ def read_file(path: Path, max_bytes: int = MAX_FILE_BYTES) -> bytes:
 
     Raises
     ------
-    FileNotFoundError
-        If there is no such file; `read_required_file` raises a `CharacterError` instead.
     CharacterError
         If it cannot be read, or has more than `max_bytes` bytes.
     """
@@ -32,22 +30,6 @@ def read_file(path: Path, max_bytes: int = MAX_FILE_BYTES) -> bytes:
                 "cut it into pieces"
             )
         return path.read_bytes()
-    except FileNotFoundError:
-        raise
     except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
         reason = getattr(error, "strerror", None) or error
         raise CharacterError(f"{path}: cannot be read ({reason}); check the path") from None
-
-
-def read_required_file(path: Path, max_bytes: int = MAX_FILE_BYTES) -> bytes:
-    """Return the content of a file that must exist.
-
-    Raises
-    ------
-    CharacterError
-        As for `read_file`, and if there is no such file.
-    """
-    try:
-        return read_file(path, max_bytes)
-    except FileNotFoundError as error:
-        raise CharacterError(f"{path}: cannot be read ({error.strerror}); check the path") from None

@@ -1,6 +1,7 @@
 """The sidecar file of a character, `fox.toml` for `fox.glb`: body parts and motion plans."""
 
 import difflib
+import os
 import tomllib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -60,9 +61,9 @@ def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
 
 
 def _document(path: Path) -> dict[str, Any]:
+    if not os.path.exists(path):
+        return {}
     try:
         return tomllib.loads(read_file(path, _MAX_BYTES).decode("utf-8-sig"))
-    except FileNotFoundError:
-        return {}
     except (ValueError, RecursionError) as error:  # not TOML, not UTF-8, or nested too deeply
         raise CharacterError(f"{path}: not TOML ({error}); correct that line") from None

@@ -16,14 +16,7 @@ class DamagedFileError(ValueError):
     """A glTF file is invalid; the message lacks the name of the file."""
 
 
-_INVALID_DATA = (
-    ArithmeticError,
-    AttributeError,
-    LookupError,
-    TypeError,
-    ValueError,
-    struct.error,
-)
+_INVALID_DATA = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, struct.error)
 TEXT, REAL, COUNT, FLAG = "text", "a number", "a count", "true or false"
 _REALS = {n: f"{n} numbers" for n in (2, 3, 4, 16)}
 _NUMBERS = "numbers"

@@ -3,7 +3,6 @@
 import base64
 import struct
 from dataclasses import dataclass, field, replace
-from errno import ENOENT
 from pathlib import Path
 from urllib.parse import unquote, unquote_to_bytes, urlsplit
 
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.formats.gltf.document import DamagedFileError, Json, error_context, parse
-from characters.model.files import read_required_file
+from characters.model.files import read_file
 from characters.skeleton.pose import Array
 
 MAGIC, JSON_CHUNK, BIN_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
@@ -86,6 +85,14 @@ class GltfFile:
         """Return the members of a list at the top of the document, such as "nodes"."""
         return list(self.document.get(kind, ()))
 
+    def scene_extra(self, name: str) -> object:
+        """Return what the first scene with such an extra says, as our own writer states it."""
+        for scene in self.all("scenes"):
+            extras = scene.get("extras")
+            if isinstance(extras, dict) and name in extras:
+                return extras[name]
+        return None
+
     def floats(self, index: int, width: int) -> Array:
         """Return an accessor's array, (count, width), or (count,) for scalars.
 
@@ -138,16 +145,10 @@ class GltfFile:
         name = unquote(uri)
         if urlsplit(uri).scheme or Path(name).is_absolute():
             raise DamagedFileError(f"needs {name!r:.80}, which is not in the same folder")
-        path = self.path.parent / name
         try:
-            if not path.is_file():  # no folders, and no devices, which may have no end
-                raise FileNotFoundError(ENOENT, "no such file")
-            return path.read_bytes()
-        except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise DamagedFileError(
-                f"needs {name!r:.80}, which cannot be read ({reason}); put it into the same folder"
-            ) from None
+            return read_file(self.path.parent / name)
+        except CharacterError as error:
+            raise DamagedFileError(f"needs {name!r:.80}: {error}") from None
 
     def _accessor(self, index: int, width: int) -> NDArray[np.generic]:
         accessor, own_width = self.document["accessors"][index], self.width(index)
@@ -221,7 +222,7 @@ def open_gltf(path: Path) -> GltfFile:
     DamagedFileError
         If its JSON or its buffers are invalid.
     """
-    data = read_required_file(path)
+    data = read_file(path)
     text, blob = _unpacked(path, data)
     try:
         document = parse(text)

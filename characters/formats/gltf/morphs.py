@@ -47,7 +47,9 @@ def read_morph_table(file: GltfFile, tree: NodeTree) -> MorphTable:
                 raise DamagedFileError(f"has {len(weights)} weights for {len(names)} morph targets")
             for name, weight in zip(names, weights, strict=True):
                 defaults.setdefault(name, float(weight))
-    order = _order(file, tuple(defaults))
+    order, stated = tuple(defaults), file.scene_extra("morphs")
+    if isinstance(stated, list) and sorted(map(str, stated)) == sorted(order):
+        order = tuple(stated)  # the order of our own writer
     column = {name: number for number, name in enumerate(order)}
     rest = np.array([defaults[name] for name in order])
     return MorphTable(
@@ -146,13 +148,3 @@ def transformed_morph(morph: Morph, normals: Array, linear: Array) -> Morph:
 def _unit(vectors: Array) -> Array:
     lengths: Array = np.linalg.norm(vectors, axis=1, keepdims=True)
     return vectors / np.maximum(lengths, 1e-12)
-
-
-def _order(file: GltfFile, found: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the names in the order that our own writer states, or as found."""
-    for scene in file.all("scenes"):
-        extras = scene.get("extras")
-        stated = extras.get("morphs") if isinstance(extras, dict) else None
-        if isinstance(stated, list) and sorted(map(str, stated)) == sorted(found):
-            return tuple(stated)
-    return found

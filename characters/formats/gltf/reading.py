@@ -38,13 +38,15 @@ def load_character(path: Path) -> Character:
         parts = read_meshes(file, tree, table)
         if not parts:
             raise DamagedFileError("its skeleton moves no mesh; export the model with its skin")
+        names, stated = tree.skeleton.names, file.scene_extra("semantics")
+        semantics = stated.items() if isinstance(stated, dict) else ()
         character = Character(
             name=file.path.stem,
             skeleton=_with_rest_morphs(tree.skeleton, table.rest),
             clips=read_clips(file, tree, table),
             meshes=tuple(mesh for _, mesh in parts),
             morphs=table.names,
-            semantics=_stated_semantics(file, tree.skeleton),
+            semantics={part: joint for part, joint in semantics if joint in names},
         )
         return character if humanoid is None else _as_humanoid(character, humanoid, parts, tree)
 
@@ -111,16 +113,6 @@ def _read_joints(file: GltfFile) -> tuple[NodeTree, VrmHumanoid | None]:
 def _with_rest_morphs(skeleton: Skeleton, morphs: Array | None) -> Skeleton:
     """Return a skeleton with these morph weights in its rest pose."""
     return replace(skeleton, rest=replace(skeleton.rest, morphs=morphs))
-
-
-def _stated_semantics(file: GltfFile, skeleton: Skeleton) -> dict[str, str]:
-    """Return the body parts that our own writer stated."""
-    for scene in file.all("scenes"):
-        extras = scene.get("extras")
-        stated = extras.get("semantics") if isinstance(extras, dict) else None
-        if isinstance(stated, dict):
-            return {name: j for name, j in stated.items() if j in skeleton.names}
-    return {}
 
 
 def _as_humanoid(

@@ -11,7 +11,7 @@ import numpy as np
 from characters.errors import CharacterError
 from characters.formats.loading import MotionOptions, Performance
 from characters.formats.mocap.asf import AcclaimSkeleton, load_skeleton
-from characters.formats.mocap.axes_and_units import to_metres_y_up
+from characters.formats.mocap.axes_and_units import metric_performance
 from characters.formats.mocap.text import CUT_OFF, TextFile, parse_numbers, quoted
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Array
@@ -50,9 +50,8 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
     values, notes = _values(file, header, body)
     file.check_size(len(body.skeleton), len(values))
     poses = body.channels(header.angle_unit).poses(values)
-    metric = to_metres_y_up(path, body.skeleton, poses, options, stated_unit=body.unit)
-    clip = Clip(path.stem, rate, metric.poses, loop=False)
-    return Performance(metric.skeleton, clip, notes + metric.notes)
+    clip = Clip(path.stem, rate, poses, loop=False)
+    return metric_performance(path, clip, body.skeleton, options, notes, stated_unit=body.unit)
 
 
 def find_skeleton(path: Path) -> Path:

@@ -1,7 +1,7 @@
 """Sections, bones and hierarchy of an .asf file."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -143,48 +143,45 @@ def _children(file: TextFile, lines: list[Line], bones: dict[str, Bone]) -> dict
 
 def _root(file: TextFile, lines: list[Line]) -> Bone:
     """Read the root: it starts at `position` and rotates about the axes of `orientation`."""
-    position = axis = np.zeros(3)
-    order = "xyz"
-    dof: tuple[str, ...] = ("tx", "ty", "tz", "rx", "ry", "rz")
-    for line, words in lines:
-        key = words[0].lower()
-        if key == "order":
-            dof = _dof(file, line, words[1:])
-        elif key == "axis":
-            order = _order(file, line, words[1:])
-        elif key == "position":
-            position = file.vector(line, words[1:], "position")
-        elif key == "orientation":
-            axis = file.vector(line, words[1:], "orientation")
-    return Bone("root", np.array([0.0, 1.0, 0.0]), 0.0, axis, order, dof, position)
+    up, zero = np.array([0.0, 1.0, 0.0]), np.zeros(3)
+    bone = Bone("root", up, 0.0, zero, "xyz", ("tx", "ty", "tz", "rx", "ry", "rz"), zero)
+    for line, (key, *words) in lines:
+        match key.lower():
+            case "order":
+                bone = replace(bone, dof=_dof(file, line, words))
+            case "axis":
+                bone = replace(bone, order=_order(file, line, words))
+            case "position":
+                bone = replace(bone, position=file.vector(line, words, "position"))
+            case "orientation":
+                bone = replace(bone, axis=file.vector(line, words, "orientation"))
+    return bone
 
 
 def _bone(file: TextFile, start: int, lines: list[Line]) -> Bone:
     """Read one bone; its joint limits are not kept: recorded motions stay within them."""
-    name, order = "", "xyz"
-    dof: tuple[str, ...] = ()
-    direction, length, axis = np.zeros(3), 0.0, np.zeros(3)
-    for line, words in lines:
-        key = words[0].lower()
-        if key == "name":
-            name = " ".join(words[1:])
-        elif key == "direction":
-            direction = file.vector(line, words[1:], "direction")
-        elif key == "length":
-            length = file.number(line, " ".join(words[1:]))
-        elif key == "axis":
-            axis = file.vector(line, words[1:4], "axis")
-            order = _order(file, line, words[4:])
-        elif key == "dof":
-            dof = _dof(file, line, words[1:])
-    if not name:
+    bone = Bone("", np.zeros(3), 0.0, np.zeros(3), "xyz", (), np.zeros(3))
+    for line, (key, *words) in lines:
+        match key.lower():
+            case "name":
+                bone = replace(bone, name=" ".join(words))
+            case "direction":
+                bone = replace(bone, direction=file.vector(line, words, "direction"))
+            case "length":
+                bone = replace(bone, length=file.number(line, " ".join(words)))
+            case "axis":
+                axis = file.vector(line, words[:3], "axis")
+                bone = replace(bone, axis=axis, order=_order(file, line, words[3:]))
+            case "dof":
+                bone = replace(bone, dof=_dof(file, line, words))
+    if not bone.name:
         raise file.error(start, "this bone has no name", "name it")
-    norm = float(np.linalg.norm(direction))
-    if length < 0 or (length > 0 and norm < 1e-6):
-        problem = f"bone {quoted(name)} has no direction or a negative length"
+    norm = float(np.linalg.norm(bone.direction))
+    if bone.length < 0 or (bone.length > 0 and norm < 1e-6):
+        problem = f"bone {quoted(bone.name)} has no direction or a negative length"
         raise file.error(start, problem, "correct it")
-    direction = direction / norm if norm >= 1e-6 else np.array([0.0, 1.0, 0.0])
-    return Bone(name, direction, length, axis, order, dof, np.zeros(3))
+    direction = bone.direction / norm if norm >= 1e-6 else np.array([0.0, 1.0, 0.0])
+    return replace(bone, direction=direction)
 
 
 def _order(file: TextFile, line: int, words: list[str]) -> str:

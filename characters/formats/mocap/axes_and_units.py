@@ -6,13 +6,14 @@ closest to that of an adult.
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from characters.errors import CharacterError
-from characters.formats.loading import MotionOptions
+from characters.formats.loading import MotionOptions, Performance
+from characters.motion.clip import Clip
 from characters.skeleton.pose import Array, Pose, Skeleton
 
 ADULT_HEIGHT_M = 1.7
@@ -44,37 +45,26 @@ _NECK = re.compile(r"neck", re.IGNORECASE)
 _FOOT = re.compile(r"foot|ankle|toe|paw|hoof", re.IGNORECASE)
 
 
-@dataclass(frozen=True)
-class MetricRecording:
-    """A recording in metres with +y up."""
-
-    skeleton: Skeleton
-    """The performer."""
-
-    poses: Pose
-    """(frames, joints, …)."""
-
-    notes: tuple[str, ...]
-    """Guesses for a person to check."""
-
-
-def to_metres_y_up(
+def metric_performance(
     path: Path,
+    clip: Clip,
     skeleton: Skeleton,
-    poses: Pose,
     options: MotionOptions,
+    notes: tuple[str, ...],
     stated_unit: float | None = None,
-) -> MetricRecording:
+) -> Performance:
     """Return a recording in metres with +y up.
 
     Parameters
     ----------
     path
         The file, for messages.
-    skeleton, poses
+    clip, skeleton
         In the file's axes and units.
     options
         Scale and vertical axis; each is recognised if it is None.
+    notes
+        Notes of the reader; those on guesses are added.
     stated_unit
         Unit in the file [m]: trusted if it makes a plausible performer.
 
@@ -83,25 +73,27 @@ def to_metres_y_up(
     CharacterError
         If scale or vertical axis is invalid.
     """
-    frames = np.linspace(0, len(poses.rotations) - 1, _SAMPLED_FRAMES).round().astype(int)
+    poses = clip.poses
+    frames = np.linspace(0, len(clip) - 1, _SAMPLED_FRAMES).round().astype(int)
     positions = poses[np.unique(frames)].globals(skeleton)[..., :3, 3]
-    up_notes: tuple[str, ...] = ()
-    scale_notes: tuple[str, ...] = ()
     if options.up is not None:
         axis = _stated_up(path, options.up)
     else:
         axis, up_notes = _recognised_up(skeleton, positions)
+        notes += up_notes
     height = float(np.percentile(np.ptp(positions[..., "xyz".index(axis[1])], axis=-1), 90))
     scale = options.scale
     if scale is None:
         scale, scale_notes = _recognised_unit(height, stated_unit)
+        notes += scale_notes
     elif not _SCALE_RANGE_M[0] <= scale <= _SCALE_RANGE_M[1]:
         raise CharacterError(f"{path}: scale {scale:g} is not a length; give metres per unit")
     turn = _Y_UP_FROM[axis]
-    return MetricRecording(
-        Skeleton(skeleton.names, skeleton.parents, _transformed(skeleton.rest, turn, scale)),
-        _transformed(poses, turn, scale),
-        up_notes + scale_notes,
+    rest = _transformed(skeleton.rest, turn, scale)
+    return Performance(
+        Skeleton(skeleton.names, skeleton.parents, rest),
+        replace(clip, poses=_transformed(poses, turn, scale)),
+        notes,
     )
 
 

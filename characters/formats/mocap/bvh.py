@@ -5,12 +5,13 @@ of Sheffield, 2001. Where files differ, this follows the usual practice of expor
 position channels replace its offset, as they do for the root.
 """
 
+from itertools import chain
 from pathlib import Path
 
 from characters.formats.loading import MotionOptions, Performance
-from characters.formats.mocap.axes_and_units import to_metres_y_up
+from characters.formats.mocap.axes_and_units import metric_performance
 from characters.formats.mocap.bvh_hierarchy import read_hierarchy
-from characters.formats.mocap.text import CUT_OFF, TextFile, parse_rows, quoted
+from characters.formats.mocap.text import CUT_OFF, TextFile, parse_numbers, quoted
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Array
 
@@ -33,9 +34,8 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
     rate, values, notes = _motion(file, hierarchy.end, hierarchy.channel_count)
     file.check_size(len(hierarchy.skeleton), len(values))
     poses = hierarchy.channels.poses(values)
-    metric = to_metres_y_up(path, hierarchy.skeleton, poses, options)
-    clip = Clip(path.stem, rate, metric.poses, loop=False)
-    return Performance(metric.skeleton, clip, hierarchy.notes + notes + metric.notes)
+    clip = Clip(path.stem, rate, poses, loop=False)
+    return metric_performance(path, clip, hierarchy.skeleton, options, hierarchy.notes + notes)
 
 
 def _motion(file: TextFile, start: int, width: int) -> tuple[float, Array, tuple[str, ...]]:
@@ -52,16 +52,16 @@ def _motion(file: TextFile, start: int, width: int) -> tuple[float, Array, tuple
     if len(rows) < stated:
         problem = f"ends after {len(rows)} of {stated:.0f} frames"
         raise file.error(row_lines[-1], problem, CUT_OFF)
-    values = parse_rows(rows)
+    values = parse_numbers(chain.from_iterable(rows))
     if values is None:  # the first invalid number raises
         for line, row in zip(row_lines, rows, strict=True):
             for word in row:
                 file.number(line, word)
-        raise AssertionError("parse_rows refused rows of valid numbers")
+        raise AssertionError("parse_numbers refused valid numbers")
     notes: tuple[str, ...] = ()
     if len(rows) > stated:
         notes = (f"{stated:.0f} frames stated, {len(rows)} found: all are read",)
-    return _nominal_rate(1.0 / frame_time), values, notes
+    return _nominal_rate(1.0 / frame_time), values.reshape(-1, width), notes
 
 
 def _rows(

@@ -2,13 +2,12 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import chain
 from pathlib import Path
 
 import numpy as np
 
 from characters.errors import CharacterError
-from characters.model.files import read_required_file
+from characters.model.files import read_file
 from characters.skeleton.pose import Array
 
 MAX_ABS_NUMBER = 1e9  # beyond any recording in any unit, and sums of such numbers stay finite
@@ -36,7 +35,7 @@ class TextFile:
         CharacterError
             If it cannot be read or is not text.
         """
-        data = read_required_file(path)
+        data = read_file(path)
         try:
             text = data.decode("utf-8-sig")
         except UnicodeDecodeError as error:
@@ -88,12 +87,6 @@ def parse_numbers(words: Iterable[str]) -> Array | None:
         return None
     # A comparison with NaN is false, so this finds NaN too.
     return values if bool((np.abs(values) <= MAX_ABS_NUMBER).all()) else None
-
-
-def parse_rows(rows: list[list[str]]) -> Array | None:
-    """Return rows of words, all of one length, as an array; None as in `parse_numbers`."""
-    values = parse_numbers(chain.from_iterable(rows))
-    return None if values is None else values.reshape(len(rows), -1)
 
 
 def quoted(word: str) -> str:

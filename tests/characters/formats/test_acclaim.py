@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import CharacterError
-from characters.formats import Performance, load_clip, load_motion
+from characters.formats import Performance, load_motion
 from characters.formats.mocap import amc
 from characters.formats.mocap.axes_and_units import CMU_UNIT_M
 from characters.skeleton import rotations
@@ -291,10 +291,10 @@ def test_where_a_long_file_is_cut_for_reading_does_not_matter(
         f"{number}\nroot {number / 7} 16 0 0 0 0\nleg {number} 0 0\nfoot 1\n"
         for number in range(1, 60)
     )
-    whole = load_clip(hopper(tmp_path, amc=text)).poses
+    whole = load_motion(hopper(tmp_path, amc=text)).clip.poses
     for block in (64, 97, 200):
         monkeypatch.setattr(amc, "BLOCK_CHARACTERS", block)
-        pieces = load_clip(tmp_path / "hopper.amc").poses
+        pieces = load_motion(tmp_path / "hopper.amc").clip.poses
         np.testing.assert_array_equal(pieces.rotations, whole.rotations)
         np.testing.assert_array_equal(pieces.translations, whole.translations)
     np.testing.assert_allclose(whole.translations[:, 0, 0], np.arange(1, 60) / 7 * CMU_UNIT_M)
@@ -316,27 +316,27 @@ def test_an_unlikely_unit_is_recognised_by_size_instead(tmp_path: Path) -> None:
 def test_the_skeleton_is_found_by_name_or_alone_or_told(tmp_path: Path) -> None:
     path = hopper(tmp_path)
     number = path.rename(tmp_path / "07_01.amc")
-    assert len(load_clip(number)) == 2  # the only .asf there
+    assert len(load_motion(number).clip) == 2  # the only .asf there
     (tmp_path / "other.asf").write_text("nonsense")
     with pytest.raises(CharacterError, match=r"07_01\.amc: .* 2 \.asf files, none of its name"):
-        load_clip(number)
+        load_motion(number)
     (tmp_path / "hopper.asf").rename(tmp_path / "07.asf")
-    assert len(load_clip(number)) == 2  # the performer's
+    assert len(load_motion(number).clip) == 2  # the performer's
     (tmp_path / "07.asf").rename(tmp_path / "elsewhere.asf")
     assert len(load_motion(number, skeleton=tmp_path / "elsewhere.asf").clip) == 2
     (tmp_path / "elsewhere.asf").unlink()
     (tmp_path / "other.asf").unlink()
     with pytest.raises(CharacterError, match=r"needs its skeleton, .* no \.asf file"):
-        load_clip(number)
+        load_motion(number)
     with pytest.raises(CharacterError, match=r"gone\.asf: cannot be read"):
         load_motion(number, skeleton=tmp_path / "gone.asf")
     with pytest.raises(CharacterError, match=r"a skeleton without motion"):
-        load_clip(tmp_path / "hopper.asf")
+        load_motion(tmp_path / "hopper.asf")
 
 
 def test_the_rate_is_told_or_stated_or_cmus(tmp_path: Path) -> None:
     stated = AMC.replace(":DEGREES", ":DEGREES\n:SAMPLES-PER-SECOND 60")
-    assert load_clip(hopper(tmp_path, amc=stated)).rate == 60.0
+    assert load_motion(hopper(tmp_path, amc=stated)).clip.rate == 60.0
     assert load_motion(tmp_path / "hopper.amc", rate=30.0).clip.rate == 30.0
     with pytest.raises(CharacterError, match="invalid rate of 0 frames"):
         load_motion(tmp_path / "hopper.amc", rate=0.0)
@@ -365,13 +365,13 @@ def test_a_damaged_motion_is_refused_with_its_line(
 ) -> None:
     assert old in AMC
     with pytest.raises(CharacterError, match=rf"hopper\.amc, {message}"):
-        load_clip(hopper(tmp_path, amc=AMC.replace(old, new, 1)))
+        load_motion(hopper(tmp_path, amc=AMC.replace(old, new, 1)))
 
 
 @pytest.mark.parametrize("amc", ["", ":DEGREES\n", "# nothing\n\n"])
 def test_a_motion_without_frames_is_refused(amc: str, tmp_path: Path) -> None:
     with pytest.raises(CharacterError, match=r"hopper\.amc: has no frames"):
-        load_clip(hopper(tmp_path, amc=amc))
+        load_motion(hopper(tmp_path, amc=amc))
 
 
 @pytest.mark.parametrize(
@@ -410,7 +410,7 @@ def test_a_damaged_skeleton_is_refused_with_its_line(
 ) -> None:
     assert old in ASF
     with pytest.raises(CharacterError, match=rf"hopper\.asf(,|:|: bone) {message}"):
-        load_clip(hopper(tmp_path, ASF.replace(old, new, 1)))
+        load_motion(hopper(tmp_path, ASF.replace(old, new, 1)))
 
 
 ODD = [
@@ -467,4 +467,4 @@ def test_junk_is_refused(junk: bytes, kind: str, tmp_path_factory: pytest.TempPa
     path = hopper(tmp_path_factory.mktemp("junk"))
     path.with_suffix(f".{kind}").write_bytes(junk)
     with pytest.raises(CharacterError):
-        load_clip(path)
+        load_motion(path)

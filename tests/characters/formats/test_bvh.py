@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import CharacterError
-from characters.formats import Performance, load_clip, load_motion
+from characters.formats import Performance, load_motion
 from characters.formats.mocap.axes_and_units import CMU_UNIT_M
 from characters.skeleton import rotations
 
@@ -113,7 +113,7 @@ def test_channels_end_sites_and_units(tmp_path: Path) -> None:
     np.testing.assert_allclose(foot, [0.1, 0.05, 0.2])
     down = 0.12 / np.sqrt(2)
     np.testing.assert_allclose(toes, foot + [down, -down, 0], atol=1e-12)
-    assert load_clip(tmp_path / "leg.bvh", "leg").name == "leg"
+    assert load_motion(tmp_path / "leg.bvh", "leg").clip.name == "leg"
 
 
 @pytest.mark.parametrize("order", ["".join(order) for order in itertools.permutations("XYZ")])
@@ -265,7 +265,7 @@ def test_a_damaged_file_is_refused_with_its_line(
 ) -> None:
     assert old in LEG
     with pytest.raises(CharacterError, match=rf"leg\.bvh, {message}"):
-        load_clip(written(tmp_path, LEG.replace(old, new, 1)))
+        load_motion(written(tmp_path, LEG.replace(old, new, 1)))
 
 
 @pytest.mark.parametrize(
@@ -281,7 +281,7 @@ def test_a_damaged_file_is_refused_with_its_line(
 )
 def test_what_is_no_whole_text_is_refused(data: bytes, message: str, tmp_path: Path) -> None:
     with pytest.raises(CharacterError, match=message):
-        load_clip(written(tmp_path, data))
+        load_motion(written(tmp_path, data))
 
 
 def test_line_ends_marks_and_capitals_do_not_matter(tmp_path: Path) -> None:
@@ -293,9 +293,9 @@ def test_line_ends_marks_and_capitals_do_not_matter(tmp_path: Path) -> None:
 
 def test_absent_files_and_wrong_names_are_refused(tmp_path: Path) -> None:
     with pytest.raises(CharacterError, match=r"none\.bvh: cannot be read"):
-        load_clip(tmp_path / "none.bvh")
+        load_motion(tmp_path / "none.bvh")
     with pytest.raises(CharacterError, match="no clip 'run', only 'leg'"):
-        load_clip(written(tmp_path, LEG), "run")
+        load_motion(written(tmp_path, LEG), "run")
 
 
 def test_more_than_memory_holds_is_refused_before_it_is_made(tmp_path: Path) -> None:
@@ -303,7 +303,7 @@ def test_more_than_memory_holds_is_refused_before_it_is_made(tmp_path: Path) -> 
     text = f"HIERARCHY\nROOT r {{ OFFSET 0 0 0 CHANNELS 1 Xposition\n{joints}}}\nMOTION\n"
     text += "Frames: 2000\nFrame Time: 0.01\n" + "0\n" * 2000
     with pytest.raises(CharacterError, match="2000 frames of 20001 joints"):
-        load_clip(written(tmp_path, text))
+        load_motion(written(tmp_path, text))
 
 
 @given(data=st.data())
@@ -340,4 +340,4 @@ def test_nothing_but_a_refusal_of_one_line_comes_out(
 @settings(max_examples=30)
 def test_junk_is_refused(junk: bytes, tmp_path_factory: pytest.TempPathFactory) -> None:
     with pytest.raises(CharacterError):
-        load_clip(written(tmp_path_factory.mktemp("junk"), junk))
+        load_motion(written(tmp_path_factory.mktemp("junk"), junk))

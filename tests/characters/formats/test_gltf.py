@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 from characters import Character, CharacterError, Pose
-from characters.formats import load_clip
-from characters.formats.loading import load_motion
+from characters.formats import load_motion
 from characters.model.character import skin
 from characters.skeleton import rotations
 from tests.characters.formats.built_gltf import SAMPLES, build_arm, glb
@@ -253,13 +252,13 @@ def test_bundled_characters_load_and_say_who_they_are(name):
 def test_one_clip_is_loaded_by_its_name_or_alone(tmp_path, arm, walker):
     arm.animate("LINEAR", [0.0, 1.0], rotations.about("x", [0.0, 1.0]))
     (tmp_path / "arm.glb").write_bytes(arm.bytes())
-    assert load_clip(tmp_path / "arm.glb").name == "a"
+    assert load_motion(tmp_path / "arm.glb").clip.name == "a"
     walker.save(tmp_path / "walker.glb")
-    assert load_clip(tmp_path / "walker.glb", "Run").duration == pytest.approx(0.7)
+    assert load_motion(tmp_path / "walker.glb", "Run").clip.duration == pytest.approx(0.7)
     with pytest.raises(CharacterError, match=r"has idle, Walk, Run.*say which one"):
-        load_clip(tmp_path / "walker.glb")
+        load_motion(tmp_path / "walker.glb")
     with pytest.raises(CharacterError, match="not a motion file"):
-        load_clip(tmp_path / "walk.xyz")
+        load_motion(tmp_path / "walk.xyz")
 
 
 def test_motions_without_a_model_are_read(tmp_path, arm):
