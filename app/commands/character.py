@@ -29,8 +29,8 @@ app = typer.Typer(
     help="Look at characters and motions.", no_args_is_help=True, rich_markup_mode="rich"
 )
 
-FOLDED = 4
-"""Joints below one another of which none was recognised are shown as one line from so many on."""
+MIN_FOLDED_JOINTS = 4
+"""Branches of at least so many unrecognised joints are shown as one line."""
 
 
 @app.callback()
@@ -39,7 +39,7 @@ def group() -> None:
 
 
 @app.command("inspect")
-def look(
+def inspect_command(
     character: Annotated[
         str,
         typer.Argument(
@@ -48,54 +48,54 @@ def look(
     ],
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Folder of the pictures; NAME-pictures without."),
+        typer.Option("--output", "-o", help="Folder for the pictures; default: NAME-pictures."),
     ] = None,
     clips: Annotated[bool, typer.Option("--clips", help="Draw frames of every clip too.")] = False,
     skeleton: Annotated[
-        Path | None, typer.Option(help="The .asf of an .amc, if it does not lie beside it.")
+        Path | None, typer.Option(help="The .asf of an .amc, if it is in another folder.")
     ] = None,
     scale: Annotated[
-        float | None, typer.Option(help="Metres a unit of a motion, if it is not recognised.")
+        float | None, typer.Option(help="Unit of a motion in metres, if it is recognised wrongly.")
     ] = None,
     up: Annotated[
-        str | None, typer.Option(help="What points up in a motion: y, z, -y …, likewise.")
+        str | None, typer.Option(help="Vertical axis of a motion: y, z, -y …, likewise.")
     ] = None,
 ) -> None:
-    """Show the skeleton, sizes, clips and problems of a character, and draw it from all sides.
+    """Show the skeleton, size, clips and problems of a character, and draw it from all sides.
 
-    What each joint was taken for stands beside it. A motion without a body is drawn as a stick
-    figure: left is blue, right is red.
+    The skeleton shows the recognised body part of each joint. A motion without a body is drawn as
+    a stick figure: left is blue, right is red.
 
     Example: [cyan]cubeling character inspect fox.glb --clips -o fox[/]
     """
     console = Console()
     folder = output or Path(f"{Path(character).stem}-pictures")
     if folder.exists() and not folder.is_dir():
-        raise AppError(f"{folder} is a file: name another folder with --output")
-    motion = partial(load_motion, skeleton=skeleton, scale=scale, up=up)
-    found, has_body = _load(character, motion)
-    _tell(console, found)
-    for path in _draw(found.character, folder, clips or not has_body):
-        console.print(f"Drawn: [bold]{escape(str(path))}[/]", soft_wrap=True)
+        raise AppError(f"{folder} is a file: choose another folder with --output")
+    read_motion = partial(load_motion, skeleton=skeleton, scale=scale, up=up)
+    inspection, has_body = _load(character, read_motion)
+    _print(console, inspection)
+    for path in _draw(inspection.character, folder, clips or not has_body):
+        console.print(f"Written: [bold]{escape(str(path))}[/]", soft_wrap=True)
 
 
 def _load(name: str, read_motion: Callable[[Path], Performance]) -> tuple[Inspection, bool]:
-    """Return what there is to know of a character or motion, and whether it has a body."""
+    """Return the inspection of a character or motion, and whether it has a body."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if is_motion_only(name):
             motion = read_motion(Path(name))
             body = stick_figure(Path(name).stem, motion.skeleton, [motion.clip])
-            noted, has_body = list(motion.notes), False
+            notes, has_body = list(motion.notes), False
         else:
-            body, noted, has_body = Character.load(name), [], True
-    repaired = [str(each.message) for each in caught if each.category is CharacterWarning]
-    sentences = [sentence(note, name) for note in (*repaired, *noted)]
+            body, notes, has_body = Character.load(name), [], True
+    repairs = [str(each.message) for each in caught if each.category is CharacterWarning]
+    sentences = [sentence(note, name) for note in (*repairs, *notes)]
     return inspect(body, sentences, has_body), has_body
 
 
 def sentence(note: str, name: str) -> str:
-    """Return a note as a sentence; it does not say again which file it is of.
+    """Return a note as a sentence without the name of its file.
 
     >>> sentence("x.glb: node 'a' is odd; left it", "x.glb")
     "Node 'a' is odd; left it."
@@ -105,7 +105,7 @@ def sentence(note: str, name: str) -> str:
 
 
 def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
-    """Draw a character, and return where the pictures are."""
+    """Draw a character, and return the paths of the pictures."""
     with ExitStack() as closing:
         context = create_context()
         closing.callback(context.release)
@@ -121,8 +121,8 @@ def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
     return [folder / name for name in pictures]
 
 
-def _tell(console: Console, found: Inspection) -> None:
-    character, stats = found.character, found.stats
+def _print(console: Console, inspection: Inspection) -> None:
+    character, stats = inspection.character, inspection.stats
     console.print(f"[bold]{escape(character.name)}[/], {character.anatomy.kind}", highlight=False)
     console.print(
         f"{stats.height:.3g} m tall, {_count(stats.joints, 'joint')}, "
@@ -134,11 +134,11 @@ def _tell(console: Console, found: Inspection) -> None:
     if stats.morphs:
         console.print(f"Morphs: {', '.join(stats.morphs)}", highlight=False, markup=False)
     console.print(_tree(character))
-    if found.clips:
-        console.print(_table(found.clips))
-    if not found.problems:
+    if inspection.clips:
+        console.print(_table(inspection.clips))
+    if not inspection.problems:
         console.print("[green]No problems found.[/]")
-    for problem in found.problems:
+    for problem in inspection.problems:
         console.print("[yellow]![/]", end=" ")
         console.print(problem, markup=False, highlight=False, soft_wrap=True)
 
@@ -148,42 +148,34 @@ def _count(number: int, one: str, many: str = "") -> str:
 
 
 def _tree(character: Character) -> Tree:
-    """Return the skeleton as a tree; what each joint was taken for stands beside it."""
+    """Return the skeleton as a tree with recognised body parts."""
     skeleton, parts = character.skeleton, character.anatomy.parts
-    children, sizes, known = _families(skeleton, set(parts))
+    sizes, known = _branches(skeleton, set(parts))
     tree = Tree("[bold]Skeleton[/]", guide_style="dim")
-    places = {-1: tree}
+    branches = {-1: tree}
     for joint, parent in enumerate(skeleton.parents):
-        if parent not in places:
-            continue  # folded away with a joint above it
-        folded = joint not in known and sizes[joint] >= FOLDED and bool(children[joint])
+        if parent not in branches:
+            continue  # folded with an ancestor
+        folded = joint not in known and sizes[joint] >= MIN_FOLDED_JOINTS
         name = escape(skeleton.names[joint])
-        told = f" [cyan]{parts[joint]}[/]" if joint in parts else ""
+        part = f" [cyan]{parts[joint]}[/]" if joint in parts else ""
         more = f" [dim]and {sizes[joint] - 1} joints below it[/]" if folded else ""
-        branch = places[parent].add(name + told + more, highlight=False)
+        branch = branches[parent].add(name + part + more, highlight=False)
         if not folded:
-            places[joint] = branch
+            branches[joint] = branch
     return tree
 
 
-def _families(
-    skeleton: Skeleton, recognised: set[int]
-) -> tuple[list[list[int]], list[int], set[int]]:
-    """Return each joint's children, how many joints it and those below it are, and which are known.
-
-    Known are those with a recognised one among them.
-    """
-    children: list[list[int]] = [[] for _ in skeleton.parents]
+def _branches(skeleton: Skeleton, recognised: set[int]) -> tuple[list[int], set[int]]:
+    """Return the number of joints in each joint's branch, and the branches with recognised ones."""
     sizes = [1] * len(skeleton)
     known = set(recognised)
-    for joint in reversed(range(len(skeleton))):
-        parent = skeleton.parents[joint]
+    for joint, parent in reversed(list(enumerate(skeleton.parents))):
         if parent >= 0:
-            children[parent].append(joint)
             sizes[parent] += sizes[joint]
             if joint in known:
                 known.add(parent)
-    return children, sizes, known
+    return sizes, known
 
 
 def _table(clips: Sequence[ClipStats]) -> Table:
@@ -198,7 +190,7 @@ def _table(clips: Sequence[ClipStats]) -> Table:
             f"{clip.rate:.4g}",
             "loop" if clip.loop else "once",
             _speed(clip_stats),
-            _feet(clip_stats.contacts),
+            _contacts(clip_stats.contacts),
         )
     return table
 
@@ -206,19 +198,21 @@ def _table(clips: Sequence[ClipStats]) -> Table:
 def _speed(clip_stats: ClipStats) -> str:
     if clip_stats.speed < 5e-3:
         return "[dim]stays[/]"
-    way = " in place" if clip_stats.in_place else "" if clip_stats.clip.root_motion else " no root"
-    return f"{clip_stats.speed:.2f}{way}"
+    suffix = (
+        " in place" if clip_stats.in_place else "" if clip_stats.clip.root_motion else " no root"
+    )
+    return f"{clip_stats.speed:.2f}{suffix}"
 
 
-def _feet(footing: Sequence[FootContactStats]) -> str:
-    """Return how long each foot is down; what all have in common is said once."""
-    if footing and all(foot.share == 1.0 for foot in footing):
+def _contacts(contacts: Sequence[FootContactStats]) -> str:
+    """Return the contact share of each foot, or "always" for all of them."""
+    if contacts and all(foot.share == 1.0 for foot in contacts):
         return "[dim]always[/]"
     each = []
-    for foot in footing:
+    for foot in contacts:
         name = escape(foot.foot).replace("Foot", "").replace("Front", " front") or foot.foot
-        times = f" in {foot.landings}" if foot.landings > 1 else ""
-        each.append(f"{name} {100 * foot.share:.0f} %{times}")
+        landings = f" in {foot.landings}" if foot.landings > 1 else ""
+        each.append(f"{name} {100 * foot.share:.0f} %{landings}")
     return ", ".join(each)
 
 

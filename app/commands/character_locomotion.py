@@ -14,10 +14,11 @@ from rich.table import Table
 from app.errors import AppError
 from characters import Character
 from characters.retargeting import GaitReport, load_recording, make_locomotion
+from characters.retargeting.locomotion.locomotion_clips import YAW_RATE_PER_ANGULAR
 
 Files = Annotated[
     list[str] | None,
-    typer.Option(help="A motion of it: .bvh, .amc, or FILE.glb#CLIP; straight or curved."),
+    typer.Option(help="A motion: .bvh, .amc, or FILE.glb#CLIP; straight or curved."),
 ]
 
 
@@ -30,42 +31,42 @@ def locomotion(
     idle: Annotated[str | None, typer.Option(help="A motion of standing.")] = None,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="The .glb to write; NAME-walks.glb without."),
+        typer.Option("--output", "-o", help="The .glb to write; default: NAME-walks.glb."),
     ] = None,
     skeleton: Annotated[
-        Path | None, typer.Option(help="The .asf of .amc files that do not lie beside one.")
+        Path | None, typer.Option(help="The .asf of .amc files, if it is in another folder.")
     ] = None,
 ) -> None:
-    """Teach a character to walk and run where the cube sends it, from your own recordings.
+    """Make the walking and running clips of a character from your own recordings.
 
-    One walk is enough. The best cycle of each recording is cut out, put on the character's
-    skeleton and bent to all the curves that steering needs, with feet that hold. Repeat
-    [bold]--walk[/] and [bold]--run[/] for recordings of curves.
+    One walk is enough. The best cycle of each recording is retargeted to the character and bent to
+    all the curves that steering needs, without sliding feet. Repeat [bold]--walk[/] and
+    [bold]--run[/] for recordings of curves.
 
     Example: [cyan]cubeling character locomotion me.glb --walk walk.bvh --run run.bvh -o my.glb[/]
     """
     if not walk:
-        raise AppError("nothing to walk with: give at least one recording with --walk")
+        raise AppError("no walk: give at least one recording with --walk")
     target = output or Path(f"{Path(character).stem}-walks.glb")
     if target.suffix.lower() != ".glb":
         raise AppError(f"a character is written as a .glb file, not as '{target}'")
     for given in (character, *walk, *(run or ()), idle or ""):
         if _same(target, Path(given.partition("#")[0])):
-            raise AppError(f"'{target}' would be written over what it is made of: name another -o")
-    body = Character.load(character)
+            raise AppError(f"'{target}' would overwrite one of its inputs: choose another -o")
+    original = Character.load(character)
     walks, runs = (
         [load_recording(name, skeleton) for name in names or ()] for names in (walk, run)
     )
     standing = load_recording(idle, skeleton) if idle else None
-    made = make_locomotion(body, walks, runs, standing)
-    made.character.save(target)
+    result = make_locomotion(original, walks, runs, standing)
+    result.character.save(target)
     console = Console()
-    console.print(table("Found in the recordings", made.recordings, seams=True))
-    console.print(table("Made for the movement tree", made.clips))
-    speeds = {each.name: each.speed for each in made.clips}
+    console.print(table("Found in the recordings", result.recordings, seams=True))
+    console.print(table("Made for the movement trees", result.clips))
+    speeds = {each.name: each.speed for each in result.clips}
     if speeds.get("Run", math.inf) < speeds["Walk"]:
-        console.print("[yellow]![/] It runs slower than it walks: were the two exchanged?")
-    _say_joints(console, made.character, target)
+        console.print("[yellow]![/] It runs slower than it walks: are the recordings exchanged?")
+    _write_sidecar(console, result.character, target)
     name = escape(str(target))
     console.print(f"[bold]{name}[/] walks: [cyan]cubeling play follow --character {name}[/]")
 
@@ -77,8 +78,8 @@ def _same(one: Path, other: Path) -> bool:
         return False
 
 
-def table(title: str, found: Sequence[GaitReport], seams: bool = False) -> Table:
-    """Return what was found or made, one a row."""
+def table(title: str, gaits: Sequence[GaitReport], seams: bool = False) -> Table:
+    """Return a table of gaits."""
     rows = Table(title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD)
     rows.add_column("recording" if seams else "clip", no_wrap=not seams)
     if not seams:
@@ -87,9 +88,9 @@ def table(title: str, found: Sequence[GaitReport], seams: bool = False) -> Table
         rows.add_column(heading, justify="right", no_wrap=True)
     if seams:
         rows.add_column("seam", justify="right")
-    for each in found:
+    for each in gaits:
         cells = [each.name] if seams else [each.name, each.origin]
-        cells += [f"{each.duration:.2f} s", f"{each.speed:.2f} m/s", _side(each.angular)]
+        cells += [f"{each.duration:.2f} s", f"{each.speed:.2f} m/s", _turn(each.angular)]
         cells.append(f"{100 * each.slide:.1f} cm/s")
         if seams:
             cells.append(f"{100 * each.seam:.1f} cm")
@@ -97,26 +98,26 @@ def table(title: str, found: Sequence[GaitReport], seams: bool = False) -> Table
     return rows
 
 
-def _side(angular: float) -> str:
-    """Return how sharply something turns, for a person."""
-    degrees = round(1.5 * abs(angular))
+def _turn(angular: float) -> str:
+    """Return a turn as text, from the parameter Angular."""
+    degrees = round(YAW_RATE_PER_ANGULAR * abs(angular))
     if degrees < 2:
         return "straight"
     return f"{degrees}°/s {'right' if angular > 0 else 'left'}"
 
 
-def _say_joints(console: Console, character: Character, target: Path) -> None:
-    """Keep what the joints are, where it was said, in a file beside the character."""
+def _write_sidecar(console: Console, character: Character, target: Path) -> None:
+    """Write the stated body parts to the sidecar file of the character."""
     if not character.semantics:
         return
-    beside = target.with_suffix(".toml")
-    name = escape(str(beside))
-    if beside.exists():
-        console.print(f"[yellow]![/] {name} is there already: see that its joints are right.")
+    sidecar = target.with_suffix(".toml")
+    name = escape(str(sidecar))
+    if sidecar.exists():
+        console.print(rf"[yellow]![/] {name} exists already: check its \[joints] table.")
         return
     lines = [f"{part} = {_quoted(joint)}" for part, joint in character.semantics.items()]
-    beside.write_text("[joints]\n" + "\n".join(lines) + "\n", encoding="utf-8")
-    console.print(f"[bold]{name}[/] keeps which joint is which part.")
+    sidecar.write_text("[joints]\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    console.print(f"[bold]{name}[/] states which joint is which body part.")
 
 
 def _quoted(text: str) -> str:

@@ -1,4 +1,4 @@
-"""How well motions sit on other skeletons: `python -m tests.bench.retarget`."""
+"""Quality of retargeting: `python -m tests.bench.retarget`."""
 
 import time
 from dataclasses import replace
@@ -16,8 +16,8 @@ from characters.retargeting.footskate import find_foot_contacts
 from characters.retargeting.rig import Rig, leg_pairs
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
-PERSON = 1.7
-"""Height of the body to which slides are scaled [m]."""
+PERSON_HEIGHT_M = 1.7
+"""Slides are scaled to a body of this height."""
 
 LIMBS = [
     (side + start, side + end)
@@ -43,7 +43,7 @@ CASES += [
 
 
 def directions(clip: Clip, rig: Rig) -> NDArray[np.float64]:
-    """Return unit vectors of the limbs, (frames, limbs, 3); zeros where a limb is missing."""
+    """Return unit vectors of the limbs, (frames, limbs, 3); zeros for missing limbs."""
     at = clip.poses.globals(rig.skeleton)[..., :3, 3]
     found = np.zeros((len(clip), len(LIMBS), 3))
     for number, (start, end) in enumerate(LIMBS):
@@ -55,16 +55,16 @@ def directions(clip: Clip, rig: Rig) -> NDArray[np.float64]:
 
 
 def limb_error(source: Recording, made: Clip, rig: Rig) -> float:
-    """Return the mean angle between limbs of both bodies [degrees]."""
+    """Return the mean angle between the limbs of both rigs [degrees]."""
     theirs = directions(source.clip, Rig(source.skeleton, source.anatomy))
     cosines = np.clip((directions(made, rig) * theirs).sum(-1), -1.0, 1.0)
     return float(np.degrees(np.arccos(cosines)).mean())
 
 
 def feet(source: Recording, made: Clip, rig: Rig, height: float) -> tuple[float, float, float]:
-    """Return mean and greatest slide of standing feet [cm/s], and how deep feet sink [cm].
+    """Return mean and greatest slide of standing feet [cm/s], and the depth of sinking feet [cm].
 
-    All as of a person 1.7 m tall; a foot stands when its ball does in the source.
+    Scaled to a person 1.7 m tall; a foot stands when its ball does in the source.
     """
     theirs = Rig(source.skeleton, source.anatomy)
     pairs = leg_pairs(theirs, rig)
@@ -74,14 +74,14 @@ def feet(source: Recording, made: Clip, rig: Rig, height: float) -> tuple[float,
     rest = rig.rest_positions[ends, 1]
     speeds = np.linalg.norm(np.diff(at[..., [0, 2]], axis=0), axis=-1) * made.rate
     held = speeds[down[1:] & down[:-1]] if down.any() else np.zeros(1)
-    scale = 100 * PERSON / height
+    scale = 100 * PERSON_HEIGHT_M / height
     sunk = max(float((rest - at[..., 1]).max()), 0.0)
     return float(held.mean()) * scale, float(held.max()) * scale, sunk * scale
 
 
 def main() -> None:
     """Print the table."""
-    table = Table(title="Motions on other skeletons, measured as of a person 1.7 m tall")
+    table = Table(title="Retargeted motions, measured at the size of a person 1.7 m tall")
     table.add_column("motion")
     table.add_column("on")
     headings = ("limbs off, bare", "limbs off", "slide, bare", "slide", "worst", "sinks", "ms/s")

@@ -42,7 +42,7 @@ def test_what_it_is_made_of_is_not_written_over(cubeling, tmp_path):
     for arguments in ([mine, "--walk", "human#Walk"], ["human", "--walk", f"{mine}#Walk"]):
         code, _, err = cubeling("character", "locomotion", *arguments, "-o", "mine.glb")
         assert code == 2
-        assert "written over" in err
+        assert "overwrite" in err
     assert mine.read_bytes() == before
 
 
