@@ -137,7 +137,7 @@ def _measure(
     reach = np.minimum(MAX_REACH_PX, MAX_REACH_CELLS * np.abs(cell))
     good = np.abs(cell) > MIN_CELL_PX
     good &= layout.end_distances * length > MIN_END_DISTANCE_PX
-    good &= patch.room(pixels) > reach + 2
+    good &= patch.border_distance(pixels) > reach + 2
     if np.count_nonzero(good) < MIN_POINTS:
         return None
     offset, contrast = _fit_steps(patch, pixels[good], normals[good], reach[good], width)
@@ -212,7 +212,9 @@ def _fit_steps(
 ) -> tuple[Array, Array]:
     """Fit a blurred step across each edge, as `edge_refinement` does: offset [px], contrast."""
     positions = np.linspace(-1, 1, SAMPLES)[None] * reach[:, None]
-    values = patch.at(pixels[:, None] + positions[..., None] * normals[:, None]).astype(np.float64)
+    values = patch.sample(pixels[:, None] + positions[..., None] * normals[:, None]).astype(
+        np.float64
+    )
     softness = np.minimum(width, reach * 0.45)[:, None]
     step = np.tanh(positions / softness) / 2
     slope = (0.25 - step**2) * 2 / softness

@@ -86,7 +86,7 @@ class CubeFinder:
 
     def measure(self, grey: Grey, found: TargetDetection) -> View | None:
         """Measure all edges of all detected markers."""
-        time, patch = found.corners.timestamp, Patch.of(grey)
+        time, patch = found.corners.timestamp, Patch.crop(grey)
         parts = [self._meter.measure(patch, seen, time) for seen in found.observations]
         good = [part for part in parts if part is not None]
         return join_views(time, good) if good else None

@@ -69,8 +69,8 @@ class CellReader:
         points = points @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
         pixels = self._projection.project(points)
         count = len(self._white[0])
-        values = patch.at(pixels[:, None])[:, 0].reshape(-1, count)
-        inside = (patch.room(pixels) > 0).reshape(-1, count)
+        values = patch.sample(pixels[:, None])[:, 0].reshape(-1, count)
+        inside = (patch.border_distance(pixels) > 0).reshape(-1, count)
         return CellReading(
             {
                 self._faces.names[number]: _agreement(value[seen], self._white[number][seen])

@@ -1,4 +1,4 @@
-"""The part of a grey picture that the tracker looks at, and its values between the pixels."""
+"""Grey patches of an image, sampled between the pixels."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -11,42 +11,40 @@ Array = NDArray[np.float64]
 
 Floats = NDArray[np.float32]
 
-BORDER = cv2.BORDER_REPLICATE
-
 Region = tuple[int, int, int, int]
-"""Left, top, right, bottom [px]; right and bottom are not part of it."""
+"""Left, top, right, bottom [px]; right and bottom are exclusive."""
 
 
 @dataclass(frozen=True)
 class Patch:
-    """A rectangle of a picture, in grey."""
+    """A rectangle of an image, in grey."""
 
     grey: Floats
     """Grey values, 0…255, (h, w)."""
 
     left: int
-    """Column of the picture in which it begins [px]."""
+    """First column in the image [px]."""
 
     top: int
-    """Row of the picture in which it begins [px]."""
+    """First row in the image [px]."""
 
     @classmethod
-    def of(
+    def crop(
         cls,
         image: NDArray[np.uint8],
         region: Region | None = None,
         tone: Floats | None = None,
     ) -> Self:
-        """Cut a region out of a picture.
+        """Crop a region of an image.
 
         Parameters
         ----------
         image
-            The picture, (H, W, 3) BGR or (H, W) grey.
+            The image, (H, W, 3) BGR or (H, W) grey.
         region
-            What to cut out; None for all of it.
+            The bounds; None for the whole image.
         tone
-            What each grey value stands for, (256,); None for itself.
+            Light for each grey value, (256,); None to keep the grey values.
         """
         left, top, right, bottom = region or (0, 0, image.shape[1], image.shape[0])
         part = image[top:bottom, left:right]
@@ -54,28 +52,28 @@ class Patch:
         values = grey.astype(np.float32) if tone is None else cv2.LUT(grey, tone)
         return cls(np.asarray(values, np.float32), left, top)
 
-    def room(self, pixels: Array) -> Array:
+    def border_distance(self, pixels: Array) -> Array:
         """Distance of pixels, (N, 2), to the nearest border, negative outside, (N,) [px]."""
         height, width = self.grey.shape
         inner = pixels - (self.left, self.top)
         least = np.minimum(inner, (width - 1, height - 1) - inner)
         return np.asarray(np.minimum(least[:, 0], least[:, 1]), np.float64)
 
-    def at(self, places: Array) -> Floats:
-        """Grey values between pixel centres, bilinear, places (N, M, 2) [px] → (N, M)."""
-        inner = (places - (self.left, self.top)).astype(np.float32)
-        return self.inside(inner[..., 0], inner[..., 1])
+    def sample(self, positions: Array) -> Floats:
+        """Grey values between pixel centres, bilinear, positions (N, M, 2) [px] → (N, M)."""
+        inner = (positions - (self.left, self.top)).astype(np.float32)
+        return self.sample_local(inner[..., 0], inner[..., 1])
 
-    def inside(self, x: Floats, y: Floats) -> Floats:
-        """Do the same for columns and rows of this part, (N, M) each, counted from its corner.
+    def sample_local(self, x: Floats, y: Floats) -> Floats:
+        """Do the same for columns and rows counted from the patch's own corner, (N, M) each.
 
-        `remap` of 32 bit floats is exact in OpenCV 5; that of bytes rounds places to 1/32 px, which
-        is coarser than what is measured here (test_image_region.py guards it).
+        `remap` of 32-bit floats is exact in OpenCV 5; that of bytes rounds positions to 1/32 px,
+        which is coarser than what is measured here (guarded by test_image_region.py).
         """
-        values = cv2.remap(self.grey, x, y, cv2.INTER_LINEAR, borderMode=BORDER)
+        values = cv2.remap(self.grey, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
         return np.asarray(values, np.float32)
 
     def smoothed(self, sigma: float) -> "Patch":
-        """Blur it by a Gaussian of `sigma` [px]."""
+        """Return it blurred by a Gaussian of `sigma` [px]."""
         soft = cv2.GaussianBlur(self.grey, (0, 0), sigma)
         return Patch(np.asarray(soft, np.float32), self.left, self.top)

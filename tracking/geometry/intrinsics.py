@@ -1,4 +1,4 @@
-"""How a camera maps the world to pixels, and the file that remembers it."""
+"""Camera intrinsics, and the file that holds them."""
 
 import contextlib
 import math
@@ -17,24 +17,24 @@ from tracking.errors import TrackingError
 Array = NDArray[np.float64]
 
 GUESSED_FIELD_OF_VIEW = math.radians(60)
-"""Horizontal; that of a common webcam."""
+"""Horizontal field of view of a common webcam [rad]."""
 
 DISTORTION_MODELS = {4: "plumb_bob", 5: "plumb_bob", 8: "rational_polynomial"}
-"""ROS's name of the model for each number of OpenCV's coefficients, k1 k2 p1 p2 [k3 [k4 k5 k6]]."""
+"""Name in ROS for each number of OpenCV's coefficients, k1 k2 p1 p2 [k3 [k4 k5 k6]]."""
 
 
 @dataclass(frozen=True)
 class Intrinsics:
-    """Pinhole and lens of a camera, in OpenCV's model."""
+    """Pinhole and lens distortion of a camera, in OpenCV's model."""
 
     matrix: Array
     """Focal lengths and principal point, (3, 3) [px]; pixel centres at whole numbers."""
 
     distortion: Array
-    """Coefficients of the lens, (4,), (5,) or (8,): k1 k2 p1 p2 [k3 [k4 k5 k6]]."""
+    """Distortion coefficients, (4,), (5,) or (8,): k1 k2 p1 p2 [k3 [k4 k5 k6]]."""
 
     size: tuple[int, int]
-    """Width and height of the pictures it holds for [px]."""
+    """Width and height of the images that it holds for [px]."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "matrix", np.array(self.matrix, np.float64))
@@ -59,7 +59,7 @@ class Intrinsics:
 
     @classmethod
     def guess(cls, size: tuple[int, int]) -> Self:
-        """Assume a lens without distortion that sees 60° from left to right.
+        """Assume a lens without distortion and with a horizontal field of view of 60°.
 
         >>> Intrinsics.guess((1280, 720)).matrix.round(1).tolist()
         [[1108.5, 0.0, 639.5], [0.0, 1108.5, 359.5], [0.0, 0.0, 1.0]]
@@ -70,12 +70,12 @@ class Intrinsics:
         return cls(matrix, np.zeros(5), size)
 
     def undistorted(self, points: ArrayLike) -> Array:
-        """Move pixels to where the same camera with a perfect lens would see them.
+        """Return where the same camera without distortion would see pixels.
 
         Parameters
         ----------
         points
-            Pixels of the distorted picture, (…, 2).
+            Pixels of the distorted image, (…, 2).
 
         Returns
         -------
@@ -90,11 +90,11 @@ class Intrinsics:
         return moved.reshape(pixels.shape).astype(np.float64)
 
     def scaled(self, size: tuple[int, int]) -> Self:
-        """Describe the same camera giving pictures of another size, still of its whole sensor."""
+        """Return the same camera with images of another size, still of its whole sensor."""
         horizontal, vertical = size[0] / self.size[0], size[1] / self.size[1]
-        shrink = np.array([[horizontal, 0, 0], [0, vertical, 0], [0, 0, 1]])
-        matrix = shrink @ self.matrix
-        matrix[0, 2] += (horizontal - 1) / 2  # pixel centres are at whole numbers, edges at halves
+        scale = np.array([[horizontal, 0, 0], [0, vertical, 0], [0, 0, 1]])
+        matrix = scale @ self.matrix
+        matrix[0, 2] += (horizontal - 1) / 2  # pixel centres are at integers
         matrix[1, 2] += (vertical - 1) / 2
         return type(self)(matrix, self.distortion, size)
 
@@ -105,7 +105,7 @@ class Intrinsics:
         Raises
         ------
         TrackingError
-            The file is absent, is not YAML, or describes no camera that this room can use.
+            The file is missing, is not YAML, or its camera cannot be used.
         """
         try:
             document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
@@ -129,7 +129,7 @@ class Intrinsics:
         if model not in DISTORTION_MODELS.values():
             known = " and ".join(sorted(set(DISTORTION_MODELS.values())))
             raise TrackingError(f"its distortion_model is {model!r}; only {known} can be used")
-        width, height = (_whole(document, key) for key in ("image_width", "image_height"))
+        width, height = (_integer(document, key) for key in ("image_width", "image_height"))
         matrix = _numbers(document, "camera_matrix")
         if len(matrix) != 9:
             raise TrackingError(f"'camera_matrix' must hold 9 numbers, not {len(matrix)}")
@@ -139,7 +139,7 @@ class Intrinsics:
     def save(self, path: str | Path, name: str = "camera") -> None:
         """Write a ROS `camera_info` YAML file that `load` reads back exactly.
 
-        The file appears whole or not at all.
+        The file is written completely or not at all.
         """
         document = {
             "image_width": self.size[0],
@@ -165,7 +165,7 @@ class Intrinsics:
             ) from error
 
 
-def _whole(document: dict[Any, Any], key: str) -> int:
+def _integer(document: dict[Any, Any], key: str) -> int:
     value = document.get(key)
     if not isinstance(value, int) or isinstance(value, bool):
         raise TrackingError(f"'{key}' must be a whole number, not {value!r}")

@@ -1,4 +1,4 @@
-"""Points to pixels and back, through the lens."""
+"""Projection of points to pixels through the lens, and back."""
 
 import cv2
 import numpy as np
@@ -10,11 +10,11 @@ Array = NDArray[np.float64]
 
 
 MIN_DEPTH = 0.03
-"""A cube closer to the camera than this [m] cannot be seen whole; a pose that says so is wrong."""
+"""A cube closer to the camera than this [m] is not seen whole; such a pose is wrong."""
 
 
 class Projection:
-    """The pinhole with its lens distortion, for any distortion model that OpenCV knows.
+    """A pinhole camera with any distortion model of OpenCV.
 
     A pixel's coordinates are those of its centre: the first pixel covers −0.5…0.5.
     """
@@ -32,17 +32,16 @@ class Projection:
         return np.asarray(projected[0], np.float64).reshape(-1, 2)
 
     def project_with_jacobian(self, points: Array) -> tuple[Array, Array]:
-        """Project points and say how their pixels move with them, (N, 2) [px], (N, 2, 3) [px/m]."""
+        """Project points: pixels, (N, 2) [px], and their Jacobian, (N, 2, 3) [px/m]."""
         projected, jacobian = cv2.projectPoints(
             points, self._zero, self._zero, self.matrix, self.distortion
         )[:2]
-        # Columns 3 to 5 are the slopes by translation, which without rotation are those by the
-        # point.
-        slopes = np.asarray(jacobian, np.float64)[:, 3:6].reshape(-1, 2, 3)
-        return np.asarray(projected, np.float64).reshape(-1, 2), slopes
+        # Columns 3 to 5 are the Jacobian by translation: without rotation, that by the point.
+        by_point = np.asarray(jacobian, np.float64)[:, 3:6].reshape(-1, 2, 3)
+        return np.asarray(projected, np.float64).reshape(-1, 2), by_point
 
     def rays(self, pixels: Array) -> Array:
-        """Undo the lens: pixels, (N, 2), to points at z = 1 of the camera frame, (N, 2)."""
+        """Undistort pixels, (N, 2), to points at z = 1 of the camera frame, (N, 2)."""
         points = np.ascontiguousarray(pixels, np.float64).reshape(-1, 1, 2)
         return np.asarray(
             cv2.undistortPoints(points, self.matrix, self.distortion), np.float64

@@ -1,4 +1,4 @@
-"""Robust statistics, quick on small arrays."""
+"""Robust statistics that are fast on small arrays."""
 
 from typing import Any
 
@@ -9,19 +9,19 @@ Array = NDArray[np.float64]
 
 
 def quantile(values: NDArray[np.floating[Any]], share: float) -> float:
-    """Return the value below which a share of all lies; eight times faster than `np.quantile`.
+    """Return the value below which a share of all lies; eight times as fast as `np.quantile`.
 
     >>> quantile(np.array([3.0, 1.0, 2.0]), 0.5)
     2.0
     """
-    place = int(share * (len(values) - 1))
-    return float(np.partition(values, place)[place])
+    index = int(share * (len(values) - 1))
+    return float(np.partition(values, index)[index])
 
 
-def tukey(residual: Array, cut: float) -> Array:
+def tukey_weight(residual: Array, cut: float) -> Array:
     """Tukey's biweight: 1 at zero, 0 from `cut` on.
 
-    >>> tukey(np.array([0.0, 1.0, 2.0]), 2.0).tolist()
+    >>> tukey_weight(np.array([0.0, 1.0, 2.0]), 2.0).tolist()
     [1.0, 0.5625, 0.0]
     """
     return np.square(np.maximum(1 - (residual / cut) ** 2, 0))

@@ -1,8 +1,8 @@
-"""Rigid motions: rotations as vectors, and the small motions that solvers and covariances speak of.
+"""Rigid transforms, rotation vectors, and the pose deltas of solvers and covariances.
 
-A *pose delta* is the six numbers of `CubeState.covariance`: a shift [m] and a turn [rad] along the
-axes of the outer frame, the turn about the moving frame's own origin. It keeps place and attitude
-apart, so that a metre of distance never mixes with a radian of tilt.
+A *pose delta* is six numbers: a translation [m] and a rotation vector [rad] along the axes of the
+outer frame, the rotation about the moving frame's own origin. Position and orientation stay apart,
+so a distance of metres never scales an error of rotation.
 """
 
 import numpy as np
@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-SMALL = 1e-6
-"""Angles below this take the series, whose first dropped term is then below 1e-24."""
+SMALL_ANGLE = 1e-6
+"""Below this angle [rad] the series is used; its first dropped term is below 1e-24."""
 
 
 def hat(vectors: Array) -> Array:
@@ -35,11 +35,11 @@ def rotation(vector: Array) -> Array:
     """
     angle = float(np.sqrt(vector @ vector))
     k = hat(vector)
-    if angle < SMALL:
-        turn = np.eye(3) + k + k @ k / 2
+    if angle < SMALL_ANGLE:
+        matrix = np.eye(3) + k + k @ k / 2
     else:
-        turn = np.eye(3) + k * (np.sin(angle) / angle) + k @ k * ((1 - np.cos(angle)) / angle**2)
-    return np.asarray(turn, np.float64)
+        matrix = np.eye(3) + k * (np.sin(angle) / angle) + k @ k * ((1 - np.cos(angle)) / angle**2)
+    return np.asarray(matrix, np.float64)
 
 
 def rotation_vector(matrix: Array) -> Array:
@@ -51,21 +51,21 @@ def rotation_vector(matrix: Array) -> Array:
     skew = 0.5 * (matrix - matrix.T)
     cosine = 0.5 * (float(matrix[0, 0] + matrix[1, 1] + matrix[2, 2]) - 1)
     if cosine > 0.5:
-        # Less than 60°: the skew part tells it as exactly, and four times as fast.
+        # Less than 60°: the skew part is as exact, and four times as fast.
         vector = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
         sine = float(np.sqrt(vector @ vector))
-        return vector * (float(np.arctan2(sine, cosine)) / sine if sine > SMALL else 1.0)
+        return vector * (float(np.arctan2(sine, cosine)) / sine if sine > SMALL_ANGLE else 1.0)
     x, y, z, w = quaternion(matrix)
     sine = float(np.sqrt(x * x + y * y + z * z))
     axis: Array = np.array([x, y, z])
-    scale = 2.0 if sine < SMALL else float(2 * np.arctan2(sine, w) / sine)
+    scale = 2.0 if sine < SMALL_ANGLE else float(2 * np.arctan2(sine, w) / sine)
     return axis * scale
 
 
 def quaternion(matrix: Array) -> Array:
     """Return the unit quaternion xyzw with w ≥ 0 of a rotation matrix, (3, 3) → (4,).
 
-    Takes the best conditioned of the four formulas of Shepperd (1978).
+    Uses the best conditioned of the four formulas of Shepperd (1978).
     """
     trace = float(np.trace(matrix))
     best = int(np.argmax(np.append(np.diag(matrix), trace)))
@@ -79,10 +79,10 @@ def quaternion(matrix: Array) -> Array:
     return np.asarray(q / np.copysign(np.linalg.norm(q), q[3]), np.float64)
 
 
-def pose(turn: Array, origin: Array) -> Array:
+def pose(rotation_matrix: Array, origin: Array) -> Array:
     """Transform, (4, 4), of a rotation matrix (3, 3) and an origin (3,)."""
     matrix = np.eye(4)
-    matrix[:3, :3] = turn
+    matrix[:3, :3] = rotation_matrix
     matrix[:3, 3] = origin
     return matrix
 
@@ -94,8 +94,8 @@ def inverse(transform: Array) -> Array:
     >>> bool(np.allclose(inverse(a) @ a, np.eye(4)))
     True
     """
-    turn = transform[:3, :3].T
-    return pose(turn, -turn @ transform[:3, 3])
+    transposed = transform[:3, :3].T
+    return pose(transposed, -transposed @ transform[:3, 3])
 
 
 def moved(transform: Array, pose_delta: Array) -> Array:
@@ -108,32 +108,32 @@ def moved(transform: Array, pose_delta: Array) -> Array:
 
 
 def along(transform: Array, pose_delta: Array, shares: Array) -> Array:
-    """Poses on the way of a pose delta, `moved(transform, share * pose_delta)` for each share.
+    """Poses along a pose delta: `moved(transform, share * pose_delta)` for each share.
 
     Parameters
     ----------
     transform
         A pose, (4, 4).
     pose_delta
-        Where it goes, (6,).
+        The motion, (6,).
     shares
-        How far along, (N,).
+        Shares of the motion, (N,).
 
     Returns
     -------
     (N, 4, 4)
 
-    >>> way = np.array([0.1, 0.0, -0.2, 0.3, -0.1, 0.2])
-    >>> half = along(np.eye(4), way, np.array([0.5]))[0]
-    >>> bool(np.allclose(half, moved(np.eye(4), way / 2)))
+    >>> motion = np.array([0.1, 0.0, -0.2, 0.3, -0.1, 0.2])
+    >>> half = along(np.eye(4), motion, np.array([0.5]))[0]
+    >>> bool(np.allclose(half, moved(np.eye(4), motion / 2)))
     True
     """
     angle = max(float(np.linalg.norm(pose_delta[3:])), 1e-12)
     k = hat(pose_delta[3:] / angle)
-    turned = shares[:, None, None] * angle
-    turns = np.eye(3) + np.sin(turned) * k + (1 - np.cos(turned)) * (k @ k)
+    angles = shares[:, None, None] * angle
+    rotations = np.eye(3) + np.sin(angles) * k + (1 - np.cos(angles)) * (k @ k)
     poses = np.zeros((len(shares), 4, 4))
-    poses[:, :3, :3] = turns @ transform[:3, :3]
+    poses[:, :3, :3] = rotations @ transform[:3, :3]
     poses[:, :3, 3] = transform[:3, 3] + shares[:, None] * pose_delta[:3]
     poses[:, 3, 3] = 1
     return poses
@@ -141,10 +141,10 @@ def along(transform: Array, pose_delta: Array, shares: Array) -> Array:
 
 def delta(start: Array, end: Array) -> Array:
     """Pose delta, (6,), from one pose to another: `moved(start, delta(start, end))` is `end`."""
-    turn = rotation_vector(end[:3, :3] @ start[:3, :3].T)
-    return np.concatenate([end[:3, 3] - start[:3, 3], turn])
+    rotated = rotation_vector(end[:3, :3] @ start[:3, :3].T)
+    return np.concatenate([end[:3, 3] - start[:3, 3], rotated])
 
 
 def angle_between(a: Array, b: Array) -> float:
-    """Angle between the attitudes of two poses [rad], 0…π."""
+    """Angle between the orientations of two poses [rad], 0…π."""
     return float(np.linalg.norm(delta(a, b)[3:]))

@@ -6,12 +6,12 @@ from numpy.typing import NDArray
 from tracking.cube.model import CubeModel
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
-from tracking.refinement.alignment import Alignment
 from tracking.refinement.camera_model import CameraModel
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
 from tracking.refinement.motion_blur_alignment import MotionBlurAligner
+from tracking.refinement.photometric_fit import Alignment
 
 Array = NDArray[np.float64]
 
@@ -90,9 +90,9 @@ class BlurSearch:
         found = None
         if not coarse:
             found = self._aligner.align(patch, start, blur_motion, prior, coarse=False)
-        if coarse is None and not (found and found.weakest > MIN_CORRELATION_ALONE):
+        if coarse is None and not (found and found.min_correlation > MIN_CORRELATION_ALONE):
             again = self._aligner.align(patch, start, blur_motion, prior)
-            if again and not (found and found.likeness > again.likeness):
+            if again and not (found and found.correlation > again.correlation):
                 found = again
         return found if found and _shows_cube(found) else None
 
@@ -107,16 +107,16 @@ class BlurSearch:
         for angle in np.arange(4) * np.pi / 4:
             direction = np.array([np.cos(angle), np.sin(angle), 0, 0, 0, 0])
             found = self._aligner.align(patch, start, self._footprint.cell * direction, prior)
-            least = max(MIN_CORRELATION_ALONE, best.likeness if best else 0.0)
-            if found and found.likeness > least and _shows_cube(found):
+            least = max(MIN_CORRELATION_ALONE, best.correlation if best else 0.0)
+            if found and found.correlation > least and _shows_cube(found):
                 best = found
         return best
 
     def candidate(self, patch: Patch, aligned: Alignment) -> Candidate | None:
         """Refine an alignment on the edges; where those are not smeared they must be found."""
-        extent = self._footprint.blur_extent(aligned.sweep)
+        extent = self._footprint.blur_extent(aligned.blur_motion)
         if extent < MAX_EDGE_BLUR_CELLS:
-            found = self._edges.search(patch, aligned.camera_from_cube, aligned.sweep)
+            found = self._edges.search(patch, aligned.camera_from_cube, aligned.blur_motion)
             if found is not None or extent < VISIBLE_EDGE_BLUR_CELLS:
                 return found
         at_rest, per_cell = COVARIANCE_FACTORS
@@ -124,17 +124,19 @@ class BlurSearch:
             camera_from_cube=aligned.camera_from_cube,
             covariance=aligned.covariance[:6, :6] * (at_rest + per_cell * extent),
             source="image",
-            faces=tuple(face for face, share in aligned.shares.items() if share > MIN_CORRELATION),
+            faces=tuple(
+                face for face, share in aligned.face_correlations.items() if share > MIN_CORRELATION
+            ),
             error=float("nan"),
             residual=aligned.residual,
             certain=True,
-            blur_motion=aligned.sweep,
+            blur_motion=aligned.blur_motion,
         )
 
 
 def _shows_cube(aligned: Alignment) -> bool:
     """Whether all faces in view correlate with the image, or two do so beyond doubt."""
-    if aligned.weakest > MIN_CORRELATION:
+    if aligned.min_correlation > MIN_CORRELATION:
         return True
-    sure = sum(share > MIN_CORRELATION_ALONE for share in aligned.shares.values())
-    return aligned.likeness > MIN_CORRELATION and sure >= 2
+    sure = sum(share > MIN_CORRELATION_ALONE for share in aligned.face_correlations.values())
+    return aligned.correlation > MIN_CORRELATION and sure >= 2

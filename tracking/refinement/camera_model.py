@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.geometry.image_region import Floats
-from tracking.refinement.alignment import Alignment
+from tracking.refinement.photometric_fit import Alignment
 
 Array = NDArray[np.float64]
 
@@ -118,9 +118,9 @@ class CameraModelEstimator:
         self._studies += studied
         if blur is None or blur.blur_extent * blur.pixels_per_cell < MIN_BLUR_PX:
             return
-        self.exposure.learn(*blur.aligned.told, blur.velocity)
+        self.exposure.learn(*blur.aligned.motion_information, blur.velocity)
         if blur.blur_extent > MIN_BLUR_CELLS:
-            self.tone_curve.learn(blur.aligned.bend, blur.aligned.black)
+            self.tone_curve.learn(blur.aligned.mixture_bend, blur.aligned.black_level)
 
 
 class ExposureEstimator:

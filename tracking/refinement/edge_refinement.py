@@ -1,9 +1,9 @@
-"""Gauss-Newton on the edges of all visible markers: from a good pose to the best one.
+"""Gauss-Newton on the edges of all visible markers, from a good pose to the best one.
 
-Where the model says that an edge runs, the picture is sampled across it. A blurred step is fitted
-to each such profile, which tells how far the edge lies from its place to a few hundredths of a
-pixel; a shift-turn that takes all edges home together is the correction. The idea is RAPiD's
-(Harris and Stennett, 1990); the profile fit, the bloom and the covariance are ours.
+The image is sampled across each edge of the model. A blurred step is fitted to each such profile;
+it gives the distance of the edge from its expected position to a few hundredths of a pixel. The
+correction is the pose delta that brings all edges into place together. The idea is RAPiD's (Harris
+and Stennett, 1990); the profile fit, the bloom and the covariance are ours.
 """
 
 from dataclasses import dataclass
@@ -18,26 +18,29 @@ from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.geometry.robust_statistics import quantile
-from tracking.refinement.edge_fit import FEWEST, EdgeFit, covariance, fit
-from tracking.refinement.profiles import EdgeMeasurements, EdgeProfiles, lay_out
+from tracking.refinement.edge_fit import MIN_EDGE_POINTS, EdgeFit, covariance, fit_edges
+from tracking.refinement.profiles import EdgeMeasurements, EdgeProfiles, place_profiles
 
 Array = NDArray[np.float64]
 
-GRAZING = 0.15
+MIN_FACING_COSINE = 0.15
 """Cosine of the viewing angle below which the edges of a face are too foreshortened to help."""
 
-WIDE = 5.0
-PRECISE: tuple[float, ...] = (2.0, 1.0)
-"""Widths of the step that is fitted [px]: in the wide search, and first and last otherwise."""
+WIDE_STEP_PX = 5.0
+PRECISE_STEPS_PX: tuple[float, ...] = (2.0, 1.0)
+"""Widths of the fitted step: in the wide search, and first and last otherwise."""
 
-CLOSE = 0.7
-"""Once no edge moves by more than this [px] the profiles need not be laid out anew."""
+MAX_SHIFT_PX = 0.7
+"""The profiles are placed anew where an edge moves by more than this."""
 
-STEADY = 0.04
-"""The profiles are measured again while edges move by more than this [px]."""
+CONVERGED_PX = 0.04
+"""The profiles are measured again while edges move by more than this."""
 
-LAYOUTS = 3
-"""So often they are laid out at most."""
+MAX_PLACEMENTS = 3
+"""How often the profiles are placed at most."""
+
+MAX_WIDE_STEPS = 2
+"""Steps of the wide search."""
 
 
 @dataclass(frozen=True)
@@ -48,32 +51,29 @@ class EdgeRefinement:
     """Pose of the cube, (4, 4) [m]."""
 
     covariance: Array
-    """Of a shift-turn, (6, 6)."""
+    """Of a pose delta, (6, 6)."""
 
     residual: float
-    """Weighted root mean square distance of the edges from their places [px]."""
+    """Weighted root mean square distance of the edges from their expected positions [px]."""
 
     support: float
     """Share of the edge points in view that were found, 0…1."""
 
-    points: int
-    """Number of edge points found."""
+    line_count: int
+    """Number of straight lines that the edge points lie on."""
 
-    lines: int
-    """Number of straight lines that they lie on."""
+    inner_support: float
+    """The support of the edges inside the markers, which tell markers apart."""
 
-    inner: float
-    """The same share for the edges inside the markers, which tell them apart."""
+    face_support: dict[str, float]
+    """The support of each face in view."""
 
-    shares: dict[str, float]
-    """The same share for each face in view."""
+    sharpness_ratio: float
+    """Steepness of the dullest edges over that of the sharpest, each relative to the expected blur;
+    well below 1 where the cube moved in another way than expected."""
 
-    crisp: float
-    """How steep the dullest edges are beside the steepest, both against what the sweep makes them;
-    well below 1 where the cube moved in a way that was not told."""
-
-    steep: float
-    """How steep the edges are beside sharp ones that are swept as told; 1 in a sharp picture."""
+    sharpness: float
+    """Median steepness of the edges relative to the expected blur; 1 in a sharp image."""
 
 
 class EdgeRefiner:
@@ -86,56 +86,60 @@ class EdgeRefiner:
         self._parts: dict[tuple[int, ...], EdgeModel] = {}
 
     def refine(
-        self, patch: Patch, start: Array, sweep: Array | None = None, wide: bool = False
+        self, patch: Patch, start: Array, blur_motion: Array | None = None, wide: bool = False
     ) -> EdgeRefinement | None:
-        """Refine a pose that is right to about half a cell in the picture, or a whole one.
+        """Refine a pose that is right to about half a cell in the image, or a whole one.
 
         Parameters
         ----------
         patch
-            The picture round the cube.
+            The image around the cube.
         start
             Pose of the cube, (4, 4).
-        sweep
-            Shift-turn of the cube while the shutter was open, (6,); None for a cube at rest.
+        blur_motion
+            Pose delta of the cube during the exposure, (6,); None for a cube at rest.
         wide
-            Whether to begin with the outlines alone, which can be found from a whole cell away.
+            Whether to begin with the outlines only, which can be found from a whole cell away.
 
         Returns
         -------
         None where too few edges are in view or found, or where they do not agree.
         """
         current = start
-        for _ in range(2 if wide else 0):
-            rough = self._profiles(patch, current, sweep, True)
-            step = fit(patch, rough, None, WIDE) if rough else None
+        for _ in range(MAX_WIDE_STEPS if wide else 0):
+            rough = self._profiles(patch, current, blur_motion, True)
+            step = fit_edges(patch, rough, None, WIDE_STEP_PX) if rough else None
             if step is None:
                 return None
             current = se3.moved(current, step.solution[:6])
-        found, blurs = None, PRECISE
-        for _ in range(LAYOUTS):
-            profiles = self._profiles(patch, current, sweep, False)
-            step = _converged(patch, profiles, blurs) if profiles else None
+        found, widths = None, PRECISE_STEPS_PX
+        for _ in range(MAX_PLACEMENTS):
+            profiles = self._profiles(patch, current, blur_motion, False)
+            step = _fit_repeatedly(patch, profiles, widths) if profiles else None
             if profiles is None or step is None:
                 return None
-            found, blurs = (current, profiles, step), PRECISE[1:]
-            if np.abs(profiles.slopes @ step.solution[:6]).max() < CLOSE:
+            found, widths = (current, profiles, step), PRECISE_STEPS_PX[1:]
+            if np.abs(profiles.slopes @ step.solution[:6]).max() < MAX_SHIFT_PX:
                 break
             current = se3.moved(current, step.solution[:6])
-        return self._judged(*found) if found else None
+        return self._summary(*found) if found else None
 
     def _profiles(
-        self, patch: Patch, pose: Array, sweep: Array | None, wide: bool
+        self, patch: Patch, pose: Array, blur_motion: Array | None, wide: bool
     ) -> EdgeProfiles | None:
-        facing = self._faces.facing(pose, GRAZING)
+        facing = self._faces.facing(pose, MIN_FACING_COSINE)
         if facing not in self._parts:
             self._parts[facing] = self._model.of_faces(facing)
-        profiles = lay_out(self._parts[facing], self._projection, pose, patch, sweep, wide)
-        return profiles if profiles and len(profiles.numbers) >= FEWEST else None
+        profiles = place_profiles(
+            self._parts[facing], self._projection, pose, patch, blur_motion, wide
+        )
+        return profiles if profiles and len(profiles.numbers) >= MIN_EDGE_POINTS else None
 
-    def _judged(self, start: Array, profiles: EdgeProfiles, step: EdgeFit) -> EdgeRefinement | None:
+    def _summary(
+        self, start: Array, profiles: EdgeProfiles, step: EdgeFit
+    ) -> EdgeRefinement | None:
         kept = step.strong[step.robust > 0.1]
-        if len(kept) < FEWEST:
+        if len(kept) < MIN_EDGE_POINTS:
             return None
         model = profiles.model
         numbers = profiles.numbers
@@ -149,7 +153,6 @@ class EdgeRefiner:
             covariance(step, model.line[numbers[step.strong]], profiles.pixels[step.strong]),
             float(np.sqrt((step.robust * step.residual**2).sum() / step.robust.sum())),
             len(kept) / len(numbers),
-            len(kept),
             len(np.unique(model.line[numbers[kept]])),
             float(np.count_nonzero(inner[kept])) / max(1, int(np.count_nonzero(inner))),
             {
@@ -163,23 +166,26 @@ class EdgeRefiner:
 def _sharpness(
     measured: EdgeMeasurements, kept: NDArray[np.intp], lines: NDArray[np.intp]
 ) -> tuple[float, float]:
-    """Compare the steepness of lines with each other, and with what it should be."""
+    """Return `sharpness_ratio` and `sharpness` of the lines."""
     starts = np.flatnonzero(np.diff(lines, prepend=-1))
     rise = np.add.reduceat(measured.rise[kept], starts)
     fitted = np.add.reduceat(measured.fitted[kept], starts)
-    steep = rise / np.maximum(fitted, 1e-9)
-    return quantile(steep, 0.15) / max(quantile(steep, 0.85), 1e-9), quantile(steep, 0.5)
+    sharpness = rise / np.maximum(fitted, 1e-9)
+    ratio = quantile(sharpness, 0.15) / max(quantile(sharpness, 0.85), 1e-9)
+    return ratio, quantile(sharpness, 0.5)
 
 
-def _converged(patch: Patch, profiles: EdgeProfiles, blurs: tuple[float, ...]) -> EdgeFit | None:
-    """Fit until the edges stay where they are: the profiles follow them, the geometry stays."""
+def _fit_repeatedly(
+    patch: Patch, profiles: EdgeProfiles, widths: tuple[float, ...]
+) -> EdgeFit | None:
+    """Fit until the edges stay in place: the profiles follow them, the geometry stays."""
     shifts: Array | None = None
     step: EdgeFit | None = None
-    for blur in (*blurs, *PRECISE[1:] * 2):
-        step = fit(patch, profiles, shifts, blur)
+    for width in (*widths, *PRECISE_STEPS_PX[1:] * 2):
+        step = fit_edges(patch, profiles, shifts, width)
         if step is None:
             return None
         before, shifts = shifts, profiles.slopes @ step.solution[:6]
-        if before is not None and np.abs(shifts - before).max() < STEADY:
+        if before is not None and np.abs(shifts - before).max() < CONVERGED_PX:
             break
     return step

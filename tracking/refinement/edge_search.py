@@ -113,14 +113,14 @@ class EdgeSearch:
             source="markers" if reading.best >= MIN_READ_AGREEMENT else "image",
             faces=tuple(
                 face
-                for face, share in found.shares.items()
+                for face, share in found.face_support.items()
                 if share > MIN_EDGE_SUPPORT_WITH_MARKERS
                 and reading.agreement.get(face, 1.0) > MIN_FACE_AGREEMENT
             ),
             error=found.residual,
             residual=found.residual / found.support,
             certain=True,
-            measurements=found.lines,
+            measurements=found.line_count,
         )
 
     def mirrored_pose(self, candidate: Candidate) -> Array:
@@ -155,9 +155,12 @@ class EdgeSearch:
 
 
 def _prove(found: EdgeRefinement, reading: CellReading) -> bool:
-    if found.crisp < MIN_SHARPNESS_RATIO:
+    if found.sharpness_ratio < MIN_SHARPNESS_RATIO:
         return False
-    if min(found.support, found.inner) > MIN_EDGE_SUPPORT and reading.best > MIN_FACE_AGREEMENT:
+    if (
+        min(found.support, found.inner_support) > MIN_EDGE_SUPPORT
+        and reading.best > MIN_FACE_AGREEMENT
+    ):
         return True
     return reading.best >= MIN_READ_AGREEMENT or (
         found.support > MIN_EDGE_SUPPORT and reading.best > MIN_SUPPORTED_AGREEMENT

@@ -60,7 +60,7 @@ class Footprint:
             Light for each grey value, (256,).
         """
         region = self.region(camera_from_cube)
-        return Patch.of(image, region, tone) if region else None
+        return Patch.crop(image, region, tone) if region else None
 
     def region(self, camera_from_cube: Array) -> Region | None:
         """Bounds of the cube at a pose with a margin; None where it is not in view."""

@@ -1,10 +1,10 @@
 """Photometric alignment of a cube that moved while the shutter was open.
 
-The picture of a moving cube is the mean of its pictures along the way. The printed faces are known,
-so that mean can be drawn for any pose and any way, and both are moved until it is what the camera
-saw: Gauss-Newton on twelve numbers, where the cube was in mid-exposure and how it moved during it.
-The idea is ESM-Blur's (Park, Lepetit and Woo, 2009), for a whole cube, fingers, and a camera
-whose response is not known.
+The image of a moving cube is the mean of its images along the motion. The printed faces are known,
+so this mean can be rendered for any pose and any motion. Gauss-Newton adjusts twelve numbers, the
+pose in the middle of the exposure and the motion during it, until the rendering matches the image.
+The idea is ESM-Blur's (Park, Lepetit and Woo, 2009), extended to a whole cube, to fingers, and to a
+camera whose tone curve is not known.
 """
 
 from dataclasses import dataclass
@@ -19,49 +19,50 @@ from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import MIN_DEPTH, Projection
-from tracking.refinement.alignment import Alignment
 from tracking.refinement.face_images import FaceTextures
-from tracking.refinement.photometric_fit import PhotometricFit, PhotometricSamples, fit
+from tracking.refinement.photometric_fit import (
+    Alignment,
+    PhotometricFit,
+    PhotometricSamples,
+    fit_tones,
+)
 
 Array = NDArray[np.float64]
 Image = NDArray[np.float32]
 
-TEXELS = 8
-"""Texels of the drawing on each cell of a marker."""
+TEXELS_PER_CELL = 8
+"""Texels of a face texture along a cell of its marker."""
 
-COARSE, FINE = 12, 16
-"""Samples on each side of a face in the two searches: fewer miss edges."""
+COARSE_SAMPLES, FINE_SAMPLES = 12, 16
+"""Samples along each side of a face in the two searches: fewer miss edges."""
 
-LENS = 0.85
-"""Blur of a lens in focus with its pixels [px], one standard deviation."""
+LENS_BLUR_PX = 0.85
+"""Blur of a focused lens and of the pixels themselves, one standard deviation."""
 
-RIM = 1.5
-"""Samples nearer than so many blurs to the border of their face are left out: what lies beyond is
-not known."""
+MIN_BORDER_BLURS = 1.5
+"""Samples closer to the border of their face than this many standard deviations of the blur are
+left out: what lies beyond the border is not known."""
 
-BLOCKS = 5
-"""Blocks of samples on each side of a face, which count as one measurement each."""
+BLOCKS_PER_SIDE = 5
+"""Blocks of samples along each side of a face. Each block counts as one measurement."""
 
-MOMENTS = (5, 15)
-"""Moments of the way that the drawn mean is made of, at least and at most."""
+MIN_MOMENTS, MAX_MOMENTS = 5, 15
+"""Number of moments of the exposure whose mean is rendered."""
 
-STRIDE = 0.22
-"""How far an edge may go from one moment to the next [cells]: less than it is blurred anyway."""
+MOMENT_STEP_CELLS = 0.22
+"""How far an edge may move from one moment to the next: less than it is blurred anyway."""
 
-SOFT, SHARP = 0.5, 0.15
-"""Blur of drawing and picture in the coarse search and in the fine one [cells]."""
+STAGES = ((0.5, COARSE_SAMPLES, 4), (0.15, FINE_SAMPLES, 4))
+"""Of the coarse search and of the fine one: blur of rendering and image [cells], samples, steps."""
 
-STAGES = ((SOFT, COARSE, 4), (SHARP, FINE, 4))
-"""Blur, samples and rounds of the coarse search and of the fine one."""
+MIN_FACING_COSINE = 0.12
+"""Cosine of the viewing angle below which a face shows too little of its texture."""
 
-GRAZING = 0.12
-"""Cosine of the viewing angle below which a face shows too little of its picture."""
+CONVERGED_STEP = np.repeat([1.5e-4, 1e-3], 3)
+"""A step smaller than this is the last one [m, rad]."""
 
-SETTLED = np.repeat([1.5e-4, 1e-3], 3)
-"""A step smaller than this is the last [m, rad]."""
-
-FEWEST = 40
-"""Fewer samples than this do not make a pose."""
+MIN_SAMPLES = 40
+"""Fewer samples than this do not determine a pose."""
 
 
 class MotionBlurAligner:
@@ -73,76 +74,76 @@ class MotionBlurAligner:
         self._cell = cube.marker_size / len(marker_cells(cube.dictionary, cube.faces[0].marker_id))
         self._half = cube.edge / 2
         self._frames = np.stack([face_frame(face) for face in cube.faces])
-        side = round(cube.edge / self._cell * TEXELS)
+        side = round(cube.edge / self._cell * TEXELS_PER_CELL)
         self._side = side
-        self._drawing = FaceTextures(cube, side)
-        self._grids = {count: _grid(count, cube.edge) for count in (COARSE, FINE)}
+        self._textures = FaceTextures(cube, side)
+        self._grids = {count: _grid(count, cube.edge) for _, count, _ in STAGES}
 
     def align(
-        self, patch: Patch, start: Array, sweep: Array, prior: Array, coarse: bool = True
+        self, patch: Patch, start: Array, blur_motion: Array, prior: Array, coarse: bool = True
     ) -> Alignment | None:
-        """Align from a pose that is right to about a cell in the picture.
+        """Align from a pose that is right to about a cell in the image.
 
         Parameters
         ----------
         patch
-            The picture round the cube.
+            The image around the cube.
         start
-            Pose of the cube in mid-exposure, (4, 4).
-        sweep
-            Shift-turn while the shutter was open, (6,), as it is expected.
+            Pose of the cube in the middle of the exposure, (4, 4).
+        blur_motion
+            Expected pose delta during the exposure, (6,).
         prior
-            Standard deviations of that expectation, (6,).
+            Its standard deviations, (6,).
         coarse
-            Whether to search with both pictures much blurred first.
+            Whether to search with image and rendering much blurred first.
 
         Returns
         -------
         None where the cube is not in view.
         """
-        pose, way = start, sweep
-        last: tuple[_Scene, PhotometricFit, Array, Array] | None = None
-        for blur, count, rounds in STAGES if coarse else STAGES[1:]:
-            scene = self._scene(patch, pose, blur, count)
-            if scene is None:
+        pose, motion = start, blur_motion
+        last: tuple[_Samples, PhotometricFit, Array, Array] | None = None
+        for blur, count, steps in STAGES if coarse else STAGES[1:]:
+            samples = self._sampled(patch, pose, blur, count)
+            if samples is None:
                 return None
-            for _ in range(rounds):
-                mixture = self._mixture(scene, pose, way)
-                if mixture is None:
+            for _ in range(steps):
+                fit = self._fit(samples, pose, motion)
+                if fit is None:
                     return None
-                step = mixture.step(sweep - way, prior)
-                last = scene, mixture, way, step
-                pose, way = se3.moved(pose, step[:6]), way + step[6:]
-                if (np.abs(step[:6]) < SETTLED).all():
+                step = fit.step(blur_motion - motion, prior)
+                last = samples, fit, motion, step
+                pose, motion = se3.moved(pose, step[:6]), motion + step[6:]
+                if (np.abs(step[:6]) < CONVERGED_STEP).all():
                     break
-        return self._finished(pose, way, prior, *last) if last else None
+        return self._alignment(pose, motion, prior, *last) if last else None
 
-    def _finished(
+    def _alignment(
         self,
         pose: Array,
-        way: Array,
+        motion: Array,
         prior: Array,
-        scene: "_Scene",
-        mixture: PhotometricFit,
+        samples: "_Samples",
+        fit: PhotometricFit,
         before: Array,
         step: Array,
     ) -> Alignment:
-        whole, *each = mixture.likeness.tolist()
-        named = zip(scene.facing, each, strict=True)
+        overall, *each = fit.correlations.tolist()
+        named = zip(samples.facing, each, strict=True)
         return Alignment(
             pose,
-            way,
-            mixture.covariance(prior),
-            mixture.told(before, step, prior),
-            whole,
-            {self._faces.names[face]: share for face, share in named if not np.isnan(share)},
-            mixture.scale / max(mixture.contrast, 1.0),
-            *mixture.tones,
+            motion,
+            fit.covariance(prior),
+            fit.motion_information(before, step, prior),
+            overall,
+            {self._faces.names[face]: value for face, value in named if not np.isnan(value)},
+            fit.scale / max(fit.contrast, 1.0),
+            *fit.mixture_tones,
         )
 
-    def _scene(self, patch: Patch, pose: Array, blur: float, count: int) -> "_Scene | None":
-        """Choose the samples, read the picture there, and say how the faces slide under them."""
-        facing = np.array(self._faces.facing(pose, GRAZING), np.intp)
+    def _sampled(self, patch: Patch, pose: Array, blur: float, count: int) -> "_Samples | None":
+        """Place the samples, read the image there, and differentiate their places on the faces."""
+        facing = np.array(self._faces.facing(pose, MIN_FACING_COSINE), np.intp)
         if not len(facing):
             return None
         frames = pose @ self._frames[facing]
@@ -152,84 +153,91 @@ class MotionBlurAligner:
         flat = points.transpose(0, 2, 1).reshape(-1, 3)
         pixels = self._projection.project(flat)
         sigma = blur * self._cell * float(self._projection.matrix[0, 0]) / pose[2, 3]
-        smooth = sigma > LENS
+        smooth = sigma > LENS_BLUR_PX
         seen = patch.smoothed(sigma) if smooth else patch
-        values = seen.at(pixels[:, None])[:, 0].astype(np.float64)
-        soft = np.hypot(sigma if smooth else 0.0, LENS)
-        layers, rim = self._drawing.blurred(facing, self._texels_to_pixels(frames), soft)
+        values = seen.sample(pixels[:, None])[:, 0].astype(np.float64)
+        blurred = np.hypot(sigma if smooth else 0.0, LENS_BLUR_PX)
+        layers, widest = self._textures.blurred(facing, self._texels_to_pixels(frames), blurred)
         rays = points / points[:, 2:]
         slides = self._slides(frames[:, :3, :2], points - pose[:3, 3, None], rays)
-        inside = patch.room(pixels) > 1
-        return _Scene(facing, rays, slides, values, inside, layers, RIM * rim, count)
+        inside = patch.border_distance(pixels) > 1
+        border = MIN_BORDER_BLURS * widest
+        return _Samples(facing, rays, slides, values, inside, layers, border, count)
 
     def _texels_to_pixels(self, frames: Array) -> Array:
-        """How the picture of each face moves with its texels at its centre, (faces, 2, 2) [px]."""
+        """Jacobian of the image of each face by its texels, at its centre, (faces, 2, 2) [px]."""
         centres = frames[:, :3, 3]
-        _, slopes = self._projection.project_with_jacobian(np.ascontiguousarray(centres))
-        return np.asarray(slopes @ frames[:, :3, :2] * (2 * self._half / self._side), np.float64)
+        _, jacobian = self._projection.project_with_jacobian(np.ascontiguousarray(centres))
+        return np.asarray(jacobian @ frames[:, :3, :2] * (2 * self._half / self._side), np.float64)
 
-    def _mixture(self, scene: "_Scene", pose: Array, way: Array) -> PhotometricFit | None:
-        """Draw the cube along its way, and fit the drawing's tones to the picture."""
-        when = self._moments(way)
-        poses = se3.along(pose, way, when)
-        texture, inside = self._looked_up(scene, *self._on_faces(scene, poses))
-        use = np.flatnonzero(inside & scene.inside)
-        if len(use) < FEWEST:
+    def _fit(self, samples: "_Samples", pose: Array, motion: Array) -> PhotometricFit | None:
+        """Render the cube along its motion, and fit the tones of the rendering to the image."""
+        when = self._moments(motion)
+        poses = se3.along(pose, motion, when)
+        texture, inside = self._looked_up(samples, *self._on_faces(samples, poses))
+        use = np.flatnonzero(inside & samples.inside)
+        if len(use) < MIN_SAMPLES:
             return None
-        # The mean along the way, and weighted by the time; with them go their slopes.
+        # The mean over time, and the mean weighted by time, each with its derivatives.
         weights = np.stack([np.ones(len(when)), when]).astype(np.float32) / len(when)
         means = (weights @ texture.reshape(len(when), -1)).reshape(2, -1, 3)[:, use]
-        slides = scene.slides[use]
-        slopes = [
+        slides = samples.slides[use]
+        jacobian = [
             mean[:, 1, None] * slides[:, 0] + mean[:, 2, None] * slides[:, 1] for mean in means
         ]
-        number, place = np.divmod(use, scene.count**2)
-        row, column = np.divmod(place, scene.count)
-        block = (number * BLOCKS + row * BLOCKS // scene.count) * BLOCKS
-        block += column * BLOCKS // scene.count
-        drawn = means[0, :, 0].astype(np.float64)
-        samples = PhotometricSamples(
-            number, block, scene.values[use], drawn, np.concatenate(slopes, axis=1)
-        )
-        return fit(samples, len(scene.facing))
+        number, place = np.divmod(use, samples.count**2)
+        row, column = np.divmod(place, samples.count)
+        block = (
+            number * BLOCKS_PER_SIDE + row * BLOCKS_PER_SIDE // samples.count
+        ) * BLOCKS_PER_SIDE
+        block += column * BLOCKS_PER_SIDE // samples.count
+        rendered = means[0, :, 0].astype(np.float64)
+        values, by_motion = samples.values[use], np.concatenate(jacobian, axis=1)
+        mixture = PhotometricSamples(number, block, values, rendered, by_motion)
+        return fit_tones(mixture, len(samples.facing))
 
-    def _moments(self, way: Array) -> Array:
+    def _moments(self, motion: Array) -> Array:
         """Moments of the exposure, each in the middle of its share, −0.5…0.5."""
-        far = float(np.linalg.norm(way[:3])) + self._half * float(np.linalg.norm(way[3:]))
-        count = int(np.clip(np.ceil(far / (STRIDE * self._cell)), *MOMENTS))
+        far = float(np.linalg.norm(motion[:3])) + self._half * float(np.linalg.norm(motion[3:]))
+        steps = np.ceil(far / (MOMENT_STEP_CELLS * self._cell))
+        count = int(np.clip(steps, MIN_MOMENTS, MAX_MOMENTS))
         return (np.arange(count) + 0.5) / count - 0.5
 
-    def _on_faces(self, scene: "_Scene", poses: Array) -> tuple[Array, Array]:
-        """Where the samples' rays meet their faces, each (moments, faces, N) [m]."""
-        planes = (poses[:, None] @ self._frames[scene.facing])[..., :3, [0, 1, 3]]
-        met = np.linalg.inv(planes) @ scene.rays
+    def _on_faces(self, samples: "_Samples", poses: Array) -> tuple[Array, Array]:
+        """Return where the samples' rays meet their faces, each (moments, faces, N) [m]."""
+        planes = (poses[:, None] @ self._frames[samples.facing])[..., :3, [0, 1, 3]]
+        met = np.linalg.inv(planes) @ samples.rays
         return met[:, :, 0] / met[:, :, 2], met[:, :, 1] / met[:, :, 2]
 
-    def _looked_up(self, scene: "_Scene", u: Array, v: Array) -> tuple[Image, NDArray[np.bool_]]:
-        """Read the drawing and its gradient; say which samples stay on their face all the way."""
+    def _looked_up(
+        self, samples: "_Samples", u: Array, v: Array
+    ) -> tuple[Image, NDArray[np.bool_]]:
+        """Read the textures with their gradients; tell which samples always stay on their face."""
         size, half = self._side, self._half
-        inside = np.maximum(np.abs(u), np.abs(v)) < half - scene.rim[:, None]
+        inside = np.maximum(np.abs(u), np.abs(v)) < half - samples.border[:, None]
         inside = inside.all(axis=0).ravel()
         scale = size / (2 * half)
         x = np.clip((u + half) * scale - 0.5, 0, size - 1).astype(np.float32)
         y = np.clip((v + half) * scale - 0.5, 0, size - 1).astype(np.float32)
-        y += (np.arange(len(scene.facing), dtype=np.float32) * size)[:, None]
+        y += (np.arange(len(samples.facing), dtype=np.float32) * size)[:, None]
         count = len(u)
-        read = cv2.remap(scene.layers, x.reshape(count, -1), y.reshape(count, -1), cv2.INTER_LINEAR)
+        read = cv2.remap(
+            samples.layers, x.reshape(count, -1), y.reshape(count, -1), cv2.INTER_LINEAR
+        )
         return np.asarray(read, np.float32), inside
 
     def _slides(self, axes: Array, arm: Array, rays: Array) -> Array:
-        """How a face slides under each sample's ray with a shift-turn, (faces · N, 2, 6) [texels].
+        """Jacobian of the texel under each sample's ray by a pose delta, (faces · N, 2, 6).
 
-        A point X = (x Z, y Z, Z) of the face moves by Ẋ; what is under the ray afterwards lies at
-        u̇ = −B⁻¹ ẋ on the face, with ẋ = (Ẋ − x Ż)/Z, and B how x moves with u.
+        A point X = (x Z, y Z, Z) of the face moves by Ẋ; the point under the ray then moves by
+        u̇ = −B⁻¹ ẋ on the face, with ẋ = (Ẋ − x Ż)/Z and B the Jacobian of x by u.
 
         Parameters
         ----------
         axes
             Axes of the faces, (faces, 3, 2).
         arm
-            From the cube's origin to the samples, (faces, 3, N) [m].
+            Vectors from the cube's origin to the samples, (faces, 3, N) [m].
         rays
             The samples' rays, (faces, 3, N).
         """
@@ -246,21 +254,36 @@ class MotionBlurAligner:
 
 
 @dataclass(frozen=True)
-class _Scene:
-    """The samples of one picture."""
+class _Samples:
+    """Where an image is compared with its rendering."""
 
     facing: NDArray[np.intp]
+    """Indices of the faces in view, (faces,)."""
+
     rays: Array
+    """Rays of the samples at z = 1, (faces, 3, N)."""
+
     slides: Array
+    """As `_slides` returns them, (faces · N, 2, 6)."""
+
     values: Array
+    """Light of the image, (faces · N,)."""
+
     inside: NDArray[np.bool_]
+    """Whether each sample is inside the image, (faces · N,)."""
+
     layers: Image
-    rim: Array
+    """Blurred textures of the faces with their derivatives, (faces · side, side, 3)."""
+
+    border: Array
+    """Width of the border of each face that is left out, (faces,) [m]."""
+
     count: int
+    """Samples along each side of a face."""
 
 
 def _grid(count: int, edge: float) -> Array:
-    """Lay points on a face in its own frame, as columns of (x, y, 0, 1), (4, count²)."""
+    """Points on a face in its own frame, as columns of (x, y, 0, 1), (4, count²)."""
     steps = ((np.arange(count) + 0.5) / count - 0.5) * edge
     x, y = np.meshgrid(steps, steps)
     return np.stack([x.ravel(), y.ravel(), np.zeros(count**2), np.ones(count**2)])

@@ -1,4 +1,4 @@
-"""Least squares between the drawn mixture of black and white and what the camera saw."""
+"""Least squares between the rendered mixture of black and white and the image."""
 
 from dataclasses import dataclass
 
@@ -9,55 +9,58 @@ from tracking.geometry.robust_statistics import quantile
 
 Array = NDArray[np.float64]
 
-SOFTNESS = 2.0
-"""Residuals beyond so many standard deviations lose their weight: fingers, glare, shadows."""
+MAX_RESIDUAL_SIGMAS = 2.0
+"""Residuals beyond this many standard deviations lose their weight: fingers, glare, shadows."""
 
-TOLERANCE = 0.2
-"""And residuals beyond this share of the contrast: an edge that is not yet in its place leaves as
-much, and must not be taken for a finger."""
+MIN_CUT_SHARE = 0.2
+"""But not below this share of the contrast: an edge that is not yet in place leaves as much, and
+must not be taken for a finger."""
+
+MIN_FACE_SAMPLES = 30
+"""A face with fewer samples has no correlation of its own."""
 
 
 @dataclass(frozen=True)
 class PhotometricSamples:
-    """What the drawing and the picture say at the samples that are in view."""
+    """Rendered and measured values of the samples in view."""
 
     face: NDArray[np.intp]
-    """Number of each sample's face, 0 for the first in view, (N,)."""
+    """Index of each sample's face, 0 for the first in view, (N,)."""
 
     block: NDArray[np.intp]
-    """Number of its block: samples of one block err alike, (N,)."""
+    """Index of its block: the errors of one block are not independent, (N,)."""
 
     seen: Array
-    """Light that the camera saw, (N,)."""
+    """Light in the image, (N,)."""
 
-    drawn: Array
-    """Share of white in the drawn mixture, 0…1, (N,)."""
+    rendered: Array
+    """Share of white in the rendered mixture, 0…1, (N,)."""
 
-    slopes: Array
-    """How that changes with a shift-turn of the pose, and of the sweep, (N, 12)."""
+    jacobian: Array
+    """Derivative of `rendered` by a pose delta and by the blur motion, (N, 12)."""
 
 
 @dataclass(frozen=True)
 class PhotometricFit:
-    """The drawing's tones fitted to the picture, and the step towards a better drawing."""
+    """The rendered tones fitted to the image, and the step to a better pose and motion."""
 
     samples: PhotometricSamples
-    """What was fitted."""
+    """The fitted samples."""
 
     rows: Array
-    """Linear equations of the residual: pose, sweep, then the tones, (N, 12 + tones)."""
+    """Jacobian of the residual: pose, blur motion, then the tones, (N, 12 + tones)."""
 
     normal: Array
     """Their normal matrix without priors."""
 
-    pull: Array
-    """Its right-hand side."""
+    right_side: Array
+    """The right-hand side of the normal equations."""
 
-    gain: Array
-    """Tones: black of each face, white over black of each face, and the bend of mixtures."""
+    tones: Array
+    """Black of each face, white minus black of each face, and the bend of mixtures."""
 
     residual: Array
-    """What the tones leave, (N,)."""
+    """Residuals, (N,)."""
 
     weights: Array
     """Robust weights over the variance, (N,)."""
@@ -66,76 +69,76 @@ class PhotometricFit:
     """Standard deviation of the residual."""
 
     def step(self, expected: Array, prior: Array) -> Array:
-        """Solve for the step of pose and sweep, (12,), with a prior of the sweep.
+        """Solve for the step of pose and blur motion, (12,), with a prior of the motion.
 
         Parameters
         ----------
         expected
-            Step of the sweep that the prior asks for, (6,).
+            Step of the motion that the prior expects, (6,).
         prior
-            Its standard deviations, (6,).
+            Standard deviations of the motion, (6,).
         """
-        normal, pull = self._with(prior), self.pull.copy()
-        pull[6:12] += expected / prior**2
-        return np.asarray(np.linalg.solve(normal, pull)[:12], np.float64)
+        normal, right_side = self._with(prior), self.right_side.copy()
+        right_side[6:12] += expected / prior**2
+        return np.asarray(np.linalg.solve(normal, right_side)[:12], np.float64)
 
     def covariance(self, prior: Array) -> Array:
-        """Covariance of pose and sweep, (12, 12), each block of samples one measurement.
+        """Covariance of pose and blur motion, (12, 12), with each block as one measurement.
 
-        The same as for edges (`refinement`): neighbours do not err independently.
+        The same estimator as for edges: the errors of neighbours are not independent.
         """
         inverse = np.linalg.inv(self._with(prior))
         starts, order = self._blocks()
         weighted = self.rows * (self.weights * self.residual)[:, None]
-        pulls = np.add.reduceat(weighted[order], starts) @ inverse[:, :12]
-        count, taken = len(starts), self.rows.shape[1] / 2
-        spread = pulls.T @ pulls * (count / max(count - taken, 1.0))
+        scores = np.add.reduceat(weighted[order], starts) @ inverse[:, :12]
+        count, used = len(starts), self.rows.shape[1] / 2
+        spread = scores.T @ scores * (count / max(count - used, 1.0))
         own = inverse[:12, 6:12] / prior
-        # A handful of blocks cannot span all directions; no sample is that sure either.
+        # A few blocks cannot span all directions: add a share of the independent covariance.
         return np.asarray(spread + own @ own.T + 0.2 * inverse[:12, :12], np.float64)
 
-    def told(self, way: Array, step: Array, prior: Array) -> tuple[Array, Array]:
-        """Information times sweep, (6,), and information, (6, 6), from the picture alone.
+    def motion_information(self, motion: Array, step: Array, prior: Array) -> tuple[Array, Array]:
+        """Information times blur motion, (6,), and information, (6, 6), from the image alone.
 
         Parameters
         ----------
-        way
-            The sweep from which the step was made, (6,).
+        motion
+            The blur motion before the step, (6,).
         step
-            The step that `step` gave, (12,).
+            The result of `step`, (12,).
         prior
-            The prior that it was given, which is not counted here, (6,).
+            Its prior, which does not count here, (6,).
         """
         inverse = np.linalg.inv(self._with(prior))
         marginal = np.linalg.inv(inverse[6:12, 6:12]) - np.diag(1 / prior**2)
-        return marginal @ (way + step[6:12]), marginal
+        return marginal @ (motion + step[6:12]), marginal
 
     @property
     def contrast(self) -> float:
-        """White over black of the face where it is greatest."""
-        return float(self.gain[self._faces : 2 * self._faces].max())
+        """White minus black of the face where it is greatest."""
+        return float(self.tones[self._faces : 2 * self._faces].max())
 
     @property
-    def tones(self) -> tuple[float, float]:
-        """Bend of mixtures, and black beside white, as `Response.learn` takes them."""
-        best = int(np.argmax(self.gain[self._faces : 2 * self._faces]))
-        black, height = float(self.gain[best]), max(self.contrast, 1e-3)
-        return float(self.gain[-1]) / height, black / (black + height)
+    def mixture_tones(self) -> tuple[float, float]:
+        """Bend of mixtures, and black over white, as `ToneCurve.learn` takes them."""
+        best = int(np.argmax(self.tones[self._faces : 2 * self._faces]))
+        black, contrast = float(self.tones[best]), max(self.contrast, 1e-3)
+        return float(self.tones[-1]) / contrast, black / (black + contrast)
 
     @property
-    def likeness(self) -> Array:
-        """Correlation of fitted drawing and picture, over all and for each face; NaN if unseen."""
+    def correlations(self) -> Array:
+        """Correlation of rendering and image, over all and for each face; NaN if not in view."""
         fitted = self.samples.seen - self.residual
         whole = [_correlation(self.samples.seen, fitted)]
         for face in range(self._faces):
             of = self.samples.face == face
-            enough = np.count_nonzero(of) > 30
+            enough = np.count_nonzero(of) > MIN_FACE_SAMPLES
             whole.append(_correlation(self.samples.seen[of], fitted[of]) if enough else np.nan)
         return np.array(whole)
 
     @property
     def _faces(self) -> int:
-        return len(self.gain) // 2
+        return len(self.tones) // 2
 
     def _with(self, prior: Array) -> Array:
         normal = self.normal.copy()
@@ -149,35 +152,75 @@ class PhotometricFit:
         return np.flatnonzero(np.diff(self.samples.block[order], prepend=-1)), order
 
 
-def fit(samples: PhotometricSamples, faces: int) -> PhotometricFit:
+@dataclass(frozen=True)
+class Alignment:
+    """A pose and a blur motion that explain a motion-blurred image."""
+
+    camera_from_cube: Array
+    """Pose of the cube in the middle of the exposure, (4, 4) [m]."""
+
+    blur_motion: Array
+    """Pose delta of the cube during the exposure, (6,)."""
+
+    covariance: Array
+    """Of a pose delta and then of the blur motion, (12, 12)."""
+
+    motion_information: tuple[Array, Array]
+    """What the image alone says of the blur motion: information times motion, (6,), and
+    information, (6, 6)."""
+
+    correlation: float
+    """Correlation of the rendering and the image, −1…1, over all samples in view."""
+
+    face_correlations: dict[str, float]
+    """The same for each face in view."""
+
+    residual: float
+    """Standard deviation of the samples that fit, as a share of the contrast."""
+
+    mixture_bend: float
+    """By how much mixtures of black and white are brighter than they should be, see `ToneCurve`."""
+
+    black_level: float
+    """Black over white, in the face with the greatest contrast."""
+
+    @property
+    def min_correlation(self) -> float:
+        """The smallest of all correlations."""
+        return min(self.correlation, *self.face_correlations.values())
+
+
+def fit_tones(samples: PhotometricSamples, faces: int) -> PhotometricFit:
     """Fit the tones of all faces with robust weights.
 
     Parameters
     ----------
     samples
-        What is drawn and seen.
+        What is rendered and seen.
     faces
-        How many faces are in view: each has its own light.
+        Number of faces in view: each has its own light.
     """
-    face, drawn, seen = samples.face, samples.drawn, samples.seen
+    face, rendered, seen = samples.face, samples.rendered, samples.seen
     light = (face[:, None] == np.arange(faces)).astype(np.float64)
-    mixed = (drawn * (1 - drawn))[:, None]
-    tone = np.concatenate([light, light * drawn[:, None], mixed], axis=1)
+    mixed = (rendered * (1 - rendered))[:, None]
+    rows_of_tones = np.concatenate([light, light * rendered[:, None], mixed], axis=1)
     robust, scale = np.ones(len(seen)), 1.0
-    steady = np.eye(tone.shape[1]) * 1e-3
+    regularization = np.eye(rows_of_tones.shape[1]) * 1e-3
     for _ in range(2):
-        weighted = tone * robust[:, None]
-        gain = np.linalg.solve(weighted.T @ tone + steady, weighted.T @ seen)
-        residual = seen - tone @ gain
+        weighted = rows_of_tones * robust[:, None]
+        normal = weighted.T @ rows_of_tones + regularization
+        tones = np.linalg.solve(normal, weighted.T @ seen)
+        residual = seen - rows_of_tones @ tones
         scale = 1.4826 * quantile(np.abs(residual), 0.5) + 0.3
-        cut = max(SOFTNESS * scale, TOLERANCE * float(gain[faces : 2 * faces].max()))
+        contrast = float(tones[faces : 2 * faces].max())
+        cut = max(MAX_RESIDUAL_SIGMAS * scale, MIN_CUT_SHARE * contrast)
         robust = 1 / np.square(1 + np.square(residual / cut))
-    strength = gain[faces : 2 * faces][face] + gain[-1] * (1 - 2 * drawn)
-    rows = np.concatenate([samples.slopes * strength[:, None], tone], axis=1)
+    strength = tones[faces : 2 * faces][face] + tones[-1] * (1 - 2 * rendered)
+    rows = np.concatenate([samples.jacobian * strength[:, None], rows_of_tones], axis=1)
     weights = robust / scale**2
     weighted = rows * weights[:, None]
     return PhotometricFit(
-        samples, rows, weighted.T @ rows, weighted.T @ residual, gain, residual, weights, scale
+        samples, rows, weighted.T @ rows, weighted.T @ residual, tones, residual, weights, scale
     )
 
 

@@ -1,4 +1,4 @@
-"""Grey profiles across the edges of the cube: where to look, and what is found there."""
+"""Grey profiles across the edges of the cube: where to measure, and the measurement."""
 
 from dataclasses import dataclass
 
@@ -11,50 +11,52 @@ from tracking.geometry.projection import MIN_DEPTH, Projection
 
 Array = NDArray[np.float64]
 
-NARROWEST = 2.5
-"""Smallest cell across an edge [px]: below, the two edges of a cell blur into one."""
+MIN_CELL_PX = 2.5
+"""Smallest cell across an edge: below, the two edges of a cell blur into one."""
 
-END_CLEARANCE = 1.5
-"""Points nearer to the end of an edge [px] are left out: blur rounds corners."""
+END_CLEARANCE_PX = 1.5
+"""Points nearer to the end of an edge are left out: blur rounds corners."""
 
-REACH = 3.5
-"""Half the length of a profile [px], and never more than half a cell."""
+REACH_PX = 3.5
+"""Half the length of a profile, which is never more than half a cell."""
 
-WIDE_REACH = (14.0, 0.9)
-"""Half the length of a profile of the wide search [px], and at most in cells: the outlines of the
-markers alone have nothing but paper for a whole cell beside them."""
+WIDE_REACH_PX, WIDE_REACH_CELLS = 14.0, 0.9
+"""Half the length of a profile of the wide search, the smaller of the two: only the outlines of the
+markers have a whole cell of paper next to them."""
 
 TAPS = 9
 """Samples in a profile."""
 
-MODEL_ERROR = 0.04
-"""Error of a single edge place that does not come from noise [px]: neighbouring cells, sampling."""
+MODEL_ERROR_PX = 0.04
+"""Error of a single edge position that is not noise: neighbouring cells, sampling."""
+
+UNIT_TAPS = np.linspace(-1, 1, TAPS, dtype=np.float32)[None]
 
 
 @dataclass(frozen=True)
 class EdgeProfiles:
-    """Edge points in view, and the straight lines in the picture that cross them."""
+    """Edge points in view, and the line segments across the edges to measure along."""
 
     model: EdgeModel
     """The edges of the faces in view."""
 
     numbers: NDArray[np.intp]
-    """Which points of `model` these are, rising, (N,)."""
+    """Indices of these points in `model`, ascending, (N,)."""
 
     pixels: Array
-    """Where they are seen, (N, 2) [px]."""
+    """Their positions in the image, (N, 2) [px]."""
 
     normals: Array
     """Unit vectors across the edges, from black to white, (N, 2)."""
 
     slopes: Array
-    """How far each edge moves along its normal with a shift-turn, (N, 6) [px]."""
+    """Jacobian of each edge position along its normal by a pose delta, (N, 6) [px]."""
 
     reach: Array
     """Half the length of each profile, (N,) [px]."""
 
-    sweep: Array
-    """How far each edge moved across itself while the shutter was open, (N,) [px]."""
+    blur: Array
+    """How far each edge moved along its normal during the exposure, (N,) [px]."""
 
     @property
     def face(self) -> NDArray[np.intp]:
@@ -62,15 +64,38 @@ class EdgeProfiles:
         return self.model.face[self.numbers]
 
 
-def lay_out(
+@dataclass(frozen=True)
+class EdgeMeasurements:
+    """Measurements of profiles, each (N,)."""
+
+    offset: Array
+    """Offset of the edge along the normal [px]."""
+
+    contrast: Array
+    """Height of the step, white over black [grey levels]."""
+
+    level: Array
+    """Mean of the image along the profile [grey levels]."""
+
+    information: Array
+    """Information about the offset [1/px²]."""
+
+    rise: Array
+    """Rise of the image over the middle quarter of the profile [grey levels]."""
+
+    fitted: Array
+    """The same for the fitted step."""
+
+
+def place_profiles(
     model: EdgeModel,
     projection: Projection,
     camera_from_cube: Array,
     patch: Patch,
-    sweep: Array | None,
+    blur_motion: Array | None,
     wide: bool,
 ) -> EdgeProfiles | None:
-    """Lay profiles across the edges of a cube at a pose.
+    """Place profiles across the edges of a cube at a pose.
 
     Parameters
     ----------
@@ -81,68 +106,68 @@ def lay_out(
     camera_from_cube
         The pose, (4, 4).
     patch
-        The picture; edges outside it are left out.
-    sweep
-        Shift-turn of the cube while the shutter was open, (6,), or None for a cube at rest.
+        The image; edges outside it are left out.
+    blur_motion
+        Pose delta of the cube during the exposure, (6,), or None for a cube at rest.
     wide
-        Whether to take the outlines alone, and to look a whole cell far.
+        Whether to use the outlines only, with profiles of a whole cell.
 
     Returns
     -------
-    None where the cube is too near to be seen.
+    None where the cube is too close to the camera.
     """
-    turned = model.points @ camera_from_cube[:3, :3].T
-    points = turned + camera_from_cube[:3, 3]
+    rotation = camera_from_cube[:3, :3]
+    rotated = model.points @ rotation.T
+    points = rotated + camera_from_cube[:3, 3]
     if not len(points) or points[:, 2].min() < MIN_DEPTH:
         return None
-    pixels, by_place = projection.project_with_jacobian(points)
-    turn = camera_from_cube[:3, :3]
-    along = _pushed(by_place, model.along @ turn.T)
-    across = _pushed(by_place, model.across @ turn.T)
+    pixels, jacobian = projection.project_with_jacobian(points)
+    along = _projected(jacobian, model.along @ rotation.T)
+    across = _projected(jacobian, model.across @ rotation.T)
     length = np.sqrt((along * along).sum(axis=1))
     normals = np.stack([-along[:, 1], along[:, 0]], axis=1) / length[:, None]
     cell = (normals * across).sum(axis=1)
     normals *= np.sign(cell)[:, None]
     cell = np.abs(cell)
-    by_point = normals[:, 0, None] * by_place[:, 0] + normals[:, 1, None] * by_place[:, 1]
-    slopes = np.concatenate([by_point, _cross(turned, by_point)], axis=1)
-    swept = np.zeros(len(cell)) if sweep is None else np.abs(slopes @ sweep)
+    by_point = normals[:, 0, None] * jacobian[:, 0] + normals[:, 1, None] * jacobian[:, 1]
+    slopes = np.concatenate([by_point, _cross(rotated, by_point)], axis=1)
+    blur = np.zeros(len(cell)) if blur_motion is None else np.abs(slopes @ blur_motion)
     if wide:
-        reach = np.minimum(WIDE_REACH[0], cell * WIDE_REACH[1])
+        reach = np.minimum(WIDE_REACH_PX, cell * WIDE_REACH_CELLS)
     else:
-        reach = np.minimum(np.maximum(REACH, 0.75 * swept + 2), cell / 2)
-    good = (cell > NARROWEST) & (patch.room(pixels) > reach + 1) & (swept < cell)
-    good &= model.to_end * length > END_CLEARANCE
+        reach = np.minimum(np.maximum(REACH_PX, 0.75 * blur + 2), cell / 2)
+    good = (cell > MIN_CELL_PX) & (patch.border_distance(pixels) > reach + 1) & (blur < cell)
+    good &= model.to_end * length > END_CLEARANCE_PX
     if wide:
         good &= model.outline
     found = np.flatnonzero(good)
     return EdgeProfiles(
-        model, found, pixels[found], normals[found], slopes[found], reach[found], swept[found]
+        model, found, pixels[found], normals[found], slopes[found], reach[found], blur[found]
     )
 
 
-def offsets(
+def measure_profiles(
     patch: Patch, profiles: EdgeProfiles, shifts: Array | float, blur: float
-) -> "EdgeMeasurements":
-    """Fit a blurred step to the picture across each edge point.
+) -> EdgeMeasurements:
+    """Fit a blurred step to the image across each edge point.
 
-    The model a + b·S(u/σ) − b·δ·s(u/σ)/σ, (S a smooth step, s its slope), is linear in a, b and
-    b·δ, and its parts are orthogonal after centring: no iteration, no matrix.
+    The model a + b·S(u/σ) − b·δ·s(u/σ)/σ, with S a smooth step and s its derivative, is linear in
+    a, b and b·δ. Its parts are orthogonal after centring, so no iteration and no matrix is needed.
 
     Parameters
     ----------
     patch
-        The picture.
+        The image.
     profiles
-        Where to look.
+        Where to measure.
     shifts
-        How far beside their places the profiles begin, along the normals, (N,) [px].
+        Shifts of the profiles along their normals, (N,) [px].
     blur
-        Width of a step at rest [px].
+        Width of an edge at rest [px].
 
     Returns
     -------
-    What was found, with offsets from the shifted places.
+    The measurements, with offsets from the shifted positions.
     """
     reach, normals = profiles.reach.astype(np.float32), profiles.normals.astype(np.float32)
     places = profiles.pixels + np.reshape(shifts, (-1, 1)) * profiles.normals
@@ -150,9 +175,9 @@ def offsets(
     taps = UNIT_TAPS * reach[:, None]
     x = inner[:, 0, None] + taps * normals[:, 0, None]
     y = inner[:, 1, None] + taps * normals[:, 1, None]
-    values = patch.inside(x, y)
-    # A swept edge is a ramp; a smooth step of 0.35 of its length is the nearest of this family.
-    wide = np.sqrt(blur**2 + (0.35 * profiles.sweep) ** 2)
+    values = patch.sample_local(x, y)
+    # A motion-blurred edge is a ramp; a smooth step of 0.35 of its length is closest to it.
+    wide = np.sqrt(blur**2 + (0.35 * profiles.blur) ** 2)
     width = np.minimum(wide, profiles.reach * 0.45).astype(np.float32)[:, None]
     step = np.tanh(taps / width) / 2
     slope = (0.25 - step * step) * (2 / width)
@@ -161,8 +186,8 @@ def offsets(
     energy = _dot(slope, slope)
     shifted = -_dot(slope, values) / energy
     safe = np.where(np.abs(contrast) > 1, contrast, 1)
-    # Two grey levels of noise; its true size is found from the residuals.
-    variance = 4 / (safe * safe * energy) + MODEL_ERROR**2
+    # Two grey levels of noise; its true size follows from the residuals.
+    variance = 4 / (safe * safe * energy) + MODEL_ERROR_PX**2
     half = TAPS // 2
     rise = (values[:, half + 1] - values[:, half - 1]).astype(np.float64)
     fitted = contrast * (step[:, half + 1] - step[:, half - 1])
@@ -170,40 +195,14 @@ def offsets(
     return EdgeMeasurements(shifted / safe, contrast, level, 1 / variance, rise, fitted)
 
 
-@dataclass(frozen=True)
-class EdgeMeasurements:
-    """What profiles show, each (N,)."""
-
-    offset: Array
-    """Offset of the edge along the normal [px]."""
-
-    contrast: Array
-    """Height of the step, white over black [grey levels]."""
-
-    level: Array
-    """Mean of the picture along the profile [grey levels]."""
-
-    information: Array
-    """About the offset [1/px²]."""
-
-    rise: Array
-    """How much the picture rises over the middle quarter of the profile [grey levels]."""
-
-    fitted: Array
-    """The same of the step that was fitted."""
-
-
 def _dot(a: Floats, b: Floats) -> Array:
     """Sum the products of rows, (N, M) and (N, M) → (N,)."""
     return np.asarray(np.einsum("ij,ij->i", a, b), np.float64)
 
 
-UNIT_TAPS = np.linspace(-1, 1, TAPS, dtype=np.float32)[None]
-
-
-def _pushed(slopes: Array, vectors: Array) -> Array:
-    """Project vectors, (N, 3), by the slopes of their points, (N, 2, 3) → (N, 2)."""
-    return np.asarray(np.matmul(slopes, vectors[:, :, None])[:, :, 0], np.float64)
+def _projected(jacobian: Array, vectors: Array) -> Array:
+    """Project vectors, (N, 3), by the Jacobian at their points, (N, 2, 3) → (N, 2)."""
+    return np.asarray(np.matmul(jacobian, vectors[:, :, None])[:, :, 0], np.float64)
 
 
 def _cross(a: Array, b: Array) -> Array:

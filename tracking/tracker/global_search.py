@@ -116,7 +116,7 @@ class GlobalDetector:
         -------
         The first that edges prove without a choice, else those of the most thorough search.
         """
-        patch = Patch.of(markers.grey, None, tone)
+        patch = Patch.crop(markers.grey, None, tone)
         found: list[Candidate] = []
         for observations in self._observations(markers, thorough):
             candidates = self._poses.find(patch, observations, expected) if observations else []

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from tracking.cube.model import CubeModel
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
-from tracking.refinement.alignment import Alignment
 from tracking.refinement.blur_search import MAX_EDGE_BLUR_CELLS, MIN_CORRELATION_ALONE, BlurSearch
 from tracking.refinement.camera_model import BlurObservation, CameraModel, shows_exposure
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
+from tracking.refinement.photometric_fit import Alignment
 from tracking.tracker.prediction import Prediction, Track
 
 Array = NDArray[np.float64]
@@ -132,11 +132,11 @@ class LocalTracker:
 
     def _observed(self, aligned: Alignment, velocity: Array) -> BlurObservation | None:
         """Return what an alignment tells of the camera; None where it may be wrong."""
-        if not aligned.likeness >= MIN_CORRELATION_ALONE:
+        if not aligned.correlation >= MIN_CORRELATION_ALONE:
             return None
         return BlurObservation(
             aligned,
             velocity,
-            self._footprint.blur_extent(aligned.sweep),
+            self._footprint.blur_extent(aligned.blur_motion),
             self._footprint.pixels_per_cell(aligned.camera_from_cube),
         )

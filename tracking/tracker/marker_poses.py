@@ -127,8 +127,8 @@ class MarkerPoses:
             faces=faces,
             error=self._solver.error(refined.camera_from_cube, seen),
             residual=refined.residual / refined.support,
-            certain=refined.steep > MIN_SHARPNESS and match.proved,
-            measurements=refined.lines,
+            certain=refined.sharpness > MIN_SHARPNESS and match.proved,
+            measurements=refined.line_count,
         )
 
     def _agree(self, solution: CornerPose, match: EdgeMatch) -> bool:
@@ -141,7 +141,7 @@ class MarkerPoses:
         cell = min(each.size for each in seen) / CELLS_PER_MARKER
         limit = solution.error + MAX_CORNER_DISTANCE_CELLS * cell
         far = self._solver.error(pose, seen) > (MAX_LONE_CORNER_DISTANCE_PX if alone else limit)
-        best = max(refined.shares.get(each.face.name, 0.0) for each in seen)
+        best = max(refined.face_support.get(each.face.name, 0.0) for each in seen)
         supported = best > (MIN_LONE_FACE_SUPPORT if alone else MIN_FACE_SUPPORT)
         return refined.support > MIN_EDGE_SUPPORT and supported and not far
 

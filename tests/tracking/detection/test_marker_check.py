@@ -30,7 +30,7 @@ def square_enough(pose: Array) -> set[str]:
 
 
 def read(picture: Picture, pose: Array, reader: CellReader = READER) -> CellReading:
-    return reader.read(Patch.of(picture), pose)
+    return reader.read(Patch.crop(picture), pose)
 
 
 @pytest.fixture(scope="module", params=range(len(VIEWS)))

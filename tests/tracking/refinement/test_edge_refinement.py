@@ -22,7 +22,7 @@ def scene() -> tuple[EdgeRefiner, Patch, Array]:
     source = open_synthetic("static?frames=1")
     assert source.intrinsics is not None
     refiner = EdgeRefiner(source.cube, Projection(source.intrinsics))
-    return refiner, Patch.of(source.frame(0).image), source.truth(0)
+    return refiner, Patch.crop(source.frame(0).image), source.truth(0)
 
 
 def test_edges_lie_between_black_and_white() -> None:
@@ -72,7 +72,7 @@ def test_other_markers_are_not_taken_for_the_cube(
     assert source.intrinsics is not None
     other = EdgeRefiner(CubeModel.load("companion"), Projection(source.intrinsics))
     result = other.refine(patch, truth)
-    assert result is None or result.inner < 0.6
+    assert result is None or result.inner_support < 0.6
 
 
 def test_a_picture_without_edges_refines_nothing(

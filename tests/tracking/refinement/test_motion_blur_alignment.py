@@ -12,11 +12,11 @@ from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
-from tracking.refinement.alignment import Alignment
 from tracking.refinement.blur_search import MIN_CORRELATION, BlurSearch
 from tracking.refinement.camera_model import MIN_BLUR_PX, CameraModelEstimator, ToneCurve
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.motion_blur_alignment import MotionBlurAligner
+from tracking.refinement.photometric_fit import Alignment
 from tracking.tracker.local_search import LocalTracker
 from tracking.tracker.prediction import Track, TrackedPose
 
@@ -55,7 +55,7 @@ class Shot:
 
 
 def shot(pose: Array, sweep: Array, cube: CubeModel = CUBE) -> Shot:
-    return Shot(Patch.of(photograph(scene((cube, pose), sweep=sweep)), None, LIGHT), pose, sweep)
+    return Shot(Patch.crop(photograph(scene((cube, pose), sweep=sweep)), None, LIGHT), pose, sweep)
 
 
 def beside(pose: Array, random: np.random.Generator) -> Array:
@@ -91,7 +91,7 @@ def test_the_pose_in_mid_exposure_is_found_from_three_millimetres_and_two_degree
     assert len(found) > len(alignments) / 2
     assert (errors.max(axis=0) < [0.5, 0.3]).all()
     assert (np.median(errors, axis=0) < [0.25, 0.1]).all()
-    assert min(alignment.weakest for _, alignment in found) > 0.95
+    assert min(alignment.min_correlation for _, alignment in found) > 0.95
 
 
 def test_no_such_start_is_given_up(alignments: list[tuple[Shot, Alignment | None]]) -> None:
@@ -103,7 +103,7 @@ def test_the_way_across_the_picture_is_measured(
 ) -> None:
     for each, alignment in alignments:
         if alignment:
-            error = np.linalg.norm((alignment.sweep - each.sweep)[:2])
+            error = np.linalg.norm((alignment.blur_motion - each.sweep)[:2])
             assert error < 0.15 * np.linalg.norm(each.sweep[:2])
 
 
@@ -112,7 +112,7 @@ def test_the_picture_alone_tells_the_way_across_it_without_what_was_expected(
 ) -> None:
     for each, alignment in alignments:
         if alignment:
-            pull, information = alignment.told
+            pull, information = alignment.motion_information
             assert np.allclose(information, information.T, rtol=1e-6)
             told = np.linalg.solve(information, pull)
             assert np.linalg.norm((told - each.sweep)[:2]) < 0.15 * FAR
@@ -144,7 +144,7 @@ def test_a_cube_at_rest_sweeps_no_more_than_a_lens_blurs() -> None:
     still = shot(VIEWS[0], np.zeros(6))
     alignment = still.found(se3.moved(VIEWS[0], np.array([4e-4, -3e-4, 5e-4, 4e-3, 0, 3e-3])))
     assert off(alignment.camera_from_cube, VIEWS[0])[0] < 0.2
-    pixels = np.linalg.norm(alignment.sweep[:2]) * CAMERA.matrix[0, 0] / VIEWS[0][2, 3]
+    pixels = np.linalg.norm(alignment.blur_motion[:2]) * CAMERA.matrix[0, 0] / VIEWS[0][2, 3]
     assert pixels < MIN_BLUR_PX
 
 
@@ -155,7 +155,7 @@ def test_a_finger_on_a_face_does_not_pull_the_cube(shots: list[Shot]) -> None:
     covered = Shot(Patch(grey, 0, 0), each.pose, each.sweep)
     alignment = covered.found(se3.moved(each.pose, np.array([1e-3, 0, 0, 0, 0.01, 0])))
     assert off(alignment.camera_from_cube, each.pose)[0] < 1.0
-    assert np.linalg.norm((alignment.sweep - each.sweep)[:2]) < 0.15 * FAR
+    assert np.linalg.norm((alignment.blur_motion - each.sweep)[:2]) < 0.15 * FAR
 
 
 def test_another_cube_is_not_like_it(shots: list[Shot]) -> None:
@@ -164,17 +164,17 @@ def test_another_cube_is_not_like_it(shots: list[Shot]) -> None:
         itself = MotionBlurAligner(OTHER, Projection(CAMERA))
         right = other.align(each.pose, itself, coarse=False)
         assert right is not None
-        assert right.weakest > 0.95
+        assert right.min_correlation > 0.95
         for coarse in (False, True):
             wrong = other.align(each.pose, coarse=coarse)
-            assert wrong is None or wrong.weakest < MIN_CORRELATION
+            assert wrong is None or wrong.min_correlation < MIN_CORRELATION
 
 
 def test_an_even_picture_is_not_like_it(shots: list[Shot]) -> None:
     random = np.random.default_rng(4)
     grey = (120 + random.normal(0, 2, (480, 640))).astype(np.float32)
     nothing = Shot(Patch(grey, 0, 0), shots[0].pose, shots[0].sweep).align(shots[0].pose)
-    assert nothing is None or nothing.weakest < 0.5
+    assert nothing is None or nothing.min_correlation < 0.5
 
 
 @pytest.mark.parametrize("place", [(2.0, 0, 0.4), (0, 0, -0.4), (0, 0, 0.02)])

@@ -20,7 +20,7 @@ from tracking.refinement.camera_model import (
     ToneCurve,
 )
 from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.photometric_fit import PhotometricSamples, fit
+from tracking.refinement.photometric_fit import PhotometricSamples, fit_tones
 from tracking.synthetic import open_synthetic
 from tracking.tracker.local_search import LocalTracker
 from tracking.tracker.prediction import Track, TrackedPose
@@ -79,8 +79,8 @@ def test_noisy_mixtures_of_two_faces_give_the_exponent_too(exponent: float) -> N
         face = np.arange(800) % 2
         seen = seen_through(curve, exponent, drawn) + random.normal(0, 3, 800)
         blocks = np.arange(800) // 40
-        mixture = fit(PhotometricSamples(face, blocks, seen, drawn, np.zeros((800, 12))), 2)
-        curve.learn(*mixture.tones)
+        fit = fit_tones(PhotometricSamples(face, blocks, seen, drawn, np.zeros((800, 12))), 2)
+        curve.learn(*fit.mixture_tones)
     assert curve.exponent == pytest.approx(exponent, abs=0.2)
 
 
