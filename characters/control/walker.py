@@ -143,7 +143,7 @@ class Walker:
         if command.activity == "move" and going is not None and going.target is not None:
             x, z = (float(value) for value in going.target)
             speed = min(going.speed, TOP_SPEED)
-            course = self._steering.course(self.place, (x, z), speed, going.stop)
+            course = self._steering.update(self.place, (x, z), speed, going.stop)
         if course.speed > 0.0:
             self._turning = False
             return course

@@ -1,56 +1,58 @@
-"""Feet that hold: a foot that has landed stays where it is until it lifts.
+"""Foot constraints: a foot that has landed stays in place until it lifts.
 
-What a foot stands on, its heel or its ball, is held in the world, and so is the way it faces; where
-the motion would have it otherwise is the foot's shift. When the foot lifts, the shift dies away
-from the velocity that it had, so nothing pops: inertialisation (Bollo, GDC 2018), for a foot. A
-foot that would have to be held too far from where the motion wants it takes a quick step there.
+The heel or the ball of a standing foot is held in the world, and so is its heading; the difference
+from the motion is the foot's offset. When the foot lifts, the offset decays from its present
+velocity, so there is no jump: inertialization (Bollo, GDC 2018) for a foot. A foot whose offset
+becomes too large takes a quick step.
 """
 
 import math
 from dataclasses import dataclass
 
-# Lengths are parts of the body's height.
-_LANDS = 0.014  # a foot lands only so near to the ground
-_FARTHEST, _TWISTED = 0.05, math.radians(40)  # a held foot is let go beyond this offset or turn
-_UNTIDY, _ASKEW = 0.025, math.radians(20)  # and one of somebody who stands already beyond these
-_ON_BALL, _ON_HEEL = (
-    0.003,
-    0.006,
-)  # it stands on the heel if that is so much lower: still, and newly
-_STEP_TIME = 0.22  # [s]: what a quick step takes
-_STEP_HEIGHT, _STEP_SLOPE = 0.025, 0.35  # how high it goes: at most, and for its length
-_STEP_LEAST = 6e-4  # and at least, of the body's height
-_PEEL, _PEELED = 0.009, 0.02  # a foot that lifts is so high once it is so far from where it stood,
-_FREE, _CLEAR = 0.06, 0.14  # and that begins to matter less from here on, and ends there
-_FADE_TIME = 0.2  # [s]: after that nothing is left of an old shift
-_TOUCH, _NEARLY = 0.35, 0.012  # part of a step before whose end it may land, if it is so near
-_HASTE = 3.0  # [m/s of a body of 1 m, rad/s]: no offset starts to die away faster
+from characters.motion.inertialization import quintic_decay
+
+# Lengths are in body heights.
+_MAX_LANDING_HEIGHT = 0.014
+_MAX_OFFSET, _MAX_TWIST_RAD = 0.05, math.radians(40)  # a held foot is released beyond these
+_MAX_STANDING_OFFSET, _MAX_STANDING_TWIST_RAD = 0.025, math.radians(20)  # while standing
+# How much lower than the ball the heel must be to be held: if it is held already, and if not.
+_HEEL_MARGIN_HELD, _HEEL_MARGIN_NEW = 0.003, 0.006
+_QUICK_STEP_S = 0.22
+# Height of a quick step: at most, for each unit of its length, and at least.
+_MAX_STEP_HEIGHT, _STEP_HEIGHT_PER_LENGTH, _MIN_STEP_HEIGHT = 0.025, 0.35, 6e-4
+# A lifting foot is raised so high once it is so far from where it stood; …
+_LIFT_HEIGHT, _LIFT_DISTANCE = 0.009, 0.02
+_LIFT_FADE_START, _LIFT_FADE_END = 0.06, 0.14  # … this fades out between these distances
+_OFFSET_DECAY_S = 0.2
+# A quick step may land early within this part of its end, if it is so near.
+_EARLY_LANDING_SHARE, _EARLY_LANDING_DISTANCE = 0.35, 0.012
+_MAX_DECAY_SPEED = 3.0  # [body heights/s, rad/s]: limit of the initial velocity of a decay
 
 
 @dataclass(frozen=True)
 class FootPoints:
-    """What of a foot meets the ground, in the world, as the motion has it [m]."""
+    """The points of a foot that touch the ground, in the world, in the motion [m]."""
 
     heel: tuple[float, float, float]
-    """Point under the heel."""
+    """Point below the heel."""
 
     ball: tuple[float, float, float]
-    """Joint of the toes, as high above the ground as it is when it stands."""
+    """Joint of the toes; its height is relative to that of a standing foot."""
 
     @property
     def heading(self) -> float:
-        """Where it points: the angle about +y from +z [rad]."""
+        """Angle about +y from +z [rad]."""
         return math.atan2(self.ball[0] - self.heel[0], self.ball[2] - self.heel[2])
 
     @property
-    def low(self) -> float:
-        """How far the lower of both is above the ground."""
+    def height(self) -> float:
+        """Height of the lower point above the ground."""
         return min(self.heel[1], self.ball[1])
 
 
 @dataclass
-class Shift:
-    """How a foot is shown elsewhere than the motion has it: its ball moved, and turned about it."""
+class FootOffset:
+    """Difference between the shown foot and the motion: its ball is moved, and it is turned."""
 
     x: float = 0.0
     """[m]."""
@@ -59,139 +61,156 @@ class Shift:
     """[m]."""
 
     yaw: float = 0.0
-    """[rad]."""
+    """About the ball [rad]."""
 
     y: float = 0.0
     """[m]."""
 
-    def moved(self, sole: FootPoints, heel: bool) -> tuple[float, float]:
-        """Return x, z where the heel or the ball of a foot is shown."""
-        ball = sole.ball[0] + self.x, sole.ball[2] + self.z
+    def shown(self, points: FootPoints, heel: bool) -> tuple[float, float]:
+        """Return x, z of the shown heel or ball of a foot."""
+        ball = points.ball[0] + self.x, points.ball[2] + self.z
         if not heel:
             return ball
-        x, z = turned(sole.heel[0] - sole.ball[0], sole.heel[2] - sole.ball[2], self.yaw)
+        x, z = rotate_yaw(
+            points.heel[0] - points.ball[0], points.heel[2] - points.ball[2], self.yaw
+        )
         return ball[0] + x, ball[1] + z
 
     @property
     def length(self) -> float:
-        """How far over the ground [m]."""
+        """Horizontal length [m]."""
         return math.hypot(self.x, self.z)
 
 
 class FootConstraint:
-    """One foot: held, or on its way; advanced once a frame."""
+    """State of one foot: held, or moving; advanced once a frame."""
 
-    def __init__(self, height: float) -> None:
+    def __init__(self, body_height: float) -> None:
         self.held = False
-        self.shift = Shift()
-        """How it is shown elsewhere than the motion has it."""
-        self.stepping = 0.0
-        """What is left of a quick step [s]."""
-        self.too_far = False
-        """Whether the leg is too short to hold it."""
-        self._height = height
-        self._heel = False
+        self.offset = FootOffset()
+        """The present offset."""
+        self.step_time_left = 0.0
+        """Rest of a quick step [s]."""
+        self.out_of_reach = False
+        """Whether the leg is too short to hold the foot."""
         self.anchor = (0.0, 0.0, 0.0)
-        """x, z [m] and heading [rad] of what is held, in the world."""
-        self._left = (0.0, 0.0)  # where it stood last
-        self._stride = 0.0  # of a quick step [m]
-        self._shown = [0.0] * 4  # x, z, yaw, y
-        self._pace = [0.0] * 4
-        self._old, self._drift = [0.0] * 4, [0.0] * 4  # what dies away, as it was, and its pace
-        self._age, self._fade_time = _FADE_TIME, _FADE_TIME
+        """x, z [m] and heading [rad] of the held point, in the world."""
+        self._body_height = body_height
+        self._heel = False
+        self._last_stand = (0.0, 0.0)
+        self._step_length = 0.0
+        self._shown = [0.0] * 4  # x, z, yaw, y of the offset
+        self._velocity = [0.0] * 4
+        # The decaying offset: initial value and velocity, age and length.
+        self._old, self._old_velocity = [0.0] * 4, [0.0] * 4
+        self._age, self._decay_time = _OFFSET_DECAY_S, _OFFSET_DECAY_S
 
-    def advance(self, sole: FootPoints, elapsed: float) -> None:
-        """Go on as before to where the motion has the foot now."""
-        self.stepping = max(self.stepping - elapsed, 0.0)
+    def advance(self, points: FootPoints, elapsed: float) -> None:
+        """Advance by a time [s] to the present points of the motion."""
+        self.step_time_left = max(self.step_time_left - elapsed, 0.0)
         self._age += elapsed
-        rest, before = self._rest(), self._shown
-        self._shown = [a + b for a, b in zip(self._goal(sole), rest, strict=True)]
-        self.shift = Shift(*self._shown)
+        decayed, before = self._decayed(), self._shown
+        self._shown = [a + b for a, b in zip(self._goal(points), decayed, strict=True)]
+        self.offset = FootOffset(*self._shown)
         if elapsed > 0.0:
-            self._pace = [(a - b) / elapsed for a, b in zip(self._shown, before, strict=True)]
+            self._velocity = [(a - b) / elapsed for a, b in zip(self._shown, before, strict=True)]
 
     def strained(self, standing: bool) -> bool:
-        """Whether it is held too far from where the motion wants it."""
-        far, askew = (_UNTIDY, _ASKEW) if standing else (_FARTHEST, _TWISTED)
-        off = self.shift.length > far * self._height or abs(self.shift.yaw) > askew
-        return off or self.too_far
+        """Return whether its offset is too large; the limits are smaller while standing."""
+        distance, twist = (
+            (_MAX_STANDING_OFFSET, _MAX_STANDING_TWIST_RAD)
+            if standing
+            else (_MAX_OFFSET, _MAX_TWIST_RAD)
+        )
+        far = self.offset.length > distance * self._body_height
+        return far or abs(self.offset.yaw) > twist or self.out_of_reach
 
-    def hold(self, sole: FootPoints) -> None:
+    def hold(self, points: FootPoints) -> None:
         """Hold the foot where it is shown: it lands, or rolls from heel to ball."""
-        least = _ON_BALL if self._heel else _ON_HEEL
-        heel = sole.heel[1] + least * self._height < sole.ball[1]
+        margin = _HEEL_MARGIN_HELD if self._heel else _HEEL_MARGIN_NEW
+        heel = points.heel[1] + margin * self._body_height < points.ball[1]
         if self.held and self._heel == heel:
             return
         self._heel = heel
-        x, z = self.shift.moved(sole, self._heel)
-        self.anchor = x, z, sole.heading + self.shift.yaw
+        x, z = self.offset.shown(points, self._heel)
+        self.anchor = x, z, points.heading + self.offset.yaw
         if not self.held:
             self.held = True
-            self._fade([0.0, 0.0, 0.0, self.shift.y + sole.low], [0.0] * 4, _FADE_TIME)
-            self.stepping = 0.0
+            landing = [0.0, 0.0, 0.0, self.offset.y + points.height]
+            self._start_decay(landing, [0.0] * 4, _OFFSET_DECAY_S)
+            self.step_time_left = 0.0
 
-    def release(self, sole: FootPoints, step: bool) -> None:
-        """Let the foot go, in a quick step of its own or with the motion."""
+    def release(self, points: FootPoints, step: bool) -> None:
+        """Release the foot, for a quick step or to follow the motion."""
         if not self.held:
             return
-        self.held = self.too_far = False
-        fastest = [_HASTE * self._height, _HASTE * self._height, _HASTE, _HASTE * self._height]
-        pace = [min(max(v, -most), most) for v, most in zip(self._pace, fastest, strict=True)]
-        self._fade(self._shown, pace, _STEP_TIME if step else _FADE_TIME)
-        self._left = self.shift.moved(sole, heel=False)
-        self._stride = self.shift.length
-        self.stepping = _STEP_TIME if step else 0.0
+        self.held = self.out_of_reach = False
+        speed = _MAX_DECAY_SPEED * self._body_height
+        limits = [speed, speed, _MAX_DECAY_SPEED, speed]
+        velocity = [
+            min(max(v, -most), most) for v, most in zip(self._velocity, limits, strict=True)
+        ]
+        self._start_decay(self._shown, velocity, _QUICK_STEP_S if step else _OFFSET_DECAY_S)
+        self._last_stand = self.offset.shown(points, heel=False)
+        self._step_length = self.offset.length
+        self.step_time_left = _QUICK_STEP_S if step else 0.0
 
-    def lift(self, sole: FootPoints) -> None:
-        """Keep a foot that is on its way clear of the ground, and every foot out of it."""
-        least = -sole.low
-        if self.stepping > 0.0:
+    def lift(self, points: FootPoints) -> None:
+        """Keep a moving foot clear of the ground, and any foot above it."""
+        lowest = -points.height
+        if self.step_time_left > 0.0:
             top = min(
-                _STEP_HEIGHT * self._height, _STEP_SLOPE * self._stride + _STEP_LEAST * self._height
+                _MAX_STEP_HEIGHT * self._body_height,
+                _STEP_HEIGHT_PER_LENGTH * self._step_length + _MIN_STEP_HEIGHT * self._body_height,
             )
-            least = top * math.sin(math.pi * self.stepping / _STEP_TIME) ** 2 - sole.low
+            angle = math.pi * self.step_time_left / _QUICK_STEP_S
+            lowest = top * math.sin(angle) ** 2 - points.height
         elif not self.held:
-            x, z = self.shift.moved(sole, heel=False)
-            gone = math.hypot(x - self._left[0], z - self._left[1]) / self._height
-            fading = min(max((_CLEAR - gone) / (_CLEAR - _FREE), 0.0), 1.0)
-            least = _PEEL * self._height * min(gone / _PEELED, 1.0) * fading - sole.ball[1]
-        if self.shift.y < least:
-            self.shift.y = least
+            x, z = self.offset.shown(points, heel=False)
+            away = math.hypot(x - self._last_stand[0], z - self._last_stand[1]) / self._body_height
+            fade = (_LIFT_FADE_END - away) / (_LIFT_FADE_END - _LIFT_FADE_START)
+            raised = _LIFT_HEIGHT * self._body_height * min(away / _LIFT_DISTANCE, 1.0)
+            lowest = raised * min(max(fade, 0.0), 1.0) - points.ball[1]
+        if self.offset.y < lowest:
+            self.offset.y = lowest
 
-    def may_land(self, sole: FootPoints) -> bool:
-        """Whether a foot that is on its way is so near to the ground, and to the end of a step."""
-        near = sole.low + self.shift.y < _LANDS * self._height
-        if self.stepping == 0.0:
-            return near
-        late = self.stepping < _TOUCH * _STEP_TIME
-        return near and late and self.shift.length < _NEARLY * self._height
+    def may_land(self, points: FootPoints) -> bool:
+        """Return whether a moving foot is near the ground, and near the end of a quick step."""
+        low = points.height + self.offset.y < _MAX_LANDING_HEIGHT * self._body_height
+        if self.step_time_left == 0.0:
+            return low
+        late = self.step_time_left < _EARLY_LANDING_SHARE * _QUICK_STEP_S
+        return low and late and self.offset.length < _EARLY_LANDING_DISTANCE * self._body_height
 
-    def _fade(self, old: list[float], drift: list[float], length: float) -> None:
-        """Let something die away from now on."""
-        self._old, self._drift, self._age, self._fade_time = list(old), drift, 0.0, length
+    def _start_decay(self, old: list[float], velocity: list[float], length: float) -> None:
+        """Start the decay of an offset over a length [s]."""
+        self._old, self._old_velocity = list(old), velocity
+        self._age, self._decay_time = 0.0, length
 
-    def _rest(self) -> list[float]:
-        """Return what is left of the old shift, by the quintic of `transition.OffsetDecay`."""
-        if self._age >= self._fade_time:
+    def _decayed(self) -> list[float]:
+        """Return the rest of the old offset."""
+        if self._age >= self._decay_time:
             return [0.0] * 4
-        u = self._age / self._fade_time
-        position = 1 - u**3 * (10 - 15 * u + 6 * u * u)
-        velocity = (u - u**3 * (6 - 8 * u + 3 * u * u)) * self._fade_time
-        return [a * position + v * velocity for a, v in zip(self._old, self._drift, strict=True)]
+        position, velocity = quintic_decay(self._age / self._decay_time)
+        velocity *= self._decay_time
+        return [
+            a * position + v * velocity for a, v in zip(self._old, self._old_velocity, strict=True)
+        ]
 
-    def _goal(self, sole: FootPoints) -> list[float]:
-        """Return the shift that holds the foot exactly, or none if it is not held."""
+    def _goal(self, points: FootPoints) -> list[float]:
+        """Return the offset that holds the foot exactly, or zeros if it is not held."""
         if not self.held:
             return [0.0] * 4
         x, z, heading = self.anchor
-        yaw = math.remainder(heading - sole.heading, math.tau)
+        yaw = math.remainder(heading - points.heading, math.tau)
         if self._heel:
-            ahead = turned(sole.ball[0] - sole.heel[0], sole.ball[2] - sole.heel[2], yaw)
+            dx, dz = points.ball[0] - points.heel[0], points.ball[2] - points.heel[2]
+            ahead = rotate_yaw(dx, dz, yaw)
             x, z = x + ahead[0], z + ahead[1]
-        return [x - sole.ball[0], z - sole.ball[2], yaw, -sole.low]
+        return [x - points.ball[0], z - points.ball[2], yaw, -points.height]
 
 
-def turned(x: float, z: float, yaw: float) -> tuple[float, float]:
-    """Return x, z turned about +y."""
+def rotate_yaw(x: float, z: float, yaw: float) -> tuple[float, float]:
+    """Return x, z rotated about +y."""
     sine, cosine = math.sin(yaw), math.cos(yaw)
     return cosine * x + sine * z, cosine * z - sine * x

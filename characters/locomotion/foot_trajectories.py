@@ -1,4 +1,4 @@
-"""Looped clips and where their feet are, packed to be mixed at one phase."""
+"""Looped clips and the trajectories of their feet, packed to be mixed at one phase."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -16,19 +16,19 @@ from characters.motion.phase import PhasedMotion
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
 
-_REMEMBERED = 64  # times
-_LEAVING = 0.45  # how much the last frame of a contact counts: too little to be held
+_CACHED_TIMES = 64
+_LAST_FRAME_CONTACT = 0.45  # contact in the last frame of a span: too little to hold the foot
 
 
 @dataclass(frozen=True)
 class Stance:
-    """A pose that is stood in, and where its feet are."""
+    """A standing pose, and its feet."""
 
     pose: Pose
     """The pose."""
 
     feet: Array
-    """Ball (3) and facing (4) of each foot, (legs, 7)."""
+    """Position of the ball (3) and orientation (4) of each foot, (legs, 7)."""
 
     @staticmethod
     def of(pose: Pose, legs: LegIK) -> "Stance":
@@ -36,78 +36,78 @@ class Stance:
         return Stance(pose, _feet(pose, legs))
 
     @cached_property
-    def plain(self) -> list[list[float]]:
-        """`feet` in plain numbers."""
-        plain: list[list[float]] = self.feet.tolist()
-        return plain
+    def feet_list(self) -> list[list[float]]:
+        """`feet` as Python numbers."""
+        feet: list[list[float]] = self.feet.tolist()
+        return feet
 
 
 @dataclass(frozen=True)
 class FootTrajectories:
-    """Clips, a stance, and where the feet are in each frame; see `FootTrajectories.of`."""
+    """Clips, a stance, and the feet in each frame; see `FootTrajectories.of`."""
 
     motions: tuple[PhasedMotion, ...]
-    """The clips by their phases."""
+    """The clips with their phases."""
 
     bank: ClipBank
-    """The clips, then the stance. Beside a pose stand ball (3), facing (4) and contact (1) of each
-    foot; none for the stance."""
+    """The clips, then the stance. The extra values are ball (3), orientation (4) and contact (1) of
+    each foot, zeros for the stance."""
 
     homes: Array
-    """The middle of where each foot stands, on the ground, and how it faces there,
-    (clips, legs, 7)."""
+    """Mean of ball and orientation of each foot while it stands, (clips, legs, 7)."""
 
     legs: LegIK
-    """Whose feet they are."""
+    """The legs of these feet."""
 
     stance: Stance
-    """What shorter steps lean to."""
+    """Shorter steps are drawn towards it."""
 
     _times: dict[tuple[int, float], float] = field(default_factory=dict, repr=False, compare=False)
-    """Times that were worked out lately: a phase is asked for three times in a frame."""
+    """Recent results of `time`, which is called three times a frame for each phase."""
 
-    _stood: list[tuple[Sequence[tuple[int, float]], float, list[float]]] = field(
+    _last_mix: list[tuple[Sequence[tuple[int, float]], float, list[float]]] = field(
         default_factory=list, repr=False, compare=False
     )
-    """What was mixed last: voices, phase and contacts, which are asked for after the pose."""
+    """The last mix: contributions, phase and contacts, which are read after the pose."""
 
     @staticmethod
     def of(
         motions: Sequence[PhasedMotion], skeleton: Skeleton, legs: LegIK, standing: Pose
     ) -> "FootTrajectories":
-        """Return the trajectories of looped clips, with contacts that are found in them.
+        """Return the trajectories of looped clips, with detected contacts.
 
-        Feet face on the side of quaternions on which those of the stance do.
+        The signs of the orientations are aligned with those of the stance.
         """
         stance = Stance.of(standing, legs)
         clips = [motion.motion for motion in motions if isinstance(motion.motion, Clip)]
-        feet = [_trodden(clip, skeleton, legs, stance) for clip in clips]
-        still = Clip("stance", 1.0, _once(standing), loop=False)
-        beside = [*(each.reshape(len(each), -1) for each in feet), np.zeros((1, legs.count * 8))]
-        bank = ClipBank.of(skeleton, [*clips, still], np.float64, beside)
-        homes = np.stack([_home(each) for each in feet])
+        feet = [_foot_trajectory(clip, skeleton, legs, stance) for clip in clips]
+        still = Clip("stance", 1.0, _as_frame(standing), loop=False)
+        extra = [*(each.reshape(len(each), -1) for each in feet), np.zeros((1, legs.count * 8))]
+        bank = ClipBank.of(skeleton, [*clips, still], np.float64, extra)
+        homes = np.stack([_mean_standing(each) for each in feet])
         return FootTrajectories(tuple(motions), bank, homes, legs, stance)
 
     def mixed(
-        self, voices: Sequence[tuple[int, float]], phase: float, share: float
+        self, contributions: Sequence[tuple[int, float]], phase: float, share: float
     ) -> tuple[Pose, list[list[float]]]:
-        """Return the mean of clips at a phase, and of ball, facing and contact of each foot.
+        """Return the mean of clips at a phase, and of ball, orientation and contact of each foot.
 
         Parameters
         ----------
-        voices
+        contributions
             Number and weight of each clip; the weights sum to one.
         phase
-            Of all of them.
+            Phase of all clips.
         share
-            How much of their mean, 0…1; the rest of the pose, not of the feet, is the stance's.
+            Weight of the clips in the pose, 0…1; the rest is the stance. The feet are not mixed
+            with the stance.
         """
-        heard = [(number, self.time(number, phase), weight * share) for number, weight in voices]
+        active = [(n, self.time(n, phase), weight * share) for n, weight in contributions]
         if share < 1.0:
-            heard.append((len(self.motions), 0.0, 1.0 - share))
-        pose, numbers = self.bank.blend(heard)
+            active.append((len(self.motions), 0.0, 1.0 - share))
+        pose, numbers = self.bank.blend(active)
         feet: list[list[float]] = (numbers.reshape(-1, 8) / share).tolist()
-        self._stood[:] = [(voices, phase, [foot[7] for foot in feet])]
+        self._last_mix[:] = [(contributions, phase, [foot[7] for foot in feet])]
         return pose, feet
 
     def time(self, number: int, phase: float) -> float:
@@ -115,7 +115,7 @@ class FootTrajectories:
         key = number, phase
         time = self._times.get(key)
         if time is None:
-            if len(self._times) >= _REMEMBERED:
+            if len(self._times) >= _CACHED_TIMES:
                 self._times.clear()
             time = self._times[key] = self.motions[number].time(phase)
         return time
@@ -125,13 +125,13 @@ class FootTrajectories:
         motion = self.motions[number].motion
         return motion.travel(self.time(number, start), self.time(number, end))
 
-    def contacts(self, voices: Sequence[tuple[int, float]], phase: float) -> list[float]:
-        """Return how much of a mix has each foot on the ground, 0…1."""
-        for mixed, at_phase, stood in self._stood:
-            if mixed is voices and at_phase == phase:
-                return stood
+    def contacts(self, contributions: Sequence[tuple[int, float]], phase: float) -> list[float]:
+        """Return the weighted mean of the contacts of each foot, 0…1."""
+        for mixed, mixed_phase, contacts in self._last_mix:
+            if mixed is contributions and mixed_phase == phase:
+                return contacts
         total = [0.0] * self.legs.count
-        for number, weight in voices:
+        for number, weight in contributions:
             motion, down = self.motions[number], self._down[number]
             last = len(down) - 1
             at = self.time(number, phase) / motion.motion.duration % 1.0 * last
@@ -142,33 +142,36 @@ class FootTrajectories:
         return total
 
     @cached_property
-    def plain_homes(self) -> list[list[list[float]]]:
-        """`homes` in plain numbers."""
-        plain: list[list[list[float]]] = self.homes.tolist()
-        return plain
+    def homes_list(self) -> list[list[list[float]]]:
+        """`homes` as Python numbers."""
+        homes: list[list[list[float]]] = self.homes.tolist()
+        return homes
 
     @cached_property
     def _down(self) -> list[list[list[float]]]:
-        """Whether each foot stands, of each clip frame by frame, as plain numbers."""
-        beside = self.bank.table[:, -self.legs.count * 8 :].reshape(-1, self.legs.count, 8)
+        """Contacts of each foot in each frame of each clip, as Python numbers."""
+        feet = self.bank.table[:, -self.legs.count * 8 :].reshape(-1, self.legs.count, 8)
         starts = self.bank.starts.tolist()
-        return [beside[low:high, :, 7].tolist() for low, high in pairwise(starts)]
+        return [feet[low:high, :, 7].tolist() for low, high in pairwise(starts)]
 
 
-def _trodden(clip: Clip, skeleton: Skeleton, legs: LegIK, stance: Stance) -> Array:
-    """Return ball, facing and contact of each foot of a clip, (frames, legs, 8)."""
+def _foot_trajectory(clip: Clip, skeleton: Skeleton, legs: LegIK, stance: Stance) -> Array:
+    """Return ball, orientation and contact of each foot of a clip, (frames, legs, 8)."""
     feet = np.concatenate([_feet(clip.in_place, legs), np.zeros((len(clip), legs.count, 1))], 2)
     feet[..., 3:7] = rotations.align(feet[..., 3:7], stance.feet[:, 3:])
     down = find_contacts(clip, skeleton, legs.feet)
-    # A foot is known to have left by its speed, so a little after it has.
+    # Contacts end by the foot's speed, and so a little late.
     after = np.roll(down[:-1], -1, axis=0)
     leaving = down & ~np.append(after, after[:1], axis=0)
-    feet[..., 7] = np.where(leaving, _LEAVING, down)
+    feet[..., 7] = np.where(leaving, _LAST_FRAME_CONTACT, down)
     return feet
 
 
-def _home(feet: Array) -> Array:
-    """Return the middle of where feet (frames, legs, 8) stand, on the ground, (legs, 7)."""
+def _mean_standing(feet: Array) -> Array:
+    """Return mean ball, on the ground, and orientation of standing feet, (legs, 7).
+
+    `feet` are those of a clip, (frames, legs, 8).
+    """
     weight = feet[..., 7:] + 1e-6
     mean: Array = (feet[..., :7] * weight).sum(0) / weight.sum(0)
     mean[:, 1] = feet[..., 1].min(0)
@@ -177,15 +180,15 @@ def _home(feet: Array) -> Array:
 
 
 def _feet(poses: Pose, legs: LegIK) -> Array:
-    """Return the ball and the facing of each foot in poses (…), (…, legs, 7)."""
+    """Return ball and orientation of each foot in poses (…), (…, legs, 7)."""
     placed = legs.globals(poses)
     ankle, toes = legs.joints[:, 3], legs.joints[:, 4]
     facing = rotations.from_matrix(placed[..., :3, :3][..., ankle, :, :])
     return np.concatenate([placed[..., :3, 3][..., toes, :], facing], axis=-1)
 
 
-def _once(pose: Pose) -> Pose:
-    """Return a pose as poses of one frame."""
+def _as_frame(pose: Pose) -> Pose:
+    """Return a pose as a clip's poses of one frame."""
     return Pose(
         pose.translations[None],
         pose.rotations[None],

@@ -1,7 +1,7 @@
-"""Walking and running, as fast and as tight as asked: AvatAR's movement tree.
+"""Gaits: walking and running at any speed and turn, by AvatAR's movement tree.
 
 Source: Fernández-Baena's thesis, section 5.2: a walk tree of seven clips and a run tree of five,
-each over Angular, −90…90°, joined over Speed, where 3 is the border between walking and running.
+both over Angular, −90…90°, are blended over Speed; the border between walking and running is 3.
 """
 
 import math
@@ -17,16 +17,16 @@ from characters.skeleton.pose import Pose, Skeleton
 from characters.smoothing import interpolate
 
 IDLE_SPEED = 0.5
-"""AvatAR's Speed up to which a character stands."""
+"""Largest Speed at which a character stands."""
 
 RUN_SPEED = 3.0
-"""AvatAR's Speed above which it runs."""
+"""Speed above which it runs."""
 
 TOP_SPEED = 5.0
-"""AvatAR's greatest Speed."""
+"""Largest Speed of AvatAR."""
 
 MAX_ANGULAR_RAD = math.pi / 2
-"""The greatest Angular [rad]."""
+"""Largest Angular."""
 
 WALK_CLIPS = {
     -90.0: "WalkLeftShort",
@@ -37,7 +37,7 @@ WALK_CLIPS = {
     60.0: "WalkRightMedium",
     90.0: "WalkRightShort",
 }
-"""The walk tree: clips by Angular [degrees]; the shortest curve is the tightest."""
+"""The walk tree: clips by Angular [degrees]. "Short" is the tightest curve."""
 
 RUN_CLIPS = {
     -90.0: "RunLeftMedium",
@@ -46,17 +46,17 @@ RUN_CLIPS = {
     45.0: "RunRightWide",
     90.0: "RunRightMedium",
 }
-"""The run tree."""
+"""The run tree: clips by Angular [degrees]."""
 
 WALK_RUN_SPEEDS = (2.75, 3.25)
-"""Speeds between which walking is mixed into running."""
+"""Speeds between which walking and running are mixed."""
 
-# Speeds, and how fast the ground goes by there as a multiple of the walk or the run as recorded.
-_STROLL, _BRISK, _JOG, _SPRINT = 0.5, 1.3, 0.8, 1.25
-# Of the slowdown to a stroll, this power goes into shorter steps and the rest into slower ones:
-# people do both (Grieve and Gear, "The relationships between length of stride …", 1966).
-_SHORTENING = 0.5
-_SMALLER = 0.4  # how much smaller steps on the spot are than steps on the way
+# Ground speeds as multiples of the recorded walk or run: slowest and fastest of each.
+_SLOW_WALK, _FAST_WALK, _SLOW_RUN, _FAST_RUN = 0.5, 1.3, 0.8, 1.25
+# Slow walking has shorter and slower steps (Grieve and Gear, "The relationships between length of
+# stride …", 1966); this power of the slowdown is the factor of the step length.
+_STEP_LENGTH_EXPONENT = 0.5
+_IN_PLACE_SHORTENING = 0.4  # steps in place are shorter by this part
 
 
 class Gaits:
@@ -65,18 +65,18 @@ class Gaits:
     Parameters
     ----------
     clips
-        "Walk" and, as far as there are any, the others of `WALK_CLIPS` and `RUN_CLIPS`.
+        "Walk" and, if available, the others of `WALK_CLIPS` and `RUN_CLIPS`.
     skeleton
-        Whose feet mark the phases.
+        The skeleton of the clips.
     standing
-        The pose that slow walking leans to, so that its steps become shorter.
+        Slow walking is mixed with this pose, which shortens its steps.
     """
 
     def __init__(self, clips: Mapping[str, Clip], skeleton: Skeleton, standing: Pose) -> None:
         self._walk = _tree(clips, WALK_CLIPS, skeleton)
         self._run = _tree(clips, RUN_CLIPS, skeleton) if "Run" in clips else self._walk
         self.legs = find_legs(skeleton)
-        """The legs that keep to the ground, or None where there are none to bend."""
+        """The legs that keep feet from sliding, or None if the skeleton has no suitable legs."""
         self._still = StaticPose(standing, self._walk.at(0.0).duration)
         self._trajectories: FootTrajectories | None = None
         if self.legs is not None:
@@ -89,15 +89,15 @@ class Gaits:
         self._cadences = [1.0 / motion.duration for motion in straight]
         walk, run = (x * y for x, y in zip(self._lengths, self._cadences, strict=True))
         self._speeds = [IDLE_SPEED, *WALK_RUN_SPEEDS, TOP_SPEED]
-        paces = [_STROLL * walk, _BRISK * walk, _JOG * run, _SPRINT * run]
+        paces = [_SLOW_WALK * walk, _FAST_WALK * walk, _SLOW_RUN * run, _FAST_RUN * run]
         self._paces = [max(paces[: count + 1]) for count in range(len(paces))]
 
     def pace(self, speed: float) -> float:
-        """Return how fast the ground goes by at a Speed, going straight [m/s]; rises with it."""
+        """Return the ground speed straight ahead at a Speed [m/s]; monotonic."""
         return interpolate(speed, self._speeds, self._paces)
 
     def speed(self, pace: float) -> float:
-        """Return the Speed at which the ground goes by so fast [m/s]: the inverse of `pace`."""
+        """Return the Speed for a ground speed [m/s]: the inverse of `pace`."""
         return interpolate(pace, self._paces, self._speeds)
 
     def radius(self, speed: float) -> float:
@@ -111,53 +111,53 @@ class Gaits:
         Parameters
         ----------
         speed
-            AvatAR's Speed; below 0.5 it is taken as 0.5.
+            AvatAR's Speed; at least 0.5 is used.
         angular
-            How sharply to turn [rad], −π/2…π/2; positive to the right.
+            Turning rate [rad], −π/2…π/2; positive to the right.
         stride
-            What the way over the ground is multiplied with, to turn tighter than any clip.
+            Factor of the distance over the ground, for tighter turns than any clip.
         """
         running = interpolate(speed, WALK_RUN_SPEEDS, (0.0, 1.0))
-        # Steps on the spot are small ones.
-        smaller = 1.0 - _SMALLER * (1.0 - stride)
-        rate, share = self._effort(speed, running)
-        share *= smaller
-        rate /= math.sqrt(smaller)
-        heard = self._heard(running, math.degrees(angular))
+        rate, share = self._rate_and_step_length(speed, running)
+        shortening = 1.0 - _IN_PLACE_SHORTENING * (1.0 - stride)
+        share *= shortening
+        rate /= math.sqrt(shortening)
+        active = self._active(running, math.degrees(angular))
         if self._trajectories is not None:
-            voices = [(self._numbers[id(motion)], weight) for motion, weight in heard]
-            return StrideBlend(self._trajectories, voices, share, stride, rate)
-        mixed = Blend(tuple(motion for motion, _ in heard), tuple(weight for _, weight in heard))
+            numbered = [(self._numbers[id(motion)], weight) for motion, weight in active]
+            return StrideBlend(self._trajectories, numbered, share, stride, rate)
+        motions, weights = zip(*active, strict=True)
+        mixed = Blend(motions, weights)
         if share < 1.0:
             mixed = Blend((mixed, self._still), (share, 1.0 - share))
         return TimeScaled(mixed, rate, stride)
 
-    def _effort(self, speed: float, running: float) -> tuple[float, float]:
-        """Return how fast the clips play and how far their steps reach, for the right pace."""
+    def _rate_and_step_length(self, speed: float, running: float) -> tuple[float, float]:
+        """Return the factors of clip speed and step length that give the ground speed."""
         length = self._lengths[0] * (1.0 - running) + self._lengths[1] * running
         cadence = self._cadences[0] * (1.0 - running) + self._cadences[1] * running
         rate = self.pace(speed) / (length * cadence)
-        share = rate**_SHORTENING if rate < 1.0 and running == 0.0 else 1.0
+        share = rate**_STEP_LENGTH_EXPONENT if rate < 1.0 and running == 0.0 else 1.0
         return rate / share, share
 
-    def _heard(self, running: float, degrees: float) -> list[tuple[PhasedMotion, float]]:
-        """Return the clips that sound and how much of each."""
-        heard: list[tuple[PhasedMotion, float]] = []
+    def _active(self, running: float, degrees: float) -> list[tuple[PhasedMotion, float]]:
+        """Return the clips of positive weight and their weights."""
+        active: list[tuple[PhasedMotion, float]] = []
         for tree, part in ((self._walk, 1.0 - running), (self._run, running)):
             weights = tree.weights(degrees) if part > 0.0 else ()
-            heard += [
+            active += [
                 (motion, part * weight)
                 for motion, weight in zip(tree.motions, weights, strict=False)
                 if weight > 0.0 and isinstance(motion, PhasedMotion)
             ]
-        return heard
+        return active
 
 
 def _tree(
     clips: Mapping[str, Clip], names: Mapping[float, str], skeleton: Skeleton
 ) -> BlendSpace1D:
-    """Return the tree of the clips that there are."""
-    there = {knot: name for knot, name in names.items() if name in clips}
+    """Return the tree of the available clips."""
+    available = {knot: name for knot, name in names.items() if name in clips}
     return BlendSpace1D(
-        tuple(there), tuple(phased(clips[name], skeleton) for name in there.values())
+        tuple(available), tuple(phased(clips[name], skeleton) for name in available.values())
     )

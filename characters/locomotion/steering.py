@@ -1,4 +1,4 @@
-"""How to get to a place: how fast to go, how sharply to turn."""
+"""Steering of a walker to a target: how fast to go and how sharply to turn."""
 
 import math
 from dataclasses import dataclass
@@ -11,47 +11,46 @@ from characters.motion.motion import RootDelta
 from characters.smoothing import interpolate
 
 ARRIVAL_DISTANCE_M = 0.05
-"""Distance at which a target counts as reached [m on the table]."""
+"""Distance at which a target is reached [m on the table]."""
 
 DEPARTURE_DISTANCE_M = 0.065
-"""A target that was reached is left again only beyond this distance [m on the table]."""
+"""Distance beyond which a reached target is approached again [m on the table]."""
 
-_BRAKING = 1.4  # [s]: how long it would take to stop from its fastest run, by the brakes it uses;
-# a time, for characters are of any size, and in any unit
-_EAGERNESS = 2.0  # Angular for each radian between where it looks and where it wants to go
-_ROOM = 1.4  # how much larger than needed the turning circle is kept away from the target
-_LADDER: list[float] = np.linspace(
-    1.0, TOP_SPEED, 17
-).tolist()  # Speeds whose turning circles are measured,
-_SPEEDS = [IDLE_SPEED, *_LADDER]  # and that at which it stops
-_BEHIND = math.radians(150)  # a target farther behind is turned to the way round already begun
+_STOPPING_TIME_S = 1.4  # from the fastest run; a time, because characters differ in size
+_ANGULAR_PER_ERROR = 2.0  # Angular for each radian of heading error
+_RADIUS_MARGIN = 1.4  # the circle to the target is so many times the turning circle
+# Speeds at which turning circles are measured; at the first the walker stops.
+_RADIUS_SPEEDS: list[float] = np.linspace(1.0, TOP_SPEED, 17).tolist()
+_SPEEDS = [IDLE_SPEED, *_RADIUS_SPEEDS]
+# A turn to a target farther behind continues in the direction in which it started.
+_MAX_REVERSING_ERROR = math.radians(150)
 
 
 @dataclass(frozen=True)
 class SteeringOutput:
-    """What steering asks of the legs."""
+    """Desired motion of a walker."""
 
     speed: float
-    """AvatAR's Speed, 0…5; 0 to stand."""
+    """AvatAR's Speed, 0…5; 0 stands."""
 
     angular: float
-    """How sharply to turn [rad], −π/2…π/2; positive to the right."""
+    """Turning rate [rad], −π/2…π/2; positive to the right."""
 
     stride: float
-    """What the way over the ground is to be multiplied with, 0…1."""
+    """Factor of the distance over the ground, 0…1."""
 
 
 STANDSTILL = SteeringOutput(0.0, 0.0, 1.0)
-"""To stand."""
+"""Standing still."""
 
 
 class Steering:
-    """Steers a walker to a target and knows when it is there.
+    """Steers a walker to a target and detects its arrival.
 
     Parameters
     ----------
     gaits
-        How the walker can go.
+        Gaits of the walker.
     scale
         Table metres for each metre of the walker.
     """
@@ -64,21 +63,21 @@ class Steering:
         self._arrived = False
         self._side = 1.0
 
-    def course(
+    def update(
         self, place: RootDelta, target: tuple[float, float], speed: float, stop: bool
     ) -> SteeringOutput:
-        """Return the course from a place to a target, both on the table.
+        """Return the motion from a place towards a target, both on the table.
 
         Parameters
         ----------
         place
-            Where the walker stands [m] and where it looks.
+            Place and heading of the walker.
         target
             x, z [m].
         speed
-            AvatAR's Speed that is asked for.
+            Requested Speed of AvatAR.
         stop
-            Whether to stop there, or only to pass.
+            Whether to stop at the target; otherwise it is passed.
         """
         distance = math.hypot(target[0] - place.x, target[1] - place.z)
         self._arrived = stop and distance < (
@@ -87,30 +86,30 @@ class Steering:
         if self._arrived or distance == 0.0:
             return STANDSTILL
         error = -place.bearing(*target)  # positive to the right
-        if abs(error) < _BEHIND:
+        if abs(error) < _MAX_REVERSING_ERROR:
             self._side = math.copysign(1.0, error)
         else:
             error = self._side * abs(error)
-        # The radius of the circle through the target that starts the way it looks. A target
-        # inside the tightest turning circle would be orbited for ever.
+        # Radius of the circle through the target, tangent to the heading. A target inside
+        # the tightest turning circle would be orbited for ever.
         needed = distance / (2 * max(math.sin(abs(error)), 0.05))
         speed = min(speed, self._fastest_within(needed))
         if stop:
             speed = min(speed, self._fastest_before(distance - ARRIVAL_DISTANCE_M))
         speed = max(speed, IDLE_SPEED)
         circle = interpolate(speed, _SPEEDS, self._circles)
-        stride = min(1.0, needed / (_ROOM * circle))
-        angular = min(max(_EAGERNESS * error, -MAX_ANGULAR_RAD), MAX_ANGULAR_RAD)
+        stride = min(1.0, needed / (_RADIUS_MARGIN * circle))
+        angular = min(max(_ANGULAR_PER_ERROR * error, -MAX_ANGULAR_RAD), MAX_ANGULAR_RAD)
         return SteeringOutput(speed, angular, stride)
 
     def _fastest_within(self, radius: float) -> float:
-        """Return the Speed at which a curve of that radius [m on the table] can still be run."""
-        return interpolate(radius / _ROOM, self._radii, _LADDER)
+        """Return the largest Speed for a curve of a radius [m on the table]."""
+        return interpolate(radius / _RADIUS_MARGIN, self._radii, _RADIUS_SPEEDS)
 
     def _fastest_before(self, distance: float) -> float:
-        """Return the Speed from which it can slow down to a stroll over a distance."""
+        """Return the largest Speed from which it slows down in time over a distance."""
         ahead = max(distance, 0.0) / self._scale
-        stroll = self._gaits.pace(IDLE_SPEED)
-        brakes = self._gaits.pace(TOP_SPEED) / _BRAKING
-        pace = math.sqrt(stroll**2 + 2 * brakes * ahead)
+        slowest = self._gaits.pace(IDLE_SPEED)
+        deceleration = self._gaits.pace(TOP_SPEED) / _STOPPING_TIME_S
+        pace = math.sqrt(slowest**2 + 2 * deceleration * ahead)
         return self._gaits.speed(pace)

@@ -54,7 +54,7 @@ def test_who_has_stopped_comes_to_rest_and_stays(human):
     lock = walker.lock
     assert lock is not None
     assert all(foot.held for foot in lock.feet)
-    assert max(foot.shift.length for foot in lock.feet) < 0.03 * human.height
+    assert max(foot.offset.length for foot in lock.feet) < 0.03 * human.height
     anchors = [foot.anchor for foot in lock.feet]
     for _ in range(60):
         walker.go(SteeringOutput(0.0, 0.0, 1.0), 1 / RATE)

@@ -44,5 +44,5 @@ def test_a_loop_smaller_than_the_look_ahead_ends():
 
 
 def test_a_path_without_length_is_refused():
-    with pytest.raises(ValueError, match="apart"):
+    with pytest.raises(ValueError, match="two different"):
         ClosedPath(np.zeros((3, 2)))
