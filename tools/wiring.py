@@ -7,7 +7,7 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 from robot.firmware.dino import servos
-from robot.firmware.dino.table import Servo, Table
+from robot.firmware.dino.table import Servo, ServoTable
 
 PICTURE = Path(__file__).parents[1] / "docs" / "pictures" / "robot-wiring.svg"
 """Where the picture stands."""
@@ -24,7 +24,7 @@ _BOARD_LEFT, _BOARD_RIGHT, _PIN_PITCH = 230, 400, 52
 _PLUS_X, _MINUS_X, _SERVO_X = 610, 640, 740  # of the rails, and of the servos' plugs
 
 
-def wiring(table: Table) -> str:
+def wiring(table: ServoTable) -> str:
     """Return the picture as SVG: the computer, the board, its servos, their supply, the buzzer."""
     count = len(table.servos)
     bottom = _TOP + _PITCH * count
@@ -62,7 +62,7 @@ def _lane(index: int, pins: list[int], heights: list[int]) -> int:
     return 430 + 28 * rank
 
 
-def _title(table: Table) -> str:
+def _title(table: ServoTable) -> str:
     return _text(28, 46, f"{table.name}: {len(table.servos)} servos on a Pico or an ESP32", 20, 600)
 
 
@@ -98,7 +98,7 @@ def _servo(servo: Servo, y: int) -> list[str]:
     ]
 
 
-def _board(table: Table, pins: list[int], ground: int) -> list[str]:
+def _board(table: ServoTable, pins: list[int], ground: int) -> list[str]:
     x, width, top = _BOARD_LEFT, _BOARD_RIGHT - _BOARD_LEFT, _TOP - 6
     height = ground - top + 34
     parts = [
@@ -215,4 +215,4 @@ def _text(
 
 
 if __name__ == "__main__":
-    PICTURE.write_text(wiring(Table(servos)), "utf-8")
+    PICTURE.write_text(wiring(ServoTable(servos)), "utf-8")

@@ -1,1 +1,1 @@
-"""A robot of our own on a microcontroller: `dino` goes on the board, the rest stays on the desk."""
+"""Firmware of a robot on a microcontroller; only `main.py` and `dino` are copied to the board."""

@@ -1,27 +1,27 @@
-"""The firmware without a board: `python -m robot.firmware` prints the port that it is on."""
+"""The firmware without a board: `python -m robot.firmware` prints the name of its port."""
 
 import sys
 
 from robot.firmware.dino import servos
-from robot.firmware.dino.desk import Desk
+from robot.firmware.dino.pty_board import PtyBoard
 from robot.firmware.dino.robot import run
-from robot.firmware.dino.table import Table
+from robot.firmware.dino.table import ServoTable
 
 
 def main() -> None:
-    """Run a robot behind a pseudo-terminal until Ctrl-C."""
-    table = Table(servos)
+    """Run the firmware on a pseudo-terminal until Ctrl-C."""
+    table = ServoTable(servos)
     table.check(sys.platform)
     try:
-        desk = Desk()
+        board = PtyBoard()
     except (ImportError, AttributeError):
-        sys.exit("there are no pseudo-terminals on this system: take a board, or sim:cubeling")
-    sys.stdout.write(f"{desk.url}\n")
+        sys.exit("this system has no pseudo-terminals: use a board, or sim:cubeling")
+    sys.stdout.write(f"{board.url}\n")
     sys.stdout.flush()
     try:
-        run(desk, table)
+        run(board, table)
     except KeyboardInterrupt:
-        desk.give_back()
+        board.release()
 
 
 if __name__ == "__main__":

@@ -1,22 +1,22 @@
-"""What the board starts; its place is beside the folder `dino`. Under CPython: a desk's robot."""
+"""The main program of the board, next to the folder `dino`. Under CPython: on a pseudo-terminal."""
 
 import sys
 
 from dino import servos
 from dino.robot import run
-from dino.table import Table
+from dino.table import ServoTable
 
-table = Table(servos)
+table = ServoTable(servos)
 table.check(sys.platform)
 if sys.implementation.name == "micropython":
-    from dino.hardware import Hardware, developer_holds
+    from dino.hardware import Hardware, developer_pin_held
 
-    if not developer_holds(table):
+    if not developer_pin_held(table):
         run(Hardware(table), table)
 else:
-    from dino.desk import Desk
+    from dino.pty_board import PtyBoard
 
-    desk = Desk()
-    sys.stdout.write(desk.url + "\n")
+    board = PtyBoard()
+    sys.stdout.write(board.url + "\n")
     sys.stdout.flush()
-    run(desk, table)
+    run(board, table)

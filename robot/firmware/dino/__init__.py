@@ -1,4 +1,4 @@
-"""The program of a dinosaur robot on a microcontroller: copy this folder to the board.
+"""The firmware of a dinosaur robot: copy this folder to the microcontroller.
 
-It needs nothing but MicroPython, and runs unchanged under CPython, where the tests are.
+It needs only MicroPython, and runs unchanged under CPython, as in the tests.
 """

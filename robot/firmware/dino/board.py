@@ -1,11 +1,11 @@
-"""What the robot needs of the board that it runs on; `hardware` is a real one."""
+"""The interface of the boards that the firmware runs on; `hardware` has the real one."""
 
 
 class Board:
-    """A line, a clock, servos and a buzzer. Nothing but `wait` waits."""
+    """A serial line, a clock, servos and a buzzer. Only `wait` blocks."""
 
     def elapsed(self) -> int:
-        """Return the time since this was last asked [whole ms]; 0 the first time."""
+        """Return the time since the last call [whole ms]; 0 at the first."""
         raise NotImplementedError
 
     def wait(self, ms: int) -> None:
@@ -13,37 +13,37 @@ class Board:
         raise NotImplementedError
 
     def read(self, data: bytearray) -> int:
-        """Put the bytes that have come into `data`; return how many, 0 if none have."""
+        """Read received bytes into `data`; return how many, 0 if there are none."""
         raise NotImplementedError
 
     def write(self, data: memoryview) -> int:
-        """Give bytes to the line; return how many it has taken at once."""
+        """Write as many bytes as possible without blocking; return how many."""
         raise NotImplementedError
 
     def pulse(self, pin: int, us: int) -> None:
-        """Give a servo pulses of this length [µs] from now on, 0 for none; OSError if it fails."""
+        """Set the pulse width of a servo [µs], 0 for no pulses; OSError if that fails."""
         raise NotImplementedError
 
     def tone(self, hertz: int) -> None:
-        """Let the buzzer sound; 0 for silence."""
+        """Set the frequency of the buzzer; 0 for silence."""
         raise NotImplementedError
 
     def battery(self) -> int:
-        """Return how full the battery is, in 1/10000; 10000 on mains."""
+        """Return the charge of the battery in 1/10000; 10000 on mains."""
         return 10000
 
     def begin(self, program: bool) -> None:
-        """Take the line for the program, or give it back to the developer's prompt."""
+        """Use the line for the program, or return it to the developer's prompt."""
 
-    def left(self) -> bool:
-        """Whether somebody wants the program to end; asked only while no host is there."""
+    def exit_requested(self) -> bool:
+        """Whether the program should end; called only while there is no session."""
         return False
 
-    def watch(self) -> None:
-        """From now on, reboot if `feed` is not called for some seconds."""
+    def start_watchdog(self) -> None:
+        """Reboot from now on if `feed_watchdog` is not called for some seconds."""
 
-    def feed(self) -> None:
-        """Say that the program lives."""
+    def feed_watchdog(self) -> None:
+        """Restart the watchdog's time."""
 
-    def note(self, error: BaseException) -> None:
+    def log_error(self, error: BaseException) -> None:
         """Keep an error for the developer."""

@@ -1,4 +1,4 @@
-"""Bodies of messages, read and written by the tables in `messages`: PROTOCOL.md, section 3."""
+"""Decoding and encoding of message bodies by the tables in `messages`: PROTOCOL.md, section 3."""
 
 from struct import pack_into, unpack_from
 
@@ -6,9 +6,9 @@ from .messages import FROM_HOST, FROM_ROBOT
 
 
 def unpack(body: bytearray, size: int) -> tuple[int, ...] | None:
-    """Return a host's message: its number, its session, its fields. None if it is none.
+    """Return number, session and fields of a host's message; None if it is not valid.
 
-    Fields of a later version are skipped; those that an earlier one lacks get their defaults,
+    Fields of a later version are ignored. Fields that an earlier version lacks get their defaults,
     which are written into `body`.
     """
     if size < 3:
@@ -33,7 +33,7 @@ def unpack(body: bytearray, size: int) -> tuple[int, ...] | None:
 
 
 def pack(out: bytearray, version: int, number: int, session: int, *fields: int | bytes) -> int:
-    """Write a robot's message into `out` as a version has it; return its size."""
+    """Write a robot's message into `out` in a version of the protocol; return its size."""
     layout, sizes = FROM_ROBOT[number]
     pack_into(layout, out, 0, number, session, *fields)
     size = 0

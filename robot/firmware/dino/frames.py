@@ -1,15 +1,15 @@
-"""Frames on the line: PROTOCOL.md, section 2. Nothing is allocated for a byte or a frame."""
+"""Framing: PROTOCOL.md, section 2. No memory is allocated per byte or frame."""
 
 from .messages import MAX_BODY, MAX_FRAME
 
-OVERHEAD = 6
-"""Bytes that a frame has more than its body: two edges, one of COBS, three of the check."""
+OVERHEAD_BYTES = 6
+"""Bytes of a frame besides its body: two edges, one of COBS, three of the check."""
 
-_SHORTEST = 5  # one byte of body, one of COBS, three of the check
+_MIN_FRAME = 5  # one byte of body, one of COBS, three of the check
 
 
-def _remainders() -> tuple[int, ...]:
-    """Return what four bits leave in the register of the check."""
+def _crc_table() -> tuple[int, ...]:
+    """Return the CRC of every 4-bit value."""
     table = []
     for bits in range(16):
         register = bits << 12
@@ -19,20 +19,20 @@ def _remainders() -> tuple[int, ...]:
     return tuple(table)
 
 
-_TABLE = _remainders()
+_CRC_TABLE = _crc_table()
 
 
 def crc16(data: bytes | bytearray, start: int, end: int, register: int = 0xFFFF) -> int:
-    """Return the CRC-16/CCITT-FALSE of a stretch of bytes, begun with `register`."""
+    """Return the CRC-16/CCITT-FALSE of `data[start:end]`, continued from `register`."""
     for index in range(start, end):
         byte = data[index]
-        register = (register << 4 & 0xFFFF) ^ _TABLE[register >> 12 ^ byte >> 4]
-        register = (register << 4 & 0xFFFF) ^ _TABLE[register >> 12 ^ byte & 15]
+        register = (register << 4 & 0xFFFF) ^ _CRC_TABLE[register >> 12 ^ byte >> 4]
+        register = (register << 4 & 0xFFFF) ^ _CRC_TABLE[register >> 12 ^ byte & 15]
     return register
 
 
 def encode(body: bytearray, size: int, out: bytearray, at: int) -> int:
-    """Write the frame of a body of `size` bytes into `out` from `at` on; return where it ends."""
+    """Write the frame of a body of `size` bytes into `out` from `at` on; return its end."""
     out[at] = 0
     first = code = at + 1
     at += 2
@@ -54,8 +54,8 @@ def encode(body: bytearray, size: int, out: bytearray, at: int) -> int:
 
 
 def decode(frame: bytearray, size: int, body: bytearray) -> int:
-    """Write the body of what stood between two edges into `body`; return its size, 0 if none."""
-    if not _SHORTEST <= size <= MAX_FRAME:
+    """Decode the bytes between two edges into `body`; return its size, 0 if not valid."""
+    if not _MIN_FRAME <= size <= MAX_FRAME:
         return 0
     end = size - 3
     crc = crc16(frame, 0, end)
@@ -80,22 +80,22 @@ def decode(frame: bytearray, size: int, body: bytearray) -> int:
     return length
 
 
-class FrameReader:
-    """Finds the frames in a stream that may be cut anywhere and hold anything between them."""
+class FrameDecoder:
+    """Finds the frames in a byte stream that may contain anything between them."""
 
     def __init__(self) -> None:
         self.body = bytearray(MAX_BODY + 1)
         """The body of the last frame, until the next one."""
         self.errors = 0
-        """Stretches between two edges that were no frame."""
+        """Number of invalid frames."""
         self._frame = bytearray(MAX_FRAME + 1)
         self._count = 0
 
     def feed(self, byte: int) -> int:
-        """Take the next byte; return the size of the body that it completes, 0 if it does not."""
+        """Process the next byte; return the size of the body that it completes, else 0."""
         count = self._count
         if byte:
-            # One byte more than a frame can have is enough to know that it is none.
+            # One byte more than the longest frame is enough to know that it is not valid.
             if count <= MAX_FRAME:
                 self._frame[count] = byte
                 self._count = count + 1
@@ -109,34 +109,34 @@ class FrameReader:
         return size
 
 
-class Outbox:
-    """Frames that wait for the line. What finds no room is lost, as on a line it may be.
+class SendBuffer:
+    """Frames to be sent. When it is full, new frames are dropped, as a line may lose them.
 
     Parameters
     ----------
     size
-        Bytes that may wait.
+        Capacity [bytes].
     """
 
     def __init__(self, size: int = 512) -> None:
         self.data = bytearray(size)
-        """What waits, from `start` to `end`."""
+        """The bytes to be sent are those from `start` to `end`."""
         self.start = 0
-        """The first byte that waits."""
+        """Begin of the bytes to be sent."""
         self.end = 0
-        """One past the last."""
-        self.lost = 0
-        """Frames that found no room."""
+        """End of the bytes to be sent."""
+        self.dropped = 0
+        """Number of dropped frames."""
 
     def put(self, body: bytearray, size: int) -> None:
-        """Add the frame of a body."""
-        if self.end + size + OVERHEAD > len(self.data):
-            self.lost += 1
+        """Append the frame of a body."""
+        if self.end + size + OVERHEAD_BYTES > len(self.data):
+            self.dropped += 1
             return
         self.end = encode(body, size, self.data, self.end)
 
     def sent(self, count: int) -> None:
-        """Forget the first `count` bytes: the line has taken them."""
+        """Remove the first `count` bytes, which were sent."""
         self.start += count
         if self.start >= self.end:
             self.start = self.end = 0

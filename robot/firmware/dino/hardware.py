@@ -8,33 +8,33 @@ import machine
 import micropython
 
 from .board import Board
-from .table import Table
+from .table import ServoTable
 
-WATCHDOG = 4000
-"""A board that has not said for this long that it lives reboots [ms]."""
+WATCHDOG_MS = 4000
+"""Timeout of the watchdog [ms]."""
 
-NOTE = "last_error.txt"
-"""Where the first error since boot is kept."""
+ERROR_FILE = "last_error.txt"
+"""File with the first error since boot."""
 
-VOLUME = 8000
-"""Of the buzzer: how long it is on in each cycle, of 65536."""
+BUZZER_DUTY = 8000
+"""Duty cycle of the buzzer, of 65536: its volume."""
 
-QUIET = 100
-"""What a developer's tool sends first comes after a silence of at least this [ms]."""
+MIN_SILENCE_MS = 100
+"""Shortest silence before the first bytes of a developer's tool [ms]."""
 
 
 class Hardware(Board):
-    """The board that this runs on.
+    """The board with the microcontroller.
 
     Parameters
     ----------
     table
-        Which pins do what.
+        The pins.
     """
 
-    def __init__(self, table: Table) -> None:
+    def __init__(self, table: ServoTable) -> None:
         self._last = time.ticks_ms()
-        self._one = bytearray(1)
+        self._byte = bytearray(1)
         self._pins = {}
         self._servos = _pca9685(table) if table.driver else None
         self._buzzer = None if table.buzzer is None else machine.Pin(table.buzzer)
@@ -42,11 +42,11 @@ class Hardware(Board):
         self._battery = table.battery
         self._adc = machine.ADC(table.battery[0]) if table.battery else None
         self._watchdog = None
-        self._noted = False
+        self._error_logged = False
         self._uart = None
-        self._left = False
-        self._heard = self._last
-        self._return = False
+        self._exit_requested = False
+        self._last_byte = self._last
+        self._return_received = False
         if table.port:
             number, tx, rx = table.port
             self._uart = machine.UART(
@@ -61,7 +61,7 @@ class Hardware(Board):
         self._writable.register(self._uart or sys.stdout, select.POLLOUT)
 
     def elapsed(self) -> int:
-        """Return the time since this was last asked [whole ms]."""
+        """Return the time since the last call [whole ms]."""
         now = time.ticks_ms()
         elapsed = time.ticks_diff(now, self._last)
         self._last = now
@@ -73,45 +73,44 @@ class Hardware(Board):
             return
 
     def read(self, data: bytearray) -> int:
-        """Put the bytes that have come into `data`; return how many, 0 if none have."""
+        """Read received bytes into `data`; return how many, 0 if there are none."""
         if self._uart:
             return self._uart.readinto(data) or 0
         count = 0
-        # One by one: more would wait until all are there.
+        # One by one: a longer read blocks until all have arrived.
         while count < len(data) and self._is_ready(self._readable):
-            self._in.readinto(self._one)
-            data[count] = self._one[0]
+            self._in.readinto(self._byte)
+            data[count] = self._byte[0]
             count += 1
-            if self._asks_for_prompt(self._one[0]):
-                break  # what follows is for the prompt
+            if self._asks_for_prompt(self._byte[0]):
+                break  # the next bytes are for the prompt
         return count
 
     def _asks_for_prompt(self, byte: int) -> bool:
-        """Whether this byte ends what mpremote sends to interrupt a program: silence, CR, Ctrl-C.
+        """Whether this byte completes the interrupt sequence of mpremote: silence, CR, Ctrl-C.
 
-        Ctrl-C alone is a byte like any other here, for frames are full of it; and no frame begins
-        with CR, Ctrl-C.
+        Ctrl-C alone is common in frames, but no frame begins with CR, Ctrl-C.
         """
         now = time.ticks_ms()
-        quiet = time.ticks_diff(now, self._heard) >= QUIET
-        self._heard = now
-        self._left = byte == 3 and self._return
-        self._return = byte == 13 and quiet
-        return self._left
+        silent = time.ticks_diff(now, self._last_byte) >= MIN_SILENCE_MS
+        self._last_byte = now
+        self._exit_requested = byte == 3 and self._return_received
+        self._return_received = byte == 13 and silent
+        return self._exit_requested
 
     def write(self, data: memoryview) -> int:
-        """Give bytes to the line; return how many it has taken at once."""
+        """Write as many bytes as possible without blocking; return how many."""
         if self._uart:
             return self._uart.write(data) or 0
         count = 0
-        # One by one: where nobody reads, the second would wait for half a second.
+        # One by one: if nobody reads, the second byte blocks for half a second.
         while count < len(data) and self._is_ready(self._writable):
             self._out.write(data[count : count + 1])
             count += 1
         return count
 
     def pulse(self, pin: int, us: int) -> None:
-        """Give a servo pulses of this length [µs] from now on, 0 for none."""
+        """Set the pulse width of a servo [µs], 0 for no pulses."""
         if self._servos:
             self._servos.pulse(pin, us)
             return
@@ -123,21 +122,21 @@ class Hardware(Board):
         pwm.duty_ns(1000 * us)
 
     def tone(self, hertz: int) -> None:
-        """Let the buzzer sound; 0 for silence."""
+        """Set the frequency of the buzzer; 0 for silence."""
         if self._buzzer is None:
             return
         if self._tone is None:
             if not hertz:
                 return
-            self._tone = machine.PWM(self._buzzer, freq=hertz, duty_u16=VOLUME)
+            self._tone = machine.PWM(self._buzzer, freq=hertz, duty_u16=BUZZER_DUTY)
         elif hertz:
             self._tone.freq(hertz)
-            self._tone.duty_u16(VOLUME)
+            self._tone.duty_u16(BUZZER_DUTY)
         else:
             self._tone.duty_u16(0)
 
     def battery(self) -> int:
-        """Return how full the battery is, in 1/10000; 10000 on mains."""
+        """Return the charge of the battery in 1/10000; 10000 on mains."""
         if self._adc is None:
             return 10000
         _, empty, full, ratio = self._battery
@@ -145,37 +144,37 @@ class Hardware(Board):
         return min(max(round(10000 * (volts - empty) / (full - empty)), 0), 10000)
 
     def begin(self, program: bool) -> None:
-        """Take the line for the program, or give it back to the developer's prompt."""
+        """Use the line for the program, or return it to the developer's prompt."""
         if not program and self._watchdog:
-            # It cannot be stopped, and would end the developer's work after some seconds.
+            # The watchdog cannot be stopped, and would reboot during the developer's work.
             machine.reset()
         if not self._uart:
             micropython.kbd_intr(-1 if program else 3)
 
-    def left(self) -> bool:
-        """Whether somebody wants the program to end."""
-        return self._left
+    def exit_requested(self) -> bool:
+        """Whether a developer's tool has interrupted the program."""
+        return self._exit_requested
 
-    def watch(self) -> None:
-        """From now on, reboot if `feed` is not called for `WATCHDOG` ms."""
+    def start_watchdog(self) -> None:
+        """Reboot from now on if `feed_watchdog` is not called for `WATCHDOG_MS`."""
         if self._watchdog is None and hasattr(machine, "WDT"):
-            self._watchdog = machine.WDT(timeout=WATCHDOG)
+            self._watchdog = machine.WDT(timeout=WATCHDOG_MS)
 
-    def feed(self) -> None:
-        """Say that the program lives."""
+    def feed_watchdog(self) -> None:
+        """Restart the watchdog's time."""
         if self._watchdog:
             self._watchdog.feed()
 
-    def note(self, error: BaseException) -> None:
-        """Keep the first error since boot in a file; flash wears out."""
-        if self._noted:
+    def log_error(self, error: BaseException) -> None:
+        """Write the first error since boot to a file; only one, as flash wears out."""
+        if self._error_logged:
             return
-        self._noted = True
+        self._error_logged = True
         try:
-            with open(NOTE, "w") as file:
+            with open(ERROR_FILE, "w") as file:
                 sys.print_exception(error, file)
         except OSError:
-            pass  # a full or read-only flash is no reason to stop
+            pass  # the flash is full or read-only
 
     def _is_ready(self, poll) -> bool:
         for _ in poll.ipoll(0):
@@ -183,14 +182,14 @@ class Hardware(Board):
         return False
 
 
-def developer_holds(table: Table) -> bool:
+def developer_pin_held(table: ServoTable) -> bool:
     """Whether the developer's pin is held to ground."""
     if table.developer_pin is None:
         return False
     return not machine.Pin(table.developer_pin, machine.Pin.IN, machine.Pin.PULL_UP).value()
 
 
-def _pca9685(table: Table):
+def _pca9685(table: ServoTable):
     from .pca9685 import PCA9685
 
     number, sda, scl, address = table.driver

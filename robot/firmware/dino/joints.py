@@ -1,28 +1,28 @@
-"""Servos that turn no faster than the table allows. Angles are in 1/100 degree, all whole."""
+"""Servos with limited speed. Angles are integers in 1/100 degree."""
 
 from .board import Board
 from .table import Servo
 
-STAGGER = 150
-"""Between the first pulse of one servo and of the next [ms]: a servo whose pulses begin jumps to
-them, and all at once would pull the supply down."""
+POWER_ON_EVERY_MS = 150
+"""Time between the power-on of two servos [ms]: a servo jumps at its first pulse, and all at once
+would overload the supply."""
 
-RETRY = 500
-"""Between two attempts while pulses cannot be given [ms]; one may take as long as I2C waits."""
+RETRY_EVERY_MS = 500
+"""Time between two attempts after a failure [ms]; each may take as long as the I2C timeout."""
 
-_TURN = 18000  # what a servo's pulses span [1/100°]
-_MRAD = 17453  # in a degree, thousandths
+_SERVO_RANGE = 18000  # between the shortest and the longest pulse [1/100°]
+_MICRORAD = 17453  # per degree
 
 
-class Joints:
-    """All servos of the robot, and where they should be by now: none of them can be measured.
+class ServoJoints:
+    """The servos of the robot, and their expected angles: hobby servos cannot be measured.
 
     Parameters
     ----------
     servos
-        The table, already checked.
+        The checked servos.
     board
-        Gives the pulses.
+        Generates the pulses.
     """
 
     def __init__(self, servos: list[Servo], board: Board) -> None:
@@ -30,52 +30,52 @@ class Joints:
         self._servos = servos
         self._board = board
         self.angles = [0] * count
-        """Where each joint should be by now."""
+        """Expected angle of each joint now."""
         self.powered = [False] * count
-        """Which of them get pulses."""
+        """Whether each servo gets pulses."""
         self.broken = False
-        """Whether the pulses could not be given."""
+        """Whether the last pulse failed."""
         self._pulses = [0] * count
-        self._next_start = 0
+        self._next_power_on = 0
 
     def names(self) -> list[str]:
-        """Return what the joints are called."""
+        """Return the names of the joints."""
         return [servo.name for servo in self._servos]
 
     def limits(self, index: int) -> tuple[int, int, int]:
         """Return lowest and highest angle [mrad] and top speed [mrad/s] for the catalogue."""
         servo = self._servos[index]
-        # Outwards, so that a rounded angle stays inside.
-        low, high = servo.low * _MRAD // 1000, -(-servo.high * _MRAD // 1000)
-        return low, high, -(-servo.speed * _MRAD // 1000)
+        # Rounded outwards, so that a rounded angle stays inside.
+        low, high = servo.low * _MICRORAD // 1000, -(-servo.high * _MICRORAD // 1000)
+        return low, high, -(-servo.speed * _MICRORAD // 1000)
 
     def mrad(self, index: int) -> int:
-        """Return where a joint should be by now [mrad]."""
-        return (self.angles[index] * _MRAD + 50000) // 100000
+        """Return the expected angle of a joint [mrad]."""
+        return (self.angles[index] * _MICRORAD + 50000) // 100000
 
     @property
     def limp(self) -> bool:
-        """Whether no servo holds its joint."""
+        """Whether no servo gets pulses."""
         return True not in self.powered
 
     @property
     def neutral(self) -> bool:
-        """Whether all of them are at 0."""
+        """Whether all joints are at 0."""
         return not any(self.angles)
 
     def start(self, now: int) -> None:
-        """Give power to the next servo that has none, if it is time [ms]."""
-        if now < self._next_start or False not in self.powered:
+        """Power on the next servo that is off, if it is due at `now` [ms]."""
+        if now < self._next_power_on or False not in self.powered:
             return
         index = self.powered.index(False)
         self._pulses[index] = 0
-        given = self._pulse(index)
-        self.broken = not given
-        self.powered[index] = given
-        self._next_start = now + (STAGGER if given else RETRY)
+        done = self._pulse(index)
+        self.broken = not done
+        self.powered[index] = done
+        self._next_power_on = now + (POWER_ON_EVERY_MS if done else RETRY_EVERY_MS)
 
     def release(self) -> None:
-        """Take the power from all of them; they stay where they are, or sink."""
+        """Power off all servos; they stay where they are, or sink."""
         for index, servo in enumerate(self._servos):
             self.powered[index] = False
             try:
@@ -83,27 +83,29 @@ class Joints:
             except OSError:
                 self.broken = True
 
-    def move(self, wanted: list[int], elapsed: int) -> None:
-        """Turn every joint towards where it is wanted, as far as it may in `elapsed` ms."""
+    def move(self, targets: list[int], elapsed: int) -> None:
+        """Move every joint towards its target, within its limits and its speed in `elapsed` ms."""
         for index, servo in enumerate(self._servos):
             if not self.powered[index]:
                 continue
-            target = wanted[index]
+            target = targets[index]
             low, high = 100 * servo.low, 100 * servo.high
             target = low if target < low else high if target > high else target
-            reach = servo.speed * elapsed // 10
+            max_step = servo.speed * elapsed // 10
             way = target - self.angles[index]
             if way:
-                self.angles[index] += -reach if way < -reach else reach if way > reach else way
+                self.angles[index] += (
+                    -max_step if way < -max_step else max_step if way > max_step else way
+                )
                 if not self._pulse(index):
-                    self._lose()
+                    self._mark_broken()
                     return
 
     def _pulse(self, index: int) -> bool:
-        """Send a servo where its joint should be; whether that was possible."""
+        """Send a servo to the expected angle of its joint; return whether that worked."""
         servo = self._servos[index]
-        stands = 100 * (servo.neutral + servo.trim) + servo.direction * self.angles[index]
-        pulse = servo.shortest + (servo.longest - servo.shortest) * stands // _TURN
+        position = 100 * (servo.neutral + servo.trim) + servo.direction * self.angles[index]
+        pulse = servo.shortest + (servo.longest - servo.shortest) * position // _SERVO_RANGE
         if pulse != self._pulses[index]:
             try:
                 self._board.pulse(servo.pin, pulse)
@@ -112,8 +114,8 @@ class Joints:
             self._pulses[index] = pulse
         return True
 
-    def _lose(self) -> None:
-        """Remember that whoever gives the pulses is gone, and every servo limp."""
+    def _mark_broken(self) -> None:
+        """Note that the pulse generator failed, and every servo is off."""
         self.broken = True
         for index in range(len(self.powered)):
             self.powered[index] = False

@@ -1,94 +1,94 @@
-"""The whole robot: line, protocol and body, one turn after the other, and what ends them."""
+"""The main loop: line, protocol and body, and the recovery from errors."""
 
 from .board import Board
-from .body import Body
-from .frames import Outbox
-from .joints import Joints
-from .link import Link
-from .table import Table
+from .body import DinoBody
+from .frames import SendBuffer
+from .joints import ServoJoints
+from .session import HostSession
+from .table import ServoTable
 
-WAIT = 5
-"""Longest wait for bytes [ms]: so often is the clock looked at."""
+WAIT_MS = 5
+"""Longest wait for bytes [ms]: the period of the main loop."""
 
-PAUSE = 300
-"""After an error nothing is tried for this long [ms]."""
+ERROR_PAUSE_MS = 300
+"""Pause after an error [ms]."""
 
 
-class Robot:
-    """A robot on a board, from boot, or from an error, to the next.
+class Firmware:
+    """The firmware's state between a start, or an error, and the next.
 
     Parameters
     ----------
     board
-        What it runs on.
+        The board.
     table
-        What it is made of.
+        The configuration.
     joints
-        Its servos; they remember over an error where they are.
+        The servos; their expected angles survive an error.
     """
 
-    def __init__(self, board: Board, table: Table, joints: Joints) -> None:
+    def __init__(self, board: Board, table: ServoTable, joints: ServoJoints) -> None:
         self._board = board
-        self._outbox = Outbox()
-        self._waiting = memoryview(self._outbox.data)
+        self._send_buffer = SendBuffer()
+        self._to_send = memoryview(self._send_buffer.data)
         self._input = bytearray(256)
-        self._watched = False
-        self.body = Body(joints, board, table.buzzer is not None, 1000 * table.rest_after)
-        """What it moves."""
-        self.link = Link(self.body, self._outbox, table.name, board)
-        """Its end of the protocol."""
+        self._watchdog_started = False
+        self.body = DinoBody(joints, board, table.buzzer is not None, 1000 * table.rest_after)
+        """The body."""
+        self.session = HostSession(self.body, self._send_buffer, table.name, board)
+        """The session with the host."""
 
-    def turn(self, now: int) -> None:
-        """Do all that is due at `now` [ms], and never wait."""
+    def step(self, now: int) -> None:
+        """Do everything that is due at `now` [ms], without blocking."""
         board = self._board
-        # Also without bytes: the failsafe and STATE are due by the clock.
-        self.link.receive(self._input, board.read(self._input), now)
-        attended = self.link.session != 0
+        # Also without bytes: the failsafe and STATE depend on the clock.
+        self.session.receive(self._input, board.read(self._input), now)
+        attended = self.session.number != 0
         self.body.advance(now, attended)
-        outbox = self._outbox
-        if outbox.end:
-            outbox.sent(board.write(self._waiting[outbox.start : outbox.end]))
-        if attended and not self._watched:
-            # Not sooner: a board that nobody has greeted lets the developer in.
-            self._watched = True
-            board.watch()
-        board.feed()
+        buffer = self._send_buffer
+        if buffer.end:
+            buffer.sent(board.write(self._to_send[buffer.start : buffer.end]))
+        if attended and not self._watchdog_started:
+            # Not earlier: before the first session a developer may interrupt the program.
+            self._watchdog_started = True
+            board.start_watchdog()
+        board.feed_watchdog()
 
 
-def live(board: Board, table: Table, joints: Joints) -> None:
-    """Let the robot live until somebody wants the program to end."""
-    robot = Robot(board, table, joints)
+def run_until_exit(board: Board, table: ServoTable, joints: ServoJoints) -> None:
+    """Run the main loop until an exit is requested."""
+    firmware = Firmware(board, table, joints)
     now = 0
-    while robot.link.session or not board.left():
-        # Not the board's own clock: that one wraps.
+    while firmware.session.number or not board.exit_requested():
+        # Not the board's own clock, which wraps around.
         now += board.elapsed()
-        robot.turn(now)
-        board.wait(WAIT)
+        firmware.step(now)
+        board.wait(WAIT_MS)
 
 
-def run(board: Board, table: Table) -> None:
-    """Run the robot, through every error, until somebody wants the program to end."""
-    joints = Joints(table.servos, board)
+def run(board: Board, table: ServoTable) -> None:
+    """Run the firmware, and restart it after every error, until an exit is requested."""
+    joints = ServoJoints(table.servos, board)
     board.begin(True)
     try:
         while True:
             try:
-                live(board, table, joints)
+                run_until_exit(board, table, joints)
                 return
             except Exception as error:
                 joints.release()
                 board.tone(0)
-                board.note(error)
-                pause(board, PAUSE)
+                board.log_error(error)
+                pause(board, ERROR_PAUSE_MS)
     finally:
         joints.release()
         board.begin(False)
 
 
 def pause(board: Board, time: int) -> None:
-    """Wait, and say to the watchdog that this is meant."""
+    """Wait, and keep the watchdog fed."""
     board.elapsed()
-    while time > 0 and not board.left():
-        board.feed()
-        board.wait(WAIT)
+    while time > 0 and not board.exit_requested():
+        board.feed_watchdog()
+        board.wait(WAIT_MS)
         time -= board.elapsed()

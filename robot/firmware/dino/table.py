@@ -1,13 +1,13 @@
-"""Checks the table of servos before anything moves, and says in one line what is wrong with it."""
+"""The configuration in `servos`, checked before anything moves."""
 
 from .messages import JOINTS_MAX, NAME_BYTES
 
-PULSES = (400, 2600)
-"""Shortest and longest pulse that is ever sent [µs]; hobby servos take 500 to 2500."""
+PULSE_RANGE_US = (400, 2600)
+"""Shortest and longest pulse width [µs]; hobby servos use 500 to 2500."""
 
 
 class Servo:
-    """One row of the table. Raises ValueError, in one line, if it cannot be right."""
+    """A row of the table; raises ValueError, in one line, if it is not valid."""
 
     def __init__(
         self,
@@ -23,55 +23,54 @@ class Servo:
         longest: int,
     ) -> None:
         self.name = name
-        """What the joint is called."""
+        """Name of the joint."""
         self.pin = pin
-        """Of the board, or channel of the driver."""
+        """Pin of the board, or channel of the driver."""
         self.low = low
         """Smallest angle of the joint [°]."""
         self.high = high
         """Largest angle of the joint [°]."""
         self.neutral = neutral
-        """Where the servo stands when the joint is at 0 [°]."""
+        """Position of the servo when the joint is at 0 [°]."""
         self.direction = direction
         """1, or -1 if the servo turns the other way."""
         self.trim = trim
-        """What is added to where it stands [°]."""
+        """Correction of that position [°]."""
         self.speed = speed
         """Top speed [°/s]."""
         self.shortest = shortest
-        """Pulse at which the servo stands at 0° [µs]."""
+        """Pulse width at the servo's 0° [µs]."""
         self.longest = longest
-        """Pulse at which it stands at 180° [µs]."""
+        """Pulse width at its 180° [µs]."""
         self._check()
 
     def _check(self) -> None:
         name = self.name
-        _bytes_of_name("a joint's name", name)
+        _check_name("a joint's name", name)
         if not -180 <= self.low <= 0 <= self.high <= 180:
             raise ValueError(f"{name}: -180 <= lowest <= 0 <= highest <= 180 must hold")
         if self.direction not in (-1, 1):
             raise ValueError(f"{name}: the direction must be 1 or -1")
         if not 1 <= self.speed <= 600:
             raise ValueError(f"{name}: the speed must be from 1 to 600 degrees a second")
-        if not PULSES[0] <= self.shortest < self.longest <= PULSES[1]:
-            raise ValueError(
-                f"{name}: pulses must rise, from {PULSES[0]} us to {PULSES[1]} us at most"
-            )
+        low, high = PULSE_RANGE_US
+        if not low <= self.shortest < self.longest <= high:
+            raise ValueError(f"{name}: pulses must rise, from {low} us to {high} us at most")
         for angle in (self.low, self.high):
-            stands = self.neutral + self.trim + self.direction * angle
-            if not 0 <= stands <= 180:
+            position = self.neutral + self.trim + self.direction * angle
+            if not 0 <= position <= 180:
                 raise ValueError(
-                    f"{name}: at {angle} degrees its servo stands at {stands}, not from 0 to 180"
+                    f"{name}: at {angle} degrees its servo is at {position}, not from 0 to 180"
                 )
 
 
-class Table:
-    """What `servos` holds.
+class ServoTable:
+    """The configuration in `servos`.
 
     Parameters
     ----------
     module
-        `servos`, or another of its kind.
+        `servos`, or another module with the same constants.
     """
 
     def __init__(self, module: object) -> None:
@@ -89,8 +88,8 @@ class Table:
         self.rest_after: int = getattr(module, "REST_AFTER")
 
     def check(self, platform: str) -> None:
-        """Raise ValueError, in one line, if the table cannot be right on this kind of board."""
-        _bytes_of_name("NAME", self.name)
+        """Raise ValueError, in one line, if the table is not valid for this kind of board."""
+        _check_name("NAME", self.name)
         if not 1 <= len(self.servos) <= JOINTS_MAX:
             raise ValueError(f"SERVOS must have 1 to {JOINTS_MAX} rows")
         names = [servo.name for servo in self.servos]
@@ -110,12 +109,12 @@ class Table:
         others += self.battery[:1] if self.battery else ()
         for pin in pins:
             if pin in others:
-                raise ValueError(f"pin {pin} is a servo's and something else's")
+                raise ValueError(f"pin {pin} is used for a servo and for something else")
         if platform == "rp2":
             _check_slices(pins, self.buzzer)
 
 
-def _bytes_of_name(what: str, name: str) -> None:
+def _check_name(what: str, name: str) -> None:
     if not 1 <= len(name.encode()) <= NAME_BYTES:
         raise ValueError(f"{what} must have 1 to {NAME_BYTES} bytes: {name}")
 
@@ -127,11 +126,11 @@ def _check_channels(channels: list[int]) -> None:
 
 
 def _check_slices(pins: list[int], buzzer: int | None) -> None:
-    """On an RP2040 pins share PWMs: 2n with 2n + 1 the frequency, and those 16 apart everything."""
+    """Refuse pins that share a PWM of an RP2040: 2n and 2n + 1 its frequency, n and n + 16 all."""
     for pin in pins:
         for other in pins:
             if other > pin and (other - pin) % 16 == 0:
-                raise ValueError(f"pins {pin} and {other} are one PWM on this board")
+                raise ValueError(f"pins {pin} and {other} share one PWM on this board")
         if buzzer is not None and pin % 16 // 2 == buzzer % 16 // 2:
             raise ValueError(
                 f"pin {pin} shares the frequency of its PWM with the buzzer's pin {buzzer}"

@@ -1,7 +1,7 @@
-"""A whole Pleo: fourteen joints on a PCA9685. Copy it over `dino/servos.py`; there it is explained.
+"""A whole Pleo: fourteen joints on a PCA9685. Copy it over `dino/servos.py`, which explains it.
 
-Limits are Pleo's, cut where a servo of 180° cannot follow; top speeds are Pleo's, or what a servo
-that carries a leg should be spared.
+Limits are Pleo's, reduced where a servo of 180° cannot follow. Top speeds are Pleo's, or lower for
+a servo that carries a leg.
 """
 
 NAME = "Pleo of ours"

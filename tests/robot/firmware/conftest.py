@@ -10,10 +10,10 @@ import pytest
 
 from robot.firmware.dino import servos
 from robot.firmware.dino.board import Board
-from robot.firmware.dino.desk import Desk
-from robot.firmware.dino.joints import Joints
-from robot.firmware.dino.robot import Robot, run
-from robot.firmware.dino.table import Table
+from robot.firmware.dino.joints import ServoJoints
+from robot.firmware.dino.pty_board import PtyBoard
+from robot.firmware.dino.robot import Firmware, run
+from robot.firmware.dino.table import ServoTable
 from robot.protocol.schema import pack, unpack
 from robot.protocol.timing import VERSION
 from robot.protocol.wire import FrameReader, encode_frame
@@ -64,10 +64,10 @@ class VirtualBoard(Board):
     def tone(self, hertz: int) -> None:
         self.tones.append(hertz)
 
-    def watch(self) -> None:
+    def start_watchdog(self) -> None:
         self.watched += 1
 
-    def feed(self) -> None:
+    def feed_watchdog(self) -> None:
         pass
 
 
@@ -77,13 +77,13 @@ class Dino:
     edge = b"\0"
 
     def __init__(self, table: Any = servos) -> None:
-        self.table = Table(table)
+        self.table = ServoTable(table)
         self.reboot()
 
     def reboot(self) -> None:
         self.board = VirtualBoard()
-        self.joints = Joints(self.table.servos, self.board)
-        self.robot = Robot(self.board, self.table, self.joints)
+        self.joints = ServoJoints(self.table.servos, self.board)
+        self.robot = Firmware(self.board, self.table, self.joints)
         self.start: float | None = None
 
     def receive(self, data: bytes, now: float) -> None:
@@ -94,9 +94,9 @@ class Dino:
         if self.start is None:
             self.start = now
         self.board.now = round(1000 * (now - self.start))
-        self.robot.turn(self.board.now)
+        self.robot.step(self.board.now)
         while self.board.incoming:
-            self.robot.turn(self.board.now)
+            self.robot.step(self.board.now)
 
     def bytes_to_send(self) -> bytes:
         data, self.board.outgoing = self.board.outgoing, b""
@@ -115,14 +115,14 @@ class Dino:
     def hears(self, message: object, session: int = 1, version: int = VERSION) -> None:
         """Let it hear a message now."""
         self.board.incoming += encode_frame(pack(message, session, version))
-        self.robot.turn(self.board.now)
+        self.robot.step(self.board.now)
 
     def lives(self, ms: int, step: int = 5) -> None:
         """Let time pass."""
         end = self.board.now + ms
         while self.board.now < end:
             self.board.now = min(self.board.now + step, end)
-            self.robot.turn(self.board.now)
+            self.robot.step(self.board.now)
 
 
 @pytest.fixture
@@ -132,13 +132,13 @@ def dino() -> Dino:
 
 
 @pytest.fixture
-def desk() -> Iterator[Desk]:
+def desk() -> Iterator[PtyBoard]:
     """Run the firmware, as it is, behind a pseudo-terminal."""
-    made = Desk()
+    made = PtyBoard()
 
     def live() -> None:
         with contextlib.suppress(SystemExit):  # by `close`
-            run(made, Table(servos))
+            run(made, ServoTable(servos))
 
     thread = threading.Thread(target=live, daemon=True)
     thread.start()
@@ -146,4 +146,4 @@ def desk() -> Iterator[Desk]:
     made.close()
     thread.join(2)
     assert not thread.is_alive()
-    made.give_back()
+    made.release()

@@ -8,7 +8,7 @@ import struct
 from dino import frames
 
 part = now = 0
-box = frames.Outbox(64)
+box = frames.SendBuffer(64)
 
 
 def say(*message):
@@ -33,9 +33,9 @@ def again():
         if step % 60 == 0:
             say("<BHIhhB", 0x10, 7, now, now * 997 % 20001 - 10000, 0, 255)
         say("<BHH", 3, 7, step)
-        robot.turn(now)
+        robot.step(now)
         board.outgoing = bytearray()
-    assert robot.link.session == 7
+    assert robot.session.number == 7
     gc.collect()
     return True
 

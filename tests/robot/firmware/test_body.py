@@ -12,16 +12,16 @@ from hypothesis import strategies as st
 
 from affect.hysteresis import Label, next_label
 from robot.firmware.dino import body, motions, servos, sounds
-from robot.firmware.dino.joints import RETRY, STAGGER
-from robot.firmware.dino.robot import live, run
-from robot.firmware.dino.table import Table
+from robot.firmware.dino.joints import POWER_ON_EVERY_MS, RETRY_EVERY_MS
+from robot.firmware.dino.robot import run, run_until_exit
+from robot.firmware.dino.table import ServoTable
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
 from tests.robot.firmware.conftest import Dino, Pulse, VirtualBoard
 from tools import firmware_tables as generate
 from tools import wiring
 
-SERVOS = {servo.pin: servo for servo in Table(servos).servos}
+SERVOS = {servo.pin: servo for servo in ServoTable(servos).servos}
 
 COMMANDS = st.lists(
     st.tuples(
@@ -84,7 +84,7 @@ def test_after_a_hang_it_is_late_and_not_hasty(dino):
     before = list(dino.joints.angles)
     dino.lives(400, step=400)
     for servo, one, other in zip(dino.table.servos, before, dino.joints.angles, strict=True):
-        assert abs(one - other) <= 100 * servo.speed * body.STEP_MAX / 1000
+        assert abs(one - other) <= 100 * servo.speed * body.MAX_STEP_MS / 1000
 
 
 def test_servos_get_their_first_pulse_at_neutral_and_one_after_the_other(dino):
@@ -94,7 +94,7 @@ def test_servos_get_their_first_pulse_at_neutral_and_one_after_the_other(dino):
         first.setdefault(pulse.pin, pulse)
     assert list(first) == list(SERVOS)
     times = [pulse.time for pulse in first.values()]
-    assert all(after - before >= STAGGER for before, after in pairwise(times))
+    assert all(after - before >= POWER_ON_EVERY_MS for before, after in pairwise(times))
     for pin, pulse in first.items():
         servo = SERVOS[pin]
         share = (pulse.us - servo.shortest) / (servo.longest - servo.shortest)
@@ -134,7 +134,7 @@ def test_a_servo_driver_that_is_unplugged_makes_it_limp_and_it_says_so(dino):
     assert dino.joints.angles == where, "what has no power does not move"
     dino.board.dead = False
     dino.board.pulses.clear()
-    dino.lives(RETRY + 5 * STAGGER + 100)
+    dino.lives(RETRY_EVERY_MS + 5 * POWER_ON_EVERY_MS + 100)
     dino.hears(m.Beat(2))
     assert {pulse.pin for pulse in dino.board.pulses} == set(SERVOS)
     assert all(dino.joints.powered)
@@ -186,15 +186,15 @@ def test_after_an_error_the_servos_are_limp_and_the_robot_is_back():
             if self.turns == 200:
                 raise MemoryError("on purpose")
 
-        def note(self, error: BaseException) -> None:
+        def log_error(self, error: BaseException) -> None:
             self.errors.append(error)
             self.limp = [pulse.us for pulse in self.pulses[-5:]]
 
-        def left(self) -> bool:
+        def exit_requested(self) -> bool:
             return self.turns > 600
 
     board = Failing()
-    run(board, Table(servos))
+    run(board, ServoTable(servos))
     assert [str(error) for error in board.errors] == ["on purpose"]
     assert board.limp == [0] * 5
     after = [pulse for pulse in board.pulses if pulse.time > 1000 and pulse.us]
@@ -218,12 +218,12 @@ def test_a_program_without_a_host_ends_when_the_developer_asks():
         def elapsed(self) -> int:
             return 5
 
-        def left(self) -> bool:
+        def exit_requested(self) -> bool:
             return True
 
     board = Left()
-    table = Table(servos)
-    live(board, table, Dino().joints)
+    table = ServoTable(servos)
+    run_until_exit(board, table, Dino().joints)
 
 
 def test_sounds_glide_and_end(dino):
@@ -248,7 +248,7 @@ def test_drawn_files_are_current():
     here = Path(generate.BOARD)
     assert (here / "messages.py").read_text("utf-8") == generate.messages()
     assert (here / "motions.py").read_text("utf-8") == generate.motions()
-    assert wiring.PICTURE.read_text("utf-8") == wiring.wiring(Table(servos))
+    assert wiring.PICTURE.read_text("utf-8") == wiring.wiring(ServoTable(servos))
 
 
 @pytest.mark.parametrize("value", [-1.0, -0.34, -0.3, -0.27, 0.0, 0.27, 0.3, 0.34, 1.0])
@@ -258,5 +258,5 @@ def test_hysteresis_is_that_of_the_moods(value):
         shown.mood = shown.moods.index(label)
         shown.valence = round(1e4 * value)
         assert shown.moods[shown._next_mood()] == next_label(label, value)
-    assert body.STEP == 20
+    assert body.STEP_MS == 20
     assert motions.HYSTERESIS == 500

@@ -21,7 +21,7 @@ BODIES = st.binary(min_size=1, max_size=MAX_BODY)
 
 def read(data: bytes) -> list[bytes]:
     """Feed the firmware's reader; return the bodies that it found."""
-    reader = frames.FrameReader()
+    reader = frames.FrameDecoder()
     found = []
     for byte in data:
         size = reader.feed(byte)
@@ -32,7 +32,7 @@ def read(data: bytes) -> list[bytes]:
 
 def frame(body: bytes) -> bytes:
     """Return the firmware's frame of a body."""
-    out = frames.Outbox(256)
+    out = frames.SendBuffer(256)
     out.put(bytearray(body), len(body))
     return bytes(out.data[: out.end])
 
@@ -137,10 +137,10 @@ def test_a_body_is_skipped_exactly_where_the_host_side_code_skips_it(number, res
 
 
 def test_what_finds_no_room_is_lost_whole():
-    out = frames.Outbox(100)
+    out = frames.SendBuffer(100)
     for size in (40, 40, 40, 3):
         out.put(bytearray(40), size)
-    assert (out.end, out.lost) == (92, 2)
+    assert (out.end, out.dropped) == (92, 2)
     assert read(bytes(out.data[: out.end])) == [bytes(40)] * 2
     out.sent(92)
     assert (out.start, out.end) == (0, 0)

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import pytest
 
 from robot.firmware.dino import servos
-from robot.firmware.dino.table import Table
+from robot.firmware.dino.table import ServoTable
 
 
 class Pwm:
@@ -177,7 +177,7 @@ class MicroPython:
         with self._monkeypatch.context() as patch:
             patch.setattr(sys, "stdin", self.line)
             patch.setattr(sys, "stdout", self.line)
-            return self.hardware.Hardware(Table(SimpleNamespace(**(vars(servos) | changes))))
+            return self.hardware.Hardware(ServoTable(SimpleNamespace(**(vars(servos) | changes))))
 
     def _reset(self) -> None:
         self.resets += 1
@@ -245,7 +245,7 @@ def test_a_host_on_a_uart_leaves_the_prompt_alone(micropython):
     assert board.read(data) == 2
     assert board.write(memoryview(b"a frame")) == 4
     board.begin(True)
-    assert not board.left()
+    assert not board.exit_requested()
     assert micropython.interrupt == 3, "Ctrl-C on the USB socket still interrupts"
 
 
@@ -266,7 +266,7 @@ def test_ctrl_c_is_a_byte_like_any_other_except_as_mpremote_sends_it(micropython
         micropython.line.coming += sent
         while board.read(data):
             pass
-        return bool(board.left())
+        return bool(board.exit_requested())
 
     assert not hear(b"\x00\x03\x01\x01\x06\x01\x03", 200), "a greeting"
     assert not hear(b"\x03", 200), "half of one"
@@ -274,7 +274,7 @@ def test_ctrl_c_is_a_byte_like_any_other_except_as_mpremote_sends_it(micropython
     micropython.milliseconds += 200
     micropython.line.coming = b"\r\x03\r\x01"
     board.read(data)
-    assert board.left()
+    assert board.exit_requested()
     assert micropython.line.coming == b"\r\x01", "the rest is for the prompt"
     board.begin(False)
     assert (micropython.interrupt, micropython.resets) == (3, 0)
@@ -282,11 +282,11 @@ def test_ctrl_c_is_a_byte_like_any_other_except_as_mpremote_sends_it(micropython
 
 def test_a_watchdog_that_runs_is_not_left_to_the_developer(micropython):
     board = micropython.board()
-    board.feed()
-    board.watch()
-    board.watch()
+    board.feed_watchdog()
+    board.start_watchdog()
+    board.start_watchdog()
     (watchdog,) = Watchdog.made
-    board.feed()
+    board.feed_watchdog()
     assert (watchdog.timeout, watchdog.fed) == (4000, 1)
     board.begin(False)
     assert micropython.resets == 1
@@ -311,13 +311,13 @@ def test_the_buzzer_and_the_battery(micropython):
 def test_the_first_error_is_kept_in_a_file(micropython, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     board = micropython.board()
-    board.note(MemoryError("first"))
-    board.note(MemoryError("second"))
+    board.log_error(MemoryError("first"))
+    board.log_error(MemoryError("second"))
     assert (tmp_path / "last_error.txt").read_text("utf-8") == "MemoryError('first')"
 
 
 def test_the_developers_pin_keeps_the_robot_from_starting(micropython):
-    table = Table(servos)
-    assert not micropython.hardware.developer_holds(table)
+    table = ServoTable(servos)
+    assert not micropython.hardware.developer_pin_held(table)
     Pin.grounded = {servos.DEVELOPER_PIN}
-    assert micropython.hardware.developer_holds(table)
+    assert micropython.hardware.developer_pin_held(table)

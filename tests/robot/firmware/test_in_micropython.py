@@ -22,7 +22,7 @@ from robot.conformance import SimulatedChannel, all_checks, run_checks
 
 FOLDER = Path(robot.firmware.__file__).parent
 FILES = [FOLDER / "main.py", *sorted((FOLDER / "dino").glob("*.py"))]
-FOR_A_BOARD = [path for path in FILES if path.name != "desk.py"]
+FOR_A_BOARD = [path for path in FILES if path.name != "pty_board.py"]
 PACKAGE = "@micropython/micropython-webassembly-pyscript"
 HERE = Path(__file__).parent
 KNOWN = {"sys", "time", "select", "machine", "micropython", "struct", "math", "array", "dino"}
@@ -138,7 +138,7 @@ def test_micropython_reads_and_writes_every_vector(tmp_path):
     script.write_text(
         "from dino import frames\n"
         f"for text in {frames!r}:\n"
-        "    reader, out = frames.FrameReader(), frames.Outbox(256)\n"
+        "    reader, out = frames.FrameDecoder(), frames.SendBuffer(256)\n"
         "    for byte in bytes.fromhex(text):\n"
         "        size = reader.feed(byte)\n"
         "        if size:\n"

@@ -77,9 +77,9 @@ def test_a_cut_line_makes_it_neutral_in_time_and_the_host_brings_it_back(dino):
     dino.hears(m.Hello(2, 9))
     dino.hears(m.Express(1, 0.5, 0.5, 1))
     dino.lives(445, step=1)
-    assert dino.robot.link.session == 1
+    assert dino.robot.session.number == 1
     dino.lives(10, step=1)
-    assert dino.robot.link.session == 0
+    assert dino.robot.session.number == 0
     dino.lives(1500)
     assert dino.portrait() == (0.0, "neutral")
     dino.says()
@@ -124,7 +124,7 @@ def test_a_line_that_takes_nothing_blocks_nothing(dino):
     for count in range(100):
         dino.hears(m.Beat(count))
         dino.lives(50)
-    assert dino.robot.link.session == 1
+    assert dino.robot.session.number == 1
     dino.board.takes = 7
     dino.lives(1000)
     # What was whole in the queue comes out whole.

@@ -8,7 +8,7 @@ import pytest
 
 import robot.firmware
 from robot.firmware.dino import motions, servos
-from robot.firmware.dino.table import Table
+from robot.firmware.dino.table import ServoTable
 
 LAYOUTS = sorted((Path(robot.firmware.__file__).parent / "layouts").glob("*.py"))
 JOINTS = {sway[0] for motion in motions.MOTIONS for sway in motion[3]}
@@ -30,12 +30,12 @@ def row(**changes: object) -> tuple[object, ...]:
 
 @pytest.mark.parametrize("platform", ["rp2", "esp32", "linux"])
 def test_the_table_as_it_comes_is_good_on_every_board(platform):
-    Table(servos).check(platform)
+    ServoTable(servos).check(platform)
 
 
 @pytest.mark.parametrize("path", LAYOUTS, ids=lambda path: path.stem)
 def test_every_layout_is_good_and_its_joints_move(path):
-    table = Table(SimpleNamespace(**run_path(str(path))))
+    table = ServoTable(SimpleNamespace(**run_path(str(path))))
     table.check("rp2")
     table.check("esp32")
     # No motion moves the hind legs: the robot stands on them.
@@ -54,18 +54,18 @@ def test_every_layout_is_good_and_its_joints_move(path):
         ({"shortest": 300}, "pulses must rise"),
         ({"shortest": 2500}, "pulses must rise"),
         ({"longest": 2700}, "pulses must rise"),
-        ({"trim": 40}, "at 60 degrees its servo stands at 190"),
-        ({"direction": -1, "neutral": 50}, "at 60 degrees its servo stands at -10"),
+        ({"trim": 40}, "at 60 degrees its servo is at 190"),
+        ({"direction": -1, "neutral": 50}, "at 60 degrees its servo is at -10"),
         ({"name": ""}, "must have 1 to 16 bytes"),
         ({"name": "a name that is too long"}, "must have 1 to 16 bytes"),
         ({"one": "too many"}, "has 10 values, not 11"),
-        ({"pin": 22}, "pin 22 is a servo's and something else's"),
-        ({"pin": 13}, "pin 13 is a servo's and something else's"),
+        ({"pin": 22}, "pin 22 is used for a servo and for something else"),
+        ({"pin": 13}, "pin 13 is used for a servo and for something else"),
     ],
 )
 def test_a_row_that_cannot_be_right_is_refused_in_one_line(changes, says):
     with pytest.raises(ValueError, match=says) as caught:
-        Table(changed(SERVOS=(row(**changes),))).check("esp32")
+        ServoTable(changed(SERVOS=(row(**changes),))).check("esp32")
     assert "\n" not in str(caught.value)
 
 
@@ -77,22 +77,22 @@ def test_a_row_that_cannot_be_right_is_refused_in_one_line(changes, says):
         ({"SERVOS": (row(), row(pin=17))}, "tail up twice"),
         ({"SERVOS": (row(), row(name="other"))}, "16 twice"),
         ({"NAME": "Ä" * 9}, "NAME must have 1 to 16 bytes"),
-        ({"PORT": (1, 16, 9)}, "pin 16 is a servo's and something else's"),
-        ({"BATTERY": (16, 3.0, 4.2, 2.0)}, "pin 16 is a servo's and something else's"),
+        ({"PORT": (1, 16, 9)}, "pin 16 is used for a servo and for something else"),
+        ({"BATTERY": (16, 3.0, 4.2, 2.0)}, "pin 16 is used for a servo and for something else"),
         ({"DRIVER": (0, 20, 21, 64), "SERVOS": (row(pin=16),)}, "channels 0 to 15, not 16"),
     ],
 )
 def test_a_table_that_cannot_be_right_is_refused_in_one_line(changes, says):
     with pytest.raises(ValueError, match=says):
-        Table(changed(**changes)).check("esp32")
+        ServoTable(changed(**changes)).check("esp32")
 
 
 def test_pins_that_share_a_pwm_are_refused_on_the_board_where_they_do():
     buzzer = changed(SERVOS=(row(pin=23),))
-    Table(buzzer).check("esp32")
+    ServoTable(buzzer).check("esp32")
     with pytest.raises(ValueError, match="shares the frequency"):
-        Table(buzzer).check("rp2")
+        ServoTable(buzzer).check("rp2")
     both = changed(SERVOS=(row(pin=2), row(name="other", pin=18)))
-    Table(both).check("esp32")
-    with pytest.raises(ValueError, match="pins 2 and 18 are one PWM"):
-        Table(both).check("rp2")
+    ServoTable(both).check("esp32")
+    with pytest.raises(ValueError, match="pins 2 and 18 share one PWM"):
+        ServoTable(both).check("rp2")

@@ -7,9 +7,9 @@
 
 from dino import servos
 from dino.board import Board
-from dino.joints import Joints
-from dino.robot import Robot
-from dino.table import Table
+from dino.joints import ServoJoints
+from dino.robot import Firmware
+from dino.table import ServoTable
 
 
 class VirtualBoard(Board):
@@ -34,18 +34,18 @@ class VirtualBoard(Board):
         pass
 
 
-table = Table(servos)
+table = ServoTable(servos)
 table.check("rp2")
 board = VirtualBoard()
-robot = Robot(board, table, Joints(table.servos, board))
+robot = Firmware(board, table, ServoJoints(table.servos, board))
 
 
 def exchange(line):
     now, _, text = line.partition(" ")
     board.incoming += bytes.fromhex(text)
     board.outgoing = bytearray()
-    robot.turn(int(now))
+    robot.step(int(now))
     while board.incoming:
-        robot.turn(int(now))
+        robot.step(int(now))
     # In MicroPython the hex of no bytes is no text, but no bytes.
     return bytes(board.outgoing).hex() if board.outgoing else ""

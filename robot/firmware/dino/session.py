@@ -1,103 +1,103 @@
-"""The robot's end of the protocol, PROTOCOL.md sections 5 to 7. Times are in ms."""
+"""The robot's side of the protocol: PROTOCOL.md, sections 5 to 7. Times are in ms."""
 
 from . import messages as m
 from .board import Board
-from .body import Body
+from .body import DinoBody
 from .codec import pack, unpack
-from .frames import FrameReader, Outbox, crc16
+from .frames import FrameDecoder, SendBuffer, crc16
 
 FIRMWARE = "dino 1"
-"""What runs on the robot, and which version."""
+"""Name and version of the firmware."""
 
 
-class Link:
-    """One robot's end of the protocol. It has no clock: it is told the time.
+class HostSession:
+    """The robot's side of the protocol: one session, its commands and its failsafe.
 
     Parameters
     ----------
     body
-        What the commands move.
-    outbox
-        Takes what is to be sent.
+        The body that the commands control.
+    send_buffer
+        Takes the frames to be sent.
     name
-        What the robot is called.
+        Name of the robot.
     board
-        Knows how full the battery is.
+        Measures the battery.
     """
 
-    def __init__(self, body: Body, outbox: Outbox, name: str, board: Board) -> None:
-        self.session = 0
-        """The open session; 0 when none is."""
+    def __init__(self, body: DinoBody, send_buffer: SendBuffer, name: str, board: Board) -> None:
+        self.number = 0
+        """Number of the open session; 0 if none is."""
         self._body = body
-        self._outbox = outbox
+        self._send_buffer = send_buffer
         self._name = name
         self._board = board
-        self._reader = FrameReader()
-        self._answer = bytearray(m.MAX_BODY)
+        self._decoder = FrameDecoder()
+        self._reply = bytearray(m.MAX_BODY)
         self._host = 0
-        self._taken = 0  # number of the last command, kept over sessions of the same host
+        self._taken = 0  # number of the last command, kept between sessions of the same host
         self._result = m.TAKEN
         self._in_force = False
         self._beat = 0
         self._version = m.VERSION
-        self._heard = 0
-        self._stated = 0
+        self._last_received = 0
+        self._last_state = 0
         self._last_gone = -m.GONE_EVERY
-        joints, sounds = body.joints.names(), body.voice.names()
+        joints, sounds = body.joints.names(), body.sounds.names()
         self._names = (joints, body.motions, sounds, body.moods)
-        self._catalogue = self._fingerprint()
+        self._catalogue = self._catalogue_crc()
 
     def receive(self, data: bytearray, count: int, now: int) -> None:
-        """Take `count` bytes from the line at `now`."""
-        # First the clock: bytes that waited while this robot hung belong to a session that is over.
+        """Process `count` received bytes at `now`."""
+        # First the clock: after a hang, waiting bytes belong to a session that has ended.
         self.tick(now)
-        reader = self._reader
+        decoder = self._decoder
         for index in range(count):
-            size = reader.feed(data[index])
+            size = decoder.feed(data[index])
             if size:
-                values = unpack(reader.body, size)
+                values = unpack(decoder.body, size)
                 if values is not None:
-                    self._take(values, now)
+                    self._receive_message(values, now)
 
     def tick(self, now: int) -> None:
-        """Do what is due at `now`: the failsafe, and STATE in time."""
-        if self.session and now - self._heard >= m.FAILSAFE_AFTER:
-            self._end_session()
-        if self.session and now - self._stated >= m.STATE_EVERY:
+        """Do what is due at `now`: the failsafe and STATE."""
+        if self.number and now - self._last_received >= m.FAILSAFE_AFTER:
+            self._close()
+        if self.number and now - self._last_state >= m.STATE_EVERY:
             self._send_state(now)
 
-    def _take(self, values: tuple[int, ...], now: int) -> None:
-        number, session = values[0], values[1]
-        if number == m.HELLO:
+    def _receive_message(self, values: tuple[int, ...], now: int) -> None:
+        kind, session = values[0], values[1]
+        if kind == m.HELLO:
             if session:
-                self._greet(session, values[2], values[3], now)
+                self._open(session, values[2], values[3], now)
             return
-        if not self.session or session != self.session:
+        if not self.number or session != self.number:
             if now - self._last_gone >= m.GONE_EVERY:
                 self._last_gone = now
-                self._outbox.put(self._answer, pack(self._answer, m.VERSION, m.GONE, session))
+                self._send_buffer.put(self._reply, pack(self._reply, m.VERSION, m.GONE, session))
             return
-        self._heard = now
-        if number == m.BEAT:
+        self._last_received = now
+        if kind == m.BEAT:
             self._beat = values[2]
             self._send_state(now)
-        elif number == m.ASK:
-            size = self._describe(values[2], values[3], self.session)
+        elif kind == m.ASK:
+            size = self._describe(values[2], values[3], self.number)
             if size:
-                self._outbox.put(self._answer, size)
-        elif number == m.BYE:
-            self._end_session()
+                self._send_buffer.put(self._reply, size)
+        elif kind == m.BYE:
+            self._close()
         else:
-            self._obey(number, values)
+            self._execute(kind, values)
 
-    def _greet(self, session: int, version: int, host: int, now: int) -> None:
+    def _open(self, session: int, version: int, host: int, now: int) -> None:
         if host != self._host:
             if self._in_force:
                 self._body.neutral()
             self._host, self._taken, self._in_force = host, 0, False
-        if session != self.session:
-            self.session, self._beat, self._stated = session, 0, now
-        self._heard = now
+        if session != self.number:
+            self.number, self._beat, self._last_state = session, 0, now
+        self._last_received = now
         self._version = min(version, m.VERSION)
         counts = [len(names) for names in self._names]
         self._send(
@@ -117,28 +117,26 @@ class Link:
         name = self._names[item][index].encode()
         if item == m.ITEM_JOINT:
             low, high, speed = self._body.joints.limits(index)
-            return pack(
-                self._answer, self._version, m.JOINT, session, index, low, high, speed, name
-            )
-        return pack(self._answer, self._version, m.NAME, session, item, index, name)
+            return pack(self._reply, self._version, m.JOINT, session, index, low, high, speed, name)
+        return pack(self._reply, self._version, m.NAME, session, item, index, name)
 
-    def _fingerprint(self) -> int:
-        """Return the check of the whole catalogue: it changes when an entry does."""
+    def _catalogue_crc(self) -> int:
+        """Return the CRC of the catalogue, which changes when an entry does."""
         register = 0xFFFF
         for item, names in enumerate(self._names):
             for index in range(len(names)):
-                register = crc16(self._answer, 0, self._describe(item, index, 0), register)
+                register = crc16(self._reply, 0, self._describe(item, index, 0), register)
         return register
 
-    def _obey(self, kind: int, values: tuple[int, ...]) -> None:
-        """Take a command once, and acknowledge it as often as it comes."""
+    def _execute(self, kind: int, values: tuple[int, ...]) -> None:
+        """Execute a command once, and acknowledge each of its repeats."""
         number = values[2]
         if number > self._taken:
             self._taken, self._in_force = number, True
-            self._result = self._carry_out(kind, values)
+            self._result = self._apply(kind, values)
         self._send(m.ACK, number, self._result)
 
-    def _carry_out(self, kind: int, values: tuple[int, ...]) -> int:
+    def _apply(self, kind: int, values: tuple[int, ...]) -> int:
         if kind == m.STOP:
             self._body.stop()
         elif kind == m.EXPRESS:
@@ -157,11 +155,11 @@ class Link:
         return m.TAKEN
 
     def _send_state(self, now: int) -> None:
-        self._stated = now
+        self._last_state = now
         body = self._body
         joints = body.joints
         angles = [joints.mrad(index) for index in range(len(joints.angles))]
-        flags = m.STILL if body.still else 0
+        flags = m.STILL if body.stopped else 0
         if self._version >= 2:
             flags |= m.RECKONED | (m.LIMP if joints.limp else 0)
         self._send(
@@ -179,11 +177,11 @@ class Link:
             *(0,) * (m.JOINTS_MAX - len(angles)),
         )
 
-    def _end_session(self) -> None:
-        self.session = 0
+    def _close(self) -> None:
+        self.number = 0
         self._in_force = False
         self._body.neutral()
 
     def _send(self, number: int, *fields: int | bytes) -> None:
-        size = pack(self._answer, self._version, number, self.session, *fields)
-        self._outbox.put(self._answer, size)
+        size = pack(self._reply, self._version, number, self.number, *fields)
+        self._send_buffer.put(self._reply, size)
