@@ -173,11 +173,11 @@ def test_in_micropython_it_obeys_our_host_on_a_bad_line(in_micropython, world):
     w.run_until(lambda: w.telemetry.state == "ready", within=2)
     w.host.express(Emotion(0.8, 0.5, "happy"))
     w.run(1.5)
-    assert w.telemetry.observed == w.telemetry.acknowledged == Emotion(0.8, 0.5)
+    assert w.telemetry.observed == w.telemetry.acknowledged == Emotion(0.8, 0.5, "happy")
     assert (w.telemetry.label, w.telemetry.motion) == ("happy", "happy")
     w.to_robot.cut = True
     w.run(0.6)
     w.to_robot.cut = False
     w.run_until(lambda: w.telemetry.state == "ready", within=2)
     w.run(1.5)
-    assert w.telemetry.observed == Emotion(0.8, 0.5)
+    assert w.telemetry.observed == Emotion(0.8, 0.5, "happy")

@@ -53,7 +53,7 @@ def test_our_host_gets_to_know_it_and_is_obeyed(dino_world):
     assert "eyes and mouth" in [joint.name for joint in catalogue.joints]
     w.host.express(Emotion(0.8, 0.5, "happy"))
     w.run(1.5)
-    assert w.telemetry.observed == w.telemetry.acknowledged == Emotion(0.8, 0.5)
+    assert w.telemetry.observed == w.telemetry.acknowledged == Emotion(0.8, 0.5, "happy")
     assert (w.telemetry.label, w.telemetry.motion) == ("happy", "happy")
     assert w.telemetry.reckoned
     w.host.play(m.ITEM_MOTION, catalogue.motions.index("wag tail"))
