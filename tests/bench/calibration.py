@@ -22,7 +22,7 @@ from tests.tracking.calibration.waved import aligned
 from tracking import CubeModel, Frame
 from tracking.calibration import CubeFinder, View, ViewCollector, calibrate, measured_cube
 from tracking.synthetic import open_synthetic
-from tracking.synthetic.folding import folded, placements
+from tracking.synthetic.folding import face_poses, fold_cube
 
 Array = NDArray[np.float64]
 
@@ -78,7 +78,7 @@ def traced(seed: int, fold: float, frames: int) -> Wave:
     """Measure single poses of the independent renderer, its cube folded as ours."""
     pictures = sequence("poses", seed, frames)
     ideal = CubeModel.load(pictures.cube)
-    cube = folded(ideal, fold, seed)
+    cube = fold_cube(ideal, fold, seed)
     finder = CubeFinder(ideal)
     views = []
     for frame in _folded_frames(pictures, cube):
@@ -90,7 +90,7 @@ def traced(seed: int, fold: float, frames: int) -> Wave:
 
 
 def _folded_frames(pictures: Sequence, cube: CubeModel) -> Iterator[Frame]:
-    moved = placements(cube)
+    moved = face_poses(cube)
     scenes = []
     for scene in pictures.scenes:
         sides = []

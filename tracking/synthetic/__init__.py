@@ -1,4 +1,4 @@
-"""A camera that draws what it sees, so that the truth is known: `synthetic:NAME`."""
+"""A rendered camera image of a cube whose true pose is known: `synthetic:NAME`."""
 
 from tracking.synthetic.options import SyntheticOptions
 from tracking.synthetic.scripts import SCRIPTS

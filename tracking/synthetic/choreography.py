@@ -1,4 +1,4 @@
-"""How a hand moves a cube: smooth segments one after the other, and perfect rest between them."""
+"""The motion of a cube in a hand: a sequence of smooth segments with perfect rest in between."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,32 +14,32 @@ Array = NDArray[np.float64]
 
 UP = np.array([0.0, 1.0, 0.0])
 
-REACH_TIME = 0.45
-"""How long the hand takes to come and to go [s]."""
+HAND_APPROACH_S = 0.45
+"""Time in which the hand approaches or leaves the cube."""
 
-TREMOR = (0.0004, np.deg2rad(0.25))
-"""Amplitude of the tremor of a hand that holds the cube [m], [rad]."""
+TREMOR_M, TREMOR_RAD = 0.0004, np.deg2rad(0.25)
+"""Amplitude of the tremor of a hand that holds the cube."""
 
 
 @dataclass(frozen=True)
-class Moment:
+class SceneState:
     """Cube and hand at one time."""
 
     table_from_cube: Array
     """Pose of the cube, (4, 4) [m]."""
 
     grip: float
-    """How near the hand is: 0 away, 1 holding the cube."""
+    """Position of the hand: 0 away, 1 holding the cube."""
 
     resting: bool = False
-    """Whether the cube lies on the desk and nobody touches it."""
+    """Whether the cube lies on the desk untouched."""
 
     turns: float = 0.0
-    """Turns since the cube was last put down, clockwise from above."""
+    """Turns since the cube was last put down, clockwise as seen from above."""
 
     @property
     def top_face(self) -> str:
-        """Name of the face that looks up most."""
+        """Name of the face that points most upwards."""
         upwards = {
             name: float(self.table_from_cube[1, :3] @ np.cross(right, up))
             for name, (right, up) in FACE_AXES.items()
@@ -57,10 +57,10 @@ class _Segment:
     turned: float
 
 
-def eased(share: float) -> float:
-    """Minimum-jerk course from 0 to 1 (Flash and Hogan 1985).
+def minimum_jerk(share: float) -> float:
+    """Return the minimum-jerk profile from 0 to 1 (Flash and Hogan, 1985).
 
-    >>> eased(0.5)
+    >>> minimum_jerk(0.5)
     0.5
     """
     share = min(1.0, max(0.0, share))
@@ -69,7 +69,7 @@ def eased(share: float) -> float:
 
 @dataclass
 class Choreography:
-    """Builds a script: each method appends a segment and returns the choreography.
+    """Builds a motion: each method appends a segment and returns the choreography.
 
     Parameters
     ----------
@@ -79,10 +79,10 @@ class Choreography:
 
     edge: float
     pose: Array = field(init=False)
-    """Where the cube is after the last segment, (4, 4)."""
+    """Pose of the cube after the last segment, (4, 4)."""
 
     length: float = 0.0
-    """Time of the end of the last segment [s]."""
+    """End of the last segment [s]."""
 
     _segments: list[_Segment] = field(default_factory=list)
     _turns: float = 0.0
@@ -92,52 +92,52 @@ class Choreography:
         self.pose[1, 3] = self.edge / 2
 
     def stand(self, x: float, z: float, heading_deg: float = 0.0) -> Self:
-        """Put the cube somewhere before anything happens, turned clockwise by an angle."""
+        """Set the initial position and clockwise heading of the cube."""
         self.pose = np.eye(4)
         self.pose[:3, :3] = se3.rotation(-np.deg2rad(heading_deg) * UP)
         self.pose[:3, 3] = x, self.edge / 2, z
         return self
 
     def rest(self, seconds: float) -> Self:
-        """Let the cube lie, and the hand be away where there is time for it."""
+        """Leave the cube untouched; the hand moves away if there is time."""
         pose = self.pose.copy()
         return self._append(seconds, lambda share: pose, held=False)
 
     def hold(self, seconds: float) -> Self:
-        """Keep the hand at the cube without moving it."""
+        """Hold the cube without moving it."""
         pose = self.pose.copy()
         return self._append(seconds, lambda share: pose, held=True)
 
     def slide(self, x: float, z: float, seconds: float, bend: float = 0.0) -> Self:
-        """Slide over the table to (x, z), in a bow `bend` metres off the straight line."""
+        """Slide over the table to (x, z), along an arc that deviates by `bend` [m] from a line."""
         start, end = self.pose.copy(), self.pose.copy()
         end[0, 3], end[2, 3] = x, z
         aside = np.cross(UP, end[:3, 3] - start[:3, 3])
         aside /= max(float(np.linalg.norm(aside)), 1e-9)
 
         def path(share: float) -> Array:
-            course = eased(share)
+            progress = minimum_jerk(share)
             pose = start.copy()
-            pose[:3, 3] += course * (end[:3, 3] - start[:3, 3])
-            pose[:3, 3] += 4 * bend * course * (1 - course) * aside
+            pose[:3, 3] += progress * (end[:3, 3] - start[:3, 3])
+            pose[:3, 3] += 4 * bend * progress * (1 - progress) * aside
             return pose
 
         return self._append(seconds, path)
 
     def turn(self, degrees: float, seconds: float) -> Self:
-        """Turn clockwise, seen from above, on the spot."""
+        """Turn in place, clockwise as seen from above."""
         start = self.pose.copy()
 
         def path(share: float) -> Array:
             pose = start.copy()
-            turned = -np.deg2rad(degrees) * eased(share) * UP
+            turned = -np.deg2rad(degrees) * minimum_jerk(share) * UP
             pose[:3, :3] = se3.rotation(turned) @ start[:3, :3]
             return pose
 
         return self._append(seconds, path, turned=degrees / 360)
 
     def tip(self, normal: tuple[float, float, float], seconds: float = 1.2) -> Self:
-        """Lift, turn the face with this normal in the cube frame to the top, and put down."""
+        """Lift, turn the face with this normal (in the cube frame) to the top, and put down."""
         self._turns = 0.0
         start = self.pose.copy()
         outward = start[:3, :3] @ np.array(normal)
@@ -148,52 +148,56 @@ class Choreography:
 
         def path(share: float) -> Array:
             pose = start.copy()
-            pose[:3, :3] = se3.rotation(axis * angle * eased(1.25 * share - 0.125)) @ start[:3, :3]
-            pose[1, 3] += 0.75 * self.edge * np.sin(np.pi * eased(share)) ** 2
+            pose[:3, :3] = (
+                se3.rotation(axis * angle * minimum_jerk(1.25 * share - 0.125)) @ start[:3, :3]
+            )
+            pose[1, 3] += 0.75 * self.edge * np.sin(np.pi * minimum_jerk(share)) ** 2
             return pose
 
         return self._append(seconds, path)
 
     def carry(self, x: float, z: float, height: float, seconds: float) -> Self:
-        """Lift the cube, carry it over the table and put it down at (x, z)."""
+        """Lift the cube, carry it, and put it down at (x, z)."""
         self._turns = 0.0
         start = self.pose.copy()
 
         def path(share: float) -> Array:
             pose = start.copy()
-            pose[[0, 2], 3] += eased(1.6 * share - 0.3) * (np.array([x, z]) - start[[0, 2], 3])
-            pose[1, 3] += height * (eased(3 * share) - eased(3 * share - 2))
+            pose[[0, 2], 3] += minimum_jerk(1.6 * share - 0.3) * (
+                np.array([x, z]) - start[[0, 2], 3]
+            )
+            pose[1, 3] += height * (minimum_jerk(3 * share) - minimum_jerk(3 * share - 2))
             return pose
 
         return self._append(seconds, path)
 
     def shake(self, seconds: float, reach: float = 0.05, rate: float = 4.0) -> Self:
-        """Lift the cube and shake it sideways, `rate` times there and back a second."""
+        """Lift the cube and shake it sideways with a frequency of `rate` [Hz]."""
         self._turns = 0.0
         start = self.pose.copy()
 
         def path(share: float) -> Array:
             pose = start.copy()
-            lifted = eased(5 * share) - eased(5 * share - 4)
+            lifted = minimum_jerk(5 * share) - minimum_jerk(5 * share - 4)
             pose[1, 3] += 0.08 * lifted
             pose[0, 3] += reach * lifted * np.sin(2 * np.pi * rate * seconds * share)
             return pose
 
         return self._append(seconds, path)
 
-    def at(self, time: float) -> Moment:
-        """Return cube and hand at a time [s]; before and after all segments both are still."""
+    def at(self, time: float) -> SceneState:
+        """Return cube and hand at a time [s]; before and after all segments they stand still."""
         if not self._segments:
-            return Moment(self.pose.copy(), 0.0)
+            return SceneState(self.pose.copy(), 0.0)
         time = min(max(time, 0.0), self.length)
         segment = next(s for s in self._segments if time <= s.end)
         share = (time - segment.start) / max(segment.end - segment.start, 1e-9)
         pose = segment.path(share)
         grip = self._grip(time)
         if segment.held and grip > 0.99:
-            pose = _trembling(pose, time, segment)
-        turns = segment.turns + segment.turned * eased(share)
-        return Moment(pose, grip, not segment.held, turns)
+            pose = _with_tremor(pose, time, segment)
+        turns = segment.turns + segment.turned * minimum_jerk(share)
+        return SceneState(pose, grip, not segment.held, turns)
 
     def _append(
         self,
@@ -210,20 +214,20 @@ class Choreography:
         return self
 
     def _grip(self, time: float) -> float:
-        """How near the hand is: it comes before a segment that needs it, and goes after."""
+        """Return the position of the hand: it approaches before a segment that needs it."""
         away = min(
             (max(s.start - time, time - s.end, 0.0) for s in self._segments if s.held),
             default=np.inf,
         )
-        return 1.0 - eased(float(away) / REACH_TIME)
+        return 1.0 - minimum_jerk(float(away) / HAND_APPROACH_S)
 
 
-def _trembling(pose: Array, time: float, segment: _Segment) -> Array:
-    """Add a hand's tremor, fading in and out so that nothing leaps; 7 to 11 times a second."""
+def _with_tremor(pose: Array, time: float, segment: _Segment) -> Array:
+    """Add a hand's tremor of 7 to 11 Hz, faded in and out so that the pose is continuous."""
     fade = min(1.0, (time - segment.start) / 0.15, (segment.end - time) / 0.15)
     phases = 2 * np.pi * np.outer([7.3, 8.9, 10.7], [1.0, 1.13, 0.91]) * time
     waves = np.sin(phases + np.arange(9).reshape(3, 3)).sum(axis=0) / 3
     pose = pose.copy()
-    pose[:3, 3] += TREMOR[0] * fade * waves * (1.0, 0.3, 1.0)
-    pose[:3, :3] = se3.rotation(TREMOR[1] * fade * waves[::-1]) @ pose[:3, :3]
+    pose[:3, 3] += TREMOR_M * fade * waves * (1.0, 0.3, 1.0)
+    pose[:3, :3] = se3.rotation(TREMOR_RAD * fade * waves[::-1]) @ pose[:3, :3]
     return pose

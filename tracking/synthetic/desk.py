@@ -1,4 +1,4 @@
-"""A wooden desk with a few things on it, as one picture that never moves."""
+"""The static background: a wooden desk with a few objects, and a wall behind it."""
 
 from dataclasses import dataclass
 
@@ -6,177 +6,177 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.synthetic.lens import Lens
+from tracking.synthetic.camera_rays import CameraRays
 
 Array = NDArray[np.float64]
-Picture = NDArray[np.float32]
+Image = NDArray[np.float32]
 Canvas = NDArray[np.uint8]
 
-HALF = 1.3
-"""Half the width of the square of desk that is drawn [m]."""
+HALF_WIDTH_M = 1.3
+"""Half the side of the desk's square texture."""
 
 TEXELS = 2600
-"""Samples along the desk's picture: one millimetre each."""
+"""Texels along a side of the texture: one per millimetre."""
 
-FAR_EDGE = -0.62
-"""Where the desk ends, away from the camera (z in the table frame) [m]."""
+FAR_EDGE_M = -0.62
+"""Far edge of the desk (z in the table frame)."""
 
-WOOD = np.array([[104, 148, 190], [92, 136, 180], [116, 160, 200], [98, 140, 182]], float)
-"""Colours of the planks, BGR."""
+WOOD_BGR = np.array([[104, 148, 190], [92, 136, 180], [116, 160, 200], [98, 140, 182]], float)
+"""Colours of the planks."""
 
-WALL = np.array([168, 186, 196], float)
-"""Colour of the wall behind the desk, BGR."""
+WALL_BGR = np.array([168, 186, 196], float)
+"""Colour of the wall behind the desk."""
 
 
-def desk_picture(random: np.random.Generator, clutter: bool) -> Picture:
-    """Draw the desk from above, (TEXELS, TEXELS, 3) BGR; rows run along z, columns along x."""
-    picture = _planks(random)
+def desk_texture(random: np.random.Generator, clutter: bool) -> Image:
+    """Draw the desk from above, (TEXELS, TEXELS, 3) BGR; rows along z, columns along x."""
+    texture = _planks(random)
     if clutter:
-        for thing in (_paper, _notes, _coaster):
-            thing(picture, random)
-    return picture
+        for draw in (_draw_paper, _draw_notes, _draw_coaster):
+            draw(texture, random)
+    return texture
 
 
-def seen_through(lens: Lens, camera_from_table: Array, picture: Picture) -> Picture:
-    """Return the camera's picture of the desk and the wall behind it, (H, W, 3)."""
-    x, z, _ = _places(lens, camera_from_table, 2)
-    scale = TEXELS / (2 * HALF)
+def render_desk(camera: CameraRays, texture: Image) -> Image:
+    """Return the image of the desk and the wall behind it, (H, W, 3)."""
+    x, z, _ = _desk_points(camera, 2)
+    scale = TEXELS / (2 * HALF_WIDTH_M)
     desk = cv2.remap(
-        picture,
-        (x + HALF) * scale - 0.5,
-        (z + HALF) * scale - 0.5,
+        texture,
+        (x + HALF_WIDTH_M) * scale - 0.5,
+        (z + HALF_WIDTH_M) * scale - 0.5,
         cv2.INTER_LINEAR,
         borderMode=cv2.BORDER_REFLECT,
     )
-    small = np.asarray(cv2.resize(desk, lens.size, interpolation=cv2.INTER_AREA), np.float32)
-    # Light changes slowly: one sample a pixel shows it.
-    x, z, below = _places(lens, camera_from_table, 1)
-    return _with_wall(_lit(small, x, z), (z < FAR_EDGE) | ~below, x, z)
+    small = np.asarray(cv2.resize(desk, camera.size, interpolation=cv2.INTER_AREA), np.float32)
+    # Light varies slowly: one sample per pixel is enough.
+    x, z, below = _desk_points(camera, 1)
+    return _with_wall(_lit(small, x, z), (z < FAR_EDGE_M) | ~below, x, z)
 
 
-def _places(
-    lens: Lens, camera_from_table: Array, finer: int
-) -> tuple[Picture, Picture, NDArray[np.bool_]]:
-    """Return x and z of the desk's plane at every sample [m], and whether it looks down at all."""
-    rays = lens.rays(lens.whole(), finer)
-    table_from_camera = np.linalg.inv(camera_from_table)
-    turn, eye = table_from_camera[:3, :3].astype(np.float32), table_from_camera[:3, 3]
-    ways = rays @ turn[:, :2].T + turn[:, 2]
-    reach = np.float32(-eye[1]) / np.minimum(ways[..., 1], np.float32(-1e-4))
-    x = np.float32(eye[0]) + reach * ways[..., 0]
-    z = np.float32(eye[2]) + reach * ways[..., 2]
-    return x, z, ways[..., 1] < -1e-3
+def _desk_points(camera: CameraRays, samples: int) -> tuple[Image, Image, NDArray[np.bool_]]:
+    """Return x and z where each sample's ray meets the desk [m], and whether it points down."""
+    rays = camera.rays(camera.whole(), samples)
+    table_from_camera = np.linalg.inv(camera.camera_from_table)
+    rotation, eye = table_from_camera[:3, :3].astype(np.float32), table_from_camera[:3, 3]
+    directions = rays @ rotation[:, :2].T + rotation[:, 2]
+    reach = np.float32(-eye[1]) / np.minimum(directions[..., 1], np.float32(-1e-4))
+    x = np.float32(eye[0]) + reach * directions[..., 0]
+    z = np.float32(eye[2]) + reach * directions[..., 2]
+    return x, z, directions[..., 1] < -1e-3
 
 
-def _lit(desk: Picture, x: Picture, z: Picture) -> Picture:
-    """Brighten towards the lamp, on the left at the back, with a faint gloss."""
+def _lit(desk: Image, x: Image, z: Image) -> Image:
+    """Light the desk by a lamp at the far left, with a faint gloss."""
     lamp = np.exp(-((x + 0.35) ** 2 + (z + 0.25) ** 2) / 0.5)[..., None]
     return np.asarray(desk * (0.80 + 0.26 * lamp) + 9.0 * lamp**3, np.float32)
 
 
-def _with_wall(seen: Picture, behind: NDArray[np.bool_], x: Picture, z: Picture) -> Picture:
-    height = np.clip(FAR_EDGE - z, 0.0, 2.0)[..., None]
-    wall = WALL * (0.92 - 0.10 * np.tanh(height)) * (1 - 0.06 * np.tanh(np.abs(x))[..., None])
-    # The desk's edge is far behind the focus: the wall fades in over some pixels.
+def _with_wall(image: Image, behind: NDArray[np.bool_], x: Image, z: Image) -> Image:
+    height = np.clip(FAR_EDGE_M - z, 0.0, 2.0)[..., None]
+    wall = WALL_BGR * (0.92 - 0.10 * np.tanh(height)) * (1 - 0.06 * np.tanh(np.abs(x))[..., None])
+    # The far edge is out of focus, so the wall fades in over some pixels.
     soft = cv2.GaussianBlur(behind.astype(np.float32), (0, 0), 4.0)[..., None]
     edge = cv2.GaussianBlur(behind.astype(np.float32), (0, 0), 9.0)[..., None]
     shade = 1.0 - 0.55 * edge * (1.0 - edge)
-    return np.asarray((seen * (1 - soft) + wall * soft) * shade, np.float32)
+    return np.asarray((image * (1 - soft) + wall * soft) * shade, np.float32)
 
 
-def _planks(random: np.random.Generator) -> Picture:
+def _planks(random: np.random.Generator) -> Image:
     width = TEXELS // 13
-    picture = np.empty((TEXELS, TEXELS, 3), np.float32)
+    texture = np.empty((TEXELS, TEXELS, 3), np.float32)
     grain = _grain(random)
     for number, top in enumerate(range(0, TEXELS, width)):
         rows = slice(top, min(top + width, TEXELS))
         shift = int(random.integers(TEXELS))
         figure = np.roll(grain, shift, axis=1)[rows]
-        color = WOOD[int(random.integers(len(WOOD)))] * random.uniform(0.95, 1.04)
-        picture[rows] = color * (1.0 + 0.075 * figure[..., None] * (1.15, 1.0, 0.9))
+        color = WOOD_BGR[int(random.integers(len(WOOD_BGR)))] * random.uniform(0.95, 1.04)
+        texture[rows] = color * (1.0 + 0.075 * figure[..., None] * (1.15, 1.0, 0.9))
         if number:
-            picture[top - 1 : top + 1] *= 0.62  # the gap between two planks
-            picture[top + 1] *= 1.05
-    return picture
+            texture[top - 1 : top + 1] *= 0.62  # the gap between two planks
+            texture[top + 1] *= 1.05
+    return texture
 
 
-def _grain(random: np.random.Generator) -> Picture:
-    """Return wood grain along x: fibres, rings that wander, and fine pores; about −2…2."""
+def _grain(random: np.random.Generator) -> Image:
+    """Return wood grain along x: fibres and wavy rings; about −2…2."""
     bands = np.zeros((TEXELS, TEXELS), np.float32)
     for along, across, weight in ((6, 160, 0.8), (20, 500, 0.5), (60, 1300, 0.35)):
         noise = random.standard_normal((across, along)).astype(np.float32)
         bands += weight * cv2.resize(noise, (TEXELS, TEXELS), interpolation=cv2.INTER_CUBIC)
-    wander = cv2.resize(
+    waves = cv2.resize(
         random.standard_normal((26, 8)).astype(np.float32),
         (TEXELS, TEXELS),
         interpolation=cv2.INTER_CUBIC,
     )
     rows = np.arange(TEXELS, dtype=np.float32)[:, None]
-    rings = np.sin(rows / 9.0 + 3.4 * wander) * 0.55
+    rings = np.sin(rows / 9.0 + 3.4 * waves) * 0.55
     return np.asarray(bands + rings, np.float32)
 
 
-def _at(x: float, z: float) -> tuple[int, int]:
-    """Return the texel (column, row) of a place on the desk [m], in 1/16."""
-    scale = TEXELS / (2 * HALF) * 16
-    return round((x + HALF) * scale), round((z + HALF) * scale)
+def _texel(x: float, z: float) -> tuple[int, int]:
+    """Return the texel (column, row) of a point on the desk [m], in 1/16."""
+    scale = TEXELS / (2 * HALF_WIDTH_M) * 16
+    return round((x + HALF_WIDTH_M) * scale), round((z + HALF_WIDTH_M) * scale)
 
 
 def _quad(x: float, z: float, width: float, depth: float, turn: float) -> NDArray[np.int32]:
     half = np.array([[-width, -depth], [width, -depth], [width, depth], [-width, depth]]) / 2
     cos, sin = np.cos(turn), np.sin(turn)
     corners = half @ np.array([[cos, sin], [-sin, cos]]) + (x, z)
-    return np.array([_at(*corner) for corner in corners], np.int32)
+    return np.array([_texel(*corner) for corner in corners], np.int32)
 
 
-def _lay(picture: Picture, outline: NDArray[np.int32], color: tuple[float, float, float]) -> None:
-    """Lay something flat on the desk, with a soft shadow under its edge."""
+def _draw_flat(
+    texture: Image, outline: NDArray[np.int32], color: tuple[float, float, float]
+) -> None:
+    """Draw a flat object on the desk, with a soft shadow at its edge."""
     low = np.maximum(outline.min(axis=0) // 16 - 32, 0)
     high = outline.max(axis=0) // 16 + 32
-    picture = picture[low[1] : high[1], low[0] : high[0]]  # a view: the rest stays as it is
-    mask = np.zeros(picture.shape[:2], np.float32)
+    texture = texture[low[1] : high[1], low[0] : high[0]]  # a view, drawn in place
+    mask = np.zeros(texture.shape[:2], np.float32)
     cv2.fillConvexPoly(mask, outline - low * 16, 1.0, cv2.LINE_8, 4)
     shadow = cv2.GaussianBlur(np.roll(mask, (5, 6), (0, 1)), (0, 0), 6.0)
-    picture *= (1.0 - 0.34 * shadow * (1.0 - mask))[..., None]
+    texture *= (1.0 - 0.34 * shadow * (1.0 - mask))[..., None]
     edge = cv2.GaussianBlur(mask, (0, 0), 0.7)[..., None]
-    picture += (np.array(color, np.float32) - picture) * edge
+    texture += (np.array(color, np.float32) - texture) * edge
 
 
-def _paper(picture: Picture, random: np.random.Generator) -> None:
-    """Lay a sheet with lines of writing."""
+def _draw_paper(texture: Image, random: np.random.Generator) -> None:
+    """Draw a sheet with lines of writing."""
     turn, x, z = 0.22, 0.40, -0.20
-    _lay(picture, _quad(x, z, 0.21, 0.297, turn), (206, 214, 218))
+    _draw_flat(texture, _quad(x, z, 0.21, 0.297, turn), (206, 214, 218))
     cos, sin = np.cos(turn), np.sin(turn)
     for line in range(16):
         v = -0.115 + 0.0145 * line
         end = random.uniform(0.02, 0.08)
         points = [(x + u * cos - v * sin, z + u * sin + v * cos) for u in (-0.085, end)]
-        ends = [_at(*point) for point in points]
-        cv2.line(picture, ends[0], ends[1], (150.0, 128.0, 120.0), 2, cv2.LINE_AA, 4)
+        ends = [_texel(*point) for point in points]
+        cv2.line(texture, ends[0], ends[1], (150.0, 128.0, 120.0), 2, cv2.LINE_AA, 4)
 
 
-def _notes(picture: Picture, random: np.random.Generator) -> None:
-    """Lay three sticky notes."""
+def _draw_notes(texture: Image, random: np.random.Generator) -> None:
+    """Draw three sticky notes."""
     for x, z, turn, color in (
         (-0.40, 0.03, 0.20, (110, 220, 242)),
         (-0.37, 0.11, -0.12, (150, 205, 130)),
         (-0.43, 0.14, 0.45, (170, 160, 240)),
     ):
-        _lay(picture, _quad(x, z, 0.076, 0.076, turn), color)
+        _draw_flat(texture, _quad(x, z, 0.076, 0.076, turn), color)
 
 
-def _coaster(picture: Picture, random: np.random.Generator) -> None:
-    """Lay a cork coaster where the mug stands."""
+def _draw_coaster(texture: Image, random: np.random.Generator) -> None:
+    """Draw a cork coaster under the mug."""
     circle = [
-        _at(MUG.x + 0.058 * np.cos(a), MUG.z + 0.058 * np.sin(a))
+        _texel(MUG.x + 0.058 * np.cos(a), MUG.z + 0.058 * np.sin(a))
         for a in np.linspace(0, 2 * np.pi, 60)
     ]
-    _lay(picture, np.array(circle, np.int32), (92, 124, 160))
+    _draw_flat(texture, np.array(circle, np.int32), (92, 124, 160))
 
 
 @dataclass(frozen=True)
 class Mug:
-    """Where the mug stands, and how large it is [m]."""
+    """Position and size of the mug [m]."""
 
     x: float = -0.36
     z: float = -0.30
@@ -187,30 +187,29 @@ class Mug:
 MUG = Mug()
 
 
-def add_things(seen: Picture, lens: Lens, camera_from_table: Array) -> None:
-    """Draw what stands on the desk into the camera's picture, in place: a mug and two pencils."""
-    # OpenCV smooths the edges of what it draws on whole numbers only.
-    canvas = np.clip(np.rint(seen), 0, 255).astype(np.uint8)
-    _mug(canvas, lens, camera_from_table)
+def draw_objects(image: Image, camera: CameraRays) -> None:
+    """Draw a mug and two pencils into the camera's image, in place."""
+    # OpenCV anti-aliases on integer images only.
+    canvas = np.clip(np.rint(image), 0, 255).astype(np.uint8)
+    _draw_mug(canvas, camera)
     for x, z, turn, color in (
         (0.17, -0.40, 0.35, (60, 175, 240)),
         (0.21, -0.385, 0.10, (190, 120, 60)),
     ):
-        _pencil(canvas, lens, camera_from_table, (x, z, turn), color)
-    seen[:] = canvas
+        _draw_pencil(canvas, camera, (x, z, turn), color)
+    image[:] = canvas
 
 
-def _project(lens: Lens, camera_from_table: Array, points: Array) -> NDArray[np.int32]:
-    there = points @ camera_from_table[:3, :3].T + camera_from_table[:3, 3]
-    return np.round(lens.pixels(there) * 16).astype(np.int32)
+def _project(camera: CameraRays, points: Array) -> NDArray[np.int32]:
+    return np.round(camera.pixels(camera.from_table(points)) * 16).astype(np.int32)
 
 
-def _mug(seen: Canvas, lens: Lens, camera_from_table: Array) -> None:
+def _draw_mug(image: Canvas, camera: CameraRays) -> None:
     angles = np.linspace(0, 2 * np.pi, 97)
     circle = np.stack([np.cos(angles), 0 * angles, np.sin(angles)], axis=1)
     foot = np.array([MUG.x, 0.0, MUG.z])
     rim = foot + (0.0, MUG.height, 0.0)
-    _soft_shadow(seen, lens, camera_from_table, foot + circle * MUG.radius, 0.07)
+    _draw_shadow(image, camera, foot + circle * MUG.radius, 0.07)
     handle = foot + np.stack(
         [
             MUG.radius + 0.024 * np.sin(angles[:49]),
@@ -219,28 +218,27 @@ def _mug(seen: Canvas, lens: Lens, camera_from_table: Array) -> None:
         ],
         axis=1,
     )
-    line = _project(lens, camera_from_table, handle)
-    cv2.polylines(seen, [line], False, (72.0, 92.0, 205.0), 9, cv2.LINE_AA, 4)
-    for start in range(48):  # the wall of the mug in strips, each with its own light
+    line = _project(camera, handle)
+    cv2.polylines(image, [line], False, (72.0, 92.0, 205.0), 9, cv2.LINE_AA, 4)
+    for start in range(48):  # the mug's side in strips, each with its own shade
         pair = circle[start : start + 2] * MUG.radius
         if pair[:, 2].mean() < -0.35 * MUG.radius:
             continue
         strip = np.vstack([foot + pair, (rim + pair)[::-1]])
         light = 0.55 + 0.45 * max(0.0, float(-0.75 * circle[start, 0] + 0.5 * circle[start, 2]))
         color = tuple(float(c * light) for c in (88, 108, 236))
-        cv2.fillConvexPoly(seen, _project(lens, camera_from_table, strip), color, cv2.LINE_AA, 4)
-    outer = _project(lens, camera_from_table, rim + circle * MUG.radius)
-    inner = _project(lens, camera_from_table, rim + circle * MUG.radius * 0.88)
-    coffee = _project(lens, camera_from_table, rim + circle * MUG.radius * 0.84 - (0, 0.012, 0))
-    cv2.fillConvexPoly(seen, outer, (120.0, 138.0, 244.0), cv2.LINE_AA, 4)
-    cv2.fillConvexPoly(seen, inner, (50.0, 62.0, 140.0), cv2.LINE_AA, 4)
-    cv2.fillConvexPoly(seen, coffee, (28.0, 44.0, 66.0), cv2.LINE_AA, 4)
+        cv2.fillConvexPoly(image, _project(camera, strip), color, cv2.LINE_AA, 4)
+    outer = _project(camera, rim + circle * MUG.radius)
+    inner = _project(camera, rim + circle * MUG.radius * 0.88)
+    coffee = _project(camera, rim + circle * MUG.radius * 0.84 - (0, 0.012, 0))
+    cv2.fillConvexPoly(image, outer, (120.0, 138.0, 244.0), cv2.LINE_AA, 4)
+    cv2.fillConvexPoly(image, inner, (50.0, 62.0, 140.0), cv2.LINE_AA, 4)
+    cv2.fillConvexPoly(image, coffee, (28.0, 44.0, 66.0), cv2.LINE_AA, 4)
 
 
-def _pencil(
-    seen: Canvas,
-    lens: Lens,
-    camera_from_table: Array,
+def _draw_pencil(
+    image: Canvas,
+    camera: CameraRays,
     place: tuple[float, float, float],
     color: tuple[float, float, float],
 ) -> None:
@@ -256,31 +254,29 @@ def _pencil(
             middle + end * along - aside * taper,
             middle + start * along - aside,
         ]
-        points = _project(lens, camera_from_table, np.array(quad))
-        cv2.fillConvexPoly(seen, points, shade, cv2.LINE_AA, 4)
+        points = _project(camera, np.array(quad))
+        cv2.fillConvexPoly(image, points, shade, cv2.LINE_AA, 4)
 
     ground = np.array([middle + s * along for s in (-0.085, 0.085)]) * (1, 0, 1) + (0.003, 0, 0.004)
-    line = _project(lens, camera_from_table, ground)
-    dark = np.zeros(seen.shape[:2], np.float32)
+    line = _project(camera, ground)
+    dark = np.zeros(image.shape[:2], np.float32)
     cv2.polylines(dark, [line], False, 1.0, 8, cv2.LINE_AA, 4)
-    _shade(seen, 0.45 * cv2.GaussianBlur(dark, (0, 0), 2.5))
+    _shade(image, 0.45 * cv2.GaussianBlur(dark, (0, 0), 2.5))
     band(-0.088, -0.076, 1.0, (150, 140, 235))
     band(-0.076, 0.068, 1.0, color)
     band(0.068, 0.084, 0.35, (150, 190, 222))
     band(0.084, 0.090, 0.1, (50, 50, 50))
 
 
-def _soft_shadow(
-    seen: Canvas, lens: Lens, camera_from_table: Array, outline: Array, length: float
-) -> None:
-    """Darken the desk beside something that stands on it: its foot, swept away from the lamp."""
+def _draw_shadow(image: Canvas, camera: CameraRays, outline: Array, length: float) -> None:
+    """Darken the desk next to an object: its footprint, swept away from the lamp."""
     swept = np.vstack([outline, outline + (0.5 * length, 0.0, 0.35 * length)])
-    hull = cv2.convexHull(_project(lens, camera_from_table, swept))
-    dark = np.zeros(seen.shape[:2], np.float32)
+    hull = cv2.convexHull(_project(camera, swept))
+    dark = np.zeros(image.shape[:2], np.float32)
     cv2.fillConvexPoly(dark, hull, 1.0, cv2.LINE_AA, 4)
-    _shade(seen, 0.42 * cv2.GaussianBlur(dark, (0, 0), 9.0))
+    _shade(image, 0.42 * cv2.GaussianBlur(dark, (0, 0), 9.0))
 
 
 def _shade(canvas: Canvas, darkness: NDArray[np.float32]) -> None:
-    """Darken a picture in place by a share for each pixel, (H, W)."""
+    """Darken an image in place; `darkness` (H, W) is 0…1."""
     canvas[:] = np.rint(canvas * (1.0 - darkness[..., None]))

@@ -1,4 +1,4 @@
-"""A cube that was folded by hand: each face a little off its place, and turned."""
+"""Folding errors of a hand-made cube: each face is slightly shifted and rotated."""
 
 from dataclasses import replace
 
@@ -11,8 +11,8 @@ from tracking.geometry import se3
 Array = NDArray[np.float64]
 
 
-def folded(cube: CubeModel, millimetres: float, seed: int) -> CubeModel:
-    """Return the cube with each face off by up to so many millimetres and degrees on each axis."""
+def fold_cube(cube: CubeModel, millimetres: float, seed: int) -> CubeModel:
+    """Return the cube with each face off by up to this many mm and degrees about each axis."""
     if millimetres == 0:
         return cube
     random = np.random.default_rng([seed, 11])
@@ -26,19 +26,19 @@ def folded(cube: CubeModel, millimetres: float, seed: int) -> CubeModel:
     return replace(cube, faces=tuple(faces))
 
 
-def placements(cube: CubeModel) -> dict[str, tuple[Array, Array]]:
-    """Return turn (3, 3) and centre (3,) of each face that is not where it should be."""
+def face_poses(cube: CubeModel) -> dict[str, tuple[Array, Array]]:
+    """Return rotation (3, 3) and centre (3,) of each face that is off its nominal pose."""
     found = {}
     for face in cube.faces:
         ideal = face_corners(face.name, face.roll_deg, cube.marker_size, cube.edge)
         if np.abs(face.corners - ideal).max() > 1e-9:
-            should, does = _axes(ideal), _axes(face.corners)
-            found[face.name] = does @ should.T, face.corners.mean(axis=0)
+            nominal, actual = _axes(ideal), _axes(face.corners)
+            found[face.name] = actual @ nominal.T, face.corners.mean(axis=0)
     return found
 
 
 def _axes(corners: Array) -> Array:
-    """Columns right, up and out of a square of corners (4, 3) in the order of `Face.corners`."""
+    """Return columns right, up and out of a square, corners (4, 3) as in `Face.corners`."""
     right, up = corners[1] - corners[0], corners[0] - corners[3]
     right, up = right / np.linalg.norm(right), up / np.linalg.norm(up)
     return np.stack([right, up, np.cross(right, up)], axis=1)

@@ -1,4 +1,4 @@
-"""A hand that holds the cube: capsules of skin that flow into each other, and a sleeve."""
+"""A hand that holds the cube: capsules of skin that blend into each other, and a sleeve."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -6,44 +6,43 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.synthetic.lens import Lens, Region
+from tracking.synthetic.camera_rays import CameraRays, PixelRegion
 
 Array = NDArray[np.float64]
-Picture = NDArray[np.float32]
+Image = NDArray[np.float32]
 
-Coloring = Callable[[Picture, Picture, Picture, Picture], Picture]
-"""From light, rise towards the camera, blush and place along the bone to a colour, BGR."""
+Shader = Callable[[Image, Image, Image, Image], Image]
+"""From light, slope towards the camera, blush and position along the bone to a BGR colour."""
 
-SKIN = np.array([128.0, 162.0, 224.0], np.float32)
-"""Colour of the skin, BGR."""
+SKIN_BGR = np.array([128.0, 162.0, 224.0], np.float32)
+"""Colour of the skin."""
 
-SLEEVE = np.array([118.0, 84.0, 60.0], np.float32)
-"""Colour of the sleeve, BGR."""
+SLEEVE_BGR = np.array([118.0, 84.0, 60.0], np.float32)
+"""Colour of the sleeve."""
 
-AWAY = np.array([0.34, 0.16, -0.06])
-"""Where the hand comes from and goes to, from the cube [m]."""
+AWAY_OFFSET_M = np.array([0.34, 0.16, -0.06])
+"""Position of the hand relative to the cube when it is away."""
 
-SOFTNESS = 0.0035
-"""Over how much depth two capsules of skin flow into each other [m]."""
+BLEND_DEPTH_M = 0.0035
+"""Depth over which two capsules of skin blend into each other."""
 
-
-NOTHING = np.float32(1e-36)
-"""A weight that keeps an empty sum from being divided by zero."""
+MIN_WEIGHT = np.float32(1e-36)
+"""Added to weights, so that an empty sum can be divided by."""
 
 
 @dataclass(frozen=True)
 class Bone:
-    """A capsule between two points with a radius at each end [m]."""
+    """A capsule between two points, with a radius at each end [m]."""
 
     start: Array
     end: Array
     radii: tuple[float, float]
 
     cut: bool = False
-    """Whether it ends square at its start, as a sleeve does, and not round."""
+    """Whether its start is cut flat, as of a sleeve, instead of round."""
 
     blush: tuple[float, float] = (0.0, 0.0)
-    """How much redder than the rest the skin is at each end, 0…1."""
+    """Extra redness of the skin at each end, 0…1."""
 
 
 @dataclass(frozen=True)
@@ -54,11 +53,11 @@ class Hand:
     """Fingers, thumb, back and wrist."""
 
     sleeve: tuple[Bone, ...]
-    """Cuff and forearm, which always lie before the wrist as the camera sees it."""
+    """Cuff and forearm, always drawn in front of the wrist."""
 
 
 def hand_at(position: Array, edge: float, grip: float) -> Hand:
-    """Return the hand at the cube's right and far side, fingers on its upper edges.
+    """Return the hand on the far right of the cube, with fingers on its upper edges.
 
     Parameters
     ----------
@@ -70,7 +69,7 @@ def hand_at(position: Array, edge: float, grip: float) -> Hand:
         0 away, 1 holding.
     """
     half = edge / 2
-    at = position + AWAY * (1.0 - grip)
+    at = position + AWAY_OFFSET_M * (1.0 - grip)
     open_hand = 0.018 * (1.0 - grip)
     knuckles = _off(at, half + 0.036, half + 0.030, -half - 0.002)
     wrist = _off(knuckles, 0.080, 0.014, 0.006)
@@ -82,7 +81,7 @@ def hand_at(position: Array, edge: float, grip: float) -> Hand:
         Bone(_off(knuckles, 0.004, -0.008, -0.024), wrist, (0.018, 0.023), blush=(0.25, 0.0)),
         Bone(wrist, _off(wrist, 0.05, 0.008, 0.006), (0.025, 0.027)),
     ]
-    # Fingers reach over the top's far edge, the thumb lies on the right face.
+    # Fingers reach over the far edge of the top, the thumb is on the right face.
     for along, lift in ((0.62, 0.000), (0.22, 0.004), (-0.18, 0.003), (-0.54, -0.002)):
         tip = _off(at, along * half, half * 0.62, -half - 0.006 - open_hand)
         root = _off(knuckles, -0.004, 0.003, 0.022 - 0.032 * (0.62 - along))
@@ -112,31 +111,31 @@ def _off(point: Array, x: float, y: float, z: float) -> Array:
     return np.asarray(point + np.array([x, y, z]))
 
 
-def hand_region(lens: Lens, hand: Hand, camera_from_table: Array) -> Region:
-    """Return the part of the picture that the hand covers."""
+def hand_region(camera: CameraRays, hand: Hand) -> PixelRegion:
+    """Return the region of the image that the hand covers."""
     parts = hand.skin + hand.sleeve
     points = np.array([point for part in parts for point in (part.start, part.end)])
-    there = points @ camera_from_table[:3, :3].T + camera_from_table[:3, 3]
-    if (there[:, 2] < 0.05).any():
-        return Region(0, 0, 0, 0)
-    focal = lens.intrinsics.matrix[0, 0]
-    reach = max(max(part.radii) for part in parts) * focal / float(there[:, 2].min()) + 3
-    return lens.around(lens.pixels(there), reach)
+    in_camera = camera.from_table(points)
+    if (in_camera[:, 2] < 0.05).any():
+        return PixelRegion(0, 0, 0, 0)
+    focal = camera.intrinsics.matrix[0, 0]
+    reach = max(max(part.radii) for part in parts) * focal / float(in_camera[:, 2].min()) + 3
+    return camera.region_around(camera.pixels(in_camera), reach)
 
 
 def draw_hand(
-    lens: Lens, region: Region, hand: Hand, camera_from_table: Array, to_light: Array
-) -> tuple[Picture, Picture, Picture]:
-    """Draw the hand.
+    camera: CameraRays, region: PixelRegion, hand: Hand, to_light: Array
+) -> tuple[Image, Image, Image]:
+    """Render the hand.
 
     Returns
     -------
     Colour (h, w, 3) BGR; coverage (h, w), 0…1; and depth (h, w) [m].
     """
-    skin = _Layer(lens, region, camera_from_table)
+    skin = _CapsuleLayer(camera, region)
     for part in hand.skin:
         skin.add(part)
-    cloth = _Layer(lens, region, camera_from_table)
+    cloth = _CapsuleLayer(camera, region)
     for part in hand.sleeve:
         cloth.add(part)
     over = cloth.cover[..., None]
@@ -146,36 +145,36 @@ def draw_hand(
     return color, np.maximum(skin.cover, cloth.cover), depth
 
 
-def _skin_color(light: Picture, rise: Picture, blush: Picture, along: Picture) -> Picture:
-    """Light bleeds round the form of skin, and its rims are redder, not just darker."""
-    rim = np.clip(1.0 - rise, 0.0, 1.0) ** 2
-    color = SKIN * (0.40 + 0.62 * light)[..., None]
+def _skin_color(light: Image, slope: Image, blush: Image, along: Image) -> Image:
+    """Shade skin: light scatters round it, and its rims are redder, not only darker."""
+    rim = np.clip(1.0 - slope, 0.0, 1.0) ** 2
+    color = SKIN_BGR * (0.40 + 0.62 * light)[..., None]
     color *= 1.0 - rim[..., None] * np.array([0.34, 0.28, 0.12], np.float32)
     color *= 1.0 - blush[..., None] * np.array([0.15, 0.11, 0.0], np.float32)
     return np.asarray(color + 16.0 * (light**6)[..., None], np.float32)
 
 
-def _cloth_color(light: Picture, rise: Picture, blush: Picture, along: Picture) -> Picture:
-    """Shade wool: it has soft folds across the arm and no gloss."""
-    folds = 0.05 * np.sin(34 * along + 3.0 * rise) + 0.035 * np.sin(81 * along - 5.0 * rise)
-    shade = 0.42 + 0.60 * light + folds * rise
-    return np.asarray(SLEEVE * shade[..., None], np.float32)
+def _cloth_color(light: Image, slope: Image, blush: Image, along: Image) -> Image:
+    """Shade wool: soft folds across the arm, and no gloss."""
+    folds = 0.05 * np.sin(34 * along + 3.0 * slope) + 0.035 * np.sin(81 * along - 5.0 * slope)
+    shade = 0.42 + 0.60 * light + folds * slope
+    return np.asarray(SLEEVE_BGR * shade[..., None], np.float32)
 
 
-class _Layer:
-    """Capsules that flow into each other: where they meet, their normals are mixed by depth."""
+class _CapsuleLayer:
+    """Capsules that blend into each other: where they meet, their normals are mixed by depth."""
 
-    def __init__(self, lens: Lens, region: Region, camera_from_table: Array) -> None:
-        self._lens, self._region, self._pose = lens, region, camera_from_table
-        self._rays = lens.rays(region, 1)
-        self._focal = float(lens.intrinsics.matrix[0, 0])
+    def __init__(self, camera: CameraRays, region: PixelRegion) -> None:
+        self._camera, self._region = camera, region
+        self._rays = camera.rays(region, 1)
+        self._focal = float(camera.intrinsics.matrix[0, 0])
         self.cover = np.zeros((region.height, region.width), np.float32)
-        # Sums, weighted: normal x, y, rise; blush; place along; depth; weight.
+        # Weighted sums: normal x, y, slope; blush; position along the bone; depth; weight.
         self._sums = np.zeros((*self.cover.shape, 7), np.float32)
 
     def add(self, part: Bone) -> None:
-        """Draw one capsule as a cone of discs that face the camera: round where it matters."""
-        ends = np.array([part.start, part.end]) @ self._pose[:3, :3].T + self._pose[:3, 3]
+        """Render one capsule as a cone of discs that face the camera."""
+        ends = self._camera.from_table(np.array([part.start, part.end]))
         flat = (ends[:, :2] / ends[:, 2:]).astype(np.float32)
         radii = (np.array(part.radii) / ends[:, 2]).astype(np.float32)
         box = self._box(ends, part.radii)
@@ -189,27 +188,29 @@ class _Layer:
         y = (offset[..., 1] - share * step[1]) / radius
         distance = np.sqrt(x * x + y * y)
         cover = np.clip((1.0 - distance) * radius * self._focal + 0.5, 0.0, 1.0)
-        if part.cut:  # the rim of an open sleeve bulges towards who sees it from aside
+        if part.cut:  # the rim of an open sleeve bulges if seen from the side
             bulge = 0.22 * radius / length * np.sqrt(np.maximum(1.0 - distance**2, 0.0))
             cover *= np.clip((beyond + bulge) * length * self._focal + 0.5, 0.0, 1.0)
-        rise = np.sqrt(np.maximum(1.0 - distance * distance, 0.0))
+        slope = np.sqrt(np.maximum(1.0 - distance * distance, 0.0))
         near = np.float32(ends[0, 2]) + share * np.float32(ends[1, 2] - ends[0, 2])
-        depth = near * (1.0 - rise * radius)
-        # 0.7 m is about where hands are: it keeps the exponential within what a float32 holds.
-        weight = cover * np.exp(np.clip((0.7 - depth) / SOFTNESS, -80.0, 80.0)) + NOTHING
+        depth = near * (1.0 - slope * radius)
+        # Relative to a typical distance of 0.7 m, so that the exponential fits a float32.
+        weight = cover * np.exp(np.clip((0.7 - depth) / BLEND_DEPTH_M, -80.0, 80.0)) + MIN_WEIGHT
         blush = part.blush[0] + share * (part.blush[1] - part.blush[0])
         sums = self._sums[box]
-        for layer, value in enumerate((x, y, rise, blush, share, depth)):
+        for layer, value in enumerate((x, y, slope, blush, share, depth)):
             sums[..., layer] += weight * value
         sums[..., 6] += weight
         np.maximum(self.cover[box], cover, out=self.cover[box])
 
-    def depth(self) -> Picture:
-        """Return the depth of the surface (h, w) [m], and 0 where there is none."""
-        return np.asarray(self._sums[..., 5] / np.maximum(self._sums[..., 6], NOTHING), np.float32)
+    def depth(self) -> Image:
+        """Return the depth of the surface (h, w) [m]; 0 where there is none."""
+        return np.asarray(
+            self._sums[..., 5] / np.maximum(self._sums[..., 6], MIN_WEIGHT), np.float32
+        )
 
-    def shaded(self, color: Coloring, to_light: Array) -> Picture:
-        """Return the layer's colour (h, w, 3) BGR, black where there is none."""
+    def shaded(self, color: Shader, to_light: Array) -> Image:
+        """Return the colour (h, w, 3) BGR; black where there is nothing."""
         shown = np.zeros((*self.cover.shape, 3), np.float32)
         covered = self.cover > 0
         rows, columns = (np.flatnonzero(covered.any(axis=axis)) for axis in (1, 0))
@@ -217,17 +218,17 @@ class _Layer:
             return shown
         box = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
         sums = self._sums[box]
-        mean = sums[..., :5] / np.maximum(sums[..., 6:], NOTHING)
-        x, y, rise, blush, along = np.moveaxis(np.asarray(mean, np.float32), -1, 0)
+        mean = sums[..., :5] / np.maximum(sums[..., 6:], MIN_WEIGHT)
+        x, y, slope, blush, along = np.moveaxis(np.asarray(mean, np.float32), -1, 0)
         light = np.float32(to_light[0]) * x + np.float32(to_light[1]) * y
-        light = 0.25 + 0.75 * (light - np.float32(to_light[2]) * rise)
+        light = 0.25 + 0.75 * (light - np.float32(to_light[2]) * slope)
         light = np.asarray(np.clip(light, 0.0, 1.0), np.float32)
-        shown[box] = color(light, rise, blush, along)
+        shown[box] = color(light, slope, blush, along)
         return shown
 
     def _box(self, ends: Array, radii: tuple[float, float]) -> tuple[slice, slice]:
         margin = max(radii) * self._focal / float(ends[:, 2].min()) + 2
-        part, whole = self._lens.around(self._lens.pixels(ends), margin), self._region
+        part, whole = self._camera.region_around(self._camera.pixels(ends), margin), self._region
         height, width = self.cover.shape
         rows = np.clip((part.y - whole.y, part.bottom - whole.y), 0, height).tolist()
         columns = np.clip((part.x - whole.x, part.right - whole.x), 0, width).tolist()

@@ -1,4 +1,4 @@
-"""What happens before the synthetic camera, by name."""
+"""The motions shown by the synthetic camera, by name."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from tracking.cube.model import FACE_AXES
 from tracking.geometry import se3
-from tracking.synthetic.choreography import Choreography, Moment, eased
+from tracking.synthetic.choreography import Choreography, SceneState, minimum_jerk
 from tracking.synthetic.options import SyntheticOptions
 
 Array = NDArray[np.float64]
@@ -20,27 +20,26 @@ RIGHT, LEFT = (1, 0, 0), (-1, 0, 0)
 
 @dataclass(frozen=True)
 class Script:
-    """A cube, and where it is at any time."""
+    """A cube and its motion."""
 
     cube: str
     """Name of the bundled cube."""
 
     length: float
-    """Seconds until the end."""
+    """Duration [s]."""
 
-    at: Callable[[float], Moment]
+    at: Callable[[float], SceneState]
     """Cube and hand at a time [s]."""
 
-    loose: bool = False
-    """Whether every frame shows another pose, in the air, without a hand."""
+    in_air: bool = False
+    """Whether the cube is in the air, without a hand; its poses are then in the camera frame."""
 
-    aloft: bool = False
-    """Whether the cube moves in the air, without a hand; its poses are then those in the camera's
-    frame, as they are where it is `loose`."""
+    unrelated: bool = False
+    """Whether every frame shows an unrelated pose, so that there is no motion between them."""
 
 
 def follow(edge: float, options: SyntheticOptions) -> Script:
-    """Turn to walking, lead the character round, then to running, once round, and to rest."""
+    """Turn to walk, lead the character round, turn to run, lead it round, and rest."""
     c = Choreography(edge).stand(0.0, 0.0)
     c.rest(2.2).turn(90, 1.6).hold(0.3).slide(0.21, 0.09, 2.3, -0.02).hold(0.8)
     c.slide(-0.02, 0.18, 2.2, -0.03).hold(0.7).turn(85, 1.2).slide(-0.24, 0.08, 1.3, -0.04)
@@ -50,7 +49,7 @@ def follow(edge: float, options: SyntheticOptions) -> Script:
 
 
 def sketch(edge: float, options: SyntheticOptions) -> Script:
-    """Draw eight points round the desk, put the cube aside, and turn it once round the gaits."""
+    """Mark eight points round the desk, put the cube aside, and turn it through all gaits."""
     c = Choreography(edge).stand(-0.20, 0.02).rest(1.4)
     ring = np.deg2rad(np.arange(45, 360, 45))
     for angle in ring:
@@ -62,7 +61,7 @@ def sketch(edge: float, options: SyntheticOptions) -> Script:
 
 
 def companion(edge: float, options: SyntheticOptions) -> Script:
-    """Kisses until the robot is happy, shouts until it is angry, kisses again, and peace."""
+    """Kiss until the robot is happy, shout until it is angry, kiss again, and rest."""
     c = Choreography(edge).stand(0.06, 0.02).rest(2.4)
     c.tip(FRONT).rest(2.0).turn(180, 1.5).turn(180, 1.5).rest(4.2)
     c.tip(RIGHT).rest(1.6).turn(180, 1.5).turn(180, 1.5).rest(9.6)
@@ -71,14 +70,14 @@ def companion(edge: float, options: SyntheticOptions) -> Script:
 
 
 def static(edge: float, options: SyntheticOptions) -> Script:
-    """Rest somewhere on the desk, turned somehow."""
+    """Rest in a random position and heading."""
     random = np.random.default_rng(options.seed)
     x, z, heading = random.uniform(-0.15, 0.15), random.uniform(-0.12, 0.15), random.uniform(0, 360)
     return _script("locomotion", Choreography(edge).stand(x, z, heading).rest(2.0))
 
 
 def turn(edge: float, options: SyntheticOptions) -> Script:
-    """One whole turn clockwise, and back."""
+    """Turn once clockwise, and back."""
     c = Choreography(edge).stand(0.0, 0.0).rest(1.0)
     for _ in range(4):
         c.turn(90, 1.2)
@@ -89,7 +88,7 @@ def turn(edge: float, options: SyntheticOptions) -> Script:
 
 
 def turns(edge: float, options: SyntheticOptions) -> Script:
-    """Put a kiss face down, then two turns up, four down, two up: from end to end of the knob."""
+    """Tip to a kiss, then turn two up, four down, two up: the whole range of the knob."""
     c = Choreography(edge).stand(0.0, 0.0).rest(1.2).tip(FRONT).rest(0.8)
     for count in (2, -4, 2):
         for _ in range(2 * abs(count)):
@@ -99,7 +98,7 @@ def turns(edge: float, options: SyntheticOptions) -> Script:
 
 
 def tip(edge: float, options: SyntheticOptions) -> Script:
-    """Every face on top in turn, resting."""
+    """Rest on every face in turn."""
     c = Choreography(edge).stand(0.0, 0.0).rest(1.4)
     for face in (FRONT, RIGHT, BACK, BOTTOM, LEFT, TOP):
         c.tip(face).rest(1.2)
@@ -107,14 +106,16 @@ def tip(edge: float, options: SyntheticOptions) -> Script:
 
 
 def shake(edge: float, options: SyntheticOptions) -> Script:
-    """Rest, a shake in the air, and rest again."""
+    """Rest, shake in the air, and rest again."""
     return _script("locomotion", Choreography(edge).stand(0.0, 0.0).rest(1.4).shake(1.6).rest(1.2))
 
 
 def sweep(edge: float, options: SyntheticOptions) -> Script:
-    """Slide to and fro, as fast as asked at the fastest."""
+    """Slide to and fro with the given peak speed."""
     reach = 0.30
-    seconds = 1.875 * reach / options.speed  # a minimum-jerk move peaks at 15/8 of its mean speed
+    seconds = (
+        1.875 * reach / options.speed
+    )  # the peak speed of a minimum-jerk motion is 15/8 of its mean
     c = Choreography(edge).stand(-reach / 2, 0.04).rest(1.0)
     for side in (1, -1, 1, -1):
         c.slide(side * reach / 2, 0.04, seconds).hold(0.2)
@@ -122,16 +123,16 @@ def sweep(edge: float, options: SyntheticOptions) -> Script:
 
 
 def fingers(edge: float, options: SyntheticOptions) -> Script:
-    """Keep hold of the cube, turning and sliding it a little."""
+    """Hold the cube all the time, turning and sliding it a little."""
     c = Choreography(edge).stand(0.0, 0.0).rest(1.0).hold(0.8)
     c.turn(60, 1.2).hold(0.4).slide(0.06, 0.05, 1.0).hold(0.4).turn(-100, 1.4).hold(0.6)
     return _script("locomotion", c)
 
 
 def poses(edge: float, options: SyntheticOptions) -> Script:
-    """Another pose in every frame, 0.3 to 0.7 m away: for statistics of the tracker's error."""
+    """Show a random pose in every frame, 0.3 to 0.7 m away: for statistics of tracking errors."""
 
-    def at(time: float) -> Moment:
+    def at(time: float) -> SceneState:
         index = round(time * options.rate)
         random = np.random.default_rng([options.seed, index])
         focal = 900.0 * options.width / 1280
@@ -142,51 +143,53 @@ def poses(edge: float, options: SyntheticOptions) -> Script:
         axis /= np.linalg.norm(axis)
         angle = 2 * np.arccos(np.clip(axis[0], -1, 1))
         turned = axis[1:] / max(float(np.linalg.norm(axis[1:])), 1e-9) * angle
-        return Moment(se3.pose(se3.rotation(turned), np.array([x, y, distance])), 0.0)
+        return SceneState(se3.pose(se3.rotation(turned), np.array([x, y, distance])), 0.0)
 
-    return Script("locomotion", 10.0, at, loose=True)
+    return Script("locomotion", 10.0, at, in_air=True, unrelated=True)
 
 
 def wave(edge: float, options: SyntheticOptions) -> Script:
-    """Wave the cube before the camera for 20 s, with stops, as one does to calibrate it."""
-    stations = _stations(edge, options)
+    """Wave the cube in front of the camera for 20 s, with stops, as for a calibration."""
+    stops = _stops(edge, options)
     move, stop = 0.49, 0.25
 
-    def at(time: float) -> Moment:
+    def at(time: float) -> SceneState:
         number, since = divmod(max(time, 0.0), move + stop)
-        first = min(int(number), len(stations) - 1)
-        second = min(first + 1, len(stations) - 1)
-        pose = stations[first]
-        step = se3.delta(pose, stations[second]) * eased((since - stop) / move)
+        first = min(int(number), len(stops) - 1)
+        second = min(first + 1, len(stops) - 1)
+        pose = stops[first]
+        step = se3.delta(pose, stops[second]) * minimum_jerk((since - stop) / move)
         tremble = 2 * np.pi * np.array([7.3, 8.9, 10.7]) * time
         step[:3] += 0.0002 * np.sin(tremble)
         step[3:] += np.deg2rad(0.1) * np.sin(tremble[::-1])
-        return Moment(se3.moved(pose, step), 0.0)
+        return SceneState(se3.moved(pose, step), 0.0)
 
-    return Script("locomotion", len(stations) * (move + stop), at, aloft=True)
+    return Script("locomotion", len(stops) * (move + stop), at, in_air=True)
 
 
-def _stations(edge: float, options: SyntheticOptions) -> list[Array]:
-    """Return the stops of `wave`: every face, tilted every way, everywhere, near and far."""
+def _stops(edge: float, options: SyntheticOptions) -> list[Array]:
+    """Return the poses of `wave`: all faces, tilts, positions and distances."""
     random = np.random.default_rng([options.seed, 5])
-    # To and fro in rows, from one end of the picture to the other and back: no long ways.
-    rows = [(x * way, y) for y, way in ((-1, 1), (0, -1), (1, 1)) for x in (-1, 0, 1)]
+    # To and fro in rows from one end of the image to the other and back, so that moves are short.
+    rows = [(x * direction, y) for y, direction in ((-1, 1), (0, -1), (1, 1)) for x in (-1, 0, 1)]
     places = np.array([*rows, *rows[::-1], *rows], float)
     focal = 900.0 * options.width / 1280
     half = np.array([options.width, options.height]) / 2
-    stations = []
+    stops = []
     for number, place in enumerate(places):
         right, up = (np.array(axis, float) for axis in list(FACE_AXES.values())[number % 6])
-        # The face's right, down and inward are the camera's x, y and z where it is met squarely.
+        # Facing the camera, the face's right, down and inward are the camera's x, y and z.
         square = np.stack([right, -up, -np.cross(right, up)])
-        way = 2 * np.pi * (number / 4 + random.uniform(-0.1, 0.1))
-        tilt = np.deg2rad(random.uniform(18, 42)) * np.array([np.cos(way), np.sin(way), 0.0])
+        direction = 2 * np.pi * (number / 4 + random.uniform(-0.1, 0.1))
+        tilt = np.deg2rad(random.uniform(18, 42)) * np.array(
+            [np.cos(direction), np.sin(direction), 0.0]
+        )
         roll = np.array([0.0, 0.0, random.uniform(-0.6, 0.6)])
         distance = random.uniform(0.22, 0.5)
         room = np.maximum(half - 0.8 * edge * focal / distance, 0) * distance / focal
         turn = se3.rotation(tilt) @ se3.rotation(roll) @ square
-        stations.append(se3.pose(turn, np.array([*(place * room), distance])))
-    return stations
+        stops.append(se3.pose(turn, np.array([*(place * room), distance])))
+    return stops
 
 
 SCRIPTS: dict[str, Callable[[float, SyntheticOptions], Script]] = {

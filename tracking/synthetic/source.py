@@ -1,6 +1,7 @@
-"""The synthetic camera as a source of frames, with the truth beside it."""
+"""The synthetic camera as a frame source with ground truth."""
 
 from collections.abc import Iterator
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,21 +13,21 @@ from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.sources.base import FrameSource
 from tracking.sources.device import Clock
-from tracking.synthetic.choreography import Moment
-from tracking.synthetic.exposure import Exposure, moments_of
-from tracking.synthetic.folding import folded
-from tracking.synthetic.lens import Lens
+from tracking.synthetic.camera_rays import CameraRays
+from tracking.synthetic.choreography import SceneState
+from tracking.synthetic.exposure import ExposureRenderer, shutter_samples
+from tracking.synthetic.folding import fold_cube
 from tracking.synthetic.options import SyntheticOptions
 from tracking.synthetic.paper_cube import PaperCube
 from tracking.synthetic.scripts import SCRIPTS, Script
 
 Array = NDArray[np.float64]
 
-EYE = np.array([0.0, 0.37, 0.53])
-"""Where the camera is, in the table frame [m]."""
+EYE_M = np.array([0.0, 0.37, 0.53])
+"""Position of the camera in the table frame."""
 
-LOOKS_AT = np.array([0.0, 0.05, -0.02])
-"""What it looks at, in the table frame [m]."""
+LOOK_AT_M = np.array([0.0, 0.05, -0.02])
+"""Point that it looks at, in the table frame."""
 
 
 class SyntheticSource(FrameSource):
@@ -59,20 +60,17 @@ class SyntheticSource(FrameSource):
         self.size = (options.width, options.height)
         self.rate = options.rate
         bundled = SCRIPTS[name](0.06, options).cube
-        self.cube = folded(CubeModel.load(bundled), options.fold, options.seed)
-        """The cube that is seen, as it was folded."""
+        self.cube = fold_cube(CubeModel.load(bundled), options.fold, options.seed)
+        """The visible cube, with its folding errors."""
         self._script: Script = SCRIPTS[name](self.cube.edge, options)
-        self.camera_from_table = looking(EYE, LOOKS_AT)
-        """Where the desk is: its frame has +y up, +z towards the camera, (4, 4)."""
+        self.camera_from_table = look_at(EYE_M, LOOK_AT_M)
+        """Pose of the desk, whose frame has +y up and +z towards the camera, (4, 4)."""
         self.count = options.frames or round(self._script.length * options.rate)
-        """How many frames there are."""
+        """Number of frames."""
         self.duration: float | None = self.count / options.rate
-        self._lens: Lens | None = None
-        self._exposure: Exposure | None = None
-        self._paper: PaperCube | None = None
 
     def __iter__(self) -> Iterator[Frame]:
-        """Draw the frames in order."""
+        """Render the frames in order."""
         for index in range(self.count):
             yield self.frame(index)
 
@@ -80,46 +78,45 @@ class SyntheticSource(FrameSource):
         """Do nothing: nothing is open."""
 
     def time(self, index: int) -> float:
-        """Return the time of a frame, the middle of its exposure [s]."""
+        """Return the time of a frame: the middle of its exposure [s]."""
         return round(index / self.rate, 9)
 
-    def moment(self, index: int) -> Moment:
+    def state(self, index: int) -> SceneState:
         """Return cube and hand in the middle of a frame's exposure."""
         return self._script.at(self.time(index))
 
     def truth(self, index: int) -> Array:
         """Return `camera_from_cube` in the middle of a frame's exposure, (4, 4)."""
-        return self._camera_from_cube(self.moment(index))
+        return self._camera_from_cube(self.state(index))
 
     def frame(self, index: int) -> Frame:
-        """Draw one frame."""
-        lens, paper, exposure = self._studio()
+        """Render one frame."""
+        camera, paper, renderer = self._renderer
         time, half = self.time(index), self.options.blur / 2
         ends = [self._script.at(time + shift) for shift in (-half, half)]
-        if self._script.loose:
+        if self._script.unrelated:
             ends = [self._script.at(time)] * 2
-        corners = [paper.corners(self._camera_from_cube(moment)) for moment in ends]
+        corners = [paper.corners(self._camera_from_cube(state)) for state in ends]
         behind = any((points[:, 2] < 0.02).any() for points in corners)
-        count = 1 if behind else moments_of(lens, corners)
+        count = 1 if behind else shutter_samples(camera, corners)
         shifts = np.linspace(-half, half, count) if count > 1 else np.zeros(1)
-        moments = [self._script.at(time + float(shift)) for shift in shifts]
-        poses = [self._camera_from_cube(moment) for moment in moments]
-        image = exposure.draw(moments, poses, index, self._script.loose or self._script.aloft)
+        states = [self._script.at(time + float(shift)) for shift in shifts]
+        poses = [self._camera_from_cube(state) for state in states]
+        image = renderer.draw(states, poses, index, self._script.in_air)
         return Frame(image, time, index)
 
-    def _camera_from_cube(self, moment: Moment) -> Array:
-        if self._script.loose or self._script.aloft:
-            return moment.table_from_cube
-        return np.asarray(self.camera_from_table @ moment.table_from_cube)
+    def _camera_from_cube(self, state: SceneState) -> Array:
+        if self._script.in_air:
+            return state.table_from_cube
+        return np.asarray(self.camera_from_table @ state.table_from_cube)
 
-    def _studio(self) -> tuple[Lens, PaperCube, Exposure]:
-        """Set up when the first picture is asked for: who wants only the truth need not wait."""
-        if self._lens is None or self._paper is None or self._exposure is None:
-            assert self.intrinsics is not None
-            self._lens = Lens(self.intrinsics)
-            self._paper = PaperCube(self.cube, self._lens, self.options.seed)
-            self._exposure = Exposure(self._lens, self._paper, self.camera_from_table, self.options)
-        return self._lens, self._paper, self._exposure
+    @cached_property
+    def _renderer(self) -> tuple[CameraRays, PaperCube, ExposureRenderer]:
+        """Set up only when the first image is requested: ground truth alone needs no renderer."""
+        assert self.intrinsics is not None
+        camera = CameraRays(self.intrinsics, self.camera_from_table)
+        paper = PaperCube(self.cube, camera, self.options.seed)
+        return camera, paper, ExposureRenderer(camera, paper, self.options)
 
 
 def open_synthetic(name: str) -> SyntheticSource:
@@ -152,7 +149,7 @@ def webcam(options: SyntheticOptions) -> Intrinsics:
     return Intrinsics(matrix, lens, (options.width, options.height))
 
 
-def looking(eye: Array, target: Array) -> Array:
+def look_at(eye: Array, target: Array) -> Array:
     """Return `camera_from_table` of an upright camera at `eye` that looks at `target`."""
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, (0.0, 1.0, 0.0))

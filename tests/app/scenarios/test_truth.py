@@ -37,8 +37,8 @@ def test_every_resting_frame_has_the_right_top_face(name):
     source = open_synthetic(name)
     resting = 0
     for index, controls in enumerate(recorded(name, "/cube/controls", CubeControls)):
-        moment = source.moment(index)
-        if controls.resting and moment.resting:
+        state = source.state(index)
+        if controls.resting and state.resting:
             resting += 1
-            assert controls.top_face == moment.top_face, f"frame {index}"
+            assert controls.top_face == state.top_face, f"frame {index}"
     assert resting > 100

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from tracking.cube.faces import FacePlanes, face_frame, plane_normal
 from tracking.cube.model import FACE_AXES, CubeModel, Face, bundled, face_corners
 from tracking.geometry import se3
-from tracking.synthetic.folding import folded
+from tracking.synthetic.folding import fold_cube
 
 Array = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def test_the_frame_of_a_face_lies_as_its_marker_does(name: str, roll: int) -> No
 
 
 def test_a_face_that_was_folded_askew_still_has_a_right_angled_frame() -> None:
-    askew = folded(CUBE, 2.0, 4)
+    askew = fold_cube(CUBE, 2.0, 4)
     for face, square in zip(askew.faces, CUBE.faces, strict=True):
         frame = face_frame(face)
         assert np.allclose(frame[:3, :3].T @ frame[:3, :3], np.eye(3), atol=1e-12)

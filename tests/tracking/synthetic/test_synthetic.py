@@ -10,7 +10,7 @@ from tracking.geometry.projection import Projection
 from tracking.sources import open_source
 from tracking.sources.base import FrameSource
 from tracking.synthetic import SCRIPTS, SyntheticOptions, SyntheticSource, open_synthetic
-from tracking.synthetic.lens import Lens
+from tracking.synthetic.camera_rays import CameraRays
 from tracking.synthetic.paper_cube import PaperCube
 from tracking.synthetic.source import webcam
 
@@ -42,15 +42,15 @@ def edge_crossing(profile: Array, middle: float) -> float:
 def test_pixel_centres_are_at_whole_numbers(shift: float) -> None:
     """The borders of a large marker that looks at the camera lie where they are projected to."""
     options = SyntheticOptions(noise=0, defocus=0.7, distortion=0, clutter=False, shadow=False)
-    lens = Lens(webcam(options))
+    camera = CameraRays(webcam(options))
     cube = CubeModel.load("locomotion")
     pose = np.diag([1.0, -1.0, -1.0, 1.0])  # the front face looks at the camera, upright
     pose[:3, 3] = 0.01 + shift * 0.2 / 900, -0.02 + shift * 0.2 / 900, 0.2 + cube.edge / 2
-    paper = PaperCube(cube, lens, 1)
-    region = lens.whole()
+    paper = PaperCube(cube, camera, 1)
+    region = camera.whole()
     picture, _ = paper.draw(region, [pose], np.array([0.0, -0.6, -0.8]), 4)
     grey = picture.mean(axis=-1).astype(float)
-    corners = lens.pixels(cube.face("front").corners @ pose[:3, :3].T + pose[:3, 3])
+    corners = camera.pixels(cube.face("front").corners @ pose[:3, :3].T + pose[:3, 3])
     for first, second, across in ((0, 1, 1), (1, 2, 0), (2, 3, 1), (3, 0, 0)):
         truth = float(corners[[first, second], across].mean())
         middle = round(truth)
@@ -132,7 +132,7 @@ def test_every_script_moves_smoothly_and_ends(name: str) -> None:
     assert source.count == round(source.duration * 120) > 0  # type: ignore[operator]
     if name == "poses":
         return
-    poses = np.array([source.moment(index).table_from_cube for index in range(source.count)])
+    poses = np.array([source.state(index).table_from_cube for index in range(source.count)])
     speed = np.linalg.norm(np.diff(poses[:, :3, 3], axis=0), axis=1) * 120
     assert speed.max() < 1.6
     if name == "wave":
@@ -145,24 +145,24 @@ def test_every_script_moves_smoothly_and_ends(name: str) -> None:
 @pytest.mark.parametrize("name", ["follow", "sketch", "companion", "tip"])
 def test_a_cube_at_rest_is_perfectly_still_and_flat_on_the_desk(name: str) -> None:
     source = open_synthetic(name)
-    resting = [index for index in range(source.count) if source.moment(index).resting]
+    resting = [index for index in range(source.count) if source.state(index).resting]
     assert len(resting) > source.count / 10
     for index in resting:
-        pose = source.moment(index).table_from_cube
+        pose = source.state(index).table_from_cube
         assert pose[1, 3] == pytest.approx(source.cube.edge / 2, abs=1e-9)
         assert np.abs(pose[1, :3]).max() == pytest.approx(1, abs=1e-9)
 
 
 def test_tip_rests_on_every_face() -> None:
     source = open_synthetic("tip")
-    notes = [source.moment(index) for index in range(source.count)]
+    notes = [source.state(index) for index in range(source.count)]
     tops = {note.top_face for note in notes if note.resting}
     assert tops == {"top", "bottom", "front", "back", "left", "right"}
 
 
 def test_turns_are_counted_clockwise_from_above() -> None:
     source = open_synthetic("turns")
-    turns = [source.moment(index).turns for index in range(source.count)]
+    turns = [source.state(index).turns for index in range(source.count)]
     assert max(turns) == pytest.approx(2, abs=0.01)
     assert min(turns) == pytest.approx(-2, abs=0.01)
     assert turns[-1] == pytest.approx(0, abs=0.01)

@@ -222,7 +222,7 @@ def true_states(scene: str) -> Iterator[tuple[CubeState, str]]:
     generator = np.random.default_rng(0)
     for index in range(source.count):
         pose = se3.moved(source.truth(index), generator.normal(0, spread))
-        up = source.moment(index).table_from_cube[1, :3]
+        up = source.state(index).table_from_cube[1, :3]
         covariance = np.diag(spread**2)
         yield (
             CubeState(True, pose, np.zeros(6), covariance, "markers", (), 0.1, source.time(index)),
