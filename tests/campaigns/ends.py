@@ -8,9 +8,8 @@ from typing import Any
 from affect import Emotion
 from robot.contract.catalogue import Catalogue, JointLimits
 from robot.drivers import DRIVERS
-from robot.drivers.cubeling.commands import Command, CommandLane
 from robot.drivers.cubeling.host import HostLink
-from robot.drivers.cubeling.roundtrip import RoundTrip
+from robot.drivers.cubeling.scheduler import Command, CommandScheduler, RoundTrip
 from robot.protocol import messages as m
 from robot.protocol.wire import FrameReader
 from robot.simulators.cubeling.device import BodyState, DeviceLink
@@ -36,7 +35,7 @@ class WatchedReader(FrameReader):
         return body
 
 
-class WatchedLane(CommandLane):
+class WatchedScheduler(CommandScheduler):
     """Tells which command is sent, and which has been acknowledged."""
 
     def __init__(self, witness: Witness, host: int) -> None:
@@ -51,10 +50,10 @@ class WatchedLane(CommandLane):
             self.witness.sends(self.host, command)
         return command
 
-    def land(self, number: int, result: int = m.TAKEN) -> None:
-        flying = self._flight is not None
-        super().land(number, result)
-        if flying and self._flight is None:
+    def acknowledge(self, number: int, result: int = m.TAKEN) -> None:
+        waiting = self.pending is not None
+        super().acknowledge(number, result)
+        if waiting and self.pending is None:
             self.idle = True
             self.witness.counts["exchanges"] += 1
 
@@ -67,9 +66,9 @@ class WatchedRoundTrip(RoundTrip):
         self.witness = witness
 
     def stop(self, count: int, now: float) -> None:
-        waiting = len(self._sent)
+        waiting = self.pending
         super().stop(count, now)
-        self.witness.counts["heartbeats"] += waiting - len(self._sent)
+        self.witness.counts["heartbeats"] += waiting - self.pending
 
 
 def watched_host(witness: Witness, host: int) -> HostLink:
@@ -79,9 +78,9 @@ def watched_host(witness: Witness, host: int) -> HostLink:
     """
     link = DRIVERS["cubeling"].make(host, None)
     assert isinstance(link, HostLink)
-    link._lane = WatchedLane(witness, host)
-    link._round_trip = WatchedRoundTrip(witness)
-    link._reader = WatchedReader(witness, "back")
+    link.scheduler = WatchedScheduler(witness, host)
+    link.round_trip = WatchedRoundTrip(witness)
+    link.reader = WatchedReader(witness, "back")
     return link
 
 

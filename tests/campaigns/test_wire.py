@@ -2,7 +2,7 @@
 
 import pytest
 
-from robot.drivers.cubeling.commands import CommandLane
+from robot.drivers.cubeling.scheduler import CommandScheduler
 from robot.protocol import messages as m
 from robot.protocol import timing, wire
 from robot.simulators.cubeling.device import DeviceLink
@@ -58,22 +58,22 @@ def test_a_failsafe_that_never_comes_is_found(monkeypatch):
 
 
 def test_an_emotion_that_is_not_sent_again_is_found(monkeypatch):
-    monkeypatch.setattr(CommandLane, "resume", lambda self, taken: None)
+    monkeypatch.setattr(CommandScheduler, "start_session", lambda self, taken: None)
     assert "the last wish is not true" in (violation("reboot") or "")
 
 
 def test_a_host_that_sends_an_old_emotion_late_is_found(monkeypatch):
-    fly, first = CommandLane._fly_order, emotion_of(1)
+    send_state, first = CommandScheduler._send_state, emotion_of(1)
 
     def stale(self, now, tries=1):
-        command = fly(self, now, tries)
+        command = send_state(self, now, tries)
         if command.number % 50 == 0 and isinstance(command, m.Express):
             old = m.Express(command.number, first.valence, first.arousal)
-            self._flight.command = old
+            self.pending.command = old
             return old
         return command
 
-    monkeypatch.setattr(CommandLane, "_fly_order", stale)
+    monkeypatch.setattr(CommandScheduler, "_send_state", stale)
     assert "takes effect after" in (violation("clean", 30_000) or "")
 
 

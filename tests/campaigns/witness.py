@@ -4,7 +4,7 @@ from collections import Counter
 from typing import Any, Protocol
 
 from affect import Emotion
-from robot.drivers.cubeling.commands import Command
+from robot.drivers.cubeling.scheduler import Command
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.simulators.faulty import FaultyRobot

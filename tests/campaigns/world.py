@@ -12,7 +12,7 @@ from robot.protocol import timing
 from robot.protocol.wire import MAX_FRAME
 from robot.simulators.channel import MAX_IN_FLIGHT_BYTES
 from robot.simulators.faulty import MAX_INBOX_BYTES, FaultyRobot
-from tests.campaigns.ends import LightRobot, WatchedLane, watched_host
+from tests.campaigns.ends import LightRobot, WatchedScheduler, watched_host
 from tests.campaigns.mixes import Mix
 from tests.campaigns.witness import BrokenPromiseError, Witness
 
@@ -126,7 +126,7 @@ class CampaignWorld:
         now = self.now
         if data:
             self.host.receive(data, now)
-            if self.chasing and self.lane.idle:
+            if self.chasing and self.scheduler.idle:
                 self._wish()
         self.host.tick(now)
         out = self.host.bytes_to_send()
@@ -161,8 +161,8 @@ class CampaignWorld:
         # Far apart, as `connect` numbers programs by the moment in which they begin.
         self.host_number += int(self.random.integers(10**5, 10**6))
         self.host = watched_host(self.witness, self.host_number)
-        assert isinstance(self.host._lane, WatchedLane)
-        self.lane = self.host._lane
+        assert isinstance(self.host.scheduler, WatchedScheduler)
+        self.scheduler = self.host.scheduler
         lives = self.mix.host_lives
         self.host_ends_at = self.now + float(self.random.exponential(lives)) if lives else NEVER
         self.tick_at = self.now
@@ -200,14 +200,14 @@ class CampaignWorld:
         """Ask for one last thing, and then for nothing."""
         self.chasing = False
         self.host.express(self.witness.asks())
-        self.last = self.host._lane.commanded
+        self.last = self.host.scheduler.state.commanded
         self.quiet, self.wish_at = True, NEVER
         self.quiet_ends = self.now + float(self.random.exponential(QUIET_MEAN))
         self.untrue_since = self.now
 
     def _watch_quiet(self) -> None:
         """See that the last wish comes true, and again whenever the robot has lost it."""
-        if self.light.link.light.target == self.last == self.lane.acknowledged:
+        if self.light.link.light.target == self.last == self.scheduler.state.acknowledged:
             if self.untrue_since < NEVER:
                 self.recoveries += 1
                 self.worst_recovery = max(self.worst_recovery, self.now - self.untrue_since)
@@ -229,10 +229,10 @@ class CampaignWorld:
     def _measure(self) -> None:
         host, link, faulty = self.host, self.light.link, self.faulty
         sizes = {
-            "frame in host": (host._reader.buffered, MAX_FRAME + 1),
+            "frame in host": (host.reader.buffered, MAX_FRAME + 1),
             "frame in robot": (link._reader.buffered, MAX_FRAME + 1),
-            "actions": (len(self.lane._actions), timing.ACTIONS_MAX),
-            "beats": (len(host._round_trip._sent), 16),
+            "actions": (len(self.scheduler.actions), timing.ACTIONS_MAX),
+            "beats": (host.round_trip.pending, 16),
             "inbox": (faulty.inbox_size, MAX_INBOX_BYTES),
             "line": (
                 max(faulty.to_robot.in_flight, faulty.from_robot.in_flight),

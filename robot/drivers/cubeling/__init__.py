@@ -1,1 +1,1 @@
-"""The protocol "cubeling", the host's end."""
+"""The protocol "cubeling": the host side."""

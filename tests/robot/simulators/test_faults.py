@@ -100,8 +100,8 @@ def test_a_long_session_does_not_grow(world):
     for index in range(1, 120):
         w.host.express(numbered(index))
         w.run(1)
-        sizes.add(len(w.host._round_trip._sent))
-        assert len(w.host._out) + len(w.robot.link._out) < 1000
+        sizes.add(w.host.round_trip.pending)
+        assert len(w.host.bytes_to_send() + w.robot.bytes_to_send()) < 1000
     assert max(sizes) <= 16
     assert w.telemetry.counts.sessions < 10
 

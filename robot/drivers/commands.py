@@ -1,0 +1,87 @@
+"""The requests that a driver keeps: the desired state, and a queue of actions.
+
+An emotion or a stop is a state: only the latest counts, and it is restored after every break.
+Motions and sounds are events: each is sent at most once, in order, and dropped with the session.
+"""
+
+from collections import deque
+from typing import Generic, TypeVar
+
+from affect import Emotion
+
+Action = TypeVar("Action")
+
+
+class CommandQueue(Generic[Action]):
+    """Motions and sounds that wait to be sent; at most `limit`."""
+
+    def __init__(self, limit: int) -> None:
+        self.dropped = 0
+        """Actions given up before the robot acknowledged them."""
+        self._limit = limit
+        self._waiting: deque[Action] = deque()
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    @property
+    def first(self) -> Action:
+        """The next action; there must be one."""
+        return self._waiting[0]
+
+    def add(self, action: Action) -> bool:
+        """Append an action; return False if too many wait already."""
+        if len(self._waiting) >= self._limit:
+            return False
+        self._waiting.append(action)
+        return True
+
+    def pop(self) -> Action:
+        """Remove and return the next action; there must be one."""
+        return self._waiting.popleft()
+
+    def drop_all(self) -> None:
+        """Drop and count every action that waits."""
+        self.dropped += len(self._waiting)
+        self._waiting.clear()
+
+
+class DesiredState:
+    """The emotion or the stop that was requested last, and what the robot has confirmed.
+
+    A robot that knows only words takes every emotion that is requested while its word is shown.
+    """
+
+    def __init__(self) -> None:
+        self.commanded: Emotion | None = None
+        """The emotion requested last; None before the first, and after a stop."""
+        self.acknowledged: Emotion | None = None
+        """The emotion that the robot confirmed and, as far as is known, still holds."""
+        self.stopped = False
+        """Whether the robot has confirmed the stop and still holds it."""
+        self.sent: Emotion | None = None
+        """The emotion for which the last command of a mood was sent."""
+        self.shown: str | None = None
+        """The word of the acknowledged emotion, until another command displaces it."""
+
+    def follow(self, word: str, emotion: Emotion, *, sent: bool) -> None:
+        """Take over another emotion with the same word; `sent` tells if the word was sent."""
+        if sent:
+            self.sent = emotion
+        if self.shown == word:
+            self.acknowledged = emotion
+
+    def begin(self, word: str | None) -> None:
+        """Record that a command for a word is sent: it displaces any other word."""
+        if self.shown != word:
+            self.shown = None  # `acknowledged` stays until the next confirmation
+
+    def confirm(
+        self, emotion: Emotion | None, word: str | None = None, *, stopped: bool = False
+    ) -> None:
+        """Record what the robot has taken: an emotion, with its word if it needs one, or a stop."""
+        self.acknowledged, self.shown, self.stopped = emotion, word, stopped
+
+    def forget(self) -> None:
+        """Record that the robot may hold nothing any more."""
+        self.confirm(None)

@@ -1,0 +1,69 @@
+"""Asks a robot for its catalogue, and reads its STATE by that catalogue."""
+
+from dataclasses import replace
+from types import MappingProxyType
+
+from affect import Emotion
+from robot.contract.catalogue import Catalogue, JointLimits
+from robot.contract.telemetry import Telemetry
+from robot.protocol import messages as m
+
+
+class CapabilityQuery:
+    """The questions for a catalogue after one WELCOME, one at a time."""
+
+    def __init__(self, welcome: m.Welcome) -> None:
+        self.welcome = welcome
+        """The message that told how many entries there are."""
+        self._counts = (welcome.joints, welcome.motions, welcome.sounds, welcome.moods)
+        self._joints: list[JointLimits] = []
+        self._names: tuple[list[str], list[str], list[str]] = ([], [], [])
+
+    def question(self) -> m.Ask | None:
+        """Return the next question; None when everything was answered."""
+        known = (self._joints, *self._names)
+        for item, (entries, count) in enumerate(zip(known, self._counts, strict=True)):
+            if len(entries) < count:
+                return m.Ask(item, len(entries))
+        return None
+
+    def answer(self, entry: m.Joint | m.Name) -> bool:
+        """Process an answer; return False unless it answers the current question."""
+        item = m.ITEM_JOINT if isinstance(entry, m.Joint) else entry.item
+        if self.question() != m.Ask(item, entry.index):
+            return False
+        if isinstance(entry, m.Joint):
+            self._joints.append(JointLimits(entry.name, entry.low, entry.high, entry.speed))
+        else:
+            self._names[entry.item - m.ITEM_MOTION].append(entry.name)
+        return True
+
+    def catalogue(self) -> Catalogue:
+        """Return the catalogue of all answers."""
+        motions, sounds, moods = (tuple(names) for names in self._names)
+        return Catalogue(
+            self.welcome.name, self.welcome.firmware, tuple(self._joints), motions, sounds, moods
+        )
+
+
+def with_state(link: Telemetry, state: m.State | None, catalogue: Catalogue | None) -> Telemetry:
+    """Return the telemetry of the link with the robot's last STATE, if there is one."""
+    if state is None or catalogue is None:
+        return link
+    names = (joint.name for joint in catalogue.joints)
+    return replace(
+        link,
+        observed=Emotion(state.valence, state.arousal, _name(catalogue.moods, state.mood)),
+        battery=state.battery,
+        charging=bool(state.flags & m.CHARGING),
+        stopped=bool(state.flags & m.STILL),
+        limp=bool(state.flags & m.LIMP),
+        reckoned=bool(state.flags & m.RECKONED),
+        joints=MappingProxyType(dict(zip(names, state.joints, strict=False))),
+        motion=_name(catalogue.motions, state.motion),
+        sound=_name(catalogue.sounds, state.sound),
+    )
+
+
+def _name(names: tuple[str, ...], index: int) -> str | None:
+    return names[index] if index < len(names) else None

@@ -1,0 +1,201 @@
+"""Decides which command is sent next, sent again or given up: one at a time, the latest wins."""
+
+from dataclasses import dataclass
+
+from affect import Emotion
+from affect.words import closest_word
+from robot.drivers.commands import CommandQueue, DesiredState
+from robot.protocol import messages as m
+from robot.protocol import timing
+
+Command = m.Express | m.Play | m.Stop
+
+MAX_BEATS = 16
+"""BEATs whose answer is awaited; older ones were lost, or their answer is of no use."""
+
+
+@dataclass
+class PendingCommand:
+    """The command that waits for its acknowledgement."""
+
+    command: Command
+    """The command."""
+
+    emotion: Emotion | None
+    """The emotion of an EXPRESS."""
+
+    sent: float
+    """Time of the last send [s]."""
+
+    tries: int = 1
+    """Number of sends, including those of commands that it replaced before an acknowledgement."""
+
+
+class RoundTrip:
+    """Smoothed time from BEAT to STATE and its deviation (Jacobson 1988, as in RFC 6298).
+
+    BEATs are numbered and never repeated, so an answer always belongs to one of them.
+    """
+
+    def __init__(self) -> None:
+        self.smoothed: float | None = None
+        """Round trip [s]; None before the first."""
+        self._deviation = 0.0
+        self._count = 0
+        self._sent: dict[int, float] = {}
+
+    @property
+    def pending(self) -> int:
+        """Number of BEATs whose answer is awaited, at most `MAX_BEATS`."""
+        return len(self._sent)
+
+    @property
+    def retry_after(self) -> float:
+        """Retransmission timeout [s]."""
+        if self.smoothed is None:
+            return timing.RETRY_FIRST
+        timeout = self.smoothed + 4 * self._deviation
+        return min(max(timeout, timing.RETRY_MIN), timing.RETRY_MAX)
+
+    def start(self, now: float) -> int:
+        """Return the count of a BEAT that is sent at `now` [s]."""
+        self._count = (self._count + 1) & 0xFFFF
+        self._sent[self._count] = now
+        if len(self._sent) > MAX_BEATS:
+            del self._sent[next(iter(self._sent))]
+        return self._count
+
+    def stop(self, count: int, now: float) -> None:
+        """Process the first answer to a BEAT; later answers repeat its count and are ignored."""
+        sent = self._sent.pop(count, None)
+        if sent is None:
+            return
+        took = now - sent
+        if self.smoothed is None:
+            self.smoothed, self._deviation = took, took / 2
+        else:
+            self._deviation += (abs(took - self.smoothed) - self._deviation) / 4
+            self.smoothed += (took - self.smoothed) / 8
+
+
+class CommandScheduler:
+    """The commands of one link, over all its sessions."""
+
+    def __init__(self) -> None:
+        self.state = DesiredState()
+        """The emotion or stop that was requested last."""
+        self.actions: CommandQueue[tuple[int, int]] = CommandQueue(timing.ACTIONS_MAX)
+        """Motions and sounds that wait, as item and index."""
+        self.pending: PendingCommand | None = None
+        """The command that waits for its acknowledgement."""
+        self.retries = 0
+        """Commands sent again."""
+        self.refused = 0
+        """Commands acknowledged but refused."""
+        self.moods: tuple[str, ...] = ()
+        """The robot's words for its moods."""
+        self._requested = False  # whether an emotion or a stop was requested at all
+        self._unsent = False  # whether the desired state must still be sent
+        self._state_number = 0  # number of the command that sent it last
+        self._number = 0
+
+    @property
+    def tries(self) -> int:
+        """Number of sends of the pending command; 0 if there is none."""
+        return self.pending.tries if self.pending else 0
+
+    @property
+    def exhausted(self) -> bool:
+        """Whether the pending command was sent as often as the protocol allows."""
+        return self.tries >= timing.TRIES_MAX
+
+    def express(self, emotion: Emotion) -> None:
+        """Request an emotion."""
+        if emotion != self.state.commanded:
+            self._request(emotion)
+
+    def stop(self) -> None:
+        """Request a stop, before and instead of everything that waits or is pending."""
+        self.actions.drop_all()
+        self._drop_pending()
+        self._request(None)
+
+    def next(self, now: float, retry_after: float) -> Command | None:
+        """Return the command to send at time `now` [s], if one is due."""
+        pending = self.pending
+        if pending is None:
+            return self._next_new(now)
+        if now - pending.sent < retry_after or self.exhausted:
+            return None
+        self.retries += 1
+        if self._unsent and not isinstance(pending.command, m.Play):
+            return self._send_state(now, pending.tries + 1)  # do not repeat an outdated state
+        pending.tries += 1
+        pending.sent = now
+        return pending.command
+
+    def acknowledge(self, number: int, result: int = m.TAKEN) -> None:
+        """Process the acknowledgement of the command with this number."""
+        pending = self.pending
+        if pending is None or number != pending.command.number:
+            return
+        self.pending = None
+        if result != m.TAKEN:
+            self.refused += 1
+        elif not isinstance(pending.command, m.Play):
+            self.state.confirm(pending.emotion, stopped=pending.emotion is None)
+
+    def end_session(self) -> None:
+        """Drop waiting and pending actions; the desired state stays."""
+        self.state.forget()
+        self.actions.drop_all()
+        self._drop_pending()
+
+    def start_session(self, taken: int) -> None:
+        """Start a session with a robot in which command `taken` is in force, 0 for none.
+
+        Commands are taken in the order of their numbers, and the desired state was never skipped,
+        so a later number tells that it is in force too.
+        """
+        if taken >= self._state_number > 0:
+            if not self._unsent:
+                self.state.confirm(self.state.commanded, stopped=self.state.commanded is None)
+        else:
+            self._unsent = self._requested
+
+    def _request(self, desired: Emotion | None) -> None:
+        self.state.commanded, self._requested, self._unsent = desired, True, True
+
+    def _drop_pending(self) -> None:
+        pending, self.pending = self.pending, None
+        if pending is not None and isinstance(pending.command, m.Play):
+            self.actions.dropped += 1  # never played seconds late
+
+    def _next_new(self, now: float) -> Command | None:
+        if self._unsent and self.state.commanded is None:
+            return self._send_state(now)
+        if self.actions:
+            item, index = self.actions.pop()
+            return self._send(m.Play(self._next_number(), item, index), None, now)
+        return self._send_state(now) if self._unsent else None
+
+    def _send_state(self, now: float, tries: int = 1) -> Command:
+        self._unsent = False
+        number = self._state_number = self._next_number()
+        emotion = self.state.commanded
+        if emotion is None:
+            return self._send(m.Stop(number), None, now, tries)
+        word = emotion.word and closest_word(self.moods, emotion)
+        mood = self.moods.index(word) if word else m.NOTHING
+        express = m.Express(number, emotion.valence, emotion.arousal, mood)
+        return self._send(express, emotion, now, tries)
+
+    def _send(
+        self, command: Command, emotion: Emotion | None, now: float, tries: int = 1
+    ) -> Command:
+        self.pending = PendingCommand(command, emotion, now, tries)
+        return command
+
+    def _next_number(self) -> int:
+        self._number += 1
+        return self._number
