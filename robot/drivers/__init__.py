@@ -5,7 +5,7 @@ from pathlib import Path
 from robot.contract.driver import DRIVERS, Driver, DriverKind
 from robot.drivers.cubeling.host import HostLink
 from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings_file import load_settings as opencat_settings
+from robot.drivers.opencat.settings import load_settings as opencat_settings
 from robot.drivers.pleo import timing as pleo
 from robot.drivers.pleo.driver import PleoDriver
 from robot.drivers.pleo.settings_file import load_settings as pleo_settings

@@ -1,29 +1,23 @@
-"""Lines out of what a robot says, whatever it says."""
+"""Splits the bytes of a robot into lines."""
 
 
 class LineReader:
-    """Cuts a stream into lines, and holds no more of it than a line.
+    """Splits a stream into lines of at most `max_bytes`, and discards longer ones."""
 
-    Parameters
-    ----------
-    longest
-        Longest line that matters [bytes]; a longer one is thrown away.
-    """
-
-    def __init__(self, longest: int) -> None:
-        self.cut = 0
-        """Lines that were longer, and so were thrown away."""
-        self._longest = longest
-        self._begun = bytearray()
-        self._too_long = False
+    def __init__(self, max_bytes: int) -> None:
+        self.too_long = 0
+        """Number of lines that were discarded."""
+        self._max_bytes = max_bytes
+        self._partial = bytearray()
+        self._discarding = False
 
     @property
-    def begun(self) -> str:
-        """The beginning of a line that has not ended yet: a question may stand there."""
-        return self._begun.decode("latin-1")
+    def partial(self) -> str:
+        """The beginning of a line that has not ended yet: it may hold a question."""
+        return self._partial.decode("latin-1")
 
     def feed(self, data: bytes) -> list[str]:
-        r"""Take bytes; return the lines that ended in them, without their ends.
+        r"""Process bytes; return the lines that ended in them, without their ends.
 
         >>> LineReader(200).feed(b"Bittle X\r\nB10_241013\r\n?\r\nRea")
         ['Bittle X', 'B10_241013', '?']
@@ -31,23 +25,23 @@ class LineReader:
         *ended, rest = data.split(b"\n")
         lines = []
         for piece in ended:
-            self._add(piece)
-            if not self._too_long:
-                lines.append(self._begun.decode("latin-1").strip("\r\0 \t"))
+            self._append(piece)
+            if not self._discarding:
+                lines.append(self._partial.decode("latin-1").strip("\r\0 \t"))
             self.clear()
-        self._add(rest)
+        self._append(rest)
         return lines
 
     def clear(self) -> None:
-        """Forget the line that has begun."""
-        self._begun.clear()
-        self._too_long = False
+        """Forget the line that has not ended."""
+        self._partial.clear()
+        self._discarding = False
 
-    def _add(self, piece: bytes) -> None:
-        if len(self._begun) + len(piece) > self._longest and not self._too_long:
-            self._too_long = True
-            self.cut += 1
-        if self._too_long:
-            self._begun.clear()
+    def _append(self, piece: bytes) -> None:
+        if len(self._partial) + len(piece) > self._max_bytes and not self._discarding:
+            self._discarding = True
+            self.too_long += 1
+        if self._discarding:
+            self._partial.clear()
         else:
-            self._begun += piece
+            self._partial += piece

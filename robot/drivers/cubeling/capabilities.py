@@ -1,5 +1,6 @@
 """Asks a robot for its catalogue, and reads its STATE by that catalogue."""
 
+from collections.abc import Sized
 from dataclasses import replace
 from types import MappingProxyType
 
@@ -21,7 +22,7 @@ class CapabilityQuery:
 
     def question(self) -> m.Ask | None:
         """Return the next question; None when everything was answered."""
-        known = (self._joints, *self._names)
+        known: tuple[Sized, ...] = (self._joints, *self._names)
         for item, (entries, count) in enumerate(zip(known, self._counts, strict=True)):
             if len(entries) < count:
                 return m.Ask(item, len(entries))

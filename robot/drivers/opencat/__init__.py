@@ -1,1 +1,1 @@
-"""The driver for Petoi's Bittle and Nybble, and for other boards that run OpenCat."""
+"""The driver for Petoi's Bittle and Nybble, and for other boards with OpenCat."""

@@ -1,6 +1,6 @@
-"""The host's end of OpenCat's line: bytes in, bytes out, and what is known of the robot.
+"""The host side of OpenCat's line, without clock, thread or port.
 
-No clock, no thread, no port: whoever owns those calls `receive` and `tick` with the time.
+The owner calls `receive` and `tick` with the time.
 """
 
 import math
@@ -12,34 +12,32 @@ from robot.contract.catalogue import Catalogue
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.lines import LineReader
 from robot.drivers.opencat import tokens
-from robot.drivers.opencat.exchange import LOST_TRIES, Exchange, Flight
-from robot.drivers.opencat.greeting import STARTS, Greeting
-from robot.drivers.opencat.hearsay import Hearsay
-from robot.drivers.opencat.introduction import catalogue_of
+from robot.drivers.opencat.echo import MAX_QUESTION_TRIES, EchoMatcher, PendingLine
+from robot.drivers.opencat.handshake import STARTS, Handshake
 from robot.drivers.opencat.models import model_of
-from robot.drivers.opencat.outlet import Outlet
-from robot.drivers.opencat.settings import Settings
-from robot.drivers.opencat.settings_file import load_settings
-from robot.drivers.opencat.wishes import REST, Wishes
+from robot.drivers.opencat.scheduler import REST, SkillScheduler
+from robot.drivers.opencat.settings import Settings, load_settings
+from robot.drivers.opencat.telemetry_parser import TelemetryParser
 from robot.protocol import messages as m
 
-LINE_MAX = 200
-"""Longest line that is listened to [bytes]; the longest that matters, 16 angles, has about 90."""
+MAX_LINE_BYTES = 200
+"""Longest line that is read [bytes]; the longest that matters, 16 angles, has about 90."""
 
-REST_ASK_EVERY = 60.0
-"""A robot that lies without power is told to rest again this often [s], as its sign of life: any
-other question would switch its balancing on."""
+REST_INTERVAL_S = 60.0
+"""Interval at which a resting robot is told to rest again, as a sign of life [s]: any other
+question would switch its balancing on."""
 
 Phase = Literal["port", "greeting", "open", "closed"]
+"""port: there is none. greeting: the model is not known yet."""
 
 
 class OpenCatHost:
-    """The host's end of a line to a board that runs OpenCat.
+    """The host side of a line to a board with OpenCat; a `Driver`.
 
     Parameters
     ----------
     settings
-        What is shown how; None for the bundled ones.
+        How each mood is shown; None for the bundled settings.
     """
 
     def __init__(self, settings: Settings | None = None) -> None:
@@ -47,240 +45,232 @@ class OpenCatHost:
         """What the robot has; None until its model is known."""
         self._settings = settings or load_settings()
         self.baud = self._settings.baud
-        """Bits a second on the serial line."""
+        """Bits per second on the serial line."""
         self._model = self._settings.model or "other"
         self._phase: Phase = "port"
-        self._reader = LineReader(LINE_MAX)
-        self._greeting = Greeting()
-        self._exchange = Exchange()
-        self._wishes = Wishes(self._settings, self._settings.behaviours[self._model])
-        self._outlet = Outlet(self._settings.commands_per_s)
-        self._heard: float | None = None
-        self._hearsay = Hearsay()
-        self._lines_heard = self._skipped = self._sessions = self._repeats = 0
-
-    # --- What the owner asks for ---------------------------------------------------------------
+        self._reader = LineReader(MAX_LINE_BYTES)
+        self._handshake = Handshake()
+        self._echoes = EchoMatcher()
+        self._scheduler = SkillScheduler(self._settings, self._settings.behaviours[self._model])
+        self._writer = tokens.RateLimitedWriter(self._settings.commands_per_s)
+        self._parser = TelemetryParser()
+        self._last_received: float | None = None
+        self._lines_received = self._skipped = self._sessions = self._repeats = 0
 
     def express(self, emotion: Emotion) -> None:
-        """Ask for an emotion; only the latest counts, and it is kept through every break."""
-        self._wishes.express(emotion)
+        """Request an emotion; only the latest counts, and it is kept over all sessions."""
+        self._scheduler.express(emotion)
 
     def play(self, item: int, index: int) -> bool:
-        """Ask for a motion or a sound once; False if too many wait already.
+        """Request a motion or a sound once; return False if too many wait already.
 
-        Without a link it is dropped at once: nobody wants a nod when the robot comes back.
+        Without a session it is dropped at once, so that it is not played late.
         """
         if self._phase != "open" or self.catalogue is None:
-            self._wishes.dropped += 1
+            self._scheduler.actions.dropped += 1
             return True
         sounds, motions = self.catalogue.sounds, self.catalogue.motions
-        return self._wishes.play((sounds if item == m.ITEM_SOUND else motions)[index])
+        return self._scheduler.play((sounds if item == m.ITEM_SOUND else motions)[index])
 
     def stop(self) -> None:
-        """Ask for the posture for a stop, before and instead of everything that waits."""
-        self._wishes.stop()
+        """Request the posture for a stop, before and instead of everything that waits."""
+        self._scheduler.stop()
 
     def port_opened(self, now: float) -> None:
-        """Begin, or begin again after `port_lost`."""
+        """Start a session."""
         self._phase = "greeting"
         self._reader.clear()
-        self._break_off()
-        self._greeting.begin(now)
+        self._end_session()
+        self._handshake.begin(now)
 
     def port_lost(self) -> None:
         """Send nothing until `port_opened`."""
-        self._break_off()
+        self._end_session()
         self._phase = "port"
-        self._outlet.clear()
+        self._writer.clear()
 
     def close(self) -> None:
-        """Let the robot lie down and take the power from its servos, and never send again."""
-        spoken = self._greeting.stage in ("asking", "known")
-        if self._phase in ("greeting", "open") and spoken:
-            self._outlet.send(tokens.REST, math.inf)  # whatever the rates say, and for good
-        self._break_off()
+        """Let the robot lie down and switch its servos off; send nothing afterwards."""
+        asked = self._handshake.stage in ("asking", "known")
+        if self._phase in ("greeting", "open") and asked:
+            self._writer.send(tokens.REST, math.inf)  # regardless of the rate limit; the last line
+        self._end_session()
         self._phase = "closed"
 
-    # --- What the line and the clock bring -----------------------------------------------------
-
     def receive(self, data: bytes, now: float) -> None:
-        """Take bytes from the line at time `now` [s]."""
+        """Process received bytes at time `now` [s]."""
         if not data or self._phase in ("port", "closed"):
             return
         for line in self._reader.feed(data):
-            self._lines_heard += 1
-            self._take(line, now)
-        self._greeting.babble(self._reader.begun, now)
+            self._lines_received += 1
+            self._process(line, now)
+        self._handshake.receive_partial(self._reader.partial, now)
 
     def tick(self, now: float) -> None:
-        """Do what is due at time `now` [s]: wait, ask, ask again, send."""
+        """Do what is due at time `now` [s]: wait, ask, repeat a question, or send a command."""
         if self._phase not in ("greeting", "open"):
             return
-        self._greeting.tick(now)
-        if self._greeting.stage in ("starting", "asked by it"):
+        self._handshake.tick(now)
+        if self._handshake.stage in ("starting", "waiting for owner"):
             return
-        if not self._outlet.is_free(now):
+        if not self._writer.is_free(now):
             return
-        exchange = self._exchange
-        if exchange.question is not None:
-            if exchange.repeat_due(now):
-                self._ask_again(now)
-        elif exchange.doubtful or exchange.is_late(now):
-            self._outlet.send(exchange.ask(now), now)
-        elif exchange.flight is not None:
+        echoes = self._echoes
+        if echoes.question is not None:
+            if echoes.repeat_due(now):
+                self._repeat_question(now)
+        elif echoes.doubtful or echoes.is_late(now):
+            self._writer.send(echoes.ask(now), now)
+        elif echoes.pending is not None:
             return
         elif self._phase == "greeting":
-            self._outlet.send(exchange.ask(now), now)
+            self._writer.send(echoes.ask(now), now)
         else:
-            self._act(now)
+            self._send_next(now)
 
     def bytes_to_send(self) -> bytes:
-        """Return what is to be written to the line, once."""
-        return self._outlet.bytes_to_send()
-
-    # --- What is known -------------------------------------------------------------------------
+        """Return the bytes to write, once."""
+        return self._writer.bytes_to_send()
 
     def state(self, now: float) -> LinkState:
         """Return the state of the link at time `now` [s].
 
-        degraded: a command's echo is late, or a question was asked twice. lost: it was asked three
-        times in vain, the board starts anew, or the port is gone.
+        degraded: the echo of a command is late, or a question was asked twice. lost: it was asked
+        three times in vain, the board restarts, or the port is gone.
         """
         if self._phase == "closed":
             return "closed"
         if self._phase != "open":
             return "connecting" if self.catalogue is None else "lost"
-        shaky = self._exchange.is_late(now) or self._exchange.tries > 1
+        shaky = self._echoes.is_late(now) or self._echoes.tries > 1
         return "degraded" if shaky else "ready"
 
     def telemetry(self, now: float) -> Telemetry:
-        """Return all that is known at time `now` [s]. What it feels the board does not tell."""
-        flight = self._exchange.flight
-        playing = flight.command if flight else None
+        """Return everything that is known at time `now` [s]. The board does not report its mood."""
+        scheduler, pending = self._scheduler, self._echoes.pending
+        playing = pending.command if pending else None
         skill = playing is not None and playing.kind in ("posture", "gesture")
-        beeps = playing is not None and playing.kind == "melody"
+        melody = playing is not None and playing.kind == "melody"
         return Telemetry(
             state=self.state(now),
-            commanded=self._wishes.order.commanded,
-            acknowledged=self._wishes.order.acknowledged,
-            stopped=self._wishes.order.stopped,
-            limp=self._wishes.limp or self._hearsay.is_weak(now),
-            complaint=self._hearsay.complaint,
-            joints=MappingProxyType(self._hearsay.angles),
+            commanded=scheduler.desired.commanded,
+            acknowledged=scheduler.desired.acknowledged,
+            stopped=scheduler.desired.stopped,
+            limp=scheduler.limp or self._parser.is_weak(now),
+            complaint=self._parser.complaint,
+            joints=MappingProxyType(self._parser.angles),
             reckoned=True,
             motion=playing.name if playing and skill else None,
-            sound=playing.name if playing and beeps else None,
-            round_trip=self._exchange.round_trip,
-            silence=None if self._heard is None else now - self._heard,
-            counts=self._counts(),
+            sound=playing.name if playing and melody else None,
+            round_trip=self._echoes.round_trip,
+            silence=None if self._last_received is None else now - self._last_received,
+            counts=LinkCounts(
+                frames_sent=self._writer.sent,
+                frames_received=self._lines_received,
+                retries=self._repeats + scheduler.retries,
+                crc_errors=self._reader.too_long,
+                skipped=self._skipped,
+                refused=scheduler.refused,
+                dropped=scheduler.actions.dropped,
+                sessions=self._sessions,
+            ),
         )
 
-    def _counts(self) -> LinkCounts:
-        return LinkCounts(
-            frames_sent=self._outlet.sent,
-            frames_received=self._lines_heard,
-            retries=self._repeats + self._wishes.repeats,
-            crc_errors=self._reader.cut,
-            skipped=self._skipped,
-            refused=self._wishes.refused,
-            dropped=self._wishes.dropped,
-            sessions=self._sessions,
-        )
-
-    # --- What a line means ---------------------------------------------------------------------
-
-    def _take(self, line: str, now: float) -> None:
-        self._heard = now
+    def _process(self, line: str, now: float) -> None:
+        self._last_received = now
         if line.startswith(STARTS):
-            self._was_restarted(now)
+            self._handle_restart(now)
             return
-        heard = None if self._greeting.stage == "starting" else self._exchange.hear(line, now)
-        if isinstance(heard, Flight):
-            if self._hearsay.is_weak(now):
-                self._wishes.given_up(heard.command, now)  # echoed, and nothing has moved
-            elif self._wishes.landed(heard.command, heard.refused, now):
-                self._hearsay.complaint = None
-        elif heard is not None:
-            self._was_answered(heard.line, now)
+        starting = self._handshake.stage == "starting"
+        matched = None if starting else self._echoes.match(line, now)
+        if isinstance(matched, PendingLine):
+            if self._parser.is_weak(now):
+                self._scheduler.give_up(matched.command, now)  # echoed, but nothing has moved
+            elif self._scheduler.complete(matched.command, matched.refused, now):
+                self._parser.complaint = None
+        elif matched is not None:
+            self._handle_answer(matched.line, now)
         else:
-            self._note(line, now)
+            self._handle_text(line, now)
 
-    def _note(self, line: str, now: float) -> None:
-        """Take a line that is no echo."""
-        self._greeting.hear(line, now)
-        flight = self._exchange.flight
-        news = self._hearsay.take(line, self._model, now)
-        if news == "power" and flight and flight.command.kind in ("posture", "gesture", "pose"):
-            self._wishes.limp = False
-        elif news == "weak":
-            self._wishes.limp = True
-            self._wishes.order.lose()
-        elif news == "fell":
-            self._exchange.doubt()
-            self._wishes.disturb()
-        elif news == "unknown" and not flight and not self._exchange.question:
+    def _handle_text(self, line: str, now: float) -> None:
+        """Process a line that is no echo."""
+        self._handshake.receive_line(line, now)
+        pending = self._echoes.pending
+        report = self._parser.parse(line, self._model, now)
+        if report == "power" and pending and pending.command.kind in ("posture", "gesture", "pose"):
+            self._scheduler.limp = False
+        elif report == "weak":
+            self._scheduler.limp = True
+            self._scheduler.desired.lose()
+        elif report == "fell":
+            self._echoes.doubt()
+            self._scheduler.disturb()
+        elif report == "unknown" and not pending and not self._echoes.question:
             self._skipped += 1
 
-    def _was_answered(self, question: bytes, now: float) -> None:
-        given_up = self._exchange.give_up()
-        if given_up is not None:
-            self._wishes.given_up(given_up, now)
-        if self._phase == "greeting" and question == tokens.QUERY and self._greeting.echoed():
-            self._open(now)
+    def _handle_answer(self, question: bytes, now: float) -> None:
+        """Process the echo of a question."""
+        command = self._echoes.give_up()
+        if command is not None:
+            self._scheduler.give_up(command, now)
+        if (
+            self._phase == "greeting"
+            and question == tokens.QUERY
+            and self._handshake.receive_echo()
+        ):
+            self._open()
 
-    def _was_restarted(self, now: float) -> None:
-        """Take note that the board starts: it has lost everything, and its servos have no power."""
+    def _handle_restart(self, now: float) -> None:
+        """Process a restart of the board: it has lost everything, and its servos are off."""
         self._phase = "greeting"
-        if self._greeting.stage != "starting":
-            self._break_off()
-        self._greeting.begin(now, started=True)
-        self._wishes.limp = True
-        self._hearsay.forget()
+        if self._handshake.stage != "starting":
+            self._end_session()
+        self._handshake.begin(now, started=True)
+        self._scheduler.limp = True
+        self._parser.restart()
 
-    def _open(self, now: float) -> None:
-        """Begin a session with a board that is known."""
-        greeting = self._greeting
-        self._model = self._settings.model or model_of(greeting.name)
+    def _open(self) -> None:
+        """Start a session with a board whose model is known."""
+        handshake = self._handshake
+        self._model = self._settings.model or model_of(handshake.name)
         behaviour = self._settings.behaviours[self._model]
-        self._wishes.behave(behaviour)
-        self._hearsay.angles = {}
-        self.catalogue = catalogue_of(self._model, greeting.name, greeting.version, behaviour)
+        self._scheduler.set_behaviour(behaviour)
+        self._parser.angles = {}
+        self.catalogue = behaviour.catalogue(self._model, handshake.name, handshake.version)
         self._phase = "open"
         self._sessions += 1
 
-    # --- What is sent --------------------------------------------------------------------------
-
-    def _act(self, now: float) -> None:
-        """Send what is wanted; where nothing is, ask now and then whether the board is there."""
-        command = None if self._hearsay.is_weak(now) else self._wishes.next(now)
-        if command is None and self._answer_is_old(now):
-            if not self._wishes.resting:
-                self._outlet.send(self._exchange.ask(now), now)
+    def _send_next(self, now: float) -> None:
+        """Send the next command, or now and then a question if there is none."""
+        command = None if self._parser.is_weak(now) else self._scheduler.next(now)
+        if command is None and self._question_due(now):
+            if not self._scheduler.resting:
+                self._writer.send(self._echoes.ask(now), now)
                 return
             command = REST
         if command is not None:
-            self._outlet.send(self._exchange.launch(command, now), now)
+            self._writer.send(self._echoes.send(command, now), now)
 
-    def _ask_again(self, now: float) -> None:
-        """Repeat a question, and look for a board that is lost."""
-        if self._phase == "open" and self._exchange.tries >= LOST_TRIES:
+    def _repeat_question(self, now: float) -> None:
+        """Repeat a question; after too many tries the board is lost."""
+        if self._phase == "open" and self._echoes.tries >= MAX_QUESTION_TRIES:
             self._phase = "greeting"
-            self._wishes.drop_actions()
-            self._wishes.order.lose()
-            self._greeting.ask_again()
+            self._scheduler.actions.drop_all()
+            self._scheduler.desired.lose()
+            self._handshake.ask_again()
         self._repeats += 1
-        self._outlet.send(self._exchange.ask(now), now)
+        self._writer.send(self._echoes.ask(now), now)
 
-    # --- Small things --------------------------------------------------------------------------
+    def _question_due(self, now: float) -> bool:
+        interval = REST_INTERVAL_S if self._scheduler.resting else self._settings.ask_every
+        return self._echoes.answered is None or now - self._echoes.answered >= interval
 
-    def _answer_is_old(self, now: float) -> bool:
-        every = REST_ASK_EVERY if self._wishes.resting else self._settings.ask_every
-        return self._exchange.answered is None or now - self._exchange.answered >= every
-
-    def _break_off(self) -> None:
-        """Forget what is on its way and what was to be played: the board has lost it."""
-        given_up = self._exchange.give_up()
-        self._wishes.dropped += given_up is not None and given_up.kind in ("gesture", "melody")
-        self._exchange.restart()
-        self._wishes.drop_actions()
-        self._wishes.order.lose()
+    def _end_session(self) -> None:
+        """Drop what is pending and what waits: the board has lost it."""
+        command = self._echoes.give_up()
+        dropped = command is not None and command.kind in ("gesture", "melody")
+        self._scheduler.actions.dropped += dropped
+        self._echoes.restart()
+        self._scheduler.actions.drop_all()
+        self._scheduler.desired.lose()

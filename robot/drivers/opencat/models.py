@@ -1,18 +1,18 @@
-"""The robots that run OpenCat: which joints each has, and how far they go.
+"""The robots with OpenCat: their joints and limits.
 
-Joints are numbered as on the board: head pan, head tilt, tail pan, tail tilt, four shoulder rolls,
-four shoulders, four knees; the four go clockwise from the front left one, seen from behind.
+Joints have the numbers of the board: head pan, head tilt, tail pan, tail tilt, four shoulder rolls,
+four shoulders, four knees; each four go clockwise from the left front, seen from behind.
 """
 
 import math
 from dataclasses import dataclass
 
 from robot.contract.catalogue import JointLimits
-from robot.drivers.opencat.tokens import ANGLE_MAX
+from robot.drivers.opencat.tokens import MAX_ANGLE_DEG
 
-TOP_SPEED = math.radians(240.0)
-"""Taken for every servo's top speed [rad/s]. Petoi states none for the robot; its small servos are
-faster without load, and no wish of ours depends on it."""
+ASSUMED_SPEED_DEG_PER_S = 240.0
+"""Assumed top speed of every servo [°/s]. Petoi states none; its small servos are faster without
+load, and no command depends on it."""
 
 
 @dataclass(frozen=True)
@@ -23,27 +23,28 @@ class Joint:
     """Its number on the board."""
 
     name: str
-    """What it is called."""
+    """Its name."""
 
     low: int
-    """Smallest angle [deg]: the narrower one of the two firmwares' limits."""
+    """Smallest angle [°]: the narrower limit of the two firmwares."""
 
     high: int
-    """Largest angle [deg], likewise."""
+    """Largest angle [°], likewise."""
 
     def clamped(self, angle: float) -> int:
-        """Return the angle [deg] that is asked for where `angle` [deg] is wished.
+        """Return an angle [°] within the limits.
 
         >>> Joint(1, "head tilt", -75, 40).clamped(90)
         40
         """
-        low, high = max(self.low, -ANGLE_MAX), min(self.high, ANGLE_MAX)
+        low, high = max(self.low, -MAX_ANGLE_DEG), min(self.high, MAX_ANGLE_DEG)
         return min(max(round(angle), low), high)
 
     @property
     def limits(self) -> JointLimits:
-        """The same for a catalogue."""
-        return JointLimits(self.name, math.radians(self.low), math.radians(self.high), TOP_SPEED)
+        """The limits in the units of a catalogue."""
+        low, high, speed = map(math.radians, (self.low, self.high, ASSUMED_SPEED_DEG_PER_S))
+        return JointLimits(self.name, low, high, speed)
 
 
 def _legs(
@@ -73,12 +74,12 @@ MODELS: dict[str, tuple[Joint, ...]] = {
     ),
     "other": (),
 }
-"""The models' joints by name. "other" is a board that does not say what it is, or is another robot:
-it shows moods by postures alone."""
+"""The joints of each model. "other" is a board that reports no model, or another robot: it shows
+moods by postures alone."""
 
 
 def model_of(name: str) -> str:
-    """Return which of `MODELS` a board is that calls itself `name`.
+    """Return which of `MODELS` a board is that reports the model `name`.
 
     >>> model_of("Bittle X"), model_of("Nybble"), model_of("DoF16")
     ('bittle', 'nybble', 'other')

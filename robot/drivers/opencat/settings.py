@@ -1,13 +1,30 @@
-"""How each model shows each mood: the settings, as they are used."""
+"""The settings: how each model shows each mood. Lines that may not be sent are refused here."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
 
-Notes = tuple[tuple[int, int], ...]
-"""Notes of a melody, each with its value: 4 is a quarter of a second, 8 an eighth."""
+from affect.settings import Table, read, shown
+from affect.words import PLACES
+from robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
+from robot.drivers.opencat import tokens
+from robot.drivers.opencat.models import MODELS
+from robot.errors import RobotError
+
+BUNDLED = Path(__file__).with_name("opencat.toml")
+"""The bundled settings; a person's own file overrides parts of them."""
 
 BAUDS = (57600, 115200)
-"""Bits a second that OpenCat boards speak at."""
+"""Bits per second of OpenCat boards."""
+
+MIN_GESTURE_INTERVAL_S = 5.0
+"""Shortest time between two gestures [s]."""
+
+Notes = tuple[tuple[int, int], ...]
+"""Notes of a melody with their values: 4 is a quarter of a second, 8 an eighth."""
 
 
 @dataclass(frozen=True)
@@ -18,16 +35,16 @@ class Mood:
     """The skill that is held while the mood lasts."""
 
     pose: Mapping[int, int]
-    """Angles [deg] by the joint's number, taken after the posture and within the joints' limits."""
+    """Angles [°] by joint number, taken after the posture and within the limits of the joints."""
 
     gestures: tuple[str, ...]
-    """Skills played now and then, in turn."""
+    """Skills that are played now and then, in turn."""
 
     gesture_every: float
-    """Time from one gesture to the next [s]; 0 for no gestures."""
+    """Time between two gestures [s]; 0 for no gestures."""
 
     sound: str | None
-    """The melody played once when the mood begins."""
+    """The melody that is played once when the mood begins."""
 
 
 @dataclass(frozen=True)
@@ -35,39 +52,192 @@ class Behaviour:
     """How a model behaves."""
 
     moods: Mapping[str, Mood]
-    """By the moods' words; "neutral" is the first one."""
+    """Its moods by word, "neutral" first."""
 
     motions: tuple[str, ...]
-    """Skills that may be played by name: those named for this, and every posture and gesture."""
+    """Skills that can be played by name: those of the settings, and every posture and gesture."""
 
     sounds: Mapping[str, Notes]
     """Melodies by name."""
 
     stop: str
-    """The posture taken for a stop."""
+    """The posture for a stop."""
+
+    def catalogue(self, model: str, name: str, version: str) -> Catalogue:
+        """Return the catalogue of a board that reports this name and version, or empty ones."""
+        return Catalogue(
+            name=(name or "OpenCat").encode()[:MAX_NAME_BYTES].decode(errors="ignore"),
+            firmware=f"OpenCat {version}".strip(),
+            joints=tuple(joint.limits for joint in MODELS[model]),
+            motions=self.motions,
+            sounds=tuple(self.sounds),
+            moods=tuple(self.moods),
+        )
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that a settings file says."""
+    """A settings file."""
 
     baud: int
-    """Bits a second on the serial line."""
+    """Bits per second on the serial line."""
 
     model: str | None
-    """Which of `MODELS` it is, whatever the board says; None to ask the board."""
+    """One of `MODELS`, whatever the board reports; None to ask the board."""
 
     commands_per_s: float
-    """Most lines sent in a second."""
+    """Most lines per second."""
 
     dwell: float
-    """Time from the end of one skill to the beginning of the next [s]."""
+    """Time from the end of a skill to the start of the next [s]."""
 
     ask_every: float
     """Time without an answer after which a question is asked [s]."""
 
     rest_after: float
-    """Time without a new mood after which the servos lose their power [s]; 0 for never."""
+    """Time without a new request after which the servos are switched off [s]; 0 for never."""
 
     behaviours: Mapping[str, Behaviour]
-    """By model, one for each of `MODELS`."""
+    """The behaviour of each of `MODELS`."""
+
+
+def load_settings(path: Path | None = None) -> Settings:
+    """Return the settings in a TOML file; what it does not set is as in the bundled file.
+
+    Raises
+    ------
+    RobotError
+        If it cannot be read, or a value is wrong or may not be sent.
+    """
+    if path is None:
+        return parse_settings({}, BUNDLED.name)
+    return parse_settings(read(path, RobotError), str(path))
+
+
+@cache
+def _bundled() -> Mapping[str, Any]:
+    return read(BUNDLED, RobotError)
+
+
+def parse_settings(document: Mapping[str, Any], source: str) -> Settings:
+    """Return the settings in a TOML document, over the bundled ones."""
+    top = Table(_merged(_bundled(), document), source, error=RobotError)
+    top.only("opencat", *MODELS)
+    common = top.table("opencat")
+    common.only("baud", "model", "commands_per_s", "dwell_s", "ask_every_s", "rest_after_s")
+    model = common.text("model")
+    if model and model not in MODELS:
+        raise common.unlike("model", f"one of {', '.join(MODELS)}")
+    baud = common.whole("baud", min(BAUDS), max(BAUDS))
+    if baud not in BAUDS:
+        raise common.unlike("baud", f"one of {', '.join(map(str, BAUDS))}")
+    return Settings(
+        baud=baud,
+        model=model or None,
+        commands_per_s=common.number("commands_per_s", 0.1, 10.0),
+        dwell=common.number("dwell_s", 0.5, 60.0),
+        ask_every=common.number("ask_every_s", 1.0, 600.0),
+        rest_after=common.number("rest_after_s", 0.0, 86400.0),
+        behaviours={name: _behaviour(top.table(name), name) for name in MODELS},
+    )
+
+
+def _behaviour(table: Table, model: str) -> Behaviour:
+    table.only("stop", "motions", "sounds", "moods")
+    melodies = table.table("sounds")
+    sounds = {name: _melody(melodies, name) for name in melodies.names(MAX_NAME_BYTES)}
+    listed = table.table("moods")
+    moods = {}
+    for word in sorted(listed.names(), key=lambda word: (word != "neutral", word)):
+        if word not in PLACES:
+            raise listed.wrong(word, f"no mood is called that; there are {', '.join(PLACES)}")
+        moods[word] = _mood(listed.table(word), model, sounds)
+    if "neutral" not in moods:
+        raise listed.unlike("neutral", "there, for every robot shows it")
+    stop = _skill(table, "stop")
+    motions = dict.fromkeys(_skills(table, "motions"))
+    for mood in moods.values():
+        motions |= dict.fromkeys((mood.posture, *mood.gestures))
+    if both := motions.keys() & sounds.keys():
+        raise melodies.wrong(min(both), "a skill has this name too; give the sound another name")
+    return Behaviour(moods, tuple(motions), sounds, stop)
+
+
+def _mood(table: Table, model: str, sounds: Mapping[str, Notes]) -> Mood:
+    table.only("posture", "pose", "gestures", "gesture_every_s", "sound")
+    sound = table.text("sound", "")
+    if sound and sound not in sounds:
+        known = ", ".join(sounds) or "none"
+        raise table.wrong("sound", f"there is no sound {shown(sound)}; there is {known}")
+    mood = Mood(
+        posture=_skill(table, "posture"),
+        pose=_pose(table, model),
+        gestures=_skills(table, "gestures"),
+        gesture_every=table.number("gesture_every_s", 0.0, 3600.0, 0.0),
+        sound=sound or None,
+    )
+    if 0 < mood.gesture_every < MIN_GESTURE_INTERVAL_S:
+        allowed = f"0, or at least {MIN_GESTURE_INTERVAL_S:g}: servos get hot"
+        raise table.unlike("gesture_every_s", allowed)
+    return mood
+
+
+def _pose(table: Table, model: str) -> Mapping[int, int]:
+    joints = {joint.name: joint for joint in MODELS[model]}
+    angles = table.table("pose")
+    pose = {}
+    for name in angles.names():
+        if name not in joints:
+            known = ", ".join(joints) or "none that is known"
+            raise angles.wrong(name, f"no joint is called that; a {model} has {known}")
+        pose[joints[name].number] = joints[name].clamped(angles.number(name, -360.0, 360.0))
+    if pose:
+        _check_line(table, "pose", lambda: tokens.pose(pose))
+    return pose
+
+
+def _skill(table: Table, key: str) -> str:
+    name = table.text(key)
+    _check_line(table, key, lambda: tokens.skill(name))
+    return name
+
+
+def _skills(table: Table, key: str) -> tuple[str, ...]:
+    names = table.texts(key)
+    for name in names:
+        _check_line(table, key, partial(tokens.skill, name))
+    return names
+
+
+def _melody(table: Table, key: str) -> Notes:
+    notes = table.list(key, "[note, value] pairs")
+    if not notes or not all(_is_note(note) for note in notes):
+        raise table.unlike(key, "a list of [note, value] pairs")
+    if not re.fullmatch(r"[\w -]+", key):
+        raise table.wrong(key, "a sound's name is of letters, digits, spaces, - and _")
+    melody = tuple((note, value) for note, value in notes)
+    _check_line(table, key, lambda: tokens.melody(melody))
+    return melody
+
+
+def _is_note(note: Any) -> bool:
+    pair = isinstance(note, list) and len(note) == 2
+    return pair and all(type(number) is int and 0 <= number < 1000 for number in note)
+
+
+def _check_line(table: Table, key: str, make: Callable[[], bytes]) -> None:
+    """Make a line for the board; raise its refusal with the place in the file."""
+    try:
+        make()
+    except RobotError as error:
+        raise table.wrong(key, str(error)) from error
+
+
+def _merged(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
+    """Return `base` overridden by `over`, key by key; a mood with a posture is replaced whole."""
+    merged = dict(base)
+    for key, value in over.items():
+        old = merged.get(key)
+        deeper = isinstance(old, Mapping) and isinstance(value, Mapping) and "posture" not in value
+        merged[key] = _merged(old, value) if deeper else value  # type: ignore[arg-type] # see above
+    return merged

@@ -1,37 +1,38 @@
-"""The lines that may be sent to a board: one list, and the one gate that every byte passes.
+"""The lines that may be sent to a board, and the only writer of lines.
 
-OpenCat's tokens include ones that erase the joints' calibration, rewrite its memory, or make the
-robot walk off a table. So nothing is forbidden here: what is not allowed cannot be sent.
+Some of OpenCat's tokens erase the calibration of the joints, rewrite the memory, or make the robot
+walk off a table. Therefore this is a list of what is allowed; nothing else can be sent.
 """
 
+import math
 import re
 from collections.abc import Iterable, Mapping
 
 from robot.errors import RobotError
 
-LINE_MAX = 30
-"""Longest line, its end included [bytes]; older boards say that they take no more."""
+MAX_LINE_BYTES = 30
+"""Longest line with its end [bytes]; the limit that older boards report."""
 
-ANGLE_MAX = 125
-"""Largest angle either way in a line [deg]: boards keep them in a signed byte, and 126 is "~"."""
+MAX_ANGLE_DEG = 125
+"""Largest absolute angle in a line [°]: boards keep it in a signed byte, and 126 is "~"."""
 
 JOINTS = 16
-"""Numbers of joints on a board; a robot has fewer."""
+"""Number of joints on a board; a robot has fewer."""
 
-NOTE_MAX = 36
-"""Highest note: three octaves from the lowest, 1; 0 is a pause."""
+MAX_NOTE = 36
+"""Highest note, three octaves above the lowest, 1; 0 is a pause."""
 
-LENGTH_MAX = 64
-"""Largest length of a note, the note's value: 4 is a quarter of a second, 8 an eighth."""
+MAX_NOTE_VALUE = 64
+"""Largest note value: 4 is a quarter of a second, 8 an eighth."""
 
 QUERY = b"?\n"
 """Asks for model and version."""
 
 ANGLES = b"j\n"
-"""Asks for the joints' angles, as the board commanded them."""
+"""Asks for the commanded joint angles."""
 
 REST = b"d\n"
-"""Lies down and takes the power from every servo."""
+"""Lies down and switches every servo off."""
 
 _FIXED = frozenset({QUERY, ANGLES, REST})
 _SKILL = re.compile(r"[a-z][A-Za-z0-9]{1,8}")
@@ -50,8 +51,8 @@ _REFUSED_SKILLS = {
 }
 """Skills that are not for a desk, and why."""
 
-_WALKS_AT_END = frozenset("FBLRXD")
-"""A skill that ends in one of these is a gait, and gaits go on until somebody stops them."""
+_GAIT_SUFFIXES = frozenset("FBLRXD")
+"""Last letters of gaits; a gait goes on until it is stopped."""
 
 
 def skill(name: str) -> bytes:
@@ -60,38 +61,38 @@ def skill(name: str) -> bytes:
     >>> skill("sit")
     b'ksit\n'
     """
-    return admitted(f"k{name}\n".encode("latin-1", "replace"))
+    return checked(f"k{name}\n".encode("latin-1", "replace"))
 
 
 def pose(angles: Mapping[int, int]) -> bytes:
-    r"""Return the line that moves joints together: {number of the joint: angle [deg]}.
+    r"""Return the line that moves joints together, {number of the joint: angle [°]}.
 
     >>> pose({0: 30, 8: -20})
     b'i0 30 8 -20\n'
     """
-    return admitted(f"i{_pairs(angles.items())}\n".encode())
+    return checked(f"i{_pairs(angles.items())}\n".encode())
 
 
 def melody(notes: Iterable[tuple[int, int]]) -> bytes:
-    r"""Return the line that beeps: (note, its value) each.
+    r"""Return the line that plays (note, value) pairs.
 
     >>> melody([(14, 8), (16, 8)])
     b'b14 8 16 8\n'
     """
-    return admitted(f"b{_pairs(notes)}\n".encode())
+    return checked(f"b{_pairs(notes)}\n".encode())
 
 
 def _pairs(pairs: Iterable[tuple[int, int]]) -> str:
-    return " ".join(f"{one} {other}" for one, other in pairs)
+    return " ".join(f"{first} {second}" for first, second in pairs)
 
 
-def admitted(line: bytes) -> bytes:
+def checked(line: bytes) -> bytes:
     """Return the line if it may be sent.
 
     Raises
     ------
     RobotError
-        If it may not, and why.
+        If it may not, with the reason.
     """
     reason = why_not(line)
     if reason is not None:
@@ -100,11 +101,11 @@ def admitted(line: bytes) -> bytes:
 
 
 def why_not(line: bytes) -> str | None:
-    """Say why a line may not be sent; None if it may."""
+    """Return why a line may not be sent; None if it may."""
     if line in _FIXED:
         return None
-    if len(line) > LINE_MAX:
-        return f"it has more than {LINE_MAX} bytes"
+    if len(line) > MAX_LINE_BYTES:
+        return f"it has more than {MAX_LINE_BYTES} bytes"
     text = line.decode("latin-1")
     if text[:1] == "k" and text.endswith("\n"):
         return _why_not_skill(text[1:-1])
@@ -112,13 +113,13 @@ def why_not(line: bytes) -> str | None:
         numbers = [int(number) for number in found[1].split()]
         if max(numbers[::2]) >= JOINTS:
             return f"joints are numbered from 0 to {JOINTS - 1}"
-        if max(abs(angle) for angle in numbers[1::2]) > ANGLE_MAX:
-            return f"angles go from -{ANGLE_MAX} to {ANGLE_MAX} degrees"
+        if max(abs(angle) for angle in numbers[1::2]) > MAX_ANGLE_DEG:
+            return f"angles go from -{MAX_ANGLE_DEG} to {MAX_ANGLE_DEG} degrees"
         return None
-    if found := _MELODY.fullmatch(text):  # in pairs: one number alone is stored as the volume
+    if found := _MELODY.fullmatch(text):  # pairs only: a single number is stored as the volume
         numbers = [int(number) for number in found[1].split()]
-        if max(numbers[::2]) > NOTE_MAX or not all(0 < n <= LENGTH_MAX for n in numbers[1::2]):
-            return f"notes go from 0 to {NOTE_MAX} and their values from 1 to {LENGTH_MAX}"
+        if max(numbers[::2]) > MAX_NOTE or not all(0 < n <= MAX_NOTE_VALUE for n in numbers[1::2]):
+            return f"notes go from 0 to {MAX_NOTE} and their values from 1 to {MAX_NOTE_VALUE}"
         return None
     return "only skills, poses, melodies, rest and two questions are (k, i, b, d, ?, j)"
 
@@ -126,10 +127,41 @@ def why_not(line: bytes) -> str | None:
 def _why_not_skill(name: str) -> str | None:
     if not _SKILL.fullmatch(name):
         return f"{name!r} is no name of a skill: 2 to 9 letters and digits, a small one first"
-    if "calib".startswith(name):  # a board may take a skill by the beginning of its name
+    if "calib".startswith(name):  # a board may accept the beginning of a name
         return f"the skill {name!r} is for calibration"
     if name in _REFUSED_SKILLS:
         return f"the skill {name!r} {_REFUSED_SKILLS[name]}"
-    if name[-1] in _WALKS_AT_END:
+    if name[-1] in _GAIT_SUFFIXES:
         return f"the skill {name!r} walks away"
     return None
+
+
+class RateLimitedWriter:
+    """Collects allowed lines for the port, at most `per_second`."""
+
+    def __init__(self, per_second: float) -> None:
+        self.sent = 0
+        """Number of lines sent."""
+        self._interval = 1.0 / per_second
+        self._last = -math.inf
+        self._out = bytearray()
+
+    def is_free(self, now: float) -> bool:
+        """Return whether a line may be sent at time `now` [s]."""
+        return now - self._last >= self._interval
+
+    def send(self, line: bytes, now: float) -> None:
+        """Send a line at time `now` [s]; raises RobotError for one that may not be sent."""
+        self._out += checked(line)
+        self._last = now
+        self.sent += 1
+
+    def bytes_to_send(self) -> bytes:
+        """Return the bytes to write, once."""
+        data = bytes(self._out)
+        self._out.clear()
+        return data
+
+    def clear(self) -> None:
+        """Drop the lines that were not written."""
+        self._out.clear()

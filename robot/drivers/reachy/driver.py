@@ -72,7 +72,7 @@ class ReachyDriver:
         self._targeted: float | None = None
         self._heard: float | None = None
         self._said: dict[str, Any] = {}
-        self._reader = LineReader(LINE_MAX)
+        self.reader = LineReader(LINE_MAX)
         self._out = bytearray()
         self._counts = {"frames_sent": 0, "frames_received": 0, "skipped": 0, "dropped": 0}
         self._sessions = 0
@@ -109,7 +109,7 @@ class ReachyDriver:
         """Begin, or begin again."""
         self._open, self._heard, self._flight = True, None, None
         self._targeted = None
-        self._reader.clear()
+        self.reader.clear()
 
     def port_lost(self) -> None:
         """Send nothing until the port is back."""
@@ -128,7 +128,7 @@ class ReachyDriver:
 
     def receive(self, data: bytes, now: float) -> None:
         """Take bytes from the line at time `now` [s]."""
-        for line in self._reader.feed(data):
+        for line in self.reader.feed(data):
             said = _understood(line)
             if said is None:
                 self._counts["skipped"] += 1
@@ -180,7 +180,9 @@ class ReachyDriver:
             joints=MappingProxyType(dict(zip(moves.JOINTS, joints, strict=False))),
             motion=playing.name if known and playing is not None else None,
             silence=None if self._heard is None else now - self._heard,
-            counts=LinkCounts(crc_errors=self._reader.cut, sessions=self._sessions, **self._counts),
+            counts=LinkCounts(
+                crc_errors=self.reader.too_long, sessions=self._sessions, **self._counts
+            ),
         )
 
     # --- Small things ----------------------------------------------------------------------------

@@ -8,8 +8,7 @@ import pytest
 
 from affect import Emotion
 from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings import Settings
-from robot.drivers.opencat.settings_file import load_settings
+from robot.drivers.opencat.settings import Settings, load_settings
 from robot.simulators.opencat.quirks import BoardQuirks
 from robot.simulators.opencat.simulator import OpenCatSimulator
 

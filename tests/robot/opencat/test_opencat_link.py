@@ -7,9 +7,9 @@ from itertools import pairwise
 import pytest
 
 from affect import Emotion
-from robot.drivers.opencat.exchange import LOST_TRIES, QUESTION_WITHIN
-from robot.drivers.opencat.host import REST_ASK_EVERY, OpenCatHost
-from robot.drivers.opencat.settings_file import load_settings, settings_of
+from robot.drivers.opencat.echo import MAX_QUESTION_TRIES, QUESTION_TIMEOUT_S
+from robot.drivers.opencat.host import REST_INTERVAL_S, OpenCatHost
+from robot.drivers.opencat.settings import load_settings, parse_settings
 from robot.protocol import messages as m
 from robot.simulators.opencat.quirks import BoardQuirks
 from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
@@ -68,7 +68,7 @@ def test_nybble_is_known_with_its_eleven_joints(desk):
 @pytest.mark.parametrize("model", ["", "bittle"])
 def test_an_old_board_that_does_not_say_what_it_is_shows_moods_all_the_same(model, desk, quiet):
     robot = OpenCatSimulator(1, quirks=replace(quiet, answers_query=False))
-    d = desk(robot, settings_of({"opencat": {"model": model}}, "mine.toml")).ready()
+    d = desk(robot, parse_settings({"opencat": {"model": model}}, "mine.toml")).ready()
     assert d.host.catalogue.name == "OpenCat"
     assert len(d.host.catalogue.joints) == (9 if model else 0)
     d.feel("happy")
@@ -274,7 +274,7 @@ def test_an_echo_after_the_questions_is_no_echo_of_the_command_given_up(desk, qu
     assert host.bytes_to_send() == b"kbuttUp\n"
     host.tick(8.5)
     assert host.bytes_to_send() == b"j\n", "its echo is late"
-    host.tick(8.5 + QUESTION_WITHIN)
+    host.tick(8.5 + QUESTION_TIMEOUT_S)
     assert host.bytes_to_send() == b"j\n", "a question is repeated with the same token"
     host.receive(b"?\r\n", 10.6)  # the late echo of some earlier question settles nothing
     host.tick(10.7)
@@ -357,7 +357,7 @@ def test_a_silent_board_is_lost_within_the_stated_time_and_found_again(desk, qui
     d.settle()
     d.run(1.0)
     robot.held = True
-    bound = load_settings().ask_every + LOST_TRIES * QUESTION_WITHIN + 0.5
+    bound = load_settings().ask_every + MAX_QUESTION_TRIES * QUESTION_TIMEOUT_S + 0.5
     d.until(lambda: d.state == "degraded", bound)
     d.until(lambda: d.state == "lost", bound)
     assert d.telemetry.acknowledged is None
@@ -386,7 +386,7 @@ def test_a_robot_that_nobody_wants_anything_of_lies_down_and_wakes_for_a_new_moo
     assert d.lines[-1] == "d"
     assert not d.robot.board.body.powered
     assert d.telemetry.acknowledged is None
-    d.run(3 * REST_ASK_EVERY)
+    d.run(3 * REST_INTERVAL_S)
     assert set(d.lines[-3:]) == {"d"}, "no other question: it would switch balancing on"
     assert d.state == "ready"
     d.feel("happy")  # nothing new: it is let lie
@@ -415,7 +415,7 @@ def test_a_robot_with_a_low_battery_is_called_limp_and_is_not_asked_to_move(desk
 
 def test_a_skill_that_the_board_does_not_know_is_counted_and_not_insisted_on(desk):
     said = {"bittle": {"moods": {"happy": {"posture": "zz"}}}}
-    d = desk(settings=settings_of(said, "mine.toml")).ready()
+    d = desk(settings=parse_settings(said, "mine.toml")).ready()
     d.feel("angry")
     d.settle()
     d.feel("happy")
@@ -564,10 +564,10 @@ def test_a_robot_that_lies_is_let_lie_though_its_sign_of_life_is_lost(desk, quie
     d.until(lambda: d.telemetry.limp, 140.0)
     before = len(d.sent)
     robot.held = True
-    d.until(lambda: d.state == "lost", REST_ASK_EVERY + 15.0)
+    d.until(lambda: d.state == "lost", REST_INTERVAL_S + 15.0)
     robot.held = False
     d.until(lambda: d.state == "ready", 5.0)
-    d.run(2 * REST_ASK_EVERY)
+    d.run(2 * REST_INTERVAL_S)
     assert not any(line[0] == "k" for line in d.lines[before:])
     assert not robot.board.body.powered
     assert d.telemetry.limp

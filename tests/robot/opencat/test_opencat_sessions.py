@@ -15,7 +15,7 @@ from affect import Emotion
 from robot.drivers import DRIVERS
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings_file import load_settings
+from robot.drivers.opencat.settings import load_settings
 from robot.errors import RobotError
 from robot.link.spacing import SpacedPort
 from robot.protocol import messages as m
@@ -94,7 +94,7 @@ def test_an_hour_with_an_ugly_board(kind, seed, desk):
     assert not d.robot.board.forbidden
     assert d.robot.board.lost == 0
     assert watch.claims > 50
-    assert max(len(text) for _, text in d.robot.board.log) < tokens.LINE_MAX
+    assert max(len(text) for _, text in d.robot.board.log) < tokens.MAX_LINE_BYTES
 
 
 def _word(emotion) -> str:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings_file import load_settings, settings_of
+from robot.drivers.opencat.settings import load_settings, parse_settings
 from robot.errors import RobotError
 
 ALLOWED = b"kibd?j"
@@ -29,7 +29,7 @@ def test_no_other_token_is_admitted_with_whatever_behind_it(token, rest):
     line = (token + rest + "\n").encode("latin-1", "replace")
     if line[0] not in ALLOWED:
         with pytest.raises(RobotError):
-            tokens.admitted(line)
+            tokens.checked(line)
 
 
 @pytest.mark.parametrize("line", [
@@ -46,13 +46,13 @@ def test_no_other_token_is_admitted_with_whatever_behind_it(token, rest):
 ])  # fmt: skip
 def test_this_is_never_sent(line):
     with pytest.raises(RobotError, match="is not sent"):
-        tokens.admitted(line)
+        tokens.checked(line)
 
 
 @pytest.mark.parametrize("line", [b"?\n", b"j\n", b"d\n", b"ksit\n", b"kbuttUp\n", b"kpu1\n",
                                   b"i0 -40 8 125\n", b"b14 8 0 4\n"])  # fmt: skip
 def test_this_may_be_sent(line):
-    assert tokens.admitted(line) == line
+    assert tokens.checked(line) == line
 
 
 @given(st.text(string.printable, max_size=12))
@@ -115,7 +115,7 @@ def test_settings_that_may_not_be_sent_are_refused_in_one_line(mood, tmp_path):
 ])  # fmt: skip
 def test_settings_that_make_no_sense_are_refused_in_one_line(said, reason):
     with pytest.raises(RobotError, match=reason) as refusal:
-        settings_of(said, "mine.toml")
+        parse_settings(said, "mine.toml")
     assert "\n" not in str(refusal.value)
 
 
@@ -125,7 +125,7 @@ def test_settings_that_make_no_sense_are_refused_in_one_line(said, reason):
                                  st.dictionaries(st.text(max_size=4), st.integers()))))  # fmt: skip
 def test_a_mood_of_any_content_is_refused_or_may_be_sent(mood):
     try:
-        settings = settings_of({"bittle": {"moods": {"happy": mood}}}, "mine.toml")
+        settings = parse_settings({"bittle": {"moods": {"happy": mood}}}, "mine.toml")
     except RobotError as error:
         refusal = str(error)
     else:
@@ -140,7 +140,7 @@ def test_a_mood_of_any_content_is_refused_or_may_be_sent(mood):
 
 def test_poses_are_kept_within_the_joints_limits():
     happy = {"posture": "sit", "pose": {"head tilt": 90, "tail": -300}}
-    settings = settings_of({"nybble": {"moods": {"happy": happy}}}, "mine.toml")
+    settings = parse_settings({"nybble": {"moods": {"happy": happy}}}, "mine.toml")
     assert settings.behaviours["nybble"].moods["happy"].pose == {1: 40, 2: -120}
 
 
@@ -154,7 +154,7 @@ def test_the_bundled_settings_may_be_sent_and_all_moods_differ():
 def test_nothing_leaves_a_host_but_through_the_gate(monkeypatch):
     host = OpenCatHost()
     host.port_opened(0.0)
-    monkeypatch.setattr(tokens, "admitted", lambda line: (_ for _ in ()).throw(RobotError("gate")))
+    monkeypatch.setattr(tokens, "checked", lambda line: (_ for _ in ()).throw(RobotError("gate")))
     with pytest.raises(RobotError, match="gate"):
         host.tick(60.0)
     assert host.bytes_to_send() == b""

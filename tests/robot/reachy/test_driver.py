@@ -175,7 +175,7 @@ def test_garbage_raises_nothing_and_is_not_kept(chunks):
     for chunk in chunks:
         desk.driver.receive(chunk, desk.now)
         desk.driver.receive(b"x" * 5000, desk.now)
-    assert len(desk.driver._reader.begun) <= LINE_MAX
+    assert len(desk.driver.reader.partial) <= LINE_MAX
     assert desk.driver.telemetry(desk.now).counts.crc_errors >= min(1, len(chunks))
     desk.driver.receive(b"\n", desk.now)
     desk.run(0.2)

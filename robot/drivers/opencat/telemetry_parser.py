@@ -1,4 +1,4 @@
-"""What a board says without being an echo: its joints, its battery, its falls."""
+"""Reads what a board reports besides echoes: joint angles, battery, falls and errors."""
 
 import math
 import re
@@ -11,46 +11,44 @@ from robot.drivers.opencat.tokens import JOINTS
 _ANGLES = re.compile(r"-?\d{1,3},\s*" * (JOINTS - 1) + r"-?\d{1,3},?")
 
 _COMPLAINTS = ("Low power", "EXCEPTION", "Undefined token", "?")
-"""How lines begin that say what is wrong: of its battery, a fall, a token and a skill."""
+"""Beginnings of error lines: about the battery, a fall, a token and a skill."""
 
-WEAK_FOR = 25.0
-"""A board that has said so long ago that its battery is low, and not again, has power [s]; while it
-is low it says so every 10 s, and not every board says when it is not low any more."""
+LOW_BATTERY_S = 25.0
+"""Time after a low battery report without another one after which the board has power again [s]. It
+reports a low battery every 10 s, and not every board reports the end of it."""
 
-News = Literal["known", "power", "weak", "fell", "unknown"]
+Report = Literal["known", "power", "weak", "fell", "unknown"]
+"""known: nothing to do. power: the board executes a moving command. weak: the battery is low.
+fell: the robot moves by itself. unknown: text without a meaning here."""
 
 
-class Hearsay:
-    """What a board has said of itself."""
+class TelemetryParser:
+    """What a board has reported."""
 
     def __init__(self) -> None:
         self._weak_until = -math.inf
         self.complaint: str | None = None
-        """What it last complained of; its owner says when that is over, or its battery does."""
+        """The last error message; the caller clears it, or a battery report does."""
         self.angles: dict[str, float] = {}
-        """Angles of the joints by name [rad], as the board commanded them; it measures none."""
+        """Commanded joint angles by name [rad]; the board measures none."""
 
-    def forget(self) -> None:
-        """Forget it all but a complaint, which may be why: the board has started anew."""
+    def restart(self) -> None:
+        """Forget everything except an error message, which may be the reason of the restart."""
         self._weak_until = -math.inf
         self.angles = {}
 
     def is_weak(self, now: float) -> bool:
-        """Whether the battery is low at time `now` [s]: the board echoes, and nothing moves."""
+        """Return whether the battery is low at `now` [s]: the board echoes, and nothing moves."""
         return now < self._weak_until
 
-    def take(self, line: str, model: str, now: float) -> News:
-        """Take a line; return what it was about.
-
-        known: nothing to be done. power: a command that moves is taken up. weak: the battery is
-        low. fell: the robot does something by itself.
-        """
+    def parse(self, line: str, model: str, now: float) -> Report:
+        """Process a line; return what it reports."""
         if line.startswith(_COMPLAINTS) and len(line) > 1:  # "?" alone is an echo
             self.complaint = complaint_of(line)
-        if line == "G":  # balancing is switched on again by the first line after a rest
+        if line == "G":  # the first line after a rest switches balancing on again
             return "power"
         if line.startswith("Low power"):
-            self._weak_until = now + WEAK_FOR
+            self._weak_until = now + LOW_BATTERY_S
             return "weak"
         if line.startswith("EXCEPTION"):
             return "fell"
