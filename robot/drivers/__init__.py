@@ -8,7 +8,7 @@ from robot.drivers.opencat.host import OpenCatHost
 from robot.drivers.opencat.settings import load_settings as opencat_settings
 from robot.drivers.pleo import timing as pleo
 from robot.drivers.pleo.driver import PleoDriver
-from robot.drivers.pleo.settings_file import load_settings as pleo_settings
+from robot.drivers.pleo.settings import load_settings as pleo_settings
 from robot.drivers.reachy.driver import ReachyDriver
 from robot.drivers.reachy.line import open_reachy
 from robot.errors import RobotError
@@ -50,7 +50,7 @@ DRIVERS |= {
     "cubeling": DriverKind(_cubeling, timing.BAUD, timing.ANSWER_WITHIN),
     "opencat": _OPENCAT,
     "nybble": _OPENCAT,  # so that "sim:nybble" needs no protocol named
-    "pleo": DriverKind(_pleo, pleo.BAUD, pleo.ANSWER_WITHIN),
+    "pleo": DriverKind(_pleo, pleo.BAUD, pleo.ANSWER_TIMEOUT_S),
     # It has no serial port of its own; its daemon is reached over the network, and it gets up.
     "reachy": DriverKind(_reachy, 0, 10.0, open_reachy),
 }

@@ -1,1 +1,1 @@
-"""The protocol "pleo": the host's end of the Pleo Monitor console."""
+"""The protocol "pleo": the host side of the Pleo Monitor console."""

@@ -1,7 +1,7 @@
-"""Every command that the driver can send. There is no other way to the console.
+"""Every command that the driver can send; nothing else reaches the console.
 
-Nothing here writes to Pleo's internal flash, formats, or restarts: a full flash makes it a brick.
-A test holds these functions against a list.
+None of them writes to Pleo's internal flash, formats, or restarts: a full flash makes it a brick.
+A test compares these functions with a list.
 """
 
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ class Command:
     """One line for the console."""
 
     text: str
-    """What it says, without its end."""
+    """The line without its end."""
 
-    within: float = timing.SHORT_WITHIN
-    """How long to wait for its prompt [s]."""
+    timeout: float = timing.SHORT_TIMEOUT_S
+    """Time for its prompt [s]."""
 
     sets: tuple[str, int] | None = None
-    """What it sets to which number, if it does: ("MOTION SPEED", 100), ("JOINT MOVE 8", -10)."""
+    """The value that it sets, if any: ("MOTION SPEED", 100), ("JOINT MOVE 8", -10)."""
 
     @property
     def line(self) -> bytes:
@@ -28,48 +28,48 @@ class Command:
         return f"{self.text}\n".encode("latin-1")
 
 
-NUDGE = Command("", timing.SEEK_EVERY)
-"""An empty line: does nothing, and is answered by a prompt."""
+NUDGE = Command("", timing.SEARCH_INTERVAL_S)
+"""An empty line: it has no effect, and is answered by a prompt."""
 
-APP_UNLOAD = Command("APP UNLOAD", timing.LONG_WITHIN)
+APP_UNLOAD = Command("APP UNLOAD", timing.LONG_TIMEOUT_S)
 """Ends Pleo's own behaviour."""
 
-JOINT_NEUTRAL = Command("JOINT NEUTRAL", timing.LONG_WITHIN)
-"""Takes every joint to zero."""
+JOINT_NEUTRAL = Command("JOINT NEUTRAL", timing.LONG_TIMEOUT_S)
+"""Moves every joint to zero."""
 
 STATS_POWER = Command("STATS POWER")
-"""Tells, among much else, how full the battery is."""
+"""Reports the battery level, among others."""
 
 
 def joint_move(joint: int, degrees: int) -> Command:
-    """Send a joint on its way; the prompt does not wait until it is there."""
+    """Move a joint; the prompt does not wait for the end of the move."""
     return _setting(f"JOINT MOVE {joint}", degrees)
 
 
 def motion_speed(percent: int) -> Command:
-    """Set how fast motions are played."""
+    """Set the speed of motions."""
     return _setting("MOTION SPEED", percent)
 
 
 def sound_speed(percent: int) -> Command:
-    """Set how fast sounds are played."""
+    """Set the speed of sounds."""
     return _setting("SOUND SPEED", percent)
 
 
 def sound_volume(percent: int) -> Command:
-    """Set how loud sounds are."""
+    """Set the volume of sounds."""
     return _setting("SOUND VOLUME", percent)
 
 
-def motion_play(name: str, within: float) -> Command:
-    """Play a motion's file from its beginning, so that twice is not the same as once."""
-    return Command(f"MOTION PLAY {name}", within)
+def motion_play(name: str, timeout: float) -> Command:
+    """Play the file of a motion from its start; a repetition starts it again."""
+    return Command(f"MOTION PLAY {name}", timeout)
 
 
-def sound_play(name: str, within: float) -> Command:
-    """Play a sound's file from its beginning, so that twice is not the same as once."""
-    return Command(f"SOUND PLAY {name}", within)
+def sound_play(name: str, timeout: float) -> Command:
+    """Play the file of a sound from its start; a repetition starts it again."""
+    return Command(f"SOUND PLAY {name}", timeout)
 
 
-def _setting(what: str, value: int) -> Command:
-    return Command(f"{what} {value}", sets=(what, value))
+def _setting(name: str, value: int) -> Command:
+    return Command(f"{name} {value}", sets=(name, value))

@@ -1,127 +1,120 @@
-"""One command on its way at a time: sent after a prompt, answered by a prompt, or nudged for."""
+"""Sends one command at a time to the console and waits for its prompt; nudges it if need be."""
 
 from dataclasses import dataclass
 from typing import Literal
 
 from robot.drivers.pleo import timing
 from robot.drivers.pleo.commands import NUDGE, Command
-from robot.drivers.pleo.reading import Answer, ConsoleReader
+from robot.drivers.pleo.console_reader import Answer, ConsoleReader
 
 Outcome = Literal["answered", "unsure", "silent"]
-"""answered: the prompt came. unsure: it came only after a nudge, and no text with it, so the
-command or its answer was lost. silent: no prompt came at all."""
+"""answered: the prompt came. unsure: it came only after a nudge and without text, so the command or
+its answer was lost. silent: no prompt came at all."""
 
 
 @dataclass(frozen=True)
-class Landing:
-    """How a command ended."""
+class CommandResult:
+    """The result of a command."""
 
     command: Command
-    """What was sent."""
+    """The command."""
 
     sent: float
-    """When [s]."""
+    """Time of the send [s]."""
 
     ended: float
-    """When the prompt came [s]; infinity if none stands."""
+    """Time of the prompt [s]; infinite without one."""
 
     outcome: Outcome
-    """Whether the console took it."""
+    """Whether the console has executed it."""
 
     answer: Answer
-    """What it said."""
+    """The text of the answer."""
 
 
 @dataclass
-class Flight:
-    """The command that is on its way."""
+class PromptedCommand:
+    """The command that waits for its prompt."""
 
     command: Command
-    """What was sent."""
+    """The command."""
 
     sent: float
-    """When [s]."""
+    """Time of the send [s]."""
 
     patient: bool
-    """Whether text may follow the prompt, as it does while Pleo's own behaviour still talks."""
+    """Whether text may follow the prompt, as it does while Pleo's own behaviour is running."""
 
     asked: float
-    """When it, or a nudge for it, was last sent [s]."""
+    """Time of its last send or nudge [s]."""
 
     nudges: int = 0
-    """How often the answer was asked for."""
+    """Number of nudges."""
 
 
 class Console:
-    """The console at the far end of a line.
-
-    Parameters
-    ----------
-    boot_text
-        As for `ConsoleReader`.
-    """
+    """The console; for `boot_text` see `ConsoleReader`."""
 
     def __init__(self, boot_text: tuple[str, ...]) -> None:
         self.reader = ConsoleReader(boot_text)
-        """What it says."""
+        """Reads its answers."""
         self.sent = 0
-        """Lines sent, the empty ones included."""
+        """Lines sent, empty lines included."""
         self.answered = 0
         """Answers that ended with a prompt."""
-        self.flight: Flight | None = None
-        """What is on its way; None when the prompt is free."""
+        self.pending: PromptedCommand | None = None
+        """The pending command; None while the console is free."""
         self._out = bytearray()
 
     def send(self, command: Command, now: float, patient: bool = False) -> None:
-        """Send a command. Whoever calls this has seen that the prompt is free, or looks for it."""
-        self.flight = Flight(command, now, patient, asked=now)
+        """Send a command. The caller knows that the console is free, or searches for it."""
+        self.pending = PromptedCommand(command, now, patient, asked=now)
         self.reader.begin(command.text)
         self._write(command)
 
-    def tick(self, now: float) -> Landing | None:
-        """Return how the command ended, once, if it has; nudge the console if it is overdue."""
-        flight = self.flight
-        if flight is None:
+    def tick(self, now: float) -> CommandResult | None:
+        """Return the result of the pending command, once; nudge an overdue console."""
+        pending = self.pending
+        if pending is None:
             return None
-        settle = timing.NUDGED_SETTLES if flight.nudges or flight.patient else None
-        if self.reader.ended(now, settle or timing.PROMPT_SETTLES):
-            return self._land(flight)
-        wait = timing.NUDGE_EVERY if flight.nudges else flight.command.within
-        if now - flight.asked < wait or self.reader.prompt_came is not None:
-            return None  # a prompt that still has to settle is not asked for
-        if flight.patient and self.reader.answer.prompted:
-            return self._land(flight)
-        if flight.command is NUDGE and flight.patient:  # a search: its owner decides what is next
-            return self._land(flight, silent=True)
-        if flight.nudges >= timing.NUDGES_MAX:
-            return self._land(flight, silent=True)
-        flight.nudges += 1
-        flight.asked = now
+        settle = timing.NUDGED_SETTLE_S if pending.nudges or pending.patient else None
+        if self.reader.ended(now, settle or timing.PROMPT_SETTLE_S):
+            return self._finish(pending)
+        wait = timing.NUDGE_INTERVAL_S if pending.nudges else pending.command.timeout
+        if now - pending.asked < wait or self.reader.prompt_came is not None:
+            return None  # also while a prompt still has to settle
+        if pending.patient and self.reader.answer.prompted:
+            return self._finish(pending)
+        searching = pending.command is NUDGE and pending.patient  # the caller sends the next one
+        if searching or pending.nudges >= timing.MAX_NUDGES:
+            return self._finish(pending, silent=True)
+        pending.nudges += 1
+        pending.asked = now
         self._write(NUDGE)
         return None
 
     def give_up(self) -> None:
-        """Forget what is on its way and what was not yet written."""
-        self.flight = None
+        """Forget the pending command and the bytes that were not written."""
+        self.pending = None
         self._out.clear()
         self.reader.begin()
 
     def bytes_to_send(self) -> bytes:
-        """Return what is to be written to the line, once."""
+        """Return the bytes to write, once."""
         data = bytes(self._out)
         self._out.clear()
         return data
 
-    def _land(self, flight: Flight, silent: bool = False) -> Landing:
+    def _finish(self, pending: PromptedCommand, silent: bool = False) -> CommandResult:
         came = self.reader.prompt_came
         ended = float("inf") if came is None else came
         answer = self.reader.finish()
-        self.flight = None
+        self.pending = None
         self.answered += not silent
         outcome: Outcome = "silent" if silent else "answered"
-        if flight.nudges and not silent and not answer.spoke and flight.command is not NUDGE:
+        if pending.nudges and not silent and not answer.spoke and pending.command is not NUDGE:
             outcome = "unsure"
-        return Landing(flight.command, flight.sent, ended, outcome, answer)
+        return CommandResult(pending.command, pending.sent, ended, outcome, answer)
 
     def _write(self, command: Command) -> None:
         self.sent += 1

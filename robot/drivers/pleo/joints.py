@@ -1,4 +1,4 @@
-"""The joints of a Pleo: limits, steps and speeds, and the angles that it can be sent to.
+"""The joints of a Pleo: limits, steps and speeds.
 
 Source: OliverHoffmann/PleoCommand (2010), firmware 1.1.
 """
@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from robot.contract.catalogue import JointLimits
 
-ASSUMED_SPEED = 50.0
-"""Top speed where none was published [°/s]: about that of the joints beside it."""
+ASSUMED_SPEED_DEG_PER_S = 50.0
+"""Top speed of a joint without a published one [°/s]: about that of the joints next to it."""
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Joint:
     """One joint. Zero is neutral; positive is forward, up or right."""
 
     name: str
-    """What it is called."""
+    """Its name."""
 
     low: int
     """Smallest angle [°]."""
@@ -28,17 +28,17 @@ class Joint:
     step: int
     """Its angles are multiples of this [°]."""
 
-    speed: float = ASSUMED_SPEED
+    speed: float = ASSUMED_SPEED_DEG_PER_S
     """Top speed [°/s]."""
 
     @property
     def limits(self) -> JointLimits:
-        """The same in the catalogue's units."""
+        """The limits in the units of a catalogue."""
         low, high, speed = map(math.radians, (self.low, self.high, self.speed))
         return JointLimits(self.name, low, high, speed)
 
     def nearest(self, degrees: float) -> int:
-        """Return the closest angle [°] that it can be sent to: within its limits and on a step.
+        """Return the closest angle [°] within its limits and on a step.
 
         >>> JOINTS[8].name, JOINTS[8].nearest(-9.2), JOINTS[8].nearest(40)
         ('torso', -10, 14)
@@ -47,7 +47,7 @@ class Joint:
         return self.step * round(min(max(degrees / self.step, lowest), highest))
 
     def time(self, start: float | None, end: float) -> float:
-        """Return how long it takes from one angle to another [s]; from None, at worst."""
+        """Return the time from one angle to another [s]; from None, the longest possible one."""
         way = max(self.high - end, end - self.low) if start is None else abs(end - start)
         return way / self.speed
 
@@ -66,10 +66,10 @@ JOINTS = (
     Joint("tail up", -90, 90, 1, 200),
     Joint("neck sideways", -65, 55, 1),
     Joint("neck up", -75, 75, 1, 40),
-    # One motor: 25…85 are the eyelids, −80…−30 the mouth. Its step is said to be 1 to 20.
+    # One motor: 25…85 are the eyelids, −80…−30 the mouth. Sources give a step of 1 to 20.
     Joint("eyes and mouth", -80, 85, 1, 220),
 )
-"""Every joint; its place here is its number on the console."""
+"""Every joint; its index is its number on the console."""
 
 JOINT_NUMBERS = {joint.name: number for number, joint in enumerate(JOINTS)}
 """Number of each joint by name."""

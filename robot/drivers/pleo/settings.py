@@ -1,92 +1,96 @@
-"""What Pleo plays for each mood: the settings, as they are used."""
+"""The settings: what Pleo plays for each mood."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from robot.contract.catalogue import Catalogue
+from affect.settings import Table, read
+from robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from robot.drivers.pleo import timing
-from robot.drivers.pleo.joints import JOINTS
+from robot.drivers.pleo.joints import JOINT_NUMBERS, JOINTS
+from robot.errors import RobotError
 
 BUNDLED = Path(__file__).with_name("pleo.toml")
-"""The settings that are used where a person gives none."""
+"""The bundled settings; a person's own file replaces them."""
+
+MAX_FILE_NAME_CHARS = 64
+"""Longest name of a file on Pleo [characters]."""
 
 
 @dataclass(frozen=True)
 class Clip:
-    """A motion's file and how long it lasts."""
+    """A motion file and its length."""
 
     file: str
     """Its name in Pleo's memory or on the SD card, "a:happy.umf"."""
 
     length: float
-    """How long it lasts at full speed [s]."""
+    """Its length at full speed [s]."""
 
 
 @dataclass(frozen=True)
 class Mood:
-    """How one mood shows: by a motion or by a pose, perhaps with a sound."""
+    """How a mood is shown: by a motion or by a pose, optionally with a sound."""
 
     motion: Clip | None = None
-    """What the body plays; None where it takes a pose."""
+    """The motion; None for a pose."""
 
     loop: bool = True
-    """Whether the motion is played again when it has ended."""
+    """Whether the motion is repeated."""
 
     motion_speed: int = 100
-    """How fast it is played [%]."""
+    """Speed of the motion [%]."""
 
     joints: Mapping[int, int] = field(default_factory=lambda: MappingProxyType({}))
-    """The pose: angles [°] by the joints' numbers, within limits and on steps; others are 0."""
+    """The pose: angles [°] by joint number, within limits and on steps; all others are 0."""
 
     sound: str | None = None
-    """A sound's file, played once when the mood begins."""
+    """A sound file that is played once when the mood begins."""
 
     sound_speed: int = 100
-    """How fast it is played [%]."""
+    """Speed of the sound [%]."""
 
     volume: int = 70
-    """How loud it is played [%]."""
+    """Volume of the sound [%]."""
 
     @property
     def round(self) -> float:
-        """How long one round of its motion takes [s]; 0 for a pose."""
+        """Length of the motion at its speed [s]; 0 for a pose."""
         return 0.0 if self.motion is None else self.motion.length * 100.0 / self.motion_speed
 
 
 @dataclass(frozen=True)
 class Settings:
-    """All of it."""
+    """A settings file."""
 
     moods: Mapping[str, Mood]
-    """The moods by name, neutral first."""
+    """The moods by word, neutral first."""
 
     motions: Mapping[str, Clip]
-    """What `play` can play, by name."""
+    """The motions of `play`, by name."""
 
     sounds: Mapping[str, str]
-    """Sounds' files that `play` can play, by name."""
+    """The sound files of `play`, by name."""
 
     volume: int = 70
-    """How loud Pleo is at first [%]."""
+    """First volume [%]."""
 
     battery_every: float = 30.0
-    """How often the battery is asked for [s]."""
+    """Interval at which the battery is read [s]."""
 
     mood_every: float = 0.5
     """Shortest time between two moods [s]."""
 
-    play_within: float = timing.LONG_WITHIN
-    """How long the answer to a PLAY may take before it is asked for [s]."""
+    play_within: float = timing.LONG_TIMEOUT_S
+    """Time for the answer to a PLAY [s]."""
 
     boot_text: tuple[str, ...] = ("Pleo Monitor", "Booting")
-    """Texts of which one stands in a line when the console has just started. Assumed: no source
-    tells Pleo's own."""
+    """Texts of which one is in a line after a restart. Assumed: no source has Pleo's own."""
 
     @property
     def catalogue(self) -> Catalogue:
-        """What the robot has, as far as it can be known: the console does not tell."""
+        """The catalogue, as far as it is known: the console does not report one."""
         return Catalogue(
             name="Pleo",
             firmware="Pleo Monitor",
@@ -95,3 +99,92 @@ class Settings:
             sounds=tuple(self.sounds),
             moods=tuple(self.moods),
         )
+
+
+def load_settings(path: Path | None = None) -> Settings:
+    """Return the settings in a TOML file; None for the bundled file.
+
+    Raises
+    ------
+    RobotError
+        If it cannot be read, is not TOML, or a value is wrong.
+    """
+    path = BUNDLED if path is None else path
+    top = Table(read(path, RobotError), str(path), error=RobotError)
+    top.only("console", "moods", "motions", "sounds")
+    console = top.table("console")
+    console.only("volume", "battery_every_s", "mood_every_s", "play_within_s", "boot_text")
+    volume = console.whole("volume", 0, 100, 70)
+    tables = top.tables("moods", longest=MAX_NAME_BYTES)
+    if "neutral" not in tables:
+        raise top.wrong("moods", "there must be a mood called neutral: write [moods.neutral]")
+    moods = {name: _mood(table, volume) for name, table in tables.items()}
+    clips = top.tables("motions", longest=MAX_NAME_BYTES)
+    motions = {name: _clip(table) for name, table in clips.items()}
+    sounds = top.table("sounds")
+    names = sounds.names(MAX_NAME_BYTES)
+    both = set(motions) & set(names)
+    if both:
+        raise sounds.wrong(min(both), "a motion has this name too; call one of them otherwise")
+    return Settings(
+        moods={"neutral": moods.pop("neutral"), **moods},
+        motions=motions,
+        sounds={name: _file(sounds, name) for name in names},
+        volume=volume,
+        battery_every=console.number("battery_every_s", 1, 3600, 30.0),
+        mood_every=console.number("mood_every_s", 0, 60, 0.5),
+        play_within=console.number("play_within_s", 0.5, 60, timing.LONG_TIMEOUT_S),
+        boot_text=console.texts("boot_text", ("Pleo Monitor", "Booting")),
+    )
+
+
+def _mood(table: Table, volume: int) -> Mood:
+    table.only(
+        "motion", "length_s", "loop", "motion_speed", "joints", "sound", "sound_speed", "volume"
+    )
+    if ("motion" in table) == ("joints" in table):
+        raise table.wrong("motion", "a mood needs either a motion or joints")
+    if "joints" in table and any(key in table for key in ("length_s", "loop", "motion_speed")):
+        raise table.wrong("joints", "length_s, loop and motion_speed are for a motion")
+    motion = None
+    if "motion" in table:
+        motion = Clip(_file(table, "motion"), table.number("length_s", 0.5, 600))
+    return Mood(
+        motion=motion,
+        loop=table.truth("loop", True),
+        motion_speed=table.whole("motion_speed", 1, 200, 100),
+        joints=_joints(table.table("joints")),
+        sound=_file(table, "sound") if "sound" in table else None,
+        sound_speed=table.whole("sound_speed", 1, 200, 100),
+        volume=table.whole("volume", 0, 100, volume),
+    )
+
+
+def _joints(table: Table) -> dict[int, int]:
+    angles = {}
+    for name in table.names():
+        if name not in JOINT_NUMBERS:
+            known = ", ".join(JOINT_NUMBERS)
+            raise table.wrong(name, f"no joint is called that; there are {known}")
+        joint = JOINTS[JOINT_NUMBERS[name]]
+        angles[JOINT_NUMBERS[name]] = joint.nearest(table.number(name, joint.low, joint.high))
+    return angles
+
+
+def _clip(table: Table) -> Clip:
+    table.only("file", "length_s")
+    return Clip(_file(table, "file"), table.number("length_s", 0.1, 600))
+
+
+def _file(table: Table, key: str) -> str:
+    """Return a file name: one word of ISO-8859-1, so that it is one argument of a command."""
+    name = table.text(key)
+    if (
+        not 1 <= len(name) <= MAX_FILE_NAME_CHARS
+        or any(char.isspace() for char in name)
+        or not name.isprintable()
+        or max(map(ord, name)) > 0xFF
+    ):
+        allowed = f"one word of 1 to {MAX_FILE_NAME_CHARS} printable characters of ISO-8859-1"
+        raise table.unlike(key, allowed)
+    return name

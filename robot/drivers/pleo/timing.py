@@ -1,57 +1,57 @@
-"""The console's times and limits, each named once; docs/pleo.md quotes them and a test compares.
+"""Times and limits of the console; docs/pleo.md quotes them and a test compares.
 
-The console was seen to take up to 60 s for an answer (OliverHoffmann/PleoCommand, 2010). Nobody
-waits so long here: the session is given up, the link says "lost", and the search goes on.
+The console was seen to take up to 60 s for an answer (OliverHoffmann/PleoCommand, 2010). The driver
+does not wait that long: it ends the session, reports "lost", and searches for the console again.
 """
 
 BAUD = 115200
-"""Bits a second, 8N1, no flow control."""
+"""Bits per second; 8N1, no flow control."""
 
-ANSWER_WITHIN = 15.0
-"""A console that is not ready after this long is taken for none [s]."""
+ANSWER_TIMEOUT_S = 15.0
+"""Time within which the console must be ready [s]."""
 
-SHORT_WITHIN = 2.0
-"""A command that only sets or tells something is answered within this [s], or is nudged for."""
+SHORT_TIMEOUT_S = 2.0
+"""Time for the answer to a setting or a query [s]; then the console is nudged."""
 
-LONG_WITHIN = 6.0
-"""A command that moves the body or reads the SD card is answered within this [s]."""
+LONG_TIMEOUT_S = 6.0
+"""Time for the answer to a command that moves the body or reads the SD card [s]."""
 
-PROMPT_SETTLES = 0.050
-"""A prompt at the start of a line ends the answer when nothing follows it for this long [s].
+PROMPT_SETTLE_S = 0.050
+"""Silence after a prompt at the start of a line that ends the answer [s].
 
-Longer than the gap that a USB or Bluetooth packet leaves within one answer."""
+It is longer than the gap between USB or Bluetooth packets within one answer."""
 
-STRAY_SETTLES = 0.5
-"""The same for `> ` in the middle of a line, where an answer did not end its last line [s]."""
+STRAY_SETTLE_S = 0.5
+"""The same for `> ` in the middle of a line, if an answer did not end its last line [s]."""
 
-NUDGED_SETTLES = 0.3
-"""The same after an empty line was sent into the silence: two prompts may be on their way [s]."""
+NUDGED_SETTLE_S = 0.3
+"""The same after a nudge: two prompts may be on their way [s]."""
 
-NUDGE_EVERY = 1.0
-"""An answer that is overdue is asked for with an empty line this often [s]."""
+NUDGE_INTERVAL_S = 1.0
+"""Interval of the nudges, empty lines, while an answer is overdue [s]."""
 
-NUDGES_MAX = 3
-"""After so many empty lines without a prompt the session is given up."""
+MAX_NUDGES = 3
+"""Nudges without a prompt that end the session."""
 
-SEEK_EVERY = 2.0
-"""A console that is looked for gets an empty line this often [s]."""
+SEARCH_INTERVAL_S = 2.0
+"""Interval of the empty lines during the search for a console [s]."""
 
-UNSURE_MAX = 3
-"""So many answers lost in a row end the session."""
+MAX_LOST_ANSWERS = 3
+"""Lost answers in a row that end the session."""
 
-PING_EVERY = 1.0
-"""A console that is idle is asked for a prompt this often [s]."""
+PING_INTERVAL_S = 1.0
+"""Interval at which an idle console is asked for a prompt [s]."""
 
-DEGRADED_AFTER = 1.0
-"""A command without its prompt for this long makes the link degraded [s]."""
+DEGRADED_AFTER_S = 1.0
+"""Time without a prompt after which the link is degraded [s]."""
 
-RESTART_TAKES = 2.0
-"""An answer that took so long may hold a restart that nobody saw [s]: APP UNLOAD is sent again.
+MIN_RESTART_S = 2.0
+"""Duration of an answer that may hide a restart [s]: APP UNLOAD is sent again.
 
-An assumption; a restart that is quicker is seen by its text, or when a motion is refused."""
+An assumption; a faster restart is detected by its text, or by a refused motion."""
 
-REFUSED_AGAIN = 2.0
-"""A mood that the console answered with an error text is tried again after this [s]."""
+REFUSED_RETRY_DELAY_S = 2.0
+"""Time after which a refused mood is tried again [s]."""
 
-REFUSED_MAX = 3
-"""Most tries of such a mood; a looping motion is tried at every round."""
+MAX_REFUSED_TRIES = 3
+"""Most tries of a refused mood; a looping motion is tried at every round."""

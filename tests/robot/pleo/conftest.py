@@ -8,7 +8,7 @@ import pytest
 
 from affect import Emotion
 from robot.drivers.pleo.driver import PleoDriver
-from robot.drivers.pleo.settings_file import load_settings
+from robot.drivers.pleo.settings import load_settings
 from robot.simulators.pleo.simulator import PleoSimulator
 
 STEP = 0.005
@@ -51,7 +51,7 @@ class Script:
         An answer takes 20 ms. Empty lines are answered, and left out of what is returned.
         """
         sent: list[str] = []
-        answers = [self.now] if self.driver._console.flight else []
+        answers = [self.now] if self.driver.console.pending else []
         for _ in range(round(seconds / STEP)):
             lines = self.run(STEP).decode("latin-1").split("\n")[:-1]
             sent += [line for line in lines if line]

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot.drivers.pleo.reading import LINE_MAX, ConsoleReader
-from robot.drivers.pleo.timing import PROMPT_SETTLES, STRAY_SETTLES
+from robot.drivers.pleo.console_reader import MAX_LINE_CHARS, ConsoleReader
+from robot.drivers.pleo.timing import PROMPT_SETTLE_S, STRAY_SETTLE_S
 
 POWER = (
     "STATS POWER\r\nPower statistics\r\n> 20 % it may walk\r\nmu: sensor 3 = 1\r\n"
@@ -24,7 +24,7 @@ def read(text: str, cuts: tuple[int, ...] = (), echo: str = "STATS POWER") -> Co
     return reader
 
 
-def ended(reader: ConsoleReader, after: float = PROMPT_SETTLES) -> bool:
+def ended(reader: ConsoleReader, after: float = PROMPT_SETTLE_S) -> bool:
     return reader.ended(1.0 + after + 1e-9)
 
 
@@ -61,7 +61,7 @@ def test_any_cut_of_the_answer_reads_the_same(cuts):
 )
 def test_a_prompt_at_the_start_of_a_line_ends_the_answer(text):
     reader = read(text)
-    assert not reader.ended(1.0 + PROMPT_SETTLES / 2)
+    assert not reader.ended(1.0 + PROMPT_SETTLE_S / 2)
     assert ended(reader)
 
 
@@ -75,8 +75,8 @@ def test_the_prompts_characters_in_a_text_do_not_end_it(text):
 
 def test_a_prompt_after_a_line_without_an_end_is_taken_when_nothing_follows_for_long():
     reader = read("Battery sensor value = 80 (820)> ")
-    assert not ended(reader, STRAY_SETTLES / 2)
-    assert ended(reader, STRAY_SETTLES)
+    assert not ended(reader, STRAY_SETTLE_S / 2)
+    assert ended(reader, STRAY_SETTLE_S)
     assert reader.finish().battery == 0.8
 
 
@@ -85,15 +85,15 @@ def test_text_after_the_prompt_takes_it_back():
     reader.feed(b"5 joints\r\n", 1.01)
     assert not ended(reader, 10.0)
     reader.feed(b"> ", 1.20)
-    assert not reader.ended(1.20 + PROMPT_SETTLES / 2)
-    assert reader.ended(1.20 + PROMPT_SETTLES + 1e-9)
+    assert not reader.ended(1.20 + PROMPT_SETTLE_S / 2)
+    assert reader.ended(1.20 + PROMPT_SETTLE_S + 1e-9)
 
 
 def test_monitor_lines_do_not_hold_up_a_prompt():
     reader = read("> ")
     for number in range(10):
         reader.feed(f"mu: sensor {number} = 1\r\n".encode(), 1.0 + number / 100)
-    assert reader.ended(1.0 + PROMPT_SETTLES + 1e-9)
+    assert reader.ended(1.0 + PROMPT_SETTLE_S + 1e-9)
 
 
 @pytest.mark.parametrize(
@@ -114,7 +114,7 @@ def test_garbage_raises_nothing_and_is_not_kept(chunks):
     reader = ConsoleReader(("Pleo Monitor",))
     for number, chunk in enumerate(chunks):
         reader.feed(chunk, number / 100)
-        assert len(reader._line) <= LINE_MAX
+        assert len(reader.line) <= MAX_LINE_CHARS
     reader.ended(10.0)
     reader.finish()
 
@@ -124,6 +124,6 @@ def test_a_line_without_an_end_is_not_kept_and_the_next_prompt_is_found():
     random = np.random.default_rng(1)
     for number in range(1000):
         reader.feed(random.bytes(1000).replace(b"\n", b""), number / 1000)
-        assert len(reader._line) <= LINE_MAX
+        assert len(reader.line) <= MAX_LINE_CHARS
     reader.feed(b"\r\n> ", 2.0)
-    assert reader.ended(2.0 + PROMPT_SETTLES + 1e-9)
+    assert reader.ended(2.0 + PROMPT_SETTLE_S + 1e-9)

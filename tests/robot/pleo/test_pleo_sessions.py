@@ -8,16 +8,18 @@ from hypothesis import strategies as st
 from affect import Emotion
 from robot.drivers.pleo import timing
 from robot.drivers.pleo.driver import PleoDriver
-from robot.drivers.pleo.settings_file import load_settings
+from robot.drivers.pleo.settings import load_settings
 from robot.protocol import messages as m
 from robot.simulators.memory import simulator_of
 
 MOODS = ("neutral", "happy", "angry")
 
-HEARS_OF_SILENCE = timing.PING_EVERY + timing.DEGRADED_AFTER
+HEARS_OF_SILENCE = timing.PING_INTERVAL_S + timing.DEGRADED_AFTER_S
 """A console that falls silent is not called ready for longer than this [s]."""
 
-GIVES_UP = timing.LONG_WITHIN + timing.NUDGES_MAX * timing.NUDGE_EVERY + timing.PING_EVERY
+GIVES_UP = (
+    timing.LONG_TIMEOUT_S + timing.MAX_NUDGES * timing.NUDGE_INTERVAL_S + timing.PING_INTERVAL_S
+)
 """… and is called lost after this [s], whatever was on its way."""
 
 COMES_BACK = 12.0

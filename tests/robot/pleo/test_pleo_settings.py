@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.drivers.pleo.joints import JOINTS
-from robot.drivers.pleo.settings import BUNDLED, Clip, Settings
-from robot.drivers.pleo.settings_file import load_settings
+from robot.drivers.pleo.settings import BUNDLED, Clip, Settings, load_settings
 from robot.errors import RobotError
 
 NEUTRAL = '[moods.neutral]\nmotion = "n.umf"\nlength_s = 2\n'
