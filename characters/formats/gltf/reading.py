@@ -6,18 +6,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from characters.errors import CharacterError
+from characters.formats.gltf import vrm
 from characters.formats.gltf.animations import read_clips
 from characters.formats.gltf.document import DamagedFileError
 from characters.formats.gltf.file import GltfFile, open_gltf
 from characters.formats.gltf.meshes import read_meshes
 from characters.formats.gltf.morphs import read_morph_table
 from characters.formats.gltf.nodes import NodeTree, read_node_tree
-from characters.formats.gltf.vrm import (
-    VrmHumanoid,
-    facing_plus_z,
-    mixed_expressions,
-    read_humanoid,
-)
 from characters.formats.loading import MotionOptions, Performance
 from characters.model.character import Character
 from characters.model.mesh import Mesh
@@ -62,10 +57,8 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
     with _open(path) as file:
         tree, _ = _read_joints(file)
         table = read_morph_table(file, tree)
-        skeleton, clips = (
-            _with_rest_morphs(tree.skeleton, table.rest),
-            read_clips(file, tree, table),
-        )
+        skeleton = _with_rest_morphs(tree.skeleton, table.rest)
+        clips = read_clips(file, tree, table)
     name = options.clip
     if name is None and len(clips) == 1:
         name = next(iter(clips))
@@ -80,9 +73,9 @@ def _open(path: Path) -> Iterator[GltfFile]:
     """Open a file, turned to face +z; errors while it is read name it in one line."""
     try:
         file = open_gltf(path)
-        if path.suffix.lower() == ".vrm" and read_humanoid(file) is None:
+        if path.suffix.lower() == ".vrm" and vrm.read_humanoid(file) is None:
             raise DamagedFileError("contains no VRM; call it .glb if it is glTF")
-        yield facing_plus_z(file)
+        yield vrm.facing_plus_z(file)
     except DamagedFileError as error:
         # Names from the file may contain line breaks; the message is one line.
         reason = " ".join(str(error).split())
@@ -90,9 +83,9 @@ def _open(path: Path) -> Iterator[GltfFile]:
         raise CharacterError(f"{path}: {reason}{advice}") from error
 
 
-def _read_joints(file: GltfFile) -> tuple[NodeTree, VrmHumanoid | None]:
+def _read_joints(file: GltfFile) -> tuple[NodeTree, vrm.VrmHumanoid | None]:
     """Return the skeleton, and its VRM data if there are any."""
-    humanoid = read_humanoid(file)
+    humanoid = vrm.read_humanoid(file)
     joints = set(() if humanoid is None else humanoid.bones.values())
     if not any(skin["joints"] for skin in file.all("skins")):
         # Rigid parts, or motions exported without a model: animated nodes are joints.
@@ -116,14 +109,14 @@ def _with_rest_morphs(skeleton: Skeleton, morphs: Array | None) -> Skeleton:
 
 
 def _as_humanoid(
-    character: Character, humanoid: VrmHumanoid, parts: list[tuple[int, Mesh]], tree: NodeTree
+    character: Character, humanoid: vrm.VrmHumanoid, parts: list[tuple[int, Mesh]], tree: NodeTree
 ) -> Character:
     """Return a character with the body parts and expressions that VRM states."""
     names = character.skeleton.names
     semantics = {bone: names[tree.joint_of_node[node]] for bone, node in humanoid.bones.items()}
     if not humanoid.expressions:
         return replace(character, semantics=semantics)
-    meshes, morphs = mixed_expressions(parts, humanoid)
+    meshes, morphs = vrm.mixed_expressions(parts, humanoid)
     # Animated weights belong to morph targets, which the expressions replace.
     clips = {
         name: replace(clip, poses=replace(clip.poses, morphs=None))

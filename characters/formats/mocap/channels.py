@@ -7,6 +7,7 @@ is the identity.
 """
 
 from dataclasses import dataclass
+from itertools import zip_longest
 
 import numpy as np
 from numpy.typing import NDArray
@@ -66,22 +67,17 @@ class ChannelLayout:
 
     def _rounds(self) -> list[AxisRound]:
         """Return every joint's first rotation, then every joint's second one, and so on."""
-        rounds: list[list[AxisChannel]] = []
-        counts: dict[int, int] = {}
+        by_joint: dict[int, list[AxisChannel]] = {}
         for channel in self.rotations:
-            number = counts.get(channel.joint, 0)
-            counts[channel.joint] = number + 1
-            if number == len(rounds):
-                rounds.append([])
-            rounds[number].append(channel)
-        return [
-            (
-                np.array([channel.joint for channel in channels]),
-                np.array([channel.axis for channel in channels]),
-                np.array([channel.column for channel in channels]),
+            by_joint.setdefault(channel.joint, []).append(channel)
+        rounds: list[AxisRound] = []
+        for mixed in zip_longest(*by_joint.values()):
+            channels = [channel for channel in mixed if channel is not None]
+            joints, columns = ([c.joint for c in channels], [c.column for c in channels])
+            rounds.append(
+                (np.array(joints), np.array([c.axis for c in channels]), np.array(columns))
             )
-            for channels in rounds
-        ]
+        return rounds
 
     def _rotations(self, values: Array, rounds: list[AxisRound]) -> Array:
         """Return the rotations of a block of frames, (frames, joints, 4)."""

@@ -62,7 +62,7 @@ def paper(picture):
     return np.abs(picture.astype(int) - PAPER_BGR).max(axis=2) <= 6
 
 
-def test_a_bundled_character_is_told_and_drawn(cubeling):
+def test_inspect_describes_and_draws_a_bundled_character(cubeling):
     code, out, err = cubeling("character", "inspect", "human", "-o", "seen")
     assert (code, err) == (0, "")
     for told in ("human, humanoid", "triangles", "leftLowerArm", "Walk", "left 6", "No problems"):
@@ -83,7 +83,7 @@ def test_a_motion_without_a_body_is_drawn_as_sticks(cubeling):
     assert {path.name for path in Path("nod-pictures").iterdir()} == {"turntable.png", "clips.png"}
 
 
-def test_the_unit_of_a_motion_can_be_said(cubeling):
+def test_inspect_accepts_unit_and_vertical_axis(cubeling):
     Path("nod.bvh").write_text(BVH)
     for scale, tall in (("1", "1.64 m tall"), ("0.01", "0.0164 m tall")):
         code, out, _ = cubeling("character", "inspect", "nod.bvh", "--scale", scale, "--up", "y")
@@ -102,7 +102,7 @@ def test_the_unit_of_a_motion_can_be_said(cubeling):
         ("picture.png", "…", "picture.png"),
     ],
 )
-def test_what_cannot_be_read_is_one_line(cubeling, file, content, named):
+def test_unreadable_files_are_refused_in_one_line(cubeling, file, content, named):
     if content is not None:
         Path(file).write_text(content)
     code, _, err = cubeling("character", "inspect", file)
@@ -113,7 +113,7 @@ def test_what_cannot_be_read_is_one_line(cubeling, file, content, named):
     assert [path.name for path in Path().iterdir()] == ([file] if content is not None else [])
 
 
-def test_a_file_where_the_folder_should_be_is_one_line(cubeling):
+def test_a_file_in_place_of_the_output_folder_is_refused(cubeling):
     Path("taken").write_text("")
     code, _, err = cubeling("character", "inspect", "human", "-o", "taken")
     assert code == 2
@@ -121,7 +121,7 @@ def test_a_file_where_the_folder_should_be_is_one_line(cubeling):
     assert "taken is a file" in err
 
 
-def test_names_that_look_like_markup_are_told_as_they_are(cubeling, tmp_path):
+def test_names_that_look_like_markup_are_printed_literally(cubeling, tmp_path):
     Path("[b]old[.bvh").write_text(BVH.replace("Spine", "[red]Spine"))
     code, out, _ = cubeling("character", "inspect", "[b]old[.bvh")
     assert code == 0
@@ -149,7 +149,7 @@ def test_each_morph_has_a_face(album):
     assert not np.array_equal(faces[0], faces[1])
 
 
-def test_paper_above_and_below_is_trimmed():
+def test_empty_margins_are_trimmed():
     picture = np.full((100, 20, 3), PAPER_BGR, np.uint8)
     assert trimmed(picture).shape == picture.shape
     picture[40:50] = 0
@@ -191,7 +191,7 @@ def test_a_graph_shows_names_as_they_are(cubeling):
     assert f'"{name}\\nloop"' in Path("[x] one.dot").read_text(encoding="utf-8")
 
 
-def test_a_graph_tells_what_cannot_be_played(cubeling):
+def test_graph_refuses_an_invalid_plan(cubeling):
     a_character_beside("play = {kind = 'stretch', of = 'idle', seconds = -1}")
     code, _, err = cubeling("character", "graph", "one.glb", "-o", "one.dot")
     assert code == 2

@@ -28,14 +28,14 @@ def test_one_command_makes_a_character_that_walks(cubeling, tmp_path):
         (["human", "--walk", "human#idle"], "goes nowhere"),
     ],
 )
-def test_what_cannot_be_is_refused_in_one_line(cubeling, arguments, told):
+def test_invalid_arguments_are_refused_in_one_line(cubeling, arguments, told):
     code, _, err = cubeling("character", "locomotion", *arguments)
     assert code == 2
     assert told in err
     assert err.count("\n") == 1
 
 
-def test_what_it_is_made_of_is_not_written_over(cubeling, tmp_path):
+def test_inputs_are_not_overwritten(cubeling, tmp_path):
     mine = tmp_path / "mine.glb"
     Character.load("human").save(mine)
     before = mine.read_bytes()
@@ -46,7 +46,7 @@ def test_what_it_is_made_of_is_not_written_over(cubeling, tmp_path):
     assert mine.read_bytes() == before
 
 
-def test_a_run_that_is_slower_than_the_walk_is_told(cubeling):
+def test_a_run_slower_than_the_walk_is_reported(cubeling):
     code, out, _ = cubeling(
         "character", "locomotion", "human", "--walk", "human#Run", "--run", "human#Walk"
     )

@@ -22,7 +22,7 @@ from characters.model.sidecar import read_sidecar
         ("x.toml", lambda path: read_sidecar(path, ())),
     ],
 )
-def test_what_may_have_no_end_is_not_read(tmp_path: Path, name: str, read) -> None:
+def test_devices_are_refused(tmp_path: Path, name: str, read) -> None:
     path = tmp_path / name
     path.symlink_to(os.devnull)
     with pytest.raises(CharacterError, match="a pipe or a device"):
@@ -30,12 +30,12 @@ def test_what_may_have_no_end_is_not_read(tmp_path: Path, name: str, read) -> No
 
 
 @pytest.mark.parametrize("name", ["a\0b.glb", "x" * 5000 + ".glb", "a\0b.bvh"])
-def test_a_name_that_cannot_be_is_refused_in_one_line(name: str) -> None:
+def test_an_invalid_file_name_is_refused_in_one_line(name: str) -> None:
     with pytest.raises(CharacterError, match="cannot be read"):
         load_motion(name)
 
 
-def test_more_than_can_be_meant_is_not_read(tmp_path: Path) -> None:
+def test_a_file_above_the_size_limit_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "x.glb"
     path.write_bytes(b"12345")
     assert read_file(path, 5) == b"12345"
@@ -43,7 +43,7 @@ def test_more_than_can_be_meant_is_not_read(tmp_path: Path) -> None:
         read_file(path, 4)
 
 
-def test_a_table_that_an_editor_marked_as_utf_8_is_read(tmp_path: Path) -> None:
+def test_a_sidecar_file_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
     path = tmp_path / "x.toml"
     path.write_text('[joints]\nhead = "Kopf"\n', encoding="utf-8-sig")
     assert read_sidecar(path, ()).semantics == {"head": "Kopf"}

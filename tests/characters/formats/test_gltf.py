@@ -31,19 +31,19 @@ def test_ancestors_of_joints_are_honoured(tmp_path, arm):
     assert character.height == pytest.approx(0.6)
 
 
-def test_a_mesh_bound_at_rest_lies_where_it_is_seen(tmp_path, arm):
+def test_a_mesh_bound_at_rest_has_its_visible_positions(tmp_path, arm):
     mesh = load(tmp_path, arm.bytes()).meshes[0]
     assert np.allclose(
         mesh.positions, [[0.0, 0.0, 0.0], [0.01, 0.0, 0.0], [0.0, 0.6, 0.0]], atol=1e-5
     )
 
 
-def test_byte_weights_are_brought_to_one(tmp_path, arm):
+def test_byte_weights_are_normalised(tmp_path, arm):
     mesh = load(tmp_path, arm.bytes()).meshes[0]
     assert np.allclose(mesh.weights.sum(1), 1)
 
 
-def test_a_matrix_is_as_good_as_its_parts(tmp_path, arm):
+def test_a_matrix_equals_its_translation_rotation_and_scale(tmp_path, arm):
     plain = load(tmp_path, arm.bytes())
     node = arm.document["nodes"][0]
     matrix = np.eye(4)
@@ -52,7 +52,7 @@ def test_a_matrix_is_as_good_as_its_parts(tmp_path, arm):
     assert np.allclose(load(tmp_path, arm.bytes()).bounds, plain.bounds, atol=1e-6)
 
 
-def test_linear_keys_are_exact_and_turn_evenly_between(tmp_path, arm):
+def test_linear_keys_are_exact_with_constant_speed_between(tmp_path, arm):
     arm.animate("LINEAR", [0.5, 1.0], rotations.about("x", [0.0, 1.0]))
     clip = load(tmp_path, arm.bytes()).clips["a"]
     assert clip.duration == pytest.approx(0.5)
@@ -79,7 +79,7 @@ def test_cubic_splines_follow_their_tangents(tmp_path, arm):
     assert np.allclose(clip.poses.translations[:, 2, 0], times**3, atol=1e-5)
 
 
-def test_keys_at_odd_times_are_met_closely(tmp_path, arm):
+def test_keys_at_irregular_times_are_reached_closely(tmp_path, arm):
     times = [0.0, 0.1234, 0.7071, 1.0]
     arm.animate("LINEAR", times, [[0, 0, 0], [1, 0, 0], [0, 0, 0], [1, 0, 0]], "translation")
     clip = load(tmp_path, arm.bytes()).clips["a"]
@@ -87,7 +87,7 @@ def test_keys_at_odd_times_are_met_closely(tmp_path, arm):
     assert np.allclose(x, [0, 1, 0, 1], atol=0.05)
 
 
-def test_files_beside_a_gltf_and_data_inside_it_are_read(tmp_path, arm):
+def test_buffers_in_files_and_data_uris_are_read(tmp_path, arm):
     whole = load(tmp_path, arm.bytes())
     for uri in ("body.bin", "data:application/octet-stream;base64,"):
         if uri.startswith("data"):
@@ -99,7 +99,7 @@ def test_files_beside_a_gltf_and_data_inside_it_are_read(tmp_path, arm):
         assert np.array_equal(split.meshes[0].positions, whole.meshes[0].positions)
 
 
-def test_a_missing_file_beside_a_gltf_is_named(tmp_path, arm):
+def test_a_missing_buffer_file_is_named(tmp_path, arm):
     arm.document["buffers"] = [{"byteLength": len(arm.blob), "uri": "lost.bin"}]
     with pytest.raises(CharacterError, match=r"needs 'lost\.bin'"):
         load(tmp_path, json.dumps(arm.document).encode(), "thing.gltf")
@@ -157,7 +157,7 @@ def test_arrays_that_do_not_fit_are_not_written(tmp_path, walker):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_folder_that_is_not_there_is_named(tmp_path, walker):
+def test_saving_into_a_missing_folder_is_refused(tmp_path, walker):
     with pytest.raises(CharacterError, match="cannot be written"):
         walker.save(tmp_path / "nowhere" / "w.glb")
 
@@ -177,7 +177,7 @@ def refused(path):
     return message
 
 
-def test_what_is_no_character_is_refused_in_one_line(tmp_path, arm):
+def test_files_without_a_character_are_refused_in_one_line(tmp_path, arm):
     path = tmp_path / "x.glb"
     assert "cannot be read" in refused(path)
     path.write_bytes(b"not a picture of a cat")
@@ -238,7 +238,7 @@ def test_characters_made_elsewhere_load_and_play(path):
 
 
 @pytest.mark.parametrize("name", Character.bundled())
-def test_bundled_characters_load_and_say_who_they_are(name):
+def test_bundled_characters_load(name):
     character = Character.load(name)
     assert character.name == name
     assert "idle" in character.clips

@@ -108,7 +108,7 @@ keys = cache(numbers)
 
 
 @pytest.mark.parametrize("path", SAMPLES, ids=lambda path: path.stem)
-def test_joints_stand_where_a_walk_over_the_nodes_puts_them(path):
+def test_joint_positions_agree_with_products_of_node_matrices(path):
     character = Character.load(path)
     document, _ = contents(path)
     # Of a person's height; some of these are modelled in other units than metres.

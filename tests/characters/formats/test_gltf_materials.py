@@ -41,7 +41,7 @@ def dressed(material, *pictures):
     return build
 
 
-def test_textures_of_colour_surface_and_relief_are_read(tmp_path):
+def test_textures_of_colour_roughness_and_normals_are_read(tmp_path):
     color, surface, bumps = pixels(4), pixels(3), pixels(3)
     material = {
         "pbrMetallicRoughness": {
@@ -61,7 +61,7 @@ def test_textures_of_colour_surface_and_relief_are_read(tmp_path):
 
 
 @pytest.mark.parametrize("mode", ["L", "P", "1", "LA", "RGBA", "I;16"])
-def test_pictures_of_any_kind_become_colours(tmp_path, mode):
+def test_images_of_any_mode_become_colours(tmp_path, mode):
     grey = np.array([[0, 255], [255, 0]], np.uint8)
     picture = Image.fromarray(grey)
     if mode == "I;16":
@@ -76,7 +76,7 @@ def test_pictures_of_any_kind_become_colours(tmp_path, mode):
     assert np.array_equal(texture, np.dstack([grey, grey, grey, np.full((2, 2), 255)]))
 
 
-def test_jpegs_and_files_beside_are_read(tmp_path):
+def test_jpegs_and_image_files_are_read(tmp_path):
     flat = np.full((8, 8, 3), (200, 30, 60), np.uint8)
     build = dressed({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})
     build.document["images"] = [{"uri": "my%20skin.jpg"}]
@@ -99,7 +99,7 @@ def test_coordinates_are_moved_turned_and_scaled_with_their_texture(tmp_path):
     assert load(tmp_path, build).uvs == pytest.approx(np.tile([9.5, 9.25], (3, 1)))
 
 
-def test_textures_that_lie_differently_are_left_out_with_a_warning(tmp_path):
+def test_textures_with_other_coordinates_are_dropped_with_a_warning(tmp_path):
     material = {
         "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
         "normalTexture": {"index": 1, "texCoord": 1},
@@ -120,13 +120,13 @@ def test_emission_is_its_factor_times_its_texture(tmp_path):
     assert load(tmp_path, dressed(material, dark)).material.glow == (0.0, 0.0, 0.0)
 
 
-def test_what_is_not_lit_is_chalk_and_what_is_blended_is_cut(tmp_path):
+def test_unlit_materials_are_rough_and_blended_ones_get_a_cutoff(tmp_path):
     material = {"extensions": {"KHR_materials_unlit": {}}, "alphaMode": "BLEND"}
     read = load(tmp_path, dressed(material)).material
     assert (read.metallic, read.roughness, read.cutoff) == (0.0, 1.0, 0.5)
 
 
-def test_whole_numbers_are_read_as_they_are_meant(tmp_path):
+def test_normalised_integers_are_read(tmp_path):
     build = build_arm()
     attributes = build.document["meshes"][0]["primitives"][0]["attributes"]
     plain = load(tmp_path, build)

@@ -48,7 +48,7 @@ def test_morph_targets_are_read_by_name_in_the_characters_frame(tmp_path):
     assert np.allclose(skin(character.meshes[0], rest, {"aa": 0.5})[2], [0, 0.65, 0], atol=1e-6)
 
 
-def test_targets_without_a_name_are_called_after_their_mesh(tmp_path):
+def test_morph_targets_without_a_name_get_that_of_their_mesh(tmp_path):
     build = with_targets(lift(2, 1), lift(1, 1))
     assert load(tmp_path, build).morphs == ("mesh0.0", "mesh0.1")
     build.document["meshes"][0]["name"] = "Face"

@@ -88,7 +88,7 @@ def moved(character, weights):
     )
 
 
-def test_vrm_says_which_joint_is_what(tmp_path, human):
+def test_vrm_states_the_body_parts(tmp_path, human):
     character = load(tmp_path, vrm(human, vrm_1))
     assert dict(character.semantics) == BONES
     arm = character.anatomy.joint("leftUpperArm")
@@ -96,7 +96,7 @@ def test_vrm_says_which_joint_is_what(tmp_path, human):
     assert character.skeleton.names[arm] == "LeftArm"
 
 
-def test_expressions_are_the_sums_of_what_they_bind(tmp_path, human):
+def test_expressions_are_weighted_sums_of_morph_targets(tmp_path, human):
     character, plain = load(tmp_path, vrm(human, vrm_1)), Character.load("human")
     assert character.morphs == ("blink", "happy", "gasp")  # neutral binds nothing
     pairs = [
@@ -125,7 +125,7 @@ def test_an_old_vrm_is_turned_to_face_forward(tmp_path, human):
     )
 
 
-def test_what_vrm_said_survives_saving_as_glb(tmp_path, human):
+def test_vrm_body_parts_and_expressions_survive_saving_as_glb(tmp_path, human):
     character = load(tmp_path, vrm(human, vrm_1))
     character.save(tmp_path / "person.glb")
     again = Character.load(tmp_path / "person.glb")
@@ -161,7 +161,7 @@ def test_bones_that_move_no_vertex_are_joints_too(tmp_path):
         ),
     ],
 )
-def test_a_vrm_that_contradicts_itself_is_refused(tmp_path, extension, reason):
+def test_an_invalid_vrm_is_refused(tmp_path, extension, reason):
     build = build_arm()
     build.document["extensions"] = {"VRMC_vrm": extension}
     with pytest.raises(CharacterError, match=reason):

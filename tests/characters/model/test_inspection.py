@@ -25,7 +25,7 @@ DATA = Path(__file__).parents[4] / "shared" / "data"
 
 
 @pytest.mark.skipif(not DATA.is_dir(), reason="the real data is not here")
-def test_a_fox_of_79_metres_that_walks_in_place_is_told():
+def test_inspection_reports_an_odd_scale_and_walks_in_place():
     found = inspect(Character.load(DATA / "gltf" / "Fox.glb"))
     assert found.character.anatomy.kind == "quadruped"
     assert [stats.in_place for stats in found.clips] == [False, True, True]
@@ -35,14 +35,14 @@ def test_a_fox_of_79_metres_that_walks_in_place_is_told():
 
 
 @pytest.mark.parametrize("name", Character.bundled())
-def test_nothing_is_wrong_with_a_bundled_character(name):
+def test_inspection_finds_no_problems_in_bundled_characters(name):
     found = inspect(Character.load(name))
     assert found.problems == ()
     assert found.stats.triangles > 1000
     assert len(found.clips) == len(found.character.clips)
 
 
-def test_a_walk_goes_as_fast_as_it_goes_and_steps_once_a_cycle(sound):
+def test_speed_loop_gap_and_contacts_of_a_walk(sound):
     stats = {found.clip.name: found for found in inspect(sound).clips}
     assert stats["Walk"].speed == pytest.approx(1.35, abs=0.01)
     assert stats["Walk"].loop_gap == pytest.approx(0.0, abs=1e-6)
@@ -53,7 +53,7 @@ def test_a_walk_goes_as_fast_as_it_goes_and_steps_once_a_cycle(sound):
     assert [foot.share for foot in stats["idle"].contacts] == [1.0, 1.0]
 
 
-def test_a_walk_in_place_is_known_by_its_feet(sound):
+def test_a_walk_in_place_is_recognised_by_its_feet(sound):
     walk = sound.clips["Walk"]
     in_place = Clip("Walk", walk.rate, walk.in_place, loop=True, root_motion=False)
     found = inspect(replace(sound, clips={"Walk": in_place}))
@@ -62,13 +62,13 @@ def test_a_walk_in_place_is_known_by_its_feet(sound):
     assert any("in place" in problem for problem in found.problems)
 
 
-def test_what_was_noted_while_reading_comes_first(sound):
+def test_notes_of_the_reader_come_first(sound):
     assert inspect(sound, ["The weights were repaired."]).problems[0] == (
         "The weights were repaired."
     )
 
 
-def test_bodies_of_an_odd_size_or_place_are_told(sound):
+def test_inspection_reports_an_odd_size_or_position(sound):
     mesh = sound.meshes[0]
 
     def moved(scale, rise, aside=0.0):
@@ -84,7 +84,7 @@ def test_bodies_of_an_odd_size_or_place_are_told(sound):
     assert "1.8 m away from x = z = 0" in moved(1.0, 0.0, -2.0)
 
 
-def test_weights_textures_and_crowds_are_told(sound):
+def test_inspection_reports_weights_textures_and_triangles(sound):
     mesh = sound.meshes[0]
     heavy = replace(mesh, weights=1.2 * mesh.weights)
     assert "the error is 0.2" in problems(sound, meshes=(heavy,))
@@ -94,7 +94,7 @@ def test_weights_textures_and_crowds_are_told(sound):
     assert "5000 pixels" in problems(sound, meshes=(replace(mesh, material=large),))
 
 
-def test_joints_that_tell_nothing_are_told(sound):
+def test_inspection_reports_unrecognised_joints(sound):
     skeleton = sound.skeleton
     names = tuple("abcde")
     strange = Skeleton(names, skeleton.parents, skeleton.rest)
@@ -104,7 +104,7 @@ def test_joints_that_tell_nothing_are_told(sound):
     assert "no clips" in found
 
 
-def test_a_gait_that_does_not_close_is_told(sound):
+def test_inspection_reports_a_gait_that_does_not_loop(sound):
     walk = sound.clips["Walk"]
     half = Clip("Walk", walk.rate, walk.poses[: len(walk) // 2], loop=False, root_motion=True)
     found = problems(sound, clips={"Walk": half})
@@ -113,6 +113,6 @@ def test_a_gait_that_does_not_close_is_told(sound):
     assert "loop" not in problems(sound, clips={"wave": once})
 
 
-def test_clips_of_one_frame_are_told(sound):
+def test_inspection_reports_clips_of_one_frame(sound):
     walk = sound.clips["Walk"]
     assert "one frame" in problems(sound, clips={"pose": Clip("pose", 30.0, walk.poses[:1])})

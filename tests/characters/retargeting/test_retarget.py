@@ -76,7 +76,7 @@ def reposed(skeleton, anatomy, turns):
 
 
 @pytest.mark.parametrize("name", ["Walk", "WalkLeftShort", "Run", "idle"])
-def test_onto_the_same_skeleton_nothing_changes(human, name):
+def test_retargeting_to_the_same_skeleton_changes_nothing(human, name):
     clip, skeleton, anatomy = human.clips[name], human.skeleton, human.anatomy
     same = retarget(clip, skeleton, anatomy, skeleton, anatomy, hold_feet=False)
     assert np.allclose(parts(same, skeleton, anatomy), parts(clip, skeleton, anatomy), atol=1e-6)
@@ -84,7 +84,7 @@ def test_onto_the_same_skeleton_nothing_changes(human, name):
     assert np.allclose(same.track, clip.track, atol=1e-6)
 
 
-def test_onto_a_larger_copy_everything_grows(human):
+def test_retargeting_to_a_larger_copy_scales_everything(human):
     clip, skeleton, anatomy = human.clips["Walk"], human.skeleton, human.anatomy
     large = retarget(clip, skeleton, anatomy, scaled(skeleton, 2.5), anatomy, hold_feet=False)
     grown = parts(large, scaled(skeleton, 2.5), anatomy)
@@ -126,7 +126,7 @@ def test_a_body_that_lies_on_its_back_in_the_file_stands_up(human):
     assert np.allclose(upright, parts(clip, skeleton, anatomy), atol=1e-6)
 
 
-def test_four_joints_of_a_spine_share_what_two_did(human):
+def test_a_longer_spine_shares_the_bend(human):
     skeleton = human.skeleton
     trunk = [skeleton.index(name) for name in ("hips", "spine1", "spine2", "chest")]
     short = Anatomy.guess(skeleton)
@@ -162,7 +162,7 @@ def with_more_spine(skeleton):
     return Skeleton(tuple(names), tuple(parents), Pose(translations, turns))
 
 
-def test_a_man_is_no_dinosaur(human):
+def test_retargeting_a_person_to_a_quadruped_is_refused(human):
     vleo = Character.load("vleo")
     with pytest.raises(CharacterError, match=r"'Walk': .*humanoid and the character is a quadr"):
         retarget(human.clips["Walk"], human.skeleton, human.anatomy, vleo.skeleton, vleo.anatomy)
@@ -189,7 +189,7 @@ def slide(clip, skeleton, joint, contacts):
     return speed[contacts[1:] & contacts[:-1]].mean()
 
 
-def test_a_recorded_walk_stands_on_the_ground_with_feet_that_hold(human):
+def test_a_recorded_walk_stands_on_the_ground_without_sliding(human):
     clip, source, anatomy = recorded("16/16_15")
     skeleton = human.skeleton
     walk = retarget(clip, source, anatomy, skeleton, human.anatomy)
@@ -205,14 +205,14 @@ def test_a_recorded_walk_stands_on_the_ground_with_feet_that_hold(human):
         assert slide(walk, skeleton, joint, contacts.ball[:, foot]) < 0.01
 
 
-def test_a_recorded_walk_moves_the_limbs_as_they_moved(human):
+def test_a_recorded_walk_keeps_the_directions_of_limbs(human):
     clip, source, anatomy = recorded("16/16_15")
     walk = retarget(clip, source, anatomy, human.skeleton, human.anatomy, hold_feet=False)
     mine = directions(walk, human.skeleton, human.anatomy)
     assert np.abs(mine - directions(clip, source, anatomy)).max() < 1e-6
 
 
-def test_a_leg_that_is_stretched_too_far_bends_to_the_side_to_which_it_usually_does(human):
+def test_an_overstretched_leg_bends_in_its_mean_direction(human):
     rig = Rig(human.skeleton, human.anatomy)
     leg = rig.legs[0]
     rest = human.skeleton.rest
@@ -233,7 +233,7 @@ def test_a_leg_that_is_stretched_too_far_bends_to_the_side_to_which_it_usually_d
     assert np.abs(np.diff(world[:, leg.lower], axis=0)).max() < 0.03
 
 
-def test_a_leg_whose_foot_is_sent_through_its_hip_does_not_spin(human):
+def test_a_leg_does_not_spin_when_its_target_passes_the_hip(human):
     rig = Rig(human.skeleton, human.anatomy)
     leg = rig.legs[0]
     still = human.clips["idle"].sample(0.0)
@@ -249,7 +249,7 @@ def test_a_leg_whose_foot_is_sent_through_its_hip_does_not_spin(human):
     )
 
 
-def test_a_fox_lends_its_walk_to_a_dinosaur():
+def test_a_walk_is_retargeted_between_quadrupeds():
     if not (SHARED / "gltf" / "Fox.glb").exists():
         pytest.skip("no shared data")
     fox = Character.load(SHARED / "gltf" / "Fox.glb")

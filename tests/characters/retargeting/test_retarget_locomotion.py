@@ -58,7 +58,7 @@ def taught(human):
     return make_locomotion(bare, [exported(human, "Walk")], [exported(human, "Run", 3.2)])
 
 
-def test_the_cycle_of_a_recording_is_found_again(human, taught):
+def test_the_cycle_of_a_recording_is_found(human, taught):
     for found, name in zip(taught.recordings, ("Walk", "Run"), strict=True):
         clip = human.clips[name]
         assert found.duration == pytest.approx(clip.duration, rel=0.03)
@@ -74,7 +74,7 @@ def test_one_walk_and_one_run_fill_the_whole_tree(taught):
 
 
 @pytest.mark.parametrize("tree", [WALK_CLIPS, RUN_CLIPS])
-def test_every_clip_turns_as_the_tree_wants_it(taught, tree):
+def test_every_clip_has_the_turn_of_its_knot(taught, tree):
     for knot, name in tree.items():
         clip = taught.character.clips[name]
         turned = -math.degrees(clip.cycle.yaw) / clip.duration
@@ -83,7 +83,7 @@ def test_every_clip_turns_as_the_tree_wants_it(taught, tree):
         assert clip.root_motion
 
 
-def test_what_is_made_loops_without_a_jump(taught):
+def test_made_clips_loop_without_a_jump(taught):
     for found in taught.clips:
         clip = taught.character.clips[found.name]
         pose = clip.in_place
@@ -95,11 +95,11 @@ def test_what_is_made_loops_without_a_jump(taught):
         assert steps.max() < 0.03
 
 
-def test_standing_feet_stand_in_every_curve(taught):
+def test_standing_feet_do_not_slide_in_any_curve(taught):
     assert max(found.slide for found in taught.clips) < 0.01
 
 
-def test_the_ground_is_not_stepped_through(human, taught):
+def test_feet_do_not_sink_into_the_ground(human, taught):
     skeleton = taught.character.skeleton
     toes = [human.anatomy.joints[side + "Toes"] for side in ("left", "right")]
     rest = skeleton.rest.globals(skeleton)[toes, 1, 3]
@@ -125,7 +125,7 @@ def test_it_goes_where_it_is_sent(taught):
     assert math.hypot(x - 0.25, z + 0.2) < 0.07
 
 
-def test_a_recorded_curve_is_kept_for_its_side_and_mirrored_for_the_other(human):
+def test_a_recorded_curve_is_used_for_its_side_and_mirrored_for_the_other(human):
     made = make_locomotion(
         replace(human, clips={}),
         [exported(human, "Walk"), exported(human, "WalkLeftMedium", 2.5)],
@@ -138,7 +138,7 @@ def test_a_recorded_curve_is_kept_for_its_side_and_mirrored_for_the_other(human)
     assert "Run" not in origins
 
 
-def test_walking_in_place_gets_on(human):
+def test_a_walk_in_place_moves_over_the_ground(human):
     walk = human.clips["Walk"]
     treadmill = replace(walk, poses=walk.in_place)
     own = Recording("treadmill", treadmill, human.skeleton, human.anatomy)
@@ -146,13 +146,13 @@ def test_walking_in_place_gets_on(human):
     assert made.recordings[0].speed == pytest.approx(walk.cycle.length / walk.duration, rel=0.03)
 
 
-def test_standing_is_no_walk(human):
+def test_a_recording_of_standing_is_refused_as_a_walk(human):
     own = Recording("idle", human.clips["idle"], human.skeleton, human.anatomy)
     with pytest.raises(CharacterError, match="idle: goes nowhere"):
         make_locomotion(human, [own])
 
 
-def test_half_a_step_is_no_cycle(human):
+def test_a_recording_without_a_cycle_is_refused(human):
     with pytest.raises(CharacterError, match="no whole cycle found"):
         make_locomotion(human, [exported(human, "Walk", 0.6)])
 
@@ -163,7 +163,7 @@ def test_a_clip_must_be_named_where_there_are_many():
     assert load_recording("human#Walk").clip.name == "Walk"
 
 
-def test_a_root_is_put_under_a_character_without_moving_it(human):
+def test_adding_a_root_joint_does_not_move_the_character(human):
     names = ("pelvis_parent", *human.skeleton.names[1:])
     bare = replace(human, skeleton=replace(human.skeleton, names=names), semantics={})
     rooted = with_root_joint(bare)
@@ -182,7 +182,7 @@ def test_a_root_is_put_under_a_character_without_moving_it(human):
 @given(
     st.floats(0.3, 4), st.floats(-2.5, 2.5), st.floats(-0.5, 0.5), st.floats(0, 2), st.floats(0, 1)
 )
-def test_a_place_beside_an_arc_is_told_and_found_again(speed, yaw_rate, left, time, height):
+def test_arc_coordinates_round_trip(speed, yaw_rate, left, time, height):
     path = ArcPath(speed, yaw_rate)
     if abs(left * path.curvature) > 0.9:
         return
@@ -199,7 +199,7 @@ def captured(name):
     return load_recording(str(path))
 
 
-def test_captured_people_lend_their_walk_and_run(tmp_path):
+def test_motion_capture_makes_locomotion_clips_without_sliding(tmp_path):
     walk, run = captured("16/16_15"), captured("16/16_35")
     made = make_locomotion(Character.load(SHARED / "gltf" / "CesiumMan.glb"), [walk], [run])
     assert max(found.slide for found in made.clips) < 0.01
