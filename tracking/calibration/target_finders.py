@@ -13,7 +13,7 @@ from tracking.calibration.model import CalibrationTarget
 from tracking.calibration.solver import cube_target
 from tracking.calibration.view import View, join_views, view_of_corners
 from tracking.cube.model import CubeModel
-from tracking.detection.markers import MarkerDetector, Observation, observed
+from tracking.detection.markers import MarkerDetector, Observation, markers_of
 from tracking.geometry.image_region import Patch
 
 Array = NDArray[np.float64]
@@ -68,7 +68,7 @@ class CubeFinder:
     def find(self, grey: Grey, timestamp: float) -> TargetDetection | None:
         """Detect the markers; the larger one of two with the same id counts."""
         largest: dict[str, Observation] = {}
-        for seen in observed(self.cube, self._detector.detect(grey)):
+        for seen in markers_of(self.cube, self._detector.detect(grey)):
             other = largest.get(seen.face.name)
             if other is None or seen.size > other.size:
                 largest[seen.face.name] = seen

@@ -1,4 +1,4 @@
-"""Reading the markers where a pose says that they are, to tell whether this is the cube."""
+"""Reading of marker cells at a given pose, to check that it shows the cube."""
 
 from dataclasses import dataclass
 
@@ -14,22 +14,22 @@ from tracking.geometry.robust_statistics import quantile
 
 Array = NDArray[np.float64]
 
-GRAZING = 0.2
+MIN_FACING_COSINE = 0.2
 """Cosine of the viewing angle below which a marker's cells are too foreshortened to be read."""
 
-LEAST = 3.0
+MIN_CONTRAST = 3.0
 """A marker with less contrast than this [grey levels] is not read."""
 
-DOUBT = 0.12
-"""A cell nearer than this share of the contrast to the middle between black and white is unread."""
+UNREAD_BAND = 0.12
+"""A cell closer to the middle between black and white than this share of the contrast is unread."""
 
 
 @dataclass(frozen=True)
 class CellReading:
-    """What the markers say at a pose."""
+    """The cells of the markers at a pose."""
 
     agreement: dict[str, float]
-    """Share of the cells of each face in view that are black or white as they should be, 0…1."""
+    """Share of the cells of each face in view that are black or white as expected, 0…1."""
 
     @property
     def best(self) -> float:
@@ -43,7 +43,7 @@ class CellReading:
 
 
 class CellReader:
-    """Reads the markers of one cube seen by one camera."""
+    """Reads the marker cells of one cube seen by one camera."""
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._faces = FacePlanes(cube)
@@ -61,8 +61,8 @@ class CellReader:
         )
 
     def read(self, patch: Patch, camera_from_cube: Array) -> CellReading:
-        """Read all markers that look at the camera."""
-        facing = list(self._faces.facing(camera_from_cube, GRAZING))
+        """Read all markers that face the camera."""
+        facing = list(self._faces.facing(camera_from_cube, MIN_FACING_COSINE))
         if not facing:
             return CellReading({})
         points = self._centres[facing].reshape(-1, 3)
@@ -85,8 +85,8 @@ def _agreement(value: Floats, white: NDArray[np.bool_]) -> float:
     if not len(bright) or not len(dark):
         return 0.0
     high, low = quantile(bright, 0.5), quantile(dark, 0.5)
-    middle, unsure = (high + low) / 2, DOUBT * (high - low)
-    if high - low < LEAST:
+    middle, band = (high + low) / 2, UNREAD_BAND * (high - low)
+    if high - low < MIN_CONTRAST:
         return 0.0
-    right = np.count_nonzero(bright > middle + unsure) + np.count_nonzero(dark < middle - unsure)
+    right = np.count_nonzero(bright > middle + band) + np.count_nonzero(dark < middle - band)
     return right / len(value)

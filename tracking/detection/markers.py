@@ -1,4 +1,4 @@
-"""Markers in a picture: which faces of the cube are seen, and where."""
+"""Detection of whole ArUco markers, and which of them are on the cube."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Observation:
-    """One marker seen in a picture."""
+    """One marker of the cube, detected in an image."""
 
     face: Face
     """The face of the cube that carries this marker."""
 
     corners: Array
-    """Its corners in the picture, (4, 2) [px], in the order of `Face.corners`."""
+    """Its corners in the image, (4, 2) [px], in the order of `Face.corners`."""
 
     @property
     def size(self) -> float:
@@ -30,17 +30,17 @@ class Observation:
 
 @dataclass(frozen=True)
 class Marker:
-    """A marker of some cube, or of none."""
+    """A detected marker, whether it is on a cube or not."""
 
-    number: int
-    """Its number in the dictionary."""
+    marker_id: int
+    """Its id in the dictionary."""
 
     corners: Array
     """As in `Observation.corners`, (4, 2) [px]."""
 
 
 class MarkerDetector:
-    """Finds all markers of one dictionary.
+    """Detects all markers of one dictionary.
 
     Parameters
     ----------
@@ -50,39 +50,37 @@ class MarkerDetector:
 
     def __init__(self, dictionary: str) -> None:
         parameters = cv2.aruco.DetectorParameters()
-        # Not one wrong bit: with 6 of 50 ids wanted, OpenCV's default of 0.6 finds markers in
-        # clutter (opencv#28953).
+        # No wrong bit is accepted: OpenCV's default of 0.6 finds markers in clutter (opencv#28953).
         parameters.errorCorrectionRate = 0.0
         parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
-        # The search window must not reach the next edge of a small marker: 0.3 of a cell, at most 5
-        # px.
+        # The search window must not reach the next edge of a small marker: 0.3 cells, at most 5 px.
         parameters.cornerRefinementWinSize = 5
         parameters.relativeCornerRefinmentWinSize = 0.3
-        # Enough for light from one side: local thresholds over 3, 13 and 23 px.
+        # Local thresholds over 3, 13 and 23 px cope with light from one side.
         parameters.adaptiveThreshWinSizeMin = 3
         parameters.adaptiveThreshWinSizeMax = 23
         parameters.adaptiveThreshWinSizeStep = 10
         self._detector = cv2.aruco.ArucoDetector(aruco_dictionary(dictionary), parameters)
 
     def detect(self, grey: NDArray[np.uint8]) -> list[Marker]:
-        """Find markers in a grey picture, (H, W)."""
-        squares, ids = self._detector.detectMarkers(grey)[:2]
+        """Detect markers in a grey image, (H, W)."""
+        quads, ids = self._detector.detectMarkers(grey)[:2]
         # None where there is no marker; (N,) in OpenCV 5, (N, 1) in OpenCV 4.
-        numbers = [] if ids is None else [int(number) for number in np.ravel(ids)]
+        marker_ids = [] if ids is None else [int(number) for number in np.ravel(ids)]
         return [
-            Marker(number, np.reshape(square, (4, 2)).astype(np.float64))
-            for number, square in zip(numbers, squares, strict=True)
+            Marker(marker_id, np.reshape(quad, (4, 2)).astype(np.float64))
+            for marker_id, quad in zip(marker_ids, quads, strict=True)
         ]
 
 
-def observed(cube: CubeModel, markers: Sequence[Marker]) -> list[Observation]:
+def markers_of(cube: CubeModel, markers: Sequence[Marker]) -> list[Observation]:
     """Keep the markers of one cube.
 
-    A marker can be seen twice: which of the two is the cube's is for `solver` to say.
+    A marker can be detected twice: `CornerPoseSolver` tells which of the two is the cube's.
     """
     faces = {face.marker_id: face for face in cube.faces}
     return [
-        Observation(faces[marker.number], marker.corners)
+        Observation(faces[marker.marker_id], marker.corners)
         for marker in markers
-        if marker.number in faces
+        if marker.marker_id in faces
     ]

@@ -1,4 +1,4 @@
-"""Markers of which a finger covers a corner, or one of whose corners lies outside the picture."""
+"""Detection of markers with a corner under a finger or outside the image."""
 
 import cv2
 import numpy as np
@@ -14,115 +14,121 @@ Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 Flags = NDArray[np.bool_]
 
-CLEAR = 0.15
-"""A cell nearer than this share of the contrast to the middle between black and white is unread."""
+UNREAD_BAND = 0.15
+"""A cell closer to the middle between black and white than this share of the contrast is unread."""
 
-PAPER = 0.4
-"""How far outside the marker its white paper is looked at, in cells: no cube has less."""
+PAPER_DISTANCE_CELLS = 0.4
+"""How far outside the marker its white paper is sampled: no cube has a narrower border."""
 
-FRAME = 0.6
-"""Share of the black border's cells that must be black, and of the paper round it white."""
+MIN_FRAME_SHARE = 0.6
+"""Share of the border cells that must be black, and of the paper around them that must be white."""
 
-RIGHT = 0.5
-"""Share of the cells inside that must be read and be right."""
+MIN_RIGHT_SHARE = 0.5
+"""Share of the inner cells that must be read and be right."""
 
-WRONG = 0.07
-"""Largest share of the cells read that may be wrong where a corner is hidden; else none may be."""
+MAX_WRONG_SHARE = 0.07
+"""Share of the read cells that may be wrong where a corner is hidden; else none may be."""
 
-WHOLE = 0.7
-"""Cells of a side that may be missing at a corner that counts as seen."""
+MAX_GAP_CELLS = 0.7
+"""Cells of a side that may be missing at a corner that counts as visible."""
 
-AHEAD = 0.12
-"""By what share of the cells the best marker must fit better than the second."""
+MIN_LEAD_SHARE = 0.12
+"""Share of the cells by which the best marker must fit better than the second."""
+
+MIN_CONTRAST = 8
+"""Least contrast between paper and border [grey levels]."""
 
 
 class PartlyHiddenMarkerDetector:
-    """Finds markers of one cube by what is seen of their four sides.
+    """Detects markers of one cube by the visible parts of their four sides.
 
-    OpenCV looks for whole squares: a finger on one corner loses the marker. Here four straight
-    pieces of one blob's border are enough. What is found is a proposal, not a proof: a hand can
-    cover what tells two markers apart, so a pose must be held to all edges of the cube.
+    OpenCV looks for whole quads: a finger on one corner loses the marker. Here four straight
+    segments of one blob's border are enough. The result is a proposal, not a proof: a hand can
+    cover the cells that tell two markers apart, so a pose must be checked on all edges of the cube.
 
     Parameters
     ----------
     cube
-        The cube whose markers are sought.
+        The cube whose markers to detect.
     """
 
     def __init__(self, cube: CubeModel) -> None:
         self._faces = cube.faces
         patterns = [marker_cells(cube.dictionary, face.marker_id) for face in cube.faces]
         self._count = count = len(patterns[0])
-        # Every marker in its four turns: turned k times, its corner 0 is the square's corner −k.
+        # Every marker in four rotations: rotated k times, its corner 0 is corner −k of the quad.
         turned = [np.rot90(pattern, turn) for pattern in patterns for turn in range(4)]
         self._white = np.stack([~each[1:-1, 1:-1].ravel() for each in turned]).astype(np.float64)
-        steps = np.concatenate([[-PAPER], np.arange(count) + 0.5, [count + PAPER]])
+        steps = np.concatenate(
+            [[-PAPER_DISTANCE_CELLS], np.arange(count) + 0.5, [count + PAPER_DISTANCE_CELLS]]
+        )
         x, y = (axis.ravel() for axis in np.meshgrid(steps, steps))
         self._places = np.stack([x, y], axis=1) / count
         depth = np.minimum(np.minimum(x, y), count - np.maximum(x, y))
         self._paper, self._border, self._bits = depth < 0, (depth > 0) & (depth < 1), depth > 1
 
     def detect(self, grey: Picture, region: Region | None = None) -> list[Observation]:
-        """Find markers in a grey picture, (H, W), or in a region of it.
+        """Detect markers in a grey image, (H, W), or in a region of it.
 
         Returns
         -------
-        Markers, the surest first. Whole ones are among them, and a marker can be seen twice.
+        Markers, the most certain first, whole ones among them. A marker can occur twice.
         """
         left, top, right, bottom = region or (0, 0, grey.shape[1], grey.shape[0])
         soft = np.asarray(cv2.GaussianBlur(grey[top:bottom, left:right], (5, 5), 0), np.uint8)
-        squares = find_quads(soft)
-        if not len(squares):
+        quads = find_quads(soft)
+        if not len(quads):
             return []
-        number, fit = self._read(soft, squares)
-        # Of squares that fit alike, the one that is seen best has the best corners.
-        order = np.argsort(-(fit + 0.5 * squares.shown), kind="stable")
+        number, fit = self._read(soft, quads)
+        # Of quads that fit alike, the most visible one has the best corners.
+        order = np.argsort(-(fit + 0.5 * quads.visible), kind="stable")
         origin = np.array([left, top], np.float64)
         found: list[Observation] = []
         for each in order[number[order] >= 0].tolist():
             face, turn = divmod(int(number[each]), 4)
-            corners = np.roll(squares.corners[each], turn, axis=0) + origin
+            corners = np.roll(quads.corners[each], turn, axis=0) + origin
             seen = Observation(self._faces[face], corners)
             if not any(_same(seen, other) for other in found):
                 found.append(seen)
         return found
 
-    def _read(self, soft: Picture, squares: Quads) -> tuple[NDArray[np.intp], Array]:
-        """Name the marker in each square: 4 × its place in the cube + its turn, or −1; its fit."""
-        places = squares.at(self._places)
+    def _read(self, soft: Picture, quads: Quads) -> tuple[NDArray[np.intp], Array]:
+        """Identify the marker in each quad: 4 × index of its face + rotation, or −1; its fit."""
+        places = quads.map(self._places)
         values = sampled(soft, places)
-        seen = self._uncovered(squares) & _inside(places, soft.shape)
+        seen = self._uncovered(quads) & _inside(places, soft.shape)
         white = _median(values[:, self._paper], seen[:, self._paper])[:, None]
         black = _median(values[:, self._border], seen[:, self._border])[:, None]
         contrast = white - black
-        share = (values - black) / np.where(contrast > 8, contrast, np.inf)
+        share = (values - black) / np.where(contrast > MIN_CONTRAST, contrast, np.inf)
         # 1 is white, −1 black, 0 not read.
-        sign = np.where(seen & (np.abs(share - 0.5) > CLEAR), np.sign(share - 0.5), 0.0)
-        framed = (contrast[:, 0] > 8) & (_share(sign[:, self._paper]) > FRAME)
-        framed &= _share(-sign[:, self._border]) > FRAME
-        covered = squares.gaps.max(axis=1) > WHOLE / self._count
-        return self._matched(sign[:, self._bits], framed, np.where(covered, WRONG, 0.0))
+        sign = np.where(seen & (np.abs(share - 0.5) > UNREAD_BAND), np.sign(share - 0.5), 0.0)
+        framed = contrast[:, 0] > MIN_CONTRAST
+        framed &= _share(sign[:, self._paper]) > MIN_FRAME_SHARE
+        framed &= _share(-sign[:, self._border]) > MIN_FRAME_SHARE
+        hidden = quads.gaps.max(axis=1) > MAX_GAP_CELLS / self._count
+        return self._matched(sign[:, self._bits], framed, np.where(hidden, MAX_WRONG_SHARE, 0.0))
 
     def _matched(
         self, sign: Array, framed: Flags, wrong_share: Array
     ) -> tuple[NDArray[np.intp], Array]:
-        """Find the marker that agrees best with the signs of the cells inside, (N, cells)."""
-        fit = sign @ (2 * self._white - 1).T  # right less wrong
+        """Find the marker that agrees best with the signs of the inner cells, (N, cells)."""
+        fit = sign @ (2 * self._white - 1).T  # right minus wrong
         read = np.abs(sign).sum(axis=1)
         order = np.argsort(fit, axis=1, kind="stable")
         best = order[:, -1]
         most, next_most = np.take_along_axis(fit, order[:, :-3:-1], axis=1).T
         right, wrong = (read + most) / 2, (read - most) / 2
         cells = sign.shape[1]
-        good = framed & (right >= RIGHT * cells) & (wrong <= wrong_share * read)
-        good &= most - next_most > AHEAD * cells
+        good = framed & (right >= MIN_RIGHT_SHARE * cells) & (wrong <= wrong_share * read)
+        good &= most - next_most > MIN_LEAD_SHARE * cells
         return np.where(good, best, -1), np.asarray(most / cells, np.float64)
 
-    def _uncovered(self, squares: Quads) -> Flags:
-        """Which places are not near a corner at which the sides are not seen, (N, places)."""
+    def _uncovered(self, quads: Quads) -> Flags:
+        """Whether each place is away from corners whose sides are hidden, (N, places)."""
         corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float64)
         away = np.linalg.norm(self._places[:, None] - corners, axis=-1)
-        gaps = np.where(squares.gaps > WHOLE / self._count, squares.gaps, 0.0)
+        gaps = np.where(quads.gaps > MAX_GAP_CELLS / self._count, quads.gaps, 0.0)
         return np.asarray((away > np.minimum(gaps, 0.5)[:, None]).all(axis=-1))
 
 
@@ -131,7 +137,7 @@ def _inside(places: Array, shape: tuple[int, ...]) -> Flags:
 
 
 def _median(values: Array, seen: Flags) -> Array:
-    """Median of what is seen in each row; 0 where nothing is."""
+    """Median of the visible values of each row; 0 where there is none."""
     ordered = np.sort(np.where(seen, values, np.inf), axis=1)
     middle = np.maximum(seen.sum(axis=1) - 1, 0) // 2
     median = np.take_along_axis(ordered, middle[:, None], axis=1)[:, 0]
@@ -139,11 +145,11 @@ def _median(values: Array, seen: Flags) -> Array:
 
 
 def _share(sign: Array) -> Array:
-    """Share of the cells read in each row that are positive."""
+    """Share of the read cells of each row that are positive."""
     return np.asarray((sign > 0).sum(axis=1) / np.maximum((sign != 0).sum(axis=1), 1))
 
 
 def _same(one: Observation, other: Observation) -> bool:
-    """Whether two squares are one marker; a false one of another size must not hide the true."""
+    """Whether two quads are one marker; a false one of another size must not hide the true one."""
     apart = np.linalg.norm(one.corners - other.corners, axis=1).max()
     return one.face is other.face and bool(apart < 0.2 * min(one.size, other.size))

@@ -1,4 +1,4 @@
-"""The pose that the corners of all seen markers agree on."""
+"""The pose that the corners of all detected markers agree on."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -15,16 +15,19 @@ from tracking.geometry.robust_statistics import quantile
 
 Array = NDArray[np.float64]
 
-GRAZING = 0.05
+MIN_FACING_COSINE = 0.05
 """Cosine between a face's normal and the line of sight below which its marker cannot be read."""
 
-LOOSE, STRICT = 0.15, 0.06
+MAX_PROPOSED_ERROR, MAX_REFINED_ERROR = 0.15, 0.06
 """A marker agrees with a proposed pose, and with a refined one, within this share of its side."""
+
+MIN_TOLERANCE_PX = 2.0
+"""Corners closer than this agree in any case."""
 
 
 @dataclass(frozen=True)
 class CornerPose:
-    """A pose with the markers that support it."""
+    """A pose with the markers that agree with it."""
 
     camera_from_cube: Array
     """Pose of the cube, (4, 4) [m]."""
@@ -33,10 +36,10 @@ class CornerPose:
     """The markers that agree with it, at most one for each face."""
 
     error: float
-    """Root mean square distance of their corners from where the pose puts them [px]."""
+    """Root mean square reprojection error of their corners [px]."""
 
     covariance: Array
-    """Of a shift-turn, (6, 6)."""
+    """Of a pose delta, (6, 6)."""
 
 
 @dataclass(frozen=True)
@@ -67,33 +70,32 @@ class CornerPoseSolver:
     def solve(
         self, observations: Sequence[Observation], expected: Array | None = None
     ) -> list[CornerPose]:
-        """Find the poses that explain the seen markers, the best first.
+        """Find the poses that explain the detected markers, the best first.
 
-        Every marker alone proposes its two poses; the proposal that most other markers agree with
-        is refined on all of them together. Markers that disagree with it are left out: a second
-        cube, a picture of a marker, a misread id.
+        Every marker alone proposes its two poses. The proposal that most other markers agree with
+        is refined on all of them together. Markers that disagree are left out: a second cube, a
+        picture of a marker, a misread id.
 
         Parameters
         ----------
         observations
-            What the detector saw; the same face may be there twice.
+            The detected markers; the same face may occur twice.
         expected
-            Where the cube should be by its past, (4, 4): a first proposal, and the choice between
-            two cubes that are seen equally well.
+            Predicted pose, (4, 4): a first proposal, and the choice between two cubes with equally
+            many markers.
 
         Returns
         -------
-        The best pose and, where another with the same support exists, (the second pose of a single
-        face seen from afar, a second cube), that one too. Empty where there is none with its faces
-        towards the camera.
+        The best pose, and another one where it has as many markers: the second pose of a single
+        face seen from afar, or a second cube. Empty where no pose has its faces towards the camera.
         """
         if expected is not None and len(observations) > 1:
-            solution = self._grow(expected, observations)
+            solution = self._consensus(expected, observations)
             if solution and len(solution.observations) == len(observations):
                 return [solution]
         solutions: list[CornerPose] = []
         for start in self._proposals(observations):
-            solution = self._grow(start, observations)
+            solution = self._consensus(start, observations)
             if solution and 1 < len(observations) == len(solution.observations):
                 return [solution]
             if solution and not any(_same(solution, other) for other in solutions):
@@ -103,14 +105,14 @@ class CornerPoseSolver:
         return [solution for solution in solutions if len(solution.observations) == most][:2]
 
     def looks_at_camera(self, face: str, camera_from_cube: Array) -> bool:
-        """Whether the outside of a face is seen, and not at a grazing angle."""
-        turn, geometry = camera_from_cube[:3, :3], self._geometry[face]
-        centre = turn @ geometry.centre + camera_from_cube[:3, 3]
-        cosine = -(turn @ geometry.normal) @ centre
-        return bool(centre[2] > MIN_DEPTH and cosine > GRAZING * np.sqrt(centre @ centre))
+        """Whether a face shows its outside, and not at a grazing angle."""
+        rotation, geometry = camera_from_cube[:3, :3], self._geometry[face]
+        centre = rotation @ geometry.centre + camera_from_cube[:3, 3]
+        cosine = -(rotation @ geometry.normal) @ centre
+        return bool(centre[2] > MIN_DEPTH and cosine > MIN_FACING_COSINE * np.sqrt(centre @ centre))
 
     def error(self, camera_from_cube: Array, observations: Sequence[Observation]) -> float:
-        """Root mean square distance of the corners from where a pose puts them [px]."""
+        """Root mean square reprojection error of the corners at a pose [px]."""
         points = np.concatenate([seen.face.corners for seen in observations])
         corners = np.concatenate([seen.corners for seen in observations])
         in_camera = points @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
@@ -134,15 +136,15 @@ class CornerPoseSolver:
                     marker = se3.pose(se3.rotation(vectors[0]), vectors[1])
                     yield marker @ geometry.marker_from_cube
 
-    def _grow(self, start: Array, observations: Sequence[Observation]) -> CornerPose | None:
-        """Refine a proposal on all markers that agree with it, until no other joins or leaves."""
-        agreeing = self._agreeing(start, observations, LOOSE)
+    def _consensus(self, start: Array, observations: Sequence[Observation]) -> CornerPose | None:
+        """Refine a proposal on all markers that agree with it, until these stay the same."""
+        agreeing = self._agreeing(start, observations, MAX_PROPOSED_ERROR)
         for _ in range(3):
             if not agreeing:
                 return None
             solution = self._refine(start, agreeing)
             start = solution.camera_from_cube
-            before, agreeing = agreeing, self._agreeing(start, observations, STRICT)
+            before, agreeing = agreeing, self._agreeing(start, observations, MAX_REFINED_ERROR)
             if [id(seen) for seen in agreeing] == [id(seen) for seen in before]:
                 return solution
         return None
@@ -150,14 +152,17 @@ class CornerPoseSolver:
     def _agreeing(
         self, pose: Array, observations: Sequence[Observation], tolerance: float
     ) -> list[Observation]:
-        """Return the best observation of each face that lies within a share of its own side."""
+        """Return the best marker of each face whose error is within a share of its side."""
         best: dict[str, tuple[float, Observation]] = {}
         for seen in observations:
             name = seen.face.name
             if not self.looks_at_camera(name, pose):
                 continue
             error = self.error(pose, [seen])
-            if error < max(2.0, tolerance * seen.size) and error < best.get(name, (np.inf,))[0]:
+            if (
+                error < max(MIN_TOLERANCE_PX, tolerance * seen.size)
+                and error < best.get(name, (np.inf,))[0]
+            ):
                 best[name] = error, seen
         return [seen for _, seen in best.values()]
 
@@ -178,7 +183,7 @@ class CornerPoseSolver:
                 break
         residuals, rows = self._linearised(current, points, corners)
         squares = float((residuals**2).sum())
-        # One face leaves two degrees of freedom, too few to judge by: assume 0.3 px at least.
+        # One face leaves two degrees of freedom, too few to judge by: assume at least 0.3 px.
         spread = max(0.3**2, squares / max(1, residuals.size - 6))
         flat = rows.reshape(-1, 6)
         covariance = np.asarray(np.linalg.inv(flat.T @ flat), np.float64) * spread
@@ -186,14 +191,14 @@ class CornerPoseSolver:
         return CornerPose(current, tuple(observations), error, covariance)
 
     def _linearised(self, pose: Array, points: Array, corners: Array) -> tuple[Array, Array]:
-        """Residuals, (N, 2) [px], and their slopes by a shift-turn, (N, 2, 6)."""
-        turned = points @ pose[:3, :3].T
-        pixels, slopes = self._projection.project_with_jacobian(turned + pose[:3, 3])
-        return corners - pixels, np.concatenate([slopes, -slopes @ se3.hat(turned)], axis=2)
+        """Residuals, (N, 2) [px], and their Jacobian by a pose delta, (N, 2, 6)."""
+        rotated = points @ pose[:3, :3].T
+        pixels, jacobian = self._projection.project_with_jacobian(rotated + pose[:3, 3])
+        return corners - pixels, np.concatenate([jacobian, -jacobian @ se3.hat(rotated)], axis=2)
 
 
 def _rank(solution: CornerPose, expected: Array | None) -> tuple[float, ...]:
-    """Sort by support, then by nearness to where the cube was expected, then by error."""
+    """Sort by number of markers, then by distance from the expected pose, then by error."""
     far = 0.0
     if expected is not None:
         away = solution.camera_from_cube[:3, 3] - expected[:3, 3]

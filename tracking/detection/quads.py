@@ -1,4 +1,4 @@
-"""Dark squares in a picture of which parts are hidden: where their corners are."""
+"""Corners of dark quads in an image, parts of which may be hidden."""
 
 from dataclasses import dataclass
 
@@ -11,20 +11,20 @@ from tracking.detection.borders import BorderSegments, find_border_segments, qua
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 
-SMALLEST = 14.0
-"""Shortest side of a square that is used [px]."""
+MIN_SIDE_PX = 14.0
+"""Shortest side of a quad."""
 
-SHOWN = 0.45
-"""Share of a square's outline that must be seen."""
+MIN_VISIBLE_OUTLINE = 0.45
+"""Share of the outline of a quad that must be visible."""
 
-SHOWN_SIDE = 0.15
-"""The same of each side."""
+MIN_VISIBLE_SIDE = 0.15
+"""The same for each side."""
 
-STRETCHED = 3.0
-"""Greatest ratio of opposite sides: more is no marker that could be read."""
+MAX_SIDE_RATIO = 3.0
+"""Greatest ratio of opposite sides: beyond, a marker could not be read."""
 
-REACH = 3.0
-"""How far from an outline the edge is sought [px]."""
+SEARCH_REACH_PX = 3.0
+"""How far from an outline its edge is searched."""
 
 
 @dataclass(frozen=True)
@@ -32,20 +32,20 @@ class Quads:
     """Squares, seen in perspective."""
 
     corners: Array
-    """Their corners clockwise as seen (y down), (N, 4, 2) [px]; a hidden one is where its two sides
-    would meet."""
+    """Their corners, clockwise as seen (y down), (N, 4, 2) [px]; a hidden one is where its two
+    sides would meet."""
 
     gaps: Array
-    """What is hidden of the sides at each corner, as a share of their length, (N, 4)."""
+    """Hidden part of the sides at each corner, as a share of their length, (N, 4)."""
 
-    shown: Array
-    """Share of their outlines that is seen, (N,)."""
+    visible: Array
+    """Visible share of their outlines, (N,)."""
 
     def __len__(self) -> int:
         return len(self.corners)
 
-    def at(self, places: Array) -> Array:
-        """Map places in the unit square, (M, 2), to the picture, (N, M, 2) [px].
+    def map(self, places: Array) -> Array:
+        """Map places in the unit square, (M, 2), to the image, (N, M, 2) [px].
 
         The first three corners lie at (0, 0), (1, 0), (1, 1). Heckbert 1989, "Fundamentals of
         texture mapping and image warping", section 2.2.3.
@@ -63,18 +63,20 @@ class Quads:
 
 
 def find_quads(grey: Picture) -> Quads:
-    """Find dark squares in a picture, (H, W) grey, slightly blurred."""
+    """Find dark quads in a grey image, (H, W), slightly blurred."""
     sides = find_border_segments(grey)
     chosen, corners = quadrilaterals(sides)
     length = _side_lengths(corners)
     share = sides.length[chosen] / np.maximum(length, 1.0)
-    keep = (length.min(axis=1, initial=np.inf) > SMALLEST) & (share.mean(axis=1) > SHOWN)
-    keep &= (share.min(axis=1, initial=1.0) > SHOWN_SIDE) & (share < 1.3).all(axis=1)
-    keep &= (length < STRETCHED * length[:, [2, 3, 0, 1]]).all(axis=1)
-    used = sides.of(chosen[keep].ravel())
+    keep = (length.min(axis=1, initial=np.inf) > MIN_SIDE_PX) & (
+        share.mean(axis=1) > MIN_VISIBLE_OUTLINE
+    )
+    keep &= (share.min(axis=1, initial=1.0) > MIN_VISIBLE_SIDE) & (share < 1.3).all(axis=1)
+    keep &= (length < MAX_SIDE_RATIO * length[:, [2, 3, 0, 1]]).all(axis=1)
+    used = sides.select(chosen[keep].ravel())
     if not len(used):
         return Quads(np.zeros((0, 4, 2)), np.zeros((0, 4)), np.zeros(0))
-    corners = _sharpened(grey, used)
+    corners = _refined_corners(grey, used)
     return Quads(corners, _gaps(used, corners), share[keep].mean(axis=1))
 
 
@@ -95,27 +97,27 @@ def _side_lengths(corners: Array) -> Array:
     return np.asarray(np.hypot(edges[..., 0], edges[..., 1]), np.float64)
 
 
-def _sharpened(grey: Picture, used: BorderSegments) -> Array:
-    """Lay sides, four by four, along the greatest slope of the grey values; return corners."""
-    way = (used.end - used.start) / used.length[:, None]
-    across = np.stack([way[:, 1], -way[:, 0]], axis=1)  # towards the bright side
+def _refined_corners(grey: Picture, used: BorderSegments) -> Array:
+    """Move sides, four for each quad, to the greatest gradient of the image; return the corners."""
+    direction = (used.end - used.start) / used.length[:, None]
+    across = np.stack([direction[:, 1], -direction[:, 0]], axis=1)  # towards the bright side
     along = np.linspace(0.1, 0.9, 13)
-    reach = np.arange(-REACH, REACH + 1.25, 0.5)  # outlines lie on the dark pixels
+    reach = np.arange(-SEARCH_REACH_PX, SEARCH_REACH_PX + 1.25, 0.5)  # outlines lie on dark pixels
     middle = used.start[:, None] + along[:, None] * (used.end - used.start)[:, None]
     places = middle[:, :, None] + reach[:, None] * across[:, None, None]
     values = sampled(grey, places.reshape(-1, len(reach), 2)).reshape(places.shape[:-1])
     slope = np.maximum(values[..., 2:] - values[..., :-2], 0.0) ** 2 + 1e-3
     offset = (slope * reach[1:-1]).sum(axis=-1) / slope.sum(axis=-1)
-    middle_off, lean = _line(along - 0.5, offset)
-    start = used.start + (middle_off - lean / 2)[:, None] * across
-    end = used.end + (middle_off + lean / 2)[:, None] * across
-    return _meetings(start.reshape(-1, 4, 2), end.reshape(-1, 4, 2))
+    shift, slant = _fit_lines(along - 0.5, offset)
+    start = used.start + (shift - slant / 2)[:, None] * across
+    end = used.end + (shift + slant / 2)[:, None] * across
+    return _intersections(start.reshape(-1, 4, 2), end.reshape(-1, 4, 2))
 
 
-def _line(x: Array, y: Array) -> tuple[Array, Array]:
+def _fit_lines(x: Array, y: Array) -> tuple[Array, Array]:
     """Fit a line to each row of y, (N, M), at x, (M,): value at 0 and slope, (N,) each.
 
-    Points that lie far off a first fit are left out of the second.
+    Outliers of a first fit are left out of the second.
     """
     weight = np.ones_like(y)
     for _ in range(2):
@@ -128,16 +130,16 @@ def _line(x: Array, y: Array) -> tuple[Array, Array]:
     return mean_y - slope * mean_x, slope
 
 
-def _meetings(start: Array, end: Array) -> Array:
+def _intersections(start: Array, end: Array) -> Array:
     """Corners between each side and the one before it, sides (N, 4, 2)."""
-    way = end - start
-    before, way_before = np.roll(start, 1, axis=1), np.roll(way, 1, axis=1)
-    share = cross(start - before, way) / cross(way_before, way)
-    return np.asarray(before + share[..., None] * way_before, np.float64)
+    direction = end - start
+    before, previous = np.roll(start, 1, axis=1), np.roll(direction, 1, axis=1)
+    share = cross(start - before, direction) / cross(previous, direction)
+    return np.asarray(before + share[..., None] * previous, np.float64)
 
 
 def _gaps(used: BorderSegments, corners: Array) -> Array:
-    """How much of its two sides is hidden at each corner, the greater share of the two."""
+    """Return the hidden share of the two sides at each corner, the greater of the two."""
     start, end = used.start.reshape(-1, 4, 2), used.end.reshape(-1, 4, 2)
     length = _side_lengths(corners)
     after = np.linalg.norm(start - corners, axis=-1) / length

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel
-from tracking.detection.markers import Marker, MarkerDetector, Observation, observed
+from tracking.detection.markers import Marker, MarkerDetector, Observation, markers_of
 from tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
 from tracking.geometry.frame import Frame
 from tracking.geometry.image_region import Floats, Patch
@@ -60,7 +60,7 @@ class FrameMarkers:
         small = cv2.resize(self.grey, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
         # Pixel centres lie at whole numbers: the first small one is at 0.5 of the large ones.
         return [
-            Marker(each.number, each.corners * 2 + 0.5)
+            Marker(each.marker_id, each.corners * 2 + 0.5)
             for each in detector.detect(np.asarray(small, np.uint8))
         ]
 
@@ -134,8 +134,8 @@ class GlobalDetector:
         """Read markers at half the size, at full size, and then partly hidden ones."""
         dictionary = self._cube.dictionary
         if len(markers.grey) >= MIN_HALVED_HEIGHT_PX:
-            yield observed(self._cube, markers.read(dictionary, halved=True))
-        yield observed(self._cube, markers.read(dictionary, halved=False))
+            yield markers_of(self._cube, markers.read(dictionary, halved=True))
+        yield markers_of(self._cube, markers.read(dictionary, halved=False))
         if thorough:
             yield self._hidden.detect(markers.grey)
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from tests.tracking.drawn import WIDE, held, off, photograph, scene
 from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
-from tracking.detection.markers import MarkerDetector, observed
+from tracking.detection.markers import MarkerDetector, markers_of
 from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.projection import Projection
@@ -93,7 +93,7 @@ def test_corners_found_at_half_size_are_those_of_the_whole_picture(
     for frame in (static[0], Frame(photograph(drawn), 0.0, 0)):
         markers = FrameMarkers(frame, DETECTORS)
         large, small = (
-            {each.face.name: each.corners for each in observed(CUBE, read)}
+            {each.face.name: each.corners for each in markers_of(CUBE, read)}
             for read in (
                 markers.read(CUBE.dictionary, halved=False),
                 markers.read(CUBE.dictionary, halved=True),
@@ -148,7 +148,7 @@ def test_a_cube_with_a_covered_corner_on_every_marker_is_found(
     markers = FrameMarkers(covered, DETECTORS)
     for halved in (True, False):
         # Or the patches would prove nothing.
-        assert observed(cube, markers.read(cube.dictionary, halved)) == []
+        assert markers_of(cube, markers.read(cube.dictionary, halved)) == []
     state = CubeTracker(cube, camera).update(covered)
     assert state.visible
     millimetres, degrees = off(state.camera_from_cube, truth)
