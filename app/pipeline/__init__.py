@@ -1,1 +1,1 @@
-"""The whole line for one frame."""
+"""The pipeline for one frame."""

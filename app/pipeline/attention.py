@@ -1,4 +1,4 @@
-"""What the character looks at: the cube, the hand that holds it, or who is behind the camera."""
+"""What the character looks at: the cube, the hand that holds it, or the player."""
 
 import math
 
@@ -12,26 +12,41 @@ from tracking import CubeControls, CubeState
 Array = NDArray[np.float64]
 
 LOOKS = ("auto", "cube", "hand", "camera", "none")
-"""What a person may ask for."""
+"""What the user may choose."""
 
-_STIRS = 0.03  # [m/s]: a cube slower than this is held still
-_TURNS = 0.4  # [rad/s]
-_INTEREST = 1.3  # [s]: how long it keeps looking at a cube that has come to rest
-_CAMERA, _CUBE = (2.0, 5.0), (0.8, 2.2)  # [s]: shortest and longest glance at each
+MIN_SPEED_M_S = 0.03
+"""A slower cube counts as still."""
+
+MIN_TURN_RAD_S = 0.4
+"""A cube that turns more slowly counts as still."""
+
+CUBE_INTEREST_S = 1.3
+"""How long the character looks at a cube that has come to rest."""
+
+GLANCE_S = {"camera": (2.0, 5.0), "cube": (0.8, 2.2)}
+"""Shortest and longest duration of a glance, by what it looks at."""
+
+HAND_OFFSET_EDGES = 0.6
+"""Where the hand is, from the cube's center towards the player and up, in edges of the cube."""
 
 
 class Attention:
     """Chooses a point to look at, frame by frame.
 
-    By itself ("auto") it watches a cube that moves, and the hand while it lifts the cube; when
-    all is quiet it looks at the person, with a glance at the cube now and then.
+    With "auto" it watches a cube that moves, and the hand while it lifts the cube. When the cube
+    is still it looks at the player, with a glance at the cube now and then.
 
     Parameters
     ----------
     look
         One of `LOOKS`.
     edge
-        Of the cube [m].
+        Edge of the cube [m].
+
+    Raises
+    ------
+    AppError
+        There is no such look.
     """
 
     def __init__(self, look: str, edge: float) -> None:
@@ -42,19 +57,19 @@ class Attention:
         self._look = look
         self._edge = edge
         self._cube: Array | None = None
-        self._moved = -math.inf
+        self._last_moved = -math.inf
         self._rng = np.random.default_rng(1)
         self._glance, self._until = "camera", -math.inf
 
     def update(
         self, state: CubeState, controls: CubeControls, command: CharacterCommand
     ) -> Array | None:
-        """Return what is looked at, (3,) in the table frame [m]; None for nothing.
+        """Return the point to look at, (3,) in the table frame [m]; None for none.
 
         Parameters
         ----------
         state, controls
-            Where the cube is and what the hand does with it.
+            Where the cube is, and what the hand does with it.
         command
             What the character is asked to do.
         """
@@ -65,45 +80,45 @@ class Attention:
         if state.camera_from_cube is not None:
             seen = table_from_camera @ state.camera_from_cube[:, 3]
             self._cube = np.asarray(seen[:3], float)
-        self._note(state, controls)
+        self._note_motion(state, controls)
         camera = np.asarray(table_from_camera[:3, 3], float)
-        look = self._chosen(controls, command) if self._look == "auto" else self._look
+        look = self._choose(controls, command) if self._look == "auto" else self._look
         if look == "camera" or self._cube is None:
             return camera
         return self._hand(self._cube, camera) if look == "hand" else self._cube
 
-    def _note(self, state: CubeState, controls: CubeControls) -> None:
+    def _note_motion(self, state: CubeState, controls: CubeControls) -> None:
         """Remember when the cube last moved."""
-        speeds = state.velocity  # NaN where the cube is not seen
-        stirred = np.linalg.norm(speeds[:3]) > _STIRS or np.linalg.norm(speeds[3:]) > _TURNS
-        if stirred or controls.lifted:
-            self._moved = controls.timestamp
+        velocity = state.velocity  # NaN while the cube is not visible
+        moves = np.linalg.norm(velocity[:3]) > MIN_SPEED_M_S
+        turns = np.linalg.norm(velocity[3:]) > MIN_TURN_RAD_S
+        if moves or turns or controls.lifted:
+            self._last_moved = controls.timestamp
 
-    def _chosen(self, controls: CubeControls, command: CharacterCommand) -> str:
-        """Return what deserves attention."""
+    def _choose(self, controls: CubeControls, command: CharacterCommand) -> str:
+        """Return what to look at with "auto"."""
         now = controls.timestamp
         if command.activity == "move":
             return "cube"
         if controls.lifted:
             return "hand"
-        if now - self._moved < _INTEREST:
-            self._until = now  # then to the person: and, was that right?
+        if now - self._last_moved < CUBE_INTEREST_S:
+            self._until = now  # look at the player next
             self._glance = "cube"
             return "cube"
         if now >= self._until:
             self._glance = "cube" if self._glance == "camera" else "camera"
-            low, high = _CUBE if self._glance == "cube" else _CAMERA
-            self._until = now + float(self._rng.uniform(low, high))
+            self._until = now + float(self._rng.uniform(*GLANCE_S[self._glance]))
         return self._glance
 
     def _hand(self, cube: Array, camera: Array) -> Array:
-        """Return where the hand is that holds the cube.
+        """Return where the hand that holds the cube probably is.
 
-        Hands are not tracked: one that holds a cube reaches in from the person's side and from
-        above, and hides the edge there.
+        Hands are not tracked. A hand that holds a cube comes from the player's side and from above.
         """
         toward = camera - cube
         toward[1] = 0.0
         toward /= max(float(np.linalg.norm(toward)), 1e-6)
-        held: Array = cube + self._edge * (0.6 * toward + np.array([0.0, 0.6, 0.0]))
-        return held
+        toward[1] = 1.0
+        hand: Array = cube + self._edge * (HAND_OFFSET_EDGES * toward)
+        return hand

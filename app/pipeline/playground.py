@@ -1,4 +1,4 @@
-"""The whole line for one frame: from a picture of the cube to a picture of the character."""
+"""The pipeline for one frame: from a picture of the cube to a picture of the character."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from app.pipeline.attention import Attention
 from app.pipeline.scenario import Inputs, Outcome, Scenario, make_scenario
-from app.pipeline.step import Given, Step
+from app.pipeline.step import ReplayInputs, Step
 from characters import Animator, Character, CharacterCommand, PosedCharacter
 from characters.rendering import Box, FloorPath, SceneCharacter, Stage, View
 from tracking import (
@@ -23,10 +23,10 @@ from tracking import (
 
 
 class Playground:
-    """The line of the design from the camera to the picture, without clock, window or threads.
+    """The pipeline from the camera to the picture, without clock, window or threads.
 
-    The same frames and inputs give the same steps, bit for bit but for the picture, which is
-    equal on one graphics driver.
+    The same frames and inputs give the same steps, bit for bit. The pictures are equal on the same
+    graphics driver.
 
     Parameters
     ----------
@@ -35,11 +35,11 @@ class Playground:
     intrinsics
         The camera.
     cube
-        The cube in the player's hand; the scenario's own where it is None.
+        The cube in the player's hand; None for the scenario's own.
     character
-        Who plays; the scenario's own where it is None.
+        The character; None for the scenario's own.
     context
-        Where to draw; None to leave the pictures out.
+        Where to draw; None for no pictures.
     look
         What the character's eyes follow: one of `LOOKS`.
     """
@@ -67,53 +67,55 @@ class Playground:
         self._posed: PosedCharacter | None = None
         self._attention = Attention(look, self.cube.edge)
 
-    def step(self, frame: Frame, inputs: Inputs | None = None, given: Given | None = None) -> Step:
-        """Walk one frame down the line.
+    def step(
+        self, frame: Frame, inputs: Inputs | None = None, replay: ReplayInputs | None = None
+    ) -> Step:
+        """Process one frame.
 
         Parameters
         ----------
         frame
             The camera's picture.
         inputs
-            What else the player asked for.
-        given
-            Arrows to take as they are instead of working them out.
+            The other inputs of the frame.
+        replay
+            Recorded messages to use instead of computing them.
         """
-        given = given or Given()
-        state = given.state or self.track(frame)
-        controls = given.controls or self.gesture(state)
+        replay = replay or ReplayInputs()
+        state = replay.state or self.track(frame)
+        controls = replay.controls or self.gesture(state)
         outcome = self.attend(state, controls, self.decide(controls, inputs or Inputs()))
-        if given.command is not None:
-            outcome = replace(outcome, command=given.command)
-        posed = given.posed or self.animate(outcome.command)
+        if replay.command is not None:
+            outcome = replace(outcome, command=replay.command)
+        posed = replay.posed or self.animate(outcome.command)
         self._posed = posed
         picture = self.draw(frame, state, controls, outcome, posed)
         return Step(frame, state, controls, outcome, posed, picture)
 
     def track(self, frame: Frame) -> CubeState:
-        """First arrow: find the cube."""
+        """Find the cube."""
         return self._tracker.update(frame)
 
     def gesture(self, state: CubeState) -> CubeControls:
-        """Second arrow: read the hand."""
+        """Compute what the hand does with the cube."""
         return self._gestures.update(state)
 
     def decide(self, controls: CubeControls, inputs: Inputs) -> Outcome:
-        """Third arrow: ask the scenario."""
-        known = replace(inputs, actions=self._animator.actions)
-        return self.scenario.update(controls, self._posed, known)
+        """Let the scenario decide."""
+        inputs = replace(inputs, actions=self._animator.actions)
+        return self.scenario.update(controls, self._posed, inputs)
 
     def attend(self, state: CubeState, controls: CubeControls, outcome: Outcome) -> Outcome:
-        """Add to what a scenario wants where the character looks, and that it shows its mood.
+        """Add gaze and emotion to the command.
 
-        Nothing else says so: character, virtual robot and robot show one emotion.
+        Only this method does so: character, virtual robot and robot show one emotion.
         """
         gaze = self._attention.update(state, controls, outcome.command)
         command = replace(outcome.command, gaze=gaze, emotion=outcome.emotion.emotion)
         return replace(outcome, command=command)
 
     def animate(self, command: CharacterCommand) -> PosedCharacter:
-        """Fourth arrow: move the character."""
+        """Animate the character."""
         return self._animator.update(command)
 
     def draw(
@@ -124,7 +126,7 @@ class Playground:
         outcome: Outcome,
         posed: PosedCharacter,
     ) -> NDArray[np.uint8] | None:
-        """Fifth arrow: draw the picture, or None without a stage."""
+        """Draw the picture; return None without a graphics context."""
         if self._stage is None:
             return None
         return self._stage.draw(*self.shot(frame, state, controls, outcome, posed))
@@ -137,7 +139,7 @@ class Playground:
         outcome: Outcome,
         posed: PosedCharacter,
     ) -> tuple[View, tuple[SceneCharacter, ...], tuple[FloorPath, ...]]:
-        """Return what a stage needs: the view, who is in it, and what is on the floor."""
+        """Return what the stage draws: the view, the characters, and the paths on the floor."""
         boxes: tuple[Box, ...] = ()
         if state.camera_from_cube is not None:
             boxes = (Box(state.camera_from_cube, self.cube.edge),)
@@ -153,7 +155,7 @@ class Playground:
         return view, actors, outcome.floor if seen else ()
 
     def close(self) -> None:
-        """Release what the stage holds; a second call does nothing."""
+        """Release the stage; a second call does nothing."""
         if self._stage is not None:
             self._stage.release()
             self._stage = None

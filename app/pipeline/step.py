@@ -1,4 +1,4 @@
-"""What one frame led to, and what a replay may give instead."""
+"""The result of one frame, and what a replay may provide instead of computing it."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from tracking import CubeControls, CubeState, Frame
 
 @dataclass(frozen=True)
 class Step:
-    """All that one frame led to: every arrow of the line."""
+    """The result of one frame: every message of the pipeline."""
 
     frame: Frame
     """The camera's picture."""
@@ -24,14 +24,14 @@ class Step:
     """What the hand does with it."""
 
     outcome: Outcome
-    """What the scenario wants: command, emotion, hint, marks on the table."""
+    """The scenario's decision: command, emotion, hint, paths on the table."""
 
     posed: PosedCharacter
     """The character as it is to be drawn."""
 
     picture: NDArray[np.uint8] | None
     """The camera's picture with the character on the table, (height, width, 3) BGR;
-    None where nothing draws."""
+    None without a graphics context."""
 
     @property
     def command(self) -> CharacterCommand:
@@ -40,11 +40,11 @@ class Step:
 
     @property
     def emotion(self) -> EmotionTarget:
-        """What the robot is asked to feel."""
+        """The emotion that character and robot show."""
         return self.outcome.emotion
 
-    def arrows(self) -> dict[str, object]:
-        """Every arrow between the camera and the picture, by its channel in a recording."""
+    def messages(self) -> dict[str, object]:
+        """Return the messages between camera and picture, by their topic in a recording."""
         return {
             "/cube/state": self.state,
             "/cube/controls": self.controls,
@@ -55,17 +55,17 @@ class Step:
 
 
 @dataclass(frozen=True)
-class Given:
-    """Arrows that are known already: a recording replayed from further down the line."""
+class ReplayInputs:
+    """Messages of a recording that replace computed ones, for a replay from a later stage."""
 
     state: CubeState | None = None
     """Where the cube is; None to track it."""
 
     controls: CubeControls | None = None
-    """What the hand does; None to read it from the state."""
+    """What the hand does; None to compute it from the state."""
 
     command: CharacterCommand | None = None
-    """What the character is asked; None to ask the scenario."""
+    """What the character is asked to do; None for the scenario's command."""
 
     posed: PosedCharacter | None = None
     """The character; None to animate it."""
@@ -73,16 +73,16 @@ class Given:
 
 @dataclass(frozen=True)
 class RobotView:
-    """What is known of the robot when a frame is shown."""
+    """The state of the robot when a frame is shown."""
 
     link: str
     """"ready", "connecting", "lost", "none" …"""
 
     mood: float
-    """Valence that the robot itself reports, −1…1; the asked one where there is no robot."""
+    """Valence that the robot reports, −1…1; the requested one where there is no robot."""
 
     label: str
-    """Its word for it: "angry", "neutral", "happy", or another that it knows."""
+    """The robot's label for it: "angry", "neutral", "happy", or another of its moods."""
 
     real: bool = False
-    """Whether it stands on the desk; one that is simulated, or absent, is drawn instead."""
+    """Whether it is a real robot; the virtual robot is drawn instead of any other."""

@@ -9,14 +9,14 @@ import moderngl
 
 from app.errors import AppError
 from app.pipeline.playground import Playground
-from app.pipeline.step import Given
+from app.pipeline.step import ReplayInputs
 from app.running.clock import SessionClock
 from app.running.options import SessionOptions
 from app.running.players import PlayerPublisher
 from app.running.robots import RobotLine, WireRecorder
 from app.scenarios import make_scenario, scenario_cube
 from app.session import Recorder, start_over_times
-from app.session.replay_inputs import recorded_arrows
+from app.session.replay_inputs import read_replay_inputs
 from app.ui.overlay import virtual_robot_side
 from app.ui.screen import NullScreen, Screen, VideoFile
 from app.ui.virtual_robot import VirtualRobot
@@ -62,7 +62,7 @@ class OpenedSession:
     start_overs: frozenset[float]
     """In a replay, timestamps of the frames in which the player started over [s]."""
 
-    replay_inputs: Iterator[Given] | None
+    replay_inputs: Iterator[ReplayInputs] | None
     """In a replay that does not start from the camera, the recorded messages of each frame."""
 
 
@@ -118,7 +118,7 @@ def open_session(
         start_overs = start_over_times(Path(options.source)) if is_session else frozenset[float]()
         replay_inputs = None
         if options.start != "camera":
-            replay_inputs = recorded_arrows(options.source, options.start)
+            replay_inputs = read_replay_inputs(options.source, options.start)
         recorder = wire = None
         if options.record is not None:
             about = recording_metadata(options, cube, source)

@@ -11,7 +11,7 @@ from app.pipeline.scenario import Inputs
 from app.running.opening import open_session
 from app.running.options import SessionOptions
 from app.session import messages
-from app.session.encoding import ARROWS, encode, upgraded
+from app.session.encoding import MESSAGE_TYPES, encode, upgraded
 
 
 @dataclass
@@ -34,7 +34,7 @@ class ComparisonResult:
 
     def __rich__(self) -> Table:
         table = Table("channel", "messages", "different", "first at")
-        for topic in ARROWS:
+        for topic in MESSAGE_TYPES:
             first = self.first.get(topic)
             first_at = "" if first is None else f"{first:.3f} s"
             table.add_row(topic, str(self.counts[topic]), str(self.different[topic]), first_at)
@@ -46,7 +46,7 @@ def check_session(path: Path, options: SessionOptions) -> ComparisonResult:
     result = ComparisonResult()
     options = replace(options, pictures=False, robot="none", record=None, output=None)
     recorded = (
-        (topic, time, upgraded(topic, data)) for topic, time, data in messages(path, *ARROWS)
+        (topic, time, upgraded(topic, data)) for topic, time, data in messages(path, *MESSAGE_TYPES)
     )
     with open_session(options) as session:
         made = (
@@ -54,7 +54,7 @@ def check_session(path: Path, options: SessionOptions) -> ComparisonResult:
             for frame in session.source
             for inputs in (Inputs(clear=frame.timestamp in session.start_overs),)
             for step in (session.playground.step(frame, inputs),)
-            for topic, message in step.arrows().items()
+            for topic, message in step.messages().items()
         )
         for old, new in zip_longest(recorded, made):
             topic, time, _ = old or new or ("", 0.0, b"")

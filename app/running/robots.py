@@ -28,12 +28,18 @@ class RobotLine(Closeable):
     connected, no method waits for the robot.
     """
 
-    def __init__(self) -> None:
+    def __init__(
+        self,
+        robot: Robot | None = None,
+        *,
+        real: bool = False,
+        stepper: "RobotStepper | None" = None,
+    ) -> None:
+        self._robot = robot
+        self._real = real
+        self._stepper = stepper
         self._closing = ExitStack()
-        self._robot: Robot | None = None
         self._target: EmotionTarget | None = None
-        self._real = False
-        self._stepper: RobotStepper | None = None
 
     @classmethod
     def open(
@@ -67,22 +73,21 @@ class RobotLine(Closeable):
         RobotError
             The port does not open or no robot answers.
         """
-        line = cls()
         if url == "none":
-            return line
-        try:
-            line._real = url != "sim" and not url.startswith("sim:")
-            if stepped and not line._real:
-                line._stepper = RobotStepper(url, clock, on_bytes, settings)
-                line._robot = line._closing.enter_context(line._stepper.robot)
-                return line
-            if url == "sim":
-                url = line._closing.enter_context(SimulatedPort(clock=clock)).url
-            robot = connect(url, clock=clock, on_bytes=on_bytes, settings=settings)
-            line._robot = line._closing.enter_context(robot)
-        except BaseException:
-            line.close()
-            raise
+            return cls()
+        simulated = url == "sim" or url.startswith("sim:")
+        with ExitStack() as closing:
+            if simulated and stepped:
+                stepper = RobotStepper(url, clock, on_bytes, settings)
+                closing.enter_context(stepper.robot)
+                line = cls(stepper.robot, stepper=stepper)
+            else:
+                if url == "sim":
+                    url = closing.enter_context(SimulatedPort(clock=clock)).url
+                robot = connect(url, clock=clock, on_bytes=on_bytes, settings=settings)
+                closing.enter_context(robot)
+                line = cls(robot, real=not simulated)
+            line._closing = closing.pop_all()
         return line
 
     def feel(self, target: EmotionTarget) -> None:

@@ -1,4 +1,4 @@
-"""The arrows of the line as JSON: frozen dataclasses there and back, and their schemas."""
+"""Encoding the messages of the pipeline, which are frozen dataclasses, as JSON with schemas."""
 
 import dataclasses
 import json
@@ -15,22 +15,22 @@ from tracking import CubeControls, CubeState
 
 T = TypeVar("T")
 
-ARROWS: dict[str, type[Any]] = {
+MESSAGE_TYPES: dict[str, type[Any]] = {
     "/cube/state": CubeState,
     "/cube/controls": CubeControls,
     "/character/command": CharacterCommand,
     "/character/pose": PosedCharacter,
     "/robot/emotion": EmotionTarget,
 }
-"""The channel of every arrow between the camera and the picture."""
+"""The type of the messages on each channel between camera and picture."""
 
 
-def encode(arrow: object) -> bytes:
-    """Return a dataclass as JSON; numbers keep every bit, and null stands for NaN.
+def encode(message: object) -> bytes:
+    """Return a dataclass as JSON; numbers keep every bit, and NaN becomes null.
 
-    Joints (`Pose`) are rounded to single precision, as the graphics card has them.
+    Joints (`Pose`) are rounded to single precision, as on the graphics card.
     """
-    return json.dumps(_plain(arrow), separators=(",", ":"), allow_nan=False).encode()
+    return json.dumps(_plain(message), separators=(",", ":"), allow_nan=False).encode()
 
 
 def decode(kind: type[T], document: bytes) -> T:
@@ -39,7 +39,7 @@ def decode(kind: type[T], document: bytes) -> T:
     Raises
     ------
     ValueError
-        The document is no JSON, or not of that type.
+        The document is not JSON, or not of that type.
     """
     try:
         value = _typed(kind, _upgraded(kind, json.loads(document)))
@@ -50,7 +50,7 @@ def decode(kind: type[T], document: bytes) -> T:
 
 def upgraded(topic: str, document: bytes) -> bytes:
     """Return a channel's document as this version writes it, whichever version wrote it."""
-    kind = ARROWS[topic]
+    kind = MESSAGE_TYPES[topic]
     content = json.loads(document)
     newer = _upgraded(kind, content)
     return document if newer is content else encode(decode(kind, document))
@@ -103,7 +103,7 @@ def _plain(value: object) -> object:
 
 
 def _with_gaps(array: NDArray[Any]) -> object:
-    """Return nested lists with None where a number is not finite."""
+    """Return nested lists with None for numbers that are not finite."""
     numbers = array.astype(object)
     numbers[~np.isfinite(array)] = None
     return numbers.tolist()
@@ -113,7 +113,7 @@ def _single(array: NDArray[Any] | None) -> object:
     """Return the shortest decimals that give the same single-precision numbers."""
     if array is None:
         return None
-    # Adding zero turns −0 into 0, which is the same joint and one character less.
+    # Adding zero turns −0 into 0: the same joint, and one character less.
     flat = [float(f"{number!s}") for number in (array.astype(np.float32) + np.float32(0)).ravel()]
     return np.array(flat).reshape(array.shape).tolist()
 

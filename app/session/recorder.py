@@ -16,7 +16,7 @@ from mcap_protobuf.schema import register_schema
 
 from app.errors import AppError
 from app.pipeline.step import Step
-from app.session.encoding import ARROWS, encode, schema
+from app.session.encoding import MESSAGE_TYPES, encode, schema
 from tracking import Frame, Intrinsics
 from tracking.sources.base import nanoseconds_of
 
@@ -93,7 +93,7 @@ class Recorder:
         """Record the camera's frame and every message after it."""
         self._steps += 1
         self._frame(step.frame)
-        for topic, message in step.arrows().items():
+        for topic, message in step.messages().items():
             self._json(topic, partial(encode, message), step.frame.timestamp)
 
     def wire(self, direction: str, data: bytes, timestamp: float) -> None:
@@ -174,8 +174,8 @@ class Recorder:
         self._submit(write)
 
     def _schema(self, topic: str) -> tuple[str, bytes]:
-        if topic in ARROWS:
-            return f"cubeling.{ARROWS[topic].__name__}", schema(ARROWS[topic])
+        if topic in MESSAGE_TYPES:
+            return f"cubeling.{MESSAGE_TYPES[topic].__name__}", schema(MESSAGE_TYPES[topic])
         return (
             ("cubeling.Wire", WIRE_SCHEMA)
             if topic == "/robot/wire"

@@ -1,13 +1,13 @@
-"""A recording replayed from further down the line: its arrows, a frame at a time."""
+"""Reading the messages of a recording, frame by frame, for a replay from a later stage."""
 
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from app.errors import AppError
-from app.pipeline.step import Given
+from app.pipeline.step import ReplayInputs
 from app.session import messages
-from app.session.encoding import ARROWS, decode
+from app.session.encoding import MESSAGE_TYPES, decode
 
 STARTS: dict[str, tuple[str, ...]] = {
     "camera": (),
@@ -16,24 +16,24 @@ STARTS: dict[str, tuple[str, ...]] = {
     "command": ("/cube/state", "/cube/controls", "/character/command"),
     "pose": ("/cube/state", "/cube/controls", "/character/command", "/character/pose"),
 }
-"""For each place to start from, the channels that are taken as recorded."""
+"""For each stage to start from, the channels that are taken as recorded."""
 
-FIELDS = {
+FIELD_OF_TOPIC = {
     "/cube/state": "state",
     "/cube/controls": "controls",
     "/character/command": "command",
     "/character/pose": "posed",
 }
-"""Where each channel goes in `Given`."""
+"""The field of `ReplayInputs` for each channel."""
 
 
-def recorded_arrows(source: str, start: str) -> Iterator[Given]:
-    """Give out the recorded arrows before `start`, one `Given` for each frame.
+def read_replay_inputs(source: str, start: str) -> Iterator[ReplayInputs]:
+    """Yield the recorded messages up to the stage `start`, for each frame.
 
     Raises
     ------
     AppError
-        There is no such start, or the source is no session.
+        There is no such stage, or the source is no session.
     """
     if start not in STARTS:
         raise AppError(f"a replay cannot start from '{start}': choose one of {', '.join(STARTS)}")
@@ -42,10 +42,10 @@ def recorded_arrows(source: str, start: str) -> Iterator[Given]:
     return _read(Path(source), STARTS[start])
 
 
-def _read(path: Path, topics: tuple[str, ...]) -> Iterator[Given]:
-    arrows: dict[str, Any] = {}
+def _read(path: Path, topics: tuple[str, ...]) -> Iterator[ReplayInputs]:
+    fields: dict[str, Any] = {}
     for topic, _, data in messages(path, *topics):
-        arrows[FIELDS[topic]] = decode(ARROWS[topic], data)
-        if topic == topics[-1]:  # the recorder writes a frame's arrows in the order of the line
-            yield Given(**arrows)
-            arrows = {}
+        fields[FIELD_OF_TOPIC[topic]] = decode(MESSAGE_TYPES[topic], data)
+        if topic == topics[-1]:  # the recorder writes the messages of a frame in this order
+            yield ReplayInputs(**fields)
+            fields = {}

@@ -1,4 +1,4 @@
-"""A replay walks the same line: the same frames give the same channels."""
+"""A replay is exact: the same frames give the same messages."""
 
 import itertools
 from dataclasses import replace
@@ -16,57 +16,59 @@ from app.running.runner import run
 from app.scenarios import SCENARIOS
 from app.session import messages, session_info, start_over_times
 from app.session.bundled import bundled
-from app.session.encoding import ARROWS, decode, encode
-from app.session.replay_inputs import STARTS, recorded_arrows
+from app.session.encoding import MESSAGE_TYPES, decode, encode
+from app.session.replay_inputs import STARTS, read_replay_inputs
 from app.ui.screen import NullScreen
 from tracking import open_source
 
-SHORT = 240
+MAX_FRAMES = 240
 
 
-def walk(name, count=None):
-    """Every channel of a bundled recording as it comes out now."""
+def process(name, count=None):
+    """Yield every message of a bundled recording as it is computed now."""
     with open_source(str(bundled(name))) as source:
         playground = Playground(name, intrinsics_for(source.intrinsics, source.size))
         for frame in itertools.islice(source, count):
             step = playground.step(frame)
-            for topic, arrow in step.arrows().items():
-                yield topic, step.frame.timestamp, encode(arrow)
+            for topic, message in step.messages().items():
+                yield topic, step.frame.timestamp, encode(message)
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_a_recording_replayed_twice_gives_identical_channels(name):
-    assert list(walk(name, SHORT)) == list(walk(name, SHORT))
+    assert list(process(name, MAX_FRAMES)) == list(process(name, MAX_FRAMES))
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_a_replay_agrees_with_what_was_recorded(name):
-    """Bit for bit on the machine that recorded; elsewhere to a hair, as processors round."""
-    recorded = itertools.islice(messages(bundled(name), *ARROWS), SHORT * len(ARROWS))
-    for (topic, time, old), (_, _, new) in zip(recorded, walk(name, SHORT), strict=True):
+    """Bit for bit on the machine that recorded; elsewhere within what processors round."""
+    recorded = itertools.islice(
+        messages(bundled(name), *MESSAGE_TYPES), MAX_FRAMES * len(MESSAGE_TYPES)
+    )
+    for (topic, time, old), (_, _, new) in zip(recorded, process(name, MAX_FRAMES), strict=True):
         if old != new:
-            one, other = decode(ARROWS[topic], old), decode(ARROWS[topic], new)
-            _agree(topic, time, one, other)
+            one, other = decode(MESSAGE_TYPES[topic], old), decode(MESSAGE_TYPES[topic], new)
+            assert_close(topic, time, one, other)
 
 
 @pytest.mark.parametrize("start", STARTS)
-def test_a_replay_may_start_from_any_arrow(short_session, start):
-    """What comes after the start is worked out again, and comes out the same."""
+def test_a_replay_may_start_from_any_stage(short_session, start):
+    """What comes after the start is computed again, and is the same."""
     with open_source(str(short_session)) as source:
         playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
-        given = iter(()) if start == "camera" else recorded_arrows(str(short_session), start)
+        recorded = iter(()) if start == "camera" else read_replay_inputs(str(short_session), start)
         made = [
-            (topic, step.frame.timestamp, encode(arrow))
+            (topic, step.frame.timestamp, encode(message))
             for frame in source
-            for step in (playground.step(frame, given=next(given, None)),)
-            for topic, arrow in step.arrows().items()
+            for step in (playground.step(frame, replay=next(recorded, None)),)
+            for topic, message in step.messages().items()
         ]
-    assert made == list(messages(short_session, *ARROWS))
+    assert made == list(messages(short_session, *MESSAGE_TYPES))
 
 
-def test_a_start_that_is_none_is_refused(short_session):
+def test_an_unknown_start_is_refused(short_session):
     with pytest.raises(AppError, match="choose one of camera"):
-        recorded_arrows(str(short_session), "middle")
+        read_replay_inputs(str(short_session), "middle")
 
 
 def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session):
@@ -89,11 +91,11 @@ def test_a_player_who_starts_over_does_so_in_the_replay(tmp_path, short_session)
     assert check_session(path, replace(options, source=str(path))).identical
 
 
-def _agree(topic, time, one, other):
+def assert_close(topic, time, one, other):
     for field in one.__dataclass_fields__:
         a, b = getattr(one, field), getattr(other, field)
         if field in ("pose", "emotion"):
-            _agree(topic, time, a, b)
+            assert_close(topic, time, a, b)
         elif isinstance(a, np.ndarray) and field != "covariance":
             np.testing.assert_allclose(a, b, atol=1e-3, err_msg=f"{topic} {field} at {time}")
         elif isinstance(a, str | bool | tuple):
@@ -101,18 +103,21 @@ def _agree(topic, time, one, other):
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
-def test_bundled_recordings_are_small_and_whole(name):
-    told = session_info(bundled(name))
+def test_bundled_recordings_are_small_and_complete(name):
+    info = session_info(bundled(name))
     assert bundled(name).stat().st_size < 6_000_000
-    assert told.scenario == name
-    assert told.frames > 600
+    assert info.scenario == name
+    assert info.frames > 600
     topics = {topic for topic, _, _ in messages(bundled(name))}
-    assert {*ARROWS, "/camera/image", "/camera/calibration", "/robot/wire", "/events"} <= topics
+    others = {"/camera/image", "/camera/calibration", "/robot/wire", "/events"}
+    assert {*MESSAGE_TYPES, *others} <= topics
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_the_cube_is_found_in_nearly_every_frame(name):
-    states = [decode(ARROWS[t], data) for t, _, data in messages(bundled(name), "/cube/state")]
+    states = [
+        decode(MESSAGE_TYPES[t], data) for t, _, data in messages(bundled(name), "/cube/state")
+    ]
     assert np.mean([state.visible for state in states]) > 0.97
 
 

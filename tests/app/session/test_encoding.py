@@ -1,4 +1,4 @@
-"""Every arrow of the line survives the way to disk and back."""
+"""Messages are the same after encoding and decoding."""
 
 import dataclasses
 import json
@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 
 from affect import Emotion
 from app.pipeline.scenario import EmotionTarget
-from app.session.encoding import ARROWS, decode, encode, schema
+from app.session.encoding import MESSAGE_TYPES, decode, encode, schema
 from tracking import CubeState
 
 NUMBERS = st.floats(-1e3, 1e3)
 
 
-def equal(one, other):
+def assert_equal(one, other):
     for field in dataclasses.fields(one):
         a, b = getattr(one, field.name), getattr(other, field.name)
         if isinstance(a, np.ndarray):
@@ -40,25 +40,25 @@ def test_a_cube_state_keeps_every_bit(numbers, timestamp, seen):
         reprojection_error=float("nan"),
         timestamp=timestamp,
     )
-    equal(decode(CubeState, encode(state)), state)
+    assert_equal(decode(CubeState, encode(state)), state)
 
 
-def test_an_emotion_nests():
+def test_a_nested_emotion_is_decoded():
     target = EmotionTarget(Emotion(0.25, -0.5, "neutral"), 1.5)
     assert decode(EmotionTarget, encode(target)) == target
 
 
-def test_controls_survive(hand):
+def test_controls_keep_every_bit(hand):
     controls = hand.frame(turns=1 / 3)
-    equal(decode(type(controls), encode(controls)), controls)
+    assert_equal(decode(type(controls), encode(controls)), controls)
 
 
-@pytest.mark.parametrize("topic", ARROWS)
-def test_every_arrow_has_a_json_schema(topic):
-    assert json.loads(schema(ARROWS[topic]))["type"] == "object"
+@pytest.mark.parametrize("topic", MESSAGE_TYPES)
+def test_every_message_type_has_a_json_schema(topic):
+    assert json.loads(schema(MESSAGE_TYPES[topic]))["type"] == "object"
 
 
 @pytest.mark.parametrize("document", [b"", b"{", b"[]", b"3", b"{}"])
-def test_anything_else_is_refused(document):
+def test_another_document_is_refused(document):
     with pytest.raises(ValueError, match=r"EmotionTarget|Expecting"):
         decode(EmotionTarget, document)
