@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from affect import Personality
 from app.errors import AppError
 from app.pipeline.scenario import EmotionTarget
-from app.scenarios.affect import Temper
 from app.scenarios.follow import gait
+from app.scenarios.mood import MoodController
 from app.session import SessionInfo, messages, session_info, start_over_times
 from app.session.encoding import decode
 from characters import CharacterCommand
@@ -124,18 +124,18 @@ def read_history(path: Path, *, salvage: bool = False) -> History:
 
 def felt_by(history: History, personality: Personality) -> Felt:
     """Return what another personality would have felt of what was done in a session."""
-    temper = Temper(personality)
+    mood = MoodController(personality)
     # Only the companion's knob says how intensely; elsewhere an action is always a whole one.
     intense = history.about.scenario == "companion"
     targets = []
     for controls, command in zip(history.controls, history.commands, strict=True):
         if controls.timestamp in history.started_over:
-            temper.forget()
+            mood.reset()
         action, weight, speed = "idle", 0.0, 0.0
         if command.visible:
             action, speed = command.activity, command.speed
             weight = command.weight if intense else 1.0
-        targets.append(temper.update(controls, action, weight, speed))
+        targets.append(mood.update(controls, action, weight, speed))
     return _felt(personality.name, targets)
 
 

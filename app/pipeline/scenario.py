@@ -1,6 +1,5 @@
-"""What every scenario is, and the table of those there are."""
+"""The interface of a scenario, and the registry of scenarios."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -13,13 +12,13 @@ from tracking import CubeControls, CubeModel
 
 @dataclass(frozen=True)
 class Inputs:
-    """What enters a frame beside the camera's picture."""
+    """The inputs of a frame next to the camera's picture."""
 
     clear: bool = False
     """Whether the player asked to start over: forget the path, the mood …"""
 
     actions: tuple[str, ...] = ()
-    """What the character on the table can be asked to do beside walking."""
+    """Names of the actions that the character can perform."""
 
 
 @dataclass(frozen=True)
@@ -35,41 +34,83 @@ class EmotionTarget:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a scenario wants of one frame."""
+    """The decision of a scenario for one frame."""
 
     command: CharacterCommand
-    """To the animator."""
+    """What the animator receives."""
 
     emotion: EmotionTarget
-    """To the robot; face and bearing of the character show it too."""
+    """What the robot shows, and the character's face and posture too."""
 
     hint: str
-    """One short sentence for the player: what to do now."""
+    """What the player can do now, in one short sentence."""
 
     icon: str = "idle"
-    """Name of the icon that stands for what is going on."""
+    """Name of the icon for the current action or gait."""
 
     floor: tuple[FloorPath, ...] = field(default=())
-    """What is painted on the table."""
+    """Paths that are painted on the table."""
+
+
+SPEED_MAPS = ("corrected", "legacy")
+"""Names of AvatAR's Speed maps: corrected, and as printed in the thesis."""
+
+
+@dataclass(frozen=True)
+class ScenarioSettings:
+    """What the user may choose for a scenario.
+
+    Raises
+    ------
+    AppError
+        There is no speed map of that name, or `turns` is out of range.
+    """
+
+    speed_map: str = "corrected"
+    """One of `SPEED_MAPS`."""
+
+    turns: float = 2.0
+    """Full turns of the cube from the least to the greatest intensity."""
+
+    personality: Personality | None = None
+    """How events change the mood; None for the scenario's own personality."""
+
+    def __post_init__(self) -> None:
+        if self.speed_map not in SPEED_MAPS:
+            raise AppError(
+                f"no speed map is called '{self.speed_map}': choose one of {', '.join(SPEED_MAPS)}"
+            )
+        if not 0.1 <= self.turns <= 20:
+            raise AppError(f"the turns from end to end must be from 0.1 to 20, not {self.turns:g}")
 
 
 class Scenario(Protocol):
-    """A way to play. Its state advances by `update`, once a frame; it reads no clock."""
+    """A way to play. `update` advances its state once a frame; it reads no clock.
+
+    Parameters
+    ----------
+    cube
+        The cube in the player's hand.
+    settings
+        What the user chose.
+    """
 
     name: str
-    """How it is called on the command line."""
+    """Its name on the command line."""
 
     cube: str
-    """Name of the cube that it is made for."""
+    """Name of the bundled cube that it is made for."""
 
     character: str
-    """Name of the bundled character that plays it."""
+    """Name of its bundled character."""
 
     personality: str
-    """Name of the bundled personality that it is played with."""
+    """Name of its bundled personality."""
 
     start: RootDelta
-    """Where the character first stands on the table [m], and which way it looks [rad]."""
+    """Where the character stands at first on the table [m], and its heading [rad]."""
+
+    def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None: ...
 
     def update(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
@@ -81,58 +122,15 @@ class Scenario(Protocol):
         controls
             What the hand does with the cube in this frame.
         character
-            The character as it stood after the frame before, None in the first.
+            The character after the previous frame; None in the first.
         inputs
-            What else the player asked for.
+            The other inputs of the frame.
         """
         ...
 
 
-SPEED_MAPS = ("corrected", "legacy")
-"""Names of AvatAR's Speed maps: corrected, and as printed in the thesis."""
-
-
-@dataclass(frozen=True)
-class ScenarioSettings:
-    """What a person may choose about a scenario.
-
-    Raises
-    ------
-    AppError
-        There is no speed map of that name, or `turns` is not positive.
-    """
-
-    speed_map: str = "corrected"
-    """One of `SPEED_MAPS`."""
-
-    turns: float = 2.0
-    """Full turns of the cube from the least to the greatest intensity."""
-
-    personality: Personality | None = None
-    """Who feels; None for the scenario's own."""
-
-    def __post_init__(self) -> None:
-        if self.speed_map not in SPEED_MAPS:
-            raise AppError(
-                f"no speed map is called '{self.speed_map}': choose one of {', '.join(SPEED_MAPS)}"
-            )
-        if not 0.1 <= self.turns <= 20:
-            raise AppError(f"the turns from end to end must be from 0.1 to 20, not {self.turns:g}")
-
-
-@dataclass(frozen=True)
-class ScenarioKind:
-    """A scenario as it is registered."""
-
-    cube: str
-    """Name of the bundled cube that it is made for."""
-
-    make: Callable[[CubeModel, ScenarioSettings], Scenario]
-    """Makes it for the cube in the player's hand."""
-
-
-SCENARIOS: dict[str, ScenarioKind] = {}
-"""The scenarios by name; `app.scenarios` registers those that come with the program."""
+SCENARIOS: dict[str, type[Scenario]] = {}
+"""The scenarios by name; `app.scenarios` registers the bundled ones."""
 
 
 def scenario_cube(name: str) -> str:
@@ -157,20 +155,20 @@ def make_scenario(
     name
         One of `SCENARIOS`.
     cube
-        The cube in the player's hand; the scenario's own bundled one where it is None.
+        The cube in the player's hand; None for the scenario's own bundled one.
     speed_map, turns
         See `ScenarioSettings`.
     personality
-        A bundled personality or the .toml file of one; the scenario's own where it is None.
+        A bundled personality or a .toml file; None for the scenario's own.
 
     Raises
     ------
     AppError
         There is no scenario of that name, or a setting is wrong.
     AffectError
-        The personality is not there or not usable.
+        The personality is missing or cannot be used.
     """
-    who = None if personality is None else Personality.load(personality)
-    settings = ScenarioSettings(speed_map, turns, who)
+    loaded = None if personality is None else Personality.load(personality)
+    settings = ScenarioSettings(speed_map, turns, loaded)
     model = cube or CubeModel.load(scenario_cube(name))
-    return SCENARIOS[name].make(model, settings)
+    return SCENARIOS[name](model, settings)

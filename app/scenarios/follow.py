@@ -4,34 +4,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from affect import Personality
-from app.pipeline.scenario import Inputs, Outcome
-from app.scenarios.affect import Temper
+from app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from app.scenarios.mood import MoodController
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
 from characters import ActionIntent, CharacterCommand, LocomotionIntent, PosedCharacter, RootDelta
 from characters.control.command import IDLE_SPEED
-from tracking import CubeControls
+from tracking import CubeControls, CubeModel
 
 Point = NDArray[np.float64]
 
-RUN_ABOVE = 3.0
-"""Speed above which it runs (AvatAR)."""
+MAX_WALK_SPEED = 3.0
+"""AvatAR's Speed above which the character runs."""
 
-ELBOW_ROOM = 0.04
-"""How far from the cube's centre the character aims, so that both have room [m]."""
+CUBE_CLEARANCE_M = 0.04
+"""Distance from the cube's centre at which the character stops."""
 
-TREATS = ("jump", "wave", "cheer")
-"""What a character that knows it does when the cube is shaken, in turn."""
+SHAKE_ACTIONS = ("jump", "wave", "cheer")
+"""What the character does when the cube is shaken, in turn, if it knows the action."""
 
-CAMERA = np.array([0.0, 2.0])
-"""A point on the table far towards the camera, (x, z) [m]: where the player sits."""
+PLAYER_POSITION = np.array([0.0, 2.0])
+"""A point far towards the camera, (x, z) on the table [m]: where the player sits."""
 
 
 class Follow:
-    """The character chases the cube; the turn of the cube sets how fast (M10).
+    """The character goes to the cube; the cube's turn sets how fast (M10).
 
     Shaking the cube is not in the thesis: the character then jumps, waves or cheers, if it can, and
-    that pleases it. The faster it goes the more awake it is.
+    its valence rises. Its arousal rises with its speed.
     """
 
     name = "follow"
@@ -40,75 +40,72 @@ class Follow:
     personality = "lively"
     start = RootDelta(-0.15, 0.03, 0.0)
 
-    def __init__(
-        self, speed_map: str = "corrected", personality: Personality | None = None
-    ) -> None:
-        self._dial = SpeedDial(speed_map)
-        self._temper = Temper(personality or Personality.load(self.personality))
+    def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
+        self._dial = SpeedDial(settings.speed_map)
+        self._mood = MoodController(settings.personality or Personality.load(self.personality))
         self._presence = Presence()
-        self._treats = 0
-        self._treat: tuple[str, bool] | None = None  # what it does, and whether it has begun
+        self._shakes = 0
+        self._shake_action: tuple[str, bool] | None = None  # its name, and whether it has begun
 
     def update(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
     ) -> Outcome:
         """Decide on one frame; see `Scenario.update`."""
         if inputs.clear:
-            self._temper.forget()
+            self._mood.reset()
         speed = self._dial.update(controls.camera_angle, controls.timestamp)
         visible = self._presence.update(controls)
-        treat = self._shaken(controls, character, inputs)
+        shake_action = self._react_to_shake(controls, character, inputs)
         command = CharacterCommand(
             timestamp=controls.timestamp,
             locomotion=LocomotionIntent(
-                speed, _beside(controls.position, character), facing=CAMERA
+                speed, _near_side(controls.position, character), facing=PLAYER_POSITION
             ),
-            action=_action(treat, speed),
+            action=_action(shake_action, speed),
             visible=visible,
         )
-        # Out of sight it goes nowhere, and does nothing that it could feel.
-        emotion = self._temper.update(
-            controls, (treat or "idle") if visible else "idle", speed=speed if visible else 0.0
-        )
+        # A hidden character does nothing that changes the mood.
+        action, mood_speed = (shake_action or "idle", speed) if visible else ("idle", 0.0)
+        emotion = self._mood.update(controls, action, speed=mood_speed)
         return Outcome(command, emotion, _hint(controls, speed), gait(speed))
 
-    def _shaken(
+    def _react_to_shake(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
     ) -> str:
-        """Return what it does because the cube was shaken, one thing after the other, or ""."""
-        known = [treat for treat in TREATS if treat in inputs.actions]
-        if controls.shaken and known and self._treat is None:
-            self._treat = known[self._treats % len(known)], False
-            self._treats += 1
-        if self._treat is None:
+        """Return the action that answers a shake until it is over, or ""."""
+        known = [action for action in SHAKE_ACTIONS if action in inputs.actions]
+        if controls.shaken and known and self._shake_action is None:
+            self._shake_action = known[self._shakes % len(known)], False
+            self._shakes += 1
+        if self._shake_action is None:
             return ""
-        name, begun = self._treat
-        doing = character is not None and character.state == name
-        self._treat = None if begun and not doing else (name, begun or doing)
-        return name if self._treat else ""
+        name, begun = self._shake_action
+        performing = character is not None and character.state == name
+        self._shake_action = None if begun and not performing else (name, begun or performing)
+        return name if self._shake_action else ""
 
 
-def _beside(cube: Point | None, character: PosedCharacter | None) -> Point | None:
-    """Return the point at the cube's near side: the character comes to it, not into it."""
+def _near_side(cube: Point | None, character: PosedCharacter | None) -> Point | None:
+    """Return the point at the cube's near side, so that the character does not enter the cube."""
     if cube is None or character is None:
         return cube
-    way = character.table_from_character[[0, 2], 3] - cube
-    distance = float(np.linalg.norm(way))
-    return cube + way * (min(ELBOW_ROOM, distance) / max(distance, 1e-9))
+    offset = character.table_from_character[[0, 2], 3] - cube
+    distance = float(np.linalg.norm(offset))
+    return cube + offset * (min(CUBE_CLEARANCE_M, distance) / max(distance, 1e-9))
 
 
-def _action(treat: str, speed: float) -> ActionIntent | None:
-    """Return the action for a treat, or for standing; None to move."""
-    if treat:
-        return ActionIntent(treat)
+def _action(shake_action: str, speed: float) -> ActionIntent | None:
+    """Return the action that answers a shake, or "idle" to stand; None to move."""
+    if shake_action:
+        return ActionIntent(shake_action)
     return None if speed > IDLE_SPEED else ActionIntent("idle")
 
 
 def gait(speed: float) -> str:
-    """Name of the icon for a Speed: "stand", "walk" or "run"."""
+    """Return the gait at a Speed, which is also its icon: "stand", "walk" or "run"."""
     if speed <= IDLE_SPEED:
         return "stand"
-    return "walk" if speed <= RUN_ABOVE else "run"
+    return "walk" if speed <= MAX_WALK_SPEED else "run"
 
 
 def _hint(controls: CubeControls, speed: float) -> str:
@@ -118,4 +115,4 @@ def _hint(controls: CubeControls, speed: float) -> str:
         return "Put the cube on the table"
     if speed <= IDLE_SPEED:
         return "Turn the cube to walk"
-    return "Move the cube: I follow you" if speed <= RUN_ABOVE else "I run after you!"
+    return "Move the cube: I follow you" if speed <= MAX_WALK_SPEED else "I run after you!"

@@ -1,23 +1,25 @@
-"""Whether the character is to be seen."""
+"""Whether the character is visible."""
 
 from tracking import CubeControls
 
-GRACE = 0.6
-"""How long the character stays when the cube is hidden [s]: fingers hide it for moments."""
+HIDE_DELAY_S = 0.6
+"""How long the character stays when the cube is hidden: fingers hide it for moments."""
 
 
 class Presence:
-    """The character is there while the cube is seen (AvatAR), with a short grace.
+    """Shows the character while the cube is visible (AvatAR), and for a moment longer.
 
-    Its state is kept while it is hidden, so it comes back as it was.
+    The scenario keeps its state while the character is hidden, so it comes back as it was.
     """
 
     def __init__(self) -> None:
-        self._seen: float | None = None
+        self._last_seen: float | None = None
 
     def update(self, controls: CubeControls) -> bool:
         """Return whether to show the character in this frame."""
+        now = controls.timestamp
         if controls.visible:
-            self._seen = controls.timestamp
-        known = controls.camera_from_table is not None
-        return known and self._seen is not None and controls.timestamp - self._seen <= GRACE
+            self._last_seen = now
+        if controls.camera_from_table is None or self._last_seen is None:
+            return False
+        return now - self._last_seen <= HIDE_DELAY_S

@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from affect import Personality
-from app.pipeline.scenario import Inputs, Outcome
-from app.scenarios.affect import Temper
-from app.scenarios.follow import CAMERA, gait
+from app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
+from app.scenarios.follow import PLAYER_POSITION, gait
+from app.scenarios.mood import MoodController
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
 from characters import (
@@ -19,28 +19,28 @@ from characters import (
 )
 from characters.control.command import IDLE_SPEED
 from characters.rendering import FloorPath
-from tracking import CubeControls
+from tracking import CubeControls, CubeModel
 
-MOST_POINTS = 8
-"""Points that a path may have (AvatAR)."""
+MAX_POINTS = 8
+"""Number of points that closes the path (AvatAR)."""
 
-FEWEST_POINTS = 3
-"""Points that make a loop: lifting the cube closes the path from here on."""
+MIN_LOOP_POINTS = 3
+"""Number of points from which lifting the cube closes the path."""
 
-APART = 0.05
-"""How far the cube must move before it leaves another point [m]."""
+MIN_POINT_DISTANCE_M = 0.05
+"""How far the cube must be from the previous point to set another."""
 
-AHEAD = 0.07
-"""How far along the path the character looks ahead [m]."""
+LOOK_AHEAD_M = 0.07
+"""How far ahead of the character its target is along the path."""
 
-PEN_COLOR = (0.10, 0.45, 0.95)
-"""The path on the table, linear RGB."""
+PATH_COLOR = (0.10, 0.45, 0.95)
+"""Color of the path on the table, linear RGB."""
 
 
 class Sketch:
     """Move the cube to draw, lift it (or reach eight points), then turn it to walk the loop (M10).
 
-    A point is left wherever the cube rests at least 5 cm from the one before. Shaking the cube
+    The cube sets a point wherever it rests at least 5 cm from the previous one. Shaking the cube
     starts a new path.
     """
 
@@ -50,18 +50,16 @@ class Sketch:
     personality = "lively"
     start = RootDelta(0.14, 0.0, 0.0)
 
-    def __init__(
-        self, speed_map: str = "corrected", personality: Personality | None = None
-    ) -> None:
-        self._dial = SpeedDial(speed_map)
-        self._temper = Temper(personality or Personality.load(self.personality))
+    def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
+        self._dial = SpeedDial(settings.speed_map)
+        self._mood = MoodController(settings.personality or Personality.load(self.personality))
         self._presence = Presence()
         self._points: list[NDArray[np.float64]] = []
         self._path: ClosedPath | None = None
 
     @property
     def points(self) -> NDArray[np.float64]:
-        """The points drawn so far, (n, 2) on the table [m]."""
+        """The points set so far, (n, 2) on the table [m]."""
         return np.array(self._points).reshape(-1, 2)
 
     def update(
@@ -71,7 +69,7 @@ class Sketch:
         if inputs.clear or controls.shaken:
             self._points, self._path = [], None
         if inputs.clear:
-            self._temper.forget()
+            self._mood.reset()
         if self._path is None:
             self._draw(controls)
         speed = self._dial.update(controls.camera_angle, controls.timestamp)
@@ -80,36 +78,39 @@ class Sketch:
         visible = self._presence.update(controls)
         command = CharacterCommand(
             timestamp=controls.timestamp,
-            locomotion=LocomotionIntent(speed, self._target(character), False, CAMERA),
+            locomotion=LocomotionIntent(speed, self._target(character), False, PLAYER_POSITION),
             action=None if speed > IDLE_SPEED else ActionIntent("idle"),
             visible=visible,
         )
-        emotion = self._temper.update(controls, "idle", speed=speed if visible else 0.0)
+        emotion = self._mood.update(controls, "idle", speed=speed if visible else 0.0)
         return Outcome(command, emotion, self._hint(controls, speed), gait(speed), self._floor())
 
     def _draw(self, controls: CubeControls) -> None:
-        here = controls.position
-        if controls.visible and controls.resting and here is not None and self.may_add(here):
-            self._points.append(here)
-        done = len(self._points) == MOST_POINTS
-        if done or (controls.lifted and len(self._points) >= FEWEST_POINTS):
+        point = controls.position
+        if controls.visible and controls.resting and point is not None and self.may_add(point):
+            self._points.append(point)
+        done = len(self._points) == MAX_POINTS
+        if done or (controls.lifted and len(self._points) >= MIN_LOOP_POINTS):
             self._path = ClosedPath(self.points)
 
     def may_add(self, point: NDArray[np.float64]) -> bool:
-        """Whether a point (x, z) [m] would be taken: not the ninth, and away from the last."""
-        if len(self._points) >= MOST_POINTS:
+        """Whether a point (x, z) [m] may be set: not a ninth, and not near the previous one."""
+        if len(self._points) >= MAX_POINTS:
             return False
-        return not self._points or float(np.linalg.norm(point - self._points[-1])) >= APART
+        return (
+            not self._points
+            or float(np.linalg.norm(point - self._points[-1])) >= MIN_POINT_DISTANCE_M
+        )
 
     def _target(self, character: PosedCharacter | None) -> NDArray[np.float64] | None:
         if self._path is None or character is None:
             return None
-        return self._path.ahead(character.table_from_character[[0, 2], 3], AHEAD)
+        return self._path.ahead(character.table_from_character[[0, 2], 3], LOOK_AHEAD_M)
 
     def _floor(self) -> tuple[FloorPath, ...]:
         if not self._points:
             return ()
-        return (FloorPath(self.points, closed=self._path is not None, color=PEN_COLOR),)
+        return (FloorPath(self.points, closed=self._path is not None, color=PATH_COLOR),)
 
     def _hint(self, controls: CubeControls, speed: float) -> str:
         if not controls.visible:
@@ -117,7 +118,7 @@ class Sketch:
         if controls.position is None:
             return "Put the cube on the table"
         if self._path is None:
-            left = MOST_POINTS - len(self._points)
+            left = MAX_POINTS - len(self._points)
             again = "another point" if self._points else "a point"
             return f"Slide the cube and pause to leave {again} ({left} to go)"
         return "Turn the cube to walk" if speed <= IDLE_SPEED else "Shake the cube for a new path"

@@ -1,15 +1,15 @@
-"""Vleo and Pleo by the rules of the thesis (M11)."""
+"""The companion scenario, by the rules of the thesis (M11)."""
 
 import pytest
 
 from app.pipeline.scenario import Inputs
-from app.scenarios import Companion
+from app.scenarios import make_scenario
 from tracking import CubeModel
 
 
 @pytest.fixture
 def companion():
-    return Companion(CubeModel.load("companion"))
+    return make_scenario("companion")
 
 
 def play(companion, frames):
@@ -42,8 +42,8 @@ def test_intensity_saturates_and_turning_back_works_at_once(companion, hand):
     assert outcome.command.weight == pytest.approx(0.75)
 
 
-def test_the_span_of_turns_can_be_chosen(hand):
-    companion = Companion(CubeModel.load("companion"), turns=1.0)
+def test_the_turns_from_end_to_end_can_be_chosen(hand):
+    companion = make_scenario("companion", turns=1.0)
     outcome = play(companion, [hand.frame(), *hand.tip("front"), *hand.turn(0.25, 1)])
     assert outcome.command.weight == pytest.approx(0.5)
 
@@ -59,15 +59,15 @@ def test_the_action_changes_only_when_the_cube_rests_again(companion, hand):
 def test_kisses_lead_from_angry_over_neutral_to_happy_and_shouts_back(companion, hand):
     labels: list[str] = []
 
-    def live(frames):
+    def record(frames):
         for controls in frames:
             label = companion.update(controls, None, Inputs()).emotion.emotion.label
             if not labels or labels[-1] != label:
                 labels.append(label)
 
-    live([hand.frame(), *hand.tip("front"), *hand.turn(1, 1), *hand.wait(8)])
-    live([*hand.tip("left"), *hand.turn(1, 1), *hand.wait(20)])
-    live([*hand.tip("back"), *hand.turn(1, 1), *hand.wait(20)])
+    record([hand.frame(), *hand.tip("front"), *hand.turn(1, 1), *hand.wait(8)])
+    record([*hand.tip("left"), *hand.turn(1, 1), *hand.wait(20)])
+    record([*hand.tip("back"), *hand.turn(1, 1), *hand.wait(20)])
     assert labels == ["neutral", "happy", "neutral", "angry", "neutral", "happy"]
 
 
@@ -76,9 +76,7 @@ def test_idle_and_a_hidden_cube_leave_the_mood(companion, hand):
     before = play(companion, hand.tip("top")).emotion.emotion
     assert play(companion, hand.wait(10)).emotion.emotion == before
     before = play(companion, hand.tip("front")).emotion.emotion
-    play(
-        companion, [hand.frame(visible=False) for _ in range(19)]
-    )  # the grace in which it may still act
+    play(companion, [hand.frame(visible=False) for _ in range(19)])  # it may act for 0.6 s more
     hidden = play(companion, [hand.frame(visible=False) for _ in range(3)]).emotion.emotion
     later = play(companion, [hand.frame(visible=False) for _ in range(200)])
     assert later.emotion.emotion == hidden
@@ -87,13 +85,14 @@ def test_idle_and_a_hidden_cube_leave_the_mood(companion, hand):
 
 def test_full_intensity_makes_a_neutral_robot_happy_in_about_three_seconds(companion, hand):
     play(companion, [hand.frame(), *hand.tip("front"), *hand.turn(-1, 1)])
-    assert play(companion, hand.wait(30)).emotion.emotion.label == "neutral"  # at −1 it never does
+    assert play(companion, hand.wait(30)).emotion.emotion.label == "neutral"
     before = play(companion, hand.turn(2, 0.1)).emotion.emotion.valence
     needed = (0.33 - before) / 0.1
     assert play(companion, hand.wait(needed - 0.2)).emotion.emotion.label == "neutral"
     assert play(companion, hand.wait(0.4)).emotion.emotion.label == "happy"
 
 
-def test_a_cube_that_lacks_a_role_idles():
-    model = CubeModel.load("locomotion")
-    assert Companion(model)._roles["front"] == "idle"
+def test_a_face_without_an_action_role_is_idle(hand):
+    companion = make_scenario("companion", CubeModel.load("locomotion"))
+    outcome = play(companion, [hand.frame(), *hand.tip("left"), *hand.turn(0.5, 1)])
+    assert outcome.command.activity == "idle"

@@ -1,4 +1,4 @@
-"""One feeling: character, virtual robot and robot show the same mood in every frame."""
+"""Character, virtual robot and robot show the same emotion in every frame."""
 
 import math
 
@@ -10,9 +10,10 @@ from affect import LABEL_SETS, Emotion, Personality
 from affect.words import closest_word
 from app.pipeline.playground import Playground
 from app.pipeline.scenario import EmotionTarget, Inputs
+from app.pipeline.step import ReplayInputs
 from app.running.robots import RobotLine
 from app.scenarios import SCENARIOS, make_scenario
-from app.scenarios.affect import Temper
+from app.scenarios.mood import MoodController
 from app.session import session_info
 from app.ui.virtual_robot import VirtualRobot
 from characters import Animator, Character, CharacterError
@@ -20,11 +21,12 @@ from characters.rendering import create_context
 from robot import Catalogue, Telemetry
 from robot.drivers.cubeling.host import HostLink
 from robot.simulators.cubeling.simulator import Simulator
-from tracking import CubeState, Intrinsics
+from tracking import CubeState, Frame, Intrinsics
 
 LAG = 0.15
 """How long after a frame a simulated robot may still tell of the mood before [s]."""
 
+BLACK = Frame(np.zeros((360, 640, 3), np.uint8), 0.0, 0)
 UNSEEN = CubeState(False, None, np.full(6, np.nan), np.eye(6), "predicted", (), 0.0, 0.0)
 
 
@@ -68,14 +70,12 @@ def session(name, hand):
 
 
 def outcomes(name, hand, personality=None):
-    """Yield what a playground makes of a session, and the character as it is then."""
+    """Yield the outcome of every frame of a session."""
     scenario = make_scenario(name, personality=personality)
     playground = Playground(scenario, Intrinsics.guess((640, 360)))
     for controls in session(name, hand):
-        wanted = playground.decide(controls, Inputs())
-        outcome = playground.attend(UNSEEN, controls, wanted)
-        playground._posed = playground.animate(outcome.command)
-        yield outcome
+        recorded = ReplayInputs(state=UNSEEN, controls=controls)
+        yield playground.step(BLACK, replay=recorded).outcome
 
 
 class Pair:
@@ -94,28 +94,26 @@ class Pair:
             self.robot.receive(self.host.bytes_to_send(), self.now)
 
 
-def test_the_line_hands_the_robot_emotion_and_word():
-    class Told:
+def test_the_robot_receives_the_emotion_with_its_word():
+    class ExpressingRobot:
         def express(self, emotion):
             self.expressed = emotion
 
-    line, told = RobotLine(), Told()
-    line._robot = told  # type: ignore[assignment] # all of a robot that this needs
+    robot = ExpressingRobot()
     target = EmotionTarget(Emotion(0.6, 0.7, "excited"), 0.0)
-    line.feel(target)
-    assert told.expressed == target.emotion
+    RobotLine(robot).feel(target)  # type: ignore[arg-type]  # it only calls `express`
+    assert robot.expressed == target.emotion
 
 
-def test_what_a_silent_robot_shows_is_told_by_the_word_that_it_was_asked():
-    class Silent:
+def test_the_label_of_a_robot_without_feedback_is_its_closest_mood():
+    class RobotWithoutFeedback:
         telemetry = Telemetry("ready", acknowledged=Emotion(-0.6, -0.4, "sad"))
         catalogue = Catalogue("silent", "", (), (), (), ("neutral", "happy", "angry"))
 
         def express(self, emotion):
             pass
 
-    line = RobotLine()
-    line._robot = Silent()  # type: ignore[assignment] # all of a robot that this needs
+    line = RobotLine(RobotWithoutFeedback())  # type: ignore[arg-type]  # all that this needs
     line.feel(EmotionTarget(Emotion(-0.6, -0.4, "sad"), 0.0))
     line.feel(EmotionTarget(Emotion(-0.7, 0.4, "angry"), 0.1))
     assert line.view().label == "neutral"
@@ -192,11 +190,11 @@ def test_a_shaken_cube_pleases_and_a_lost_one_lets_it_fade(hand):
 
 
 def test_time_that_runs_backwards_moves_nothing(hand):
-    temper = Temper(Personality.load("lively"))
+    mood = MoodController(Personality.load("lively"))
     controls = hand.wait(1.0)
     for each in controls:
-        late = temper.update(each, "kiss")
-    early = temper.update(controls[0], "kiss")
+        late = mood.update(each, "kiss")
+    early = mood.update(controls[0], "kiss")
     assert early.emotion == late.emotion
     assert early.timestamp == 0.0
 

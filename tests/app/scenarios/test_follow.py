@@ -1,20 +1,22 @@
+"""The follow scenario: what a shaken cube makes the character do."""
+
 import numpy as np
 
 from app.pipeline.scenario import Inputs
-from app.scenarios import Follow
-from app.scenarios.follow import TREATS
+from app.scenarios import make_scenario
+from app.scenarios.follow import SHAKE_ACTIONS
 from characters import Animator, Character
 
 
 class Play:
-    """A human that follows a hand."""
+    """A human character that follows the cube in a hand."""
 
     def __init__(self, hand):
-        self.hand, self.follow = hand, Follow()
+        self.hand, self.follow = hand, make_scenario("follow")
         self.animator, self.posed = Animator(Character.load("human")), None
 
     def on(self, seconds, **first):
-        """Let some time pass and return what was asked for and what was done."""
+        """Play for some seconds; return the requested activities and the character's states."""
         asked, done = [], []
         for number in range(round(seconds * 30)):
             controls = self.hand.frame(**(first if number == 0 else {}))
@@ -26,25 +28,25 @@ class Play:
         return asked, done
 
 
-def test_a_shaken_cube_is_answered_with_one_thing_after_the_other(hand):
+def test_each_shake_starts_the_next_action(hand):
     play = Play(hand)
     play.on(0.2)
-    for treat in (*TREATS, TREATS[0]):
+    for action in (*SHAKE_ACTIONS, SHAKE_ACTIONS[0]):
         asked, done = play.on(4.0, shaken=True)
-        assert treat in done
-        assert set(done) <= {treat, "idle"}
+        assert action in done
+        assert set(done) <= {action, "idle"}
         assert asked[-1] == "idle"
 
 
-def test_a_second_shake_meanwhile_changes_nothing(hand):
+def test_a_shake_during_an_action_changes_nothing(hand):
     play = Play(hand)
     play.on(0.5, shaken=True)
     asked, _ = play.on(0.5, shaken=True)
-    assert set(asked) == {TREATS[0]}
+    assert set(asked) == {SHAKE_ACTIONS[0]}
 
 
-def test_a_character_that_knows_no_such_thing_goes_on(hand):
-    follow = Follow()
+def test_a_character_without_these_actions_ignores_a_shake(hand):
+    follow = make_scenario("follow")
     outcome = follow.update(hand.frame(shaken=True), None, Inputs(actions=("kiss",)))
     assert outcome.command.activity == "idle"
     turned = hand.frame(shaken=True, camera_angle=np.pi / 2)

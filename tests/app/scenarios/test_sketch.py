@@ -1,34 +1,34 @@
-"""Drawing a path with the cube, then walking it."""
+"""The sketch scenario: draw a path with the cube, then walk it."""
 
 import numpy as np
 import pytest
 
 from app.pipeline.scenario import Inputs
-from app.scenarios import Sketch
-from app.scenarios.sketch import MOST_POINTS
+from app.scenarios import make_scenario
+from app.scenarios.sketch import MAX_POINTS
 
 
 @pytest.fixture
 def sketch():
-    return Sketch()
+    return make_scenario("sketch")
 
 
 def draw(sketch, hand, count, radius=0.15):
-    """Rest at `count` places round a circle; returns the last outcome."""
+    """Rest at `count` places on a circle; return the last outcome."""
     for place in range(count):
-        angle = 2 * np.pi * place / MOST_POINTS
+        angle = 2 * np.pi * place / MAX_POINTS
         point = radius * np.array([np.cos(angle), np.sin(angle)])
         sketch.update(hand.frame(position=point, resting=False), None, Inputs())
         outcome = sketch.update(hand.frame(position=point, resting=True), None, Inputs())
     return outcome
 
 
-def test_a_point_is_left_where_the_cube_rests(sketch, hand):
+def test_a_point_is_set_where_the_cube_rests(sketch, hand):
     draw(sketch, hand, 3)
     assert len(sketch.points) == 3
 
 
-def test_resting_longer_or_nearby_leaves_no_second_point(sketch, hand):
+def test_resting_longer_or_nearby_sets_no_second_point(sketch, hand):
     draw(sketch, hand, 1)
     for shift in (0.0, 0.01, 0.04):
         sketch.update(hand.frame(position=np.array([0.15 + shift, 0.0])), None, Inputs())
@@ -36,15 +36,15 @@ def test_resting_longer_or_nearby_leaves_no_second_point(sketch, hand):
 
 
 def test_the_ninth_point_is_refused(sketch, hand):
-    draw(sketch, hand, MOST_POINTS)
+    draw(sketch, hand, MAX_POINTS)
     sketch.update(hand.frame(position=np.array([0.5, 0.5])), None, Inputs())
-    assert len(sketch.points) == MOST_POINTS
+    assert len(sketch.points) == MAX_POINTS
     assert not sketch.may_add(np.array([0.5, 0.5]))
 
 
 def test_eight_points_close_the_loop(sketch, hand):
-    assert not draw(sketch, hand, MOST_POINTS - 1).floor[0].closed
-    assert draw(sketch, hand, MOST_POINTS).floor[0].closed
+    assert not draw(sketch, hand, MAX_POINTS - 1).floor[0].closed
+    assert draw(sketch, hand, MAX_POINTS).floor[0].closed
 
 
 def test_lifting_the_cube_closes_a_shorter_loop(sketch, hand):
@@ -54,7 +54,7 @@ def test_lifting_the_cube_closes_a_shorter_loop(sketch, hand):
 
 
 def test_a_shake_starts_over(sketch, hand):
-    draw(sketch, hand, MOST_POINTS)
+    draw(sketch, hand, MAX_POINTS)
     outcome = sketch.update(hand.frame(shaken=True, resting=False), None, Inputs())
     assert outcome.floor == ()
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.scenarios.speed import MAPS, STILL, SpeedDial, corrected, legacy
+from app.scenarios.speed import IDLE_MAX_ANGLE, MAPS, SpeedDial, corrected, legacy
 
 DEGREES = [d / 4 for d in range(0, 721)]
 
@@ -30,7 +30,7 @@ def test_corrected_map_is_continuous_but_at_45_degrees_and_never_falls():
 def test_legacy_map_is_as_printed():
     for degrees in (46, 90, 135, 180):
         assert legacy(math.radians(degrees)) == pytest.approx(1.55 + 4 * degrees / 180)
-    assert legacy(STILL) == 0.0
+    assert legacy(IDLE_MAX_ANGLE) == 0.0
 
 
 @pytest.mark.parametrize("name", MAPS)
