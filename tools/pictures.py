@@ -18,7 +18,7 @@ from app.running.opening import intrinsics_for, open_session
 from app.running.options import SessionOptions
 from app.running.runner import run
 from app.session.bundled import bundled
-from app.ui.calibration.coach import PERIOD, CoachView
+from app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from app.ui.calibration.coach_lines import write_coverage
 from app.ui.calibration.session import Advice, CalibrationSession, Picture
 from app.ui.overlay import overlay, virtual_robot_side
@@ -79,10 +79,10 @@ def draw_sheet(name: str) -> None:
 
 
 LESSON = {"tip": "tilt up", "near": "near"}
-"""For which wishes of the coach a picture is taken."""
+"""For which requests of the coach a picture is taken."""
 
 SHOWN = (0.6, 1.2)
-"""How long the wish has been shown by then [s]: half way through the coach's little drawing."""
+"""How long the request has been shown by then [s]: half way through the coach's little drawing."""
 
 FREE = 0.74
 """The cube is above this share of the picture's height by then, where no card lies."""
@@ -95,19 +95,19 @@ class _Album:
 
     def __init__(self) -> None:
         self._coach = CoachView("cube")
-        self._waiting = {wish: name for name, wish in LESSON.items()}
+        self._waiting = {request: name for name, request in LESSON.items()}
         self._since = ("", 0.0)
 
     def show_advice(self, picture: Picture, timestamp: float, advice: Advice) -> None:
         """Draw the coach, and keep the picture if its time has come."""
         shown = self._coach.draw(picture, timestamp, advice)
-        if advice.wish != self._since[0]:
-            self._since = advice.wish, timestamp
-        held = SHOWN[0] <= (timestamp - self._since[1]) % PERIOD <= SHOWN[1]
+        if advice.request != self._since[0]:
+            self._since = advice.request, timestamp
+        held = SHOWN[0] <= (timestamp - self._since[1]) % ANIMATION_PERIOD_S <= SHOWN[1]
         lowest = max((outline[:, 1].max() for outline in advice.outlines), default=np.inf)
         seen = lowest < FREE * picture.shape[0]
-        if advice.wish in self._waiting and held and seen:
-            path = FOLDER / f"calibrate-{self._waiting.pop(advice.wish)}.jpg"
+        if advice.request in self._waiting and held and seen:
+            path = FOLDER / f"calibrate-{self._waiting.pop(advice.request)}.jpg"
             cv2.imwrite(str(path), shown, (cv2.IMWRITE_JPEG_QUALITY, 88))
 
 

@@ -12,7 +12,7 @@ from app.commands.play import DEFAULT_CAMERA, CubeOption
 from app.errors import AppError
 from app.running.opening import intrinsics_for
 from app.ui.calibration.coach_lines import FORMATS, CoachLines, write_coverage
-from app.ui.calibration.session import CalibrationSession, CoachDisplay
+from app.ui.calibration.session import CalibrationSession, Coach
 from app.ui.display import has_display
 from tracking import CubeModel, FrameSource, Intrinsics, open_source
 from tracking.calibration import (
@@ -138,12 +138,12 @@ def _coached(
     """Teach in a window or on the terminal; Ctrl-C ends the session, not the program."""
     session = CalibrationSession(finders, frames.size)
     with ExitStack() as closing, suppress(KeyboardInterrupt):
-        display: CoachDisplay = CoachLines(Console(soft_wrap=True, highlight=False), target)
+        coach: Coach = CoachLines(Console(soft_wrap=True, highlight=False), target)
         if shown:
             from app.ui.calibration.coach_window import CoachWindow  # needs a display's libraries
 
-            display = closing.enter_context(CoachWindow(frames.size, target))
-        session.run(frames, display, seconds)
+            coach = closing.enter_context(CoachWindow(frames.size, target))
+        session.run(frames, coach, seconds)
     return session
 
 

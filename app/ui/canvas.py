@@ -1,4 +1,4 @@
-"""Cards that lie over the picture, drawn at the size they are shown."""
+"""Cards over the picture, drawn at the size at which they are shown."""
 
 from copy import copy
 from dataclasses import dataclass
@@ -12,22 +12,22 @@ from PIL import Image, ImageDraw, ImageFont
 from app.ui.palette import PAPER, Color
 from tracking.cube.icons import icon_mask
 
-SUBPIXEL = 4
-"""Fractional bits of the coordinates that OpenCV draws at."""
+SUBPIXEL_BITS = 4
+"""Fractional bits of the coordinates that OpenCV draws with."""
 
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
-cached_icon = lru_cache(maxsize=32)(icon_mask)
+UNIT_CIRCLE = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
+"""Points of a circle of radius one, (48, 2)."""
 
-ROUND = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
-"""Points round a circle of radius one, (48, 2)."""
+_cached_icon = lru_cache(maxsize=32)(icon_mask)
 
 
 @dataclass(frozen=True)
 class Card:
-    """A small picture with rounded corners that lies over the big one."""
+    """A small picture with rounded corners, to be blended over another."""
 
     x: int
-    """Left edge in the big picture [px]."""
+    """Left edge in the other picture [px]."""
 
     y: int
     """Top edge [px]."""
@@ -35,26 +35,28 @@ class Card:
     color: NDArray[np.uint8]
     """(height, width, 3) BGR."""
 
-    cover: NDArray[np.float32]
-    """(height, width): 0 lets the picture through, 1 hides it."""
+    opacity: NDArray[np.float32]
+    """(height, width): 0 is transparent, 1 is opaque."""
 
-    gap: NDArray[np.float32]
-    """What `cover` leaves of the picture, (height, width)."""
+    transparency: NDArray[np.float32]
+    """1 − `opacity`, (height, width)."""
 
-    def over(self, picture: NDArray[np.uint8]) -> None:
-        """Lay the card over a picture (H, W, 3), in place; what sticks out is cut off."""
-        height, width = self.cover.shape
+    def blend_over(self, picture: NDArray[np.uint8]) -> None:
+        """Blend the card over a picture (H, W, 3), in place; it is clipped to the picture."""
+        height, width = self.opacity.shape
         top, left = max(0, self.y), max(0, self.x)
         part = picture[top : self.y + height, left : self.x + width]
         if part.size == 0:
             return
         rows, columns = part.shape[:2]
         inside = np.s_[top - self.y : top - self.y + rows, left - self.x : left - self.x + columns]
-        part[:] = cv2.blendLinear(self.color[inside], part, self.cover[inside], self.gap[inside])
+        part[:] = cv2.blendLinear(
+            self.color[inside], part, self.opacity[inside], self.transparency[inside]
+        )
 
 
 class Canvas:
-    """A card while it is drawn. Lengths are in design units: a picture is 720 of them high."""
+    """A card that is being drawn. Lengths are in design units: a picture is 720 units high."""
 
     def __init__(self, width: float, height: float, scale: float) -> None:
         self.scale = scale
@@ -63,14 +65,14 @@ class Canvas:
         self.color[:] = PAPER
 
     def card(self, x: float, y: float, opacity: float = 0.93) -> Card:
-        """Finish: a card with its corner at (x, y)."""
+        """Return the finished card with its top left corner at (x, y)."""
         height, width = self.color.shape[:2]
         radius = round(min(18 * self.scale, height / 2))
-        shares = _shares(width, height, radius, round(255 * opacity))
-        return Card(round(x * self.scale), round(y * self.scale), self.color, *shares)
+        masks = _blend_masks(width, height, radius, round(255 * opacity))
+        return Card(round(x * self.scale), round(y * self.scale), self.color, *masks)
 
     def copy(self) -> "Canvas":
-        """Return a canvas of its own with the same on it: what never changes is drawn once."""
+        """Return a copy to draw on; what never changes is drawn once, on the original."""
         canvas = copy(self)
         canvas.color = self.color.copy()
         return canvas
@@ -78,48 +80,50 @@ class Canvas:
     def text(
         self, x: float, y: float, words: str, size: float, color: Color, align: str = "left"
     ) -> None:
-        """Write a line; (x, y) is on its baseline, at its left end, middle or right end."""
-        mask, rise = lettering(words, round(size * self.scale))
+        """Write a line of text; (x, y) is on its baseline, at its left end, middle or right end."""
+        mask, ascent = text_mask(words, round(size * self.scale))
         shift = {"left": 0.0, "middle": 0.5, "right": 1.0}[align] * mask.shape[1]
-        left, top = round(x * self.scale - shift), round(y * self.scale) - rise
+        left, top = round(x * self.scale - shift), round(y * self.scale) - ascent
         self._stamp(mask, left, top, color)
 
     def icon(self, x: float, y: float, size: float, name: str, color: Color) -> None:
-        """Draw an icon in a square of `size` whose corner is (x, y)."""
-        mask = cached_icon(name, round(size * self.scale))
+        """Draw an icon in a square of `size` whose top left corner is (x, y)."""
+        mask = _cached_icon(name, round(size * self.scale))
         self._stamp(mask, round(x * self.scale), round(y * self.scale), color)
 
     def picture(self, x: float, y: float, image: NDArray[np.uint8], radius: float) -> None:
-        """Lay a picture (height, width, 3) with round corners on the card, from (x, y) on."""
+        """Draw a picture (height, width, 3) with round corners; (x, y) is its top left corner."""
         height, width = image.shape[:2]
         left, top = round(x * self.scale), round(y * self.scale)
         part = self.color[top : top + height, left : left + width]
         rows, columns = part.shape[:2]
-        cover, gap = (
-            share[:rows, :columns]
-            for share in _shares(width, height, round(radius * self.scale), 255)
-        )
-        part[:] = cv2.blendLinear(image[:rows, :columns], part, cover, gap)
+        masks = _blend_masks(width, height, round(radius * self.scale), 255)
+        opacity, transparency = (mask[:rows, :columns] for mask in masks)
+        part[:] = cv2.blendLinear(image[:rows, :columns], part, opacity, transparency)
 
     def disc(self, x: float, y: float, radius: float, color: Color) -> None:
         """Fill a circle."""
-        # OpenCV's own small circles have corners.
-        circle = self._fixed(np.array([x, y]) + radius * ROUND)
-        cv2.fillConvexPoly(self.color, circle, color, cv2.LINE_AA, SUBPIXEL)
+        # Small circles of OpenCV's own look like polygons.
+        self.fill(np.array([x, y]) + radius * UNIT_CIRCLE, color)
+
+    def fill(self, points: NDArray[np.float64], color: Color) -> None:
+        """Fill a convex polygon (n, 2)."""
+        corners = self._fixed_point(points)
+        cv2.fillConvexPoly(self.color, corners, color, cv2.LINE_AA, SUBPIXEL_BITS)
 
     def line(self, points: object, color: Color, width: float, closed: bool = False) -> None:
         """Draw a line with round ends through points (n, 2)."""
-        path = self._fixed(np.asarray(points, float))
+        path = self._fixed_point(np.asarray(points, float))
         thickness = max(1, round(width * self.scale))
-        cv2.polylines(self.color, [path], closed, color, thickness, cv2.LINE_AA, SUBPIXEL)
+        cv2.polylines(self.color, [path], closed, color, thickness, cv2.LINE_AA, SUBPIXEL_BITS)
 
     def bar(self, x: float, y: float, width: float, height: float, color: Color) -> None:
         """Fill a bar with round ends; (x, y) is the middle of its left end."""
         ends = np.array([[x + height / 2, y], [x + width - height / 2, y]])
         self.line(ends, color, height)
 
-    def _fixed(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
-        return np.asarray(np.round((points * self.scale - 0.5) * 2**SUBPIXEL), np.int32)
+    def _fixed_point(self, points: NDArray[np.float64]) -> NDArray[np.int32]:
+        return np.asarray(np.round((points * self.scale - 0.5) * 2**SUBPIXEL_BITS), np.int32)
 
     def _stamp(self, mask: NDArray[np.uint8], left: int, top: int, color: Color) -> None:
         height, width = self.color.shape[:2]
@@ -133,8 +137,8 @@ class Canvas:
 
 
 @lru_cache(maxsize=256)
-def lettering(words: str, size: int) -> tuple[NDArray[np.uint8], int]:
-    """Return a line of text as coverage (height, width), and its baseline below the top [px]."""
+def text_mask(words: str, size: int) -> tuple[NDArray[np.uint8], int]:
+    """Return the coverage of a line of text (height, width), and its ascent [px]."""
     font = ImageFont.load_default(max(6, size))
     left, top, right, bottom = (round(side) for side in font.getbbox(words, anchor="ls"))
     image = Image.new("L", (max(1, right - left + 2), max(1, bottom - top + 2)))
@@ -143,13 +147,13 @@ def lettering(words: str, size: int) -> tuple[NDArray[np.uint8], int]:
 
 
 def text_width(words: str, size: float) -> float:
-    """Return how wide a line of text is, in the units of `size`."""
-    return float(lettering(words, 100)[0].shape[1] * size / 100)
+    """Return the width of a line of text, in the units of `size`."""
+    return float(text_mask(words, 100)[0].shape[1] * size / 100)
 
 
 @lru_cache(maxsize=32)
-def rounded(width: int, height: int, radius: int, value: int) -> NDArray[np.uint8]:
-    """Return a mask (height, width) of a rectangle with round corners."""
+def rounded_rectangle(width: int, height: int, radius: int, value: int) -> NDArray[np.uint8]:
+    """Return a mask (height, width) of a rectangle with round corners; `value` inside."""
     y, x = np.mgrid[:height, :width] + 0.5
     dx = np.maximum(np.abs(x - width / 2) - (width / 2 - radius), 0.0)
     dy = np.maximum(np.abs(y - height / 2) - (height / 2 - radius), 0.0)
@@ -158,9 +162,9 @@ def rounded(width: int, height: int, radius: int, value: int) -> NDArray[np.uint
 
 
 @lru_cache(maxsize=32)
-def _shares(
+def _blend_masks(
     width: int, height: int, radius: int, value: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return how much of a card is seen, and of the picture below it, each (height, width)."""
-    cover = rounded(width, height, radius, value).astype(np.float32) / 255.0
-    return cover, 1.0 - cover
+    """Return the opacity of a card and its complement, each (height, width)."""
+    opacity = rounded_rectangle(width, height, radius, value).astype(np.float32) / 255.0
+    return opacity, 1.0 - opacity

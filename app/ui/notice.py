@@ -1,4 +1,4 @@
-"""What the player reads while the camera gives nothing new."""
+"""Notices for the player while the camera delivers no new frames."""
 
 from dataclasses import dataclass
 
@@ -7,17 +7,17 @@ from tracking import Health
 
 @dataclass(frozen=True)
 class Notice:
-    """What the player reads while nothing new comes."""
+    """A message over the last picture."""
 
     title: str
-    """What is the matter, in a few words."""
+    """The problem, in a few words."""
 
     advice: str
     """What to do about it."""
 
 
 def notice(health: Health) -> Notice | None:
-    """Return what to tell of a live source; None where all is well.
+    """Return a notice about the health of a live source; None if it works.
 
     >>> notice(Health("camera 0", "lost", 5.0)).title
     'Camera lost: plug it in again'

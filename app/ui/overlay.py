@@ -1,4 +1,4 @@
-"""What lies over the picture: what to do now, what the character does, how the robot feels."""
+"""Cards over the picture: the hint, the character's action, the robot's mood."""
 
 import math
 from functools import lru_cache
@@ -14,28 +14,35 @@ from app.ui.palette import ACTION, ANGRY, INK, PAPER, QUIET, RULE, Color, betwee
 from app.ui.robot_face import draw_face
 from app.ui.virtual_robot import VirtualRobot
 
-HEIGHT = 720.0
-"""Height of a picture in design units."""
+# Lengths are in design units: a picture is 720 units high.
+PICTURE_HEIGHT = 720.0
+MARGIN = 24.0
+CARD_HEIGHT = 108.0
+BAR_Y = 70.0
+"""Distance of a bar from its card's top edge."""
 
-LEFT, WIDE = 108.0, 160.0
-"""Left end of the bar for speed or intensity on its card, and its length."""
+ACTION_BAR_X, ACTION_BAR_WIDTH = 108.0, 160.0
+"""Left end and length of the bar of speed or intensity."""
 
-MOODS_LEFT, MOODS_WIDE = 116.0, 176.0
-"""The same of the bar for the robot's mood."""
+ROBOT_CARD_WIDTH = 316.0
+MOOD_BAR_X, MOOD_BAR_WIDTH = 116.0, 176.0
+"""Left end and length of the bar of the robot's mood."""
 
-SIDE, FRAME = 180.0, 8.0
-"""Side of the virtual robot on its card, and the card's rim about it."""
+VIRTUAL_ROBOT_SIDE, VIRTUAL_ROBOT_FRAME = 180.0, 8.0
+"""Side of the virtual robot's picture, and width of its card's frame."""
 
-NARROW = 156.0
-"""Length of the bar under the virtual robot."""
+VIRTUAL_ROBOT_TEXT_Y = VIRTUAL_ROBOT_SIDE + VIRTUAL_ROBOT_FRAME + 4.0
+"""Top of the text below the picture."""
 
-UNDER = SIDE + FRAME + 4.0
-"""Where the words under it begin."""
+VIRTUAL_ROBOT_CARD_WIDTH = VIRTUAL_ROBOT_SIDE + 2 * VIRTUAL_ROBOT_FRAME
+VIRTUAL_ROBOT_CARD_HEIGHT = VIRTUAL_ROBOT_TEXT_Y + 106
+VIRTUAL_ROBOT_BAR = ((VIRTUAL_ROBOT_CARD_WIDTH - 156.0) / 2, VIRTUAL_ROBOT_TEXT_Y + 65, 156.0)
+"""Left end, height on the card, and length of the bar of its mood."""
 
-LEVEL = 70.0
-"""How far below a card's top edge its bar is."""
+DIMMED_BRIGHTNESS = 0.45
+"""Share of the last picture's brightness while no new frame comes."""
 
-WORDS = {
+TITLES = {
     "stand": "Stand",
     "idle": "Idle",
     "walk": "Walk",
@@ -48,14 +55,14 @@ WORDS = {
 def cards(
     step: Step, robot: RobotView, size: tuple[int, int], virtual_robot: VirtualRobot | None = None
 ) -> list[Card]:
-    """Draw all cards for one frame of `size` (width, height); see `overlay`."""
-    scale = size[1] / HEIGHT
+    """Return all cards for a picture of a `size` (width, height); see `overlay`."""
+    scale = size[1] / PICTURE_HEIGHT
     width = size[0] / scale
     shown = [_hint(step.outcome.hint, width, scale)]
     if virtual_robot is None or robot.real:
         shown.append(_robot(robot, width, scale))
     else:
-        shown.append(_absent_robot(robot, virtual_robot.portrait(step.emotion), width, scale))
+        shown.append(_virtual_robot(robot, virtual_robot.portrait(step.emotion), width, scale))
     if step.controls.camera_from_table is not None:
         shown.append(_action(step, scale))
     return shown
@@ -67,109 +74,106 @@ def overlay(
     robot: RobotView,
     virtual_robot: VirtualRobot | None = None,
 ) -> NDArray[np.uint8]:
-    """Return the picture (H, W, 3) with all cards laid over it, in place.
+    """Return the picture (H, W, 3) with all cards blended over it, in place.
 
-    Where no real robot shows what it feels, the virtual robot does; without one, a drawn face.
+    Without a real robot, the virtual robot shows the mood; without both, a drawn face does.
     """
     for card in cards(step, robot, (picture.shape[1], picture.shape[0]), virtual_robot):
-        card.over(picture)
+        card.blend_over(picture)
     return picture
 
 
 def virtual_robot_side(height: int) -> int:
-    """Return the side of the virtual robot in pictures of a height, both in pixels."""
-    return round(SIDE * height / HEIGHT)
-
-
-DIMMED = 0.45
-"""What is left of the last picture's brightness while no new one comes."""
+    """Return the side of the virtual robot's picture in pictures of a height [px]."""
+    return round(VIRTUAL_ROBOT_SIDE * height / PICTURE_HEIGHT)
 
 
 def interrupted(picture: NDArray[np.uint8], notice: Notice) -> NDArray[np.uint8]:
-    """Return the last picture (H, W, 3), dimmed, with a card that says why no new one comes."""
-    dim = np.asarray(cv2.convertScaleAbs(picture, alpha=DIMMED), np.uint8)
-    scale = picture.shape[0] / HEIGHT
-    _notice(notice, picture.shape[1] / scale, scale).over(dim)
+    """Return the last picture (H, W, 3), dimmed, with a notice over it."""
+    dim = np.asarray(cv2.convertScaleAbs(picture, alpha=DIMMED_BRIGHTNESS), np.uint8)
+    scale = picture.shape[0] / PICTURE_HEIGHT
+    _notice(notice, picture.shape[1] / scale, scale).blend_over(dim)
     return dim
 
 
 @lru_cache(maxsize=4)
 def _notice(notice: Notice, width: float, scale: float) -> Card:
-    wide = max(text_width(notice.title, 30), text_width(notice.advice, 20)) + 152
-    canvas = Canvas(wide, 116, scale)
+    card_width = max(text_width(notice.title, 30), text_width(notice.advice, 20)) + 152
+    canvas = Canvas(card_width, 116, scale)
     canvas.disc(58, 58, 34, ANGRY)
     canvas.line([[58, 41], [58, 61]], PAPER, 8)
     canvas.disc(58, 75, 4.6, PAPER)
     canvas.text(112, 54, notice.title, 30, INK)
     canvas.text(112, 86, notice.advice, 20, QUIET)
-    return canvas.card((width - wide) / 2, (HEIGHT - 116) / 2)
+    return canvas.card((width - card_width) / 2, (PICTURE_HEIGHT - 116) / 2)
 
 
 @lru_cache(maxsize=16)
 def _hint(words: str, width: float, scale: float) -> Card:
-    wide = text_width(words, 24) + 56
-    canvas = Canvas(wide, 48, scale)
-    canvas.text(wide / 2, 32.5, words, 24, INK, "middle")
-    return canvas.card((width - wide) / 2, 22)
+    card_width = text_width(words, 24) + 56
+    canvas = Canvas(card_width, 48, scale)
+    canvas.text(card_width / 2, 32.5, words, 24, INK, "middle")
+    return canvas.card((width - card_width) / 2, 22)
 
 
 def _action(step: Step, scale: float) -> Card:
     name = step.outcome.icon
     moves = step.command.activity == "move" or name in ("stand", "walk", "run")
-    canvas = _action_blank(name, moves, scale).copy()
+    canvas = _action_background(name, moves, scale).copy()
     if moves:
         _speed(canvas, step.command.speed, ACTION.get(name, INK))
     elif name != "idle":
         _intensity(canvas, step.command.weight, ACTION.get(name, INK))
-    return canvas.card(24, HEIGHT - 132)
+    return canvas.card(MARGIN, PICTURE_HEIGHT - CARD_HEIGHT - MARGIN)
 
 
 @lru_cache(maxsize=16)
-def _action_blank(name: str, moves: bool, scale: float) -> Canvas:
-    """Draw what stays as long as the action does."""
-    canvas = Canvas(292, 108, scale)
+def _action_background(name: str, moves: bool, scale: float) -> Canvas:
+    """Draw what does not change during an action."""
+    canvas = Canvas(292, CARD_HEIGHT, scale)
     canvas.disc(54, 54, 38, ACTION.get(name, INK))
     canvas.icon(32, 32, 44, name, PAPER)
-    canvas.text(108, 42, WORDS.get(name, name.title()), 28, INK)
-    canvas.bar(LEFT, LEVEL, WIDE, 10, RULE)
+    canvas.text(108, 42, TITLES.get(name, name.title()), 28, INK)
+    canvas.bar(ACTION_BAR_X, BAR_Y, ACTION_BAR_WIDTH, 10, RULE)
     if moves:
-        canvas.text(LEFT, 95, "speed", 15, QUIET)
+        canvas.text(ACTION_BAR_X, 95, "speed", 15, QUIET)
     elif name == "idle":
-        canvas.text(LEFT, 95, "resting", 15, QUIET)
+        canvas.text(ACTION_BAR_X, 95, "resting", 15, QUIET)
     else:
-        canvas.text(LEFT, 95, "a little", 15, QUIET)
-        canvas.text(LEFT + WIDE, 95, "a lot", 15, QUIET, "right")
+        canvas.text(ACTION_BAR_X, 95, "a little", 15, QUIET)
+        canvas.text(ACTION_BAR_X + ACTION_BAR_WIDTH, 95, "a lot", 15, QUIET, "right")
     return canvas
 
 
 def _speed(canvas: Canvas, speed: float, color: Color) -> None:
-    canvas.bar(LEFT, LEVEL, max(10.0, WIDE * min(speed, 5.0) / 5.0), 10, color)
+    length = max(10.0, ACTION_BAR_WIDTH * min(speed, 5.0) / 5.0)
+    canvas.bar(ACTION_BAR_X, BAR_Y, length, 10, color)
     for mark in (0.5, 3.0):
-        canvas.disc(LEFT + WIDE * mark / 5.0, LEVEL, 2.2, PAPER)
-    canvas.text(LEFT + WIDE, 95, f"{speed:.1f}", 15, QUIET, "right")
+        canvas.disc(ACTION_BAR_X + ACTION_BAR_WIDTH * mark / 5.0, BAR_Y, 2.2, PAPER)
+    canvas.text(ACTION_BAR_X + ACTION_BAR_WIDTH, 95, f"{speed:.1f}", 15, QUIET, "right")
 
 
 def _intensity(canvas: Canvas, weight: float, color: Color) -> None:
-    middle = LEFT + WIDE / 2
-    knob = LEFT + 7 + (WIDE - 14) * (weight + 1) / 2
-    canvas.line([[middle, LEVEL], [knob, LEVEL]], between(color, PAPER, 0.35), 10)
-    canvas.disc(middle, LEVEL, 2.5, QUIET)
-    canvas.disc(knob, LEVEL, 11, PAPER)
-    canvas.disc(knob, LEVEL, 8.5, color)
+    middle = ACTION_BAR_X + ACTION_BAR_WIDTH / 2
+    knob = ACTION_BAR_X + 7 + (ACTION_BAR_WIDTH - 14) * (weight + 1) / 2
+    canvas.line([[middle, BAR_Y], [knob, BAR_Y]], between(color, PAPER, 0.35), 10)
+    canvas.disc(middle, BAR_Y, 2.5, QUIET)
+    canvas.disc(knob, BAR_Y, 11, PAPER)
+    canvas.disc(knob, BAR_Y, 8.5, color)
 
 
 def _robot(robot: RobotView, width: float, scale: float) -> Card:
     words = {"none": "no robot", "ready": f"robot is {robot.label}"}.get(
         robot.link, f"robot {robot.link}"
     )
-    canvas = _robot_blank(words, scale).copy()
+    canvas = _robot_background(words, scale).copy()
     mood = robot.mood if math.isfinite(robot.mood) else 0.0
     draw_face(canvas, 56, 54, 38, mood)
-    _mood_knob(canvas, MOODS_LEFT, LEVEL, MOODS_WIDE, mood)
-    return canvas.card(width - 316 - 24, HEIGHT - 132)
+    _mood_knob(canvas, MOOD_BAR_X, BAR_Y, MOOD_BAR_WIDTH, mood)
+    return canvas.card(width - ROBOT_CARD_WIDTH - MARGIN, PICTURE_HEIGHT - CARD_HEIGHT - MARGIN)
 
 
-def _absent_robot(
+def _virtual_robot(
     robot: RobotView, portrait: NDArray[np.uint8], width: float, scale: float
 ) -> Card:
     """Draw the card of the virtual robot."""
@@ -177,51 +181,53 @@ def _absent_robot(
         robot.link, f"simulated robot {robot.link}"
     )
     words = f"robot is {robot.label}"
-    canvas = _absent_blank(words, caption, scale).copy()
-    canvas.picture(FRAME, FRAME, portrait, 12)
+    canvas = _virtual_robot_background(words, caption, scale).copy()
+    canvas.picture(VIRTUAL_ROBOT_FRAME, VIRTUAL_ROBOT_FRAME, portrait, 12)
     mood = robot.mood if math.isfinite(robot.mood) else 0.0
-    _mood_knob(canvas, FRAME + (SIDE - NARROW) / 2, UNDER + 65, NARROW, mood)
-    return canvas.card(width - SIDE - 2 * FRAME - 24, HEIGHT - UNDER - 106 - 24)
+    _mood_knob(canvas, *VIRTUAL_ROBOT_BAR, mood)
+    x, y = width - VIRTUAL_ROBOT_CARD_WIDTH, PICTURE_HEIGHT - VIRTUAL_ROBOT_CARD_HEIGHT
+    return canvas.card(x - MARGIN, y - MARGIN)
 
 
-def _mood_knob(canvas: Canvas, left: float, level: float, wide: float, mood: float) -> None:
-    knob = left + wide * (mood + 1) / 2
-    canvas.disc(knob, level, 12, PAPER)
-    canvas.disc(knob, level, 9.0, INK)
+def _mood_knob(canvas: Canvas, x: float, y: float, length: float, mood: float) -> None:
+    knob = x + length * (mood + 1) / 2
+    canvas.disc(knob, y, 12, PAPER)
+    canvas.disc(knob, y, 9.0, INK)
 
 
 @lru_cache(maxsize=16)
-def _robot_blank(words: str, scale: float) -> Canvas:
-    """Draw what stays whatever the robot's mood is."""
-    canvas = Canvas(316, 108, scale)
-    canvas.text(112, 42, words, _fitting(words, 25, 316 - 112 - 28), INK)
-    _mood_scale(canvas, MOODS_LEFT, LEVEL, MOODS_WIDE)
+def _robot_background(words: str, scale: float) -> Canvas:
+    """Draw what does not change with the robot's mood."""
+    canvas = Canvas(ROBOT_CARD_WIDTH, CARD_HEIGHT, scale)
+    canvas.text(112, 42, words, _fitting_size(words, 25, ROBOT_CARD_WIDTH - 112 - 28), INK)
+    _mood_scale(canvas, MOOD_BAR_X, BAR_Y, MOOD_BAR_WIDTH)
     return canvas
 
 
 @lru_cache(maxsize=16)
-def _absent_blank(words: str, caption: str, scale: float) -> Canvas:
-    """Draw what stays under the virtual robot."""
-    canvas = Canvas(SIDE + 2 * FRAME, UNDER + 106, scale)
-    size = _fitting(words, 23, SIDE - 12)
-    canvas.text(FRAME + SIDE / 2, UNDER + 24, words, size, INK, "middle")
-    canvas.text(FRAME + SIDE / 2, UNDER + 44, caption, 14, QUIET, "middle")
-    _mood_scale(canvas, FRAME + (SIDE - NARROW) / 2, UNDER + 65, NARROW)
+def _virtual_robot_background(words: str, caption: str, scale: float) -> Canvas:
+    """Draw what does not change below the virtual robot."""
+    canvas = Canvas(VIRTUAL_ROBOT_CARD_WIDTH, VIRTUAL_ROBOT_CARD_HEIGHT, scale)
+    size = _fitting_size(words, 23, VIRTUAL_ROBOT_SIDE - 12)
+    middle, top = VIRTUAL_ROBOT_CARD_WIDTH / 2, VIRTUAL_ROBOT_TEXT_Y
+    canvas.text(middle, top + 24, words, size, INK, "middle")
+    canvas.text(middle, top + 44, caption, 14, QUIET, "middle")
+    _mood_scale(canvas, *VIRTUAL_ROBOT_BAR)
     return canvas
 
 
-def _fitting(words: str, size: float, wide: float) -> float:
-    """Return a size of letters, at most `size`, in which words are no wider than `wide`."""
-    return size * min(1.0, wide / text_width(words, size))
+def _fitting_size(words: str, size: float, width: float) -> float:
+    """Return the font size, at most `size`, at which a text fits into a width."""
+    return size * min(1.0, width / text_width(words, size))
 
 
-def _mood_scale(canvas: Canvas, left: float, level: float, wide: float) -> None:
-    """Draw the bar from angry over neutral to happy, with its words under it."""
+def _mood_scale(canvas: Canvas, x: float, y: float, length: float) -> None:
+    """Draw the bar from angry over neutral to happy, with the labels below it."""
     for share in np.linspace(0.0, 1.0, 64):
-        canvas.disc(left + wide * share, level, 5.0, mood_color(2 * share - 1))
+        canvas.disc(x + length * share, y, 5.0, mood_color(2 * share - 1))
     for name, share, align in (
         ("angry", 0.0, "left"),
         ("neutral", 0.5, "middle"),
         ("happy", 1.0, "right"),
     ):
-        canvas.text(left + wide * share, level + 27, name, 14, QUIET, align)
+        canvas.text(x + length * share, y + 27, name, 14, QUIET, align)

@@ -1,4 +1,4 @@
-"""The colours of the screen, BGR as OpenCV draws."""
+"""The colours of the user interface, in BGR order as OpenCV takes them."""
 
 Color = tuple[int, int, int]
 
@@ -13,9 +13,9 @@ def bgr(code: str) -> Color:
     return blue, green, red
 
 
-def between(one: Color, other: Color, share: float) -> Color:
+def between(first: Color, second: Color, share: float) -> Color:
     """Mix two colours; `share` 0 gives the first, 1 the second."""
-    mixed = [round(a + (b - a) * share) for a, b in zip(one, other, strict=True)]
+    mixed = [round(a + (b - a) * share) for a, b in zip(first, second, strict=True)]
     return mixed[0], mixed[1], mixed[2]
 
 
@@ -36,7 +36,7 @@ ACTION: dict[str, Color] = {
     "kiss": bgr("#e8557f"),
     "shout": bgr("#f0742b"),
 }
-"""A colour for everything that the character can be about."""
+"""Colours of the character's actions."""
 
 
 def mood_color(mood: float) -> Color:

@@ -1,4 +1,4 @@
-"""A small dinosaur's face that shows a mood."""
+"""The face of a small dinosaur that shows a mood."""
 
 import numpy as np
 
@@ -33,7 +33,7 @@ def _eye(canvas: Canvas, x: float, y: float, radius: float, side: int, mood: flo
     canvas.disc(x, y, radius * 0.24, PAPER)
     canvas.disc(x - side * radius * 0.03, y + radius * 0.03, radius * 0.15, INK)
     canvas.disc(x + radius * 0.03, y - radius * 0.05, radius * 0.055, PAPER)
-    # Brows fall towards the nose when angry; they arch when happy.
+    # Brows slope towards the nose when angry, and arch when happy.
     across = np.linspace(-1.0, 1.0, 9)
     anger, joy = max(0.0, -mood), max(0.0, mood)
     rise = 0.34 + 0.08 * joy - 0.08 * anger + joy * 0.07 * (1 - across**2)

@@ -1,6 +1,6 @@
-"""The coach on the screen: what to do next, with a small moving drawing, and what is there already.
+"""The coach over the picture: the next move, an animation of it, and the progress so far.
 
-Everything is shown as it should look in the picture, so that left is left on the screen.
+Everything is shown as it looks in the picture: left is left on the screen.
 """
 
 import math
@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from app.ui.calibration.orientation_icons import draw_board, draw_cube, draw_screen, fill
+from app.ui.calibration.orientation_icons import draw_board, draw_cube, draw_screen
 from app.ui.calibration.session import Advice
 from app.ui.canvas import Canvas, Card, text_width
 from app.ui.palette import ACTION, HAPPY, INK, NEUTRAL, PAPER, QUIET, RULE, between
@@ -19,19 +19,22 @@ from tracking.calibration import ViewCoverage
 Picture = NDArray[np.uint8]
 Array = NDArray[np.float64]
 
-HEIGHT = 720.0
+PICTURE_HEIGHT = 720.0
 """Height of a picture in design units."""
 
-FLASH = 0.25
-"""How long the picture's rim shines when a view was taken [s]."""
+FLASH_S = 0.25
+"""Time for which the picture's border flashes when a view was taken [s]."""
 
-PERIOD = 1.8
-"""Time of one movement of the drawing [s]."""
+ANIMATION_PERIOD_S = 1.8
+"""Period of the animation [s]."""
 
-TILT = math.radians(34)
-"""How far the drawing tips the cube."""
+TILT_RAD = math.radians(34)
+"""Angle by which the animation tilts the cube."""
 
-CORNER_WORDS = {
+ICON_ROTATION = np.array([-0.35, 0.4, 0.0])
+"""Rotation vector of a target that does not tilt, so that three faces are visible."""
+
+PLACE_SENTENCES = {
     "top left": "Move it to the top left corner",
     "top right": "Move it to the top right corner",
     "bottom left": "Move it to the bottom left corner",
@@ -39,7 +42,7 @@ CORNER_WORDS = {
     "middle": "Move it to the middle",
 }
 
-WORDS = {
+SENTENCES = {
     "show": "Show me the {}",
     "still": "Good! Now hold it still",
     "done": "Done! Thank you",
@@ -50,11 +53,11 @@ WORDS = {
     "tilt right": "Turn the {} to the right",
     "near": "Bring it nearer",
     "far": "Hold it further away",
-    **CORNER_WORDS,
+    **PLACE_SENTENCES,
 }
 
-TURNS = {"tilt up": (-1, 0), "tilt down": (1, 0), "tilt left": (0, 1), "tilt right": (0, -1)}
-"""About which axis of the picture (x right, y down) each tilt turns, right-handed."""
+TILT_AXES = {"tilt up": (-1, 0), "tilt down": (1, 0), "tilt left": (0, 1), "tilt right": (0, -1)}
+"""Axis in the picture (x right, y down) about which each tilt rotates, right-handed."""
 
 PLACES = {
     "top left": (-1, -1),
@@ -65,19 +68,19 @@ PLACES = {
 }
 
 
-def words_of(wish: str, target: str) -> str:
-    """Return a wish in words; `target` is "cube" or "board".
+def words_of(request: str, target: str) -> str:
+    """Return a request as a sentence; `target` is "cube" or "board".
 
     >>> words_of("tilt up", "cube")
     'Tip the cube up'
     """
-    if wish.startswith("side "):
+    if request.startswith("side "):
         return "Turn it over: show me another side"
-    return WORDS[wish].format(target)
+    return SENTENCES[request].format(target)
 
 
 class CoachView:
-    """Draws the coach over pictures, a picture after the other.
+    """Draws the coach over a sequence of pictures.
 
     Parameters
     ----------
@@ -87,78 +90,81 @@ class CoachView:
 
     def __init__(self, target: str) -> None:
         self._target = target
-        self._flash = -math.inf
-        self._right = False
-        self._since: tuple[str, float] = ("", 0.0)
+        self._taken_at = -math.inf
+        self._on_right = False
+        self._request_since: tuple[str, float] = ("", 0.0)
 
     def draw(self, picture: Picture, timestamp: float, advice: Advice) -> Picture:
         """Draw on the picture (H, W, 3), in place, and return it."""
         if advice.taken:
-            self._flash = timestamp
-        if self._since[0] != advice.wish:
-            self._since = advice.wish, timestamp
-        scale = picture.shape[0] / HEIGHT
+            self._taken_at = timestamp
+        if self._request_since[0] != advice.request:
+            self._request_since = advice.request, timestamp
+        scale = picture.shape[0] / PICTURE_HEIGHT
         width = picture.shape[1] / scale
-        cover(picture, advice.covered)
+        draw_coverage(picture, advice.covered)
         for outline in advice.outlines:
-            trace(picture, outline, scale)
-        shine = 1 - (timestamp - self._flash) / FLASH
-        if shine > 0:
-            _rim(picture, shine, scale)
-        moved = (timestamp - self._since[1]) / PERIOD % 1.0
-        self._hint(advice, width, scale).over(picture)
-        self._lesson(advice.wish, moved, scale, self._clear_of(advice, width, scale)).over(picture)
-        _progress(advice, width, scale).over(picture)
+            draw_outline(picture, outline, scale)
+        flash = 1 - (timestamp - self._taken_at) / FLASH_S
+        if flash > 0:
+            _border(picture, flash, scale)
+        phase = (timestamp - self._request_since[1]) / ANIMATION_PERIOD_S % 1.0
+        left = self._animation_left(advice, width, scale)
+        self._hint(advice, width, scale).blend_over(picture)
+        self._animation(advice.request, phase, scale, left).blend_over(picture)
+        _progress(advice, width, scale).blend_over(picture)
         return picture
 
     def _hint(self, advice: Advice, width: float, scale: float) -> Card:
-        words = words_of(advice.wish, self._target)
-        wide = text_width(words, 34) + 72
-        canvas = Canvas(wide, 64, scale)
-        good = advice.wish in ("still", "done", "")
-        canvas.text(wide / 2, 43.5, words, 34, between(HAPPY, INK, 0.25) if good else INK, "middle")
-        return canvas.card((width - wide) / 2, 22)
+        words = words_of(advice.request, self._target)
+        card_width = text_width(words, 34) + 72
+        canvas = Canvas(card_width, 64, scale)
+        good = advice.request in ("still", "done", "")
+        color = between(HAPPY, INK, 0.25) if good else INK
+        canvas.text(card_width / 2, 43.5, words, 34, color, "middle")
+        return canvas.card((width - card_width) / 2, 22)
 
-    def _clear_of(self, advice: Advice, width: float, scale: float) -> float:
-        """Return the left edge of the drawing's card, which gives way to the target."""
+    def _animation_left(self, advice: Advice, width: float, scale: float) -> float:
+        """Return the left edge of the animation's card, which moves away from the target."""
         for outline in advice.outlines:
             x, y = outline.T / scale
-            under = (y.max() > (HEIGHT - 240) / 2) and (y.min() < (HEIGHT + 240) / 2)
-            if under and (x.max() > width - 274 if self._right else x.min() < 274):
-                self._right = not self._right
-        return width - 254 if self._right else 24.0
+            top, bottom = (PICTURE_HEIGHT - 240) / 2, (PICTURE_HEIGHT + 240) / 2
+            beside = y.max() > top and y.min() < bottom
+            if beside and (x.max() > width - 274 if self._on_right else x.min() < 274):
+                self._on_right = not self._on_right
+        return width - 254 if self._on_right else 24.0
 
-    def _lesson(self, wish: str, moved: float, scale: float, left: float) -> Card:
+    def _animation(self, request: str, phase: float, scale: float, left: float) -> Card:
         canvas = Canvas(230, 200, scale)
         draw = draw_board if self._target == "board" else draw_cube
-        # There and back, with a rest at both ends.
-        share = float(np.clip(0.5 - 0.75 * math.cos(2 * math.pi * moved), 0, 1))
+        # Forth and back, with a pause at both ends.
+        share = float(np.clip(0.5 - 0.75 * math.cos(2 * math.pi * phase), 0, 1))
         middle = (115.0, 100.0)
-        if wish in TURNS:
-            draw(canvas, middle, 44.0, TILT * share * np.array([*TURNS[wish], 0.0]))
-            _arrow(canvas, middle, wish)
-        elif wish in PLACES or wish == "show":
-            x, y = PLACES.get(wish, (0, 0))
-            start = (-1.9, 0.0) if wish == "show" else (-x * 0.5, -y * 0.5)
+        if request in TILT_AXES:
+            draw(canvas, middle, 44.0, TILT_RAD * share * np.array([*TILT_AXES[request], 0.0]))
+            _arrow(canvas, middle, request)
+        elif request in PLACES or request == "show":
+            x, y = PLACES.get(request, (0, 0))
+            start = (-1.9, 0.0) if request == "show" else (-x * 0.5, -y * 0.5)
             at = (start[0] + (x - start[0]) * share, start[1] + (y - start[1]) * share)
             draw_screen(canvas, middle, (190.0, 120.0))
-            draw(canvas, (115 + 66 * at[0], 100 + 34 * at[1]), 17.0, np.array([-0.35, 0.4, 0.0]))
-        elif wish in ("near", "far"):
-            size = 22 + 34 * (share if wish == "near" else 1 - share)
-            draw(canvas, middle, size, np.array([-0.35, 0.4, 0.0]))
-        elif wish in ("done", ""):
+            draw(canvas, (115 + 66 * at[0], 100 + 34 * at[1]), 17.0, ICON_ROTATION)
+        elif request in ("near", "far"):
+            size = 22 + 34 * (share if request == "near" else 1 - share)
+            draw(canvas, middle, size, ICON_ROTATION)
+        elif request in ("done", ""):
             canvas.disc(*middle, 62, HAPPY)
             canvas.line([(84, 102), (106, 125), (147, 76)], PAPER, 14)
-        elif wish == "still":
-            draw(canvas, middle, 44.0, np.array([-0.35, 0.4, 0.0]))
-            _ring(canvas, middle, 84.0, moved)
+        elif request == "still":
+            draw(canvas, middle, 44.0, ICON_ROTATION)
+            _ring(canvas, middle, 84.0, phase)
         else:
             draw(canvas, middle, 44.0, np.array([0.0, math.pi / 2 * share, 0.0]))
-        return canvas.card(left, (HEIGHT - 200) / 2)  # the corners must stay free
+        return canvas.card(left, (PICTURE_HEIGHT - 200) / 2)  # the picture's corners stay free
 
 
-def cover(picture: Picture, outlines: Iterable[Array]) -> None:
-    """Tint where the target was seen, in place: the coverage picture."""
+def draw_coverage(picture: Picture, outlines: Iterable[Array]) -> None:
+    """Tint the areas where the target was seen, in place."""
     quads = [np.round(quad * 16).astype(np.int32) for quad in outlines]
     if not quads:
         return
@@ -170,44 +176,46 @@ def cover(picture: Picture, outlines: Iterable[Array]) -> None:
         cv2.polylines(picture, [quad], True, between(HAPPY, PAPER, 0.35), 1, cv2.LINE_AA, 4)
 
 
-def trace(picture: Picture, outline: Array, scale: float) -> None:
-    """Draw a line round what is seen now, in place."""
+def draw_outline(picture: Picture, outline: Array, scale: float) -> None:
+    """Draw the outline of the target in this frame, in place."""
     quad = np.round(outline * 16).astype(np.int32)
     cv2.polylines(picture, [quad], True, PAPER, max(1, round(5 * scale)), cv2.LINE_AA, 4)
     cv2.polylines(picture, [quad], True, ACTION["walk"], max(1, round(3 * scale)), cv2.LINE_AA, 4)
 
 
-def _rim(picture: Picture, shine: float, scale: float) -> None:
+def _border(picture: Picture, flash: float, scale: float) -> None:
     height, width = picture.shape[:2]
-    thick = round(2 + 14 * shine * scale)
-    cv2.rectangle(picture, (0, 0), (width - 1, height - 1), HAPPY, 2 * thick)
+    thickness = round(2 + 14 * flash * scale)
+    cv2.rectangle(picture, (0, 0), (width - 1, height - 1), HAPPY, 2 * thickness)
 
 
-def _arrow(canvas: Canvas, middle: tuple[float, float], wish: str) -> None:
-    """Draw where the cube's front should look."""
-    way = np.array({"up": (0, -1), "down": (0, 1), "left": (-1, 0), "right": (1, 0)}[wish[5:]])
-    aside = np.array([-way[1], way[0]])
-    tip = np.array(middle) + way * (88 if way[1] else 98)
-    ends = [tip - 22 * way, tip]
+def _arrow(canvas: Canvas, middle: tuple[float, float], request: str) -> None:
+    """Draw an arrow to where the cube's front should look."""
+    directions = {"up": (0, -1), "down": (0, 1), "left": (-1, 0), "right": (1, 0)}
+    direction = np.array(directions[request.removeprefix("tilt ")])
+    aside = np.array([-direction[1], direction[0]])
+    tip = np.array(middle) + direction * (88 if direction[1] else 98)
+    ends = [tip - 22 * direction, tip]
     color = ACTION["kiss"]
     canvas.line(ends, color, 7)
-    canvas.line([tip - 13 * way + 12 * aside, tip, tip - 13 * way - 12 * aside], color, 7)
+    back = tip - 13 * direction
+    canvas.line([back + 12 * aside, tip, back - 12 * aside], color, 7)
 
 
-def _ring(canvas: Canvas, middle: tuple[float, float], radius: float, moved: float) -> None:
-    """Draw a ring that fills while the target is held still."""
+def _ring(canvas: Canvas, middle: tuple[float, float], radius: float, share: float) -> None:
+    """Draw a ring that fills up: hold still."""
     angles = np.linspace(0, 2 * math.pi, 72) - math.pi / 2
     ring = np.array(middle) + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     canvas.line(ring, RULE, 7, closed=True)
-    canvas.line(ring[: max(2, round(72 * moved))], HAPPY, 7)
+    canvas.line(ring[: max(2, round(72 * share))], HAPPY, 7)
 
 
 def _progress(advice: Advice, width: float, scale: float) -> Card:
-    """Draw what is there already: tilts, places, distances, sides."""
+    """Draw which views exist: tilts, places, distances, sides."""
     coverage = advice.coverage
     sides = [kind for kind in coverage.needed if kind.startswith("side ")]
-    wide = 452.0 if sides else 352.0
-    canvas = Canvas(wide, 132, scale)
+    card_width = 452.0 if sides else 352.0
+    canvas = Canvas(card_width, 132, scale)
     _tilts(canvas, coverage, 62, 52)
     _places(canvas, coverage, 172, 52)
     for number, kind in enumerate(("far", "near")):
@@ -220,23 +228,23 @@ def _progress(advice: Advice, width: float, scale: float) -> Card:
     captions = [(62, "tipped"), (172, "everywhere"), (285, "far, near"), (392, "all sides")]
     for x, words in captions[: 4 if sides else 3]:
         canvas.text(x, 106, words, 15, QUIET, "middle")
-    canvas.bar(18, 119, wide - 36, 6, RULE)
-    canvas.bar(18, 119, max(6.0, (wide - 36) * coverage.progress), 6, HAPPY)
-    return canvas.card((width - wide) / 2, HEIGHT - 156)
+    canvas.bar(18, 119, card_width - 36, 6, RULE)
+    canvas.bar(18, 119, max(6.0, (card_width - 36) * coverage.progress), 6, HAPPY)
+    return canvas.card((width - card_width) / 2, PICTURE_HEIGHT - 156)
 
 
 def _tilts(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
-    for kind, way in (
+    for kind, direction in (
         ("tilt up", (0, -1)),
         ("tilt down", (0, 1)),
         ("tilt left", (-1, 0)),
         ("tilt right", (1, 0)),
     ):
-        ahead = np.array(way, float)
+        ahead = np.array(direction, float)
         aside = np.array([-ahead[1], ahead[0]])
         foot = np.array([x, y]) + 13 * ahead
         triangle = np.array([foot + 13 * aside, foot + 19 * ahead, foot - 13 * aside])
-        fill(canvas, triangle, _green(coverage.progress_of(kind)))
+        canvas.fill(triangle, _share_color(coverage.progress_of(kind)))
 
 
 def _places(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
@@ -244,14 +252,14 @@ def _places(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
         middle = np.array([x + 31 * across, y + 19 * down])
         half = np.array([13.5, 8.5])
         corners = middle + half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-        fill(canvas, corners, _green(coverage.progress_of(kind)))
+        canvas.fill(corners, _share_color(coverage.progress_of(kind)))
 
 
 def _dot(canvas: Canvas, x: float, y: float, radius: float, share: float) -> None:
-    canvas.disc(x, y, radius, _green(share))
+    canvas.disc(x, y, radius, _share_color(share))
 
 
-def _green(share: float) -> tuple[int, int, int]:
+def _share_color(share: float) -> tuple[int, int, int]:
     if share >= 1:
         return HAPPY
     return between(RULE, NEUTRAL, 0.75 * min(1.0, 1.5 * share))

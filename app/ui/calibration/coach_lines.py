@@ -1,4 +1,4 @@
-"""The coach where there is no window: lines on the terminal, and a picture at the end."""
+"""The coach without a window: lines on the terminal, and a picture at the end."""
 
 import math
 from pathlib import Path
@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from rich.console import Console
 
 from app.errors import AppError
-from app.ui.calibration.coach import cover, words_of
+from app.ui.calibration.coach import draw_coverage, words_of
 from app.ui.calibration.session import Advice, CalibrationSession
 
 Picture = NDArray[np.uint8]
 
 FORMATS = (".png", ".jpg")
-"""What a picture of the coverage can be."""
+"""Suffixes of a picture of the coverage."""
 
 
 class CoachLines:
@@ -31,21 +31,23 @@ class CoachLines:
 
     closed = False
 
-    PATIENCE = 0.8
-    """A line stays for so long before the next [s]."""
+    MIN_INTERVAL_S = 0.8
+    """Shortest time between two lines [s]."""
 
     def __init__(self, console: Console, target: str) -> None:
         self._console = console
         self._target = target
-        self._told = ("", -math.inf)
+        self._last = ("", -math.inf)
 
     def show_advice(self, picture: Picture, timestamp: float, advice: Advice) -> None:
-        """Print what to do if it is something new."""
-        words, at = self._told
-        new = words_of(advice.wish, self._target)
-        if new == words or (timestamp - at < self.PATIENCE and advice.wish != "done"):
+        """Print the advice if it is new."""
+        words, printed_at = self._last
+        new = words_of(advice.request, self._target)
+        if new == words or (
+            timestamp - printed_at < self.MIN_INTERVAL_S and advice.request != "done"
+        ):
             return
-        self._told = new, timestamp
+        self._last = new, timestamp
         share = f"{100 * advice.coverage.progress:3.0f} %  {advice.views:2d} views"
         self._console.print(f"[dim]{share}[/]  {new}", highlight=False)
 
@@ -56,12 +58,14 @@ def write_coverage(path: Path, session: CalibrationSession) -> None:
     Raises
     ------
     AppError
-        It cannot be written there.
+        The file cannot be written.
     """
-    if session.last is None:
+    if session.last_picture is None:
         return
-    picture = np.asarray(cv2.addWeighted(session.last, 0.45, session.last, 0.0, 40), np.uint8)
-    cover(picture, session.collector.outlines)
+    picture = np.asarray(
+        cv2.addWeighted(session.last_picture, 0.45, session.last_picture, 0.0, 40), np.uint8
+    )
+    draw_coverage(picture, session.collector.outlines)
     good, data = cv2.imencode(path.suffix, picture)
     try:
         path.write_bytes(data.tobytes() if good else b"")

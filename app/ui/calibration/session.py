@@ -1,4 +1,4 @@
-"""One calibration: frames in, advice out, until the camera is known or the frames end."""
+"""A calibration session: frames in, advice out, until the camera is determined."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -20,71 +20,71 @@ from tracking.calibration import (
 
 Picture = NDArray[np.uint8]
 
-LOST = 0.7
-"""After this time without the target it is asked for [s]."""
+LOST_AFTER_S = 0.7
+"""Time without the target after which the coach asks for it [s]."""
 
 
 @dataclass(frozen=True)
 class Advice:
-    """What to tell the person now."""
+    """What the coach shows in one frame."""
 
-    wish: str
-    """What to do: "show", "still", "done", or a wish of the `ViewCoverage`."""
+    request: str
+    """What to do: "show", "still", "done", or a request of the `ViewCoverage`."""
 
     taken: bool
-    """Whether this very frame became a view."""
+    """Whether this frame became a view."""
 
     views: int
-    """How many views there are."""
+    """Number of views so far."""
 
     coverage: ViewCoverage
-    """What is there and what is missing."""
+    """Which views exist and which are missing."""
 
     outlines: tuple[NDArray[np.float64], ...]
-    """What is seen now, each (4, 2) [px]."""
+    """Outlines of the target in this frame, each (4, 2) [px]."""
 
     covered: Sequence[NDArray[np.float64]]
-    """Where the target was seen in all views, each (4, 2) [px]."""
+    """Outlines of the target in all views, each (4, 2) [px]."""
 
 
-class CoachDisplay(Protocol):
-    """Shows or prints the advice. Who makes it closes it."""
+class Coach(Protocol):
+    """Shows or prints the advice. Whoever opens it closes it."""
 
     @property
     def closed(self) -> bool:
-        """Whether the person wants to end."""
+        """Whether the user wants to end the session."""
         ...
 
     def show_advice(self, picture: Picture, timestamp: float, advice: Advice) -> None:
-        """Tell what to do, over the picture (H, W, 3), which may be drawn on."""
+        """Show the advice, over a picture (H, W, 3) that may be drawn on."""
         ...
 
 
-PATIENCE = 30.0
-"""A camera that is lost may come back for so long [s]."""
+RECOVERY_TIMEOUT_S = 30.0
+"""Time in which a lost camera may come back [s]."""
 
-BREATH = 0.05
-"""How long the window waits for a frame before it looks whether it is closed [s]."""
+POLL_INTERVAL_S = 0.05
+"""Longest wait for a frame before the window is polled [s]."""
 
 
-def _frames(source: FrameSource, display: CoachDisplay) -> Iterator[Frame]:
-    """Yield frames; a camera that is lost does not keep a person from closing the window."""
+def _frames(source: FrameSource, coach: Coach) -> Iterator[Frame]:
+    """Yield frames; the window can be closed even while the camera is lost."""
     if not isinstance(source, LiveFrames):
         yield from source
         return
-    while not display.closed:
-        frame = source.wait(BREATH, PATIENCE)
+    while not coach.closed:
+        frame = source.wait(POLL_INTERVAL_S, RECOVERY_TIMEOUT_S)
         if frame is not None:
             yield frame
 
 
 class CalibrationSession:
-    """Collects views of whichever target is held up first.
+    """Collects views of the first target that is held up.
 
     Parameters
     ----------
     finders
-        The targets that may be shown.
+        Find the targets that may be held up.
     size
         Width and height of the frames [px].
     """
@@ -92,53 +92,53 @@ class CalibrationSession:
     def __init__(self, finders: Sequence[TargetFinder], size: tuple[int, int]) -> None:
         self._size = size
         self._pairs = [(finder, ViewCollector(finder, size)) for finder in finders]
-        self._seen = -np.inf
-        self.last: Picture | None = None
+        self._last_seen = -np.inf
+        self.last_picture: Picture | None = None
         """The last picture."""
 
     @property
     def finder(self) -> TargetFinder:
-        """Finds the target that is held up."""
+        """The finder of the target that is held up."""
         return self._pairs[0][0]
 
     @property
     def collector(self) -> ViewCollector:
-        """Has the views of it."""
+        """The collector of its views."""
         return self._pairs[0][1]
 
-    def run(self, source: FrameSource, display: CoachDisplay, seconds: float) -> None:
-        """Collect until the coach is content and the camera determined, or frames or time end."""
+    def run(self, source: FrameSource, coach: Coach, seconds: float) -> None:
+        """Collect views until the camera is determined, or until frames or time end."""
         first: float | None = None
-        for frame in _frames(source, display):
+        for frame in _frames(source, coach):
             first = frame.timestamp if first is None else first
-            glance = self._glance(frame)
-            # A recording is looked through to its end: it cannot be asked for anything.
+            result = self._collect(frame)
+            # A recording is read to its end: it does not follow advice.
             done = source.live and self.collector.coverage.complete and self._determined()
-            wish = "done" if done else self._advised(glance, frame.timestamp)
+            request = "done" if done else self._advised(result, frame.timestamp)
             collector = self.collector
             advice = Advice(
-                wish,
-                glance.verdict == "taken",
+                request,
+                result.verdict == "taken",
                 len(collector.views),
                 collector.coverage,
-                glance.outlines,
+                result.outlines,
                 collector.outlines,
             )
-            self.last = frame.image
-            display.show_advice(frame.image.copy(), frame.timestamp, advice)
+            self.last_picture = frame.image
+            coach.show_advice(frame.image.copy(), frame.timestamp, advice)
             late = source.live and frame.timestamp - first > seconds
-            if done or late or display.closed:
+            if done or late or coach.closed:
                 break
         if first is None:
             raise AppError("the source gave no picture at all")
 
     def calibrated(self) -> Calibration:
-        """Return the camera that the views tell of.
+        """Return the camera that the views determine.
 
         Raises
         ------
         TrackingError, AppError
-            Nothing was seen, or the views do not determine the camera.
+            No target was seen, or the views do not determine the camera.
         """
         self.check_seen()
         collector = self.collector
@@ -150,35 +150,35 @@ class CalibrationSession:
         return found
 
     def check_seen(self) -> None:
-        """Refuse to go on where the target was never seen."""
-        if self._seen == -np.inf:
+        """Raise an `AppError` if the target was never seen."""
+        if self._last_seen == -np.inf:
             what = "board" if len(self.finder.names) == 1 else "cube's markers"
             raise AppError(
                 f"no {what} was seen in any picture: more light, nearer, and is it the right one?"
             )
 
-    def _glance(self, frame: Frame) -> ViewResult:
-        glances = [collector.update(frame) for _, collector in self._pairs]
-        for pair, glance in zip(self._pairs, glances, strict=True):
-            if glance.sample is not None:
+    def _collect(self, frame: Frame) -> ViewResult:
+        results = [collector.update(frame) for _, collector in self._pairs]
+        for pair, result in zip(self._pairs, results, strict=True):
+            if result.sample is not None:
                 self._pairs = [pair]
-                return glance
-        return glances[0]
+                return result
+        return results[0]
 
-    def _advised(self, glance: ViewResult, now: float) -> str:
+    def _advised(self, result: ViewResult, now: float) -> str:
         collector = self.collector
-        if glance.sample is not None:
-            self._seen = now
-        elif now - self._seen > LOST:
+        if result.sample is not None:
+            self._last_seen = now
+        elif now - self._last_seen > LOST_AFTER_S:
             return "show"
         wanted = collector.coverage.next_kind()
-        return "still" if glance.verdict == "moving" and wanted in self._offered(glance) else wanted
+        return "still" if result.verdict == "moving" and wanted in self._offered(result) else wanted
 
-    def _offered(self, glance: ViewResult) -> set[str]:
-        return set() if glance.sample is None else self.collector.coverage.kinds_of(glance.sample)
+    def _offered(self, result: ViewResult) -> set[str]:
+        return set() if result.sample is None else self.collector.coverage.kinds_of(result.sample)
 
     def _determined(self) -> bool:
-        """Whether the views tell the camera well; if not, more are asked for."""
+        """Return whether the views determine the camera well; if not, ask for more."""
         try:
             good = calibrate(self.collector.views, self.finder.target(self._size)).good
         except TrackingError:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.commands import calibrate as command
-from app.ui.calibration.coach import WORDS, CoachView, words_of
+from app.ui.calibration.coach import SENTENCES, CoachView, words_of
 from app.ui.calibration.session import Advice, CalibrationSession
 from tracking import CubeModel, Frame, Intrinsics
 from tracking.calibration import CubeFinder, ViewCoverage
@@ -156,13 +156,13 @@ def test_the_board_is_printed(cubeling, tmp_path):
 
 def test_every_wish_has_words_and_a_drawing():
     coverage = ViewCoverage([face.name for face in CubeModel.load("companion").faces])
-    for wish in [*WORDS, *coverage.needed]:
-        assert words_of(wish, "cube")
+    for request in [*SENTENCES, *coverage.needed]:
+        assert words_of(request, "cube")
         for target, time in itertools.product(("cube", "board"), (0.0, 0.9)):
             view = CoachView(target)
             blank = np.full((360, 640, 3), 90, np.uint8)
-            view.draw(blank, 0.0, Advice(wish, False, 3, coverage, (), ()))
-            drawn = view.draw(blank, time, Advice(wish, False, 3, coverage, (), ()))
+            view.draw(blank, 0.0, Advice(request, False, 3, coverage, (), ()))
+            drawn = view.draw(blank, time, Advice(request, False, 3, coverage, (), ()))
             assert (drawn[120:240, 20:110] != 90).any()
             # The corners of the picture are where the cube must go.
             assert (drawn[:30, :30] == 90).all()
@@ -192,5 +192,5 @@ def test_the_cube_that_is_held_up_is_recognised(waved):
 
     session.run(Kept(waved[:3]), SilentDisplay(), 60.0)
     assert session.finder is finders[1]
-    assert told[0].wish in ("still", "tilt up")
+    assert told[0].request in ("still", "tilt up")
     assert told[-1].views >= 1

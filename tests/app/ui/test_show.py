@@ -11,7 +11,7 @@ from app.commands import demo
 from app.errors import AppError
 from app.pipeline.step import RobotView
 from app.running.summary import Summary
-from app.ui.canvas import Canvas, rounded
+from app.ui.canvas import Canvas, rounded_rectangle
 from app.ui.overlay import overlay
 from app.ui.screen import VideoFile
 
@@ -20,14 +20,14 @@ ROBOT = RobotView("ready", 0.4, "happy")
 
 def test_a_card_covers_only_its_own_place():
     picture = np.full((200, 300, 3), 50, np.uint8)
-    Canvas(100, 40, 1.0).card(-20, 180).over(picture)
+    Canvas(100, 40, 1.0).card(-20, 180).blend_over(picture)
     assert (picture[:175] == 50).all()
     assert (picture[:, 90:] == 50).all()
     assert picture[190, 30].min() > 200
 
 
 def test_round_corners_are_symmetric():
-    mask = rounded(60, 40, 12, 255)
+    mask = rounded_rectangle(60, 40, 12, 255)
     np.testing.assert_array_equal(mask, mask[::-1, ::-1])
     assert mask[0, 0] == 0
     assert mask[20, 30] == 255
