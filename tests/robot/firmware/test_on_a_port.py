@@ -17,7 +17,7 @@ def test_it_is_connected_feels_plays_and_stops(desk, soon):
     with robot.connect(desk.url) as dino:
         dino.express(robot.Emotion(0.5, 0.2, "happy"))
         soon(lambda: dino.telemetry.label == "happy")
-        assert dino.telemetry.acknowledged == robot.Emotion(0.5, 0.2)
+        assert dino.telemetry.acknowledged == robot.Emotion(0.5, 0.2, "happy")
         dino.play("wag tail")
         soon(lambda: dino.telemetry.motion == "wag tail")
         soon(lambda: desk.hertz > 0)
