@@ -1,4 +1,4 @@
-"""Cubeling and its rivals on the same frames: `make bench-tracking`.
+"""Cubeling and other trackers on the same frames: `make bench-tracking`.
 
 Run `python -m tests.bench.tracking [--quick] [--sequences NAME …] [--trackers NAME …]`.
 """
@@ -14,27 +14,27 @@ from typing import Any
 
 from rich.console import Console
 
-from tests.bench.tracking import bar, readme, table
-from tests.bench.tracking.contest import Contest
+from tests.bench.tracking import readme, table, targets
+from tests.bench.tracking.benchmark_run import BenchmarkRun
+from tests.bench.tracking.comparison import TrackerComparison
 from tests.bench.tracking.rivals.environments import ENTRIES
-from tests.bench.tracking.run import Run
 from tests.bench.tracking.sequences import NAMES, sequence
 
 PROGRAM = "tests.bench.tracking"
 
 
 def main() -> None:
-    """Draw, track, print."""
+    """Render, track, print."""
     options = _options()
     console, progress = Console(width=120), Console(stderr=True)
     asked = ["make bench-tracking"] if options.readme else ["python -m", PROGRAM, *sys.argv[1:]]
-    run = Run.now(" ".join(asked), options.frames, options.seed, options.threads)
+    run = BenchmarkRun.now(" ".join(asked), options.frames, options.seed, options.threads)
     names = ("ours",) if options.ours_only else tuple(options.trackers)
-    with Contest(names, options.threads, progress.print) as contest:
+    with TrackerComparison(names, options.threads, progress.print) as contest:
         for name in options.sequences:
             drawn = sequence(name, options.seed, options.frames)
             run = replace(run, scores=(*run.scores, *contest.run(drawn)))
-            progress.print(f"{name}: {table.brief(run.scores, name)}", highlight=False)
+            progress.print(f"{name}: {table.one_line(run.scores, name)}", highlight=False)
         run = replace(run, versions=contest.versions, left_out=contest.left_out)
     _print(console, run)
     if options.json:
@@ -44,20 +44,20 @@ def main() -> None:
         readme.write(options.readme, run)
 
 
-def _print(console: Console, run: Run) -> None:
+def _print(console: Console, run: BenchmarkRun) -> None:
     table.show(console, run.scores)
     console.print(f"\n{run.circumstances}")
     for title, versions in run.versions.items():
         console.print(f"  {title}: {versions}")
     for title, reason in run.left_out.items():
         console.print(f"  {title} was left out: {reason}")
-    console.print("\nThe bar:")
-    for verdict in bar.verdicts(run.scores):
+    console.print("\nTargets:")
+    for verdict in targets.verdicts(run.scores):
         console.print(f"  {verdict}", highlight=False, soft_wrap=True)
 
 
 def _plain(value: Any) -> Any:
-    """Write what was not measured as null: JSON knows no NaN."""
+    """Replace NaN by null, as JSON has no NaN."""
     if isinstance(value, dict):
         return {key: _plain(each) for key, each in value.items()}
     if isinstance(value, list | tuple):

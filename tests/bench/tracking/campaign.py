@@ -1,8 +1,8 @@
-"""Looks for silently wrong poses of Cubeling in many frames of many seeds.
+"""Searches many frames of many seeds for silently wrong poses of Cubeling.
 
 Run `python -m tests.bench.tracking.campaign --frames 10000 --seed 7 [--log FILE]`. Every wrong
-frame is printed with what is needed to draw it again; the exit code is 1 if there is any. A run
-with `--log` that was broken off goes on where it was.
+frame is printed with the call that renders it again; the exit code is 1 if there is any. An
+interrupted run with `--log` continues where it stopped.
 """
 
 import argparse
@@ -17,13 +17,13 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from tests.bench.tracking.scoring import INSIDE, RIGHT, WRONG, errors
+from tests.bench.tracking.scoring import CHI2_95_PERCENT, MAX_RECALL_ERROR, MIN_WRONG_ERROR, errors
 from tests.bench.tracking.sequences import NAMES, Sequence, sequence
 from tests.bench.tracking.table import share
 from tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
 
 AT_REST = ("static", "static-one")
-"""Sequences whose frames differ by noise alone: they would only make the number look good."""
+"""Sequences whose frames differ only by noise, which would dilute the count."""
 
 Result = dict[str, Any]
 
@@ -43,8 +43,8 @@ def plan(names: tuple[str, ...], frames: int, length: int, seed: int) -> Iterato
         seed += 1
 
 
-def follow(drawn: Sequence) -> Iterator[tuple[int, CubeState]]:
-    """Track one sequence; where each frame is another pose, each with a tracker of its own."""
+def track(drawn: Sequence) -> Iterator[tuple[int, CubeState]]:
+    """Track one sequence; with a new tracker for each frame if the poses are independent."""
     camera = Intrinsics(drawn.matrix, drawn.distortion, drawn.size)
     cube = CubeModel.load(drawn.cube)
     tracker = CubeTracker(cube, camera)
@@ -55,11 +55,11 @@ def follow(drawn: Sequence) -> Iterator[tuple[int, CubeState]]:
         yield index, tracker.update(frame)
 
 
-def judge(drawn: Sequence) -> Result:
-    """Count what became of the frames of one sequence."""
+def evaluate(drawn: Sequence) -> Result:
+    """Track one sequence and count the results."""
     result: Result = {"sequence": drawn.name, "seed": drawn.seed, "frames": drawn.count}
     result |= {"seen": 0, "given": 0, "right": 0, "inside": 0, "wrong": []}
-    for index, state in follow(drawn):
+    for index, state in track(drawn):
         seen = bool(drawn.in_view(index))
         result["seen"] += int(seen)
         if not state.visible or state.camera_from_cube is None:
@@ -67,10 +67,12 @@ def judge(drawn: Sequence) -> Result:
         error = errors(state.camera_from_cube[None], drawn.truth(index)[None])[0]
         shift, turn = (float(np.linalg.norm(part)) for part in (error[:3], error[3:]))
         result["given"] += int(seen)
-        result["right"] += int(seen and shift <= RIGHT[0] and turn <= RIGHT[1])
+        result["right"] += int(
+            seen and shift <= MAX_RECALL_ERROR[0] and turn <= MAX_RECALL_ERROR[1]
+        )
         held = float(error @ np.linalg.solve(state.covariance, error))
-        result["inside"] += int(seen and held <= INSIDE)
-        if shift > WRONG[0] or turn > WRONG[1]:
+        result["inside"] += int(seen and held <= CHI2_95_PERCENT)
+        if shift > MIN_WRONG_ERROR[0] or turn > MIN_WRONG_ERROR[1]:
             result["wrong"].append(_wrong(index, state, shift, turn, held))
     return result
 
@@ -89,7 +91,7 @@ def _wrong(index: int, state: CubeState, shift: float, turn: float, held: float)
 
 
 def main() -> None:
-    """Track, count, tell."""
+    """Track, count, print."""
     options = _options()
     progress = Console(stderr=True, width=120)
     done = _read(options.log)
@@ -98,8 +100,8 @@ def main() -> None:
     for name, seed in plan(names, options.frames, options.length, options.seed):
         result = done.get((name, seed, options.length))
         if result is None:
-            result = judge(sequence(name, seed, options.length))
-            _note(options.log, result)
+            result = evaluate(sequence(name, seed, options.length))
+            _append(options.log, result)
         results.append(result)
         for wrong in result["wrong"]:
             progress.print(f"wrong: {_where(result, wrong)}: {_described(wrong)}")
@@ -114,7 +116,7 @@ def _counts(results: list[Result]) -> Iterator[tuple[int, int]]:
 
 
 def _where(result: Result, wrong: Result) -> str:
-    """Say what draws the frame again: `sequence(name, seed, count).frame(index)`."""
+    """Return the call that renders the frame again: `sequence(name, seed, count).frame(index)`."""
     call = f"sequence({result['sequence']!r}, {result['seed']}, {result['frames']})"
     return f"{call}.frame({wrong['index']})"
 
@@ -146,7 +148,7 @@ def _print(console: Console, results: list[Result]) -> None:
 
 
 def _read(log: Path | None) -> dict[tuple[str, int, int], Result]:
-    """Read what an earlier run finished; a last line that was cut short does not count."""
+    """Read the finished sequences of an earlier run; ignore a truncated last line."""
     done: dict[tuple[str, int, int], Result] = {}
     if log is None or not log.is_file():
         return done
@@ -159,10 +161,10 @@ def _read(log: Path | None) -> dict[tuple[str, int, int], Result]:
     return done
 
 
-def _note(log: Path | None, result: Result) -> None:
+def _append(log: Path | None, result: Result) -> None:
     if log is not None:
         with log.open("a", encoding="utf-8") as file:
-            file.write("\n" + json.dumps(result))  # begins a line: the last may be cut short
+            file.write("\n" + json.dumps(result))  # newline first: the last line may be truncated
 
 
 def _options() -> argparse.Namespace:

@@ -5,8 +5,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.bench.tracking.light import UP, Light
-from tests.bench.tracking.optics import Lens, point_spread, sampled
-from tests.bench.tracking.paper import bits
+from tests.bench.tracking.optics import LensModel, point_spread, sampled
+from tests.bench.tracking.paper import marker_cells
 
 HEIGHT = 0.62
 """Height of the camera above the table [m]."""
@@ -18,7 +18,7 @@ Picture = NDArray[np.uint8]
 
 
 def desk(
-    lens: Lens,
+    lens: LensModel,
     light: Light,
     random: np.random.Generator,
     dictionary: str = "",
@@ -39,7 +39,7 @@ def desk(
     for _ in range(26):
         THINGS[int(random.integers(len(THINGS)))](drawing, random)
     for index, number in enumerate(foreign):
-        _lay_marker(drawing, random, bits(dictionary, number), index / len(foreign))
+        _lay_marker(drawing, random, marker_cells(dictionary, number), index / len(foreign))
     linear = np.float32(0.75) * cv2.pow(drawing.astype(np.float32) / np.float32(255), 2.2)
     up = UP / np.linalg.norm(UP)
     right, front = np.array([1.0, 0, 0]), np.cross(up, [1.0, 0, 0])

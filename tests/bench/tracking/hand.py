@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.bench.tracking.light import UP, Light
-from tests.bench.tracking.paper import PaperCube, Side
-from tests.bench.tracking.paths import eased
+from tests.bench.tracking.paper import BenchmarkCube, Side
+from tests.bench.tracking.paths import minimum_jerk
 
-SKIN = np.array([0.30, 0.42, 0.66], np.float32)
+SKIN_ALBEDO_BGR = np.array([0.30, 0.42, 0.66], np.float32)
 """Share of the light that skin throws back (BGR)."""
 
 
@@ -45,8 +45,8 @@ class Finger:
         return bool(tip @ pose[:3, :3] @ self.normal < 0)
 
 
-def grip(
-    cube: PaperCube, hand: NDArray[np.float64], random: np.random.Generator
+def lay_fingers(
+    cube: BenchmarkCube, hand: NDArray[np.float64], random: np.random.Generator
 ) -> tuple[Finger, ...]:
     """Lay one finger on every face, over the corner of the marker that is nearest to the hand.
 
@@ -63,7 +63,7 @@ def grip(
 
 
 def _finger(
-    cube: PaperCube, side: Side, hand: NDArray[np.float64], random: np.random.Generator
+    cube: BenchmarkCube, side: Side, hand: NDArray[np.float64], random: np.random.Generator
 ) -> Finger:
     radius = random.uniform(0.0075, 0.0095)
     flat = hand - (hand @ side.normal) * side.normal
@@ -78,7 +78,7 @@ def _finger(
 
 
 @dataclass(frozen=True, eq=False)
-class Hold:
+class FingerMotion:
     """Fingers that lie on the cube from the start, or come within the first ten frames."""
 
     fingers: tuple[Finger, ...] = ()
@@ -94,11 +94,11 @@ class Hold:
         """Fingers at `time` [s]."""
         if self.start:
             return self.fingers
-        way = 0.09 * (1 - float(eased(np.array([time]), 0.03, 0.27)[0]))
-        return tuple(drawn_back(finger, self.hand, way) for finger in self.fingers)
+        way = 0.09 * (1 - float(minimum_jerk(np.array([time]), 0.03, 0.27)[0]))
+        return tuple(pulled_back(finger, self.hand, way) for finger in self.fingers)
 
 
-def drawn_back(finger: Finger, hand: NDArray[np.float64], way: float) -> Finger:
+def pulled_back(finger: Finger, hand: NDArray[np.float64], way: float) -> Finger:
     """Return the finger pulled back by `way` [m] towards the hand."""
     flat = hand - (hand @ finger.normal) * finger.normal
     shift = way * flat / np.linalg.norm(flat)

@@ -82,23 +82,23 @@ class Light:
             falling *= shadow.lit(side)
         falling += np.float32(rest)
         if self.slope is not None:
-            a, b, c = self.slope @ place + np.array([0, 0, 1 - self.slope @ PIVOT])
+            a, b, c = self.slope @ place + np.array([0, 0, 1 - self.slope @ SLOPE_ORIGIN_M])
             more = grid[..., 0] * np.float32(a) + grid[..., 1] * np.float32(b) + np.float32(c)
             falling *= np.maximum(more, np.float32(0.1))
         return falling
 
 
-PIVOT = np.array([0.0, 0.0, 0.5])
+SLOPE_ORIGIN_M = np.array([0.0, 0.0, 0.5])
 """Where a sloping light is as strong as an even one, in the camera frame [m]."""
 
 
-def lamp_light(random: np.random.Generator) -> Light:
+def random_lamp(random: np.random.Generator) -> Light:
     """Draw a lamp above and behind the camera."""
     towards = np.array([-0.45, -0.7, -0.75]) + random.uniform(-0.3, 0.3, 3)
     return Light(towards / np.linalg.norm(towards))
 
 
-def shaded(light: Light, place: NDArray[np.float64], random: np.random.Generator) -> Light:
+def with_shadows(light: Light, place: NDArray[np.float64], random: np.random.Generator) -> Light:
     """Let one hard and one soft edge of shadow fall near `place` (3,) [m], on a slope of light."""
     shadows = []
     for softness, depth in ((0.002, 0.85), (0.035, 0.6)):

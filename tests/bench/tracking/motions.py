@@ -1,15 +1,22 @@
-"""How the cube of the benchmark is moved: drawn until it stays in view."""
+"""Random motions of the benchmark's cube that keep it in view."""
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from tests.bench.tracking.optics import Lens
-from tests.bench.tracking.paper import PaperCube
-from tests.bench.tracking.paths import Poses, halton, matrices, speeds, uniform_rotation, waves
-from tests.bench.tracking.plans import Plan
+from tests.bench.tracking.optics import LensModel
+from tests.bench.tracking.paper import BenchmarkCube
+from tests.bench.tracking.paths import (
+    Poses,
+    halton,
+    matrices,
+    random_sines,
+    speeds,
+    uniform_rotation,
+)
+from tests.bench.tracking.plans import SequencePlan
 
-LENS = Lens(
+LENS = LensModel(
     np.array([[902.3, 0.0, 645.2], [0.0, 900.8, 355.7], [0.0, 0.0, 1.0]]),
     np.array([-0.11, 0.06, 0.0006, -0.0004, -0.01]),
     (1280, 720),
@@ -17,7 +24,7 @@ LENS = Lens(
 """The camera of all sequences: 71° from left to right, a barrel of a few pixels."""
 
 
-def in_view(cube: PaperCube, poses: NDArray[np.float64]) -> NDArray[np.bool_]:
+def in_view(cube: BenchmarkCube, poses: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Whether the whole cube is in the picture at each pose (n, 4, 4), (n,)."""
     there = np.einsum("nij,kj->nki", poses[:, :3, :3], cube.vertices) + poses[:, None, :3, 3]
     pixels = LENS.project(there)
@@ -25,7 +32,7 @@ def in_view(cube: PaperCube, poses: NDArray[np.float64]) -> NDArray[np.bool_]:
     return np.asarray((inside.all(-1) & (there[..., 2] > 0.1)).all(-1))
 
 
-def _start(plan: Plan, point: NDArray[np.float64]) -> NDArray[np.float64]:
+def _start(plan: SequencePlan, point: NDArray[np.float64]) -> NDArray[np.float64]:
     """Pose (4, 4) of a Halton point (6,)."""
     depth = plan.depth[0] + point[0] * (plan.depth[1] - plan.depth[0])
     spread = 0.12 if plan.facing == "frontal" else 0.9 if plan.independent else 0.5
@@ -40,8 +47,8 @@ def _start(plan: Plan, point: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(matrices(Rotation.concatenate([rotation]), (ray * depth)[None])[0])
 
 
-def many(
-    plan: Plan, cube: PaperCube, first: int, count: int, shift: NDArray[np.float64]
+def static_poses(
+    plan: SequencePlan, cube: BenchmarkCube, first: int, count: int, shift: NDArray[np.float64]
 ) -> list[Poses]:
     """`count` poses at rest, the whole cube in view: Halton points from number `first` on."""
     found: list[Poses] = []
@@ -58,9 +65,9 @@ def _still(pose: NDArray[np.float64]) -> Poses:
     return lambda times: np.repeat(pose[None], len(times), axis=0)
 
 
-def moving(
-    plan: Plan,
-    cube: PaperCube,
+def random_motion(
+    plan: SequencePlan,
+    cube: BenchmarkCube,
     index: int,
     shift: NDArray[np.float64],
     random: np.random.Generator,
@@ -94,7 +101,7 @@ def moving(
     return best
 
 
-def _faces_in_view(cube: PaperCube, poses: NDArray[np.float64]) -> NDArray[np.int64]:
+def _faces_in_view(cube: BenchmarkCube, poses: NDArray[np.float64]) -> NDArray[np.int64]:
     """How many faces look at the camera, and not just past it, at each pose (n, 4, 4)."""
     normals = np.stack([side.normal for side in cube.sides])
     middles = normals * cube.edge / 2
@@ -105,11 +112,11 @@ def _faces_in_view(cube: PaperCube, poses: NDArray[np.float64]) -> NDArray[np.in
 
 
 def _moved(
-    plan: Plan, start: NDArray[np.float64], length: float, random: np.random.Generator
+    plan: SequencePlan, start: NDArray[np.float64], length: float, random: np.random.Generator
 ) -> Poses:
     """Motion from `start` whose peak speeds within `length` [s] are those of the plan."""
-    way = waves(random, plan.reach, plan.pace)
-    turn = waves(random, plan.turns, plan.pace)
+    way = random_sines(random, plan.reach, plan.pace)
+    turn = random_sines(random, plan.turns, plan.pace)
     base, origin = Rotation.from_matrix(start[:3, :3]), start[:3, 3]
     long = np.arange(0.0, max(3.0, length), 1 / 90)
 

@@ -1,7 +1,7 @@
-"""The benchmark's camera: its lens, its blur, its sensor. Shares no code with the tracker.
+"""The benchmark's camera: lens, blur and sensor. Shares no code with the tracker.
 
-The lens is that of Brown (1971) in the order of OpenCV's coefficients; it is inverted by Newton's
-method. Light is linear until `develop` counts electrons and applies the curve of sRGB.
+The lens model is Brown's (1971) with OpenCV's order of coefficients, inverted by Newton's method.
+Light is linear until `develop` adds noise and applies the sRGB curve.
 """
 
 from dataclasses import dataclass
@@ -11,13 +11,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-FINE = 2
+SUBPIXELS = 2
 """Sub-pixels per pixel and axis on which rays are cast and the lens blurs."""
 
 
 @dataclass(frozen=True, eq=False)
-class Lens:
-    """A camera without noise: where rays go. Pixel centres have whole coordinates."""
+class LensModel:
+    """Rays of a camera. Pixel centres have integer coordinates."""
 
     matrix: NDArray[np.float64]
     """Focal lengths and principal point [px], (3, 3)."""
@@ -69,11 +69,11 @@ class Lens:
 
     @cached_property
     def rays(self) -> NDArray[np.float32]:
-        """`directions` of the centre of every sub-pixel, (height · FINE, width · FINE, 2)."""
+        """`directions` of every sub-pixel's centre, (H · SUBPIXELS, W · SUBPIXELS, 2)."""
         width, height = self.size
-        pixels = np.empty((height * FINE, width * FINE, 2))
-        pixels[..., 0] = (np.arange(width * FINE) + 0.5) / FINE - 0.5
-        pixels[..., 1] = ((np.arange(height * FINE) + 0.5) / FINE - 0.5)[:, None]
+        pixels = np.empty((height * SUBPIXELS, width * SUBPIXELS, 2))
+        pixels[..., 0] = (np.arange(width * SUBPIXELS) + 0.5) / SUBPIXELS - 0.5
+        pixels[..., 1] = ((np.arange(height * SUBPIXELS) + 0.5) / SUBPIXELS - 0.5)[:, None]
         found = np.empty(pixels.shape, np.float32)
         for rows in range(0, len(pixels), 90):
             found[rows : rows + 90] = self.directions(pixels[rows : rows + 90])
@@ -103,19 +103,19 @@ def point_spread(gauss: float = 0.55, disk: float = 0.87) -> NDArray[np.float32]
     """
     reach, dense = 5, 9
     grid = (np.arange((2 * reach + 1) * dense) + 0.5) / dense - reach - 0.5
-    inside = (grid[None] ** 2 + grid[:, None] ** 2 <= (disk * FINE) ** 2).astype(np.float64)
+    inside = (grid[None] ** 2 + grid[:, None] ** 2 <= (disk * SUBPIXELS) ** 2).astype(np.float64)
     cells = inside.reshape(2 * reach + 1, dense, 2 * reach + 1, dense).mean((1, 3))
-    bell = np.exp(-0.5 * (np.arange(-reach, reach + 1) / (gauss * FINE)) ** 2)
+    bell = np.exp(-0.5 * (np.arange(-reach, reach + 1) / (gauss * SUBPIXELS)) ** 2)
     kernel = cv2.sepFilter2D(cells, cv2.CV_64F, bell, bell, borderType=cv2.BORDER_CONSTANT)
     return np.asarray(kernel / kernel.sum(), np.float32)
 
 
 @dataclass(frozen=True)
 class Sensor:
-    """From linear light to 8 bit: photons are counted, then the curve of sRGB is applied."""
+    """Converts linear light to 8 bit: shot and read noise, then the sRGB curve."""
 
     electrons: float = 4000.0
-    """Electrons of a pixel at full scale: fewer in the dark, where the gain makes up for them."""
+    """Electrons of a pixel at full scale; fewer in the dark, where the gain is higher."""
 
     read_noise: float = 5.0
     """Noise of reading a pixel [electrons]."""
@@ -123,22 +123,22 @@ class Sensor:
     def develop(self, light: NDArray[np.float32], random: np.random.Generator) -> NDArray[np.uint8]:
         """Picture (H, W, 3) BGR of linear light (H, W, 3), 1 being white; overwrites `light`.
 
-        The noise is that of luminance: webcams thin out the noise of colour.
+        The noise is in luminance only: webcams filter out colour noise.
         """
         mean = np.maximum(light[..., 1], 0)
         spread = np.sqrt(mean / self.electrons + (self.read_noise / self.electrons) ** 2)
         spread *= random.standard_normal(mean.shape, np.float32)
         light += spread[..., None]
-        levels = (CURVE.size - 1) * np.clip(light, 0, 1, out=light)
-        return np.take(CURVE, levels.astype(np.uint16))
+        levels = (SRGB_TABLE.size - 1) * np.clip(light, 0, 1, out=light)
+        return np.take(SRGB_TABLE, levels.astype(np.uint16))
 
 
-def encoded(light: NDArray[np.float64]) -> NDArray[np.float64]:
+def srgb_encoded(light: NDArray[np.float64]) -> NDArray[np.float64]:
     """Curve of sRGB (IEC 61966-2-1): linear light 0…1 to 0…1."""
     return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
-CURVE = np.rint(255 * encoded((np.arange(1 << 14) + 0.5) / (1 << 14))).astype(np.uint8)
+SRGB_TABLE = np.rint(255 * srgb_encoded((np.arange(1 << 14) + 0.5) / (1 << 14))).astype(np.uint8)
 """8-bit value of each of 2¹⁴ equal steps of linear light."""
 
 

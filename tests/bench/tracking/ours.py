@@ -1,4 +1,4 @@
-"""Cubeling's tracker among the others: the same frames, the same process around it."""
+"""Cubeling's tracker as an entry of the benchmark."""
 
 from importlib.metadata import version
 from typing import Any
@@ -7,12 +7,12 @@ import cv2
 import numpy as np
 
 from tests.bench.tracking.rivals.serving import Array, Picture, Scene, serve
-from tests.bench.tracking.scoring import AHEAD
+from tests.bench.tracking.scoring import PREDICTION_S
 from tracking import CubeModel, CubeState, CubeTracker, Frame, Intrinsics
 
 
-class Ours:
-    """`CubeTracker` as anybody uses it."""
+class CubelingEntry:
+    """`CubeTracker` through its public API."""
 
     def __init__(self, scene: Scene) -> None:
         camera = Intrinsics(scene.matrix, scene.distortion, scene.size)
@@ -21,22 +21,22 @@ class Ours:
         self._count = 0
 
     def track(self, image: Picture, timestamp: float) -> Array | None:
-        """Return the pose where the tracker stands by it."""
+        """Return the pose if the tracker trusts it."""
         self._state = self._tracker.update(Frame(image, timestamp, self._count))
         self._count += 1
         return self._state.camera_from_cube if self._state.visible else None
 
     def notes(self) -> dict[str, Any]:
-        """Tell what its state says besides, and where it expects the cube a moment later."""
+        """Return further fields of its state, and its prediction."""
         state = self._state
         assert state is not None
         notes: dict[str, Any] = {"source": state.source, "refused": state.refused}
         if not state.visible:
             return notes
         notes |= {"covariance": state.covariance.tolist(), "velocity": state.velocity.tolist()}
-        expected = self._tracker.predict(state.timestamp + AHEAD).camera_from_cube
+        expected = self._tracker.predict(state.timestamp + PREDICTION_S).camera_from_cube
         return notes | {"expected": None if expected is None else np.asarray(expected).tolist()}
 
 
 if __name__ == "__main__":
-    serve(Ours, {"cubeling": version("cubeling"), "opencv": cv2.__version__})
+    serve(CubelingEntry, {"cubeling": version("cubeling"), "opencv": cv2.__version__})

@@ -1,4 +1,4 @@
-"""The paper cube as the benchmark draws it: read from its TOML file by code of its own."""
+"""The benchmark's cube, read from its TOML file by independent code."""
 
 import tomllib
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 CUBES = Path(__file__).resolve().parents[3] / "tracking" / "cubes"
 
-PAPER, INK = 0.85, 0.06
-"""Share of the light that white paper and printed black throw back."""
+PAPER_ALBEDO, INK_ALBEDO = 0.85, 0.06
+"""Reflected share of light."""
 
 _X, _Y, _Z = np.eye(3)
 AXES = {
@@ -53,7 +53,7 @@ class Side:
 
 
 @dataclass(frozen=True, eq=False)
-class PaperCube:
+class BenchmarkCube:
     """A cube of paper."""
 
     dictionary: str
@@ -66,7 +66,7 @@ class PaperCube:
     """The faces that carry a marker; a face without one is not drawn."""
 
     @classmethod
-    def load(cls, name: str) -> "PaperCube":
+    def load(cls, name: str) -> "BenchmarkCube":
         """Read the bundled cube `name`."""
         document = tomllib.loads((CUBES / f"{name}.toml").read_text(encoding="utf-8"))
         edge, marker = document["edge_mm"] / 1000, document["marker_mm"] / 1000
@@ -82,7 +82,7 @@ class PaperCube:
         return np.asarray(signs * (self.edge / 2))
 
 
-def bits(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
+def marker_cells(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
     """White cells of a marker with its black border, (n, n)."""
     known = cv2.aruco.getPredefinedDictionary(getattr(cv2.aruco, dictionary))
     cells = known.markerSize + 2
@@ -98,7 +98,7 @@ def _side(table: dict[str, object], dictionary: str, edge: float, marker: float)
     if "corners_mm" in table:
         raise ValueError(f"face '{name}' has measured corners; this renderer draws true cubes")
     right, up, normal = AXES[name]
-    pattern = np.rot90(bits(dictionary, marker_id), -turns)
+    pattern = np.rot90(marker_cells(dictionary, marker_id), -turns)
     # The grid is as fine as it must be for the white border to be a whole number of squares.
     border = Fraction((edge - marker) / 2 / (marker / len(pattern))).limit_denominator(50)
     pattern = np.kron(pattern, np.ones((border.denominator,) * 2, bool))
@@ -108,5 +108,5 @@ def _side(table: dict[str, object], dictionary: str, edge: float, marker: float)
     place = np.stack([right * step, -up * step, first], axis=1)
     corners = np.array([m * right + n * up for m, n in ((-1, 1), (1, 1), (1, -1), (-1, -1))])
     corners = np.roll(corners * marker / 2 + normal * edge / 2, -turns, axis=0)
-    albedo = np.where(pattern, PAPER, INK).astype(np.float32)
+    albedo = np.where(pattern, PAPER_ALBEDO, INK_ALBEDO).astype(np.float32)
     return Side(name, marker_id, albedo, place, normal, corners)

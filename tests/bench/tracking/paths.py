@@ -1,4 +1,4 @@
-"""Where the cube of the benchmark goes: Halton points, sums of sines, never a jerk."""
+"""Paths of the benchmark's cube: Halton points and smooth sums of sines."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -48,15 +48,15 @@ def matrices(rotation: Rotation, place: NDArray[np.float64]) -> NDArray[np.float
     return poses
 
 
-def eased(time: NDArray[np.float64], start: float, length: float) -> NDArray[np.float64]:
+def minimum_jerk(time: NDArray[np.float64], start: float, length: float) -> NDArray[np.float64]:
     """Rise from 0 to 1 without a jump in speed or acceleration (Flash and Hogan 1985)."""
     s = np.clip((time - start) / length, 0, 1)
     return np.asarray(s**3 * (10 + s * (6 * s - 15)))
 
 
 @dataclass(frozen=True, eq=False)
-class Waves:
-    """A vector that swings: for each axis a sum of sines, at rest for the first 0.3 s."""
+class SineSum:
+    """A sum of sines for each axis, at rest for the first 0.3 s."""
 
     height: NDArray[np.float64]
     """Amplitude of each wave, (waves, 3)."""
@@ -71,21 +71,21 @@ class Waves:
         """Return the vector at `time` (n,) [s], (n, 3)."""
         angle = time[:, None, None] * self.pace + self.phase
         swing = (self.height * (np.sin(angle) - np.sin(self.phase))).sum(1)
-        return np.asarray(swing * eased(time, 0.3, 0.5)[:, None])
+        return np.asarray(swing * minimum_jerk(time, 0.3, 0.5)[:, None])
 
-    def scaled(self, factor: float) -> "Waves":
+    def scaled(self, factor: float) -> "SineSum":
         """Return the same waves, `factor` times as high."""
-        return Waves(self.height * factor, self.pace, self.phase)
+        return SineSum(self.height * factor, self.pace, self.phase)
 
 
-def waves(
+def random_sines(
     random: np.random.Generator, reach: tuple[float, float, float], pace: tuple[float, float]
-) -> Waves:
+) -> SineSum:
     """Draw three sines for each axis, `reach` in all, with paces [rad/s] between two bounds."""
     share = random.uniform(0.5, 1.0, (3, 3)) * np.array([[1.0], [0.45], [0.25]])
     height = share / share.sum(0) * np.array(reach)
     fast = np.array([[1.0], [1.5], [2.1]]) * random.uniform(*pace, (3, 3))
-    return Waves(height, fast, random.uniform(0, 2 * np.pi, (3, 3)))
+    return SineSum(height, fast, random.uniform(0, 2 * np.pi, (3, 3)))
 
 
 def speeds(poses: Poses, times: NDArray[np.float64]) -> NDArray[np.float64]:

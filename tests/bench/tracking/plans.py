@@ -1,10 +1,10 @@
-"""What happens in each sequence of the benchmark, in numbers."""
+"""Parameters of each sequence of the benchmark."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
-class Plan:
+class SequencePlan:
     """How the cube is moved, held and lit."""
 
     speed: float = 0.0
@@ -35,7 +35,7 @@ class Plan:
     """When fingers are laid on the cube: "" never, "later" within ten frames, "start"."""
 
     light: float = 1.0
-    """Light in the room, 1 being a lit room; the gain of the camera makes up for most of a lack."""
+    """Light in the room, 1 for a lit room; the camera's gain compensates for most of it."""
 
     shadows: bool = False
     """Whether edges of shadow fall across the cube."""
@@ -47,28 +47,32 @@ class Plan:
     """Whether each frame shows another pose."""
 
     count: int = 90
-    """Frames, if nobody asks for another number."""
+    """Default number of frames."""
 
 
-LONG = 1 / 60
-"""The exposure of a webcam in a room lit by lamps [s]."""
+INDOOR_EXPOSURE_S = 1 / 60
+"""Exposure of a webcam in lamp light."""
 
-PLANS: dict[str, Plan] = {
-    "static": Plan(count=60, facing="corner"),
-    "static-one": Plan(count=60, facing="frontal"),
-    "far": Plan(speed=0.15, turning=0.6, depth=(0.8, 1.4)),
-    "twist": Plan(turning=3.0, turns=(0.0, 0.7, 1.0)),
-    "sweep-0.25": Plan(speed=0.25, turning=1.0, exposure=LONG),
-    "sweep-0.5": Plan(speed=0.5, turning=2.0, exposure=LONG),
-    "sweep-0.5-short": Plan(speed=0.5, turning=2.0),
-    "sweep-1.0": Plan(speed=1.0, turning=3.0, exposure=LONG, pace=(4.0, 5.5)),
-    "tumble": Plan(speed=0.3, turning=7.0, exposure=LONG, pace=(2.0, 3.0)),
-    "frontal": Plan(speed=0.1, turning=0.3, depth=(0.35, 0.6), facing="frontal"),
-    "fingers": Plan(speed=0.25, turning=0.8, exposure=LONG, facing="corner", fingers="later"),
-    "fingers-start": Plan(speed=0.25, turning=0.8, exposure=LONG, facing="corner", fingers="start"),
-    "darkness": Plan(speed=0.15, turning=0.6, light=1 / 8),
-    "shaded": Plan(speed=0.15, turning=0.6, shadows=True),
-    "cluttered": Plan(speed=0.25, turning=1.0, foreign=10),
-    "poses": Plan(depth=(0.3, 0.7), independent=True, count=60),
+SEQUENCE_PLANS: dict[str, SequencePlan] = {
+    "static": SequencePlan(count=60, facing="corner"),
+    "static-one": SequencePlan(count=60, facing="frontal"),
+    "far": SequencePlan(speed=0.15, turning=0.6, depth=(0.8, 1.4)),
+    "twist": SequencePlan(turning=3.0, turns=(0.0, 0.7, 1.0)),
+    "sweep-0.25": SequencePlan(speed=0.25, turning=1.0, exposure=INDOOR_EXPOSURE_S),
+    "sweep-0.5": SequencePlan(speed=0.5, turning=2.0, exposure=INDOOR_EXPOSURE_S),
+    "sweep-0.5-short": SequencePlan(speed=0.5, turning=2.0),
+    "sweep-1.0": SequencePlan(speed=1.0, turning=3.0, exposure=INDOOR_EXPOSURE_S, pace=(4.0, 5.5)),
+    "tumble": SequencePlan(speed=0.3, turning=7.0, exposure=INDOOR_EXPOSURE_S, pace=(2.0, 3.0)),
+    "frontal": SequencePlan(speed=0.1, turning=0.3, depth=(0.35, 0.6), facing="frontal"),
+    "fingers": SequencePlan(
+        speed=0.25, turning=0.8, exposure=INDOOR_EXPOSURE_S, facing="corner", fingers="later"
+    ),
+    "fingers-start": SequencePlan(
+        speed=0.25, turning=0.8, exposure=INDOOR_EXPOSURE_S, facing="corner", fingers="start"
+    ),
+    "darkness": SequencePlan(speed=0.15, turning=0.6, light=1 / 8),
+    "shaded": SequencePlan(speed=0.15, turning=0.6, shadows=True),
+    "cluttered": SequencePlan(speed=0.25, turning=1.0, foreign=10),
+    "poses": SequencePlan(depth=(0.3, 0.7), independent=True, count=60),
 }
 """Each sequence by its name."""

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from textwrap import wrap
 
-from tests.bench.tracking import bar
-from tests.bench.tracking.run import Run
+from tests.bench.tracking import targets
+from tests.bench.tracking.benchmark_run import BenchmarkRun
 from tests.bench.tracking.scoring import Score
 from tests.bench.tracking.table import (
     OURS,
@@ -13,7 +13,7 @@ from tests.bench.tracking.table import (
     length,
     number,
     of,
-    own_figures,
+    own_columns,
     ratio,
     share,
 )
@@ -43,7 +43,7 @@ RULES = (
 )
 
 
-def write(path: Path, run: Run) -> None:
+def write(path: Path, run: BenchmarkRun) -> None:
     """Put the tables between the two marks of a file.
 
     Raises
@@ -60,7 +60,7 @@ def write(path: Path, run: Run) -> None:
     path.write_text(f"{before}{OPENING}\n{section}\n{CLOSING}{after}", encoding="utf-8")
 
 
-def lines(run: Run) -> Iterator[str]:
+def lines(run: BenchmarkRun) -> Iterator[str]:
     """Write the section, line by line."""
     yield from wrap(f"`{run.command}` printed this: {run.circumstances}.", WIDTH)
     yield from wrap(RENDERER, WIDTH)
@@ -79,11 +79,11 @@ def lines(run: Run) -> Iterator[str]:
         yield f"{title} was left out: {reason}."
     yield ""
     yield "```"
-    yield from (str(verdict) for verdict in bar.verdicts(run.scores))
+    yield from (str(verdict) for verdict in targets.verdicts(run.scores))
     yield "```"
 
 
-def _matrix(run: Run, title: str, cell: Callable[[Score], str]) -> Iterator[str]:
+def _matrix(run: BenchmarkRun, title: str, cell: Callable[[Score], str]) -> Iterator[str]:
     trackers = list(dict.fromkeys(score.tracker for score in run.scores))
     yield f"| {title} | " + " | ".join(trackers) + " |"
     yield "|---|" + "---|" * len(trackers)
@@ -101,11 +101,11 @@ def _pair(values: tuple[float, float], written: Callable[[float], str]) -> str:
     return f"{written(values[0])} ({written(values[1])})" if values[0] == values[0] else "–"
 
 
-def _time(run: Run, score: Score) -> str:
+def _time(run: BenchmarkRun, score: Score) -> str:
     return f"{number(score.milliseconds, 1)} ({number(ratio(run.scores, score), 2)})"
 
 
-def _jitter(run: Run) -> Iterator[str]:
+def _jitter(run: BenchmarkRun) -> Iterator[str]:
     for name, seen in (("static", "two or three faces"), ("static-one", "one face, square on")):
         rest = [score for score in run.scores if score.sequence == name]
         if rest:
@@ -114,7 +114,7 @@ def _jitter(run: Run) -> Iterator[str]:
             yield ""
 
 
-def _own(run: Run) -> Iterator[str]:
+def _own(run: BenchmarkRun) -> Iterator[str]:
     yield (
         f"| {OURS} alone | held by the 95 % ellipsoid | 50 ms ahead, mm | at constant velocity | "
         "last pose held | velocity off by mm/s | °/s |"
@@ -123,5 +123,5 @@ def _own(run: Run) -> Iterator[str]:
     for score in run.scores:
         if score.tracker == OURS:
             inside = f"{share(score.inside)} %"
-            yield "| " + " | ".join([score.sequence, inside, *own_figures(score)]) + " |"
+            yield "| " + " | ".join([score.sequence, inside, *own_columns(score)]) + " |"
     yield ""

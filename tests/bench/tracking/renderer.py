@@ -1,9 +1,8 @@
-"""Draws the benchmark's pictures: rays through a lens to a paper cube, spread over the exposure.
+"""Renders the benchmark's images by ray casting, with motion blur over the exposure.
 
-Each sub-pixel sends one ray in each of many passes. A pass has its own time within the exposure,
-so a moving cube is blurred as its own path, turning included, smears it; there is no rolling
-shutter. The ray meets the planes of the faces, and reads the very square that it hits. All is
-linear light until the sensor.
+Each sub-pixel casts one ray in each of many passes. Each pass has its own time within the exposure,
+so motion blur follows the actual path, rotation included; there is no rolling shutter. Light is
+linear up to the sensor.
 """
 
 from collections.abc import Callable
@@ -13,37 +12,37 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.bench.tracking.hand import SKIN, Finger, draw_fingers
+from tests.bench.tracking.hand import SKIN_ALBEDO_BGR, Finger, draw_fingers
 from tests.bench.tracking.light import Light
-from tests.bench.tracking.optics import FINE, Lens, point_spread, sampled
-from tests.bench.tracking.paper import PaperCube, Side
+from tests.bench.tracking.optics import SUBPIXELS, LensModel, point_spread, sampled
+from tests.bench.tracking.paper import BenchmarkCube, Side
 from tests.bench.tracking.paths import Poses
 
-TINT = np.array([0.97, 1.0, 1.0], np.float32)
+PAPER_TINT_BGR = np.array([0.97, 1.0, 1.0], np.float32)
 """Colour of the paper (BGR): a little warm."""
 
-WHITE = 0.75
+WHITE_LEVEL = 0.75
 """Linear light in the picture of a perfectly white surface under light 1."""
 
-REST, MOST = 24, 56
-"""Passes for a cube at rest, and the most for one that moves.
+MIN_PASSES, MAX_PASSES = 24, 56
+"""Passes for a cube at rest, and maximum for a moving one.
 
-With 10 the grain of the rays alone moved the tracker's answer at rest by 0.065 mm (a head-on face,
-one standard deviation), nearly as much as the sensor's noise does; with 24 by 0.02 mm.
+With 10, the random rays alone moved the tracked pose at rest by 0.065 mm (a frontal face, one
+standard deviation), nearly as much as the sensor noise; with 24, by 0.02 mm.
 """
 
-MARGIN = 6
-"""Pixels drawn round the cube: as far as the lens blurs, and the bow of a distorted edge."""
+MARGIN_PX = 6
+"""Pixels rendered round the cube: reach of the lens blur, and of distorted edges."""
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """All that a frame shows, except the noise."""
+    """Everything a frame shows, except noise."""
 
-    lens: Lens
+    lens: LensModel
     """The camera."""
 
-    cube: PaperCube
+    cube: BenchmarkCube
     """What it looks at."""
 
     light: Light
@@ -63,8 +62,8 @@ class Scene:
 
 
 @dataclass(frozen=True)
-class Window:
-    """The part of the picture that is drawn anew: whole pixels."""
+class ImageWindow:
+    """The region of the image that is rendered for each frame."""
 
     left: int
     top: int
@@ -80,8 +79,8 @@ class Window:
     def fine(self) -> tuple[slice, slice]:
         """Rows and columns of the sub-pixels."""
         return (
-            slice(self.top * FINE, self.bottom * FINE),
-            slice(self.left * FINE, self.right * FINE),
+            slice(self.top * SUBPIXELS, self.bottom * SUBPIXELS),
+            slice(self.left * SUBPIXELS, self.right * SUBPIXELS),
         )
 
 
@@ -113,53 +112,55 @@ def expose(
     if window is None:
         return picture * np.float32(scene.brightness)
     layers = _gather(scene, window, poses, fingers, random)
-    blurred = cv2.filter2D(layers, cv2.CV_32F, KERNEL, borderType=cv2.BORDER_REPLICATE)
+    blurred = cv2.filter2D(layers, cv2.CV_32F, LENS_BLUR, borderType=cv2.BORDER_REPLICATE)
     share, paper, hand, skin = cv2.split(
-        cv2.resize(blurred, None, fx=1 / FINE, fy=1 / FINE, interpolation=cv2.INTER_AREA)
+        cv2.resize(blurred, None, fx=1 / SUBPIXELS, fy=1 / SUBPIXELS, interpolation=cv2.INTER_AREA)
     )
-    fall = scene.lens.vignette[window.pixels] * np.float32(WHITE)
+    fall = scene.lens.vignette[window.pixels] * np.float32(WHITE_LEVEL)
     part = picture[window.pixels]
     part *= (1 - share - hand)[..., None]
-    part += (paper * fall)[..., None] * TINT + (skin * fall)[..., None] * SKIN
+    part += (paper * fall)[..., None] * PAPER_TINT_BGR + (skin * fall)[..., None] * SKIN_ALBEDO_BGR
     return picture * np.float32(scene.brightness)
 
 
 def _passes(scene: Scene, ends: NDArray[np.float64]) -> int:
-    """As many passes as leave at most 0.7 pixels between two of them."""
+    """Number of passes for at most 0.7 pixels between two of them."""
     corners = np.einsum("nij,kj->nki", ends[:, :3, :3], scene.cube.vertices) + ends[:, None, :3, 3]
     seen = scene.lens.project(corners)
     smear = np.linalg.norm(np.diff(seen, axis=0), axis=-1).sum(0).max()
-    return int(np.clip(np.ceil(smear / 0.7), REST, MOST))
+    return int(np.clip(np.ceil(smear / 0.7), MIN_PASSES, MAX_PASSES))
 
 
-def _window(lens: Lens, points: NDArray[np.float64], poses: NDArray[np.float64]) -> Window | None:
+def _window(
+    lens: LensModel, points: NDArray[np.float64], poses: NDArray[np.float64]
+) -> ImageWindow | None:
     """Box of the picture that holds `points` (n, 3) at all `poses`, or None if out of view."""
     there = np.einsum("nij,kj->nki", poses[:, :3, :3], points) + poses[:, None, :3, 3]
     seen = lens.project(there).reshape(-1, 2)
-    first = np.maximum(np.floor(seen.min(0)).astype(int) - MARGIN, 0)
-    last = np.minimum(np.ceil(seen.max(0)).astype(int) + MARGIN + 1, lens.size)
+    first = np.maximum(np.floor(seen.min(0)).astype(int) - MARGIN_PX, 0)
+    last = np.minimum(np.ceil(seen.max(0)).astype(int) + MARGIN_PX + 1, lens.size)
     if (first >= last).any():
         return None
-    return Window(int(first[0]), int(first[1]), int(last[0]), int(last[1]))
+    return ImageWindow(int(first[0]), int(first[1]), int(last[0]), int(last[1]))
 
 
 def _gather(
     scene: Scene,
-    window: Window,
+    window: ImageWindow,
     poses: NDArray[np.float64],
     fingers: tuple[Finger, ...],
     random: np.random.Generator,
 ) -> NDArray[np.float32]:
     """Mean of all passes (h, w, 4): share and light of the paper, share and light of the skin."""
     rays = scene.lens.rays[window.fine]
-    spacing = np.float32(1 / (FINE * scene.lens.matrix[0, 0]))
+    spacing = np.float32(1 / (SUBPIXELS * scene.lens.matrix[0, 0]))
     jitter = random.random(rays.shape, np.float32)
     total = np.zeros((4, *rays.shape[:2]), np.float32)
 
     def box_of(points: NDArray[np.float64]) -> tuple[slice, slice]:
         return _box(scene.lens.project(points), window)
 
-    shift = (np.arange(len(poses))[:, None] * R2 + random.random(2)) % 1
+    shift = (np.arange(len(poses))[:, None] * R2_STEPS + random.random(2)) % 1
     for pose, offset in zip(poses, shift.astype(np.float32), strict=True):
         aim = jitter + offset
         aim -= np.floor(aim)
@@ -171,25 +172,25 @@ def _gather(
             _draw_side(scene, side, pose, aim, seen, box_of)
         if fingers:
             skin = draw_fingers(fingers, pose, aim, scene.light, box_of)
-            hand = _met(skin)
+            hand = _hit(skin)
             seen *= 1 - hand
             total[2] += hand
             total[3] += skin
-        total[0] += _met(seen)
+        total[0] += _hit(seen)
         total[1] += seen
     total /= np.float32(len(poses))
     return np.asarray(cv2.merge(list(total)), np.float32)
 
 
-def _met(seen: NDArray[np.float32]) -> NDArray[np.float32]:
+def _hit(seen: NDArray[np.float32]) -> NDArray[np.float32]:
     """1 where a ray met something that throws light back, else 0."""
     return np.asarray(cv2.threshold(seen, 0, 1, cv2.THRESH_BINARY)[1], np.float32)
 
 
-R2 = np.array([0.7548776662466927, 0.5698402909980532])
+R2_STEPS = np.array([0.7548776662466927, 0.5698402909980532])
 """Steps of the R2 sequence (Roberts 2018): points in a square that keep apart."""
 
-KERNEL = point_spread()
+LENS_BLUR = point_spread()
 """Blur of the lens on the sub-pixels."""
 
 
@@ -208,7 +209,7 @@ def _draw_side(
     count = len(side.albedo)
     edge = np.array([(-0.5, -0.5), (count - 0.5, -0.5), (count - 0.5,) * 2, (-0.5, count - 0.5)])
     corners = np.c_[edge, np.ones(4)] @ place.T
-    if normal @ corners[0] >= 0:  # It looks away.
+    if normal @ corners[0] >= 0:  # faces away
         return
     box = box_of(corners)
     # A ray (x, y, 1) meets the plane where place @ (column, row, 1) is parallel to it.
@@ -221,9 +222,9 @@ def _draw_side(
     np.maximum(seen[box], value, out=seen[box])
 
 
-def _box(pixels: NDArray[np.float64], window: Window) -> tuple[slice, slice]:
+def _box(pixels: NDArray[np.float64], window: ImageWindow) -> tuple[slice, slice]:
     """Rows and columns of a window's sub-pixels that hold `pixels` (n, 2)."""
     origin = np.array([window.left, window.top])
-    first = np.maximum(np.floor(pixels.min(0)).astype(int) - 3 - origin, 0) * FINE
-    last = np.maximum(np.ceil(pixels.max(0)).astype(int) + 4 - origin, 0) * FINE
+    first = np.maximum(np.floor(pixels.min(0)).astype(int) - 3 - origin, 0) * SUBPIXELS
+    last = np.maximum(np.ceil(pixels.max(0)).astype(int) + 4 - origin, 0) * SUBPIXELS
     return slice(int(first[1]), int(last[1])), slice(int(first[0]), int(last[0]))

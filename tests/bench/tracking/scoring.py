@@ -1,4 +1,4 @@
-"""From poses and the truth to the figures of the table. Knows no tracker and draws nothing."""
+"""Scores of tracked poses against the ground truth."""
 
 from collections.abc import Sequence as Rows
 from dataclasses import dataclass
@@ -10,25 +10,25 @@ from scipy.spatial.transform import Rotation
 
 Array = NDArray[np.float64]
 
-RIGHT = (0.010, np.deg2rad(5.0))
+MAX_RECALL_ERROR = (0.010, np.deg2rad(5.0))
 """A pose within this [m, rad] of the truth counts for recall."""
 
-WRONG = (0.020, np.deg2rad(10.0))
-"""A pose further off than either [m, rad] is silently wrong: given out as if it were right."""
+MIN_WRONG_ERROR = (0.020, np.deg2rad(10.0))
+"""A pose further off than either [m, rad] is silently wrong: reported as valid."""
 
-INSIDE = 12.592
-"""The 95 % quantile of χ² with six degrees of freedom: inside it lies the stated ellipsoid."""
+CHI2_95_PERCENT = 12.592
+"""95 % quantile of χ² with six degrees of freedom: the bound of the stated ellipsoid."""
 
-MIDDLE = 5.348
-"""The median of the same."""
+CHI2_MEDIAN = 5.348
+"""Its median."""
 
-AHEAD = 0.05
-"""How far ahead predictions are judged [s]."""
+PREDICTION_S = 0.05
+"""Horizon of the predictions."""
 
 
 @dataclass(frozen=True)
 class Truth:
-    """What is known of one sequence's frames, without its pictures."""
+    """Ground truth of one sequence."""
 
     name: str
     """Of the sequence."""
@@ -51,7 +51,7 @@ class Truth:
 
 @dataclass(frozen=True)
 class Score:
-    """One tracker on one sequence. What could not be measured is NaN."""
+    """One tracker on one sequence. NaN where there is no measurement."""
 
     sequence: str
     """Name of the sequence."""
@@ -60,10 +60,10 @@ class Score:
     """Title of the tracker."""
 
     frames: int
-    """How many it was asked for."""
+    """Number of frames."""
 
     seen: int
-    """How many of those hold the whole cube."""
+    """Number of frames that show the whole cube."""
 
     recall: float
     """Share of `seen` with a pose within `RIGHT`."""
@@ -72,7 +72,7 @@ class Score:
     """How many of all `frames` have a pose outside `WRONG`."""
 
     given: int
-    """How many of `seen` have a pose at all."""
+    """Number of `seen` with a pose."""
 
     shift: tuple[float, float]
     """Median and 95th percentile of the distance from the truth [m], over the poses given."""
@@ -108,14 +108,14 @@ class Score:
     """The same of the last two poses, continued at constant velocity."""
 
     failures: tuple[str, ...]
-    """What the tracker raised instead of answering, each once."""
+    """Distinct errors that the tracker raised."""
 
     failed: int
-    """In how many frames it did."""
+    """Number of frames in which it raised one."""
 
 
 def score(tracker: str, truth: Truth, answers: Rows[dict[str, Any]]) -> Score:
-    """Hold a tracker's answers to the truth."""
+    """Compare a tracker's answers with the ground truth."""
     asked = np.array([answer["index"] for answer in answers], int)
     has = np.array([answer["pose"] is not None for answer in answers], bool)
     seen = truth.in_view[asked]
@@ -124,8 +124,8 @@ def score(tracker: str, truth: Truth, answers: Rows[dict[str, Any]]) -> Score:
     if len(poses):
         off[has] = errors(poses, truth.poses[asked[has]])
     shift, turn = (np.linalg.norm(off[:, part], axis=1) for part in (slice(3), slice(3, 6)))
-    right = (shift <= RIGHT[0]) & (turn <= RIGHT[1])
-    wrong = has & ((shift > WRONG[0]) | (turn > WRONG[1]))
+    right = (shift <= MAX_RECALL_ERROR[0]) & (turn <= MAX_RECALL_ERROR[1])
+    wrong = has & ((shift > MIN_WRONG_ERROR[0]) | (turn > MIN_WRONG_ERROR[1]))
     judged = has & seen
     chi2 = _chi2(answers, off, judged)
     failures = [answer["failure"] for answer in answers if "failure" in answer]
@@ -142,10 +142,10 @@ def score(tracker: str, truth: Truth, answers: Rows[dict[str, Any]]) -> Score:
         milliseconds=_median([answer["ms"] for answer in answers]),
         detection_ms=_median([a["detection_ms"] for a in answers if "detection_ms" in a]),
         jitter=_jitter(off[judged]),
-        inside=_mean(chi2 <= INSIDE),
-        understated=float(np.sqrt(np.median(chi2) / MIDDLE)) if len(chi2) else np.nan,
+        inside=_mean(chi2 <= CHI2_95_PERCENT),
+        understated=float(np.sqrt(np.median(chi2) / CHI2_MEDIAN)) if len(chi2) else np.nan,
         speed=_speed_errors(answers, truth, judged),
-        **_foresight(answers, truth),
+        **_median_prediction_errors(answers, truth),
         failures=tuple(dict.fromkeys(failures)),
         failed=len(failures),
     )
@@ -157,11 +157,11 @@ def errors(poses: Array, truths: Array) -> Array:
     return np.hstack([truths[:, :3, 3] - poses[:, :3, 3], Rotation.from_matrix(turns).as_rotvec()])
 
 
-def later(poses: Array, index: int, steps: float) -> Array | None:
+def position_later(poses: Array, index: int, steps: float) -> Array | None:
     """Origin of the cube `steps` frames after `index`, (3,) [m]: the cubic through four frames.
 
-    None where the sequence ends before. A hand's motion of 2 Hz and 50 mm, seen at 30 Hz, is met
-    to 0.04 mm.
+    None past the end of the sequence. Exact to 0.04 mm for a hand's motion of 2 Hz and 50 mm at
+    30 frames/s.
     """
     before = index + int(np.floor(steps))
     nodes = np.arange(before - 1, before + 3)
@@ -174,14 +174,17 @@ def later(poses: Array, index: int, steps: float) -> Array | None:
     return np.asarray(weights @ poses[nodes, :3, 3], np.float64)
 
 
-def _foresight(answers: Rows[dict[str, Any]], truth: Truth) -> dict[str, float]:
-    """How far off three ways are of telling where the cube will be, each in the median."""
+def _median_prediction_errors(answers: Rows[dict[str, Any]], truth: Truth) -> dict[str, float]:
+    """Return the median errors of three ways to predict the position."""
     predicted: list[float] = []
     held: list[float] = []
     extrapolated: list[float] = []
     past: dict[int, Array] = {}
     for answer in answers if not truth.independent else ():
-        index, goal = answer["index"], later(truth.poses, answer["index"], AHEAD * truth.rate)
+        index, goal = (
+            answer["index"],
+            position_later(truth.poses, answer["index"], PREDICTION_S * truth.rate),
+        )
         if answer["pose"] is None:
             continue
         here = past[index] = np.array(answer["pose"])[:3, 3]
@@ -189,7 +192,7 @@ def _foresight(answers: Rows[dict[str, Any]], truth: Truth) -> dict[str, float]:
             continue
         held.append(float(np.linalg.norm(here - goal)))
         if index - 1 in past:
-            step = (here - past[index - 1]) * (AHEAD * truth.rate)
+            step = (here - past[index - 1]) * (PREDICTION_S * truth.rate)
             extrapolated.append(float(np.linalg.norm(here + step - goal)))
         if answer.get("expected") is not None:
             expected = np.array(answer["expected"])[:3, 3]

@@ -1,4 +1,4 @@
-"""The benchmark's sequences: seeded, with known truth; any frame can be asked for at any time."""
+"""The benchmark's sequences: seeded, with ground truth and random access to frames."""
 
 import zlib
 from dataclasses import dataclass
@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.bench.tracking.desk import desk
-from tests.bench.tracking.hand import Finger, Hold, grip
-from tests.bench.tracking.light import lamp_light, shaded
-from tests.bench.tracking.motions import LENS, in_view, many, moving
+from tests.bench.tracking.hand import Finger, FingerMotion, lay_fingers
+from tests.bench.tracking.light import random_lamp, with_shadows
+from tests.bench.tracking.motions import LENS, in_view, random_motion, static_poses
 from tests.bench.tracking.optics import Sensor
-from tests.bench.tracking.paper import PaperCube
+from tests.bench.tracking.paper import BenchmarkCube
 from tests.bench.tracking.paths import speeds
-from tests.bench.tracking.plans import PLANS, Plan
+from tests.bench.tracking.plans import SEQUENCE_PLANS, SequencePlan
 from tests.bench.tracking.renderer import Scene, expose
 
-NAMES = tuple(PLANS)
+NAMES = tuple(SEQUENCE_PLANS)
 
 CUBE = "locomotion"
 
@@ -98,7 +98,7 @@ RATE = 30.0
 """Frames per second."""
 
 GAIN = 6.0
-"""How much a camera makes of little light; not quite what is missing in the dark."""
+"""Gain in the dark; it does not fully compensate for the missing light."""
 
 
 @lru_cache(maxsize=2)
@@ -114,21 +114,21 @@ def sequence(name: str, seed: int = 1, count: int | None = None) -> Sequence:
     count
         Frames; None for as many as the sequence usually has.
     """
-    plan = PLANS[name]
+    plan = SEQUENCE_PLANS[name]
     count = plan.count if count is None else count
     random = np.random.default_rng((seed, zlib.crc32(name.encode())))
     # All seeds share the shift, so that together they fill the space of poses evenly.
     shift = np.random.default_rng(zlib.crc32(name.encode())).random(6)
-    cube = PaperCube.load(CUBE)
+    cube = BenchmarkCube.load(CUBE)
     times = np.arange(count) / RATE + plan.exposure / 2
     if plan.independent:
-        paths = many(plan, cube, 1000 * seed, count, shift)
+        paths = static_poses(plan, cube, 1000 * seed, count, shift)
     else:
-        paths = [moving(plan, cube, seed, shift, random, times)]
+        paths = [random_motion(plan, cube, seed, shift, random, times)]
     first = paths[0](np.zeros(1))[0]
-    light = lamp_light(random)
+    light = random_lamp(random)
     if plan.shadows:
-        light = shaded(light, paths[0](times)[:, :3, 3].mean(0), random)
+        light = with_shadows(light, paths[0](times)[:, :3, 3].mean(0), random)
     hold = _hold(plan, cube, first, random)
     brightness = GAIN * plan.light if plan.light < 1 else 1.0
     table = desk(LENS, light, random, cube.dictionary, _foreign(plan, cube, random))
@@ -149,7 +149,9 @@ def sequence(name: str, seed: int = 1, count: int | None = None) -> Sequence:
     )
 
 
-def _foreign(plan: Plan, cube: PaperCube, random: np.random.Generator) -> tuple[int, ...]:
+def _foreign(
+    plan: SequencePlan, cube: BenchmarkCube, random: np.random.Generator
+) -> tuple[int, ...]:
     """Markers of the cube's dictionary that are not on the cube."""
     used = {side.marker_id for side in cube.sides}
     others = [number for number in range(50) if number not in used]
@@ -157,11 +159,11 @@ def _foreign(plan: Plan, cube: PaperCube, random: np.random.Generator) -> tuple[
 
 
 def _hold(
-    plan: Plan, cube: PaperCube, first: NDArray[np.float64], random: np.random.Generator
-) -> Hold:
+    plan: SequencePlan, cube: BenchmarkCube, first: NDArray[np.float64], random: np.random.Generator
+) -> FingerMotion:
     """Hold the cube as the plan says; the hand comes from behind it, from below or beside it."""
     if not plan.fingers:
-        return Hold()
+        return FingerMotion()
     hand = np.array([random.uniform(-0.6, 0.6), 0.7, 0.75])
     hand = first[:3, :3].T @ (hand / np.linalg.norm(hand))
-    return Hold(grip(cube, hand, random), hand, plan.fingers == "start")
+    return FingerMotion(lay_fingers(cube, hand, random), hand, plan.fingers == "start")

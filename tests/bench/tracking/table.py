@@ -1,4 +1,4 @@
-"""The figures as a person reads them in a terminal, 120 columns wide."""
+"""The scores as tables for a terminal of 120 columns."""
 
 from collections.abc import Sequence as Rows
 
@@ -9,7 +9,7 @@ from rich.table import Table
 
 from tests.bench.tracking.scoring import Score
 
-OURS, YARDSTICK = "Cubeling", "cv2 SUBPIX"
+OURS, REFERENCE = "Cubeling", "cv2 SUBPIX"
 """Titles of the tracker that is judged, and of the one whose time is the yardstick."""
 
 COLUMNS = ("tracker", "frames", "recall %", "wrong %", "mm", "95 %", "°", "95 %", "ms", "÷ cv2")
@@ -20,20 +20,20 @@ OWN = (
 
 
 def show(console: Console, scores: Rows[Score]) -> None:
-    """Print every tracker on every sequence, then what only Cubeling tells, then the rest."""
-    console.print(_everybody(scores))
+    """Print the accuracy of all trackers, then what only Cubeling reports, then the jitter."""
+    console.print(_accuracy_table(scores))
     console.print(
         "wrong: given, but more than 20 mm or 10° off. 95 %: percentile of the error. raw: without "
-        f"its filter.\n÷ cv2: of the time that {YARDSTICK} takes to detect, without solving.\n"
+        f"its filter.\n÷ cv2: of the time that {REFERENCE} takes to detect, without solving.\n"
     )
-    console.print(_ours(scores))
+    console.print(_covariance_table(scores))
     console.print(
         "inside: the stated 95 % ellipsoid holds the truth; σ ×: how many times too small the "
         "stated deviations are.\n50 ms ahead: median distance between where the tracker's "
         "prediction, its last two poses continued, or its last\npose has the cube and where it is "
         "then. velocity: median error of the stated one.\n"
     )
-    console.print(_rest(scores))
+    console.print(_jitter_table(scores))
     for score in scores:
         if score.failed:
             console.print(
@@ -42,8 +42,8 @@ def show(console: Console, scores: Rows[Score]) -> None:
             )
 
 
-def brief(scores: Rows[Score], sequence: str) -> str:
-    """Tell a sequence's outcome in one line, for whoever waits."""
+def one_line(scores: Rows[Score], sequence: str) -> str:
+    """Return a sequence's scores in one line of progress."""
     return "; ".join(
         f"{s.tracker} {share(s.recall)} % {length(s.shift[0])} mm {number(s.milliseconds, 1)} ms"
         for s in scores
@@ -59,7 +59,7 @@ def of(scores: Rows[Score], sequence: str, tracker: str) -> Score | None:
 
 def ratio(scores: Rows[Score], score: Score) -> float:
     """Time of a tracker ÷ that of the yardstick's detection on the same frames."""
-    yardstick = of(scores, score.sequence, YARDSTICK)
+    yardstick = of(scores, score.sequence, REFERENCE)
     return score.milliseconds / yardstick.detection_ms if yardstick else float("nan")
 
 
@@ -100,7 +100,7 @@ def angle(radians: float) -> str:
     return number(degrees, 3 if degrees < 1 else 2 if degrees < 10 else 1)
 
 
-def _everybody(scores: Rows[Score]) -> Table:
+def _accuracy_table(scores: Rows[Score]) -> Table:
     table = Table(title="Pose of the cube against the truth", box=SIMPLE_HEAD, title_justify="left")
     table.add_column("sequence")
     for column in COLUMNS:
@@ -126,8 +126,8 @@ def _row(scores: Rows[Score], score: Score) -> tuple[str, ...]:
     )
 
 
-def _ours(scores: Rows[Score]) -> Table:
-    table = Table(title="What Cubeling alone tells", box=SIMPLE_HEAD, title_justify="left")
+def _covariance_table(scores: Rows[Score]) -> Table:
+    table = Table(title="What only Cubeling reports", box=SIMPLE_HEAD, title_justify="left")
     for column in OWN:
         table.add_column(column, justify="left" if column == "sequence" else "right")
     for score in scores:
@@ -136,28 +136,28 @@ def _ours(scores: Rows[Score]) -> Table:
                 score.sequence,
                 share(score.inside),
                 number(score.understated, 2),
-                *own_figures(score),
+                *own_columns(score),
             )
     return table
 
 
-def own_figures(score: Score) -> tuple[str, ...]:
+def own_columns(score: Score) -> tuple[str, ...]:
     """Prediction and velocity, where the cube moves; (5,) texts."""
     if score.sequence.startswith("static"):
         return ("",) * 5
     speeds = zip(score.speed, (1000, 180 / np.pi), strict=True)
     return (
-        *(length(each) for each in foresight(score)),
+        *(length(each) for each in prediction_errors(score)),
         *(number(each, 1, factor) for each, factor in speeds),
     )
 
 
-def foresight(score: Score) -> tuple[float, float, float]:
+def prediction_errors(score: Score) -> tuple[float, float, float]:
     """Errors of the prediction, of constant velocity, and of the last pose held [m]."""
     return score.predicted, score.extrapolated, score.held
 
 
-def _rest(scores: Rows[Score]) -> Table:
+def _jitter_table(scores: Rows[Score]) -> Table:
     table = Table(title="Jitter at rest", box=SIMPLE_HEAD, title_justify="left")
     for column in ("sequence", "tracker", "mm", "°"):
         table.add_column(column, justify="right" if column in ("mm", "°") else "left")

@@ -25,14 +25,14 @@ def test_every_seed_is_used_once_until_there_are_enough_frames():
 
 
 def test_a_good_pose_is_right_and_none_is_wrong():
-    result = campaign.judge(sequence("cluttered", 3, FRAMES))
+    result = campaign.evaluate(sequence("cluttered", 3, FRAMES))
     assert json.loads(json.dumps(result)) == result
     assert (result["seen"], result["given"], result["right"]) == (FRAMES,) * 3
     assert result["wrong"] == []
 
 
 def test_a_pose_beside_the_truth_is_found_and_can_be_drawn_again(wrong_truth):
-    result = campaign.judge(sequence("cluttered", 3, FRAMES))
+    result = campaign.evaluate(sequence("cluttered", 3, FRAMES))
     assert result["right"] == 0
     assert [wrong["index"] for wrong in result["wrong"]] == list(range(FRAMES))
     assert result["wrong"][0]["mm"] == pytest.approx(30, abs=1)

@@ -10,15 +10,15 @@ from scipy.spatial.transform import Rotation
 from tests.bench.tracking.hand import Finger
 from tests.bench.tracking.light import Light
 from tests.bench.tracking.motions import LENS
-from tests.bench.tracking.optics import Lens, Sensor, encoded
-from tests.bench.tracking.paper import AXES, INK, PAPER, PaperCube
+from tests.bench.tracking.optics import LensModel, Sensor, srgb_encoded
+from tests.bench.tracking.paper import AXES, INK_ALBEDO, PAPER_ALBEDO, BenchmarkCube
 from tests.bench.tracking.paths import matrices
-from tests.bench.tracking.plans import PLANS
-from tests.bench.tracking.renderer import WHITE, Scene, expose
+from tests.bench.tracking.plans import SEQUENCE_PLANS
+from tests.bench.tracking.renderer import WHITE_LEVEL, Scene, expose
 from tests.bench.tracking.sequences import NAMES, Sequence, sequence
 from tracking import CubeModel
 
-SMALL = Lens(
+SMALL = LensModel(
     np.array([[1500.0, 0, 203.0], [0, 1490.0, 195.0], [0, 0, 1]]),
     np.array([-0.9, 0.6, 0.002, -0.003, 0.1]),
     (400, 400),
@@ -35,7 +35,7 @@ def scene(pose: np.ndarray, speed: tuple[float, float, float] = (0, 0, 0)) -> Sc
         return moved
 
     background = np.full((400, 400, 3), 0.02, np.float32)
-    return Scene(SMALL, PaperCube.load("locomotion"), EVEN, background, poses, lambda time: ())
+    return Scene(SMALL, BenchmarkCube.load("locomotion"), EVEN, background, poses, lambda time: ())
 
 
 def facing(name: str, tilt: tuple[float, float, float] = (0.25, -0.3, 0.4)) -> np.ndarray:
@@ -131,12 +131,15 @@ def test_light_is_linear_in_albedo_and_slant() -> None:
     face = CubeModel.load("locomotion").face("front")
     middle = face.corners.mean(0)
     falling = 0.1 + 0.5 * np.cos(0.6)
-    for share, albedo in ((0.92, INK), (1.16, PAPER)):  # The black border and the white margin.
+    for share, albedo in (
+        (0.92, INK_ALBEDO),
+        (1.16, PAPER_ALBEDO),
+    ):  # The black border and the white margin.
         points = middle + share * (face.corners - middle) @ np.diag([1, 0, 1])
         points = points @ pose[:3, :3].T + pose[:3, 3]
         for column, row in SMALL.project(points):
             seen = picture[round(row), round(column)]
-            assert seen == pytest.approx(albedo * WHITE * falling, rel=0.03)
+            assert seen == pytest.approx(albedo * WHITE_LEVEL * falling, rel=0.03)
 
 
 @pytest.mark.parametrize(("light", "least", "most"), [(1.0, 1.2, 2.6), (0.125, 6.0, 10.0)])
@@ -146,7 +149,7 @@ def test_noise_is_that_of_the_room(light: float, least: float, most: float) -> N
         even = np.full((200, 200, 3), level, np.float32)
         picture = sensor.develop(even, np.random.default_rng(2))
         assert least * 0.9 < picture[..., 1].std() < most * 1.1
-        assert picture[..., 1].mean() == pytest.approx(255 * encoded(np.array(level)), abs=2.5)
+        assert picture[..., 1].mean() == pytest.approx(255 * srgb_encoded(np.array(level)), abs=2.5)
 
 
 def test_same_seed_gives_the_same_bytes_in_any_order(fingers: Sequence) -> None:
@@ -193,8 +196,8 @@ def test_peak_speeds_are_those_of_the_plan(name: str) -> None:
     moving = sequence(name, 2)
     found = np.array([moving.velocity(index) for index in range(moving.count)])
     speeds = np.linalg.norm(found[:, :3], axis=1), np.linalg.norm(found[:, 3:], axis=1)
-    assert speeds[0].max() == pytest.approx(PLANS[name].speed, rel=0.05)
-    assert speeds[1].max() == pytest.approx(PLANS[name].turning, rel=0.05)
+    assert speeds[0].max() == pytest.approx(SEQUENCE_PLANS[name].speed, rel=0.05)
+    assert speeds[1].max() == pytest.approx(SEQUENCE_PLANS[name].turning, rel=0.05)
     assert speeds[0][:9].max() < 1e-9, "the hand starts at rest"
     assert all(moving.in_view(index) for index in range(moving.count))
 

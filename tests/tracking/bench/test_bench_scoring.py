@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from tests.bench.tracking import bar, readme, table
-from tests.bench.tracking.run import Run
-from tests.bench.tracking.scoring import Truth, errors, later, score
+from tests.bench.tracking import readme, table, targets
+from tests.bench.tracking.benchmark_run import BenchmarkRun
+from tests.bench.tracking.scoring import Truth, errors, position_later, score
 
 RATE = 30.0
 
@@ -109,10 +109,10 @@ def test_where_the_cube_will_be_is_taken_from_between_the_frames():
     time = np.arange(30) / RATE
     made = poses(30)
     made[:, 0, 3] = 0.05 * np.sin(2 * np.pi * 2 * time)
-    found = later(made, 9, 1.5)
+    found = position_later(made, 9, 1.5)
     assert found is not None
     assert found[0] == pytest.approx(0.05 * np.sin(2 * np.pi * 2 * 10.5 / RATE), abs=4e-5)
-    assert later(made, 28, 1.5) is None
+    assert position_later(made, 28, 1.5) is None
 
 
 def test_prediction_is_held_against_what_is_to_come():
@@ -161,12 +161,12 @@ def scores_of(shift, milliseconds=2.0):
     return [
         score(title, truth(made, name), given)
         for name in ("poses", "static")
-        for title, given in ((table.OURS, ours), (table.YARDSTICK, theirs))
+        for title, given in ((table.OURS, ours), (table.REFERENCE, theirs))
     ]
 
 
 def verdict(scores, target):
-    return next(each for each in bar.verdicts(scores) if each.target.startswith(target))
+    return next(each for each in targets.verdicts(scores) if each.target.startswith(target))
 
 
 def test_the_bar_says_what_holds_and_what_misses():
@@ -183,7 +183,9 @@ def test_the_readme_keeps_all_but_its_section(tmp_path):
     page.write_text(
         f"before\n{readme.OPENING}\nof last year\n{readme.CLOSING}\nafter\n", encoding="utf-8"
     )
-    run = Run("make it", 40, 1, 2, "2026-01-01", "a machine", 0.0, tuple(scores_of((0.001, 0, 0))))
+    run = BenchmarkRun(
+        "make it", 40, 1, 2, "2026-01-01", "a machine", 0.0, tuple(scores_of((0.001, 0, 0)))
+    )
     readme.write(page, run)
     readme.write(page, run)
     text = page.read_text(encoding="utf-8")
@@ -198,5 +200,5 @@ def test_a_readme_without_the_marks_is_left_alone(tmp_path):
     page = tmp_path / "README.md"
     page.write_text("mine", encoding="utf-8")
     with pytest.raises(ValueError, match="no section"):
-        readme.write(page, Run("make it", 40, 1, 2, "2026-01-01", "a machine", 0.0))
+        readme.write(page, BenchmarkRun("make it", 40, 1, 2, "2026-01-01", "a machine", 0.0))
     assert page.read_text(encoding="utf-8") == "mine"

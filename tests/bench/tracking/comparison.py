@@ -1,4 +1,4 @@
-"""All trackers on the same frames: drawn once, read by one after the other, and deleted."""
+"""Runs all trackers on the same frames, rendered once."""
 
 import tempfile
 from collections.abc import Callable, Iterator
@@ -16,34 +16,34 @@ from tests.bench.tracking.scoring import Score, Truth, score
 from tests.bench.tracking.sequences import Sequence
 from tracking import CubeModel
 
-TURN = 12
-"""Frames that a tracker is asked for before the next tracker's turn: what else the machine does
-meanwhile hits all of them alike."""
+FRAMES_PER_TURN = 12
+"""Frames that a tracker processes before the next tracker's turn, so that other load on the machine
+affects all of them equally."""
 
 
 @dataclass
-class Contest:
-    """The trackers that take part, each with its process."""
+class TrackerComparison:
+    """The trackers, each with its process."""
 
     names: tuple[str, ...]
     """Of `ENTRIES`."""
 
     threads: int
-    """That each tracker's libraries may use; one tracker runs at a time."""
+    """Threads of each tracker's libraries; one tracker runs at a time."""
 
     say: Callable[[str], None]
-    """Takes one line of progress."""
+    """Prints a line of progress."""
 
     left_out: dict[str, str] = field(default_factory=dict)
-    """For the title of each tracker that could not run or broke down: why."""
+    """Why a tracker could not run or failed, by its title."""
 
     versions: dict[str, str] = field(default_factory=dict)
-    """For each tracker's title what it rests on, "rapidtag 0.1.12, opencv 5.0.0"."""
+    """Versions of each tracker's libraries, by its title: "rapidtag 0.1.12, opencv 5.0.0"."""
 
     _workers: list[Worker] = field(default_factory=list)
     _stack: ExitStack = field(default_factory=ExitStack)
 
-    def __enter__(self) -> "Contest":
+    def __enter__(self) -> "TrackerComparison":
         for name in self.names:
             entry = ENTRIES[name]
             try:
@@ -60,7 +60,7 @@ class Contest:
         self._stack.close()
 
     def run(self, sequence: Sequence) -> Iterator[Score]:
-        """Let all of them track one sequence, and score them."""
+        """Run all trackers on one sequence, and score them."""
         truth = truth_of(sequence)
         with tempfile.TemporaryDirectory(prefix="cubeling-", ignore_cleanup_errors=True) as folder:
             frames = Path(folder) / "frames.npy"
@@ -76,8 +76,8 @@ class Contest:
         answers: dict[str, list[dict[str, Any]]] = {}
         for worker in list(self._workers):
             self._ask(worker, answers, partial(worker.begin, frames, job))
-        for start in range(0, sequence.count, TURN):
-            turn = range(start, min(start + TURN, sequence.count))
+        for start in range(0, sequence.count, FRAMES_PER_TURN):
+            turn = range(start, min(start + FRAMES_PER_TURN, sequence.count))
             for worker in list(self._workers):
                 self._ask(worker, answers, partial(worker.ask, turn))
         return answers
@@ -88,7 +88,7 @@ class Contest:
         answers: dict[str, list[dict[str, Any]]],
         question: Callable[[], list[dict[str, Any]] | None],
     ) -> None:
-        """Note what a tracker says; one whose process ended takes no further part."""
+        """Collect a tracker's answers; drop it if its process has ended."""
         try:
             answers.setdefault(worker.entry.title, []).extend(question() or ())
         except UnavailableError as reason:
@@ -111,7 +111,7 @@ def draw(sequence: Sequence, path: Path) -> None:
 
 
 def job_of(sequence: Sequence) -> dict[str, Any]:
-    """Describe a sequence to a worker: all that a tracker may know."""
+    """Describe a sequence to a worker: everything a tracker may know."""
     cube = CubeModel.load(sequence.cube)
     faces = [
         {"id": face.marker_id, "name": face.name, "corners": face.corners.tolist()}
@@ -135,7 +135,7 @@ def job_of(sequence: Sequence) -> dict[str, Any]:
 
 
 def truth_of(sequence: Sequence) -> Truth:
-    """Ask a sequence for the truth of all its frames."""
+    """Collect the ground truth of all frames."""
     indices = range(sequence.count)
     return Truth(
         name=sequence.name,

@@ -1,4 +1,4 @@
-"""What a run of the benchmark was: its circumstances and its figures."""
+"""A run of the benchmark: circumstances and scores."""
 
 import datetime
 import os
@@ -11,42 +11,42 @@ from tests.bench.tracking.scoring import Score
 
 
 @dataclass(frozen=True)
-class Run:
+class BenchmarkRun:
     """One run of the benchmark."""
 
     command: str
-    """That was given."""
+    """The command line."""
 
     frames: int
-    """Of each sequence."""
+    """Frames of each sequence."""
 
     seed: int
-    """Of all sequences."""
+    """Seed of all sequences."""
 
     threads: int
-    """That each tracker might use."""
+    """Threads of each tracker."""
 
     date: str
-    """ISO, of the day."""
+    """ISO date."""
 
     machine: str
     """Processor and number of its cores."""
 
     load: float
-    """Processes that others had running when it began: from 0.5 on, times are noisy."""
+    """Load average at the start: from 0.5 on, times are noisy."""
 
     scores: tuple[Score, ...] = ()
-    """Of every tracker on every sequence."""
+    """Scores of every tracker on every sequence."""
 
     versions: dict[str, str] = field(default_factory=dict)
-    """For each tracker what it rests on."""
+    """Versions of each tracker's libraries."""
 
     left_out: dict[str, str] = field(default_factory=dict)
-    """For each tracker that did not take part: why."""
+    """Why a tracker did not run."""
 
     @classmethod
     def now(cls, command: str, frames: int, seed: int, threads: int) -> Self:
-        """Note the circumstances."""
+        """Record the circumstances."""
         day = datetime.date.today().isoformat()
         machine = f"{_processor()}, {os.cpu_count()} cores"
         load = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0  # not on Windows
@@ -54,7 +54,7 @@ class Run:
 
     @property
     def circumstances(self) -> str:
-        """In one line."""
+        """Return the circumstances in one line."""
         return (
             f"{self.date}, {self.machine} (load {self.load:.1f} before), one tracker at a time, "
             f"{self.threads} threads; {self.frames} frames of 1280×720 a sequence, seed {self.seed}"
@@ -62,7 +62,7 @@ class Run:
 
 
 def _processor() -> str:
-    """Name the processor, where the system tells."""
+    """Return the processor's name."""
     try:
         for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
             if line.startswith("model name"):

@@ -1,4 +1,4 @@
-"""The bar that Cubeling sets itself, and whether the figures hold it."""
+"""The benchmark's targets, and whether the measurements reach them."""
 
 from collections.abc import Callable, Iterator
 from collections.abc import Sequence as Rows
@@ -11,39 +11,39 @@ from tests.bench.tracking.table import OURS, angle, length, number, of, ratio, s
 
 
 @dataclass(frozen=True)
-class Verdict:
+class TargetVerdict:
     """One target, and what was measured."""
 
     target: str
-    """What is to be reached."""
+    """The target as text."""
 
     measured: str
-    """The worst that was measured, and where."""
+    """The worst measurement, and where."""
 
     miss: str | None
-    """By how much it is missed; "" where it holds, None where nothing was measured."""
+    """By how much it is missed; "" if it is reached, None if nothing was measured."""
 
     def __str__(self) -> str:
-        """Say it in one line."""
+        """Return one line."""
         if self.miss is None:
             return f"not measured            {self.target}"
         verdict = f"misses by {self.miss}" if self.miss else "holds"
         return f"{verdict:<24}{self.target}: {self.measured}"
 
 
-STILL = ("static", "static-one", "poses", "sweep-1.0")
-"""Sequences that do not count for the prediction of ordinary hand motion."""
+NO_HAND_MOTION = ("static", "static-one", "poses", "sweep-1.0")
+"""Sequences without ordinary hand motion, left out of the prediction."""
 
 
-def verdicts(scores: Rows[Score]) -> Iterator[Verdict]:
-    """Judge every target of the bar."""
+def verdicts(scores: Rows[Score]) -> Iterator[TargetVerdict]:
+    """Check every target."""
     ours = [score for score in scores if score.tracker == OURS]
     fast = [score for score in ours if score.sequence == "sweep-1.0"]
-    moving = [score for score in ours if score.sequence not in STILL]
+    moving = [score for score in ours if score.sequence not in NO_HAND_MOTION]
     yield _at_least("recall ≥ 98 %", [s for s in ours if s not in fast], 0.98)
     yield _at_least("recall at 1 m/s ≥ 90 %", fast, 0.90)
-    yield _never_wrong(ours)
-    yield from _sharp([score for score in ours if score.sequence == "poses"])
+    yield _wrong_verdict(ours)
+    yield from _accuracy_verdicts([score for score in ours if score.sequence == "poses"])
     for name, seen in (("static", "two or three faces"), ("static-one", "one face")):
         rest = [score for score in ours if score.sequence == name]
         yield _at_most(f"rest jitter, {seen}, ≤ 0.03 mm", rest, lambda s: s.jitter[0], 0.03e-3, _mm)
@@ -60,20 +60,20 @@ def verdicts(scores: Rows[Score]) -> Iterator[Verdict]:
         lambda s: ratio(scores, s),
         0.5,
     )
-    yield _constant(ours)
-    yield _honest(ours)
+    yield _dark_time_verdict(ours)
+    yield _covariance_verdict(ours)
     yield _at_most("50 ms ahead ≤ 4 mm", moving, lambda s: s.predicted, 4e-3, _mm)
     yield _at_most("50 ms ahead at 1 m/s ≤ 4 mm", fast, lambda s: s.predicted, 4e-3, _mm)
 
 
-def _at_least(target: str, scores: Rows[Score], bound: float) -> Verdict:
+def _at_least(target: str, scores: Rows[Score], bound: float) -> TargetVerdict:
     below = sorted((s for s in scores if s.seen), key=lambda s: s.recall)
     if not below:
-        return Verdict(target, "", None)
+        return TargetVerdict(target, "", None)
     missing = [s for s in below if s.recall < bound] or below[:1]
     said = ", ".join(f"{s.sequence} {share(s.recall)} %" for s in missing)
     lack = 100 * (bound - below[0].recall)
-    return Verdict(target, said, f"{lack:.1f} points" if lack > 0 else "")
+    return TargetVerdict(target, said, f"{lack:.1f} points" if lack > 0 else "")
 
 
 def _at_most(
@@ -82,25 +82,25 @@ def _at_most(
     value: Callable[[Score], float],
     bound: float,
     written: Callable[[float], str] = lambda value: number(value, 2),
-) -> Verdict:
+) -> TargetVerdict:
     known = sorted(((value(s), s.sequence) for s in scores if not np.isnan(value(s))), reverse=True)
     if not known:
-        return Verdict(target, "", None)
+        return TargetVerdict(target, "", None)
     missing = [each for each in known if each[0] > bound] or known[:1]
     said = ", ".join(f"{name} {written(worst)}" for worst, name in missing)
-    return Verdict(target, said, _excess(known[0][0], bound))
+    return TargetVerdict(target, said, _excess(known[0][0], bound))
 
 
-def _never_wrong(ours: Rows[Score]) -> Verdict:
+def _wrong_verdict(ours: Rows[Score]) -> TargetVerdict:
     wrong, frames = sum(s.wrong for s in ours), sum(s.frames for s in ours)
     where = ", ".join(f"{s.sequence} {s.wrong}" for s in ours if s.wrong)
     said = f"{wrong} of {frames} frames" + (f" ({where})" if where else "")
     if not frames:
-        return Verdict("silently wrong 0", "", None)
-    return Verdict("silently wrong 0", said, f"{wrong} frames" if wrong else "")
+        return TargetVerdict("silently wrong 0", "", None)
+    return TargetVerdict("silently wrong 0", said, f"{wrong} frames" if wrong else "")
 
 
-def _sharp(poses: Rows[Score]) -> Iterator[Verdict]:
+def _accuracy_verdicts(poses: Rows[Score]) -> Iterator[TargetVerdict]:
     for which, name, millimetres, degrees in ((0, "median", 0.2, 0.05), (1, "95 %", 0.6, 0.15)):
         target = f"sharp cube, {name} ≤ {millimetres} mm"
         yield _at_most(target, poses, lambda s, i=which: s.shift[i], millimetres / 1000, _mm)  # type: ignore[misc]
@@ -108,30 +108,30 @@ def _sharp(poses: Rows[Score]) -> Iterator[Verdict]:
         yield _at_most(target, poses, lambda s, i=which: s.turn[i], np.deg2rad(degrees), _degrees)  # type: ignore[misc]
 
 
-def _constant(ours: Rows[Score]) -> Verdict:
+def _dark_time_verdict(ours: Rows[Score]) -> TargetVerdict:
     target = "time in darkness within 30 % of that in light"
     dark, light = of(ours, "darkness", OURS), of(ours, LIGHT, OURS)
     if dark is None or light is None:
-        return Verdict(target, "", None)
+        return TargetVerdict(target, "", None)
     change = dark.milliseconds / light.milliseconds - 1
-    return Verdict(target, f"{change:+.0%}", _excess(abs(change), 0.3))
+    return TargetVerdict(target, f"{change:+.0%}", _excess(abs(change), 0.3))
 
 
 LIGHT = "shaded"
-"""The sequence in which the cube is moved as in "darkness", in a lit room."""
+"""The sequence with the same motion as "darkness", in a lit room."""
 
 
-def _honest(ours: Rows[Score]) -> Verdict:
-    """Judge the covariance over all frames together, and name the sequences outside the band."""
+def _covariance_verdict(ours: Rows[Score]) -> TargetVerdict:
+    """Check the covariance over all frames, and name the sequences outside the band."""
     target = "stated 95 % region holds the truth in 90 to 98 %"
     known = [s for s in ours if not np.isnan(s.inside)]
     if not known:
-        return Verdict(target, "", None)
+        return TargetVerdict(target, "", None)
     whole = sum(s.inside * s.given for s in known) / sum(s.given for s in known)
     outside = [f"{s.sequence} {share(s.inside)}" for s in known if not 0.90 <= s.inside <= 0.98]
     said = f"{share(whole)} % of all" + (f"; outside: {', '.join(outside)}" if outside else "")
     lack = 100 * max(0.90 - whole, whole - 0.98)
-    return Verdict(target, said, f"{lack:.1f} points" if lack > 0 else "")
+    return TargetVerdict(target, said, f"{lack:.1f} points" if lack > 0 else "")
 
 
 def _excess(value: float, bound: float) -> str:
