@@ -1,4 +1,4 @@
-"""Whether the cube stands still, and whether as still as only a table can hold it."""
+"""Whether the cube stands still, and whether as still as only a table holds it."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -10,70 +10,66 @@ from tracking.geometry import se3
 
 Array = NDArray[np.float64]
 
-WINDOW = 0.3
-"""How long the cube must keep still to be called still [s]."""
+WINDOW_S = 0.3
+"""How long the cube must keep still to count as still."""
 
-STILL = (0.02, 0.2)
+MAX_SPEED = (0.02, 0.2)
 """Slower than this is still [m/s, rad/s]."""
 
-TREMOR = (2.5e-4, 3.5e-3)
-"""A cube that a table holds scatters by less than this [m, rad], covariance aside.
+MAX_TREMOR = (2.5e-4, 3.5e-3)
+"""Standard deviation of a cube on a table, apart from the covariance of its pose [m, rad].
 
 A hand in the air trembles by 0.3 to 1 mm at 8 to 12 Hz (physiological tremor) and drifts by more.
 """
 
 
 @dataclass(frozen=True)
-class _Moment:
+class _Sample:
     timestamp: float
     camera_from_cube: Array
     covariance: Array
 
 
-class Stillness:
-    """Looks back over the last poses of the cube."""
+class StillnessDetector:
+    """Tells from the last poses of the cube whether it stands still."""
 
     def __init__(self) -> None:
-        self._moments: deque[_Moment] = deque()
-
-    def clear(self) -> None:
-        """Forget what was seen: the cube was hidden, or is another."""
-        self._moments.clear()
+        self._samples: deque[_Sample] = deque()
 
     def add(self, timestamp: float, camera_from_cube: Array, covariance: Array) -> None:
-        """Remember a pose, and forget those that are older than the window."""
-        if self._moments and timestamp - self._moments[-1].timestamp > WINDOW:
-            self._moments.clear()
-        self._moments.append(_Moment(timestamp, camera_from_cube, covariance))
-        # One moment older than the window stays, so that the window is always covered.
-        while len(self._moments) > 2 and timestamp - self._moments[1].timestamp >= WINDOW - 1e-9:
-            self._moments.popleft()
+        """Add a pose, and drop those that are older than the window."""
+        if self._samples and timestamp - self._samples[-1].timestamp > WINDOW_S:
+            self._samples.clear()
+        self._samples.append(_Sample(timestamp, camera_from_cube, covariance))
+        # One sample older than the window stays, so that the window is always covered.
+        while len(self._samples) > 2 and timestamp - self._samples[1].timestamp >= WINDOW_S - 1e-9:
+            self._samples.popleft()
 
     @property
     def still(self) -> bool:
         """Whether the cube has neither moved nor turned for the whole window."""
-        if not self._covered:
+        if not self._window_is_covered:
             return False
-        steps = self._steps()
-        reach = np.linalg.norm(steps.reshape(-1, 2, 3), axis=2).max(axis=0)
-        return bool((reach < np.array(STILL) * WINDOW).all())
+        deltas = self._deltas()
+        distance = np.linalg.norm(deltas.reshape(-1, 2, 3), axis=2).max(axis=0)
+        return bool((distance < np.array(MAX_SPEED) * WINDOW_S).all())
 
     @property
     def firm(self) -> bool:
         """Whether the cube is `still` and does not tremble as in a hand."""
         if not self.still:
             return False
-        variance = self._steps().var(axis=0).reshape(2, 3).sum(axis=1)
-        expected = np.mean([np.diag(moment.covariance) for moment in self._moments], axis=0)
-        allowed = np.square(TREMOR) + 4 * expected.reshape(2, 3).sum(axis=1)
+        variance = self._deltas().var(axis=0).reshape(2, 3).sum(axis=1)
+        expected = np.mean([np.diag(sample.covariance) for sample in self._samples], axis=0)
+        allowed = np.square(MAX_TREMOR) + 4 * expected.reshape(2, 3).sum(axis=1)
         return bool((variance < allowed).all())
 
     @property
-    def _covered(self) -> bool:
-        moments = self._moments
-        return len(moments) >= 3 and moments[-1].timestamp - moments[0].timestamp >= WINDOW - 1e-9
+    def _window_is_covered(self) -> bool:
+        samples = self._samples
+        return len(samples) >= 3 and samples[-1].timestamp - samples[0].timestamp >= WINDOW_S - 1e-9
 
-    def _steps(self) -> Array:
-        """Shift-turns from the first moment to each, (moments, 6)."""
-        first = self._moments[0].camera_from_cube
-        return np.stack([se3.delta(first, moment.camera_from_cube) for moment in self._moments])
+    def _deltas(self) -> Array:
+        """Pose deltas from the first sample to each, (samples, 6)."""
+        first = self._samples[0].camera_from_cube
+        return np.stack([se3.delta(first, sample.camera_from_cube) for sample in self._samples])

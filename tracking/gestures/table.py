@@ -1,20 +1,17 @@
-"""The table, learned from where the cube rests.
+"""The plane of the table, estimated from where the cube rests.
 
-The rule, in full:
+The rule in full:
 
-1. The cube teaches when it keeps still for 0.3 s (`Stillness`). A *firm* rest, without tremor,
-counts at once; a
-   trembling one only after a second, and what it teaches is provisional.
-2. Up is first the normal of that seen face that comes closest to `PRIOR_UP`, later the table's own.
+1. A cube that keeps still for 0.3 s (`StillnessDetector`) is evidence. A *firm* rest, without
+   tremor, counts at once. A trembling one counts after a second, and its table is provisional.
+2. Up is first the normal of the visible face that is closest to `PRIOR_UP`, later the table's own.
 3. Rests that agree with the table improve it. Each place counts once, however long the cube stays
-there: its
-   errors (a badly folded face, the lens) are the same in every frame. So the table settles within a
-   second and then does not move at all.
-4. Rests that agree with each other but not with the table gather evidence for another one, and
-replace
-   it: after 0.3 s if it was provisional and they are firm, after 1.5 s of firm rest, after 4 s of
-   trembling rest. A hand that held the cube still in the air is so forgotten, and a camera that was
-   moved is noticed.
+   there: its errors (a badly folded face, the lens) are the same in every frame. So the table
+   settles within a second and then does not move at all.
+4. Rests that agree with each other but not with the table are evidence for another table. It
+   replaces the first after 0.3 s if that was provisional and the rests are firm, after 1.5 s of
+   firm rest, or after 4 s of trembling rest. So a hand that held the cube still in the air is
+   forgotten, and a moved camera is noticed.
 """
 
 from dataclasses import dataclass
@@ -30,20 +27,31 @@ Array = NDArray[np.float64]
 PRIOR_UP = np.array([0.0, -np.cos(np.deg2rad(35)), -np.sin(np.deg2rad(35))])
 """Up in the camera frame for an upright camera that looks down by 35°."""
 
-FACE_SPREAD = np.deg2rad(1.0)
-"""How far a face of a folded cube leans from its place [rad], one standard deviation."""
+FACE_TILT_SIGMA = np.deg2rad(1.0)
+"""Tilt error of a face of a folded cube [rad]."""
 
-HEIGHT_SPREAD = 0.001
-"""How far the foot of a resting cube is from the table [m], one standard deviation."""
+HEIGHT_SIGMA_M = 0.001
+"""Distance of the foot of a resting cube from the table."""
 
-SETTLING = 0.5
-"""A place counts once it has been rested on for this long [s]; later frames there add nothing."""
+SIGMAS = np.array([HEIGHT_SIGMA_M, FACE_TILT_SIGMA, FACE_TILT_SIGMA])
 
-NEW_PLACE = 0.03
-"""A rest this far from the last one [m] is another place."""
+SETTLING_TIME_S = 0.5
+"""Rest at one place counts for this long; later frames there add nothing."""
 
-TREMBLING_START = 1.0
-"""How long a trembling rest must last before it teaches a first, provisional table [s]."""
+NEW_PLACE_M = 0.03
+"""A rest this far from the last one is another place."""
+
+MAX_HEIGHT_ERROR_M, MAX_TILT_ERROR = 0.005, np.deg2rad(7)
+"""A rest within this height, plus three standard deviations, and tilt [rad] agrees with a table."""
+
+MIN_UP_COSINE = 0.5
+"""The face that is up is at most 60° off."""
+
+FIRST_TREMBLING_S, NEXT_TREMBLING_S = 1.0, 4.0
+"""How long trembling rests last before they give a first, provisional table, and another one."""
+
+NEXT_FIRM_S, NEXT_FIRM_AFTER_PROVISIONAL_S = 1.5, 0.3
+"""How long firm rests last before they replace a table, and a provisional one."""
 
 
 @dataclass(frozen=True)
@@ -57,59 +65,55 @@ class Rest:
     """Normal of the face that looks up, (3,)."""
 
 
-def face_directions() -> dict[str, Array]:
-    """Outward normals of the six sides in the cube frame, whether or not they carry a marker."""
-    return {name: np.cross(*axes).astype(np.float64) for name, axes in FACE_AXES.items()}
-
-
-DIRECTIONS = face_directions()
+DIRECTIONS = {name: np.cross(*axes).astype(np.float64) for name, axes in FACE_AXES.items()}
+"""Outward normals of the six sides in the cube frame, whether or not they carry a marker."""
 
 
 def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Rest | None:
-    """Where a resting cube stands, if `up` (or the prior, where it is None) says which side is up.
+    """Return where a resting cube stands; None where no side of it can be up.
 
-    Without a table only sides that look at the camera can be up, and none that is 60° off the
-    prior.
+    Without a table (`up` is None) only sides that face the camera can be up, and none that is 60°
+    off `PRIOR_UP`.
     """
-    turn, centre = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
-    normals = np.stack(list(DIRECTIONS.values())) @ turn.T
-    likeness = normals @ (PRIOR_UP if up is None else up)
+    rotation, centre = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
+    normals = np.stack(list(DIRECTIONS.values())) @ rotation.T
+    cosines = normals @ (PRIOR_UP if up is None else up)
     if up is None:
         tops = centre + normals * (edge / 2)
-        seen = -np.einsum("ij,ij->i", normals, tops) > -0.1 * np.linalg.norm(tops, axis=1)
-        likeness = np.where(seen, likeness, -1)
-    best = int(np.argmax(likeness))
-    if likeness[best] < 0.5:
+        facing = -np.einsum("ij,ij->i", normals, tops) > -0.1 * np.linalg.norm(tops, axis=1)
+        cosines = np.where(facing, cosines, -1)
+    best = int(np.argmax(cosines))
+    if cosines[best] < MIN_UP_COSINE:
         return None
     return Rest(centre - normals[best] * (edge / 2), normals[best])
 
 
 class Table:
-    """A plane that improves with every place the cube rests on, by recursive least squares.
+    """A plane that every place of rest improves, by recursive least squares.
 
-    Heights above its first estimate, (x, z) ↦ d + a·x + b·z: a rest measures the height at its foot
-    and, less precisely, both slopes.
+    It is the height above its first estimate, (x, z) ↦ d + a·x + b·z. A rest measures the height at
+    its foot and, less precisely, both slopes.
     """
 
     def __init__(self, rest: Rest) -> None:
         self._start = _frame(rest.foot, rest.up)
         self._plane = np.zeros(3)
-        self._information = np.diag(1 / np.square([HEIGHT_SPREAD, FACE_SPREAD, FACE_SPREAD]))
+        self._information = np.diag(1 / SIGMAS**2)
         self._place = rest.foot
-        self._settled = SETTLING
+        self._rest_time = SETTLING_TIME_S
         self.camera_from_table = self._start
 
     def learn(self, rest: Rest, seconds: float) -> None:
-        """Improve with a rest that has lasted `seconds` more."""
-        if float(np.linalg.norm(rest.foot - self._place)) > NEW_PLACE:
-            self._place, self._settled = rest.foot, 0.0
-        share = min(seconds, SETTLING - self._settled) / SETTLING
+        """Improve the plane with a rest that lasts `seconds` more."""
+        if float(np.linalg.norm(rest.foot - self._place)) > NEW_PLACE_M:
+            self._place, self._rest_time = rest.foot, 0.0
+        share = min(seconds, SETTLING_TIME_S - self._rest_time) / SETTLING_TIME_S
         if share <= 0:
             return
-        self._settled += share * SETTLING
+        self._rest_time += share * SETTLING_TIME_S
         x, y, z, a, b = self._measured(rest)
         rows = np.array([[1, x, z], [0, 1, 0], [0, 0, 1]])
-        weights = share / np.square([HEIGHT_SPREAD, FACE_SPREAD, FACE_SPREAD])
+        weights = share / SIGMAS**2
         self._information = self._information + (rows.T * weights) @ rows
         error = np.array([y, a, b]) - rows @ self._plane
         self._plane = self._plane + np.linalg.solve(self._information, rows.T @ (weights * error))
@@ -126,7 +130,8 @@ class Table:
     def agrees(self, rest: Rest) -> bool:
         """Whether a rest can be on this table."""
         height, spread = self.height(rest.foot)
-        return abs(height) < 0.005 + 3 * spread and float(rest.up @ self.up) > np.cos(np.deg2rad(7))
+        near = abs(height) < MAX_HEIGHT_ERROR_M + 3 * spread
+        return near and float(rest.up @ self.up) > np.cos(MAX_TILT_ERROR)
 
     @property
     def up(self) -> Array:
@@ -151,25 +156,25 @@ class Table:
         self.camera_from_table = _frame(origin[:3], up / np.linalg.norm(up))
 
 
-class TableLearner:
-    """Finds the table and notices when it is another, by the rule at the head of this module."""
+class TableEstimator:
+    """Estimates the table, and replaces it when it changes, by the rule at the top of this file."""
 
     def __init__(self, edge: float) -> None:
         self._edge = edge
         self.table: Table | None = None
         self._provisional = False
-        self._rival: Table | None = None
-        self._firm_evidence = 0.0
-        self._soft_evidence = 0.0
+        self._alternative: Table | None = None
+        self._firm_s = 0.0
+        self._rest_s = 0.0
 
     def learn(self, camera_from_cube: Array, firm: bool, seconds: float) -> None:
-        """Take in one frame in which the cube keeps still, `seconds` after the last such frame."""
+        """Add one frame in which the cube keeps still, `seconds` after the last such frame."""
         if self.table is not None:
             rest = rest_of(camera_from_cube, self._edge, self.table.up)
             if rest is not None and self.table.agrees(rest):
                 if firm or self._provisional:
                     self.table.learn(rest, seconds)
-                    self._forget_rival()
+                    self._drop_alternative()
                 self._provisional &= not firm
                 return
         self._gather(camera_from_cube, firm, seconds)
@@ -178,34 +183,35 @@ class TableLearner:
         rest = rest_of(camera_from_cube, self._edge)
         if rest is None:
             return
-        if self._rival is None or not self._rival.agrees(rest):
-            self._forget_rival()
-            self._rival = Table(rest)
-            # The window that proves stillness is itself evidence only for a first table.
+        if self._alternative is None or not self._alternative.agrees(rest):
+            self._drop_alternative()
+            self._alternative = Table(rest)
+            # The window of the stillness itself counts only for a first table.
             seconds = 0.0
-        self._rival.learn(rest, seconds)
-        self._firm_evidence += seconds if firm else 0.0
-        self._soft_evidence += seconds
-        if self._convincing(firm):
-            self.table, self._provisional = self._rival, self._firm_evidence == 0 and not firm
-            self._forget_rival()
+        self._alternative.learn(rest, seconds)
+        self._firm_s += seconds if firm else 0.0
+        self._rest_s += seconds
+        if self._is_convincing(firm):
+            self.table, self._provisional = self._alternative, self._firm_s == 0 and not firm
+            self._drop_alternative()
 
-    def _convincing(self, firm: bool) -> bool:
+    def _is_convincing(self, firm: bool) -> bool:
         if self.table is None:
-            return firm or self._soft_evidence >= TREMBLING_START
+            return firm or self._rest_s >= FIRST_TREMBLING_S
         if self._provisional and firm:
-            return self._firm_evidence >= 0.3
-        return self._firm_evidence >= 1.5 or self._soft_evidence >= 4.0
+            return self._firm_s >= NEXT_FIRM_AFTER_PROVISIONAL_S
+        return self._firm_s >= NEXT_FIRM_S or self._rest_s >= NEXT_TREMBLING_S
 
-    def _forget_rival(self) -> None:
-        self._rival = None
-        self._firm_evidence = self._soft_evidence = 0.0
+    def _drop_alternative(self) -> None:
+        self._alternative = None
+        self._firm_s = self._rest_s = 0.0
 
 
 def _frame(origin: Array, up: Array) -> Array:
-    """Frame of a table, (4, 4): +y up, +z level towards the camera.
+    """Frame of a table, (4, 4): +y up, +z horizontally towards the camera.
 
-    Straight below the camera, where no level direction leads to it, +z points down in the picture.
+    Straight below the camera, where no horizontal direction leads to it, +z points down in the
+    image.
     """
     towards = -origin - up * (-origin @ up)
     if float(np.linalg.norm(towards)) < 0.02:

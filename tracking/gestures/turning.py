@@ -1,4 +1,4 @@
-"""Angles about the table's up axis, and turns counted past a whole one."""
+"""Angles about the table's up axis, and unwrapped turns."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,10 +8,10 @@ from tracking.gestures.table import DIRECTIONS
 Array = NDArray[np.float64]
 
 
-def wrapped(angle: float) -> float:
-    """Bring an angle to −π…π.
+def wrap_angle(angle: float) -> float:
+    """Wrap an angle to −π…π.
 
-    >>> wrapped(1.5 * np.pi) == -np.pi / 2
+    >>> wrap_angle(1.5 * np.pi) == -np.pi / 2
     True
     """
     return float((angle + np.pi) % (2 * np.pi) - np.pi)
@@ -38,10 +38,10 @@ def clockwise_angle_of(direction: Array) -> float:
 
 
 class TurnCounter:
-    """Adds up the way from angle to angle, always the shorter one.
+    """Unwraps angles: each step is the shorter way around.
 
-    A cube that is hidden for a while is thought to have taken the shorter way too: what was not
-    seen beyond half a turn is not counted.
+    This holds for a cube that was hidden for a while, too: a hidden turn of more than half a turn
+    is not counted.
     """
 
     def __init__(self) -> None:
@@ -53,9 +53,9 @@ class TurnCounter:
         self._angle, self._total = angle, 0.0
 
     def add(self, angle: float) -> None:
-        """Follow the cube to an angle [rad]; without a start there is nothing to count."""
+        """Count up to an angle [rad]; without a start nothing is counted."""
         if self._angle is not None:
-            self._total += wrapped(angle - self._angle)
+            self._total += wrap_angle(angle - self._angle)
             self._angle = angle
 
     @property

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from tracking.geometry import se3
-from tracking.gestures.turning import TurnCounter, wrapped
+from tracking.gestures.turning import TurnCounter, wrap_angle
 
 Array = NDArray[np.float64]
 
@@ -58,19 +58,19 @@ def test_motion_is_what_moved_applies(
 
 @given(st.floats(-1e3, 1e3))
 def test_wrapping_keeps_the_direction(angle: float) -> None:
-    assert -np.pi <= wrapped(angle) <= np.pi
-    assert np.cos(wrapped(angle)) == pytest.approx(np.cos(angle), abs=1e-9)
-    assert np.sin(wrapped(angle)) == pytest.approx(np.sin(angle), abs=1e-9)
+    assert -np.pi <= wrap_angle(angle) <= np.pi
+    assert np.cos(wrap_angle(angle)) == pytest.approx(np.cos(angle), abs=1e-9)
+    assert np.sin(wrap_angle(angle)) == pytest.approx(np.sin(angle), abs=1e-9)
 
 
 @given(st.floats(-10, 10), st.lists(st.floats(-3.1, 3.1), min_size=1, max_size=50))
 def test_turns_add_up_whatever_the_way(start: float, steps: list[float]) -> None:
     counter = TurnCounter()
-    counter.restart(wrapped(start))
+    counter.restart(wrap_angle(start))
     angle = start
     for step in steps:
         angle += step
-        counter.add(wrapped(angle))
+        counter.add(wrap_angle(angle))
     assert counter.turns == pytest.approx(sum(steps) / (2 * np.pi), abs=1e-9)
 
 

@@ -249,7 +249,7 @@ def test_the_drivers_time_is_taken_where_it_is_sane(bench, source):
 @pytest.mark.parametrize(
     "wrong",
     [0.0, -0.001, 5.0, 98.9, 100.2, 1.7e9],
-    ids=["zero", "none", "wrapped", "old", "ahead", "epoch"],
+    ids=["zero", "none", "wrap_angle", "old", "ahead", "epoch"],
 )
 def test_a_wrong_driver_time_gives_way_to_the_arrival_for_a_while(wrong):
     clock = ExposureClock()
