@@ -1,14 +1,12 @@
 """Update the table of checks in docs/conformance.md: `python -m tools.conformance_reference`."""
 
-import re
 from pathlib import Path
 
 from robot.conformance.suite import GROUPS
+from tools.marked_parts import replace_part
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "conformance.md"
 """The document about the conformance tests; only in the source tree."""
-
-BEGIN, END = "<!-- checks: generated from the code -->", "<!-- end of checks -->"
 
 
 def checks_table() -> str:
@@ -26,13 +24,10 @@ def checks_table() -> str:
     return "\n\n".join(parts)
 
 
-def renewed(document: str) -> str:
-    """Return the document with its table generated from the code."""
-    pattern = re.compile(re.escape(BEGIN) + ".*?" + re.escape(END), re.DOTALL)
-    if len(pattern.findall(document)) != 1:
-        raise ValueError(f"{DOCUMENT.name} must have one part marked {BEGIN!r}")
-    return pattern.sub(lambda _: f"{BEGIN}\n{checks_table()}\n{END}", document)
+def updated(document: str) -> str:
+    """Return the document with its table updated."""
+    return replace_part(document, "checks", checks_table())
 
 
 if __name__ == "__main__":
-    DOCUMENT.write_text(renewed(DOCUMENT.read_text("utf-8")), "utf-8")
+    DOCUMENT.write_text(updated(DOCUMENT.read_text("utf-8")), "utf-8")

@@ -1,7 +1,7 @@
-"""What the firmware shares with the rest of the project, drawn from the one place that says it.
+"""Generate the tables of the firmware.
 
-`python -m tools.firmware_tables` renews `dino/messages.py` (from `robot.protocol`) and
-`dino/motions.py` (from the simulated dinosaur). A test compares them, so neither can drift.
+`python -m tools.firmware_tables` writes `dino/messages.py` (from `robot.protocol`) and
+`dino/motions.py` (from the simulated dinosaur). A test compares them with their sources.
 """
 
 from pathlib import Path
@@ -19,10 +19,10 @@ BOARD = Path(__file__).parents[1] / "robot" / "firmware" / "dino"
 """The folder that is copied to the board."""
 
 HYSTERESIS = 0.05
-"""How far back a mood must come before its word changes; a test compares it with `next_label`."""
+"""Hysteresis of the moods; a test compares it with `next_label`."""
 
 TURN = 1024
-"""Parts of a cycle by which the firmware's sine is read; a power of two."""
+"""Entries of the firmware's sine table; a power of two."""
 
 _TIMES = ("STATE_EVERY", "FAILSAFE_AFTER", "GONE_EVERY")
 _NAMES = (
@@ -35,7 +35,7 @@ def messages() -> str:
     """Return the text of `messages.py`: numbers, layouts, limits and times."""
     specs = [MESSAGES[number] for number in sorted(MESSAGES)]
     lines = [
-        '"""The protocol in numbers, drawn from robot/protocol by tools.firmware_tables."""',
+        '"""The protocol in numbers, generated from robot/protocol by tools.firmware_tables."""',
         "",
         "# Do not edit: a test compares. Times are in ms.",
         "# fmt: off",
@@ -46,15 +46,15 @@ def messages() -> str:
         *(f"{name} = {getattr(m, name)}" for name in _NAMES),
         *(f"{spec.name} = 0x{spec.number:02X}" for spec in specs),
         "",
-        "# number: (layout, bytes in version 1, (bytes, defaults) of what each later version",
-        "#          added, (place, lowest, highest) of what is not free)",
+        "# number: (layout, bytes in version 1, (bytes, defaults) of the fields that each later",
+        "#          version added, (place, lowest, highest) of the fields with limits)",
         "FROM_HOST: dict[",
         "    int, tuple[str, int, tuple[tuple[int, bytes], ...], tuple[tuple[int, int, int], ...]]",
         "] = {",
         *(_host_row(spec) for spec in specs if spec.sender == "host"),
         "}",
         "",
-        "# number: (layout, (version, bytes) of each version that added to it)",
+        "# number: (layout, (version, bytes) of each version that added fields)",
         "FROM_ROBOT: dict[int, tuple[str, tuple[tuple[int, int], ...]]] = {",
         *(_robot_row(spec) for spec in specs if spec.sender == "robot"),
         "}",
@@ -65,10 +65,9 @@ def messages() -> str:
 
 
 def motions() -> str:
-    """Return the text of `motions.py`: what each mood and each action does with the joints."""
+    """Return the text of `motions.py`: the joints' movements in each mood and action."""
     lines = [
-        '"""What the robot does in each mood, drawn from the simulated one by '
-        'tools.firmware_tables."""',
+        '"""The motions, generated from the simulated robot by tools.firmware_tables."""',
         "",
         "# Do not edit: a test compares.",
         "# fmt: off",
@@ -132,7 +131,7 @@ def _tuple(items: list[str]) -> str:
 
 
 def _count_lines() -> list[str]:
-    """Most of each kind in a catalogue."""
+    """Return the lines of the limits of a catalogue."""
     limits = {field.name: field.high for field in spec_of(m.Welcome).fields}
     kinds = ("motions", "sounds", "moods")
     highest = {limits[kind] for kind in kinds}

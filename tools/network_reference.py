@@ -3,13 +3,13 @@
 `python -m tools.network_reference` writes them; a test compares them with the code.
 """
 
-import re
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
 from robot.network.messages import MAX_TEXT_BYTES, MESSAGE_TYPES, RETAINED_KINDS
+from tools.marked_parts import replace_part
 
 DOCUMENT = Path(__file__).parents[1] / "docs" / "many.md"
 """The document."""
@@ -68,15 +68,10 @@ def type_text(schema: dict[str, Any]) -> str:
     raise ValueError(f"no words for {schema}")
 
 
-def renewed(text: str) -> str:
+def updated(document: str) -> str:
     """Return the document with its generated part updated."""
-    return re.sub(
-        r"(<!-- topics: generated from the code -->\n).*?(<!-- end of topics -->)",
-        lambda found: f"{found[1]}{topics()}\n{found[2]}",
-        text,
-        flags=re.DOTALL,
-    )
+    return replace_part(document, "topics", topics())
 
 
 if __name__ == "__main__":
-    DOCUMENT.write_text(renewed(DOCUMENT.read_text("utf-8")), "utf-8")
+    DOCUMENT.write_text(updated(DOCUMENT.read_text("utf-8")), "utf-8")

@@ -3,7 +3,6 @@
 `python -m tools.protocol_reference` writes them; a test compares them with the code.
 """
 
-import re
 from pathlib import Path
 
 from robot.protocol import messages as m
@@ -12,6 +11,7 @@ from robot.protocol.fields import FieldSpec
 from robot.protocol.schema import HEADER, MESSAGES, MessageSpec
 from robot.protocol.vectors import VECTORS, vectors_file
 from robot.protocol.wire import MAX_BODY, MAX_FRAME
+from tools.marked_parts import replace_part
 from tools.protocol_c_header import header
 
 DOCUMENT = Path(__file__).parents[1] / "robot" / "PROTOCOL.md"
@@ -63,8 +63,8 @@ def vectors() -> str:
     return "```\n" + "\n".join(lines).rstrip() + "\n```"
 
 
-def renewed(document: str) -> str:
-    """Return the document with every part between its marks drawn anew."""
+def updated(document: str) -> str:
+    """Return the document with every generated part updated."""
     parts = {
         "messages": message_tables(),
         "timing": timing_table(),
@@ -72,12 +72,7 @@ def renewed(document: str) -> str:
         "vectors": vectors(),
     }
     for name, text in parts.items():
-        begin, end = f"<!-- {name}: drawn from the code -->", f"<!-- end of {name} -->"
-        pattern = re.compile(re.escape(begin) + ".*?" + re.escape(end), re.DOTALL)
-        count = len(pattern.findall(document))
-        if count != 1:
-            raise ValueError(f"{DOCUMENT.name} must have one part marked {name!r}, not {count}")
-        document = pattern.sub(f"{begin}\n{text}\n{end}", document)
+        document = replace_part(document, name, text)
     return document
 
 
@@ -114,15 +109,15 @@ def _row(offset: int, field: FieldSpec) -> str:
     return f"| {offset} | {field.wire_type} | {field.name} | {unit} | {allowed} | {meaning} |"
 
 
-def drawn() -> dict[Path, str]:
-    """Return every file that is drawn from the code, whole or in parts, and what it should hold."""
+def generated_files() -> dict[Path, str]:
+    """Return every file that is generated, as a whole or in parts, and its content."""
     return {
-        DOCUMENT: renewed(DOCUMENT.read_text("utf-8")),
+        DOCUMENT: updated(DOCUMENT.read_text("utf-8")),
         HEADER_FILE: header(),
         VECTORS_FILE: vectors_file(),
     }
 
 
 if __name__ == "__main__":
-    for path, text in drawn().items():
+    for path, text in generated_files().items():
         path.write_text(text, "utf-8")

@@ -1,4 +1,4 @@
-"""The picture of the wiring, drawn from the table of servos that the firmware comes with.
+"""The picture of the wiring, generated from the firmware's default table of servos.
 
 `python -m tools.wiring` renews docs/pictures/robot-wiring.svg; a test compares it.
 """

@@ -1,4 +1,4 @@
-"""The protocol in numbers, drawn from robot/protocol by tools.firmware_tables."""
+"""The protocol in numbers, generated from robot/protocol by tools.firmware_tables."""
 
 # Do not edit: a test compares. Times are in ms.
 # fmt: off
@@ -34,8 +34,8 @@ STATE = 0x84
 ACK = 0x90
 GONE = 0x9F
 
-# number: (layout, bytes in version 1, (bytes, defaults) of what each later version
-#          added, (place, lowest, highest) of what is not free)
+# number: (layout, bytes in version 1, (bytes, defaults) of the fields that each later
+#          version added, (place, lowest, highest) of the fields with limits)
 FROM_HOST: dict[
     int, tuple[str, int, tuple[tuple[int, bytes], ...], tuple[tuple[int, int, int], ...]]
 ] = {
@@ -55,7 +55,7 @@ FROM_HOST: dict[
            ()),
 }
 
-# number: (layout, (version, bytes) of each version that added to it)
+# number: (layout, (version, bytes) of each version that added fields)
 FROM_ROBOT: dict[int, tuple[str, tuple[tuple[int, int], ...]]] = {
     0x81: ("<BHBIHBBBB16s16s", ((1, 46),)),
     0x82: ("<BHBhhH16s", ((1, 26),)),

@@ -1,4 +1,4 @@
-"""What the robot does in each mood, drawn from the simulated one by tools.firmware_tables."""
+"""The motions, generated from the simulated robot by tools.firmware_tables."""
 
 # Do not edit: a test compares.
 # fmt: off

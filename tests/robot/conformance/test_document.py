@@ -5,17 +5,17 @@ from pathlib import Path
 import pytest
 
 from robot.conformance import all_checks
-from tools.conformance_reference import DOCUMENT, checks_table, renewed
+from tools.conformance_reference import DOCUMENT, checks_table, updated
 
 
 def test_the_document_is_as_the_code_would_draw_it():
     document = DOCUMENT.read_text("utf-8")
-    assert renewed(document) == document, "run `python -m tools.conformance_reference`"
+    assert updated(document) == document, "run `python -m tools.conformance_reference`"
 
 
 def test_a_document_without_the_mark_is_refused():
     with pytest.raises(ValueError, match="must have one part marked"):
-        renewed("# nothing")
+        updated("# nothing")
 
 
 def test_the_table_names_every_check():

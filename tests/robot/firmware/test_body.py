@@ -244,7 +244,7 @@ def test_sounds_last_as_long_as_those_of_the_simulated_robot():
     assert [name for name, _ in sounds.SOUNDS] == list(dinosaur.SOUNDS)
 
 
-def test_drawn_files_are_current():
+def test_generated_files_are_current():
     here = Path(generate.BOARD)
     assert (here / "messages.py").read_text("utf-8") == generate.messages()
     assert (here / "motions.py").read_text("utf-8") == generate.motions()

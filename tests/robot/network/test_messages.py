@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from robot.network import messages as m
 from robot.network.messages import MalformedError, decode, encode
 from robot.network.topics import Member, is_name, member_of, topic_matches
-from tools.network_reference import DOCUMENT, renewed
+from tools.network_reference import DOCUMENT, updated
 
 MESSAGE_TYPES = list(dict.fromkeys(m.MESSAGE_TYPES.values()))
 COUNTS = st.integers(1, m.MAX_INTEGER)
@@ -101,7 +101,7 @@ def test_the_largest_messages_fit():
 
 def test_the_document_says_what_the_code_says():
     text = DOCUMENT.read_text("utf-8")
-    assert renewed(text) == text, "run python -m tools.network_reference"
+    assert updated(text) == text, "run python -m tools.network_reference"
     for form in MESSAGE_TYPES:
         for name in form.__struct_fields__:
             assert f"| `{name}` |" in text

@@ -10,15 +10,15 @@ from robot.protocol.fields import MessageError
 from robot.protocol.schema import MESSAGES, unpack
 from robot.protocol.vectors import VECTORS
 from robot.protocol.wire import FrameReader
-from tools.protocol_reference import DOCUMENT, VECTORS_FILE, drawn, renewed
+from tools.protocol_reference import DOCUMENT, VECTORS_FILE, generated_files, updated
 
 TEXT = DOCUMENT.read_text("utf-8")
 PROSE = " ".join(TEXT.split())
 HEX = re.compile(r"^ *(00(?: [0-9a-f]{2})+)(?:  +(.*))?$", re.MULTILINE)
 
 
-def test_what_is_drawn_from_the_code_is_what_the_code_says():
-    for path, text in drawn().items():
+def test_generated_files_are_current():
+    for path, text in generated_files().items():
         assert path.read_text("utf-8") == text, f"{path.name}: `python -m tools.protocol_reference`"
 
 
@@ -49,8 +49,8 @@ def test_the_bytes_of_the_file_that_a_robot_skips_say_nothing_to_it():
             assert message is None, entry["why"]
 
 
-def test_what_the_document_tells_to_refuse_is_refused():
-    part = TEXT[TEXT.index("And three things to refuse") :]
+def test_frames_that_the_document_says_to_drop_are_dropped():
+    part = TEXT[TEXT.index("And three frames to drop") :]
     bad = [bytes.fromhex(found[1]) for found in HEX.finditer(part)]
     assert len(bad) == 3
     for frame in bad:
@@ -67,4 +67,4 @@ def test_numbers_quoted_in_the_prose_are_those_of_the_code():
 
 def test_a_document_without_its_marks_is_refused():
     with pytest.raises(ValueError, match="one part marked 'messages'"):
-        renewed("")
+        updated("")
