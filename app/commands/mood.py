@@ -11,10 +11,10 @@ from affect import LABEL_SETS, Personality
 from affect.labels import LabelSet
 from affect.personality_file import bundled, bundled_text
 from app.errors import AppError
-from app.moods import felt_by, read_history, read_wire, write_table
+from app.moods import read_history, read_robot_traces, replay_with, write_table
 
 app = typer.Typer(
-    help="Moods of recorded sessions, and the personalities that have them.",
+    help="Plot and tabulate the moods of recorded sessions; print personalities.",
     no_args_is_help=True,
     rich_markup_mode="rich",
 )
@@ -26,7 +26,7 @@ FORMATS = (".svg", ".pdf", ".png")
 """Suffixes of the files that a plot can be written to."""
 
 Session = Annotated[Path, typer.Argument(help="A session recorded with --record.")]
-Salvage = Annotated[bool, typer.Option(help="Take what is whole of a session that was cut off.")]
+Salvage = Annotated[bool, typer.Option(help="Read the intact part of a session that was cut off.")]
 
 
 @app.command()
@@ -39,13 +39,13 @@ def plot(
     personality: Annotated[
         list[str] | None,
         typer.Option(
-            help="Let this one feel what was done again: a bundled personality or a .toml file. "
+            help="Show what this personality would have felt: a bundled one or a .toml file. "
             "May be given several times."
         ),
     ] = None,
     salvage: Salvage = False,
 ) -> None:
-    """Plot what a session felt over time, what it did, and what the robot confirmed and showed.
+    """Plot the emotion of a session, its actions, and what the robot acknowledged and showed.
 
     Needs matplotlib, which comes with the extra "plots" of cubeling.
 
@@ -54,11 +54,10 @@ def plot(
     output = output or Path(f"{session.stem}-mood.svg")
     if output.suffix.lower() not in FORMATS:
         raise AppError(f"moods are plotted as {', '.join(FORMATS)}, not as '{output}'")
-    who = [Personality.load(name) for name in personality or ()]
-    if len(who) > MAX_PERSONALITIES:
-        raise AppError(
-            f"{len(who)} personalities are too many for one plot: {MAX_PERSONALITIES} at most"
-        )
+    personalities = [Personality.load(name) for name in personality or ()]
+    if len(personalities) > MAX_PERSONALITIES:
+        count = f"{len(personalities)} personalities are too many for one plot"
+        raise AppError(f"{count}: {MAX_PERSONALITIES} at most")
     try:
         from app.moods.plot import save_plot
     except ImportError as error:
@@ -66,9 +65,11 @@ def plot(
             raise
         raise AppError('a plot needs matplotlib: pip install "cubeling[plots]"') from error
     history = read_history(session, salvage=salvage)
-    again = [felt_by(history, each) for each in who]
-    labels = who[0].label_set if who else fitting(history.felt.labels)
-    save_plot(output, history, again, read_wire(session), labels)
+    others = [replay_with(history, each) for each in personalities]
+    labels = (
+        personalities[0].label_set if personalities else fitting_label_set(history.recorded.labels)
+    )
+    save_plot(output, history, others, read_robot_traces(session), labels)
     Console().print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
 
 
@@ -76,24 +77,25 @@ def plot(
 def table(
     session: Session,
     output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Write into this .csv file.")
+        Path | None, typer.Option("--output", "-o", help="Write this .csv file.")
     ] = None,
     personality: Annotated[
-        str | None, typer.Option(help="Let this one feel what was done again.")
+        str | None, typer.Option(help="Write what this personality would have felt.")
     ] = None,
     salvage: Salvage = False,
 ) -> None:
-    """Write what a session did, felt, and what the robot confirmed and showed: a row a frame.
+    """Write the actions, the emotion and the robot's answers of a session, one row a frame.
 
     Example: [cyan]cubeling mood table today.mcap -o today.csv[/]
     """
     output = output or Path(f"{session.stem}-mood.csv")
-    if output.suffix.lower() != ".csv":  # the session itself, it may be
-        raise AppError(f"moods are tabled as .csv, not as '{output}'")
-    who = None if personality is None else Personality.load(personality)
+    if output.suffix.lower() != ".csv":  # it could be the session itself
+        raise AppError(f"moods are written as .csv, not as '{output}'")
     history = read_history(session, salvage=salvage)
-    felt = history.felt if who is None else felt_by(history, who)
-    rows = write_table(output, history, felt, read_wire(session))
+    track = history.recorded
+    if personality is not None:
+        track = replay_with(history, Personality.load(personality))
+    rows = write_table(output, history, track, read_robot_traces(session))
     Console().print(
         f"[bold]{escape(str(output))}[/] has {rows} rows", soft_wrap=True, highlight=False
     )
@@ -103,7 +105,7 @@ def table(
 def personality_(
     name: Annotated[str | None, typer.Argument(help="A bundled personality.")] = None,
 ) -> None:
-    """Print a bundled personality with comments, to make your own from; without a name, list them.
+    """Print a bundled personality, as a template for your own; without a name, list them.
 
     Example: [cyan]cubeling mood personality lively > my.toml[/]
     """
@@ -114,8 +116,7 @@ def personality_(
         typer.echo(f"{each:8} {Personality.load(each).description}")
 
 
-def fitting(words: tuple[str, ...]) -> LabelSet:
-    """Return the first label set that has all these words; the thesis' where none has."""
-    said = set(words)
-    sets = (labels for labels in LABEL_SETS.values() if said <= labels.places.keys())
+def fitting_label_set(labels: tuple[str, ...]) -> LabelSet:
+    """Return the first label set that has all of some labels; the thesis' if none has."""
+    sets = (each for each in LABEL_SETS.values() if set(labels) <= each.places.keys())
     return next(sets, LABEL_SETS["thesis"])

@@ -1,16 +1,16 @@
 """Moods of a recorded session: read, computed for other personalities, plotted and tabulated."""
 
-from app.moods.history import Felt, History, felt_by, read_history
+from app.moods.history import EmotionTrack, MoodHistory, read_history, replay_with
+from app.moods.robot_traces import EmotionSteps, RobotTraces, read_robot_traces
 from app.moods.table import write_table
-from app.moods.wire import Trace, Wire, read_wire
 
 __all__ = [
-    "Felt",
-    "History",
-    "Trace",
-    "Wire",
-    "felt_by",
+    "EmotionSteps",
+    "EmotionTrack",
+    "MoodHistory",
+    "RobotTraces",
     "read_history",
-    "read_wire",
+    "read_robot_traces",
+    "replay_with",
     "write_table",
 ]

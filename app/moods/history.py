@@ -1,4 +1,4 @@
-"""What a character did in a recorded session, and what was felt of it."""
+"""What a character did in a recorded session, and the emotions that followed from it."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,60 +19,61 @@ from tracking import CubeControls
 
 Array = NDArray[np.float64]
 
-KINDS: dict[str, type[Any]] = {
+CHANNELS: dict[str, type[Any]] = {
     "/cube/controls": CubeControls,
     "/character/command": CharacterCommand,
     "/robot/emotion": EmotionTarget,
 }
+"""The channels that are read, in their order within a frame."""
 
 
 @dataclass(frozen=True)
-class Felt:
-    """A feeling over time."""
+class EmotionTrack:
+    """An emotion over time, one sample for each frame."""
 
-    who: str
-    """Whose it is: the name of a personality, or "" for what was recorded."""
+    personality: str
+    """Name of the personality that has it; "" for the recorded emotion."""
 
     times: Array
-    """When, (n,) [s]."""
+    """(n,) [s]."""
 
     emotion: Array
     """Valence and arousal, (n, 2)."""
 
     labels: tuple[str, ...]
-    """The words for it, n of them."""
+    """The label of each sample."""
 
 
 @dataclass(frozen=True)
-class History:
-    """All of a session that has to do with moods."""
+class MoodHistory:
+    """Everything in a session that concerns moods."""
 
     name: str
     """Name of the session's file."""
 
-    about: SessionInfo
-    """What the session says of itself."""
+    info: SessionInfo
+    """The session's metadata."""
 
-    felt: Felt
-    """What character and robot were asked to feel."""
+    recorded: EmotionTrack
+    """The emotion that character and robot were asked to show."""
 
     controls: tuple[CubeControls, ...]
-    """What the hand did, frame by frame."""
+    """The cube's controls in each frame."""
 
     commands: tuple[CharacterCommand, ...]
-    """What the character was asked to do, frame by frame."""
+    """The character's command in each frame."""
 
-    started_over: frozenset[float]
+    start_over_times: frozenset[float]
     """When the player started over [s]."""
 
     @property
     def actions(self) -> tuple[str, ...]:
-        """What the character did in each frame, as an icon names it; "" while out of sight."""
+        """The character's action in each frame, named as its icon; "" while it is not visible."""
         return tuple(_action(command) for command in self.commands)
 
     @property
     def weights(self) -> Array:
-        """How intensely, (n,), −1…1."""
+        """Intensity of the actions, (n,), −1…1."""
         return np.array([command.weight for command in self.commands])
 
 
@@ -82,7 +83,7 @@ def _action(command: CharacterCommand) -> str:
     return gait(command.speed) if command.activity == "move" else command.activity
 
 
-def read_history(path: Path, *, salvage: bool = False) -> History:
+def read_history(path: Path, *, salvage: bool = False) -> MoodHistory:
     """Read a session.
 
     Parameters
@@ -90,58 +91,57 @@ def read_history(path: Path, *, salvage: bool = False) -> History:
     path
         The .mcap file.
     salvage
-        Whether to take what is whole of a session that was cut off.
+        Whether to read the intact part of a session that was cut off.
 
     Raises
     ------
     AppError
-        It is no session, was cut off, or holds no feelings.
+        The file is not a session, was cut off, or has no emotions.
     """
     info = session_info(path, salvage=salvage)
     frames: list[dict[str, Any]] = []
     frame: dict[str, Any] = {}
-    for topic, _, data in messages(path, *KINDS):
+    for topic, _, data in messages(path, *CHANNELS):
         try:
-            frame[topic] = decode(KINDS[topic], data)
+            frame[topic] = decode(CHANNELS[topic], data)
         except ValueError as error:
             raise AppError(f"cannot read the session '{path}': {topic} is {error}") from error
-        if topic == "/robot/emotion":  # the last of a frame that is taken here
-            if len(frame) == len(KINDS):
+        if topic == "/robot/emotion":  # the last of these channels in a frame
+            if len(frame) == len(CHANNELS):
                 frames.append(frame)
             frame = {}
     if len(frames) < 2:
-        raise AppError(f"the session '{path}' holds no feelings to show")
-    targets: list[EmotionTarget] = [each["/robot/emotion"] for each in frames]
-    return History(
+        raise AppError(f"the session '{path}' has no emotions to show")
+    return MoodHistory(
         path.name,
         info,
-        _felt("", targets),
+        _track("", [each["/robot/emotion"] for each in frames]),
         tuple(each["/cube/controls"] for each in frames),
         tuple(each["/character/command"] for each in frames),
         start_over_times(path),
     )
 
 
-def felt_by(history: History, personality: Personality) -> Felt:
-    """Return what another personality would have felt of what was done in a session."""
+def replay_with(history: MoodHistory, personality: Personality) -> EmotionTrack:
+    """Return the emotion that another personality would have had in a session."""
     mood = MoodController(personality)
-    # Only the companion's knob says how intensely; elsewhere an action is always a whole one.
-    intense = history.about.scenario == "companion"
+    # Only the companion scenario has an intensity; in others, an action counts fully.
+    has_intensity = history.info.scenario == "companion"
     targets = []
     for controls, command in zip(history.controls, history.commands, strict=True):
-        if controls.timestamp in history.started_over:
+        if controls.timestamp in history.start_over_times:
             mood.reset()
         action, weight, speed = "idle", 0.0, 0.0
         if command.visible:
             action, speed = command.activity, command.speed
-            weight = command.weight if intense else 1.0
+            weight = command.weight if has_intensity else 1.0
         targets.append(mood.update(controls, action, weight, speed))
-    return _felt(personality.name, targets)
+    return _track(personality.name, targets)
 
 
-def _felt(who: str, targets: list[EmotionTarget]) -> Felt:
-    return Felt(
-        who,
+def _track(personality: str, targets: list[EmotionTarget]) -> EmotionTrack:
+    return EmotionTrack(
+        personality,
         np.array([target.timestamp for target in targets]),
         np.array([(target.emotion.valence, target.emotion.arousal) for target in targets]),
         tuple(target.emotion.label for target in targets),

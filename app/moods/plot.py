@@ -32,9 +32,9 @@ from app.moods.colors import (
     action_color,
     label_color,
 )
-from app.moods.history import Felt, History
+from app.moods.history import EmotionTrack, MoodHistory
 from app.moods.regions import label_position, regions, runs
-from app.moods.wire import Wire
+from app.moods.robot_traces import RobotTraces
 
 Array = NDArray[np.float64]
 
@@ -90,7 +90,7 @@ METADATA: dict[str, dict[str, str | None]] = {
 class Curve:
     """One of the emotions that are compared in a plot."""
 
-    felt: Felt
+    track: EmotionTrack
     """Its values."""
 
     name: str
@@ -112,7 +112,11 @@ class Curve:
 
 
 def save_plot(
-    path: Path, history: History, again: Sequence[Felt], wire: Wire, labels: LabelSet
+    path: Path,
+    history: MoodHistory,
+    others: Sequence[EmotionTrack],
+    robot: RobotTraces,
+    labels: LabelSet,
 ) -> None:
     """Plot a session into an .svg, .pdf or .png file.
 
@@ -122,9 +126,9 @@ def save_plot(
         The file; its suffix is a key of `METADATA`.
     history
         What the character did, and the emotion that was recorded.
-    again
+    others
         The emotions of other personalities; if there are any, the robot is left out.
-    wire
+    robot
         What the robot acknowledged and showed.
     labels
         The labels whose regions and bands are drawn: those of the first curve.
@@ -135,7 +139,7 @@ def save_plot(
         The file cannot be written.
     """
     with matplotlib.rc_context(STYLE):
-        figure = draw(history, again, wire, labels)
+        figure = draw(history, others, robot, labels)
         metadata = {**METADATA[path.suffix.lower()], "Title": printable(f"Moods of {history.name}")}
         try:
             figure.savefig(path, dpi=PNG_DPI if path.suffix == ".png" else 72.0, metadata=metadata)
@@ -143,11 +147,13 @@ def save_plot(
             raise AppError(f"cannot write '{path}' ({error.strerror}): check the folder") from None
 
 
-def draw(history: History, again: Sequence[Felt], wire: Wire, labels: LabelSet) -> Figure:
+def draw(
+    history: MoodHistory, others: Sequence[EmotionTrack], robot: RobotTraces, labels: LabelSet
+) -> Figure:
     """Return the figure; see `save_plot`."""
     figure = Figure(figsize=(WIDTH_PT / 72, HEIGHT_PT / 72))
-    curves = _curves(history, again)
-    first = curves[0].felt
+    curves = _curves(history, others)
+    first = curves[0].track
     left, right = TIME_PANELS_PT
     actions = _panel(figure, left, ACTION_PT[0], right, ACTION_PT[1])
     start, end = float(first.times[0]), float(first.times[-1])
@@ -155,28 +161,28 @@ def draw(history: History, again: Sequence[Felt], wire: Wire, labels: LabelSet) 
     for edges, axis, name in ((VALENCE_PT, 0, "valence"), (AROUSAL_PT, 1, "arousal")):
         axes = _panel(figure, left, edges[0], right, edges[1], sharex=actions)
         _draw_bands(axes, first, labels, named=axis == 0)
-        if not again:
-            _draw_robot(axes, axis, wire)
+        if not others:
+            _draw_robot(axes, axis, robot)
         for curve in reversed(curves):
-            axes.plot(curve.felt.times, curve.felt.emotion[:, axis], clip_on=False, **curve.style)
+            axes.plot(curve.track.times, curve.track.emotion[:, axis], clip_on=False, **curve.style)
         _value_axis(axes, name)
         axes.tick_params(bottom=False, labelbottom=False)
         axes.spines[:].set_visible(False)
     _draw_actions(actions, history)
     _draw_plane(_panel(figure, *PLANE_PT), labels, curves)
-    _write_heading(figure, history, again)
-    _write_legend(figure, curves, None if again else wire)
+    _write_heading(figure, history, others)
+    _write_legend(figure, curves, None if others else robot)
     _write_shares(figure, curves)
     return figure
 
 
-def _curves(history: History, again: Sequence[Felt]) -> list[Curve]:
+def _curves(history: MoodHistory, others: Sequence[EmotionTrack]) -> list[Curve]:
     """Return the curves, the first one first: the recorded emotion, or other personalities'."""
-    if not again:
-        return [Curve(history.felt, "felt, and asked of the robot", TEXT, (), 1.8)]
+    if not others:
+        return [Curve(history.recorded, "felt, and asked of the robot", TEXT, (), 1.8)]
     styles = itertools.cycle(CURVES)
-    curves = [Curve(felt, printable(felt.who), *next(styles), 2.0) for felt in again]
-    return [*curves, Curve(history.felt, "as recorded", SECONDARY, (1.5, 2.5), 1.2)]
+    curves = [Curve(track, printable(track.personality), *next(styles), 2.0) for track in others]
+    return [*curves, Curve(history.recorded, "as recorded", SECONDARY, (1.5, 2.5), 1.2)]
 
 
 def _panel(
@@ -209,9 +215,9 @@ def _signed(value: float) -> str:
     return f"{value:+g}".replace("-", "−").replace("+0.5", "0.5") if value else "0"
 
 
-def _draw_bands(axes: Axes, felt: Felt, labels: LabelSet, *, named: bool) -> None:
+def _draw_bands(axes: Axes, track: EmotionTrack, labels: LabelSet, *, named: bool) -> None:
     """Colour the time of each label, and write the label below it if there is room."""
-    found = runs(felt.labels, felt.times)
+    found = runs(track.labels, track.times)
     _draw_runs(axes, found, (-1.0, 2.0), [label_color(labels, label) for label, _, _ in found])
     for label, start, end in found if named else ():
         if _fits(axes, label, start, end):
@@ -241,9 +247,9 @@ def _draw_runs(
     axes.vlines(starts, bottom, bottom + height, color=BORDER, linewidth=0.8, zorder=1)
 
 
-def _draw_robot(axes: Axes, axis: int, wire: Wire) -> None:
+def _draw_robot(axes: Axes, axis: int, robot: RobotTraces) -> None:
     """Draw what the robot showed, and as steps what it acknowledged; NaN interrupts a line."""
-    observed, acknowledged = wire.observed, wire.acknowledged
+    observed, acknowledged = robot.observed, robot.acknowledged
     axes.plot(observed.times, observed.emotion[:, axis], color=OBSERVED, linewidth=5.0)
     if len(acknowledged.times):
         times = np.append(acknowledged.times, max(axes.get_xlim()[1], acknowledged.times[-1]))
@@ -258,20 +264,20 @@ _ACKNOWLEDGED: dict[str, Any] = {
 }
 
 
-def _draw_actions(axes: Axes, history: History) -> None:
+def _draw_actions(axes: Axes, history: MoodHistory) -> None:
     """Draw what the character did, with its intensity or speed as a line."""
-    found = [run for run in runs(history.actions, history.felt.times) if run[0]]
+    found = [run for run in runs(history.actions, history.recorded.times) if run[0]]
     _draw_runs(axes, found, (-1.25, 2.5), [action_color(name, pale=True) for name, _, _ in found])
     _draw_runs(axes, found, (1.25, 1.0), [action_color(name) for name, _, _ in found])
     for name, start, end in found:
         if _fits(axes, name, start, end):
             axes.text((start + end) / 2, 1.72, name, ha="center", va="center", fontweight="bold")
-    if history.about.scenario == "companion":
+    if history.info.scenario == "companion":
         label, ends, values = "intensity", ("−1", "+1"), history.weights
     else:
         label, ends = "Speed", ("0", "5")
         values = np.clip([command.speed for command in history.commands], 0, 5) / 2.5 - 1
-    axes.plot(history.felt.times, values, color=TEXT, linewidth=1.4)
+    axes.plot(history.recorded.times, values, color=TEXT, linewidth=1.4)
     axes.set_ylim(-1.25, 2.25)
     axes.set_yticks([-1.0, 1.0], ends)
     axes.set_ylabel(label)
@@ -290,7 +296,7 @@ def _draw_plane(axes: Axes, labels: LabelSet, curves: Sequence[Curve]) -> None:
     _value_axis(axes, "valence", horizontal=True)
     _value_axis(axes, "arousal")
     for curve in reversed(curves):
-        axes.plot(*curve.felt.emotion.T, clip_on=False, **curve.style)
+        axes.plot(*curve.track.emotion.T, clip_on=False, **curve.style)
     for label, polygon in found.items():
         axes.text(
             *label_position(labels, label, polygon),
@@ -303,7 +309,7 @@ def _draw_plane(axes: Axes, labels: LabelSet, curves: Sequence[Curve]) -> None:
         )
     ends: dict[str, Any] = {"marker": "o", "markersize": 8.0, "linestyle": "", "clip_on": False}
     for curve in reversed(curves):
-        (x, y), (x2, y2) = curve.felt.emotion[[0, -1]].tolist()
+        (x, y), (x2, y2) = curve.track.emotion[[0, -1]].tolist()
         axes.plot(x, y, markerfacecolor="white", markeredgecolor=curve.color, zorder=5, **ends)
         axes.plot(x2, y2, markerfacecolor=curve.color, markeredgecolor="white", zorder=5, **ends)
     ends["color"] = TEXT
@@ -329,13 +335,13 @@ def _draw_plane(axes: Axes, labels: LabelSet, curves: Sequence[Curve]) -> None:
         )
 
 
-def _write_heading(figure: Figure, history: History, again: Sequence[Felt]) -> None:
+def _write_heading(figure: Figure, history: MoodHistory, others: Sequence[EmotionTrack]) -> None:
     """Write which session it is, how it was recorded, and whose emotions are compared."""
-    about = history.about
-    parts = [f"scenario {about.scenario}", f"{about.duration:.1f} s"]
-    parts.append(f"recorded with {about.personality or OWN_PERSONALITY}")
-    if again:
-        names = [felt.who for felt in again]
+    info = history.info
+    parts = [f"scenario {info.scenario}", f"{info.duration:.1f} s"]
+    parts.append(f"recorded with {info.personality or OWN_PERSONALITY}")
+    if others:
+        names = [track.personality for track in others]
         listed = " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
         parts.append(f"felt again by {listed}")
         if len(names) > 1:
@@ -348,14 +354,14 @@ def _write_heading(figure: Figure, history: History, again: Sequence[Felt]) -> N
 OWN_PERSONALITY = "the scenario's own personality"
 
 
-def _write_legend(figure: Figure, curves: Sequence[Curve], wire: Wire | None) -> None:
+def _write_legend(figure: Figure, curves: Sequence[Curve], robot: RobotTraces | None) -> None:
     """Name the lines in a row above the panels."""
     handles = [Line2D([], [], label=curve.name, **curve.style) for curve in curves]
-    if wire is not None and len(wire.acknowledged.times):
-        median_ms = 1e3 * float(np.median(wire.delays)) if len(wire.delays) else 0.0
+    if robot is not None and len(robot.acknowledged.times):
+        median_ms = 1e3 * float(np.median(robot.delays)) if len(robot.delays) else 0.0
         late = f" (median {median_ms:.0f} ms later)" if median_ms >= 0.5 else ""
         handles.append(Line2D([], [], label=f"acknowledged{late}", **_ACKNOWLEDGED))
-    if wire:
+    if robot:
         handles.append(Line2D([], [], label="observed on the robot", color=OBSERVED, linewidth=5.0))
     figure.legend(
         handles=handles,
@@ -380,7 +386,7 @@ def _write_shares(figure: Figure, curves: Sequence[Curve]) -> None:
             _write(figure, x, y, curve.name, color=SECONDARY, fontsize=9)
         y += 13 if len(curves) > 1 else 18
         seconds: dict[str, float] = {}
-        for label, start, end in runs(curve.felt.labels, curve.felt.times):
+        for label, start, end in runs(curve.track.labels, curve.track.times):
             seconds[label] = seconds.get(label, 0.0) + end - start
         longest = sorted(seconds.items(), key=lambda item: -item[1])[:MAX_SHARES]
         line = " · ".join(f"{label} {length:.1f} s" for label, length in longest)

@@ -1,12 +1,12 @@
-"""A session's moods as a table for a spreadsheet or a statistics program."""
+"""A session's moods as a CSV table, for a spreadsheet or a statistics program."""
 
 import csv
 import math
 from pathlib import Path
 
 from app.errors import AppError
-from app.moods.history import Felt, History
-from app.moods.wire import Wire
+from app.moods.history import EmotionTrack, MoodHistory
+from app.moods.robot_traces import RobotTraces
 
 COLUMNS = (
     "time_s",
@@ -23,26 +23,26 @@ COLUMNS = (
     "observed_arousal",
     "observed_mood",
 )
-"""One row a frame; a cell is empty where nothing is known."""
+"""Columns of the table, which has one row for each frame; unknown cells are empty."""
 
 
-def write_table(path: Path, history: History, felt: Felt, wire: Wire) -> int:
-    """Write a .csv file; return how many rows it has.
+def write_table(path: Path, history: MoodHistory, track: EmotionTrack, robot: RobotTraces) -> int:
+    """Write a .csv file, and return its number of rows.
 
     Parameters
     ----------
     path
-        Where to write.
-    history, felt, wire
-        What was done, what was felt of it, and what the robot made of it.
+        The file.
+    history, track, robot
+        The session, the emotion to write, and what the robot did with the recorded one.
 
     Raises
     ------
     AppError
         The file cannot be written.
     """
-    acknowledged, _ = wire.acknowledged.at(felt.times)
-    observed, moods = wire.observed.at(felt.times)
+    acknowledged, _ = robot.acknowledged.at(track.times)
+    observed, moods = robot.observed.at(track.times)
     try:
         with path.open("w", encoding="utf-8", newline="") as file:
             writer = csv.writer(file)
@@ -51,9 +51,9 @@ def write_table(path: Path, history: History, felt: Felt, wire: Wire) -> int:
                 numbers = (*acknowledged[row], *observed[row])
                 writer.writerow(
                     (
-                        f"{felt.times[row]:.6f}",
-                        *(_cell(value) for value in felt.emotion[row]),
-                        felt.labels[row],
+                        f"{track.times[row]:.6f}",
+                        *(_cell(value) for value in track.emotion[row]),
+                        track.labels[row],
                         command.activity,
                         _cell(command.weight),
                         _cell(command.speed),
@@ -64,7 +64,7 @@ def write_table(path: Path, history: History, felt: Felt, wire: Wire) -> int:
                 )
     except OSError as error:
         raise AppError(f"cannot write '{path}' ({error.strerror}): check the folder") from None
-    return len(felt.times)
+    return len(track.times)
 
 
 def _cell(value: float) -> str:

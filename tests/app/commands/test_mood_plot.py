@@ -16,8 +16,7 @@ from PIL import Image
 
 from affect import LABEL_SETS, Personality
 from app.errors import AppError
-from app.moods import felt_by, read_history, read_wire
-from app.moods import wire as wires
+from app.moods import read_history, read_robot_traces, replay_with, robot_traces
 from app.moods.plot import save_plot
 from app.moods.regions import regions, runs
 from app.pipeline.playground import Playground
@@ -78,14 +77,14 @@ def talking_session(tmp_path_factory, bundled_session):
 
 
 def test_the_thesis_personality_feels_a_recorded_session_again_bit_for_bit(history):
-    again = felt_by(history, Personality.load("thesis"))
-    np.testing.assert_array_equal(again.emotion, history.felt.emotion)
-    assert again.labels == history.felt.labels
+    again = replay_with(history, Personality.load("thesis"))
+    np.testing.assert_array_equal(again.emotion, history.recorded.emotion)
+    assert again.labels == history.recorded.labels
     assert {"happy", "angry"} <= set(again.labels)
 
 
 def test_other_personalities_feel_the_same_session_otherwise(history):
-    felt = [felt_by(history, Personality.load(name)) for name in ("thesis", "grumpy", "lively")]
+    felt = [replay_with(history, Personality.load(name)) for name in ("thesis", "grumpy", "lively")]
     for one, other in itertools.combinations(felt, 2):
         assert np.abs(one.emotion - other.emotion).max() > 0.3
 
@@ -93,7 +92,7 @@ def test_other_personalities_feel_the_same_session_otherwise(history):
 def test_out_of_sight_nothing_is_done_that_could_be_felt(history):
     hidden = tuple(dataclasses.replace(each, visible=False) for each in history.commands)
     alone = dataclasses.replace(history, commands=hidden)
-    assert set(felt_by(alone, Personality.load("thesis")).labels) == {"neutral"}
+    assert set(replay_with(alone, Personality.load("thesis")).labels) == {"neutral"}
     assert set(alone.actions) == {""}
 
 
@@ -108,7 +107,7 @@ def test_who_starts_over_feels_anew(tmp_path, bundled_session):
             recorder.write(playground.step(frame))
     lively = Personality.load("lively")
     history = read_history(path)
-    assert history.started_over == {frames[5].timestamp}
+    assert history.start_over_times == {frames[5].timestamp}
     excited = Personality("w", temperament=lively.temperament, movement=2.0, arousal_half_life=0.1)
     commands = tuple(
         dataclasses.replace(
@@ -116,13 +115,13 @@ def test_who_starts_over_feels_anew(tmp_path, bundled_session):
         )
         for index, each in enumerate(history.commands)
     )
-    felt = felt_by(dataclasses.replace(history, commands=commands), excited)
+    felt = replay_with(dataclasses.replace(history, commands=commands), excited)
     assert felt.emotion[4, 1] > 0.3
     assert felt.emotion[5, 1] == lively.temperament.arousal
 
 
 def test_asked_acknowledged_and_observed_are_told_apart(talking_session):
-    wire = read_wire(talking_session)
+    wire = read_robot_traces(talking_session)
     assert wire
     np.testing.assert_allclose(wire.delays, [0.05])
     times = np.array([0.0, 0.03, 0.10, 0.17, 0.22, 0.28, 0.31])
@@ -147,7 +146,7 @@ def test_a_robot_that_was_away_still_has_what_it_had_taken(tmp_path, talking_ses
         recorder.write(playground.step(next(iter(source))))
         for time, direction, content in said:
             recorder.wire(direction, encode_frame(pack(content, 9)), time)
-    acknowledged, _ = read_wire(path).acknowledged.at(np.array([0.22, 0.4]))
+    acknowledged, _ = read_robot_traces(path).acknowledged.at(np.array([0.22, 0.4]))
     np.testing.assert_allclose(acknowledged, [[0.5, 0.25], [np.nan, np.nan]], atol=1e-4)
 
 
@@ -159,7 +158,7 @@ def test_a_robot_that_is_silent_shows_nothing_that_is_known(tmp_path, talking_se
         recorder.write(playground.step(next(iter(source))))
         for time, direction, content in said:
             recorder.wire(direction, encode_frame(pack(content, 9)), time)
-    wire = read_wire(path)
+    wire = read_robot_traces(path)
     times = np.array([0.6, 0.7, 0.95])
     assert np.isnan(wire.acknowledged.at(times)[0][:, 0]).tolist() == [False, True, True]
     assert np.isnan(wire.observed.at(times)[0][:, 0]).tolist() == [False, True, False]
@@ -167,24 +166,24 @@ def test_a_robot_that_is_silent_shows_nothing_that_is_known(tmp_path, talking_se
 
 @pytest.mark.parametrize("line", [b"{", b"{}", b"[]", b'{"direction": "tx", "hex": "0g"}'])
 def test_a_wire_that_no_recorder_wrote_is_refused_in_one_line(monkeypatch, short_session, line):
-    monkeypatch.setattr(wires, "messages", lambda *_: iter([("/robot/wire", 0.0, line)]))
+    monkeypatch.setattr(robot_traces, "messages", lambda *_: iter([("/robot/wire", 0.0, line)]))
     with pytest.raises(AppError, match=r"cannot read the session .* /robot/wire") as refusal:
-        read_wire(short_session)
+        read_robot_traces(short_session)
     assert "\n" not in str(refusal.value)
 
 
 def test_odd_names_do_not_spoil_a_plot(history, short_session, tmp_path):
-    about = dataclasses.replace(history.about, personality="a\x00\n<b>&\udcff")
-    odd = dataclasses.replace(history, name="\udcff\x1b$x$.mcap", about=about)
+    info = dataclasses.replace(history.info, personality="a\x00\n<b>&\udcff")
+    odd = dataclasses.replace(history, name="\udcff\x1b$x$.mcap", info=info)
     for suffix in ("svg", "pdf"):
-        save_plot(tmp_path / f"m.{suffix}", odd, (), read_wire(short_session), THESIS)
+        save_plot(tmp_path / f"m.{suffix}", odd, (), read_robot_traces(short_session), THESIS)
     words = words_of(tmp_path / "m.svg")
     assert any("recorded with a??<b>&?" in each for each in words)
     assert "Moods of ??$x$.mcap" in words
 
 
 def test_a_session_without_a_robot_has_nothing_to_acknowledge(short_session):
-    wire = read_wire(short_session)
+    wire = read_robot_traces(short_session)
     assert not wire
     emotion, words = wire.acknowledged.at(np.array([1.0]))
     assert np.isnan(emotion).all()
@@ -202,7 +201,7 @@ def words_of(path):
 
 
 def test_the_plot_says_what_it_shows_and_in_which_units(history, bundled_session, tmp_path):
-    save_plot(tmp_path / "m.svg", history, (), read_wire(bundled_session), THESIS)
+    save_plot(tmp_path / "m.svg", history, (), read_robot_traces(bundled_session), THESIS)
     words = words_of(tmp_path / "m.svg")
     for expected in ("valence [1]", "arousal [1]", "time [s]", "neutral", "happy", "angry"):
         assert expected in words
@@ -215,8 +214,8 @@ def test_the_plot_says_what_it_shows_and_in_which_units(history, bundled_session
 
 def test_the_plot_names_who_feels_again_and_in_whose_words(history, bundled_session, tmp_path):
     names = ("lively", "calm")
-    again = [felt_by(history, Personality.load(name)) for name in names]
-    wire = read_wire(bundled_session)
+    again = [replay_with(history, Personality.load(name)) for name in names]
+    wire = read_robot_traces(bundled_session)
     save_plot(tmp_path / "m.svg", history, again, wire, LABEL_SETS["circumplex"])
     words = words_of(tmp_path / "m.svg")
     assert any("felt again by lively and calm" in each for each in words)
@@ -228,7 +227,7 @@ def test_the_same_plot_as_svg_pdf_and_png(history, bundled_session, tmp_path):
     for suffix in ("svg", "pdf", "png"):
         paths = tmp_path / f"m.{suffix}", tmp_path / f"again.{suffix}"
         for path in paths:
-            save_plot(path, history, (), read_wire(bundled_session), THESIS)
+            save_plot(path, history, (), read_robot_traces(bundled_session), THESIS)
         assert paths[0].read_bytes() == paths[1].read_bytes()
     page = pypdfium2.PdfDocument(tmp_path / "m.pdf")[0]
     assert "valence [1]" in page.get_textpage().get_text_range()
@@ -243,17 +242,17 @@ def test_the_same_plot_as_svg_pdf_and_png(history, bundled_session, tmp_path):
 def test_the_plot_of_a_long_session_is_a_small_file(history, bundled_session, tmp_path):
     """Points that change no line are left out: half an hour takes about as much as a minute."""
     times = 44
-    length = len(history.felt.times)
+    length = len(history.recorded.times)
     felt = dataclasses.replace(
-        history.felt,
+        history.recorded,
         times=np.arange(times * length) / 30.0,
-        emotion=np.repeat(history.felt.emotion, times, axis=0),
-        labels=tuple(np.repeat(history.felt.labels, times)),
+        emotion=np.repeat(history.recorded.emotion, times, axis=0),
+        labels=tuple(np.repeat(history.recorded.labels, times)),
     )
     commands = tuple(each for each in history.commands for _ in range(times))
-    long = dataclasses.replace(history, felt=felt, commands=commands)
-    save_plot(tmp_path / "long.svg", long, (), read_wire(bundled_session), THESIS)
-    save_plot(tmp_path / "short.svg", history, (), read_wire(bundled_session), THESIS)
+    long = dataclasses.replace(history, recorded=felt, commands=commands)
+    save_plot(tmp_path / "long.svg", long, (), read_robot_traces(bundled_session), THESIS)
+    save_plot(tmp_path / "short.svg", history, (), read_robot_traces(bundled_session), THESIS)
     sizes = [(tmp_path / f"{name}.svg").stat().st_size for name in ("long", "short")]
     assert sizes[0] < 2 * sizes[1]
 
@@ -331,7 +330,7 @@ def test_table_has_a_row_a_frame_and_nothing_where_nothing_is_known(
         (("plot", "{session}", "-o", "m.gif"), "moods are plotted as .svg, .pdf, .png, not as"),
         (("plot", "{session}", "-o", "no/m.svg"), "cannot write 'no/m.svg'"),
         (("table", "{session}", "-o", "no/m.csv"), "cannot write 'no/m.csv'"),
-        (("table", "{session}", "-o", "{session}"), "moods are tabled as .csv"),
+        (("table", "{session}", "-o", "{session}"), "moods are written as .csv"),
         (("plot", "nothing.mcap"), "cannot read the session 'nothing.mcap'"),
         (("plot", __file__), "is not a session"),
         (("plot", "{session}", "--personality", "rude"), "there is no personality 'rude'"),
@@ -365,7 +364,7 @@ def test_a_session_with_wrong_bits_is_read_as_far_as_it_goes_or_refused(talking_
         path.write_bytes(wrong)
         with contextlib.suppress(AppError):
             read_history(path)
-            read_wire(path)
+            read_robot_traces(path)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no named pipes")

@@ -1,0 +1,152 @@
+"""What a robot acknowledged and what it showed, decoded from a session's recorded bytes."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.errors import AppError
+from app.session import messages
+from robot.protocol import messages as m
+from robot.protocol import timing
+from robot.protocol.fields import MessageError
+from robot.protocol.schema import Sender, unpack
+from robot.protocol.wire import FrameReader
+
+Array = NDArray[np.float64]
+
+UNKNOWN = (float("nan"), float("nan"))
+"""An unknown emotion."""
+
+
+@dataclass(frozen=True)
+class EmotionSteps:
+    """An emotion that holds from each time until the next."""
+
+    times: Array
+    """When it changed or was reported again, (n,) [s]."""
+
+    emotion: Array
+    """Valence and arousal, (n, 2); NaN while unknown."""
+
+    labels: tuple[str, ...]
+    """The robot's own label of each; "" if it gave none."""
+
+    def at(self, times: Array) -> tuple[Array, list[str]]:
+        """Return emotions (k, 2) and labels at k times; NaN and "" before the first."""
+        found = np.searchsorted(self.times, times, side="right") - 1
+        emotion = np.full((len(times), 2), np.nan)
+        emotion[found >= 0] = self.emotion[found[found >= 0]]
+        return emotion, [self.labels[index] if index >= 0 else "" for index in found]
+
+
+@dataclass(frozen=True)
+class RobotTraces:
+    """What a robot acknowledged and showed during a session."""
+
+    acknowledged: EmotionSteps
+    """Emotions that the robot acknowledged."""
+
+    observed: EmotionSteps
+    """Emotions that the robot reported to show."""
+
+    delays: Array
+    """Time from each emotion's command to its acknowledgement, (k,) [s]."""
+
+    def __bool__(self) -> bool:
+        return len(self.observed.times) > 0
+
+
+def read_robot_traces(path: Path) -> RobotTraces:
+    """Decode the bytes of a session; all traces are empty if no robot used our protocol.
+
+    Raises
+    ------
+    AppError
+        The channel does not have the format that a recorder writes.
+    """
+    decoder = _WireDecoder()
+    for _, time, data in messages(path, "/robot/wire"):
+        try:
+            line = json.loads(data)
+            direction, received = line["direction"], bytes.fromhex(line["hex"])
+        except (ValueError, KeyError, TypeError) as error:
+            raise AppError(f"cannot read the session '{path}': /robot/wire: {error}") from error
+        decoder.feed(direction, received, time)
+    delays = np.array(decoder.delays)
+    return RobotTraces(_steps(decoder.acknowledged), _steps(decoder.observed), delays)
+
+
+Row = tuple[float, tuple[float, float], str]
+
+
+class _WireDecoder:
+    """Decodes both directions of the line."""
+
+    def __init__(self) -> None:
+        self.acknowledged: list[Row] = []
+        self.observed: list[Row] = []
+        self.delays: list[float] = []
+        self._readers = {"tx": FrameReader(), "rx": FrameReader()}
+        self._commands: dict[int, tuple[float, tuple[float, float]]] = {}
+        self._acknowledged: set[int] = set()
+        self._moods: dict[int, str] = {}
+        self._last_received: float | None = None
+
+    def feed(self, direction: str, data: bytes, time: float) -> None:
+        """Decode bytes of one direction."""
+        sender: Sender = "host" if direction == "tx" else "robot"
+        for body in self._readers[direction].feed(data):
+            try:
+                _, content = unpack(body, sender)
+            except MessageError:
+                continue
+            if sender == "robot":
+                self._check_silence(time)
+            self._handle(content, time)
+
+    def _check_silence(self, time: float) -> None:
+        """End both traces if the robot was silent for so long that the link counts as lost."""
+        last, self._last_received = self._last_received, time
+        if last is not None and time - last > timing.LOST_AFTER:
+            for trace in (self.acknowledged, self.observed):
+                trace.append((last + timing.LOST_AFTER, UNKNOWN, ""))
+
+    def _handle(self, content: Any, time: float) -> None:
+        match content:
+            case m.Express():
+                self._commands.setdefault(
+                    content.number, (time, (content.valence, content.arousal))
+                )
+            case m.Stop():
+                self._commands.setdefault(content.number, (time, UNKNOWN))
+            case m.Ack() if content.result == m.TAKEN and content.number in self._commands:
+                self._acknowledge(content.number, time)
+            case m.Welcome():  # after a reconnection, the last command may still be in force
+                emotion = self._commands.get(content.taken, (time, UNKNOWN))[1]
+                self.acknowledged.append((time, emotion, ""))
+            case m.Gone() | m.Bye():
+                self.acknowledged.append((time, UNKNOWN, ""))
+            case m.Name() if content.item == m.ITEM_MOOD:
+                self._moods[content.index] = content.name
+            case m.State():
+                emotion = content.valence, content.arousal
+                self.observed.append((time, emotion, self._moods.get(content.mood, "")))
+
+    def _acknowledge(self, number: int, time: float) -> None:
+        sent, emotion = self._commands[number]
+        self.acknowledged.append((time, emotion, ""))
+        if number not in self._acknowledged:  # a repetition is acknowledged again
+            self._acknowledged.add(number)
+            self.delays.append(time - sent)
+
+
+def _steps(rows: list[Row]) -> EmotionSteps:
+    return EmotionSteps(
+        np.array([time for time, _, _ in rows]),
+        np.array([emotion for _, emotion, _ in rows]).reshape(-1, 2),
+        tuple(label for _, _, label in rows),
+    )
