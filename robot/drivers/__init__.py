@@ -10,7 +10,7 @@ from robot.drivers.pleo import timing as pleo
 from robot.drivers.pleo.driver import PleoDriver
 from robot.drivers.pleo.settings import load_settings as pleo_settings
 from robot.drivers.reachy.driver import ReachyDriver
-from robot.drivers.reachy.line import open_reachy
+from robot.drivers.reachy.port import open_reachy
 from robot.errors import RobotError
 from robot.protocol import timing
 

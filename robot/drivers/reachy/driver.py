@@ -1,12 +1,11 @@
-"""The driver: moods become targets for head, body and antennas, at the robot's own pace.
+"""The driver: moods become targets of head, body and antennas, at a rate that the robot can follow.
 
-It speaks lines of JSON with `ReachyLine`, which calls the SDK: so it has no clock, thread or port,
-what went to and fro can be recorded, and a robot that hangs hangs only there. There is one target
-on its way at a time: a program that sets targets as fast as it can makes the robot jerk.
+It exchanges lines of JSON with `ReachyPort`, which calls the SDK. Therefore it has no clock, thread
+or port, the lines can be recorded, and a robot that hangs delays only that port's thread. One
+target is pending at a time: targets that are set as fast as possible make the robot jerk.
 """
 
 import json
-from collections import deque
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
@@ -19,141 +18,145 @@ from robot.contract.catalogue import Catalogue
 from robot.contract.driver import MAX_QUEUED_ACTIONS
 from robot.contract.motions import Array, SineMotion
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
+from robot.drivers.commands import CommandQueue, DesiredState
 from robot.drivers.lines import LineReader
-from robot.drivers.reachy import moves
+from robot.drivers.reachy import motions
 from robot.protocol import messages as m
 
-TARGET_EVERY = 0.040
+TARGET_INTERVAL_S = 0.040
 """Time between two targets [s]; the robot's own loop runs at 50 Hz."""
 
-TARGET_WITHIN = 0.5
-"""A target that is not taken after this long is given up [s]."""
+TARGET_TIMEOUT_S = 0.5
+"""Time after which a target without an acknowledgement is given up [s]."""
 
-DEGRADED_AFTER = 0.5
-"""Silence after which the link is called degraded [s]; the state is told every 0.1 s."""
+DEGRADED_AFTER_S = 0.5
+"""Silence after which the link is degraded [s]; the state arrives every 0.1 s."""
 
-LOST_AFTER = 2.0
-"""Silence after which it is called lost [s]."""
+LOST_AFTER_S = 2.0
+"""Silence after which the link is lost [s]."""
 
-GAP_MAX = 0.2
-"""Most time that one target makes up for [s]: no jump after this computer has slept."""
+MAX_TIME_STEP_S = 0.2
+"""Longest time that one target accounts for [s]: no jump after this computer has slept."""
 
-LINE_MAX = 4096
-"""Longest line that is listened to [bytes]."""
+MAX_LINE_BYTES = 4096
+"""Longest line that is read [bytes]."""
 
 
 @dataclass
-class _Flight:
-    """The target that is on its way."""
+class PendingTarget:
+    """The target that waits for its acknowledgement."""
 
     number: int
+    """Its number."""
+
     emotion: Emotion | None
-    neutral: bool  # whether it is the pose of a stop
+    """The emotion that it belongs to."""
+
+    stopped: bool
+    """Whether it is the pose of a stop."""
+
     sent: float
+    """Time of the send [s]."""
 
 
 class ReachyDriver:
-    """Drives a Reachy Mini; see `robot.contract.driver.Driver`."""
+    """Drives a Reachy Mini; a `Driver`."""
 
     def __init__(self) -> None:
         self.catalogue: Catalogue | None = None
         """What the robot has; None until the daemon has answered."""
+        self.reader = LineReader(MAX_LINE_BYTES)
+        """Splits the received lines."""
         self._open = self._closed = False
-        self._commanded: Emotion | None = None
-        self._acknowledged: Emotion | None = None
-        self._mood = moves.MOODS[0]
-        self._still = self._stopped = False  # whether it is to be so, and whether it is
+        self._state = DesiredState()
+        self._actions: CommandQueue[SineMotion] = CommandQueue(MAX_QUEUED_ACTIONS)
+        self._mood = motions.MOODS[0]
+        self._still = False  # whether a stop was requested last
         self._playing: SineMotion | None = None
-        self._waiting: deque[SineMotion] = deque()
         self._motion_time = 0.0
-        self._angles = np.zeros(len(moves.JOINTS))
-        self._flight: _Flight | None = None
+        self._angles = np.zeros(len(motions.JOINTS))
+        self._pending: PendingTarget | None = None
         self._number = 0
-        self._targeted: float | None = None
-        self._heard: float | None = None
-        self._said: dict[str, Any] = {}
-        self.reader = LineReader(LINE_MAX)
+        self._last_target: float | None = None
+        self._last_received: float | None = None
+        self._reported_angles: list[float] = []
+        self._limp = False
         self._out = bytearray()
-        self._counts = {"frames_sent": 0, "frames_received": 0, "skipped": 0, "dropped": 0}
-        self._sessions = 0
-
-    # --- What the owner asks for -----------------------------------------------------------------
+        self._sent = self._received = self._skipped = self._sessions = 0
 
     def express(self, emotion: Emotion) -> None:
-        """Ask for an emotion; only the latest counts."""
-        words = tuple(motion.name for motion in moves.MOODS)
+        """Request an emotion; only the latest counts."""
+        words = tuple(motion.name for motion in motions.MOODS)
         word = closest_word(words, emotion) or words[0]
-        mood = moves.MOODS[words.index(word)]
+        mood = motions.MOODS[words.index(word)]
         if mood is not self._mood and self._playing is None:
             self._motion_time = 0.0
-        self._mood, self._commanded, self._still = mood, emotion, False
+        self._mood, self._state.commanded, self._still = mood, emotion, False
 
     def play(self, item: int, index: int) -> bool:
-        """Ask for a motion once; False if too many wait."""
-        if self.state(self._heard or 0.0) not in ("ready", "degraded"):
-            self._counts["dropped"] += 1
+        """Request a motion once; return False if too many wait already.
+
+        Without a session it is dropped at once, so that it is not played late.
+        """
+        if self.state(self._last_received or 0.0) not in ("ready", "degraded"):
+            self._actions.dropped += 1
             return True
-        if len(self._waiting) >= MAX_QUEUED_ACTIONS:
-            return False
-        if item == m.ITEM_MOTION:
-            self._waiting.append(moves.MOTIONS[index])
-            self._still = False
-        return True
+        if item != m.ITEM_MOTION:
+            return True  # it has no sounds
+        taken = self._actions.add(motions.MOTIONS[index])
+        self._still &= not taken
+        return taken
 
     def stop(self) -> None:
-        """Ask for the neutral pose."""
+        """Request the neutral pose, before and instead of everything that waits."""
         self._drop_actions()
-        self._commanded, self._mood, self._still = None, moves.MOODS[0], True
+        self._state.commanded, self._mood, self._still = None, motions.MOODS[0], True
 
     def port_opened(self, now: float) -> None:
-        """Begin, or begin again."""
-        self._open, self._heard, self._flight = True, None, None
-        self._targeted = None
+        """Start a session."""
+        self._open, self._last_received, self._pending = True, None, None
+        self._last_target = None
         self.reader.clear()
 
     def port_lost(self) -> None:
-        """Send nothing until the port is back."""
-        self._open, self._acknowledged, self._stopped = False, None, False
-        self._heard = None
+        """Send nothing until `port_opened`."""
+        self._open, self._last_received = False, None
+        self._state.forget()
         self._drop_actions()
         self._out.clear()
 
     def close(self) -> None:
-        """Say goodbye: the robot goes back to where it was found, asleep or awake."""
+        """End the session: the robot returns to the pose in which it was found."""
         if self._open and not self._closed:
-            self._say({"bye": True})
+            self._send({"bye": True})
         self._closed = True
 
-    # --- What the line and the clock bring -------------------------------------------------------
-
     def receive(self, data: bytes, now: float) -> None:
-        """Take bytes from the line at time `now` [s]."""
+        """Process received bytes at time `now` [s]."""
         for line in self.reader.feed(data):
-            said = _understood(line)
-            if said is None:
-                self._counts["skipped"] += 1
+            message = _decoded(line)
+            if message is None:
+                self._skipped += 1
             elif self._open and not self._closed:
-                self._counts["frames_received"] += 1
-                self._heard = now
-                self._take(said)
+                self._received += 1
+                self._last_received = now
+                self._process(message)
 
     def tick(self, now: float) -> None:
-        """Do what is due at time `now` [s]."""
+        """Do what is due at time `now` [s]: send the next target."""
         if self.state(now) not in ("ready", "degraded"):
             return
-        if self._flight is not None and now - self._flight.sent >= TARGET_WITHIN:
-            self._flight = None
-        due = self._targeted is None or now - self._targeted >= TARGET_EVERY
-        if self._flight is None and due:
-            self._target(now)
+        if self._pending is not None and now - self._pending.sent >= TARGET_TIMEOUT_S:
+            self._pending = None
+        due = self._last_target is None or now - self._last_target >= TARGET_INTERVAL_S
+        if self._pending is None and due:
+            self._send_target(now)
 
     def bytes_to_send(self) -> bytes:
-        """Return what is to be written to the line, once."""
+        """Return the bytes to write, once."""
         data = bytes(self._out)
         self._out.clear()
         return data
-
-    # --- What is known ---------------------------------------------------------------------------
 
     def state(self, now: float) -> LinkState:
         """Return the state of the link at time `now` [s]; see `LinkState`."""
@@ -161,88 +164,94 @@ class ReachyDriver:
             return "closed"
         if self.catalogue is None:
             return "connecting"
-        if not self._open or self._heard is None or now - self._heard >= LOST_AFTER:
+        silence = None if self._last_received is None else now - self._last_received
+        if not self._open or silence is None or silence >= LOST_AFTER_S:
             return "lost"
-        return "degraded" if now - self._heard >= DEGRADED_AFTER else "ready"
+        return "degraded" if silence >= DEGRADED_AFTER_S else "ready"
 
     def telemetry(self, now: float) -> Telemetry:
-        """Return all that is known; the robot does not know what it shows."""
-        joints = self._said.get("joints", [])
+        """Return everything that is known at time `now` [s]; the robot does not report its mood."""
         playing = self._playing or (None if self._still else self._mood)
-        known = self._sessions > 0
+        angles = zip(motions.JOINTS, self._reported_angles, strict=False)
         state = self.state(now)
         return Telemetry(
             state=state,
-            commanded=self._commanded,
-            acknowledged=None if state == "lost" else self._acknowledged,
-            stopped=self._stopped and state != "lost",
-            limp=bool(self._said.get("limp", False)),
-            joints=MappingProxyType(dict(zip(moves.JOINTS, joints, strict=False))),
-            motion=playing.name if known and playing is not None else None,
-            silence=None if self._heard is None else now - self._heard,
+            commanded=self._state.commanded,
+            acknowledged=None if state == "lost" else self._state.acknowledged,
+            stopped=self._state.stopped and state != "lost",
+            limp=self._limp,
+            joints=MappingProxyType(dict(angles)),
+            motion=playing.name if self._sessions and playing is not None else None,
+            silence=None if self._last_received is None else now - self._last_received,
             counts=LinkCounts(
-                crc_errors=self.reader.too_long, sessions=self._sessions, **self._counts
+                frames_sent=self._sent,
+                frames_received=self._received,
+                crc_errors=self.reader.too_long,
+                skipped=self._skipped,
+                dropped=self._actions.dropped,
+                sessions=self._sessions,
             ),
         )
 
-    # --- Small things ----------------------------------------------------------------------------
-
-    def _take(self, said: dict[str, Any]) -> None:
-        if "hello" in said:
-            self.catalogue = moves.catalogue(str(said["hello"])[:16])
+    def _process(self, message: dict[str, Any]) -> None:
+        if "hello" in message:
+            self.catalogue = motions.catalogue(str(message["hello"])[:16])
             self._sessions += 1
-            self._angles = _angles_of(said)
-        if "taken" in said and self._flight is not None and said["taken"] == self._flight.number:
-            self._acknowledged, self._stopped = self._flight.emotion, self._flight.neutral
-            self._flight = None
-        if "joints" in said:
-            self._said = {"joints": _angles_of(said).tolist(), "limp": said.get("limp") is True}
+            self._angles = _angles_of(message)
+        pending = self._pending
+        if "taken" in message and pending is not None and message["taken"] == pending.number:
+            self._state.confirm(pending.emotion, stopped=pending.stopped)
+            self._pending = None
+        if "joints" in message:
+            self._reported_angles = _angles_of(message).tolist()
+            self._limp = message.get("limp") is True
 
-    def _target(self, now: float) -> None:
-        elapsed = 0.0 if self._targeted is None else min(now - self._targeted, GAP_MAX)
-        self._targeted = now
-        self._angles = moves.toward(self._angles, self._wanted(elapsed), elapsed)
+    def _send_target(self, now: float) -> None:
+        last = now if self._last_target is None else self._last_target
+        elapsed = min(now - last, MAX_TIME_STEP_S)
+        self._last_target = now
+        wanted = self._wanted_angles(elapsed)
+        self._angles = motions.step_towards(self._angles, wanted, elapsed)
         self._number += 1
-        neutral = self._still and self._playing is None and not self._angles.any()
-        self._flight = _Flight(self._number, self._commanded, neutral, now)
+        stopped = self._still and self._playing is None and not self._angles.any()
+        self._pending = PendingTarget(self._number, self._state.commanded, stopped, now)
         angles = [round(float(angle), 4) for angle in self._angles]
-        self._say({"target": angles, "number": self._number})
+        self._send({"target": angles, "number": self._number})
 
-    def _wanted(self, elapsed: float) -> Array:
-        """Return the angles of the motion that is on, and let it go on."""
+    def _wanted_angles(self, elapsed: float) -> Array:
+        """Advance the motion by a time [s]; return its angles, (joints,) [rad]."""
         self._motion_time += elapsed
         if self._playing is not None and self._motion_time >= self._playing.period:
             self._playing, self._motion_time = None, 0.0
-        if self._playing is None and self._waiting:
-            self._playing, self._motion_time = self._waiting.popleft(), 0.0
+        if self._playing is None and self._actions:
+            self._playing, self._motion_time = self._actions.pop(), 0.0
         if self._still and self._playing is None:
-            return np.zeros(len(moves.JOINTS))
-        return (self._playing or self._mood).angles(self._motion_time, moves.JOINTS)
+            return np.zeros(len(motions.JOINTS))
+        return (self._playing or self._mood).angles(self._motion_time, motions.JOINTS)
 
     def _drop_actions(self) -> None:
-        self._counts["dropped"] += len(self._waiting)
-        self._waiting.clear()
+        self._actions.drop_all()
         self._playing = None
 
-    def _say(self, what: dict[str, Any]) -> None:
-        self._out += json.dumps(what, separators=(",", ":")).encode() + b"\n"
-        self._counts["frames_sent"] += 1
+    def _send(self, message: dict[str, Any]) -> None:
+        self._out += json.dumps(message, separators=(",", ":")).encode() + b"\n"
+        self._sent += 1
 
 
-def _understood(line: str) -> dict[str, Any] | None:
-    """Return what a line says; None if it says nothing."""
+def _decoded(line: str) -> dict[str, Any] | None:
+    """Return the message of a line; None if it has none."""
     try:
-        said = json.loads(line)
+        message = json.loads(line)
     except (ValueError, RecursionError):
         return None
-    return said if isinstance(said, dict) else None
+    return message if isinstance(message, dict) else None
 
 
-def _angles_of(said: dict[str, Any]) -> Array:
-    """Return the angles that a line names, zero for those that it does not, (joints,) [rad]."""
-    named = said.get("joints")
-    angles = np.zeros(len(moves.JOINTS))
-    for index, angle in enumerate(named[: len(angles)] if isinstance(named, list) else ()):
+def _angles_of(message: dict[str, Any]) -> Array:
+    """Return the joint angles of a message, zero where they are missing, (joints,) [rad]."""
+    values = message.get("joints")
+    angles = np.zeros(len(motions.JOINTS))
+    for index, angle in enumerate(values[: len(angles)] if isinstance(values, list) else ()):
         if isinstance(angle, int | float) and abs(angle) < 10:  # refuses NaN too
             angles[index] = angle
     return angles

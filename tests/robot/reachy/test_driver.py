@@ -9,18 +9,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from affect import Emotion
-from robot.drivers.reachy import moves
+from robot.drivers.reachy import motions
 from robot.drivers.reachy.driver import (
-    LINE_MAX,
-    LOST_AFTER,
-    TARGET_EVERY,
-    TARGET_WITHIN,
+    LOST_AFTER_S,
+    MAX_LINE_BYTES,
+    TARGET_INTERVAL_S,
+    TARGET_TIMEOUT_S,
     ReachyDriver,
 )
 from robot.protocol import messages as m
 
 HAPPY = Emotion(0.8, 0.6, "happy")
-MOODS = tuple(motion.name for motion in moves.MOODS)
+MOODS = tuple(motion.name for motion in motions.MOODS)
 
 
 class Desk:
@@ -55,7 +55,7 @@ def test_targets_come_no_faster_than_the_robot_wants_them_however_often_it_is_as
         desk.run(0.01)
     times = np.array([when for when, _ in desk.asked])
     assert len(times) > 80
-    assert np.diff(times).min() >= TARGET_EVERY - 1e-6
+    assert np.diff(times).min() >= TARGET_INTERVAL_S - 1e-6
 
 
 @settings(max_examples=25)
@@ -64,14 +64,14 @@ def test_no_joint_leaves_its_limits_or_is_faster_than_allowed(wishes):
     desk = Desk()
     for word, seconds in wishes:
         desk.driver.express(replace(HAPPY, word=word))
-        desk.driver.play(m.ITEM_MOTION, len(desk.asked) % len(moves.MOTIONS))
+        desk.driver.play(m.ITEM_MOTION, len(desk.asked) % len(motions.MOTIONS))
         desk.run(seconds)
     times = np.array([when for when, _ in desk.asked])
     angles = np.array([target for _, target in desk.asked])
-    assert (angles >= moves.LOW - 1e-4).all()
-    assert (angles <= moves.HIGH + 1e-4).all()
+    assert (angles >= motions.LOW - 1e-4).all()
+    assert (angles <= motions.HIGH + 1e-4).all()
     speeds = np.abs(np.diff(angles, axis=0)) / np.diff(times)[:, None]
-    assert (speeds <= moves.SPEED * 1.01 + 1e-3).all()
+    assert (speeds <= motions.SPEED * 1.01 + 1e-3).all()
     assert np.abs(angles[:, 2] - angles[:, 3]).max() <= np.radians(65)
 
 
@@ -97,7 +97,7 @@ def test_what_is_acknowledged_is_what_the_robot_took():
     desk.driver.express(HAPPY)
     desk.run(1.0)
     assert desk.driver.telemetry(desk.now).acknowledged is None
-    assert len(desk.asked) <= 1.0 / TARGET_WITHIN + 1  # one on its way at a time
+    assert len(desk.asked) <= 1.0 / TARGET_TIMEOUT_S + 1  # one on its way at a time
     desk.deaf = False
     desk.run(1.0)
     known = desk.driver.telemetry(desk.now)
@@ -113,7 +113,7 @@ def test_what_is_acknowledged_stays_until_the_next_is_taken_or_the_robot_is_lost
     desk.driver.express(Emotion(-0.6, -0.4, "sad"))
     desk.run(0.2)
     assert desk.driver.telemetry(desk.now).acknowledged == HAPPY
-    desk.run(LOST_AFTER)
+    desk.run(LOST_AFTER_S)
     known = desk.driver.telemetry(desk.now)
     assert (known.state, known.acknowledged) == ("lost", None)
 
@@ -136,7 +136,7 @@ def test_a_motion_is_played_once_and_the_mood_goes_on():
     desk = Desk()
     desk.driver.express(replace(HAPPY, word="sad"))
     desk.run(2.0)
-    assert desk.driver.play(m.ITEM_MOTION, [one.name for one in moves.MOTIONS].index("nod"))
+    assert desk.driver.play(m.ITEM_MOTION, [one.name for one in motions.MOTIONS].index("nod"))
     desk.run(0.5)
     assert desk.driver.telemetry(desk.now).motion == "nod"
     desk.run(3.0)
@@ -153,7 +153,7 @@ def test_silence_is_degraded_then_lost_and_a_new_hello_brings_it_back():
     desk = Desk()
     desk.deaf = True
     states = []
-    for _ in range(round((LOST_AFTER + 0.2) / 0.1)):
+    for _ in range(round((LOST_AFTER_S + 0.2) / 0.1)):
         desk.run(0.1)
         states.append(desk.driver.state(desk.now))
     assert [states[0], states[10], states[-1]] == ["ready", "degraded", "lost"]
@@ -175,7 +175,7 @@ def test_garbage_raises_nothing_and_is_not_kept(chunks):
     for chunk in chunks:
         desk.driver.receive(chunk, desk.now)
         desk.driver.receive(b"x" * 5000, desk.now)
-    assert len(desk.driver.reader.partial) <= LINE_MAX
+    assert len(desk.driver.reader.partial) <= MAX_LINE_BYTES
     assert desk.driver.telemetry(desk.now).counts.crc_errors >= min(1, len(chunks))
     desk.driver.receive(b"\n", desk.now)
     desk.run(0.2)

@@ -18,8 +18,8 @@ import serial
 import robot
 from affect import Emotion
 from robot.drivers import DRIVERS
-from robot.drivers.reachy.hand import head_angles, head_pose
-from robot.drivers.reachy.line import ReachyLine, open_reachy
+from robot.drivers.reachy.port import ReachyPort, open_reachy
+from robot.drivers.reachy.sdk import head_angles, head_pose
 from robot.errors import RobotError
 
 HAPPY = Emotion(0.8, 0.6, "happy")
@@ -70,7 +70,7 @@ def connected(monkeypatch):
 
     def connect(mini):
         def opener(url, clock):
-            return lambda: ReachyLine("here", 1, lambda *_: mini)
+            return lambda: ReachyPort("here", 1, lambda *_: mini)
 
         kind = dataclasses.replace(DRIVERS["reachy"], opener=opener)
         monkeypatch.setitem(DRIVERS, "reachy", kind)
@@ -116,7 +116,7 @@ def test_a_line_without_a_daemon_is_read_as_a_port_that_is_gone(soon):
     def refuse(host: str, port: int) -> None:
         raise ConnectionError
 
-    line = ReachyLine("here", 1, refuse)
+    line = ReachyPort("here", 1, refuse)
 
     def gone() -> bool:
         try:

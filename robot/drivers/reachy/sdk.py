@@ -1,8 +1,8 @@
-"""What is done with the object of Reachy Mini's SDK.
+"""The calls of Reachy Mini's SDK.
 
-Life of the robot: it is left as it was found. Motors that were off are switched on and the robot
-gets up slowly; at the end it lies down again and they are off. From wherever it is found it first
-goes to its neutral pose in a second, for a jump out of the sleeping pose harms it.
+The robot is left as it was found: if its motors are off they are switched on and it gets up slowly,
+and at the end it lies down again. From any pose it first moves to its neutral pose within a second,
+because a jump out of the sleeping pose harms it.
 """
 
 import contextlib
@@ -13,65 +13,62 @@ from typing import Any
 
 import numpy as np
 
-CONNECT_WITHIN = 3.0
+CONNECT_TIMEOUT_S = 3.0
 """Longest wait for the daemon [s]."""
 
-GET_UP, SETTLE, LIE_DOWN = 2.0, 1.0, 2.0
-"""Time for the way from the sleeping to the neutral pose, from any other, and back to sleep [s]."""
+GET_UP_S, SETTLE_S, LIE_DOWN_S = 2.0, 1.0, 2.0
+"""Time from the sleeping to the neutral pose, from any other pose, and back to sleep [s]."""
 
-NEUTRAL_ANTENNAS = (-0.1745, 0.1745)
-"""Right and left, where the SDK has them at rest [rad]: upright they tremble."""
+NEUTRAL_ANTENNAS_RAD = (-0.1745, 0.1745)
+"""Right and left antenna in the SDK's rest pose [rad]: upright they tremble."""
 
 
-class Hand:
-    """What we do with one robot; every call may wait for it, and raise whatever the SDK raises.
+class SdkRobot:
+    """One robot through a connected `reachy_mini.ReachyMini`.
 
-    Parameters
-    ----------
-    mini
-        A connected `reachy_mini.ReachyMini`.
+    Every call may wait for the robot, and raise any exception of the SDK.
     """
 
     def __init__(self, mini: Any) -> None:
         self._mini = mini
-        status = mini.client.get_status(timeout=CONNECT_WITHIN)
+        status = mini.client.get_status(timeout=CONNECT_TIMEOUT_S)
         self.version = f"daemon {status.version}"
-        """What runs on the robot."""
+        """The version of its daemon."""
         self._asleep = self._limp()
 
     def get_up(self) -> None:
-        """Go to the neutral pose, slowly."""
+        """Move slowly to the neutral pose."""
         if self._asleep:
             self._mini.enable_motors()
-        self._go(np.eye(4), NEUTRAL_ANTENNAS, GET_UP if self._asleep else SETTLE)
+        self._move(np.eye(4), NEUTRAL_ANTENNAS_RAD, GET_UP_S if self._asleep else SETTLE_S)
 
-    def turn(self, angles: list[float]) -> None:
-        """Set the target: roll, pitch and yaw of the head, yaw of the body, antennas [rad]."""
+    def set_target(self, angles: list[float]) -> None:
+        """Set the target, in the order of `motions.JOINTS` [rad]."""
         roll, pitch, yaw, body, right, left = angles
         self._mini.set_target(
             head=head_pose(roll, pitch, yaw), antennas=[right, left], body_yaw=body
         )
 
     def state(self) -> dict[str, Any]:
-        """Say where it is, in the order of `moves.JOINTS` [rad], and whether motors are off."""
+        """Return the angles, in the order of `motions.JOINTS` [rad], and whether motors are off."""
         head, antennas = self._mini.get_current_joint_positions()
-        turned = head_angles(self._mini.get_current_head_pose())
-        joints = [*turned, head[0], *antennas]
+        head_pose_angles = head_angles(self._mini.get_current_head_pose())
+        joints = [*head_pose_angles, head[0], *antennas]
         return {"joints": [round(float(angle), 4) for angle in joints], "limp": self._limp()}
 
     def check(self) -> None:
-        """Raise ConnectionError if the daemon has stopped talking."""
+        """Raise ConnectionError if the daemon is silent."""
         if not self._mini.client.is_connected():
-            raise ConnectionError("nothing heard of the daemon for a second")
+            raise ConnectionError("the daemon has been silent for a second")
 
-    def part(self, sent: Callable[[], None]) -> None:
-        """Go back to the neutral pose, and to sleep if it was found so."""
-        threading.Timer(0.1, sent).start()  # the request goes out at once; its end may be far
-        self._go(np.eye(4), NEUTRAL_ANTENNAS, SETTLE)
+    def leave(self, sent: Callable[[], None]) -> None:
+        """Return to the neutral pose, and to sleep if it was found asleep; call `sent` early."""
+        threading.Timer(0.1, sent).start()  # the request is sent at once; it ends much later
+        self._move(np.eye(4), NEUTRAL_ANTENNAS_RAD, SETTLE_S)
         if self._asleep:
             poses = importlib.import_module("reachy_mini.reachy_mini")
             antennas = poses.SLEEP_ANTENNAS_JOINT_POSITIONS
-            self._go(poses.SLEEP_HEAD_POSE, antennas, LIE_DOWN)
+            self._move(poses.SLEEP_HEAD_POSE, antennas, LIE_DOWN_S)
             self._mini.disable_motors()
 
     def close(self) -> None:
@@ -79,7 +76,7 @@ class Hand:
         with contextlib.suppress(Exception):
             self._mini.client.disconnect()
 
-    def _go(self, head: Any, antennas: Any, seconds: float) -> None:
+    def _move(self, head: Any, antennas: Any, seconds: float) -> None:
         self._mini.goto_target(head, antennas=list(antennas), duration=seconds, body_yaw=0.0)
 
     def _limp(self) -> bool:
@@ -89,7 +86,7 @@ class Hand:
 
 
 def head_pose(roll: float, pitch: float, yaw: float) -> Any:
-    """Return the head's pose as the SDK has it, (4, 4): yaw after pitch after roll, about its base.
+    """Return the head pose of the SDK, (4, 4): yaw after pitch after roll, about its base.
 
     >>> head_angles(head_pose(0.1, -0.2, 0.3)).round(6).tolist()
     [0.1, -0.2, 0.3]
@@ -105,7 +102,7 @@ def head_pose(roll: float, pitch: float, yaw: float) -> Any:
 
 
 def head_angles(pose: Any) -> Any:
-    """Return roll, pitch and yaw of a head's pose, (3,) [rad]."""
+    """Return roll, pitch and yaw of a head pose, (3,) [rad]."""
     roll = np.arctan2(pose[2, 1], pose[2, 2])
     pitch = np.arcsin(np.clip(-pose[2, 0], -1.0, 1.0))
     return np.array([roll, pitch, np.arctan2(pose[1, 0], pose[0, 0])])

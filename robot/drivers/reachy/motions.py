@@ -1,4 +1,4 @@
-"""What Reachy Mini can turn, how far and how fast we turn it, and what it does in each mood."""
+"""Reachy Mini's joints with their limits, and its motions."""
 
 from math import radians
 
@@ -16,16 +16,16 @@ _LIMITS_DEG = (
     ("left antenna", -90, 90, 180),
 )
 """Well inside what the robot allows: ±40° of pitch and roll, at most 65° between head and body
-(Reachy Mini's SDK documentation, "Core concepts"). The speeds are ours; nothing is published."""
+(Reachy Mini's SDK documentation, "Core concepts"). The speeds are ours; none are published."""
 
 JOINTS = tuple(name for name, *_ in _LIMITS_DEG)
-"""Names of what it turns. Zero looks ahead; positive is right, down and to its left, as the SDK's
-roll, pitch and yaw; antennas stand up at zero and fall outwards or back."""
+"""Joint names. Zero looks ahead; positive is right, down and to its left, as the SDK's roll, pitch
+and yaw; antennas are upright at zero and fall outwards or back."""
 
 LOW = np.radians([row[1] for row in _LIMITS_DEG])
 HIGH = np.radians([row[2] for row in _LIMITS_DEG])
 SPEED = np.radians([row[3] for row in _LIMITS_DEG])
-"""Fastest turn of each [rad/s]."""
+"""Limits [rad] and top speeds [rad/s] of the joints, (joints,) each."""
 
 MOODS = (
     SineMotion(
@@ -89,7 +89,7 @@ MOODS = (
         },
     ),
 )
-"""One endless motion for each mood, neutral first."""
+"""A looping motion for each mood, neutral first."""
 
 ACTIONS = (
     SineMotion("nod", 1.6, {"head pitch": JointSine(2, 10, 2)}),
@@ -102,14 +102,14 @@ ACTIONS = (
     SineMotion("bow", 3.0, {"head pitch": JointSine(12, 12, 1, -0.25)}),
     SineMotion("kiss", 2.0, {"head pitch": JointSine(-4, 9, 2), "head roll": JointSine(8, 0)}),
 )
-"""Motions that are played once and then give way to the mood again."""
+"""Motions that play once; then the loop of the mood continues."""
 
 MOTIONS = MOODS + ACTIONS
 """Every motion, in the order of the catalogue."""
 
 
 def catalogue(firmware: str) -> Catalogue:
-    """Return what a Reachy Mini has; `firmware` is its daemon's version."""
+    """Return the catalogue; `firmware` is the version of the daemon."""
     joints = tuple(
         JointLimits(name, radians(low), radians(high), radians(speed))
         for name, low, high, speed in _LIMITS_DEG
@@ -119,15 +119,15 @@ def catalogue(firmware: str) -> Catalogue:
     return Catalogue("Reachy Mini", firmware, joints, names, (), moods)
 
 
-def toward(angles: Array, wanted: Array, elapsed: float) -> Array:
-    """Return angles that have come closer to those wanted, within limits, at the speeds allowed.
+def step_towards(angles: Array, wanted: Array, elapsed: float) -> Array:
+    """Return the angles after a step towards the wanted ones, within limits and speeds.
 
     Parameters
     ----------
     angles, wanted
         (joints,) [rad]
     elapsed
-        Time for the way [s].
+        Time of the step [s].
     """
     reach = SPEED * elapsed
     return np.clip(angles + np.clip(wanted - angles, -reach, reach), LOW, HIGH)
