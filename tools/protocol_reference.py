@@ -9,10 +9,10 @@ from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.fields import FieldSpec
 from robot.protocol.schema import HEADER, MESSAGES, MessageSpec
-from robot.protocol.vectors import VECTORS, vectors_file
 from robot.protocol.wire import MAX_BODY, MAX_FRAME
 from tools.marked_parts import replace_part
 from tools.protocol_c_header import header
+from tools.protocol_vectors import VECTORS, vectors_file
 
 DOCUMENT = Path(__file__).parents[1] / "robot" / "PROTOCOL.md"
 """The protocol's document."""

@@ -6,13 +6,16 @@ next number, for as long as the link exists.
 """
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, Literal
 
 from affect import Emotion
 from robot.contract.catalogue import Catalogue
+from robot.contract.driver import Driver, DriverKind
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.cubeling.capabilities import CapabilityQuery, with_state
 from robot.drivers.cubeling.scheduler import CommandScheduler, RoundTrip
+from robot.errors import RobotError
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.fields import MessageError
@@ -228,3 +231,15 @@ class HostLink:
     def _send(self, message: Any) -> None:
         self._out += encode_frame(pack(message, self._session, self._version))
         self._frames_sent += 1
+
+
+def _make(host: int, settings: Path | None) -> Driver:
+    if settings is not None:
+        raise RobotError(f"{settings}: the protocol 'cubeling' has no settings; leave them out")
+    # Not from session 1: an answer to an earlier program may still arrive, and a robot that missed
+    # our HELLO is in that program's session.
+    return HostLink(host, session=host % 0xFFFF + 1)
+
+
+CUBELING = DriverKind(_make, timing.BAUD, timing.ANSWER_WITHIN)
+"""The protocol "cubeling"."""

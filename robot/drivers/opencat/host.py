@@ -9,6 +9,7 @@ from typing import Literal
 
 from affect import Emotion
 from robot.contract.catalogue import Catalogue
+from robot.contract.driver import DriverKind
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.lines import LineReader
 from robot.drivers.opencat import tokens
@@ -274,3 +275,12 @@ class OpenCatHost:
         self._echoes.restart()
         self._scheduler.actions.drop_all()
         self._scheduler.desired.lose()
+
+
+OPENCAT = DriverKind(
+    lambda host, settings: OpenCatHost(load_settings(settings)),
+    115200,
+    25.0,  # a board takes seconds to start when its port is opened, and a new one asks its owner
+    spacing=0.1,  # lines that arrive within a few milliseconds are read as one
+)
+"""The protocol "opencat"."""

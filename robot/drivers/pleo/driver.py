@@ -13,12 +13,13 @@ from typing import Literal
 
 from affect import Emotion
 from robot.contract.catalogue import Catalogue
+from robot.contract.driver import DriverKind
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.pleo import commands, timing
 from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.console import CommandResult, Console
 from robot.drivers.pleo.scheduler import StepScheduler
-from robot.drivers.pleo.settings import Settings
+from robot.drivers.pleo.settings import Settings, load_settings
 from robot.protocol import messages as m
 
 Phase = Literal["port", "searching", "starting", "open", "closed"]
@@ -240,3 +241,9 @@ class PleoDriver:
             due = commands.NUDGE
         if due is not None:
             self.console.send(due, now)
+
+
+PLEO = DriverKind(
+    lambda host, settings: PleoDriver(load_settings(settings)), timing.BAUD, timing.ANSWER_TIMEOUT_S
+)
+"""The protocol "pleo"."""

@@ -7,6 +7,7 @@ target is pending at a time: targets that are set as fast as possible make the r
 
 import json
 from dataclasses import dataclass
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
@@ -15,12 +16,14 @@ import numpy as np
 from affect import Emotion
 from affect.words import closest_word
 from robot.contract.catalogue import Catalogue
-from robot.contract.driver import MAX_QUEUED_ACTIONS
+from robot.contract.driver import MAX_QUEUED_ACTIONS, Driver, DriverKind
 from robot.contract.motions import Array, SineMotion
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.commands import CommandQueue, DesiredState
 from robot.drivers.lines import LineReader
 from robot.drivers.reachy import motions
+from robot.drivers.reachy.port import open_reachy
+from robot.errors import RobotError
 from robot.protocol import messages as m
 
 TARGET_INTERVAL_S = 0.040
@@ -255,3 +258,13 @@ def _angles_of(message: dict[str, Any]) -> Array:
         if isinstance(angle, int | float) and abs(angle) < 10:  # refuses NaN too
             angles[index] = angle
     return angles
+
+
+def _make(host: int, settings: Path | None) -> Driver:
+    if settings is not None:
+        raise RobotError(f"{settings}: Reachy Mini's driver has no settings; leave them out")
+    return ReachyDriver()
+
+
+REACHY = DriverKind(_make, 0, 10.0, open_reachy)  # no serial port; getting up takes seconds
+"""The protocol "reachy", over the network."""

@@ -10,9 +10,9 @@ import pytest
 
 from robot.protocol.fields import MessageError
 from robot.protocol.schema import MESSAGES, pack, unpack
-from robot.protocol.vectors import VECTORS
 from robot.protocol.wire import FrameReader, encode_frame
 from tools.protocol_reference import HEADER_FILE, VECTORS_FILE
+from tools.protocol_vectors import VECTORS
 
 COMPILER = shutil.which("gcc") or shutil.which("cc") or shutil.which("clang")
 pytestmark = pytest.mark.skipif(COMPILER is None, reason="no C compiler here")

@@ -8,9 +8,9 @@ import pytest
 from robot.protocol import wire
 from robot.protocol.fields import MessageError
 from robot.protocol.schema import MESSAGES, unpack
-from robot.protocol.vectors import VECTORS
 from robot.protocol.wire import FrameReader
 from tools.protocol_reference import DOCUMENT, VECTORS_FILE, generated_files, updated
+from tools.protocol_vectors import VECTORS
 
 TEXT = DOCUMENT.read_text("utf-8")
 PROSE = " ".join(TEXT.split())
