@@ -1,4 +1,4 @@
-"""How right the tracker is, on pictures whose truth is known.
+"""Accuracy of the tracker on rendered images with ground truth.
 
 Run `python -m tests.bench.accuracy [--frames 300] [SCENE …]`.
 """
@@ -25,11 +25,11 @@ SCENES = (
     "sweep?speed=0.25",
     "sweep?speed=0.5",
 )
-WRONG = (0.020, np.deg2rad(10))
-"""A pose further off than this [m, rad] is silently wrong: given out as if it were right."""
+MIN_WRONG_ERROR = (0.020, np.deg2rad(10))
+"""A pose further off than this [m, rad] is silently wrong: reported as valid."""
 
-INSIDE = 12.592
-"""The 95 % quantile of χ² with six degrees of freedom: inside it lies the ellipsoid."""
+CHI2_95_PERCENT = 12.592
+"""95 % quantile of χ² with six degrees of freedom: the bound of the stated ellipsoid."""
 
 COLUMNS = (
     "scene",
@@ -47,20 +47,20 @@ COLUMNS = (
 
 
 @dataclass(frozen=True)
-class Report:
-    """What was measured in one scene."""
+class SceneAccuracy:
+    """Measurements in one scene."""
 
     scene: str
     """Name of the scene, with its options."""
 
     states: list[CubeState]
-    """What the tracker said of the frames in which the cube is in view."""
+    """The tracker's states in frames that show the whole cube."""
 
     errors: np.ndarray
-    """Shift [m] and turn [rad] from the truth of each visible state, (N, 6)."""
+    """Error of each visible state: translation [m] and rotation [rad], (N, 6)."""
 
     seconds: np.ndarray
-    """Time that the tracker took for each frame [s]."""
+    """Processing time of each frame [s]."""
 
     @property
     def row(self) -> tuple[str, ...]:
@@ -71,12 +71,12 @@ class Report:
         shift = np.linalg.norm(self.errors[:, :3], axis=1)
         turn = np.linalg.norm(self.errors[:, 3:], axis=1)
         pairs = zip(self.errors, visible, strict=True)
-        inside = [e @ np.linalg.solve(state.covariance, e) < INSIDE for e, state in pairs]
+        inside = [e @ np.linalg.solve(state.covariance, e) < CHI2_95_PERCENT for e, state in pairs]
         return (
             self.scene,
             str(len(self.states)),
             f"{100 * len(visible) / len(self.states):.1f}",
-            f"{100 * np.mean((shift > WRONG[0]) | (turn > WRONG[1])):.1f}",
+            f"{100 * np.mean((shift > MIN_WRONG_ERROR[0]) | (turn > MIN_WRONG_ERROR[1])):.1f}",
             f"{1000 * np.median(shift):.3f}",
             f"{1000 * np.percentile(shift, 95):.3f}",
             f"{np.rad2deg(np.median(turn)):.3f}",
@@ -102,8 +102,8 @@ def in_view(source: SyntheticSource, index: int) -> bool:
     return all(margin < pixel[axis] < source.size[axis] - margin for axis in (0, 1))
 
 
-def measure(scene: str, frames: int) -> Report:
-    """Track one scene; single poses, which have no past, each with a tracker of its own."""
+def measure(scene: str, frames: int) -> SceneAccuracy:
+    """Track one scene; with a new tracker for each frame if the poses are unrelated."""
     source = open_synthetic(scene)
     assert source.intrinsics is not None
     tracker = CubeTracker(source.cube, source.intrinsics)
@@ -120,14 +120,14 @@ def measure(scene: str, frames: int) -> Report:
         states.append(state)
         if state.visible and state.camera_from_cube is not None:
             errors.append(se3.delta(state.camera_from_cube, source.truth(index)))
-    return Report(scene, states, np.array(errors), np.array(seconds))
+    return SceneAccuracy(scene, states, np.array(errors), np.array(seconds))
 
 
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scenes", nargs="*", metavar="SCENE", help=f"default: {', '.join(SCENES)}")
-    parser.add_argument("--frames", type=int, default=300, help="at most so many of each scene")
+    parser.add_argument("--frames", type=int, default=300, help="maximum for each scene")
     arguments = parser.parse_args()
     table = Table(title="Pose of the cube against the truth")
     for column in COLUMNS:

@@ -1,9 +1,9 @@
-"""How right a calibration is, on drawn pictures of a hand-folded cube behind a lens.
+"""Accuracy of calibrations on rendered images of a cube with folding errors.
 
 Run `python -m tests.bench.calibration [--seeds 3] [--fold 0.8] [--frames 40]`. Each seed is another
-wave and another cube. "drawn" is the program's own camera, `synthetic:wave`; "traced" is the
-renderer of the tracking benchmark, which shares no code with the program and works in linear light
-with a camera's gamma curve.
+motion and another cube. "drawn" is the program's synthetic camera, `synthetic:wave`; "traced" is
+the renderer of the tracking benchmark, which shares no code with the program and works in linear
+light with a camera's gamma curve.
 """
 
 import argparse
@@ -46,16 +46,16 @@ class Wave:
     """Views of one folded cube by one camera, and the truth."""
 
     views: list[View]
-    """What the program measured."""
+    """The measured views."""
 
     matrix: Array
     """The true camera, (3, 3)."""
 
     cube: CubeModel
-    """The cube as it is folded."""
+    """The cube with its folding errors."""
 
     ideal: CubeModel
-    """The cube as it should be."""
+    """The nominal cube."""
 
     size: tuple[int, int]
     """Of the pictures [px]."""
@@ -75,7 +75,7 @@ def drawn(seed: int, fold: float) -> Wave:
 
 
 def traced(seed: int, fold: float, frames: int) -> Wave:
-    """Measure single poses of the independent renderer, its cube folded as ours."""
+    """Measure single poses in the independent renderer, with the same folding errors."""
     pictures = sequence("poses", seed, frames)
     ideal = CubeModel.load(pictures.cube)
     cube = fold_cube(ideal, fold, seed)
@@ -109,7 +109,7 @@ def _folded_frames(pictures: Sequence, cube: CubeModel) -> Iterator[Frame]:
 
 
 def row(renderer: str, seed: int, wave: Wave) -> tuple[str, ...]:
-    """Calibrate, and compare with the truth."""
+    """Calibrate, and compare with the ground truth."""
     start = time.perf_counter()
     finder = CubeFinder(wave.ideal)
     found = calibrate(wave.views, finder.target(wave.size))

@@ -1,9 +1,9 @@
-"""How old pictures are, and how fast a lost camera is noticed: `python -m tests.bench.camera`.
+"""Latency of live images, and time to detect a lost camera: `python -m tests.bench.camera`.
 
-A driver of four buffers that fills them at 30 pictures a second, as V4L2 does, is read by a
-consumer of 10 to 100 ms a picture: straight from the driver, as a loop round `cv2.VideoCapture`
-does, and through `LiveSource`. Both in one run, on the same clock. Then its plug is pulled, or its
-picture frozen, and put back. With `--source camera:0` a real camera's figures are printed too.
+A simulated driver with four buffers delivers 30 images/s, as V4L2 does. A consumer that takes 10 to
+100 ms per image reads it directly, like a loop around `cv2.VideoCapture`, and through `LiveSource`.
+Then the device is unplugged or frozen, and restored. With `--source camera:0` a real camera is
+measured, too.
 """
 
 import argparse
@@ -20,16 +20,16 @@ from app.commands.doctor import camera_report, read_for
 from tracking import Frame, TrackingError, open_source
 from tracking.sources.live import LiveSource
 
-RATE = 30.0
+RATE_HZ = 30.0
 BUFFERS = 4
-LOST_S = 2.5
+OUTAGE_S = 2.5
 
 
-class Driver:
-    """Fills buffers at its rate on a thread of its own; drops what finds none free."""
+class BufferedDriver:
+    """Fills its buffers at a fixed rate in a thread; drops images if all are full."""
 
     settings = ()
-    rate = RATE
+    rate = RATE_HZ
 
     def __init__(self, pictures: list[bytes]) -> None:
         self._pictures = pictures
@@ -52,9 +52,9 @@ class Driver:
                     self._filled.append((self._pictures[number % len(self._pictures)], due))
                     self._changed.notify()
 
-    def __call__(self) -> "Driver":
+    def __call__(self) -> "BufferedDriver":
         if not self.plugged:
-            raise TrackingError("camera 0 is not there")
+            raise TrackingError("camera 0 does not exist")
         return self
 
     def read(self) -> bytes | None:
@@ -86,7 +86,7 @@ def drawn() -> list[bytes]:
     return [cv2.imencode(".jpg", np.roll(large, 9 * n, 1))[1].tobytes() for n in range(30)]
 
 
-def straight(driver: Driver, work: float, count: int) -> list[float]:
+def straight(driver: BufferedDriver, work: float, count: int) -> list[float]:
     ages = []
     for _ in range(count):
         jpeg = driver.read()
@@ -98,7 +98,7 @@ def straight(driver: Driver, work: float, count: int) -> list[float]:
     return ages
 
 
-def threaded(driver: Driver, work: float, count: int) -> tuple[list[float], int, int]:
+def threaded(driver: BufferedDriver, work: float, count: int) -> tuple[list[float], int, int]:
     ages: list[float] = []
     with LiveSource(driver, "camera 0") as source:
         for frame in source:
@@ -110,7 +110,7 @@ def threaded(driver: Driver, work: float, count: int) -> tuple[list[float], int,
     return ages, health.dropped, health.max_queue
 
 
-def delays(driver: Driver, table: Table) -> None:
+def delays(driver: BufferedDriver, table: Table) -> None:
     for work in (0.010, 0.025, 0.050, 0.100):
         plain = straight(driver, work, 40)[8:]
         ages, dropped, deepest = threaded(driver, work, 40)
@@ -130,7 +130,7 @@ def runs(source: LiveSource) -> bool:
     return source.health.running
 
 
-def losses(driver: Driver, console: Console) -> None:
+def losses(driver: BufferedDriver, console: Console) -> None:
     with LiveSource(driver, "camera 0") as source:
         for what in ("unplugged", "frozen"):
             while source.wait(0.05) is None or not runs(source):
@@ -141,7 +141,7 @@ def losses(driver: Driver, console: Console) -> None:
             while runs(source):
                 source.wait(0.01)
             told = time.monotonic() - began
-            time.sleep(max(0.0, began + LOST_S - time.monotonic()))
+            time.sleep(max(0.0, began + OUTAGE_S - time.monotonic()))
             driver.frozen = False
             driver.pull(True)
             back = time.monotonic()
@@ -161,7 +161,7 @@ def main() -> None:
     uri = parser.parse_args().source
     console = Console()
     table = Table("work ms", "straight ms", "LiveSource ms (95 %)", "ratio", "dropped", "deepest")
-    driver = Driver(drawn())
+    driver = BufferedDriver(drawn())
     delays(driver, table)
     console.print(table)
     losses(driver, console)

@@ -1,8 +1,7 @@
-"""The whole line, and the share of each part: `python -m tests.bench.line [--frames N]`.
+"""Time of the whole pipeline and of its parts: `python -m tests.bench.line [--frames N]`.
 
-Track, gesture, decide, animate, draw and read back, on the frames of the bundled recordings at
-1280×720.
-Decoding the recording and laying the cards over the picture are told beside it.
+Tracking, gestures, decision, animation, rendering and read-back on the frames of the bundled
+recordings at 1280×720. Decoding the recording and drawing the overlay are listed separately.
 """
 
 import argparse
@@ -28,7 +27,7 @@ TARGET_MS = 25.0
 
 
 def measure(name: str, frames: int) -> dict[str, list[float]]:
-    """Return the milliseconds of each part, a list of frames long."""
+    """Return the time of each part in every frame [ms]."""
     parts: dict[str, list[float]] = defaultdict(list)
     context = create_context()
     with open_source(str(bundled(name))) as source:

@@ -1,8 +1,8 @@
-"""What several cubes in one picture cost: `python -m tests.bench.several [--frames N]`.
+"""Cost of several cubes in one image: `python -m tests.bench.several [--frames N]`.
 
-One, two and three cubes of their own markers on the same 1280×720 pictures, which show all three,
-their turns interleaved frame by frame. "followed": all are where they should be. "found": none has
-a past, so that the picture is searched. The ratio is to one cube alone, the mean of the three.
+Trackers of one, two and three cubes take turns on the same 1280×720 images, which show all three.
+"followed": with the previous poses. "found": without, so the whole image is searched. The ratio
+is to one cube alone, the mean of the three.
 """
 
 import argparse
@@ -22,10 +22,10 @@ from tracking.tracker.several import CubesTracker
 
 Array = NDArray[np.float64]
 
-TARGET = 2.0
-"""Two cubes cost less than so many times as much as one."""
+MAX_TWO_CUBE_RATIO = 2.0
+"""Target for the cost of two cubes relative to one."""
 
-RATE = 30.0
+RATE_HZ = 30.0
 
 THIRD = CubeModel.from_document(
     {
@@ -37,7 +37,7 @@ THIRD = CubeModel.from_document(
     "third.toml",
     "third",
 )
-"""A cube of markers that neither of the bundled cubes has."""
+"""A cube with markers that no bundled cube has."""
 
 CUBES = (CubeModel.load("locomotion"), CubeModel.load("companion"), THIRD)
 STARTS = (
@@ -51,33 +51,33 @@ GROUPS = {"one": ((0,), (1,), (2,)), "two": ((0, 1), (1, 2), (2, 0)), "three": (
 
 
 @dataclass
-class Bench:
-    """One group of cubes, and what its frames took."""
+class GroupTiming:
+    """Processing times of one group of cubes."""
 
     cubes: tuple[CubeModel, ...]
     """The cubes."""
 
     followed: list[float] = field(default_factory=list)
-    """Milliseconds of each frame in which all were followed."""
+    """Time of each frame with previous poses [ms]."""
 
     found: list[float] = field(default_factory=list)
-    """Milliseconds of each frame in which none had a past."""
+    """Time of each frame without previous poses [ms]."""
 
     seen: int = 0
-    """How many cubes were seen in all frames together."""
+    """Number of visible cubes, summed over all frames."""
 
     def __post_init__(self) -> None:
         self._tracker = CubesTracker(self.cubes, WIDE)
 
     def follow(self, frame: Frame) -> None:
-        """Take the time of one frame of many."""
+        """Time a frame with previous poses."""
         start = time.perf_counter()
         states = self._tracker.update(frame)
         self.followed.append(1000 * (time.perf_counter() - start))
         self.seen += sum(state.visible for state in states)
 
     def find(self, frame: Frame) -> None:
-        """Take the time of a frame for who has seen none before."""
+        """Time a frame without previous poses."""
         tracker = CubesTracker(self.cubes, WIDE)
         start = time.perf_counter()
         states = tracker.update(frame)
@@ -86,26 +86,26 @@ class Bench:
 
 
 def drawn(number: int) -> Frame:
-    """Draw the three cubes, each on its own way at some 0.15 m/s."""
-    ways = 0.15 * np.sin(2 * number / RATE + np.arange(3)) / 2
+    """Render the three cubes, each moving at about 0.15 m/s."""
+    ways = 0.15 * np.sin(2 * number / RATE_HZ + np.arange(3)) / 2
     poses = [
         se3.moved(start, np.array([0, way, way / 2, 0, 4 * way, 0]))
         for start, way in zip(STARTS, ways, strict=True)
     ]
     light = scene(*zip(CUBES, poses, strict=True), camera=WIDE)
-    return Frame(photograph(light, seed=number), number / RATE, number)
+    return Frame(photograph(light, seed=number), number / RATE_HZ, number)
 
 
-def measure(frames: int) -> dict[str, list[Bench]]:
+def measure(frames: int) -> dict[str, list[GroupTiming]]:
     """Show every frame to every group in turn."""
     groups = {
-        name: [Bench(tuple(CUBES[n] for n in members)) for members in groups]
+        name: [GroupTiming(tuple(CUBES[n] for n in members)) for members in groups]
         for name, groups in GROUPS.items()
     }
     benches = [bench for of_size in groups.values() for bench in of_size]
     for number in range(frames):
         frame = drawn(number)
-        # Another one first in each frame: whoever comes first warms the caches for all.
+        # Rotate the order: the first one warms the caches for the others.
         first = number % len(benches)
         for bench in benches[first:] + benches[:first]:
             bench.follow(frame)
@@ -132,13 +132,13 @@ def main() -> None:
             base.setdefault(kind, cost)
             row += [f"{cost:.2f}", f"{cost / base[kind]:.2f}"]
             if name == "two":
-                row[-1] += " reached" if cost / base[kind] < TARGET else " MISSED"
+                row[-1] += " reached" if cost / base[kind] < MAX_TWO_CUBE_RATIO else " MISSED"
         table.add_row(*row)
-    table.caption = f"two cubes in less than {TARGET:g} times the time of one"
+    table.caption = f"two cubes in less than {MAX_TWO_CUBE_RATIO:g} times the time of one"
     Console().print(table)
 
 
-def _seen(benches: list[Bench], frames: int) -> float:
+def _seen(benches: list[GroupTiming], frames: int) -> float:
     wanted = sum(2 * frames * len(bench.cubes) for bench in benches)
     return sum(bench.seen for bench in benches) / wanted
 
