@@ -4,8 +4,8 @@ The left side is blue, the right side is red, and the head has a nose: side and 
 motion capture most often gets wrong.
 """
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,21 +28,23 @@ _MIN_HEAD_RADIUS, _MAX_HEAD_RADIUS = 0.06, 0.13  # body heights
 _NOSE_RADIUS = 0.28  # head radii
 
 
-@dataclass(frozen=True)
-class _Capsules:
-    """Capsules in the rest pose."""
+class _Capsule(NamedTuple):
+    """A capsule in the rest pose."""
 
-    ends: Array
-    """Centres of both ends, (n, 2, 3) [m]."""
+    start: Array
+    """Centre of the first hemisphere, (3,) [m]."""
 
-    radii: Array
-    """Radii at both ends, (n, 2) [m]."""
+    end: Array
+    """Centre of the second one, (3,) [m]."""
 
-    joints: NDArray[np.intp]
-    """The joint that moves each, (n,)."""
+    radii: tuple[float, float]
+    """Radii at start and end [m]."""
 
-    colors: Array
-    """Linear RGB, (n, 3)."""
+    joint: int
+    """The joint that moves it."""
+
+    color: Array
+    """Linear RGB, (3,)."""
 
 
 def stick_figure(name: str, skeleton: Skeleton, clips: Iterable[Clip] = ()) -> Character:
@@ -59,28 +61,28 @@ def stick_figure(name: str, skeleton: Skeleton, clips: Iterable[Clip] = ()) -> C
     """
     rest = skeleton.rest.globals(skeleton).astype(np.float64)
     anatomy = Anatomy.guess(skeleton)
-    mesh = _mesh(_joined([*_bones(skeleton, anatomy, rest), *_head(anatomy, rest)]), rest)
-    return Character(name, skeleton, {clip.name: clip for clip in clips}, (mesh,))
+    capsules = [*_bones(skeleton, anatomy, rest), *_head(anatomy, rest)]
+    meshes = (_mesh(capsules, rest),) if capsules else ()
+    return Character(name, skeleton, {clip.name: clip for clip in clips}, meshes)
 
 
-def _bones(skeleton: Skeleton, anatomy: Anatomy, rest: Array) -> list[_Capsules]:
-    """Return a capsule from each joint to each of its children, and a sphere at each tip."""
-    inner, outer = _bone_joints(skeleton, anatomy)
-    parents = np.array(skeleton.parents, np.intp)
-    children = np.flatnonzero(outer & inner[parents] & (parents >= 0))
-    parents = parents[children]
-    places = rest[:, :3, 3]
+def _bones(skeleton: Skeleton, anatomy: Anatomy, rest: Array) -> Iterator[_Capsule]:
+    """Yield a capsule from each joint to each of its children, and a sphere at each tip."""
+    starts, ends = _bone_joints(skeleton, anatomy)
+    places, colors = rest[:, :3, 3], _colors(skeleton, anatomy)
     tall = _height(places)
-    ends = np.stack([places[parents], places[children]], axis=1)
-    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-    radii = np.clip(_BONE_RADIUS * lengths, _MIN_BONE_RADIUS * tall, _MAX_BONE_RADIUS * tall)
-    shown = lengths > 1e-3 * tall
-    sided = _colors(skeleton, anatomy)
-    bones = _Capsules(ends, radii[:, None] * [1.0, 0.6], parents, sided[children])
-    tips = np.setdiff1d(np.flatnonzero(outer), parents[shown])
-    radius = np.full((len(tips), 2), 1.6 * _MIN_BONE_RADIUS * tall)
-    balls = _Capsules(np.repeat(places[tips, None], 2, axis=1), radius, tips, sided[tips])
-    return [_selected(bones, shown), balls]
+    tips = dict.fromkeys(np.flatnonzero(ends).tolist())
+    for joint, parent in enumerate(skeleton.parents):
+        length = float(np.linalg.norm(places[joint] - places[parent]))
+        if parent < 0 or not (ends[joint] and starts[parent]) or length <= 1e-3 * tall:
+            continue
+        tips.pop(parent, None)
+        radius = min(max(_BONE_RADIUS * length, _MIN_BONE_RADIUS * tall), _MAX_BONE_RADIUS * tall)
+        radii = (radius, 0.6 * radius)
+        yield _Capsule(places[parent], places[joint], radii, parent, colors[joint])
+    radius = 1.6 * _MIN_BONE_RADIUS * tall
+    for tip in tips:
+        yield _Capsule(places[tip], places[tip], (radius, radius), tip, colors[tip])
 
 
 def _bone_joints(
@@ -104,7 +106,7 @@ def _bone_joints(
     return inner & outer, outer
 
 
-def _head(anatomy: Anatomy, rest: Array) -> list[_Capsules]:
+def _head(anatomy: Anatomy, rest: Array) -> list[_Capsule]:
     """Return a sphere with a nose for the head of a person."""
     head = anatomy.joint("head")
     if head is None or anatomy.kind != "humanoid":
@@ -113,16 +115,18 @@ def _head(anatomy: Anatomy, rest: Array) -> list[_Capsules]:
     tall = _height(places)
     rise = float(places[:, 1].max() - places[head, 1])  # to the end of the head, if it has a joint
     radius = min(max(0.5 * rise, _MIN_HEAD_RADIUS * tall), _MAX_HEAD_RADIUS * tall)
-    middle = places[head] + [0.0, radius, 0.0]
-    nose = middle + [0.0, 0.0, radius]
-    ends = np.stack([[middle, middle], [nose, nose]])
-    radii = radius * np.array([[1.0, 1.0], [_NOSE_RADIUS, _NOSE_RADIUS]])
-    return [_Capsules(ends, radii, np.full(2, head), np.tile(MIDDLE_RGB, (2, 1)))]
+    centre = places[head] + [0.0, radius, 0.0]
+    nose, nose_radius = centre + [0.0, 0.0, radius], radius * _NOSE_RADIUS
+    color = np.array(MIDDLE_RGB)
+    return [
+        _Capsule(centre, centre, (radius, radius), head, color),
+        _Capsule(nose, nose, (nose_radius, nose_radius), head, color),
+    ]
 
 
-def _mesh(capsules: _Capsules, rest: Array) -> Mesh:
+def _mesh(capsules: Sequence[_Capsule], rest: Array) -> Mesh:
     """Return all capsules as one mesh bound to the rest pose."""
-    starts, ends = capsules.ends[:, 0], capsules.ends[:, 1]
+    starts, ends, end_radii, moving_joints, rgb = map(np.array, zip(*capsules, strict=True))
     axes = ends - starts
     lengths = np.linalg.norm(axes, axis=1, keepdims=True)
     axes = np.where(lengths > 1e-9, axes / np.maximum(lengths, 1e-9), [0.0, 1.0, 0.0])
@@ -140,13 +144,13 @@ def _mesh(capsules: _Capsules, rest: Array) -> Mesh:
         + rise[None, :, None, None] * axes[:, None, None]
     )
     centres = np.where(second[None, :, None], ends[:, None], starts[:, None])[:, :, None]
-    radii = np.where(second[None], capsules.radii[:, 1:], capsules.radii[:, :1])[..., None, None]
+    radii = np.where(second[None], end_radii[:, 1:], end_radii[:, :1])[..., None, None]
     positions = centres + radii * normals
     count, each = len(starts), len(rise) * _CAPSULE_SIDES
     joints = np.zeros((count * each, 4), np.uint16)
-    joints[:, 0] = np.repeat(capsules.joints, each)
+    joints[:, 0] = np.repeat(moving_joints, each)
     colors = np.ones((count * each, 4), np.float32)
-    colors[:, :3] = np.repeat(capsules.colors, each, axis=0)
+    colors[:, :3] = np.repeat(rgb, each, axis=0)
     return Mesh(
         name="bones",
         positions=positions.reshape(-1, 3).astype(np.float32),
@@ -188,12 +192,3 @@ def _colors(skeleton: Skeleton, anatomy: Anatomy) -> Array:
 
 def _height(places: Array) -> float:
     return max(float(np.ptp(places, axis=0).max()), 1e-6)
-
-
-def _selected(capsules: _Capsules, which: NDArray[np.bool_]) -> _Capsules:
-    return _Capsules(*(values[which] for values in vars(capsules).values()))
-
-
-def _joined(groups: list[_Capsules]) -> _Capsules:
-    columns = zip(*(vars(group).values() for group in groups), strict=True)
-    return _Capsules(*(np.concatenate(column) for column in columns))

@@ -2,8 +2,9 @@
 
 import json
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -191,7 +192,7 @@ def _check(value: object, kind: Any, place: str, sizes: dict[str, int]) -> None:
         count = sizes.get(kind, 0)
         if type(value) is not int or not 0 <= value < count:
             raise DamagedFileError(f"{place} is {value!r:.40}, but there are {count} {kind}")
-    elif not _fits(value, kind):
+    elif not _CHECKS[kind](value):
         raise DamagedFileError(f"{place} is {value!r:.40}, not {kind}")
 
 
@@ -209,20 +210,22 @@ def _check_object(value: object, kind: Json, place: str, sizes: dict[str, int]) 
             raise DamagedFileError(f"{place} lacks {key!r}")
 
 
-def _fits(value: object, kind: str) -> bool:
-    if kind == TEXT:
-        return isinstance(value, str)
-    if kind == FLAG:
-        return isinstance(value, bool)
-    if kind == COUNT:
-        return type(value) is int and value >= 0
-    if kind == REAL:
-        return _is_real(value)
-    if not isinstance(value, list) or not all(map(_is_real, value)):
-        return False
-    return kind == _NUMBERS or len(value) == int(kind.split()[0])
-
-
 def _is_real(value: object) -> bool:
     # Numbers beyond single precision are not meant, and their products would overflow.
     return isinstance(value, int | float) and type(value) is not bool and -1e30 < value < 1e30
+
+
+def _are_reals(value: object, count: int | None = None) -> bool:
+    if not isinstance(value, list) or not all(map(_is_real, value)):
+        return False
+    return count is None or len(value) == count
+
+
+_CHECKS: dict[str, Callable[[object], bool]] = {
+    TEXT: lambda value: isinstance(value, str),
+    FLAG: lambda value: isinstance(value, bool),
+    COUNT: lambda value: type(value) is int and value >= 0,
+    REAL: _is_real,
+    _NUMBERS: _are_reals,
+    **{name: partial(_are_reals, count=count) for count, name in _REALS.items()},
+}

@@ -9,8 +9,8 @@ from characters.formats.gltf.document import DamagedFileError, Json, error_conte
 from characters.formats.gltf.file import GltfFile
 from characters.formats.gltf.materials import MappedMaterial, read_materials
 from characters.formats.gltf.morphs import (
-    MorphReader,
     MorphTable,
+    read_morphs,
     renumbered_morph,
     transformed_morph,
 )
@@ -36,7 +36,7 @@ def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple
         node = file.document["nodes"][number]
         mesh = file.document["meshes"][node["mesh"]]
         name = mesh.get("name") or node.get("name") or "mesh"
-        targets = MorphReader(file, table.of(number))
+        targets, shared = table.of(number), dict[int, Array]()
         for primitive in mesh["primitives"]:
             if primitive.get("mode", _TRIANGLES) not in (_TRIANGLES, _STRIP, _FAN):
                 continue  # points and lines
@@ -48,7 +48,7 @@ def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple
                 if not len(geometry.triangles):
                     continue
                 skin = _skin(file, primitive, number, tree, len(geometry.positions), rest)
-                morphs = targets.read(primitive, len(geometry.positions))
+                morphs = read_morphs(file, primitive, targets, len(geometry.positions), shared)
                 used = _without_unused_vertices(geometry, skin, morphs)
                 mesh_at_rest = _in_character_frame(name, *used, mapped.material, rest)
                 meshes.append((number, mesh_at_rest))

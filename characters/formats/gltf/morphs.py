@@ -78,45 +78,35 @@ def target_names(mesh: Json, number: int) -> tuple[str, ...]:
     return tuple(names)
 
 
-class MorphReader:
-    """Reads the morph targets of one mesh; its primitives often share arrays."""
+def read_morphs(
+    file: GltfFile, primitive: Json, names: Sequence[str], vertices: int, shared: dict[int, Array]
+) -> tuple[Morph, ...]:
+    """Return the morph targets of a primitive, in the frame of its vertices.
 
-    def __init__(self, file: GltfFile, names: Sequence[str]) -> None:
-        self._file, self._names = file, names
-        self._shared: dict[int, Array] = {}
+    `shared` keeps arrays by accessor for the other primitives of the mesh, which often share them.
+    """
 
-    def read(self, primitive: Json, vertices: int) -> tuple[Morph, ...]:
-        """Return the morph targets of a primitive, in the frame of its vertices."""
-        return tuple(
-            self._morph(target, name, vertices)
-            for name, target in zip(self._names, primitive.get("targets", ()), strict=True)
-        )
+    def read(accessor: int, name: str) -> Array:
+        if accessor not in shared:
+            shared[accessor] = file.floats(accessor, 3)
+        if len(shared[accessor]) != vertices:
+            raise DamagedFileError(
+                f"morph target {name!r} has {len(shared[accessor])} shifts for {vertices} vertices"
+            )
+        return shared[accessor]
 
-    def _morph(self, target: Json, name: str, vertices: int) -> Morph:
-        shifts = self._shifts(target.get("POSITION"), name, vertices)
-        turns = self._shifts(target["NORMAL"], name, vertices) if "NORMAL" in target else None
+    morphs: list[Morph] = []
+    for name, target in zip(names, primitive.get("targets", ()), strict=True):
+        shifts = read(target["POSITION"], name) if "POSITION" in target else np.zeros((vertices, 3))
+        turns = read(target["NORMAL"], name) if "NORMAL" in target else None
         moved = np.abs(shifts).max(axis=1, initial=0.0) > _MIN_DISPLACEMENT
         if turns is not None:
             moved |= np.abs(turns).max(axis=1, initial=0.0) > _MIN_DISPLACEMENT
         where = np.flatnonzero(moved)
-        return Morph(
-            name,
-            where.astype(np.uint32),
-            shifts[where].astype(np.float32),
-            None if turns is None else turns[where].astype(np.float32),
-        )
-
-    def _shifts(self, accessor: int | None, name: str, vertices: int) -> Array:
-        if accessor is None:
-            return np.zeros((vertices, 3))
-        if accessor not in self._shared:
-            self._shared[accessor] = self._file.floats(accessor, 3)
-        shifts = self._shared[accessor]
-        if len(shifts) != vertices:
-            raise DamagedFileError(
-                f"morph target {name!r} has {len(shifts)} shifts for {vertices} vertices"
-            )
-        return shifts
+        normal_shifts = None if turns is None else turns[where].astype(np.float32)
+        kept_shifts = shifts[where].astype(np.float32)
+        morphs.append(Morph(name, where.astype(np.uint32), kept_shifts, normal_shifts))
+    return tuple(morphs)
 
 
 def renumbered_morph(morph: Morph, new_number: NDArray[np.int64]) -> Morph:
