@@ -11,8 +11,8 @@ from rich.tree import Tree
 from app.errors import AppError
 from characters import Animator, Character
 from characters.control.builtin_tree import built_in
-from characters.motion.trees import Node, Plan, Transition
 from characters.motion.trees.dot import to_dot
+from characters.motion.trees.plan import Node, Plan, Transition
 
 
 def graph(

@@ -21,30 +21,11 @@ _LAST_FRAME_CONTACT = 0.45  # contact in the last frame of a span: too little to
 
 
 @dataclass(frozen=True)
-class Stance:
-    """A standing pose, and its feet."""
-
-    pose: Pose
-    """The pose."""
-
-    feet: Array
-    """Position of the ball (3) and orientation (4) of each foot, (legs, 7)."""
-
-    @staticmethod
-    def of(pose: Pose, legs: LegIK) -> "Stance":
-        """Return the stance of a pose."""
-        return Stance(pose, _feet(pose, legs))
-
-    @cached_property
-    def feet_list(self) -> list[list[float]]:
-        """`feet` as Python numbers."""
-        feet: list[list[float]] = self.feet.tolist()
-        return feet
-
-
-@dataclass(frozen=True)
 class FootTrajectories:
-    """Clips, a stance, and the feet in each frame; see `FootTrajectories.of`."""
+    """Clips, a stance (a standing pose), and the feet in each frame; see `FootTrajectories.of`.
+
+    Shorter steps are drawn towards the stance.
+    """
 
     motions: tuple[PhasedMotion, ...]
     """The clips with their phases."""
@@ -59,8 +40,8 @@ class FootTrajectories:
     legs: LegIK
     """The legs of these feet."""
 
-    stance: Stance
-    """Shorter steps are drawn towards it."""
+    stance: Array
+    """Ball (3) and orientation (4) of each foot of the stance, (legs, 7)."""
 
     _times: dict[tuple[int, float], float] = field(default_factory=dict, repr=False, compare=False)
     """Recent results of `time`, which is called three times a frame for each phase."""
@@ -78,7 +59,7 @@ class FootTrajectories:
 
         The signs of the orientations are aligned with those of the stance.
         """
-        stance = Stance.of(standing, legs)
+        stance = _feet(standing, legs)
         clips = [motion.motion for motion in motions if isinstance(motion.motion, Clip)]
         feet = [_foot_trajectory(clip, skeleton, legs, stance) for clip in clips]
         still = Clip("stance", 1.0, _as_frame(standing), loop=False)
@@ -142,6 +123,12 @@ class FootTrajectories:
         return total
 
     @cached_property
+    def stance_list(self) -> list[list[float]]:
+        """`stance` as Python numbers."""
+        stance: list[list[float]] = self.stance.tolist()
+        return stance
+
+    @cached_property
     def homes_list(self) -> list[list[list[float]]]:
         """`homes` as Python numbers."""
         homes: list[list[list[float]]] = self.homes.tolist()
@@ -155,10 +142,10 @@ class FootTrajectories:
         return [feet[low:high, :, 7].tolist() for low, high in pairwise(starts)]
 
 
-def _foot_trajectory(clip: Clip, skeleton: Skeleton, legs: LegIK, stance: Stance) -> Array:
+def _foot_trajectory(clip: Clip, skeleton: Skeleton, legs: LegIK, stance: Array) -> Array:
     """Return ball, orientation and contact of each foot of a clip, (frames, legs, 8)."""
     feet = np.concatenate([_feet(clip.in_place, legs), np.zeros((len(clip), legs.count, 1))], 2)
-    feet[..., 3:7] = rotations.align(feet[..., 3:7], stance.feet[:, 3:])
+    feet[..., 3:7] = rotations.align(feet[..., 3:7], stance[:, 3:])
     down = find_contacts(clip, skeleton, legs.feet)
     # Contacts end by the foot's speed, and so a little late.
     after = np.roll(down[:-1], -1, axis=0)

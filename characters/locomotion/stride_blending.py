@@ -85,7 +85,7 @@ class StrideBlend(PhaseDriven):
         """
         balls: list[Vector] = []
         facings: list[Quaternion] = []
-        stance = self.trajectories.stance.feet_list
+        stance = self.trajectories.stance_list
         for leg, (foot, still) in enumerate(zip(feet, stance, strict=True)):
             homes = [
                 (self.trajectories.homes_list[number][leg], weight)

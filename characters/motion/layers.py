@@ -14,14 +14,22 @@ from characters.skeleton.pose import Array, Pose
 
 
 @dataclass(frozen=True)
-class MaskedLayer:
-    """A motion over another one on the joints of a mask, such as waving while walking."""
-
+class _Layer:
     base: Motion
     """The lower motion; it defines the duration."""
 
     over: Motion
-    """The upper motion, at the same time."""
+    """The motion of the layer, at the same time."""
+
+    @property
+    def duration(self) -> float:
+        """Time until the base repeats or ends [s]."""
+        return self.base.duration
+
+
+@dataclass(frozen=True)
+class MaskedLayer(_Layer):
+    """A motion over another one on the joints of a mask, such as waving while walking."""
 
     mask: Mask | None = None
     """Share of `over` for each joint, (joints,), or None for 1."""
@@ -35,12 +43,8 @@ class MaskedLayer:
     def __post_init__(self) -> None:
         """Refuse invalid masks and weights."""
         check_mask("layer", self.mask)
-        _check_weight("layer", self.weight)
-
-    @property
-    def duration(self) -> float:
-        """Time until the base repeats or ends [s]."""
-        return self.base.duration
+        if isinstance(self.weight, (int, float)) and not 0.0 <= self.weight <= 1.0:
+            raise CharacterError(f"layer: weight {self.weight}; give 0 to 1")
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
@@ -72,17 +76,11 @@ class MaskedLayer:
 
 
 @dataclass(frozen=True)
-class AdditiveLayer:
+class AdditiveLayer(_Layer):
     """The difference of a motion from a reference, added to another motion: breathing in any pose.
 
     Rotations are added in the frame of each joint's parent. The root moves as the base's root.
     """
-
-    base: Motion
-    """The lower motion; it defines the duration."""
-
-    over: Motion
-    """The added motion, at the same time."""
 
     reference: Pose | None = None
     """Pose of `over` that adds nothing; None for its first pose."""
@@ -98,11 +96,6 @@ class AdditiveLayer:
         check_mask("added layer", self.mask)
         if isinstance(self.weight, (int, float)) and not np.isfinite(self.weight):
             raise CharacterError(f"added layer: weight {self.weight}; give a finite number")
-
-    @property
-    def duration(self) -> float:
-        """Time until the base repeats or ends [s]."""
-        return self.base.duration
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
@@ -188,8 +181,3 @@ def _check_joints(what: str, a: Pose, b: Pose) -> None:
             f"{what}: poses of shapes {a.rotations.shape} and {b.rotations.shape}; "
             "retarget one of the motions to the other's skeleton"
         )
-
-
-def _check_weight(what: str, weight: Weight) -> None:
-    if isinstance(weight, (int, float)) and not 0.0 <= weight <= 1.0:
-        raise CharacterError(f"{what}: weight {weight}; give 0 to 1")

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.errors import CharacterError
+from characters.skeleton.joint_chains import children_of
 from characters.skeleton.pose import Array, Skeleton
 
 _REFLECTION = np.array([-1.0, 1.0, 1.0])
@@ -32,9 +33,7 @@ def paired_joints(
     size = max(float(np.ptp(positions, axis=0).max()), 1e-9)
     given = {skeleton.index(a): skeleton.index(b) for a, b in pairs.items()}
     given |= {b: a for a, b in given.items()}
-    children: dict[int, list[int]] = {}
-    for joint, parent in enumerate(skeleton.parents):
-        children.setdefault(parent, []).append(joint)
+    children = children_of(skeleton.parents)
     partners = np.full(len(skeleton), -1, np.intp)
     for parent in range(-1, len(skeleton)):
         other = int(partners[parent]) if parent >= 0 else -1

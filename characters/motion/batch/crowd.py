@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from characters.motion.batch.bank import ClipBank
-from characters.skeleton.pose import Pose, Skeleton
+from characters.skeleton.pose import Skeleton
 
 Floats = NDArray[Any]
 Indices = NDArray[np.intp]
@@ -48,7 +48,7 @@ class _DepthOrder:
 def crowd_globals(bank: ClipBank, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Floats:
     """Return `character_from_joint` of many characters, each of which mixes some clips.
 
-    Equal to `globals_of_many` of `ClipBank.sample`, but faster.
+    Equal to `Pose.globals` of `ClipBank.sample`, but faster.
 
     Parameters
     ----------
@@ -71,35 +71,10 @@ def crowd_globals(bank: ClipBank, clips: ArrayLike, times: ArrayLike, weights: A
     turns = columns[:turned].reshape(joints, 4, -1)
     turns = turns / np.sqrt(np.einsum("jkn,jkn->jn", turns, turns))[:, None]
     shifts = _with_constants(bank.constant.translations, bank.moving, columns[turned:shifted])
-    non_unit_scale, scales = bank.non_unit_scale, None
+    scaled, scales = bank.non_unit_scale, None
     if bank.constant.scales is not None:
-        scales = _with_constants(bank.constant.scales, bank.scaling, columns[shifted:sized])[
-            non_unit_scale
-        ]
-    return _globals(turns, shifts, scales, non_unit_scale, bank.skeleton)
-
-
-def globals_of_many(pose: Pose, skeleton: Skeleton) -> Floats:
-    """Return `character_from_joint` of every joint of many poses, (poses, joints, 3, 4).
-
-    The last row of each matrix, (0, 0, 0, 1), is left out. For one pose `Pose.globals` is faster.
-
-    Parameters
-    ----------
-    pose
-        (poses, joints, …), of any precision; the result has the same precision.
-    skeleton
-        The skeleton of all poses.
-    """
-    count, joints = pose.rotations.shape[:2]
-    turns, shifts = (
-        _transposed(part.reshape(count, -1)).reshape(joints, -1, count)
-        for part in (pose.rotations, pose.translations)
-    )
-    scales = None
-    if pose.scales is not None:
-        scales = _transposed(pose.scales.reshape(count, -1)).reshape(joints, 3, count)
-    return _globals(turns, shifts, scales, np.arange(joints), skeleton)
+        scales = _with_constants(bank.constant.scales, bank.scaling, columns[shifted:sized])[scaled]
+    return _globals(turns, shifts, scales, scaled, bank.skeleton)
 
 
 def _globals(
@@ -154,7 +129,7 @@ def _rotate(q: Floats, matrices: Floats) -> None:
 def _with_constants(constant: Floats, moving: Indices, columns: Floats) -> Floats:
     """Return values (joints, 3, n) for all n characters: constants, and varying columns."""
     everyone = np.repeat(constant[..., None], columns.shape[1], axis=2)
-    everyone[moving] = columns.reshape(len(moving), 3, -1)
+    everyone[moving] = columns.reshape(len(moving), 3, columns.shape[1])
     return everyone
 
 

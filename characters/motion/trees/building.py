@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -110,7 +111,10 @@ class Builder:
         if id(node) in self._constant:
             return self._constant[id(node)]
         try:
-            motion = _BUILDERS[node.kind](self, node, values)
+            if node.kind in _MODIFIERS:
+                motion = _MODIFIERS[node.kind](self._of(node, values), node.fields)
+            else:
+                motion = _BUILDERS[node.kind](self, node, values)
             if not node.parametric:
                 self._constant[id(node)] = motion
             return motion
@@ -126,18 +130,6 @@ class Builder:
     def _clip(self, node: Node, values: Values) -> Motion:
         return self._clips[node.fields["clip"]]
 
-    def _hold(self, node: Node, values: Values) -> Motion:
-        return StaticPose(self._of(node, values).sample(node.fields["at"]), 1.0)
-
-    def _stretch(self, node: Node, values: Values) -> Motion:
-        return Stretch(self._of(node, values), node.fields["seconds"])
-
-    def _window(self, node: Node, values: Values) -> Motion:
-        return Window(self._of(node, values), node.fields["start"], node.fields["end"])
-
-    def _loop(self, node: Node, values: Values) -> Motion:
-        return Loop(self._of(node, values))
-
     def _mirrored(self, node: Node, values: Values) -> Motion:
         return Mirrored(self._of(node, values), self._mirror())
 
@@ -146,11 +138,6 @@ class Builder:
         roots = tuple(j for j, parent in enumerate(self._skeleton.parents) if parent < 0)
         offset = RootDelta(node.fields["x"], node.fields["z"], yaw)
         return RootOffset(self._of(node, values), offset, roots)
-
-    def _warped(self, node: Node, values: Values) -> Motion:
-        return Warped(
-            self._of(node, values), TimeCurve(node.fields["times"], node.fields["sources"])
-        )
 
     def _time_scaled(self, node: Node, values: Values) -> Motion:
         rate, stride = node.fields["rate"], node.fields["stride"]
@@ -241,15 +228,19 @@ class Builder:
         raise CharacterError(f"{self._plan.source}: {node.path}: {what}")
 
 
+_MODIFIERS: Mapping[str, Callable[[Motion, Mapping[str, Any]], Motion]] = {
+    "hold": lambda motion, fields: StaticPose(motion.sample(fields["at"]), 1.0),
+    "stretch": lambda motion, fields: Stretch(motion, fields["seconds"]),
+    "window": lambda motion, fields: Window(motion, fields["start"], fields["end"]),
+    "loop": lambda motion, _: Loop(motion),
+    "warp": lambda motion, fields: Warped(motion, TimeCurve(fields["times"], fields["sources"])),
+}
+"""Builders of the kinds that depend on one motion and their own fields only."""
+
 _BUILDERS: Mapping[str, Callable[[Builder, Node, Values], Motion]] = {
     "clip": Builder._clip,
-    "hold": Builder._hold,
-    "stretch": Builder._stretch,
-    "window": Builder._window,
-    "loop": Builder._loop,
     "mirror": Builder._mirrored,
     "displace": Builder._root_offset,
-    "warp": Builder._warped,
     "pace": Builder._time_scaled,
     "blend": Builder._blend,
     "space": Builder._space,

@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from characters import Character, CharacterError, Clip, Pose, Skeleton
 from characters.motion.batch.bank import ClipBank
-from characters.motion.batch.crowd import crowd_globals, globals_of_many
+from characters.motion.batch.crowd import crowd_globals
 from characters.motion.blend import mix
 from characters.skeleton.rotations import about, normalize
 
@@ -49,18 +49,21 @@ def test_a_crowd_mixes_as_one_character_does(vleo):
 
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 2**32 - 1))
-def test_matrices_of_many_are_those_of_each(seed):
+def test_matrices_of_any_skeleton_are_those_of_its_poses(seed):
     rng = np.random.default_rng(seed)
     joints, count = int(rng.integers(1, 12)), int(rng.integers(1, 5))
     parents = tuple(int(rng.integers(-1, joint)) if joint else -1 for joint in range(joints))
-    pose = Pose(
+    poses = Pose(
         rng.normal(size=(count, joints, 3)),
         normalize(rng.normal(size=(count, joints, 4))),
         rng.uniform(0.5, 2.0, (count, joints, 3)) if seed % 2 else None,
     )
-    skeleton = Skeleton(tuple(map(str, range(joints))), parents, pose[0])
-    each = pose.globals(skeleton)
-    np.testing.assert_allclose(globals_of_many(pose, skeleton), each[:, :, :3], atol=1e-9)
+    skeleton = Skeleton(tuple(map(str, range(joints))), parents, poses[0])
+    clips = [Clip(str(n), 1.0, poses[np.array([n])], loop=False) for n in range(count)]
+    bank = ClipBank.of(skeleton, clips, np.float64)
+    one_each = np.arange(count)[:, None], np.zeros((count, 1)), np.ones((count, 1))
+    expected = poses.globals(skeleton)[:, :, :3]
+    np.testing.assert_allclose(crowd_globals(bank, *one_each), expected, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", Character.bundled())

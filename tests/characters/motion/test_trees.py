@@ -11,10 +11,11 @@ from characters import Animator, Character, CharacterCommand, CharacterError, Lo
 from characters.control.builtin_tree import built_in
 from characters.model.mirroring import mirror_of
 from characters.model.sidecar import read_sidecar
-from characters.motion.trees import KINDS, PARAMETERS, read_plan
 from characters.motion.trees.building import Builder
 from characters.motion.trees.conditions import Condition, ConditionError
 from characters.motion.trees.dot import to_dot
+from characters.motion.trees.plan import KINDS, PARAMETERS
+from characters.motion.trees.reading import read_plan
 
 HUMAN_TOML = """
 [parameters]
