@@ -6,7 +6,7 @@ from typing import Any
 
 from affect.emotion import Emotion
 from affect.errors import AffectError
-from affect.settings import Table, parsed, read
+from affect.settings import Table, parse, read
 from affect.traits import AffectImpulse, Ocean
 
 FOLDER = Path(__file__).parent / "personalities"
@@ -41,7 +41,7 @@ def read_fields(path: Path) -> dict[str, Any]:
 
 def parse_fields(text: str, source: str) -> dict[str, Any]:
     """Return the fields of `Personality` that a TOML text gives; errors name it as `source`."""
-    return _fields(parsed(text, source), source)
+    return _fields(parse(text, source), source)
 
 
 def _fields(document: Mapping[str, Any], source: str) -> dict[str, Any]:

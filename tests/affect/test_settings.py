@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from affect.errors import AffectError
-from affect.settings import ENTRIES_MAX, LARGEST, Table, parsed, read
+from affect.settings import MAX_ENTRIES, MAX_FILE_BYTES, Table, parse, read
 
 
 def outcome(do, *what) -> str | None:
@@ -65,7 +65,7 @@ def test_what_may_never_end_is_not_opened(tmp_path):
         (b"a = 1\na = 2", "not TOML: Cannot overwrite a value"),
         (b"a = \xff", "not UTF-8 (byte 4)"),
         (b"\xff\xfea\0", "not UTF-8 (byte 0)"),
-        (b"# \n" * LARGEST, f"larger than {LARGEST} bytes"),
+        (b"# \n" * MAX_FILE_BYTES, f"larger than {MAX_FILE_BYTES} bytes"),
         (b"a = " + b"9" * 1990 + b"\nb = [" + b"9" * 3000 + b"]", "more than 2000 characters"),
         (b"a = " + b"[" * 1900, "too deeply nested"),
     ],
@@ -76,16 +76,18 @@ def test_what_is_no_toml_is_refused_with_its_place(tmp_path, content, says):
     assert says in refusal(read, tmp_path / "x.toml")
 
 
-@pytest.mark.parametrize("text", ["a." * (LARGEST // 2 - 3) + "a = 1", "a = " + "9" * 60_000])
+@pytest.mark.parametrize(
+    "text", ["a." * (MAX_FILE_BYTES // 2 - 3) + "a = 1", "a = " + "9" * 60_000]
+)
 def test_a_file_made_to_keep_us_busy_is_refused_at_once(text):
     begun = time.process_time()
-    refusal(parsed, text, "x.toml")
+    refusal(parse, text, "x.toml")
     assert time.process_time() - begun < 1.0
 
 
 @given(st.one_of(st.text(), st.text("[]{}=.\"'\\#ab1-_:\n\r\t \0", max_size=60)))
 def test_any_text_is_toml_or_is_refused_in_one_line(text):
-    line = outcome(parsed, text, "x.toml")
+    line = outcome(parse, text, "x.toml")
     assert line is None or line.startswith("x.toml: ")
 
 
@@ -108,7 +110,7 @@ ASKED = {
     ("kind", "value", "says"),
     [
         ("text", 3, "must be a text, not 3"),
-        ("texts", "a", f"must be a list of at most {ENTRIES_MAX} texts, not 'a'"),
+        ("texts", "a", f"must be a list of at most {MAX_ENTRIES} texts, not 'a'"),
         ("texts", ["a"] * 65, "must be a list of at most"),
         ("texts", ["a", 3], "must be texts that can be printed, none of them empty, not 3"),
         ("texts", [" "], "none of them empty, not ' '"),
@@ -124,7 +126,7 @@ ASKED = {
         ("whole", 1.0, "must be a whole number from 0 to 100, not 1.0"),
         ("whole", True, "must be a whole number from 0 to 100, not True"),
         ("truth", 1, "must be true or false, not 1"),
-        ("list", 1, f"must be a list of at most {ENTRIES_MAX} pairs, not 1"),
+        ("list", 1, f"must be a list of at most {MAX_ENTRIES} pairs, not 1"),
         ("table", 1, "must be a table of valence, arousal, not 1"),
         ("table", {"v": 1}, ".v means nothing here; there are valence, arousal"),
         ("tables", {"": {}}, ": a name has 1 to 64 bytes, all of them printable"),
