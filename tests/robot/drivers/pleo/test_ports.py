@@ -20,7 +20,7 @@ def fast() -> float:
 
 
 HAPPY = robot.Emotion(0.8, 0.5)
-DOCUMENT = Path(__file__).parents[3] / "docs" / "pleo.md"
+DOCUMENT = Path(__file__).parents[4] / "docs" / "pleo.md"
 
 
 def all_answered(counts: robot.LinkCounts) -> bool:

@@ -131,7 +131,7 @@ static void send_welcome(robot *self)
         .sounds = COUNT(SOUNDS),
         .moods = COUNT(MOODS),
         .name = "Stranger",
-        .firmware = "stranger 1",
+        .firmware = "c robot 1",
     };
     send(self, body, cubeling_pack_welcome(body, self->session, self->version, &welcome));
 }

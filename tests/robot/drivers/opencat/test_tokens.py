@@ -161,7 +161,7 @@ def test_nothing_leaves_a_host_but_through_the_gate(monkeypatch):
 
 
 def test_the_example_in_the_document_loads_and_says_what_the_document_says(tmp_path):
-    text = (Path(__file__).parents[3] / "docs" / "opencat.md").read_text("utf-8")
+    text = (Path(__file__).parents[4] / "docs" / "opencat.md").read_text("utf-8")
     example = tmp_path / "example.toml"
     example.write_text(text.split("```toml\n")[1].split("```")[0], "utf-8")
     settings, bundled = load_settings(example), load_settings()

@@ -1,6 +1,6 @@
 """A robot written from PROTOCOL.md alone, with nothing of ours, works with our host.
 
-It is what a stranger's firmware would be: bitwise CRC, byte-wise COBS, offsets from the tables; and
+It is what independent firmware would be: bitwise CRC, byte-wise COBS, offsets from the tables; and
 it conforms.
 """
 
@@ -30,7 +30,7 @@ MAX_EMOTION_SPEED = 8000
 """Fastest change of the emotion that it shows [1/10000 of valence and of arousal, per second]."""
 
 
-class StrangersRobot:
+class IndependentRobot:
     """One joint, two motions, no sound, one mood, version 1; sections are those of the document."""
 
     edge = b"\0"
@@ -200,24 +200,24 @@ class StrangersRobot:
 
 
 @pytest.fixture
-def strange_world(world):
+def independent_world(world):
     def make(**harm: float):
         made = world(seed=4, **harm)
-        made.robot = StrangersRobot()
+        made.robot = IndependentRobot()
         return made
 
     return make
 
 
-def test_a_strangers_robot_conforms():
-    report = run_checks(SimulatedChannel(StrangersRobot()), all_checks(), host=1)
+def test_an_independent_robot_conforms():
+    report = run_checks(SimulatedChannel(IndependentRobot()), all_checks(), host=1)
     failed = [(one.check.name, one.received) for one in report.results if one.verdict == "failed"]
     assert failed == []
     assert report.conforms
 
 
-def test_a_strangers_robot_introduces_itself_and_obeys(strange_world):
-    w = strange_world()
+def test_an_independent_robot_introduces_itself_and_obeys(independent_world):
+    w = independent_world()
     w.run_until(lambda: w.telemetry.state == "ready", within=0.5)
     assert w.host.catalogue.motions == ("rest", "hop")
     w.host.express(Emotion(0.5, -0.25))
@@ -233,8 +233,8 @@ def test_a_strangers_robot_introduces_itself_and_obeys(strange_world):
     assert (telemetry.battery, dict(telemetry.joints)) == (0.5, {"head": 0.123})
 
 
-def test_a_strangers_robot_is_neutral_in_time_and_brought_back(strange_world):
-    w = strange_world()
+def test_an_independent_robot_is_neutral_in_time_and_brought_back(independent_world):
+    w = independent_world()
     w.host.express(Emotion(0.5, 0.5))
     w.run(0.5)
     w.to_robot.cut = True
@@ -245,8 +245,8 @@ def test_a_strangers_robot_is_neutral_in_time_and_brought_back(strange_world):
     assert w.robot.emotion == (5000, 5000)
 
 
-def test_a_strangers_robot_survives_a_bad_line(strange_world):
-    w = strange_world(drop=0.1, flip=0.005, dup=0.1, babble=300, split=0.3)
+def test_an_independent_robot_survives_a_bad_line(independent_world):
+    w = independent_world(drop=0.1, flip=0.005, dup=0.1, babble=300, split=0.3)
     for index in range(1, 60):
         w.host.express(Emotion(index / 10_000, 0.0))
         w.run(0.1)

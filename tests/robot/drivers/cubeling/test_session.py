@@ -302,10 +302,10 @@ def test_bytes_that_waited_while_the_robot_hung_command_nothing(open_world):
     assert w.telemetry.acknowledged == ANGRY
 
 
-# --- The robot alone, as a stranger would meet it ------------------------------------------------
+# --- The robot side alone, with single messages of a foreign host --------------------------------
 
 
-class Stranger:
+class ForeignHost:
     """Says single messages to a robot and reads its answers."""
 
     def __init__(self) -> None:
@@ -318,49 +318,49 @@ class Stranger:
 
 
 def test_a_command_that_comes_twice_is_taken_once_and_acknowledged_twice():
-    stranger = Stranger()
-    stranger.say(m.Hello(1, 5))
-    assert stranger.say(m.Express(1, 0.5, 0)) == [m.Ack(1, m.TAKEN)]
-    stranger.say(m.Express(2, -0.5, 0))
-    assert stranger.say(m.Express(1, 0.5, 0)) == [m.Ack(1, m.TAKEN)]
-    assert stranger.robot.body.target.valence == -0.5
+    foreign = ForeignHost()
+    foreign.say(m.Hello(1, 5))
+    assert foreign.say(m.Express(1, 0.5, 0)) == [m.Ack(1, m.TAKEN)]
+    foreign.say(m.Express(2, -0.5, 0))
+    assert foreign.say(m.Express(1, 0.5, 0)) == [m.Ack(1, m.TAKEN)]
+    assert foreign.robot.body.target.valence == -0.5
 
 
 def test_a_second_hello_of_the_same_session_changes_nothing():
-    stranger = Stranger()
-    (first,) = stranger.say(m.Hello(1, 5))
-    stranger.say(m.Express(1, 0.5, 0))
-    (again,) = stranger.say(m.Hello(1, 5))
+    foreign = ForeignHost()
+    (first,) = foreign.say(m.Hello(1, 5))
+    foreign.say(m.Express(1, 0.5, 0))
+    (again,) = foreign.say(m.Hello(1, 5))
     assert (first.taken, again.taken) == (0, 1)
-    assert stranger.robot.body.target.valence == 0.5
+    assert foreign.robot.body.target.valence == 0.5
 
 
 def test_another_host_finds_a_neutral_robot_that_counts_from_one():
-    stranger = Stranger()
-    stranger.say(m.Hello(1, 5))
-    stranger.say(m.Express(900, 0.5, 0))
-    (welcome,) = stranger.say(m.Hello(1, 6), session=2)
+    foreign = ForeignHost()
+    foreign.say(m.Hello(1, 5))
+    foreign.say(m.Express(900, 0.5, 0))
+    (welcome,) = foreign.say(m.Hello(1, 6), session=2)
     assert welcome.taken == 0
-    assert stranger.robot.body.target == Emotion(0, 0)
-    assert stranger.say(m.Express(1, 0.5, 0), session=2) == [m.Ack(1, m.TAKEN)]
+    assert foreign.robot.body.target == Emotion(0, 0)
+    assert foreign.say(m.Express(1, 0.5, 0), session=2) == [m.Ack(1, m.TAKEN)]
 
 
 def test_a_session_that_is_not_open_is_gone_and_gone_is_not_said_all_the_time():
-    stranger = Stranger()
-    assert stranger.say(m.Express(1, 0.5, 0), session=9, now=0.0) == [m.Gone()]
-    assert stranger.say(m.Beat(1), session=9, now=0.01) == []
-    assert stranger.say(m.Beat(2), session=9, now=0.02) == [m.Gone()]
-    assert stranger.robot.body.target == Emotion(0, 0)
+    foreign = ForeignHost()
+    assert foreign.say(m.Express(1, 0.5, 0), session=9, now=0.0) == [m.Gone()]
+    assert foreign.say(m.Beat(1), session=9, now=0.01) == []
+    assert foreign.say(m.Beat(2), session=9, now=0.02) == [m.Gone()]
+    assert foreign.robot.body.target == Emotion(0, 0)
 
 
 def test_a_newer_host_is_answered_in_the_robots_version():
-    (welcome,) = Stranger().say(m.Hello(200, 5))
+    (welcome,) = ForeignHost().say(m.Hello(200, 5))
     assert welcome.version == timing.VERSION
 
 
 def test_a_robot_states_itself_even_when_no_beat_reaches_it():
-    stranger = Stranger()
-    stranger.say(m.Hello(1, 5))
-    stranger.robot.advance(timing.STATE_EVERY)
-    (body,) = FrameReader().feed(stranger.robot.bytes_to_send())
+    foreign = ForeignHost()
+    foreign.say(m.Hello(1, 5))
+    foreign.robot.advance(timing.STATE_EVERY)
+    (body,) = FrameReader().feed(foreign.robot.bytes_to_send())
     assert isinstance(unpack(body, "robot")[1], m.State)

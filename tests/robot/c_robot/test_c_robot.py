@@ -122,16 +122,16 @@ def url(build) -> Iterator[str]:
 
 
 def test_our_host_is_connected_and_obeyed_on_a_real_line(url, soon):
-    with robot.connect(url) as stranger:
-        assert stranger.catalogue.motions == ("nod", "wag", "prick up")
-        stranger.express(robot.Emotion(-0.6, -0.4, "sad"))
-        soon(lambda: stranger.telemetry.label == "sad")
-        stranger.play("wag")
-        soon(lambda: stranger.telemetry.motion == "wag")
-        stranger.stop()
-        soon(lambda: stranger.telemetry.stopped and stranger.telemetry.motion is None)
-        assert stranger.telemetry.reckoned
-        assert stranger.telemetry.joints.keys() == {"neck", "tail", "ears"}
+    with robot.connect(url) as dino:
+        assert dino.catalogue.motions == ("nod", "wag", "prick up")
+        dino.express(robot.Emotion(-0.6, -0.4, "sad"))
+        soon(lambda: dino.telemetry.label == "sad")
+        dino.play("wag")
+        soon(lambda: dino.telemetry.motion == "wag")
+        dino.stop()
+        soon(lambda: dino.telemetry.stopped and dino.telemetry.motion is None)
+        assert dino.telemetry.reckoned
+        assert dino.telemetry.joints.keys() == {"neck", "tail", "ears"}
 
 
 QUICK = (
