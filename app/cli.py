@@ -7,7 +7,6 @@ neither OpenCV nor numpy.
 import signal
 import sys
 import warnings
-from dataclasses import dataclass
 from importlib import import_module
 from typing import Annotated, Any, TextIO
 
@@ -21,67 +20,30 @@ BAD_INPUT_EXIT_CODE = 2
 """Exit code for every error that the user can correct."""
 
 
-@dataclass(frozen=True)
-class LazyCommand:
-    """A command whose module is not imported yet."""
-
-    module: str
-    """Module that defines it."""
-
-    attribute: str
-    """The command's function, or the `Typer` of a group, in that module."""
-
-    summary: str
-    """The first sentence of its help."""
-
-    def load(self, name: str) -> Any:
-        """Import the module and return the command."""
-        target = getattr(import_module(self.module), self.attribute)
-        if not isinstance(target, typer.Typer):
-            function, target = target, typer.Typer(rich_markup_mode="rich", add_completion=False)
-            target.command(name)(function)
-        return typer.main.get_command(target)
-
-
 COMMANDS = {
-    "demo": LazyCommand(
-        "app.commands.demo",
-        "demo",
-        "See it work: with your camera, or with the bundled recording, or as a video.",
-    ),
-    "play": LazyCommand("app.commands.play", "play", "Play with the cube in front of a camera."),
-    "replay": LazyCommand(
-        "app.commands.replay",
-        "replay",
-        "Play a recorded session: in a window, to a video, or only to its summary.",
-    ),
-    "bridge": LazyCommand(
-        "app.commands.bridge",
-        "bridge",
-        "Let robots follow players in other places, over an MQTT broker; docs/many.md tells how.",
-    ),
-    "cube": LazyCommand(
-        "app.commands.cube", "cube", "Write a cube as a sheet to print, cut, fold and glue."
-    ),
-    "calibrate": LazyCommand(
-        "app.commands.calibrate",
-        "calibrate",
-        "Find the camera's lens by waving the cube before it for about 20 seconds.",
-    ),
-    "character": LazyCommand("app.commands.character", "app", "Look at characters and motions."),
-    "robot": LazyCommand("app.commands.robot", "app", "Simulated robots and real ports."),
-    "mood": LazyCommand(
-        "app.commands.mood",
-        "app",
-        "Moods of recorded sessions, and the personalities that have them.",
-    ),
-    "doctor": LazyCommand(
-        "app.commands.doctor",
-        "doctor",
-        "Say what this computer has, what is missing, and the command that puts it right.",
-    ),
+    "demo": "See it work: with your camera, or with the bundled recording, or as a video.",
+    "play": "Play with the cube in front of a camera.",
+    "replay": "Play a recorded session: in a window, to a video, or only to its summary.",
+    "bridge": "Let robots follow players on other computers, over an MQTT broker; "
+    "see docs/many.md.",
+    "cube": "Write a cube as a sheet to print, cut, fold and glue.",
+    "calibrate": "Find the camera's lens by waving the cube before it for about 20 seconds.",
+    "character": "Look at characters and motions.",
+    "robot": "Simulated robots and real ports.",
+    "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
+    "doctor": "Say what this computer has, what is missing, and the command that puts it right.",
 }
-"""The commands by name, in the order of the help. A new command is registered here."""
+"""The commands with the first sentence of their help. A new command is registered here."""
+
+
+def load_command(name: str) -> Any:
+    """Import `app.commands.NAME`, and return its function NAME, or the group that is its `app`."""
+    module = import_module(f"app.commands.{name}")
+    group = getattr(module, "app", None)
+    if group is None:
+        group = typer.Typer(rich_markup_mode="rich", add_completion=False)
+        group.command(name)(getattr(module, name))
+    return typer.main.get_command(group)
 
 
 class LazyGroup(typer.core.TyperGroup):
@@ -89,13 +51,13 @@ class LazyGroup(typer.core.TyperGroup):
 
     def __init__(self, **attributes: Any) -> None:
         super().__init__(**attributes)
-        for name, command in COMMANDS.items():
-            self.add_command(typer.core.TyperCommand(name, help=command.summary))
+        for name, summary in COMMANDS.items():
+            self.add_command(typer.core.TyperCommand(name, help=summary))
 
     def resolve_command(self, ctx: Any, args: list[str]) -> tuple[str | None, Any, list[str]]:
         """Return the name, the command and the arguments that are left for it."""
         name, command, rest = super().resolve_command(ctx, args)
-        return name, COMMANDS[name].load(name) if name in COMMANDS else command, rest
+        return name, load_command(name) if name in COMMANDS else command, rest
 
 
 app = typer.Typer(

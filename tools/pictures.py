@@ -15,8 +15,8 @@ from app.commands.mood import plot
 from app.pipeline.playground import Playground
 from app.pipeline.step import RobotView
 from app.running.opening import intrinsics_for, open_session
-from app.running.options import SessionOptions
 from app.running.runner import run
+from app.session import SessionOptions
 from app.session.bundled import bundled
 from app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from app.ui.calibration.coach_lines import write_coverage

@@ -11,8 +11,8 @@ from rich.console import Console
 
 from app.commands.progress import run_with_progress
 from app.running.opening import open_session
-from app.running.options import SessionOptions
 from app.scenarios import SCENARIOS
+from app.session import SessionOptions
 
 FOLDER = Path(__file__).parent.parent / "recordings"
 

@@ -11,8 +11,8 @@ from rich.console import Console
 from app.commands.play import DEFAULT_CAMERA, PersonalityOption
 from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
 from app.running.opening import open_session
-from app.running.options import SessionOptions
 from app.scenarios import scenario_cube
+from app.session import SessionOptions
 from app.session.bundled import bundled
 from app.ui.display import has_display
 from tracking import FrameSource, TrackingError, open_source

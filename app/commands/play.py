@@ -11,8 +11,8 @@ from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publ
 from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
 from app.running.network import SITE
 from app.running.opening import open_session
-from app.running.options import SessionOptions
 from app.scenarios import scenario_cube
+from app.session import SessionOptions
 from app.ui.display import require_display
 from robot.network import Credentials
 

@@ -1,6 +1,7 @@
 """`cubeling replay`."""
 
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -21,7 +22,6 @@ from app.commands.play import (
 from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
 from app.running.network import SITE
 from app.running.opening import open_session
-from app.running.options import SessionOptions
 from app.running.replay_check import check_session
 from app.session import session_info
 from app.ui.display import has_display
@@ -68,16 +68,12 @@ def replay(
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """
     console = Console()
-    recorded = session_info(session, salvage=salvage)
-    options = SessionOptions(
+    recorded = session_info(session, salvage=salvage).options
+    options = replace(
+        recorded,
         scenario=scenario or recorded.scenario,
-        source=str(session),
-        cube=recorded.cube or None,
-        character=character or recorded.character or None,
-        speed_map=recorded.speed_map,
-        turns=recorded.turns,
-        personality=personality or recorded.personality or None,
-        look=recorded.look,
+        character=character or recorded.character,
+        personality=personality or recorded.personality,
         robot=robot,
         robot_settings=robot_settings,
         record=record,

@@ -126,7 +126,7 @@ def replay_with(history: MoodHistory, personality: Personality) -> EmotionTrack:
     """Return the emotion that another personality would have had in a session."""
     mood = MoodController(personality)
     # Only the companion scenario has an intensity; in others, an action counts fully.
-    has_intensity = history.info.scenario == "companion"
+    has_intensity = history.info.options.scenario == "companion"
     targets = []
     for controls, command in zip(history.controls, history.commands, strict=True):
         if controls.timestamp in history.start_over_times:

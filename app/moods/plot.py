@@ -272,7 +272,7 @@ def _draw_actions(axes: Axes, history: MoodHistory) -> None:
     for name, start, end in found:
         if _fits(axes, name, start, end):
             axes.text((start + end) / 2, 1.72, name, ha="center", va="center", fontweight="bold")
-    if history.info.scenario == "companion":
+    if history.info.options.scenario == "companion":
         label, ends, values = "intensity", ("−1", "+1"), history.weights
     else:
         label, ends = "Speed", ("0", "5")
@@ -338,8 +338,8 @@ def _draw_plane(axes: Axes, labels: LabelSet, curves: Sequence[Curve]) -> None:
 def _write_heading(figure: Figure, history: MoodHistory, others: Sequence[EmotionTrack]) -> None:
     """Write which session it is, how it was recorded, and whose emotions are compared."""
     info = history.info
-    parts = [f"scenario {info.scenario}", f"{info.duration:.1f} s"]
-    parts.append(f"recorded with {info.personality or OWN_PERSONALITY}")
+    parts = [f"scenario {info.options.scenario}", f"{info.duration:.1f} s"]
+    parts.append(f"recorded with {info.options.personality or OWN_PERSONALITY}")
     if others:
         names = [track.personality for track in others]
         listed = " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))

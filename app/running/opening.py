@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import moderngl
@@ -11,11 +11,10 @@ from app.errors import AppError
 from app.pipeline.playground import Playground
 from app.pipeline.step import ReplayInputs
 from app.running.clock import SessionClock
-from app.running.options import SessionOptions
 from app.running.players import PlayerPublisher
 from app.running.robots import RobotLine, WireRecorder
 from app.scenarios import make_scenario, scenario_cube
-from app.session import Recorder, start_over_times
+from app.session import Recorder, SessionOptions, start_over_times
 from app.session.replay_inputs import read_replay_inputs
 from app.ui.overlay import virtual_robot_side
 from app.ui.screen import NullScreen, Screen, VideoFile
@@ -121,8 +120,9 @@ def open_session(
             replay_inputs = read_replay_inputs(options.source, options.start)
         recorder = wire = None
         if options.record is not None:
-            about = recording_metadata(options, cube, source)
-            recorder = closing.enter_context(Recorder(options.record, about))
+            named = replace(options, cube=options.cube or cube.name)
+            metadata = {**named.metadata(), "rate": f"{source.rate:g}"}
+            recorder = closing.enter_context(Recorder(options.record, metadata))
             wire = WireRecorder(recorder)
         clock = SessionClock()
         paced = options.windowed or player is not None  # other players live in real time
@@ -184,24 +184,6 @@ def intrinsics_for(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intr
             f"the camera gives {size[0]}x{size[1]}: calibrate it at this size"
         )
     return intrinsics.scaled(size)
-
-
-def recording_metadata(
-    options: SessionOptions, cube: CubeModel, source: FrameSource
-) -> dict[str, str]:
-    """Return what a recording says of itself: all that a replay needs to know."""
-    uri = options.source
-    return {
-        "scenario": options.scenario,
-        "cube": options.cube or cube.name,
-        "character": options.character or "",
-        "speed_map": options.speed_map,
-        "turns": f"{options.turns:g}",
-        "personality": options.personality or "",
-        "look": options.look,
-        "source": uri.split("://")[0] if "://" in uri else Path(uri).name,
-        "rate": f"{source.rate:g}",
-    }
 
 
 def check_output_paths(options: SessionOptions) -> None:

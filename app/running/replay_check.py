@@ -9,8 +9,7 @@ from rich.table import Table
 
 from app.pipeline.scenario import Inputs
 from app.running.opening import open_session
-from app.running.options import SessionOptions
-from app.session import messages
+from app.session import SessionOptions, messages
 from app.session.encoding import MESSAGE_TYPES, encode, upgraded
 
 

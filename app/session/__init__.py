@@ -1,6 +1,7 @@
 """A session on disk: one .mcap file with the camera's frames and every message after them."""
 
 from app.session.frames import FrameEncoder, frame_encoder
+from app.session.options import SessionOptions
 from app.session.reading import (
     START_OVER_EVENT,
     SessionInfo,
@@ -16,6 +17,7 @@ __all__ = [
     "FrameEncoder",
     "Recorder",
     "SessionInfo",
+    "SessionOptions",
     "events",
     "frame_encoder",
     "messages",

@@ -15,6 +15,7 @@ from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
 from app.errors import AppError
+from app.session.options import SessionOptions
 
 START_OVER_EVENT = "start over"
 """Event of a player who starts over. It is an input, so a replay repeats it."""
@@ -31,26 +32,8 @@ channel (KeyError) or before the file (OSError), a chunk that cannot be decompre
 class SessionInfo:
     """What a recorded session says of itself."""
 
-    scenario: str
-    """The scenario that was played."""
-
-    cube: str
-    """Name or file of the cube."""
-
-    character: str
-    """Name or file of the character; "" for the scenario's own."""
-
-    speed_map: str
-    """The Speed map."""
-
-    turns: float
-    """Full turns from the least to the greatest intensity."""
-
-    personality: str
-    """Name or file of the personality; "" for the scenario's own."""
-
-    look: str
-    """What the character's eyes followed."""
+    options: SessionOptions
+    """Its scenario, cube, character …, with itself as the source."""
 
     frames: int
     """Camera frames in the file."""
@@ -76,8 +59,7 @@ def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
     """
     _check_magic(path)
     if salvage:
-        frames, seconds = _readable_frames(path)
-        return _info(path, frames, seconds)
+        return SessionInfo(_options(path), *_readable_frames(path))
     _check_complete(path)
     try:
         with path.open("rb") as file:
@@ -90,32 +72,17 @@ def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
     statistics = summary.statistics
     frames = statistics.channel_message_counts.get(ids.get("/camera/image", -1), 0)
     seconds = (statistics.message_end_time - statistics.message_start_time) / 1e9
-    return _info(path, frames, seconds)
+    return SessionInfo(_options(path), frames, seconds)
 
 
-def _info(path: Path, frames: int, seconds: float) -> SessionInfo:
-    metadata = _metadata(path)
-    return SessionInfo(
-        metadata["scenario"],
-        metadata.get("cube", ""),
-        metadata.get("character", ""),
-        metadata.get("speed_map", "corrected"),
-        float(metadata.get("turns", "2")),
-        metadata.get("personality", ""),
-        metadata.get("look", "auto"),
-        frames,
-        seconds,
-    )
-
-
-def _metadata(path: Path) -> dict[str, str]:
-    """Return the metadata, which the recorder writes first."""
+def _options(path: Path) -> SessionOptions:
+    """Return the settings in the metadata, which the recorder writes first."""
     with path.open("rb") as file:
         try:
             for record in StreamReader(file).records:
                 if isinstance(record, Metadata) and record.name == "cubeling":
                     if "scenario" in record.metadata:
-                        return dict(record.metadata)
+                        return SessionOptions.from_metadata(record.metadata, str(path))
                 elif isinstance(record, Chunk | DataEnd):
                     break
         except READ_ERRORS:

@@ -42,8 +42,8 @@ class Recorder:
     ----------
     path
         Where to write.
-    about
-        Metadata that a replay needs: the scenario, its options, the cube …
+    metadata
+        What a replay needs: the scenario, its options, the cube …
 
     Raises
     ------
@@ -51,11 +51,11 @@ class Recorder:
         The file cannot be written.
     """
 
-    def __init__(self, path: Path, about: dict[str, str]) -> None:
+    def __init__(self, path: Path, metadata: dict[str, str]) -> None:
         self.path = path
         self.problem: str | None = None
         """Why recording stopped before `close`, or None."""
-        self._about = about
+        self._metadata = metadata
         self._steps = 0
         self._queue: queue.Queue[Callable[[], None] | None] = queue.Queue(MAX_QUEUED_WRITES)
         self._channels: dict[str, int] = {}
@@ -144,7 +144,7 @@ class Recorder:
 
     def _start(self) -> None:
         self._writer.start(profile="", library="cubeling")
-        self._writer.add_metadata("cubeling", self._about)
+        self._writer.add_metadata("cubeling", self._metadata)
 
     def _frame(self, frame: Frame) -> None:
         if frame.encoded is None:

@@ -173,7 +173,8 @@ def test_a_wire_that_no_recorder_wrote_is_refused_in_one_line(monkeypatch, short
 
 
 def test_odd_names_do_not_spoil_a_plot(history, short_session, tmp_path):
-    info = dataclasses.replace(history.info, personality="a\x00\n<b>&\udcff")
+    options = dataclasses.replace(history.info.options, personality="a\x00\n<b>&\udcff")
+    info = dataclasses.replace(history.info, options=options)
     odd = dataclasses.replace(history, name="\udcff\x1b$x$.mcap", info=info)
     for suffix in ("svg", "pdf"):
         save_plot(tmp_path / f"m.{suffix}", odd, (), read_robot_traces(short_session), THESIS)

@@ -8,10 +8,9 @@ import pytest
 from rich.console import Console
 
 from app.running.opening import open_session
-from app.running.options import SessionOptions
 from app.running.runner import run
 from app.running.summary import Summary
-from app.session import events, session_info
+from app.session import SessionOptions, events, session_info
 from app.ui.notice import Notice, notice
 from app.ui.overlay import interrupted
 from app.ui.screen import NullScreen

@@ -6,10 +6,9 @@ import pytest
 
 from app.running.clock import SessionClock
 from app.running.opening import open_session
-from app.running.options import SessionOptions
 from app.running.robots import WireRecorder
 from app.running.runner import run
-from app.session import messages, session_info
+from app.session import SessionOptions, messages, session_info
 from tracking import TrackingError, open_source
 
 

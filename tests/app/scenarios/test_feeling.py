@@ -223,12 +223,12 @@ def test_a_personality_is_recorded_and_taken_in_the_replay(cubeling, short_sessi
     assert (
         cubeling("play", "companion", "-s", short_session, *quiet, *who, "--record", made)[0] == 0
     )
-    assert session_info(made).personality == "grumpy"
+    assert session_info(made).options.personality == "grumpy"
     assert cubeling("replay", made, "--check")[0] == 0
     assert cubeling("replay", made, "--check", "--personality", "shy")[0] == 1
     shy = ("--personality", "shy", "--record", other)
     assert cubeling("replay", made, "--from", "pose", *quiet, *shy)[0] == 0
-    assert session_info(other).personality == "shy"
+    assert session_info(other).options.personality == "shy"
 
 
 def test_a_personality_that_is_none_is_refused_in_one_line(cubeling, short_session, tmp_path):

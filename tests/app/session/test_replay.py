@@ -10,11 +10,10 @@ from app.errors import AppError
 from app.pipeline.playground import Playground
 from app.pipeline.scenario import Inputs
 from app.running.opening import intrinsics_for, open_session
-from app.running.options import SessionOptions
 from app.running.replay_check import check_session
 from app.running.runner import run
 from app.scenarios import SCENARIOS
-from app.session import messages, session_info, start_over_times
+from app.session import SessionOptions, messages, session_info, start_over_times
 from app.session.bundled import bundled
 from app.session.encoding import MESSAGE_TYPES, decode, encode
 from app.session.replay_inputs import STARTS, read_replay_inputs
@@ -106,7 +105,7 @@ def assert_close(topic, time, one, other):
 def test_bundled_recordings_are_small_and_complete(name):
     info = session_info(bundled(name))
     assert bundled(name).stat().st_size < 6_000_000
-    assert info.scenario == name
+    assert info.options.scenario == name
     assert info.frames > 600
     topics = {topic for topic, _, _ in messages(bundled(name))}
     others = {"/camera/image", "/camera/calibration", "/robot/wire", "/events"}
@@ -126,6 +125,6 @@ def test_a_replay_takes_the_character_that_was_recorded(cubeling, short_session,
         "replay", short_session, "--character", "human", "--no-pictures", "--record", "human.mcap"
     )
     assert (code, err) == (0, "")
-    assert session_info(tmp_path / "human.mcap").character == "human"
+    assert session_info(tmp_path / "human.mcap").options.character == "human"
     code, _, err = cubeling("replay", "human.mcap", "--check")
     assert (code, err) == (0, "")

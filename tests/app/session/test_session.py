@@ -43,7 +43,11 @@ def test_an_unknown_codec_is_refused():
 def test_a_session_describes_itself(recorded):
     path, frames_written = recorded("jpeg")
     info = session_info(path)
-    assert (info.scenario, info.turns, info.frames) == ("follow", 2.0, len(frames_written))
+    assert (info.options.scenario, info.options.turns, info.frames) == (
+        "follow",
+        2.0,
+        len(frames_written),
+    )
     assert events(path)[0] == (0.0, "started")
 
 
@@ -55,7 +59,7 @@ def test_the_error_for_a_cut_session_says_how_much_can_be_read(recorded):
         session_info(path)
     info = session_info(path, salvage=True)
     assert 0 < info.frames < len(frames_written)
-    assert info.scenario == "follow"
+    assert info.options.scenario == "follow"
 
 
 @pytest.mark.parametrize("cut", range(0, 2600, 97))

@@ -1,7 +1,9 @@
-"""What the user asks of a session: the settings from the command line to the session."""
+"""What the user asks of a session: the settings from the command line to the recording."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,3 +65,31 @@ class SessionOptions:
     def windowed(self) -> bool:
         """Whether the session has a window, so that a user watches it."""
         return self.pictures and self.output is None
+
+    def metadata(self) -> dict[str, str]:
+        """Return what a recording keeps of the settings: all that a replay needs."""
+        source = self.source
+        return {
+            "scenario": self.scenario,
+            "cube": self.cube or "",
+            "character": self.character or "",
+            "speed_map": self.speed_map,
+            "turns": f"{self.turns:g}",
+            "personality": self.personality or "",
+            "look": self.look,
+            "source": source.split("://")[0] if "://" in source else Path(source).name,
+        }
+
+    @classmethod
+    def from_metadata(cls, metadata: Mapping[str, str], source: str) -> Self:
+        """Return the settings that `metadata` kept, to replay the recording `source`."""
+        return cls(
+            scenario=metadata["scenario"],
+            source=source,
+            cube=metadata.get("cube") or None,
+            character=metadata.get("character") or None,
+            speed_map=metadata.get("speed_map", "corrected"),
+            turns=float(metadata.get("turns", "2")),
+            personality=metadata.get("personality") or None,
+            look=metadata.get("look", "auto"),
+        )
