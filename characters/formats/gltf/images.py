@@ -4,7 +4,6 @@ import io
 import warnings
 from typing import Literal
 
-import cv2
 import numpy as np
 import PIL.Image
 from numpy.typing import NDArray
@@ -80,6 +79,6 @@ class ImageDecoder:
 
 def png(image: Image) -> bytes:
     """Return an image as a PNG file."""
-    swap = cv2.COLOR_RGBA2BGRA if image.shape[2] == 4 else cv2.COLOR_RGB2BGR
-    _, data = cv2.imencode(".png", cv2.cvtColor(image, swap))
-    return data.tobytes()
+    data = io.BytesIO()
+    PIL.Image.fromarray(image).save(data, "PNG")
+    return data.getvalue()
