@@ -1,1 +1,1 @@
-"""Long hunts for broken promises, in virtual time: `python -m tests.campaigns.wire` and others."""
+"""Long test runs in virtual time: `python -m tests.campaigns.wire` and others."""

@@ -1,8 +1,7 @@
-"""Everything that reads what others wrote, each as a function of bytes that must never fail.
+"""Fuzz targets: every decoder of external input, as a function of bytes.
 
-A target may raise only if it found a mistake: an exception that is not documented, or something
-that has grown beyond its bound. Drivers and simulators come from their tables, so a new one is
-fuzzed from its first day.
+A target raises only if it found a bug: an undocumented exception, or an object that has grown
+beyond its limit. Drivers and simulators come from their registries, so new ones are fuzzed too.
 """
 
 import contextlib
@@ -34,20 +33,20 @@ from robot.simulators.base import Simulated
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.memory import simulator_of
 
-HELD_MAX = 2_000_000
-"""Most that a driver or a simulator may hold, whatever it was fed [bytes]."""
+MAX_HELD_BYTES = 2_000_000
+"""Most memory of a driver or a simulator, whatever it received [bytes]."""
 
-GROWTH_MAX = 65_536
-"""And so much more, at most, when it is fed as much again [bytes]."""
+MAX_GROWTH_BYTES = 65_536
+"""Most growth when it receives the same again [bytes]."""
 
-OUT_MAX = 262_144
-"""Most that may wait to be written [bytes]."""
+MAX_OUTPUT_BYTES = 262_144
+"""Most bytes waiting to be written."""
 
 Target = Callable[[bytes], None]
 
 
 def pieces(data: bytes) -> Iterator[tuple[bytes, float]]:
-    """Cut the data as its own bytes say, and say how much later each piece comes [s]."""
+    """Split data by lengths in its own bytes; yield the pieces, and the delay of each [s]."""
     start, size = 0, len(data)
     while start < size:
         head = data[start]
@@ -60,24 +59,24 @@ def pieces(data: bytes) -> Iterator[tuple[bytes, float]]:
 
 
 def reader(data: bytes) -> None:
-    """Feed the stream in pieces; whatever came before, a whole frame behind it arrives."""
+    """Feed the stream in pieces; a whole frame after it must arrive."""
     frames = FrameReader()
     for piece, _ in pieces(data):
         for body in frames.feed(piece):
             assert 1 <= len(body) <= MAX_BODY
-        assert len(frames._pending) <= MAX_FRAME + 1
+        assert frames.buffered <= MAX_FRAME + 1
     assert frames.feed(encode_frame(b"whole"))[-1] == b"whole"
 
 
 def frame(data: bytes) -> None:
-    """Decode one frame; what is one is the only one of its body."""
+    """Decode one frame; a valid one is the only encoding of its body."""
     with contextlib.suppress(FrameError):
         body = decode_frame(data)
         assert encode_frame(body)[1:-1] == data
 
 
 def cobs(data: bytes) -> None:
-    """Undo COBS, which has only one way."""
+    """Decode COBS, whose encoding is unique."""
     with contextlib.suppress(FrameError):
         body = cobs_decode(data)
         if 0 not in data and len(body) <= MAX_BODY:
@@ -85,7 +84,7 @@ def cobs(data: bytes) -> None:
 
 
 def message_from(sender: Sender) -> Target:
-    """Make the target that reads bodies of one side."""
+    """Return the target that decodes bodies of one side."""
 
     def read(data: bytes) -> None:
         with contextlib.suppress(MessageError):
@@ -100,7 +99,7 @@ def message_from(sender: Sender) -> Target:
 
 
 def run_driver(driver: Driver, data: bytes, whole: Callable[[bytes], bytes] = bytes) -> None:
-    """Let a driver hear the pieces, while it is asked for things."""
+    """Feed the pieces to a driver, with commands in between."""
     now = 1.0
     driver.port_opened(now)
     for piece, later in pieces(data):
@@ -116,49 +115,49 @@ def run_driver(driver: Driver, data: bytes, whole: Callable[[bytes], bytes] = by
         elif len(piece) == 33:
             driver.port_lost()
             driver.port_opened(now)
-        assert len(driver.bytes_to_send()) <= OUT_MAX
+        assert len(driver.bytes_to_send()) <= MAX_OUTPUT_BYTES
         driver.telemetry(now)
     driver.close()
     driver.receive(data[:64], now)
 
 
 def driver_of(name: str) -> Target:
-    """Make the target that lets a driver hear anything."""
+    """Return the target that feeds a driver."""
     return lambda data: run_driver(DRIVERS[name].make(7, None), data)
 
 
 def host_bodies(data: bytes) -> None:
-    """Let our host hear bodies in whole frames of its own session."""
+    """Feed our host bodies in whole frames of its own session."""
     run_driver(HostLink(7), data, _framed)
 
 
 def run_robot(robot: Simulated, data: bytes, whole: Callable[[bytes], bytes] = bytes) -> None:
-    """Let a simulated robot hear the pieces."""
+    """Feed the pieces to a simulated robot."""
     now = 1.0
     for piece, later in pieces(data):
         now += later
         robot.receive(whole(piece), now)
         robot.advance(now)
-        assert len(robot.bytes_to_send()) <= OUT_MAX
+        assert len(robot.bytes_to_send()) <= MAX_OUTPUT_BYTES
         robot.portrait()
     robot.reboot()
     robot.receive(data[:64], now)
 
 
 def simulator_named(name: str) -> Target:
-    """Make the target that lets a simulated robot hear anything."""
+    """Return the target that feeds a simulated robot."""
     return lambda data: run_robot(SIMULATORS[name](1), data)
 
 
 def robot_bodies(data: bytes) -> None:
-    """Let our robot hear bodies in whole frames, after a greeting that opens session 1."""
+    """Feed our robot bodies in whole frames, after HELLO opened session 1."""
     robot = Simulator(1)
     robot.receive(encode_frame(bytes([1, 1, 0, 2, 7, 0, 0, 0])), 1.0)
     run_robot(robot, data, _framed)
 
 
 def _framed(piece: bytes) -> bytes:
-    """Make a whole frame of session 1 from a piece; its first byte is the message's number."""
+    """Return a frame of session 1 from a piece; its first byte is the message's number."""
     return encode_frame(piece[:1] + b"\1\0" + piece[1:]) if piece else b""
 
 
@@ -166,7 +165,7 @@ def _framed(piece: bytes) -> bytes:
 
 
 def settings_of(name: str) -> Target:
-    """Make the target that reads a driver's settings file."""
+    """Return the target that reads a driver's settings file."""
 
     def read(data: bytes) -> None:
         with tempfile.NamedTemporaryFile(suffix=".toml") as file:
@@ -185,7 +184,7 @@ def personality(data: bytes) -> None:
 
 
 def payload_of(kind: type[Any]) -> Target:
-    """Make the target that reads one kind of message from a broker."""
+    """Return the target that decodes one kind of message from a broker."""
 
     def read(data: bytes) -> None:
         with contextlib.suppress(MalformedError):
@@ -216,4 +215,4 @@ TARGETS: dict[str, Target] = {
     "personality": personality,
     "url": fault_url,
 }
-"""All of them, by the name that the command line takes."""
+"""All targets, by name."""

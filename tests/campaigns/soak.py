@@ -1,9 +1,9 @@
-"""Does anything grow in a day? `python -m tests.campaigns.soak --hours 24`.
+"""Test that no memory grows in a day of use: `python -m tests.campaigns.soak --hours 24`.
 
-Every protocol that has a simulated robot is used for so many hours of virtual time, with light
-faults, a new emotion every few seconds, and a motion now and then. Twenty-four times on the way
-everything that driver and robot hold is counted. The exit code is 1 if it grew, if the robot did
-not do what was asked last, or if a driver raised.
+Every protocol with a simulated robot runs for hours of virtual time, with light faults, a new
+emotion every few seconds, and some motions. All objects of driver and robot are counted 24 times.
+The exit code is 1 if their number grew, if the robot did not do the last request, or if a driver
+raised an exception.
 """
 
 import argparse
@@ -33,36 +33,36 @@ FAULTS = Faults(
     drop=0.005, flip=0.0001, dup=0.005, delay=0.002, jitter=0.001,
     stall=Outage(1.0, 600.0), unplug=Outage(2.0, 600.0), reboot=7200.0,
 )  # fmt: skip
-"""What goes wrong."""
+"""The faults."""
 
-TICK = 0.020
-"""How often the host looks at its clock [s]."""
+TICK_S = 0.020
+"""Time between two steps of the host [s]."""
 
-WISH_EVERY = 3.0
-"""Mean time between two wishes [s]."""
+REQUEST_EVERY_S = 3.0
+"""Mean time between two requests [s]."""
 
-LOOKS = 24
-"""How often everything is counted."""
+MEASUREMENTS = 24
+"""Number of times at which all objects are counted."""
 
-SLACK = 1.05
-"""How much more the second half may hold than the first."""
+MAX_GROWTH_RATIO = 1.05
+"""Most growth from the first half to the second."""
 
-SLACK_BYTES = 8192
-"""And so much on top of that [bytes]: numbers get longer, and a buffer is fuller now than then."""
+GROWTH_TOLERANCE_BYTES = 8192
+"""More growth that is allowed [bytes]: numbers get longer, and buffers vary."""
 
-SLACK_OBJECTS = 200
-"""And so many objects: a few wishes wait at one look, and none at another."""
+GROWTH_TOLERANCE_OBJECTS = 200
+"""More growth that is allowed [objects]: the number of pending requests varies."""
 
-SETTLED_WITHIN = 120.0
-"""The last wish must be known to the driver after this long without faults [s]."""
+SETTLING_TIMEOUT_S = 120.0
+"""Longest time without faults until the last request is acknowledged [s]."""
 
 
 @dataclass
-class Soaked:
-    """What came of one protocol."""
+class SoakResult:
+    """The result for one protocol."""
 
     name: str
-    """Which."""
+    """The protocol."""
 
     hours: float
     """Virtual time [h]."""
@@ -70,30 +70,29 @@ class Soaked:
     took: float = 0.0
     """Real time [s]."""
 
-    wishes: int = 0
-    """What was asked for."""
+    requests: int = 0
+    """Number of requests."""
 
     traffic: int = 0
     """Bytes in both directions."""
 
     unplugged: int = 0
-    """How often."""
+    """Number of times that the port was unplugged."""
 
     held: list[tuple[int, int]] = field(default_factory=list)
-    """Objects, and bytes, that driver and robot held at each look."""
+    """Objects and bytes of driver and robot at each measurement."""
 
     tracked: list[int] = field(default_factory=list)
-    """Objects that the interpreter's collector knew of at each look, in the whole process."""
+    """Objects known to the garbage collector at each measurement."""
 
     wrong: list[str] = field(default_factory=list)
-    """What was wrong."""
+    """The failures."""
 
 
 def weight(*roots: object, logs: bool = True) -> tuple[int, int]:
-    """Return how many objects can be reached, and their size [bytes]; classes are not counted.
+    """Return the number of reachable objects, and their size [bytes]; classes are not counted.
 
-    Without `logs`, a deque with a longest length counts as empty: it fills up for hours, and then
-    holds no more.
+    Without `logs`, a deque with a maximum length counts as empty: it fills up over hours.
     """
     seen: set[int] = set()
     waiting: list[object] = list(roots)
@@ -110,28 +109,28 @@ def weight(*roots: object, logs: bool = True) -> tuple[int, int]:
     return len(seen), size
 
 
-class Day:
-    """One driver and its robot, from event to event."""
+class SoakRun:
+    """A driver and its robot in virtual time."""
 
     def __init__(self, name: str, seed: int) -> None:
         self.driver: Driver = DRIVERS[name].make(7, None)
         self.robot = FaultyRobot(SIMULATORS[name](seed), FAULTS, seed)
         self.random = np.random.default_rng((seed, 4))
-        self.soaked = Soaked(name, 0.0)
-        self.now = self.wish_at = self.tick_at = self.reopen_at = 0.0
+        self.result = SoakResult(name, 0.0)
+        self.now = self.request_at = self.tick_at = self.reopen_at = 0.0
         self.port_open = False
         self.unplug_count = 0
 
     def live_until(self, end: float) -> None:
-        """Let time pass."""
+        """Advance the time."""
         while self.now < end:
             self.now = min(max(self.now, min(self.tick_at, self.robot.due)), end)
             self.robot.advance(self.now)
             self._watch_plug()
-            if self.now >= self.wish_at:
-                self._wish()
+            if self.now >= self.request_at:
+                self._request()
             self._talk(self.robot.bytes_to_send())
-            self.tick_at = self.now + TICK
+            self.tick_at = self.now + TICK_S
 
     def _talk(self, arrived: bytes) -> None:
         if not self.port_open:
@@ -139,7 +138,7 @@ class Day:
         self.driver.receive(arrived, self.now)
         self.driver.tick(self.now)
         out = self.driver.bytes_to_send()
-        self.soaked.traffic += len(arrived) + len(out)
+        self.result.traffic += len(arrived) + len(out)
         if out:
             self.robot.receive(out, self.now)
 
@@ -153,8 +152,8 @@ class Day:
                 self.unplug_count = self.robot.unplug_count
                 self.driver.port_opened(self.now)
 
-    def _wish(self) -> None:
-        self.soaked.wishes += 1
+    def _request(self) -> None:
+        self.result.requests += 1
         valence, arousal = self.random.uniform(-1.0, 1.0, 2).tolist()
         kind = float(self.random.random())
         if kind < 0.1 and self.driver.catalogue and self.driver.catalogue.motions:
@@ -164,70 +163,71 @@ class Day:
             self.driver.stop()
         else:
             self.driver.express(Emotion(valence, arousal))
-        self.wish_at = self.now + float(self.random.exponential(WISH_EVERY))
+        self.request_at = self.now + float(self.random.exponential(REQUEST_EVERY_S))
 
 
-def soak(name: str, hours: float, seed: int = 1) -> Soaked:
-    """Use one protocol for so many hours."""
-    start, day = time.perf_counter(), Day(name, seed)
-    soaked, every = day.soaked, 3600.0 * hours / LOOKS
+def soak(name: str, hours: float, seed: int = 1) -> SoakResult:
+    """Run one protocol for a number of hours."""
+    start, day = time.perf_counter(), SoakRun(name, seed)
+    result, every = day.result, 3600.0 * hours / MEASUREMENTS
     try:
-        for look in range(1, LOOKS + 1):
+        for look in range(1, MEASUREMENTS + 1):
             day.live_until(look * every)
             gc.collect()
-            soaked.held.append(weight(day.driver, day.robot, logs=False))
-            soaked.tracked.append(len(gc.get_objects()))
-        soaked.unplugged = day.robot.unplug_count
+            result.held.append(weight(day.driver, day.robot, logs=False))
+            result.tracked.append(len(gc.get_objects()))
+        result.unplugged = day.robot.unplug_count
         _settle(day)
     except Exception as error:
-        soaked.wrong.append(f"at {day.now:.3f} s: {error!r}")
-    soaked.hours, soaked.took = day.now / 3600, time.perf_counter() - start
+        result.wrong.append(f"at {day.now:.3f} s: {error!r}")
+    result.hours, result.took = day.now / 3600, time.perf_counter() - start
     for what, values in (
-        ("objects held", [objects for objects, _ in soaked.held]),
-        ("bytes held", [size for _, size in soaked.held]),
-        ("objects of the process", soaked.tracked),
+        ("objects held", [objects for objects, _ in result.held]),
+        ("bytes held", [size for _, size in result.held]),
+        ("objects of the process", result.tracked),
     ):
-        soaked.wrong += growth(what, values)
-    return soaked
+        result.wrong += growth(what, values)
+    return result
 
 
-def _settle(day: Day) -> None:
-    """End all faults, and see the last wish acknowledged."""
+def _settle(day: SoakRun) -> None:
+    """End all faults, and wait for the acknowledgement of the last request."""
     day.robot.to_robot.cut = day.robot.from_robot.cut = False
     calm = FaultyRobot(day.robot.robot, Faults(), 0)
     day.robot, day.unplug_count = calm, calm.unplug_count
-    day.wish_at = float("inf")
-    wish = Emotion(0.5, 0.5)
-    day.driver.express(wish)
-    end = day.now + SETTLED_WITHIN
-    while day.driver.telemetry(day.now).acknowledged != wish:
+    day.request_at = float("inf")
+    request = Emotion(0.5, 0.5)
+    day.driver.express(request)
+    end = day.now + SETTLING_TIMEOUT_S
+    while day.driver.telemetry(day.now).acknowledged != request:
         if day.now >= end:
             state = day.driver.state(day.now)
-            day.soaked.wrong.append(f"the last wish is not taken; the link is {state}")
+            day.result.wrong.append(f"the last request is not acknowledged; the link is {state}")
             return
         day.live_until(day.now + 0.1)
 
 
 def growth(what: str, values: list[int]) -> list[str]:
-    """Say if the second half of the values is larger than the first, but for some slack."""
+    """Return a failure if the values grew from the first half to the second, beyond a tolerance."""
     middle = len(values) // 2
     if len(values) < 4:
         return [f"{what} were counted {len(values)} times only"]
-    # What was there in the first quarter is the warming up.
+    # The first quarter is the warm-up.
     early, late = max(values[middle // 2 : middle]), max(values[middle:])
-    if late <= SLACK * early + (SLACK_BYTES if "bytes" in what else SLACK_OBJECTS):
+    tolerance = GROWTH_TOLERANCE_BYTES if "bytes" in what else GROWTH_TOLERANCE_OBJECTS
+    if late <= MAX_GROWTH_RATIO * early + tolerance:
         return []
     return [f"{what} grew from {early:,} to {late:,}"]
 
 
 def names() -> list[str]:
-    """Return the protocols that have a simulated robot."""
+    """Return the protocols with a simulated robot."""
     return [name for name in DRIVERS if name in SIMULATORS]
 
 
 def main() -> int:
-    """Soak all of them; return 1 if something was wrong."""
-    parser = argparse.ArgumentParser(description="Use every protocol for a day of virtual time.")
+    """Run all protocols; return 1 if one failed."""
+    parser = argparse.ArgumentParser(description="Run every protocol for a day of virtual time.")
     parser.add_argument("--hours", type=float, default=24.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
@@ -238,16 +238,16 @@ def main() -> int:
     with ProcessPoolExecutor(wanted.jobs) as pool:
         count = len(chosen)
         days = list(pool.map(soak, chosen, [wanted.hours] * count, [wanted.seed] * count))
-    table = Table(title="Hours of virtual time, and what is held after them")
+    table = Table(title="Objects and memory after hours of virtual time")
     for head in (
-        "protocol", "hours", "wishes", "MB", "unplugged", "objects\nfirst", "\nlast",
+        "protocol", "hours", "requests", "MB", "unplugged", "objects\nfirst", "\nlast",
         "kB\nfirst", "\nmost", "\nlast", "took s",
     ):  # fmt: skip
         table.add_column(head, justify="left" if head == "protocol" else "right")
     for day in days:
         held = day.held or [(0, 0)]
         table.add_row(
-            day.name, f"{day.hours:.1f}", f"{day.wishes:,}", f"{day.traffic / 1e6:.1f}",
+            day.name, f"{day.hours:.1f}", f"{day.requests:,}", f"{day.traffic / 1e6:.1f}",
             f"{day.unplugged}", f"{held[0][0]:,}", f"{held[-1][0]:,}",
             f"{held[0][1] / 1000:.1f}", f"{max(size for _, size in held) / 1000:.1f}",
             f"{held[-1][1] / 1000:.1f}", f"{day.took:.0f}",

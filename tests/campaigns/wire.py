@@ -1,13 +1,13 @@
-"""Does the wire keep its promises? `python -m tests.campaigns.wire --exchanges 1e6`.
+"""Test the guarantees of the protocol: `python -m tests.campaigns.wire --exchanges 1e6`.
 
-Host and robot talk in virtual time over a line that does harm, one mixture of faults after the
-other. An exchange is one command taken by the robot and acknowledged; heartbeats are counted apart.
-A broken promise is printed with what repeats it, and the exit code is 1.
+Host and robot communicate in virtual time over a faulty channel, with one fault mix after the
+other. An exchange is a command that the robot takes and acknowledges; heartbeats are counted
+separately. A violation is printed with the command that repeats it, and the exit code is 1.
 
-What is checked, at every event: no emotion is made up, lost, doubled or out of order; no command's
-number takes effect twice; an action is played at most once; a silent host is acted on within 500
-ms; what was asked for last comes true within a bound; nothing grows; and of frames with wrong bits
-no more pass than CRC-16 lets pass.
+Checked at every event: no emotion is invented, lost, doubled or out of order; no command's number
+takes effect twice; an action is played at most once; the failsafe acts within 500 ms; the last
+request takes effect within a limit; nothing grows; and damaged frames pass no more often than
+CRC-16 allows.
 """
 
 import argparse
@@ -24,60 +24,60 @@ from rich.console import Console
 from rich.table import Table
 from scipy.stats import binom
 
-from tests.campaigns.mixes import MIXES, Mix
-from tests.campaigns.witness import BIN
+from tests.campaigns.fault_mixes import FAULT_MIXES, FaultMix
+from tests.campaigns.monitor import BIN_WIDTH_S
 from tests.campaigns.world import CampaignWorld, Outcome
 
-RUN = 20_000
-"""Exchanges in one run; then a new world begins [exchanges]."""
+EXCHANGES_PER_RUN = 20_000
+"""Exchanges in one run, before a new world starts."""
 
-TELL_EVERY = 20
-"""So many runs between two lines about how far it is."""
+PROGRESS_EVERY_RUNS = 20
+"""Runs between two progress lines."""
 
-CRC_CHANCE = 2**-16
-"""Chance that a stretch with many wrong bits passes the check, at most; see tests.campaigns.crc."""
+MAX_PASS_PROBABILITY = 2**-16
+"""Largest probability that a damaged frame passes the check; see tests.campaigns.crc."""
 
-DOUBT = 1e-6
-"""Chance of a false alarm that each statistical check may have."""
+MIN_P_VALUE = 1e-6
+"""Probability of a false alarm of each statistical check."""
 
-BAR_MIX, BAR_MEDIAN, BAR_P99 = "drop", 0.050, 0.150
-"""With 5 % of the frames lost, an emotion is on the robot so soon [s]."""
+LATENCY_MIX, MAX_MEDIAN_S, MAX_P99_S = "drop", 0.050, 0.150
+"""Latency of an emotion with 5 % of the frames lost: the limits of median and 99 % quantile [s]."""
 
 
 @dataclass(frozen=True)
 class Run:
-    """One world, to be run anywhere."""
+    """A run in one world."""
 
-    mix: Mix
-    """What goes wrong in it."""
+    mix: FaultMix
+    """Its faults."""
 
     seed: int
-    """Of all that is drawn."""
+    """Seed of all random numbers."""
 
     exchanges: int
-    """How many it does."""
+    """Number of exchanges."""
 
 
-def runs_for(exchanges: int, seed: int, mixes: Iterable[Mix] = MIXES) -> list[Run]:
-    """Divide the exchanges among the mixtures, and those into runs; the slow ones first."""
+def runs_for(exchanges: int, seed: int, mixes: Iterable[FaultMix] = FAULT_MIXES) -> list[Run]:
+    """Divide the exchanges among the mixes, and those into runs; the slow ones first."""
     mixes = tuple(mixes)
     total = sum(mix.share for mix in mixes)
     runs = []
     for mix in reversed(mixes):
         wanted = math.ceil(exchanges * mix.share / total)
-        count = math.ceil(wanted / RUN)
+        count = math.ceil(wanted / EXCHANGES_PER_RUN)
         for index in range(count):
             runs.append(Run(mix, seed * 100_000 + index, math.ceil(wanted / count)))
     return runs
 
 
-def carry_out(run: Run) -> Outcome:
-    """Live through one world."""
+def run_world(run: Run) -> Outcome:
+    """Run one world."""
     return CampaignWorld(run.mix, run.seed).run(run.exchanges)
 
 
-def gather(outcomes: list[Outcome]) -> Outcome:
-    """Add up the outcomes of one mixture."""
+def add_up(outcomes: list[Outcome]) -> Outcome:
+    """Add up the outcomes of one mix."""
     total = outcomes[0]
     for one in outcomes[1:]:
         total.seconds += one.seconds
@@ -94,13 +94,13 @@ def gather(outcomes: list[Outcome]) -> Outcome:
 
 
 def quantile(histogram: list[int], share: float) -> float:
-    """Return the latency [s] that this share of the wishes does not exceed."""
+    """Return a quantile of the latencies [s]."""
     cumulated = np.cumsum(histogram)
-    return BIN * (int(np.searchsorted(cumulated, share * cumulated[-1])) + 1)
+    return BIN_WIDTH_S * (int(np.searchsorted(cumulated, share * cumulated[-1])) + 1)
 
 
-def complaints(outcomes: list[Outcome], seen: list[Outcome]) -> list[str]:
-    """Return what was wrong: in single runs, then in the sums."""
+def failures(outcomes: list[Outcome], seen: list[Outcome]) -> list[str]:
+    """Return the failures of single runs, then of the sums."""
     wrong = [
         f"{one.mix!r}: {one.violation}\n  again: python -m tests.campaigns.wire "
         f"--only {one.mix!r} --run-seed {one.seed}"
@@ -110,11 +110,11 @@ def complaints(outcomes: list[Outcome], seen: list[Outcome]) -> list[str]:
     for mix in seen:
         stretches = mix.counts["detected"] + mix.counts["undetected"]
         passed = mix.counts["undetected"]
-        if passed and binom.sf(passed - 1, stretches, CRC_CHANCE) < DOUBT:
+        if passed and binom.sf(passed - 1, stretches, MAX_PASS_PROBABILITY) < MIN_P_VALUE:
             wrong.append(f"{mix.mix!r}: {passed} of {stretches} damaged frames passed the check")
-        if mix.mix == BAR_MIX and any(mix.latencies):
+        if mix.mix == LATENCY_MIX and any(mix.latencies):
             median, p99 = quantile(mix.latencies, 0.5), quantile(mix.latencies, 0.99)
-            if median > BAR_MEDIAN or p99 > BAR_P99:
+            if median > MAX_MEDIAN_S or p99 > MAX_P99_S:
                 wrong.append(f"{mix.mix!r}: emotions take {median:.3f} s, {p99:.3f} s at p99")
     return wrong
 
@@ -123,9 +123,9 @@ _FAULTS = ("drop", "flip", "dup", "split", "babble", "lost", "stall", "unplug", 
 
 
 def table_of(seen: list[Outcome]) -> Table:
-    """Return the table of all mixtures."""
-    table = Table(title="The robot's wire, in virtual time", caption=_CAPTION)
-    table.add_column("mixture")
+    """Return the table of all mixes."""
+    table = Table(title="The protocol in virtual time", caption=_CAPTION)
+    table.add_column("mix")
     for head in (
         "exchanges", "beats", "virtual\nh", "faults", "found", "passed", "recov-\neries",
         "worst\ns", "fail-\nsafes", "worst\nms", "to body\nmedian ms", "p99\nms",
@@ -148,13 +148,13 @@ def table_of(seen: list[Outcome]) -> Table:
 
 _CAPTION = (
     "faults: frames lost, doubled, split, bytes flipped, bytes of noise, stalls …; found, passed: "
-    "damaged stretches that the check refused, and let pass; worst: longest way back to the last "
-    "wish; failsafe of a robot that did not hang, at most 500 ms"
+    "damaged frames that the check detected and missed; worst: longest time until the last "
+    "request took effect; failsafe of a robot that did not hang, at most 500 ms"
 )
 
 
 def faults_line(seen: list[Outcome]) -> str:
-    """Say how often which fault was injected, over all mixtures."""
+    """Return the number of injected faults of each kind, over all mixes."""
     kinds = (f"{name} {sum(one.counts[name] for one in seen):,}" for name in _FAULTS)
     sizes = {name for one in seen for name in one.largest}
     largest = (f"{name} {max(one.largest.get(name, 0) for one in seen)}" for name in sorted(sizes))
@@ -162,41 +162,41 @@ def faults_line(seen: list[Outcome]) -> str:
 
 
 def main() -> int:
-    """Run the campaign; return 1 if a promise was broken."""
-    parser = argparse.ArgumentParser(description="Hunt for broken promises on the robot's wire.")
-    parser.add_argument("--exchanges", type=float, default=1e6, help="of all mixtures, 1e6")
+    """Run the campaign; return 1 if a guarantee was violated."""
+    parser = argparse.ArgumentParser(description="Test the guarantees of the protocol.")
+    parser.add_argument("--exchanges", type=float, default=1e6, help="of all mixes, 1e6")
     parser.add_argument("--seed", type=int, default=1, help="of the campaign")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes")
-    parser.add_argument("--only", choices=[mix.name for mix in MIXES], help="one mixture")
+    parser.add_argument("--only", choices=[mix.name for mix in FAULT_MIXES], help="one mix")
     parser.add_argument("--run-seed", type=int, help="one run of it, with this seed")
     wanted = parser.parse_args()
-    mixes = [mix for mix in MIXES if wanted.only in (None, mix.name)]
+    mixes = [mix for mix in FAULT_MIXES if wanted.only in (None, mix.name)]
     runs = runs_for(int(wanted.exchanges), wanted.seed, mixes)
     if wanted.run_seed is not None:
-        runs = [Run(mixes[0], wanted.run_seed, RUN)]
+        runs = [Run(mixes[0], wanted.run_seed, EXCHANGES_PER_RUN)]
     console, start = Console(width=130), time.perf_counter()
     with ProcessPoolExecutor(wanted.jobs) as pool:
         outcomes = []
-        for outcome in pool.map(carry_out, runs):
+        for outcome in pool.map(run_world, runs):
             outcomes.append(outcome)
-            if len(outcomes) % TELL_EVERY == 0:
+            if len(outcomes) % PROGRESS_EVERY_RUNS == 0:
                 done = sum(one.counts["exchanges"] for one in outcomes)
                 broken = sum(one.violation is not None for one in outcomes)
                 took = time.perf_counter() - start
                 console.print(f"{done:,} exchanges, {broken} runs broken, {took:.0f} s")
     groups = {mix.name: [one for one in outcomes if one.mix == mix.name] for mix in mixes}
     violations = [one for one in outcomes if one.violation]
-    seen = [gather(group) for group in groups.values() if group]
+    seen = [add_up(group) for group in groups.values() if group]
     console.print(table_of(seen))
     console.print(faults_line(seen))
     exchanges = sum(one.counts["exchanges"] for one in seen)
     beats = sum(one.counts["heartbeats"] for one in seen)
-    wrong = complaints(violations, seen)
+    wrong = failures(violations, seen)
     if wanted.run_seed is None and exchanges < wanted.exchanges and not wrong:
         wrong.append(f"only {exchanges} exchanges were done")
     console.print(
         f"{exchanges:,} exchanges and {beats:,} heartbeats in {time.perf_counter() - start:.0f} s, "
-        f"seed {wanted.seed}: " + ("; ".join(wrong) if wrong else "every promise was kept"),
+        f"seed {wanted.seed}: " + ("; ".join(wrong) if wrong else "no violation"),
         style="red" if wrong else "green",
         soft_wrap=True,
     )

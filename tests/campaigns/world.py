@@ -1,4 +1,4 @@
-"""A host, a robot and one mixture of faults, from event to event in virtual time."""
+"""A host, a robot and a fault mix, from event to event in virtual time."""
 
 from collections import Counter
 from dataclasses import dataclass, field
@@ -12,17 +12,17 @@ from robot.protocol import timing
 from robot.protocol.wire import MAX_FRAME
 from robot.simulators.channel import MAX_IN_FLIGHT_BYTES
 from robot.simulators.faulty import MAX_INBOX_BYTES, FaultyRobot
-from tests.campaigns.ends import LightRobot, WatchedScheduler, watched_host
-from tests.campaigns.mixes import Mix
-from tests.campaigns.witness import BrokenPromiseError, Witness
+from tests.campaigns.fault_mixes import FaultMix
+from tests.campaigns.monitor import InvariantMonitor, InvariantViolationError
+from tests.campaigns.monitored import LightRobot, MonitoredScheduler, monitored_host
 
-LOOK_EVERY = 0.050
+ROBOT_STEP_S = 0.050
 """How often the robot looks at its clock [s]; the protocol allows no more."""
 
-EVENTS_AT_ONCE_MAX = 1000
+MAX_SIMULTANEOUS_EVENTS = 1000
 """Most events at one moment of virtual time; more are an endless loop."""
 
-QUIET_MEAN = 0.3
+MEAN_QUIET_S = 0.3
 """Mean length of a stretch in which nothing is asked for [s]."""
 
 NEVER = float("inf")
@@ -30,13 +30,13 @@ NEVER = float("inf")
 
 @dataclass
 class Outcome:
-    """What came of one run."""
+    """The result of one run."""
 
     mix: str
-    """Name of the mixture."""
+    """Name of the fault mix."""
 
     seed: int
-    """Of all that was drawn."""
+    """Seed of all random numbers."""
 
     seconds: float
     """Virtual time [s]."""
@@ -45,7 +45,7 @@ class Outcome:
     """Exchanges, heartbeats, faults and so on, by name."""
 
     recoveries: int
-    """How often the last wish came true, at first or again, in a quiet stretch."""
+    """How often the last request came true, at first or again, in a quiet stretch."""
 
     worst_recovery: float
     """Longest of them [s]."""
@@ -54,33 +54,33 @@ class Outcome:
     """Longest time from the last message to neutral, of a robot that did not hang [s]."""
 
     latencies: list[int]
-    """Histogram of the time from wish to body."""
+    """Histogram of the time from request to body."""
 
     largest: dict[str, int] = field(default_factory=dict)
     """Largest size of everything that could grow."""
 
     violation: str | None = None
-    """The promise that was broken, and when."""
+    """The violated guarantee, and when."""
 
 
 class CampaignWorld:
-    """Runs until so many exchanges are done, or a promise is broken."""
+    """Runs a number of exchanges, or until a guarantee is violated."""
 
-    def __init__(self, mix: Mix, seed: int) -> None:
+    def __init__(self, mix: FaultMix, seed: int) -> None:
         self.mix, self.seed = mix, seed
         self.random = np.random.default_rng((seed, 3))
-        self.witness = Witness()
-        self.light = LightRobot(self.witness)
-        self.faulty = FaultyRobot(self.light, mix.faults, seed, LOOK_EVERY)
-        self.witness.faulty = self.faulty
+        self.monitor = InvariantMonitor()
+        self.light = LightRobot(self.monitor)
+        self.faulty = FaultyRobot(self.light, mix.faults, seed, ROBOT_STEP_S)
+        self.monitor.faulty = self.faulty
         self.now = 0.0
         self.events_now = 0
         self.host_number = 0
         self.port_open = False
         self.unplug_count = 0
-        self.tick_at = self.wish_at = self.reopen_at = 0.0
+        self.tick_at = self.request_at = self.reopen_at = 0.0
         self.host_ends_at = NEVER
-        self.host = watched_host(self.witness, 1)
+        self.host = monitored_host(self.monitor, 1)
         self.recoveries, self.worst_recovery = 0, 0.0
         self.largest: dict[str, int] = {}
         self.quiet = False
@@ -89,14 +89,14 @@ class CampaignWorld:
         self._begin_stretch()
 
     def run(self, exchanges: int) -> Outcome:
-        """Return what came of it; a broken promise is in it too."""
+        """Run, and return the result, which includes a violation."""
         violation = None
         try:
-            while self.witness.counts["exchanges"] < exchanges:
+            while self.monitor.counts["exchanges"] < exchanges:
                 self._step()
                 if self.quiet:
                     self._watch_quiet()
-        except BrokenPromiseError as broken:
+        except InvariantViolationError as broken:
             violation = f"at {self.now:.6f} s: {broken}"
         except Exception as error:
             violation = f"at {self.now:.6f} s: {error!r}"
@@ -106,17 +106,17 @@ class CampaignWorld:
 
     def _step(self) -> None:
         faulty = self.faulty
-        now = max(self.now, min(faulty.due, self.tick_at, self.wish_at, self.host_ends_at))
+        now = max(self.now, min(faulty.due, self.tick_at, self.request_at, self.host_ends_at))
         self.events_now = self.events_now + 1 if now == self.now else 0
-        if self.events_now > EVENTS_AT_ONCE_MAX:
-            raise BrokenPromiseError("virtual time stands still")
-        self.now = self.witness.now = now
+        if self.events_now > MAX_SIMULTANEOUS_EVENTS:
+            raise InvariantViolationError("virtual time stands still")
+        self.now = self.monitor.now = now
         if now >= self.host_ends_at:
             self._start_host()
         faulty.advance(now)
         self._watch_plug()
-        if now >= self.wish_at:
-            self._wish()
+        if now >= self.request_at:
+            self._request()
         arrived = faulty.bytes_to_send()  # lost if nobody has the port open
         if self.port_open:
             self._talk(arrived)
@@ -127,11 +127,11 @@ class CampaignWorld:
         if data:
             self.host.receive(data, now)
             if self.chasing and self.scheduler.idle:
-                self._wish()
+                self._request()
         self.host.tick(now)
         out = self.host.bytes_to_send()
         if out:
-            self.witness.sends_bytes("there", out)
+            self.monitor.sends_bytes("there", out)
             self.faulty.receive(out, now)
 
     def _watch_plug(self) -> None:
@@ -152,23 +152,23 @@ class CampaignWorld:
     def _start_host(self) -> None:
         """Start the host's program; if one runs, end it, politely or not."""
         if self.host_number:
-            self.witness.counts["restart"] += 1
+            self.monitor.counts["restart"] += 1
             if self.random.random() < 0.5 and self.port_open:
                 self.host.close()
                 farewell = self.host.bytes_to_send()
-                self.witness.sends_bytes("there", farewell)
+                self.monitor.sends_bytes("there", farewell)
                 self.faulty.receive(farewell, self.now)
         # Far apart, as `connect` numbers programs by the moment in which they begin.
         self.host_number += int(self.random.integers(10**5, 10**6))
-        self.host = watched_host(self.witness, self.host_number)
-        assert isinstance(self.host.scheduler, WatchedScheduler)
+        self.host = monitored_host(self.monitor, self.host_number)
+        assert isinstance(self.host.scheduler, MonitoredScheduler)
         self.scheduler = self.host.scheduler
         lives = self.mix.host_lives
         self.host_ends_at = self.now + float(self.random.exponential(lives)) if lives else NEVER
         self.tick_at = self.now
         self._open_port()
         if self.quiet:
-            self._fall_quiet()  # the new program knows nothing of the last wish
+            self._fall_quiet()  # the new program knows nothing of the last request
 
     # --- What the host is asked for --------------------------------------------------------------
 
@@ -177,9 +177,9 @@ class CampaignWorld:
         self.quiet = False
         self.chasing = bool(self.random.random() < 0.8)
         self.stretch_ends = self.now + float(self.random.uniform(0.5, 5.0))
-        self.wish_at = self.now
+        self.request_at = self.now
 
-    def _wish(self) -> None:
+    def _request(self) -> None:
         if self.now >= self.stretch_ends:
             self._fall_quiet()
             return
@@ -190,23 +190,23 @@ class CampaignWorld:
             self.host.stop()
         elif draw < 0.1:
             for _ in range(3):
-                self.host.express(self.witness.asks())
-        self.host.express(self.witness.asks())
+                self.host.express(self.monitor.asks())
+        self.host.express(self.monitor.asks())
         # Whoever chases is woken by the acknowledgement; this is for when none comes.
         gap = 0.2 if self.chasing else 0.08
-        self.wish_at = self.now + float(self.random.uniform(0.0, gap))
+        self.request_at = self.now + float(self.random.uniform(0.0, gap))
 
     def _fall_quiet(self) -> None:
         """Ask for one last thing, and then for nothing."""
         self.chasing = False
-        self.host.express(self.witness.asks())
+        self.host.express(self.monitor.asks())
         self.last = self.host.scheduler.state.commanded
-        self.quiet, self.wish_at = True, NEVER
-        self.quiet_ends = self.now + float(self.random.exponential(QUIET_MEAN))
+        self.quiet, self.request_at = True, NEVER
+        self.quiet_ends = self.now + float(self.random.exponential(MEAN_QUIET_S))
         self.untrue_since = self.now
 
     def _watch_quiet(self) -> None:
-        """See that the last wish comes true, and again whenever the robot has lost it."""
+        """See that the last request comes true, and again whenever the robot has lost it."""
         if self.light.link.light.target == self.last == self.scheduler.state.acknowledged:
             if self.untrue_since < NEVER:
                 self.recoveries += 1
@@ -220,8 +220,8 @@ class CampaignWorld:
         took = self.now - self.untrue_since
         if took > self.mix.within:
             state = self.host.state(self.now)
-            raise BrokenPromiseError(
-                f"the last wish is not true after {took:.1f} s; the link is {state}"
+            raise InvariantViolationError(
+                f"the last request has no effect after {took:.1f} s; the link is {state}"
             )
 
     # --- What could grow -------------------------------------------------------------------------
@@ -243,12 +243,12 @@ class CampaignWorld:
         for name, (size, most) in sizes.items():
             self.largest[name] = max(size, self.largest.get(name, 0))
             if size > most:
-                raise BrokenPromiseError(f"{name} has grown to {size}; {most} is allowed")
+                raise InvariantViolationError(f"{name} has grown to {size}; {most} is allowed")
 
     def _outcome(self, violation: str | None) -> Outcome:
-        witness, faulty = self.witness, self.faulty
-        counts = witness.counts + faulty.counts + faulty.to_robot.counts + faulty.from_robot.counts
+        monitor, faulty = self.monitor, self.faulty
+        counts = monitor.counts + faulty.counts + faulty.to_robot.counts + faulty.from_robot.counts
         return Outcome(
             self.mix.name, self.seed, self.now, counts, self.recoveries, self.worst_recovery,
-            witness.worst_failsafe, witness.latencies, self.largest, violation,
+            monitor.worst_failsafe, monitor.latencies, self.largest, violation,
         )  # fmt: skip

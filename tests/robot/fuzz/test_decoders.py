@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from robot.drivers import DRIVERS
 from robot.network.messages import MESSAGE_TYPES
 from robot.simulators import SIMULATORS
-from tests.campaigns.decoders import GROWTH_MAX, HELD_MAX, TARGETS
+from tests.campaigns.decoders import MAX_GROWTH_BYTES, MAX_HELD_BYTES, TARGETS
 from tests.campaigns.soak import weight
 
 ROOT = Path(__file__).parents[3]
@@ -126,8 +126,8 @@ def check_held(who: object, feed: Callable[[float], None]) -> None:
         for index in range(HALF):
             feed(0.001 * (half * HALF + index))
         held.append(weight(who)[1])
-    assert held[1] < HELD_MAX
-    assert held[1] - held[0] < GROWTH_MAX
+    assert held[1] < MAX_HELD_BYTES
+    assert held[1] - held[0] < MAX_GROWTH_BYTES
 
 
 @pytest.mark.parametrize("flood", FLOODS)

@@ -1,4 +1,4 @@
-"""Damage that a frame's check may miss, many frames at once, and how seldom it should."""
+"""Errors that the check of a frame may miss: measured and predicted rates."""
 
 import itertools
 from collections.abc import Iterator
@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from robot.protocol.wire import FrameError, check_bytes, decode_frame, encode_frame
-from tests.campaigns.figure import BODIES, Figure
+from tests.campaigns.error_rate import BODIES, ErrorRate
 
 Bytes = NDArray[np.uint8]
 
-CHUNK = 1 << 19
-"""Frames that are made at once."""
+CHUNK_FRAMES = 1 << 19
+"""Frames generated at once."""
 
-CHANCE = 2**-16
-"""Of an arbitrary check to fit."""
+PASS_PROBABILITY = 2**-16
+"""Probability that a random check is right."""
 
 
 def _table() -> NDArray[np.uint16]:
@@ -30,7 +30,7 @@ _TABLE = _table()
 
 
 def crc_of(rows: Bytes, start: int = 0xFFFF) -> NDArray[np.uint16]:
-    """CRC-16/CCITT-FALSE of every row, written again, bit by bit, and so a check of the other."""
+    """Return CRC-16/CCITT-FALSE of every row; an implementation independent of the product's."""
     register = np.full(len(rows), start, np.uint16)
     for column in rows.T:
         register = (register << np.uint16(8)) ^ _TABLE[(register >> np.uint16(8)) ^ column]
@@ -38,25 +38,25 @@ def crc_of(rows: Bytes, start: int = 0xFFFF) -> NDArray[np.uint16]:
 
 
 def chunks(trials: int) -> Iterator[int]:
-    """Divide the trials."""
-    for begun in range(0, trials, CHUNK):
-        yield min(CHUNK, trials - begun)
+    """Divide the trials into chunks."""
+    for begun in range(0, trials, CHUNK_FRAMES):
+        yield min(CHUNK_FRAMES, trials - begun)
 
 
-def noise(random: np.random.Generator, trials: int, size: int = 13) -> Figure:
-    """Noise in the form of a frame."""
+def noise(random: np.random.Generator, trials: int, size: int = 13) -> ErrorRate:
+    """Measure noise in the form of a frame."""
     passed = 0
     for count in chunks(trials):
         rows = random.integers(1, 256, (count, size), dtype=np.uint8)
         checks = random.integers(0, 1 << 16, count, dtype=np.uint16)
         passed += int((crc_of(rows) == checks).sum())
-    return Figure("noise in the form of a frame", trials, passed, CHANCE)
+    return ErrorRate("noise in the form of a frame", trials, passed, PASS_PROBABILITY)
 
 
 def bits_wrong(
     random: np.random.Generator, trials: int, in_256: int, body: bytes = BODIES[1]
-) -> Figure:
-    """Every bit of a frame wrong with the same chance, in 1/256."""
+) -> ErrorRate:
+    """Measure frames in which each bit is wrong with a probability in 1/256."""
     frame = np.frombuffer(encode_frame(body)[1:-1], np.uint8)
     passed = 0
     for count in chunks(trials):
@@ -65,11 +65,11 @@ def bits_wrong(
         passed += int((fits(rows) & (rows != frame).any(axis=1)).sum())
     rate = in_256 / 256
     what = f"every bit wrong with chance {rate:.3f}"
-    return Figure(what, trials, passed, predicted(len(frame) - 3, rate))
+    return ErrorRate(what, trials, passed, predicted(len(frame) - 3, rate))
 
 
 def fits(rows: Bytes) -> NDArray[np.bool_]:
-    """Whether the check of every row fits its bytes; its runs and zeros are not looked at."""
+    """Return whether the check of every row is right, whatever its COBS runs."""
     crc = crc_of(rows[:, :-3]).astype(np.uint32)
     high, middle, low = rows[:, -3:].T
     matches = (high == (0xE0 | crc >> 12)) & (middle == (0x80 | crc >> 6 & 0x3F))
@@ -77,8 +77,8 @@ def fits(rows: Bytes) -> NDArray[np.bool_]:
 
 
 def predicted(size: int, rate: float) -> float:
-    """Return the chance that errors pass, in a frame of so many encoded bytes."""
-    # Column j of the parity check is what a wrong bit j adds to the check; linear, so from 0.
+    """Return the probability that errors pass in a frame with `size` encoded bytes."""
+    # Column j of the parity check matrix is the change of the CRC by a wrong bit j; it is linear.
     columns = crc_of(np.packbits(np.eye(8 * size, dtype=np.uint8), axis=1), start=0)
     columns = np.concatenate([columns, (1 << np.arange(16)).astype(np.uint16)])
     words = np.arange(1 << 16, dtype=np.uint16)  # every sum of the 16 rows: the dual code
@@ -89,24 +89,24 @@ def predicted(size: int, rate: float) -> float:
     return float((1 - rate) ** 8) * code
 
 
-def edge_made(random: np.random.Generator, trials: int, size: int = 20) -> Figure:
-    """A wrong bit makes an edge, and what follows it is taken for a frame."""
+def edge_made(random: np.random.Generator, trials: int, size: int = 20) -> ErrorRate:
+    """Measure wrong bits that make an edge: do the following bytes pass as a frame?"""
     passed = 0
     for count in chunks(trials):
         rows = random.integers(1, 256, (count, size), dtype=np.uint8)
         place = int(random.integers(3, size - 2))
         rows[:, place] = 1 << random.integers(0, 8, count)
         passed += int((crc_of(rows) == crc_of(rows[:, place + 1 :])).sum())
-    return Figure("an edge made: the rest passes", trials, passed, CHANCE)
+    return ErrorRate("an edge made: the rest passes", trials, passed, PASS_PROBABILITY)
 
 
-def edges_lost() -> Figure:
-    """Both edges between two frames are lost, by one wrong bit each, and the two become one.
+def edges_lost() -> ErrorRate:
+    """Measure pairs of frames that lose both edges between them, by one wrong bit each.
 
-    The second frame's check fits if the register stands at its start value behind the lost edges.
-    Where it stands depends on the first frame only by its check: all 65536 are tried.
+    The second frame's check is right if the register has its start value after the lost edges.
+    That depends only on the check of the first frame: all 65536 are tried.
     """
-    figure = Figure("both edges between two frames lost, all", 0, 0, 0.0)
+    rate = ErrorRate("both edges between two frames lost, all", 0, 0, 0.0)
     crc = np.arange(1 << 16, dtype=np.uint32)
     for one, other in itertools.product(range(8), repeat=2):
         register = crc.astype(np.uint16)
@@ -119,13 +119,13 @@ def edges_lost() -> Figure:
         ):
             column = np.broadcast_to(np.asarray(byte, np.uint16), crc.shape)
             register = (register << np.uint16(8)) ^ _TABLE[(register >> np.uint16(8)) ^ column]
-        figure.trials += len(crc)
-        figure.passed += int((register == 0xFFFF).sum())
-    return figure
+        rate.trials += len(crc)
+        rate.passed += int((register == 0xFFFF).sum())
+    return rate
 
 
-def same_check(random: np.random.Generator, trials: int) -> Figure:
-    """Compare the check written here with the product's; the doubt is not about chance."""
+def same_check(random: np.random.Generator, trials: int) -> ErrorRate:
+    """Compare the implementation here with the product's."""
     differ = 0
     for row in random.integers(1, 256, (trials, 16), dtype=np.uint8):
         true = row[:-3].tobytes() + check_bytes(row[:-3].tobytes())
@@ -137,4 +137,4 @@ def same_check(random: np.random.Generator, trials: int) -> Figure:
             except FrameError as error:
                 theirs = "COBS" in str(error)  # its check fits
             differ += ours != theirs
-    return Figure("this check and the product's differ", 2 * trials, differ, 0.0)
+    return ErrorRate("this check and the product's differ", 2 * trials, differ, 0.0)

@@ -1,4 +1,4 @@
-"""How often a frame's check let something pass, and how often it should have."""
+"""The rate of errors that pass the check of a frame, measured and predicted."""
 
 from dataclasses import dataclass
 
@@ -7,8 +7,8 @@ from scipy.stats import binomtest
 from robot.protocol import messages as m
 from robot.protocol.schema import pack
 
-DOUBT = 1e-6
-"""Chance of a false alarm of each comparison."""
+MIN_P_VALUE = 1e-6
+"""Probability of a false alarm of each comparison."""
 
 BODIES = (
     pack(m.Bye(), 7),
@@ -20,32 +20,32 @@ BODIES = (
 
 
 @dataclass
-class Figure:
+class ErrorRate:
     """One row of the table."""
 
     what: str
-    """What was done to the frames."""
+    """The kind of errors."""
 
     trials: int
-    """How often."""
+    """Number of trials."""
 
     passed: int
-    """How many of them were taken for whole."""
+    """Frames that passed."""
 
     chance: float
-    """The predicted share of them."""
+    """Predicted share of them."""
 
     edges: int = 0
-    """Trials left out, for they made an edge."""
+    """Trials that were skipped because they made an edge."""
 
     @property
-    def doubt(self) -> float:
-        """Chance of a figure at least so far from the prediction, if that is right."""
+    def p_value(self) -> float:
+        """Probability of a rate at least this far from the prediction, if that is right."""
         if self.chance == 0:
             return 0.0 if self.passed else 1.0
         return float(binomtest(self.passed, self.trials, self.chance).pvalue)
 
     @property
     def as_predicted(self) -> bool:
-        """Whether the prediction may be right."""
-        return self.doubt >= DOUBT
+        """Whether the rate agrees with the prediction."""
+        return self.p_value >= MIN_P_VALUE

@@ -1,4 +1,4 @@
-"""Who watches both ends of the wire during a campaign, and knows every promise."""
+"""The monitor of both ends of the wire in a campaign: it checks every guarantee."""
 
 from collections import Counter
 from typing import Any, Protocol
@@ -9,33 +9,33 @@ from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.simulators.faulty import FaultyRobot
 
-BIN = 0.0005
-"""Width of a bin of the histogram of latencies [s]."""
+BIN_WIDTH_S = 0.0005
+"""Bin width of the histogram of latencies [s]."""
 
 BINS = 40_000
-"""Bins of that histogram; the last one holds all that took longer."""
+"""Bins of that histogram; the last one counts all longer latencies."""
 
-REMEMBERED = 4096
-"""Frames and commands that are remembered, at least, to recognise them when they arrive."""
+MAX_REMEMBERED = 4096
+"""Frames and commands that are remembered, at least, to recognise them at their arrival."""
 
 
-class BrokenPromiseError(AssertionError):
-    """A promise that was not kept."""
+class InvariantViolationError(AssertionError):
+    """A violated guarantee."""
 
 
 def emotion_of(serial: int) -> Emotion:
-    """Return an emotion that can be told from all others, and put in order, when it is seen."""
+    """Return a unique emotion whose serial number can be recovered from it."""
     return Emotion((serial % 20001 - 10000) / 10000, (serial // 20001 - 10000) / 10000)
 
 
 def serial_of(emotion: Emotion) -> int:
-    """Undo `emotion_of`."""
+    """Return the serial number of an emotion of `emotion_of`."""
     valence, arousal = round(emotion.valence * 10000), round(emotion.arousal * 10000)
     return valence + 10000 + 20001 * (arousal + 10000)
 
 
-class Recent:
-    """The last few thousand things, and perhaps twice as many."""
+class RecentItems:
+    """The last few thousand items, up to twice as many."""
 
     def __init__(self) -> None:
         self._new: dict[Any, Any] = {}
@@ -44,7 +44,7 @@ class Recent:
     def put(self, key: Any, value: Any = None) -> None:
         """Remember it."""
         self._new[key] = value
-        if len(self._new) >= REMEMBERED:
+        if len(self._new) >= MAX_REMEMBERED:
             self._old, self._new = self._new, {}
 
     def __contains__(self, key: Any) -> bool:
@@ -59,8 +59,8 @@ class _Link(Protocol):
     heard: float
 
 
-class Witness:
-    """Counts what happens, and raises BrokenPromiseError when a promise is broken."""
+class InvariantMonitor:
+    """Counts events, and raises InvariantViolationError when a guarantee is violated."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -69,9 +69,9 @@ class Witness:
         self.latencies = [0] * BINS
         self.asked = 0  # serial of the last emotion
         self.faulty: FaultyRobot | None = None
-        self.frames = {"there": Recent(), "back": Recent()}
+        self.frames = {"there": RecentItems(), "back": RecentItems()}
         self._asked_at: dict[int, float] = {}
-        self._sent = Recent()  # (host, number) -> command
+        self._sent = RecentItems()  # (host, number) -> command
         self._taken: dict[int, int] = {}  # host -> its last number in this life of the robot
         self._played = (0, 0)  # host and number of the last action, in all lives of the robot
         self._shown = 0  # serial of the last emotion that took effect
@@ -80,22 +80,22 @@ class Witness:
     # --- The host's side -----------------------------------------------------------------------
 
     def asks(self) -> Emotion:
-        """Return the next wish."""
+        """Return the next emotion to request."""
         self.asked += 1
         self._asked_at[self.asked] = self.now
-        if len(self._asked_at) > REMEMBERED:
+        if len(self._asked_at) > MAX_REMEMBERED:
             del self._asked_at[next(iter(self._asked_at))]
         return emotion_of(self.asked)
 
     def sends(self, host: int, command: Command) -> None:
-        """See a command leave the host."""
+        """Note that the host sends a command."""
         known = command.number if (host, command.number) in self._sent else None
         if known is not None and self._sent[host, command.number] != command:
-            raise BrokenPromiseError(f"number {command.number} was given to two commands")
+            raise InvariantViolationError(f"number {command.number} was given to two commands")
         self._sent.put((host, command.number), command)
 
     def sends_bytes(self, way: str, data: bytes) -> None:
-        """See frames leave either end, to recognise them when they arrive."""
+        """Note the frames that one end sends."""
         recent = self.frames[way]
         for frame in data.split(b"\0"):
             if frame:
@@ -104,28 +104,30 @@ class Witness:
     # --- The robot's side ----------------------------------------------------------------------
 
     def reboots(self) -> None:
-        """See the robot lose its memory."""
+        """Note that the robot lost its memory."""
         self._displaced = True
         self._taken.clear()
 
     def goes_neutral(self) -> None:
-        """See the robot give up the emotion."""
+        """Note that the robot goes to neutral."""
         self._displaced = True
 
     def carries_out(self, host: int, command: Command) -> None:
-        """See a command take effect."""
+        """Check a command that takes effect."""
         if (host, command.number) not in self._sent:
-            raise BrokenPromiseError(f"{command} of host {host} was never sent")
+            raise InvariantViolationError(f"{command} of host {host} was never sent")
         if self._sent[host, command.number] != command:
-            raise BrokenPromiseError(f"{command} was sent as {self._sent[host, command.number]}")
+            raise InvariantViolationError(
+                f"{command} was sent as {self._sent[host, command.number]}"
+            )
         last = self._taken.get(host, 0)
         if command.number <= last:
-            raise BrokenPromiseError(f"{command} takes effect after number {last}")
+            raise InvariantViolationError(f"{command} takes effect after number {last}")
         self._taken[host] = command.number
         self.counts["taken"] += 1
         if isinstance(command, m.Play):
             if (host, command.number) <= self._played:
-                raise BrokenPromiseError(f"{command} is played a second time")
+                raise InvariantViolationError(f"{command} is played a second time")
             self._played = (host, command.number)
         elif isinstance(command, m.Express):
             self._shows(Emotion(command.valence, command.arousal))
@@ -133,19 +135,19 @@ class Witness:
     def _shows(self, emotion: Emotion) -> None:
         serial = serial_of(emotion)
         if not 1 <= serial <= self.asked:
-            raise BrokenPromiseError(f"nobody asked for {emotion}")
+            raise InvariantViolationError(f"nobody requested {emotion}")
         if serial < self._shown:
-            raise BrokenPromiseError(f"emotion {serial} takes effect after {self._shown}")
+            raise InvariantViolationError(f"emotion {serial} takes effect after {self._shown}")
         if serial == self._shown and not self._displaced:
-            raise BrokenPromiseError(f"emotion {serial} takes effect twice")
+            raise InvariantViolationError(f"emotion {serial} takes effect twice")
         self._shown, self._displaced = serial, False
         asked_at = self._asked_at.pop(serial, None)
         if asked_at is not None:
             self.counts["emotions"] += 1
-            self.latencies[min(int((self.now - asked_at) / BIN), BINS - 1)] += 1
+            self.latencies[min(int((self.now - asked_at) / BIN_WIDTH_S), BINS - 1)] += 1
 
     def falls_silent(self, heard: float, now: float) -> None:
-        """See the robot act on the silence of its host."""
+        """Check the failsafe's time."""
         self.counts["failsafe"] += 1
         assert self.faulty is not None
         if self.faulty.stalled_until <= heard:  # a robot that hangs cannot act before it wakes
@@ -153,12 +155,12 @@ class Witness:
             self._in_time(now - heard)
 
     def looks(self, link: _Link, now: float) -> None:
-        """See that no session lives on in silence."""
+        """Check that no session stays open in silence."""
         if link.session:
             self._in_time(now - link.heard)
 
     def _in_time(self, silence: float) -> None:
         if silence > timing.FAILSAFE_PROMISE + 1e-6:
-            raise BrokenPromiseError(
+            raise InvariantViolationError(
                 f"the failsafe comes {1000 * silence:.1f} ms after the last message"
             )

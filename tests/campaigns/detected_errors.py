@@ -1,4 +1,4 @@
-"""Damage that a frame's check must always notice, tried on the product's own reader."""
+"""Errors that the check of a frame must always detect, tested on the product's reader."""
 
 import itertools
 from collections.abc import Iterator
@@ -6,31 +6,31 @@ from collections.abc import Iterator
 import numpy as np
 
 from robot.protocol.wire import FrameReader, encode_frame
-from tests.campaigns.figure import BODIES, Figure
+from tests.campaigns.error_rate import BODIES, ErrorRate
 
 
-def damaged(what: str, frames: list[bytes], patterns: Iterator[tuple[int, int]]) -> Figure:
-    """Feed the reader frames with bits changed between their edges.
+def damaged(what: str, frames: list[bytes], patterns: Iterator[tuple[int, int]]) -> ErrorRate:
+    """Feed the reader frames with inverted bits between their edges.
 
-    `patterns` gives the number of a frame, and the bits to change in what is between its edges.
+    `patterns` has the index of a frame, and the bits to invert between its edges.
     """
-    reader, figure = FrameReader(), Figure(what, 0, 0, 0.0)
+    reader, rate = FrameReader(), ErrorRate(what, 0, 0, 0.0)
     inner = [frame[1:-1] for frame in frames]
     numbers = [int.from_bytes(one, "big") for one in inner]
     sizes = [len(one) for one in inner]
     for which, pattern in patterns:
         wrong = (numbers[which] ^ pattern).to_bytes(sizes[which], "big")
         if 0 in wrong:
-            figure.edges += 1
+            rate.edges += 1
             continue
-        figure.trials += 1
-        figure.passed += len(reader.feed(b"\0" + wrong + b"\0"))
-    return figure
+        rate.trials += 1
+        rate.passed += len(reader.feed(b"\0" + wrong + b"\0"))
+    return rate
 
 
-def single_bits(frames: list[bytes]) -> Figure:
-    """Damage every bit of every frame, edges included, between two others."""
-    figure = Figure("1 wrong bit, everywhere, edges too", 0, 0, 0.0)
+def single_bits(frames: list[bytes]) -> ErrorRate:
+    """Invert every bit of every frame, edges included, between two others."""
+    rate = ErrorRate("1 wrong bit, everywhere, edges too", 0, 0, 0.0)
     around = encode_frame(b"around")
     for frame in frames:
         stream = int.from_bytes(around + frame + around, "big")
@@ -38,9 +38,9 @@ def single_bits(frames: list[bytes]) -> Figure:
         for place in range(8 * size):
             wrong = (stream ^ 1 << place).to_bytes(size, "big")
             arrived = FrameReader().feed(wrong)
-            figure.trials += 1
-            figure.passed += sum(encode_frame(body) not in (around, frame) for body in arrived)
-    return figure
+            rate.trials += 1
+            rate.passed += sum(encode_frame(body) not in (around, frame) for body in arrived)
+    return rate
 
 
 def pairs(frames: list[bytes]) -> Iterator[tuple[int, int]]:
@@ -63,7 +63,7 @@ def triples(
 def bursts(
     frames: list[bytes], random: np.random.Generator, count: int
 ) -> Iterator[tuple[int, int]]:
-    """Any wrong bits within 16 that follow each other."""
+    """Any wrong bits within 16 consecutive ones."""
     patterns = random.integers(1, 1 << 16, count).tolist()
     for (which, (place,)), pattern in zip(drawn(frames, random, count, 1), patterns, strict=True):
         yield which, pattern << min(place, 8 * (len(frames[which]) - 2) - 16)
@@ -79,8 +79,8 @@ def drawn(
     return zip(which.tolist(), where.tolist(), strict=True)
 
 
-def behind_garbage(random: np.random.Generator, trials: int) -> Figure:
-    """Count the whole frames that are not received because of what came before them."""
+def behind_garbage(random: np.random.Generator, trials: int) -> ErrorRate:
+    """Count the whole frames that are lost because of garbage before them."""
     reader, lost = FrameReader(), 0
     frames = [(body, encode_frame(body)) for body in BODIES]
     sizes = random.integers(0, 200, trials).tolist()
@@ -94,4 +94,4 @@ def behind_garbage(random: np.random.Generator, trials: int) -> Figure:
         else:  # and one without an end
             garbage = bytes([size + 1]) * 3000
         lost += reader.feed(garbage + frame)[-1:] != [body]
-    return Figure("the first frame behind garbage is lost", trials, lost, 0.0)
+    return ErrorRate("the first frame behind garbage is lost", trials, lost, 0.0)

@@ -1,7 +1,4 @@
-"""The two ends of the wire in a campaign.
-
-They are the product's own; a few of their methods tell the witness what they do.
-"""
+"""The two ends of the wire in a campaign: the product's own, which report to the monitor."""
 
 from typing import Any
 
@@ -13,17 +10,17 @@ from robot.drivers.cubeling.scheduler import Command, CommandScheduler, RoundTri
 from robot.protocol import messages as m
 from robot.protocol.wire import FrameReader
 from robot.simulators.cubeling.device import BodyState, DeviceLink
-from tests.campaigns.witness import BrokenPromiseError, Witness
+from tests.campaigns.monitor import InvariantMonitor, InvariantViolationError
 
 NEUTRAL = Emotion(0.0, 0.0)
 
 
-class WatchedReader(FrameReader):
+class MonitoredReader(FrameReader):
     """Notices a frame that is taken for whole and was never sent."""
 
-    def __init__(self, witness: Witness, way: str) -> None:
+    def __init__(self, monitor: InvariantMonitor, way: str) -> None:
         super().__init__()
-        self._witness, self._sent = witness, witness.frames[way]
+        self._witness, self._sent = monitor, monitor.frames[way]
 
     def _finish(self) -> bytes | None:
         frame = bytes(self._pending)
@@ -35,19 +32,19 @@ class WatchedReader(FrameReader):
         return body
 
 
-class WatchedScheduler(CommandScheduler):
+class MonitoredScheduler(CommandScheduler):
     """Tells which command is sent, and which has been acknowledged."""
 
-    def __init__(self, witness: Witness, host: int) -> None:
+    def __init__(self, monitor: InvariantMonitor, host: int) -> None:
         super().__init__()
-        self.witness, self.host = witness, host
+        self.monitor, self.host = monitor, host
         self.idle = True
 
     def next(self, now: float, retry_after: float) -> Command | None:
         command = super().next(now, retry_after)
         if command is not None:
             self.idle = False
-            self.witness.sends(self.host, command)
+            self.monitor.sends(self.host, command)
         return command
 
     def acknowledge(self, number: int, result: int = m.TAKEN) -> None:
@@ -55,32 +52,32 @@ class WatchedScheduler(CommandScheduler):
         super().acknowledge(number, result)
         if waiting and self.pending is None:
             self.idle = True
-            self.witness.counts["exchanges"] += 1
+            self.monitor.counts["exchanges"] += 1
 
 
-class WatchedRoundTrip(RoundTrip):
+class MonitoredRoundTrip(RoundTrip):
     """Counts the heartbeats that were answered."""
 
-    def __init__(self, witness: Witness) -> None:
+    def __init__(self, monitor: InvariantMonitor) -> None:
         super().__init__()
-        self.witness = witness
+        self.monitor = monitor
 
     def stop(self, count: int, now: float) -> None:
         waiting = self.pending
         super().stop(count, now)
-        self.witness.counts["heartbeats"] += waiting - self.pending
+        self.monitor.counts["heartbeats"] += waiting - self.pending
 
 
-def watched_host(witness: Witness, host: int) -> HostLink:
+def monitored_host(monitor: InvariantMonitor, host: int) -> HostLink:
     """Make a host's end whose commands, heartbeats and frames are seen.
 
     It is made as `connect` makes it, so that a restart begins as that of the program does.
     """
     link = DRIVERS["cubeling"].make(host, None)
     assert isinstance(link, HostLink)
-    link.scheduler = WatchedScheduler(witness, host)
-    link.round_trip = WatchedRoundTrip(witness)
-    link.reader = WatchedReader(witness, "back")
+    link.scheduler = MonitoredScheduler(monitor, host)
+    link.round_trip = MonitoredRoundTrip(monitor)
+    link.reader = MonitoredReader(monitor, "back")
     return link
 
 
@@ -92,8 +89,8 @@ class LightBody:
         ("neutral", "happy", "angry"),
     )  # fmt: skip
 
-    def __init__(self, witness: Witness) -> None:
-        self.witness = witness
+    def __init__(self, monitor: InvariantMonitor) -> None:
+        self.monitor = monitor
         self.target = NEUTRAL
 
     def express(self, emotion: Emotion, mood: int) -> None:
@@ -107,29 +104,29 @@ class LightBody:
 
     def neutral(self) -> None:
         self.target = NEUTRAL
-        self.witness.goes_neutral()
+        self.monitor.goes_neutral()
 
     def state(self) -> BodyState:
         return BodyState(self.target, 0, 1.0, (0.0,))
 
 
-class WatchedLink(DeviceLink):
+class MonitoredLink(DeviceLink):
     """A robot's end that tells what takes effect, and when it last heard of its host."""
 
-    def __init__(self, witness: Witness) -> None:
-        self.light = LightBody(witness)
+    def __init__(self, monitor: InvariantMonitor) -> None:
+        self.light = LightBody(monitor)
         super().__init__(self.light)
-        self.witness = witness
-        self.heard = witness.now
-        self._reader = WatchedReader(witness, "there")
+        self.monitor = monitor
+        self.heard = monitor.now
+        self._reader = MonitoredReader(monitor, "there")
 
     def tick(self, now: float) -> None:
         session = self.session
         super().tick(now)
         if session and not self.session:
-            self.witness.falls_silent(self.heard, now)
+            self.monitor.falls_silent(self.heard, now)
             if self.light.target != NEUTRAL:
-                raise BrokenPromiseError("the failsafe does not lead to neutral")
+                raise InvariantViolationError("the failsafe does not lead to neutral")
 
     def _take(self, session: int, message: Any, now: float) -> None:
         if isinstance(message, m.Hello) or (session and session == self.session):
@@ -137,7 +134,7 @@ class WatchedLink(DeviceLink):
         super()._take(session, message, now)
 
     def _carry_out(self, command: m.Express | m.Play | m.Stop) -> int:
-        self.witness.carries_out(self._host, command)
+        self.monitor.carries_out(self._host, command)
         return super()._carry_out(command)
 
 
@@ -146,29 +143,29 @@ class LightRobot:
 
     edge = b"\0"
 
-    def __init__(self, witness: Witness) -> None:
-        self.witness = witness
-        self.link = WatchedLink(witness)
+    def __init__(self, monitor: InvariantMonitor) -> None:
+        self.monitor = monitor
+        self.link = MonitoredLink(monitor)
 
     def receive(self, data: bytes, now: float) -> None:
-        self.witness.now = now
+        self.monitor.now = now
         self.link.receive(data, now)
-        self.witness.looks(self.link, now)
+        self.monitor.looks(self.link, now)
 
     def advance(self, now: float) -> None:
-        self.witness.now = now
+        self.monitor.now = now
         self.link.tick(now)
-        self.witness.looks(self.link, now)
+        self.monitor.looks(self.link, now)
 
     def bytes_to_send(self) -> bytes:
         data = self.link.bytes_to_send()
         if data:
-            self.witness.sends_bytes("back", data)
+            self.monitor.sends_bytes("back", data)
         return data
 
     def reboot(self) -> None:
-        self.witness.reboots()
-        self.link = WatchedLink(self.witness)
+        self.monitor.reboots()
+        self.link = MonitoredLink(self.monitor)
 
     def portrait(self) -> tuple[float, str]:
         return self.link.light.target.valence, "light"
