@@ -1,7 +1,7 @@
-"""Draws the bundled characters, to look at and to judge: `python -m tools.cast`.
+"""Draws the bundled characters for the documentation: `python -m tools.cast`.
 
-Each is drawn from all sides, with the faces that it makes, and its clips frame by frame; and all
-of them together, as they are on a table, and in every mood.
+Each is drawn from all sides, with its facial morphs, and its clips frame by frame. Two more
+pictures show all characters on one table, and in every mood.
 """
 
 from collections.abc import Iterable, Iterator
@@ -14,7 +14,7 @@ from rich.console import Console
 
 from affect import Emotion
 from affect.words import PLACES, closest_word
-from app.ui.album import Album, Image, save, stacked
+from app.ui.contact_sheets import ContactSheets, Image, save, stacked
 from characters import (
     ActionIntent,
     Animator,
@@ -31,24 +31,23 @@ from characters.rendering.portrait_camera import CharacterExtent, PortraitCamera
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures" / "cast"
 
-ROWS = 8
-"""Clips on a page."""
+CLIPS_PER_SHEET = 8
 
-MOST = 300_000
-"""Bytes of a picture."""
+MAX_BYTES = 300_000
+"""Size of a picture's file."""
 
 
 def draw_cast(cast: Iterable[Character], folder: Path = FOLDER) -> Iterator[Path]:
-    """Draw some characters, and yield each file when it is written."""
+    """Draw characters, and yield each file after it is written."""
     with ExitStack() as closing:
         context = create_context()
         closing.callback(context.release)
-        album = Album(context)
-        closing.callback(album.release)
+        sheets = ContactSheets(context)
+        closing.callback(sheets.release)
         for character in cast:
-            for kind, picture in _pages(album, character):
+            for kind, picture in _pages(sheets, character):
                 path = folder / f"{character.name}{kind}.jpg"
-                save(picture, path, MOST)
+                save(picture, path, MAX_BYTES)
                 yield path
 
 
@@ -57,49 +56,50 @@ GROUP: tuple[tuple[str, str, float, RootDelta], ...] = (
     ("human", "wave", 1.25, RootDelta(0.0, 0.02, 0.1)),
     ("robot", "happy", 0.5, RootDelta(0.15, 0.0, -0.55)),
 )
-"""Who is in the picture of all: what they do, how long they have done it [s], where they stand."""
+"""The picture of all characters: name, action, time since it began [s], and place."""
 
 
 def draw_group(context: moderngl.Context, size: tuple[int, int] = (1100, 520)) -> Image:
-    """Return a picture of the whole cast on one table, (height, width, 3) BGR."""
-    actors, points = [], []
+    """Return a picture of all characters on one table, (height, width, 3) BGR."""
+    characters, points = [], []
     for name, action, seconds, place in GROUP:
         character = Character.load(name)
         posed = _after(Animator(character, place=place), action, seconds)
-        reach = CharacterExtent(character).points(posed.pose)
+        extent = CharacterExtent(character).points(posed.pose)
         matrix = posed.table_from_character
-        points.append(reach @ matrix[:3, :3].T + matrix[:3, 3])
-        actors.append(SceneCharacter(character, posed))
-    framing = PortraitCamera.around(np.concatenate(points), 0.2, size, 0.05)
+        points.append(extent @ matrix[:3, :3].T + matrix[:3, 3])
+        characters.append(SceneCharacter(character, posed))
+    camera = PortraitCamera.around(np.concatenate(points), 0.2, size, 0.05)
     paper = np.full((size[1], size[0], 3), PAPER_BGR, np.uint8)
     stage = Stage(context, size)
     try:
-        view = View(paper, framing.matrix, np.zeros(0), framing.camera_from_table)
-        return stage.draw(view, actors)
+        view = View(paper, camera.matrix, np.zeros(0), camera.camera_from_table)
+        return stage.draw(view, characters)
     finally:
         stage.release()
 
 
 MOODS = ("neutral", "happy", "excited", "surprised", "angry", "afraid", "sad", "sleepy")
-"""What is shown on the sheet of moods."""
+"""The columns of the sheet of moods."""
 
-SETTLED = 4.0, 4.7
-"""Between these times after a mood has begun it is drawn, when it does not blink [s]."""
-
-
-def draw_moods(album: Album, cast: Iterable[Character]) -> Image:
-    """Return a sheet of how everyone looks in every mood."""
-    return stacked(*(album.moods(who, {word: _moody(who, word) for word in MOODS}) for who in cast))
+SETTLED_S = 4.0, 4.7
+"""Times after the start of a mood between which it is drawn, when the eyes are open [s]."""
 
 
-def _moody(character: Character, word: str) -> Pose:
-    """Return how a character stands that has felt so for a while, with its eyes open."""
+def draw_moods(sheets: ContactSheets, cast: Iterable[Character]) -> Image:
+    """Return a sheet of every character in every mood."""
+    rows = [sheets.moods(who, {label: _mood_pose(who, label) for label in MOODS}) for who in cast]
+    return stacked(*rows)
+
+
+def _mood_pose(character: Character, label: str) -> Pose:
+    """Return a character's pose in a settled mood, with its eyes open."""
     animator = Animator(character, place=RootDelta())
-    emotion = Emotion(*PLACES[word], word)
+    emotion = Emotion(*PLACES[label], label)
     known = closest_word(animator.actions, emotion)
     action = known if known in PLACES and known is not None else "idle"
     gaze = np.array([0.1, 0.16, 1.0])
-    first, last = (round(time * 30) for time in SETTLED)
+    first, last = (round(time * 30) for time in SETTLED_S)
     poses = [
         animator.update(
             CharacterCommand(number / 30, action=ActionIntent(action), gaze=gaze, emotion=emotion)
@@ -111,7 +111,7 @@ def _moody(character: Character, word: str) -> Pose:
 
 
 def _after(animator: Animator, action: str, seconds: float) -> PosedCharacter:
-    """Return a character that has acted for a while, and looks at the camera."""
+    """Return a character some time after an action began, looking at the camera."""
     gaze = np.array([0.0, 0.2, 1.0])
     commands = (
         CharacterCommand(number / 60, action=ActionIntent(action, 1.0), gaze=gaze)
@@ -121,22 +121,22 @@ def _after(animator: Animator, action: str, seconds: float) -> PosedCharacter:
     return posed
 
 
-def _pages(album: Album, character: Character) -> Iterator[tuple[str, Image]]:
-    yield "", album.turntable(character)
+def _pages(sheets: ContactSheets, character: Character) -> Iterator[tuple[str, Image]]:
+    yield "", sheets.turntable(character)
     if character.morphs and character.anatomy.joint("head") is not None:
-        yield "-face", album.faces(character)
+        yield "-face", sheets.faces(character)
     clips = list(character.clips.values())
-    for page, first in enumerate(range(0, len(clips), ROWS), start=1):
-        yield f"-clips-{page}", album.clips(character, clips[first : first + ROWS])
+    for page, first in enumerate(range(0, len(clips), CLIPS_PER_SHEET), start=1):
+        yield f"-clips-{page}", sheets.clips(character, clips[first : first + CLIPS_PER_SHEET])
 
 
 if __name__ == "__main__":
     context = create_context()
-    save(draw_group(context), FOLDER.parent / "cast.jpg", MOST)
-    album = Album(context)
-    moods = draw_moods(album, map(Character.load, Character.bundled()))
-    save(moods, FOLDER.parent / "moods-on-faces.jpg", MOST)
-    album.release()
+    save(draw_group(context), FOLDER.parent / "cast.jpg", MAX_BYTES)
+    sheets = ContactSheets(context)
+    moods = draw_moods(sheets, map(Character.load, Character.bundled()))
+    save(moods, FOLDER.parent / "moods-on-faces.jpg", MAX_BYTES)
+    sheets.release()
     context.release()
     for path in draw_cast(map(Character.load, Character.bundled())):
         Console().print(f"{path.name}: {path.stat().st_size / 1e3:.0f} kB")

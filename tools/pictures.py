@@ -30,16 +30,16 @@ from tracking.synthetic import open_synthetic
 
 FOLDER = Path(__file__).parent.parent / "docs" / "pictures"
 
-MOMENTS: dict[str, dict[str, float]] = {
+MOMENTS_S: dict[str, dict[str, float]] = {
     "companion": {"kiss": 12.2, "shout": 27.3},
     "follow": {"walk": 6.2, "run": 12.6},
     "sketch": {"path": 22.6},
 }
-"""For every recording, the pictures taken from it and when [s]."""
+"""For every recording, the pictures taken from it and their times [s]."""
 
 
 def draw(scenario: str, moments: dict[str, float]) -> None:
-    """Play one recording and keep some of its pictures."""
+    """Play one recording, and save some of its pictures."""
     waiting = sorted((time, name) for name, time in moments.items())
     with ExitStack() as closing:
         source = closing.enter_context(open_source(str(bundled(scenario))))
@@ -68,8 +68,8 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
 
 
 def draw_sheet(name: str) -> None:
-    """Draw a cube's sheet as a picture."""
-    import pypdfium2  # comes with the tools of the tests; the program itself reads no PDF
+    """Draw the printable sheet of a cube as a picture."""
+    import pypdfium2  # a dependency of the tests only
 
     with tempfile.TemporaryDirectory() as folder:
         pdf = Path(folder) / "sheet.pdf"
@@ -78,62 +78,62 @@ def draw_sheet(name: str) -> None:
         page.render(scale=1.5).to_pil().save(FOLDER / f"sheet-{name}.png", optimize=True)
 
 
-LESSON = {"tip": "tilt up", "near": "near"}
-"""For which requests of the coach a picture is taken."""
+COACH_PICTURES = {"tip": "tilt up", "near": "near"}
+"""Names of the coach's pictures, and the request that each shows."""
 
-SHOWN = (0.6, 1.2)
-"""How long the request has been shown by then [s]: half way through the coach's little drawing."""
+SHOWN_FOR_S = (0.6, 1.2)
+"""Time since the request began [s]: in the middle of the animation."""
 
-FREE = 0.74
-"""The cube is above this share of the picture's height by then, where no card lies."""
+MAX_CUBE_BOTTOM = 0.74
+"""Bottom of the cube as a share of the picture's height, so that no card covers it."""
 
 
-class _Album:
-    """Keeps some pictures of a session."""
+class _PictureCoach:
+    """Saves some pictures of a calibration session."""
 
     closed = False
 
     def __init__(self) -> None:
         self._coach = CoachView("cube")
-        self._waiting = {request: name for name, request in LESSON.items()}
+        self._waiting = {request: name for name, request in COACH_PICTURES.items()}
         self._since = ("", 0.0)
 
     def show_advice(self, picture: Picture, timestamp: float, advice: Advice) -> None:
-        """Draw the coach, and keep the picture if its time has come."""
+        """Draw the coach, and save the picture at the right time."""
         shown = self._coach.draw(picture, timestamp, advice)
         if advice.request != self._since[0]:
             self._since = advice.request, timestamp
-        held = SHOWN[0] <= (timestamp - self._since[1]) % ANIMATION_PERIOD_S <= SHOWN[1]
+        held = SHOWN_FOR_S[0] <= (timestamp - self._since[1]) % ANIMATION_PERIOD_S <= SHOWN_FOR_S[1]
         lowest = max((outline[:, 1].max() for outline in advice.outlines), default=np.inf)
-        seen = lowest < FREE * picture.shape[0]
+        seen = lowest < MAX_CUBE_BOTTOM * picture.shape[0]
         if advice.request in self._waiting and held and seen:
             path = FOLDER / f"calibrate-{self._waiting.pop(advice.request)}.jpg"
             cv2.imwrite(str(path), shown, (cv2.IMWRITE_JPEG_QUALITY, 88))
 
 
 def draw_calibration() -> None:
-    """Wave a drawn cube before the drawn camera, and keep what the coach shows."""
+    """Calibrate a synthetic camera with a synthetic cube, and save what the coach shows."""
     source = open_synthetic("wave?fold=0.8&seed=1&rate=15")
     session = CalibrationSession([CubeFinder(CubeModel.load("locomotion"))], source.size)
-    session.run(source, _Album(), 60.0)
+    session.run(source, _PictureCoach(), 60.0)
     write_coverage(FOLDER / "calibrate-coverage.jpg", session)
 
 
-UNPLUGGED = "sim:cubeling?unplug=12s/1s&seed=3"
-"""The robot whose plug is pulled in the picture of a mood: twice while the session plays."""
+UNPLUGGED_ROBOT = "sim:cubeling?unplug=12s/1s&seed=3"
+"""A simulated robot that is unplugged twice during the session of the mood plot."""
 
 
 def draw_moods() -> None:
-    """Plot how a bundled session is felt by three, and one whose robot was unplugged."""
-    felt = FOLDER / "mood-personalities.svg"
-    plot(bundled("companion"), felt, ["thesis", "shy", "grumpy"])
+    """Plot a session with three personalities, and one whose robot was unplugged."""
+    compared = FOLDER / "mood-personalities.svg"
+    plot(bundled("companion"), compared, ["thesis", "shy", "grumpy"])
     with tempfile.TemporaryDirectory() as folder:
         session = Path(folder) / "today.mcap"
         options = SessionOptions(
             scenario="companion",
             source=str(bundled("companion")),
             personality="lively",
-            robot=UNPLUGGED,
+            robot=UNPLUGGED_ROBOT,
             record=session,
             pictures=False,
         )
@@ -144,7 +144,7 @@ def draw_moods() -> None:
 
 if __name__ == "__main__":
     FOLDER.mkdir(parents=True, exist_ok=True)
-    for recording, pictures in MOMENTS.items():
+    for recording, pictures in MOMENTS_S.items():
         draw(recording, pictures)
     draw_sheet("companion")
     draw_calibration()

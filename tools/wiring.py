@@ -10,7 +10,7 @@ from robot.firmware.dino import servos
 from robot.firmware.dino.table import Servo, ServoTable
 
 PICTURE = Path(__file__).parents[1] / "docs" / "pictures" / "robot-wiring.svg"
-"""Where the picture stands."""
+"""Path of the diagram."""
 
 SIGNAL, PLUS, MINUS = "#e08a1e", "#cf3b3b", "#4a4038"
 """Colours of the wires, as on most servos: orange or white, red, brown or black."""
@@ -25,7 +25,7 @@ _PLUS_X, _MINUS_X, _SERVO_X = 610, 640, 740  # of the rails, and of the servos' 
 
 
 def wiring(table: ServoTable) -> str:
-    """Return the picture as SVG: the computer, the board, its servos, their supply, the buzzer."""
+    """Return the diagram as SVG: the computer, the board, its servos, their supply, the buzzer."""
     count = len(table.servos)
     bottom = _TOP + _PITCH * count
     height = bottom + 112
@@ -56,8 +56,8 @@ def wiring(table: ServoTable) -> str:
 
 
 def _lane(index: int, pins: list[int], heights: list[int]) -> int:
-    """Return where a signal turns, so that no two signals cross."""
-    # Those that go up turn the later the lower they are; those that go down the other way round.
+    """Return the x at which a signal turns, so that no two signals cross."""
+    # Signals that go up turn further right the lower they are; those that go down, the reverse.
     rank = index if heights[index] < pins[index] else len(pins) - 1 - index
     return 430 + 28 * rank
 
@@ -84,7 +84,7 @@ def _plug(y: int) -> list[str]:
 
 def _servo(servo: Servo, y: int) -> list[str]:
     x = _SERVO_X
-    # The body has two ears; its horn points to where the joint is at 0.
+    # The body has two ears; the horn points to the joint's zero position.
     horn = f"translate({x + 66} {y + 12}) rotate({servo.neutral - 90})"
     return [
         _box(x - 4, y + 3, 118, 18, 4, _SERVO, _SERVO_EDGE),
@@ -121,11 +121,11 @@ def _pin(x: int, y: int, label: str) -> list[str]:
 
 
 def _ground(y: int, bottom: int) -> list[str]:
-    # Without it the signals have no return, and the servos twitch.
+    # Without a common ground the signals have no return path, and the servos twitch.
     turn, meet = 585, bottom - 18
-    way = [(_BOARD_RIGHT - 4, y), (turn, y), (turn, meet), (_MINUS_X, meet)]
+    points = [(_BOARD_RIGHT - 4, y), (turn, y), (turn, meet), (_MINUS_X, meet)]
     return [
-        _wire(MINUS, way),
+        _wire(MINUS, points),
         _dot(_MINUS_X, meet, MINUS),
         _text(turn - 14, meet + 2, "one ground for all", 12, 400, "end", _SOFT),
     ]
@@ -179,12 +179,12 @@ def _computer(y: int) -> list[str]:
 
 
 def _wire(colour: str, points: list[tuple[int, int]], width: int = 3) -> str:
-    way = "M" + " L".join(f"{x} {y}" for x, y in points)
+    path = "M" + " L".join(f"{x} {y}" for x, y in points)
     common = 'fill="none" stroke-linejoin="round"'
-    # White beside it, so that one that crosses another is seen to pass over it.
+    # A white border shows which of two crossing wires passes over the other.
     return (
-        f'<path d="{way}" {common} stroke="{_PAPER}" stroke-width="{width + 4}" />'
-        f'<path d="{way}" {common} stroke="{colour}" stroke-width="{width}" />'
+        f'<path d="{path}" {common} stroke="{_PAPER}" stroke-width="{width + 4}" />'
+        f'<path d="{path}" {common} stroke="{colour}" stroke-width="{width}" />'
     )
 
 

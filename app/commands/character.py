@@ -16,7 +16,7 @@ from rich.tree import Tree
 
 from app.commands import character_graph, character_locomotion
 from app.errors import AppError
-from app.ui.album import Album, save
+from app.ui.contact_sheets import ContactSheets, save
 from characters import Character, Skeleton
 from characters.errors import CharacterWarning
 from characters.formats.loading import Performance, is_motion_only, load_motion
@@ -109,13 +109,13 @@ def _draw(character: Character, folder: Path, clips: bool) -> list[Path]:
     with ExitStack() as closing:
         context = create_context()
         closing.callback(context.release)
-        album = Album(context)
-        closing.callback(album.release)
-        pictures = {"turntable.png": album.turntable(character)}
+        sheets = ContactSheets(context)
+        closing.callback(sheets.release)
+        pictures = {"turntable.png": sheets.turntable(character)}
         if character.anatomy.joint("head") is not None and character.morphs:
-            pictures["faces.png"] = album.faces(character)
+            pictures["faces.png"] = sheets.faces(character)
         if clips and character.clips:
-            pictures["clips.png"] = album.clips(character, list(character.clips.values()))
+            pictures["clips.png"] = sheets.clips(character, list(character.clips.values()))
     for name, picture in pictures.items():
         save(picture, folder / name)
     return [folder / name for name in pictures]

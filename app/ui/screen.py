@@ -1,4 +1,4 @@
-"""Where the finished pictures go."""
+"""The screens that show finished pictures: none, a video file, or a window (`window`)."""
 
 import os
 from contextlib import suppress
@@ -19,31 +19,31 @@ from app.ui.virtual_robot import VirtualRobot
 
 
 class Screen(Protocol):
-    """Shows one picture a frame. Who makes it closes it; a second `close` does nothing."""
+    """Shows one picture a frame. Whoever opens it closes it; a second `close` does nothing."""
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
-        """Show a step; returns what the player asks for."""
+        """Show a step, and return the player's inputs."""
         ...
 
     def wait(self, notice: Notice | None) -> None:
-        """Stay alive while no frame comes; tell the player why, where there is something to tell.
+        """Process events while no frame comes, and show a notice if there is one.
 
-        What the player pressed meanwhile is returned by the next `show`.
+        The next `show` returns keys that are pressed in the meantime.
         """
         ...
 
     @property
     def closed(self) -> bool:
-        """Whether the player has had enough."""
+        """Whether the player has closed it."""
         ...
 
     def close(self) -> None:
-        """Finish."""
+        """Close it."""
         ...
 
 
 class NullScreen:
-    """Shows nothing: for measuring and for recording without pictures."""
+    """Shows nothing: for benchmarks and for recordings without pictures."""
 
     closed = False
 
@@ -59,9 +59,9 @@ class NullScreen:
 
 
 class VideoFile:
-    """Writes the pictures to an MP4 file that every player opens (H.264).
+    """Writes the pictures to an MP4 file (H.264).
 
-    The file appears when it is whole: until `close` it is `PATH.partial`; `discard` removes that.
+    Until `close` the file is called `PATH.partial`; `discard` removes it.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ class VideoFile:
     rate
         Pictures a second.
     virtual_robot
-        Stands in for a robot that is not there; None to draw its face. The caller closes it.
+        Shown if there is no real robot; None to draw a face instead. The caller closes it.
     """
 
     closed = False
@@ -97,11 +97,13 @@ class VideoFile:
             )
         except OSError as error:
             raise AppError(f"cannot write the video '{path}': {error.strerror}") from error
-        stream = self._file.add_stream("libx264", rate=Fraction(round(rate)), options=QUALITY)
+        stream = self._file.add_stream(
+            "libx264", rate=Fraction(round(rate)), options=ENCODER_OPTIONS
+        )
         stream.width, stream.height = (side - side % 2 for side in size)
         stream.pix_fmt = "yuv420p"
-        # In the encoder too: in steps of 1/rate, two frames of a live camera become one.
-        stream.time_base = stream.codec_context.time_base = Fraction(1, TICKS)
+        # For the encoder too: in its default steps of 1/rate, frames of a live camera can coincide.
+        stream.time_base = stream.codec_context.time_base = Fraction(1, TICKS_PER_S)
         self._stream = stream
         self._open = True
 
@@ -115,7 +117,7 @@ class VideoFile:
             self.discard()
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
-        """Write a step's picture, with the cards over it."""
+        """Write the picture of a step, with the cards over it."""
         if step.picture is not None:
             self.write(
                 overlay(step.picture, step, robot, self._virtual_robot), step.frame.timestamp
@@ -123,24 +125,24 @@ class VideoFile:
         return Inputs()
 
     def wait(self, notice: Notice | None) -> None:
-        """Write nothing: the last picture stands until the next one's time."""
+        """Write nothing: the last picture lasts until the next one."""
 
     def write(self, picture: NDArray[np.uint8], timestamp: float) -> None:
         """Write one picture (H, W, 3) BGR at a time [s]."""
         if self._start is None:
             self._start = timestamp
-        tick = max(self._last + 1, round((timestamp - self._start) * TICKS))
+        tick = max(self._last + 1, round((timestamp - self._start) * TICKS_PER_S))
         self._last = tick
         even = picture[: self._stream.height, : self._stream.width]
         frame = av.VideoFrame.from_ndarray(np.ascontiguousarray(even), format="bgr24")
-        frame.pts, frame.time_base = tick, Fraction(1, TICKS)
+        frame.pts, frame.time_base = tick, Fraction(1, TICKS_PER_S)
         try:
             self._file.mux(self._stream.encode(frame))
         except OSError as error:
             raise self._failed(error) from error
 
     def close(self) -> None:
-        """Finish the file and give it its name."""
+        """Finish the file and rename it to its final name."""
         if not self._open:
             return
         try:
@@ -153,10 +155,10 @@ class VideoFile:
         self._open = False
 
     def discard(self) -> None:
-        """Leave nothing behind."""
+        """Close and delete the unfinished file."""
         if self._open:
             self._open = False
-            with suppress(OSError):  # a full disk, which is why it is discarded
+            with suppress(OSError):  # such as a full disk, the reason for discarding it
                 self._file.close()
             self._partial.unlink(missing_ok=True)
 
@@ -164,8 +166,8 @@ class VideoFile:
         return AppError(f"writing the video '{self._path}' failed: {error.strerror}")
 
 
-QUALITY = {"preset": "veryfast", "crf": "19"}
-"""Good for a table and a character; veryfast leaves the processor to the picture."""
+ENCODER_OPTIONS = {"preset": "veryfast", "crf": "19"}
+"""Good quality for this content; veryfast leaves processor time for rendering."""
 
-TICKS = 1000
-"""Time steps of a video in a second: the camera's own times to the millisecond."""
+TICKS_PER_S = 1000
+"""Time base of the video: timestamps are kept to the millisecond."""

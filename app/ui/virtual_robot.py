@@ -1,4 +1,4 @@
-"""The virtual robot: it shows the mood on the screen where no real robot shows it on the desk."""
+"""A virtual robot on the screen, which shows the emotion when there is no real robot."""
 
 import math
 
@@ -15,85 +15,87 @@ from app.ui.palette import PAPER, between, mood_color
 from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
 from characters.rendering import SceneCharacter, Stage, View
 
-LARGEST = 216
-"""Side of the picture that is drawn at most [px]; software rendering takes longer for more."""
+MAX_SIDE_PX = 216
+"""Largest picture that is drawn [px]; a larger one is scaled up, to spare software rendering."""
 
-PAUSE = 0.08
-"""Shortest time from one picture to the next where the processor draws [s]: every third frame of
-a usual camera, for the character on the table needs the processor too."""
+SOFTWARE_INTERVAL_S = 0.08
+"""Shortest time between two pictures with software rendering [s]: every third frame of a usual
+camera, since the character on the table needs the processor too."""
 
-SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "software")
-"""What drivers that draw on the processor call themselves."""
+SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swiftshader", "software")
+"""Parts of the names of drivers that render on the processor."""
 
-FACING = -0.52
-"""The robot is turned so far to its right of the camera, so that its tail is seen too [rad]."""
+YAW_RAD = -0.52
+"""Heading of the robot, to the right of the camera, so that its tail is visible [rad]."""
 
-CENTER, RADIUS = np.array([-0.010, 0.0835, 0.0]), 0.107
-"""What the camera looks at on the table, and how much about it is in the picture [m]."""
+CENTER_M, RADIUS_M = np.array([-0.010, 0.0835, 0.0]), 0.107
+"""Sphere of the table frame that fills the picture [m]."""
 
-FIELD, ABOVE = math.radians(22.0), 0.15
-"""The camera's field of view, and how far it looks down [rad]."""
+FIELD_OF_VIEW_RAD, ELEVATION_RAD = math.radians(22.0), 0.15
+"""The camera's field of view, and the angle by which it looks down [rad]."""
 
 
 class VirtualRobot:
-    """A small picture of the robot that feels what it is asked to feel.
+    """Small pictures of a robot that shows the emotion it is given.
 
-    The same emotions at the same times give the same pictures, on one graphics driver. Who makes
-    it closes it, before the context; a second `close` does nothing.
+    The same emotions at the same times give the same pictures, on one graphics driver. Whoever
+    creates it closes it, before the context; a second `close` does nothing.
 
     Parameters
     ----------
     context
         Where to draw.
     side
-        Of the picture as it is shown [px].
+        Of the picture [px].
     """
 
     def __init__(self, context: moderngl.Context, side: int) -> None:
         self.side = max(16, side)
         """Width and height of its pictures [px]."""
-        self._drawn = min(self.side, LARGEST)
+        self._drawn_side = min(self.side, MAX_SIDE_PX)
         self._character = Character.load("robot")
-        self._animator = Animator(self._character, place=RootDelta(yaw=FACING))
-        self._stage: Stage | None = Stage(context, (self._drawn, self._drawn))
-        self._matrix, self._camera_from_table = _camera(self._drawn)
+        self._animator = Animator(self._character, place=RootDelta(yaw=YAW_RAD))
+        self._stage: Stage | None = Stage(context, (self._drawn_side, self._drawn_side))
+        self._matrix, self._camera_from_table = _camera(self._drawn_side)
         renderer = str(context.info["GL_RENDERER"]).lower()
-        self._pause = PAUSE if any(name in renderer for name in SOFTWARE) else 0.0
+        self._interval = (
+            SOFTWARE_INTERVAL_S if any(name in renderer for name in SOFTWARE_RENDERERS) else 0.0
+        )
         self._last: tuple[float, NDArray[np.uint8]] | None = None
         self._eye = np.asarray(np.linalg.inv(self._camera_from_table)[:3, 3], np.float64)
 
     def portrait(self, target: EmotionTarget) -> NDArray[np.uint8]:
-        """Advance to an emotion and its time; return the picture, (side, side, 3) BGR.
+        """Advance to an emotion and its time, and return the picture, (side, side, 3) BGR.
 
-        The same picture is returned again where it is too early for another.
+        With software rendering, the last picture is returned until `SOFTWARE_INTERVAL_S` is over.
 
         Raises
         ------
         RuntimeError
-            If the virtual robot is closed.
+            The virtual robot is closed.
         """
-        if self._last is not None and 0.0 <= target.timestamp - self._last[0] < self._pause:
+        if self._last is not None and 0.0 <= target.timestamp - self._last[0] < self._interval:
             return self._last[1]
-        picture = self._drawing(target)
-        if self._drawn != self.side:
+        picture = self._draw(target)
+        if self._drawn_side != self.side:
             size = (self.side, self.side)
             picture = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_CUBIC), np.uint8)
         self._last = target.timestamp, picture
         return picture
 
-    def _drawing(self, target: EmotionTarget) -> NDArray[np.uint8]:
+    def _draw(self, target: EmotionTarget) -> NDArray[np.uint8]:
         if self._stage is None:
             raise RuntimeError("the virtual robot is closed")
         posed = self._animator.update(self.command(target))
-        image = backdrop(self._drawn, target.emotion.valence)
+        image = backdrop(self._drawn_side, target.emotion.valence)
         view = View(image, self._matrix, np.zeros(0), self._camera_from_table)
         return self._stage.draw(view, [SceneCharacter(self._character, posed)])
 
     def command(self, target: EmotionTarget) -> CharacterCommand:
-        """Return how it is asked to show an emotion.
+        """Return the command that shows an emotion.
 
-        It plays the mood that a robot with the same words would; what that leaves out is in its
-        face and its bearing, as in any other character's.
+        The action is the mood that a robot with the same labels plays. Face and posture show the
+        exact emotion, as those of every character do.
         """
         action = closest_word(self._animator.actions, target.emotion)
         return CharacterCommand(
@@ -104,17 +106,17 @@ class VirtualRobot:
         )
 
     def close(self) -> None:
-        """Give the card's memory back."""
+        """Release the graphics buffers."""
         if self._stage is not None:
             self._stage.release()
             self._stage = None
 
 
-def intensity(emotion: Emotion, played: str | None = None) -> float:
-    """Return how strongly an emotion is to be shown, −1…1.
+def intensity(emotion: Emotion, action: str | None = None) -> float:
+    """Return the weight of the action that shows an emotion, −1…1.
 
-    From where a mood begins to where it cannot be stronger; within neutral, from calm to stirred.
-    `played` is the mood that shows it, where that has another name.
+    It rises from the threshold of a mood to its maximum; within neutral, from calm to excited.
+    `action` is the mood that is played, if it is not the emotion's own label.
 
     >>> [round(intensity(Emotion(v, abs(v), "happy")), 2) for v in (0.3, 1.0)]
     [-1.0, 1.0]
@@ -126,7 +128,7 @@ def intensity(emotion: Emotion, played: str | None = None) -> float:
     strength = max(abs(emotion.valence), emotion.arousal)
     if emotion.label == "neutral":
         share = strength / HAPPY_ABOVE
-    elif played == "neutral":
+    elif action == "neutral":
         share = (emotion.arousal + 1.0) / 2.0
     else:
         share = (strength - HAPPY_ABOVE) / (1.0 - HAPPY_ABOVE)
@@ -134,22 +136,22 @@ def intensity(emotion: Emotion, played: str | None = None) -> float:
 
 
 def backdrop(side: int, mood: float) -> NDArray[np.uint8]:
-    """Return a plain wall and floor in the colour of a mood, −1…1, (side, side, 3) BGR."""
+    """Return a plain wall and floor in the colour of a mood −1…1, (side, side, 3) BGR."""
     color = mood_color(mood)
-    high, low = between(PAPER, color, 0.20), between(PAPER, color, 0.52)
-    down = np.linspace(0.0, 1.0, side)[:, None] ** 1.5
-    rows = np.array(high) + (np.array(low, float) - high) * down
+    top, bottom = between(PAPER, color, 0.20), between(PAPER, color, 0.52)
+    share = np.linspace(0.0, 1.0, side)[:, None] ** 1.5
+    rows = np.array(top) + (np.array(bottom, float) - top) * share
     return np.repeat(np.round(rows).astype(np.uint8)[:, None], side, axis=1)
 
 
 def _camera(side: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return the pinhole matrix (3, 3) [px] and `camera_from_table` (4, 4)."""
-    toward = np.array([0.0, math.sin(ABOVE), math.cos(ABOVE)])
-    eye = CENTER + RADIUS / math.sin(FIELD / 2) * toward
+    backward = np.array([0.0, math.sin(ELEVATION_RAD), math.cos(ELEVATION_RAD)])
+    eye = CENTER_M + RADIUS_M / math.sin(FIELD_OF_VIEW_RAD / 2) * backward
     right = np.array([1.0, 0.0, 0.0])
-    turn = np.stack([right, np.cross(right, toward), -toward])
+    rotation = np.stack([right, np.cross(right, backward), -backward])
     camera_from_table = np.eye(4)
-    camera_from_table[:3, :3], camera_from_table[:3, 3] = turn, -turn @ eye
-    focal, middle = side / 2 / math.tan(FIELD / 2), (side - 1) / 2
+    camera_from_table[:3, :3], camera_from_table[:3, 3] = rotation, -rotation @ eye
+    focal, middle = side / 2 / math.tan(FIELD_OF_VIEW_RAD / 2), (side - 1) / 2
     matrix = np.array([[focal, 0.0, middle], [0.0, focal, middle], [0.0, 0.0, 1.0]])
     return matrix, camera_from_table

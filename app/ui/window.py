@@ -1,4 +1,4 @@
-"""The live window: the picture as large as it fits, and a panel for who wants to know more."""
+"""The live window: the picture, scaled to fit, and a panel with details."""
 
 import contextlib
 import ctypes
@@ -6,7 +6,7 @@ import time
 from collections import deque
 from typing import Any, Self
 
-# imgui-bundle brings the GLFW that both must share, and says where it is when it is imported.
+# imgui-bundle contains the GLFW library that both must share, and sets its path on import.
 from imgui_bundle import imgui  # isort: skip
 import glfw
 import moderngl
@@ -42,14 +42,14 @@ HELP = "Esc  quit      F  full screen      C  start over      H  this panel"
 
 
 class Window:
-    """A `Screen` on the desktop. Who opens it closes it; a second `close` does nothing.
+    """A `Screen` on the desktop. Whoever opens it closes it; a second `close` does nothing.
 
     Parameters
     ----------
     size
         Width and height of the pictures [px].
     title
-        What stands in the title bar.
+        Text of the title bar.
 
     Raises
     ------
@@ -59,12 +59,10 @@ class Window:
 
     def __init__(self, size: tuple[int, int], title: str = "Cubeling") -> None:
         self._size = size
-        self._problem = ""
-        glfw.set_error_callback(self._complain)
+        self._error = ""
+        glfw.set_error_callback(self._store_error)
         if not glfw.init():
-            raise AppError(
-                f"no window can be opened here: {self._problem or 'there is no display'}"
-            )
+            raise AppError(f"no window can be opened here: {self._error or 'there is no display'}")
         for hint, value in (
             (glfw.CONTEXT_VERSION_MAJOR, 3),
             (glfw.CONTEXT_VERSION_MINOR, 3),
@@ -75,7 +73,7 @@ class Window:
         self._window = glfw.create_window(*_fitting(size), title, None, None)
         if not self._window:
             glfw.terminate()
-            raise AppError(f"no window can be opened here: {self._problem}")
+            raise AppError(f"no window can be opened here: {self._error}")
         glfw.make_context_current(self._window)
         glfw.swap_interval(0)  # a camera's frame must not wait for the screen's
         self.context = moderngl.create_context()
@@ -85,7 +83,7 @@ class Window:
         self._texture = self.context.texture(size, 3, alignment=1)
         self._program = self.context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
         self._quad = self.context.vertex_array(self._program, [])
-        self._shown: deque[float] = deque(maxlen=60)
+        self._shown_at: deque[float] = deque(maxlen=60)
         self._panel = False
         self._clear = False
         self._last: NDArray[np.uint8] | None = None
@@ -103,13 +101,13 @@ class Window:
         return not self._open or bool(glfw.window_should_close(self._window))
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
-        """Show a step; returns what the player pressed."""
+        """Show a step, and return the keys that the player pressed."""
         if self.closed:
             return Inputs()
         if step.picture is not None:
             self._last = overlay(step.picture, step, robot, self._virtual_robot)
             self._paint(self._last)
-        self._shown.append(time.perf_counter())
+        self._shown_at.append(time.perf_counter())
         self._draw_panel(step, robot)
         glfw.swap_buffers(self._window)
         glfw.poll_events()
@@ -117,7 +115,7 @@ class Window:
         return Inputs(clear=clear)
 
     def wait(self, notice: Notice | None) -> None:
-        """Hear the keys; over the last picture, say why no new one comes."""
+        """Process events; show a notice over the last picture."""
         if self.closed:
             return
         if notice is not None and self._last is not None:
@@ -156,7 +154,7 @@ class Window:
         screen.viewport = (0, 0, wide, high)
 
     def _start_panel(self) -> None:
-        # Our callbacks first: imgui's chains to the ones that it finds.
+        # Our callbacks first: imgui chains to those that are already set.
         glfw.set_key_callback(self._window, self._key)
         imgui.create_context()
         imgui.get_io().set_ini_filename("")
@@ -176,9 +174,9 @@ class Window:
 
     def _panel_text(self, step: Step, robot: RobotView) -> None:
         imgui.set_next_window_pos((24.0, 90.0), imgui.Cond_.first_use_ever)
-        imgui.begin("What is going on", None, imgui.WindowFlags_.always_auto_resize)
-        pace = self._shown[-1] - self._shown[0]
-        rate = (len(self._shown) - 1) / pace if pace > 0 else 0.0
+        imgui.begin("Details", None, imgui.WindowFlags_.always_auto_resize)
+        span = self._shown_at[-1] - self._shown_at[0]
+        rate = (len(self._shown_at) - 1) / span if span > 0 else 0.0
         state, controls = step.state, step.controls
         imgui.text(
             f"{rate:5.1f} pictures/s   {step.frame.image.shape[1]} x {step.frame.image.shape[0]}"
@@ -207,20 +205,20 @@ class Window:
 
     def _toggle_full_screen(self) -> None:
         if glfw.get_window_monitor(self._window):
-            nowhere: Any = None  # glfw's types forget that this means a window again
-            glfw.set_window_monitor(self._window, nowhere, 60, 60, *_fitting(self._size), 0)
+            no_monitor: Any = None  # windowed; glfw's type hints do not allow None
+            glfw.set_window_monitor(self._window, no_monitor, 60, 60, *_fitting(self._size), 0)
             return
         monitor = glfw.get_primary_monitor()
         mode = glfw.get_video_mode(monitor)
         wide, high = mode.size
         glfw.set_window_monitor(self._window, monitor, 0, 0, wide, high, mode.refresh_rate)
 
-    def _complain(self, _code: int, text: bytes | str) -> None:
-        self._problem = text.decode(errors="replace") if isinstance(text, bytes) else text
+    def _store_error(self, _code: int, text: bytes | str) -> None:
+        self._error = text.decode(errors="replace") if isinstance(text, bytes) else text
 
 
 def _fitting(size: tuple[int, int]) -> tuple[int, int]:
-    """Return the largest window for pictures of `size` that the desktop has room for."""
+    """Return the largest window for pictures of `size` that fits on the desktop."""
     with contextlib.suppress(Exception):
         _, _, wide, high = glfw.get_monitor_workarea(glfw.get_primary_monitor())
         scale = min(1.0, 0.95 * wide / size[0], 0.92 * high / size[1])

@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from app.ui.album import Album, save, trimmed
+from app.ui.contact_sheets import ContactSheets, save, trimmed
 from characters import Character
 from characters.formats import load_motion
 from characters.model.stick_figure import stick_figure
@@ -49,11 +49,11 @@ Frame Time: 0.1
 
 
 @pytest.fixture(scope="module")
-def album():
+def sheets():
     context = create_context()
-    album = Album(context)
-    yield album
-    album.release()
+    sheets = ContactSheets(context)
+    yield sheets
+    sheets.release()
     context.release()
 
 
@@ -130,21 +130,21 @@ def test_names_that_look_like_markup_are_printed_literally(cubeling, tmp_path):
     assert "[b]old[-pictures/turntable.png" in out
 
 
-def test_rows_of_a_sheet_are_clips_one_below_the_other(album):
+def test_rows_of_a_sheet_are_clips_one_below_the_other(sheets):
     vleo = Character.load("vleo")
     clips = list(vleo.clips.values())[:2]
-    one, two = album.clips(vleo, clips[:1]), album.clips(vleo, clips)
+    one, two = sheets.clips(vleo, clips[:1]), sheets.clips(vleo, clips)
     assert one.shape[1] == two.shape[1]
     assert two.shape[0] > 1.5 * one.shape[0]
     assert np.array_equal(one[:150], two[:150])
 
 
-def test_each_morph_has_a_face(album):
+def test_each_morph_has_a_face(sheets):
     human = Character.load("human")
     names = human.morphs[:2]
     rest = replace(human.skeleton.rest, morphs=None)
     shy = replace(human, morphs=names, clips={}, skeleton=replace(human.skeleton, rest=rest))
-    faces = np.split(album.faces(shy)[62:-42, 16:-16], 3, axis=1)
+    faces = np.split(sheets.faces(shy)[62:-42, 16:-16], 3, axis=1)
     assert all((paper(face).mean() < 0.8) for face in faces)
     assert not np.array_equal(faces[0], faces[1])
 
