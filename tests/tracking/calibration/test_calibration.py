@@ -1,4 +1,4 @@
-"""A camera is found from what a cube's corners look like, with an honest word on how well."""
+"""Calibration from a cube's corners, with a correct uncertainty."""
 
 from dataclasses import replace
 
@@ -45,27 +45,27 @@ def test_focal_length_to_half_a_percent_and_folds_to_a_fifth_of_a_millimetre(see
 
 
 @pytest.mark.parametrize("focal", [560.0, 1500.0])
-def test_wide_and_long_lenses_are_found_without_being_told(focal):
+def test_wide_and_long_lenses_are_found_without_a_hint(focal):
     camera = np.array([focal, focal, *TRUE[2:]])
     views, _ = views_of(3, count=40, camera=camera, near=0.25 * focal / 900)
     found = calibrate(views, cube_target(CUBE, SIZE))
     assert abs(found.intrinsics.matrix[0, 0] / focal - 1) < max(0.005, 3 * found.focal_spread)
 
 
-def test_one_side_met_squarely_makes_no_camera():
+def test_frontal_views_of_one_side_are_refused():
     views, _ = views_of(4, count=20, tilt=5.0, only_main=True)
     with pytest.raises(TrackingError, match="tilted more, in every direction") as caught:
         calibrate(views, cube_target(CUBE, SIZE)).check()
     assert "\n" not in str(caught.value)
 
 
-def test_a_handful_of_views_makes_no_camera():
+def test_too_few_views_are_refused():
     views, _ = views_of(5, count=5)
     with pytest.raises(TrackingError, match="only 5 still images"):
         calibrate(views, cube_target(CUBE, SIZE))
 
 
-def test_views_of_something_else_are_left_out():
+def test_outlier_views_are_dropped():
     views, _ = views_of(6, count=40)
     random = np.random.default_rng(0)
     for number in (3, 17, 30):
@@ -76,7 +76,7 @@ def test_views_of_something_else_are_left_out():
     assert abs(found.intrinsics.matrix[0, 0] / TRUE[0] - 1) < 0.005
 
 
-def test_slopes_are_those_of_small_steps():
+def test_derivatives_match_finite_differences():
     views, _ = views_of(7, count=8)
     target = cube_target(CUBE, SIZE)
     model, kept = fit_poses(views, TRUE, target)
@@ -162,7 +162,7 @@ def test_coverage_is_complete_when_nothing_is_missing_and_can_require_more():
     assert coverage.next_kind() == "tilt up"
 
 
-def test_a_perfect_cube_comes_back_from_perfect_plates():
+def test_a_measured_cube_follows_its_plates():
     plates = np.tile(np.eye(4), (6, 1, 1))
     for old, new in zip(CUBE.faces, measured_cube(CUBE, plates).faces, strict=True):
         np.testing.assert_allclose(new.corners, old.corners, atol=1e-15)

@@ -1,4 +1,4 @@
-"""A camera is found from pictures: drawn ones, whose lens is known, and photographs."""
+"""Calibration from rendered images with a known lens, and from photographs."""
 
 from pathlib import Path
 
@@ -27,8 +27,8 @@ from tracking.synthetic import open_synthetic
 PHOTOGRAPHS = Path(__file__).parents[4] / "shared" / "data" / "photographs"
 needs_photographs = pytest.mark.skipif(not PHOTOGRAPHS.is_dir(), reason="no photographs here")
 
-STOP = (0.06, 0.12)
-"""Two moments of each stop of the wave [s]: one to look, one to see that it is still."""
+STOP_TIMES_S = (0.06, 0.12)
+"""Two times within each stop of the motion: the second one shows that it is still."""
 
 
 def photograph(*names):
@@ -36,12 +36,12 @@ def photograph(*names):
     return np.asarray(grey, np.uint8)
 
 
-def test_a_waved_folded_cube_tells_lens_and_folds():
+def test_waving_a_cube_determines_lens_and_folding_errors():
     source = open_synthetic("wave?fold=0.8&seed=4&clutter=0&noise=3&size=960x540")
     cube = CubeModel.load("locomotion")
     finder = CubeFinder(cube)
     collector = ViewCollector(finder, source.size)
-    indices = [round((0.74 * stop + time) * 30) for stop in range(27) for time in STOP]
+    indices = [round((0.74 * stop + time) * 30) for stop in range(27) for time in STOP_TIMES_S]
     verdicts = [collector.update(source.frame(index)).verdict for index in indices]
     assert verdicts.count("taken") >= 20
     found = calibrate(collector.views, finder.target(source.size))
@@ -57,7 +57,7 @@ def test_a_waved_folded_cube_tells_lens_and_folds():
     assert aligned(measured, real).max() < 0.0001
 
 
-def test_frames_without_enough_of_a_cube_make_no_camera():
+def test_frames_without_a_cube_are_refused():
     with pytest.raises(TrackingError, match="no frame"):
         calibrate_camera([], CubeModel.load("locomotion"))
     blank = np.full((360, 640, 3), 128, np.uint8)
@@ -79,7 +79,7 @@ def test_a_moving_cube_and_a_view_seen_before_are_not_taken():
     assert len(collector.views) == 1
 
 
-def test_the_printed_board_is_found_where_it_is_drawn(tmp_path):
+def test_the_printed_board_is_detected_where_it_is_drawn(tmp_path):
     path = tmp_path / "board.pdf"
     board = write_board(path)
     assert board.square == pytest.approx(0.037)
@@ -96,7 +96,7 @@ def test_the_printed_board_is_found_where_it_is_drawn(tmp_path):
     assert np.abs(found.corners.pixels - wanted).max() < 1.0
 
 
-def test_a_board_is_not_printed_on_unknown_paper_or_nowhere(tmp_path):
+def test_unknown_paper_and_unwritable_paths_are_refused(tmp_path):
     with pytest.raises(TrackingError, match="choose a4, letter, a3"):
         write_board(tmp_path / "board.pdf", "a9")
     with pytest.raises(TrackingError, match="cannot write the board"):
@@ -132,7 +132,7 @@ def test_photographs_of_a_chessboard_give_the_camera_that_opencv_finds():
 
 
 @needs_photographs
-def test_a_photograph_of_a_charuco_board_fits_its_camera_but_makes_none_alone():
+def test_one_photograph_of_a_board_fits_its_camera_but_does_not_determine_it():
     folder = PHOTOGRAPHS / "aruco"
     grey = photograph("aruco", "choriginal.jpg")
     file = cv2.FileStorage(str(folder / "tutorial_camera_charuco.yml"), cv2.FILE_STORAGE_READ)
@@ -180,7 +180,7 @@ def board_picture(board, camera, pose):
     return cv2.cvtColor(cv2.GaussianBlur(seen, (0, 0), 0.6), cv2.COLOR_GRAY2BGR)
 
 
-def test_a_board_that_is_waved_tells_the_lens():
+def test_waving_a_board_determines_the_lens():
     matrix = np.array([[610.0, 0, 325], [0, 611, 236], [0, 0, 1]])
     camera = Intrinsics(matrix, np.array([-0.15, 0.07, 0.0005, -0.0005, 0]), (640, 480))
     board = Board()

@@ -1,4 +1,4 @@
-"""A cube that is waved before a camera, as exact corners with noise on them."""
+"""Views of a cube that is waved in front of a camera: exact corners plus noise."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from tracking.geometry import se3
 
 
 def folded_corners(cube, random, millimetres=1.0, degrees=1.0):
-    """Corners of the markers of a cube whose faces are off, (faces, 4, 3)."""
+    """Marker corners of a cube with folding errors, (faces, 4, 3)."""
     corners = []
     for face in cube.faces:
         centre = face.corners.mean(axis=0)
@@ -21,7 +21,7 @@ def folded_corners(cube, random, millimetres=1.0, degrees=1.0):
 def corner_views(
     cube, real, camera, size, random, count, noise, tilt=40.0, near=0.25, only_main=False
 ):
-    """Views of the corners: every face in turn, tilted any way by up to `tilt` degrees."""
+    """Views of the corners: every face in turn, tilted randomly by up to `tilt` degrees."""
     views: list[View] = []
     while len(views) < count:
         number = len(views) % len(cube.faces)
@@ -49,7 +49,7 @@ def corner_views(
 
 
 def _held(normal, random, tilt, near, size, focal):
-    """A pose in the picture with one face towards the camera, but for a tilt."""
+    """A pose in the image with one face towards the camera, up to a tilt."""
     up = np.cross(-normal, random.standard_normal(3))
     up /= np.linalg.norm(up)
     square = np.stack([np.cross(up, -normal), up, -normal])

@@ -1,6 +1,8 @@
-"""Frames from videos and sessions: every whole frame, its time, and one line for the rest."""
+"""Frames from videos and sessions: every complete frame, its time, and one-line errors."""
 
+import sys
 from fractions import Fraction
+from types import ModuleType
 
 import av
 import cv2
@@ -15,6 +17,7 @@ from mcap.writer import CompressionType
 from mcap_protobuf.writer import Writer
 
 from tracking import FrameSource, Intrinsics, TrackingError, open_source
+from tracking.sources import SCHEMES
 from tracking.sources.base import Timeline, nanoseconds_of, seconds_of
 
 SIZE = (160, 120)
@@ -71,18 +74,18 @@ def session(tmp_path_factory):
 
 
 def read(path):
-    """All frames, and the error that ended them."""
+    """Return all frames, and the error that ended the iteration."""
     frames = []
     try:
         with open_source(str(path)) as source:
             for frame in source:
-                frames.append(frame)  # what came before an error counts
+                frames.append(frame)  # also the frames before an error
     except TrackingError as error:
         return frames, str(error)
     return frames, ""
 
 
-def test_a_session_gives_the_very_pixels_bytes_and_times_that_were_recorded(session):
+def test_a_session_returns_the_recorded_pixels_bytes_and_times(session):
     frames, error = read(session)
     assert not error
     assert [frame.index for frame in frames] == list(range(40))
@@ -96,7 +99,7 @@ def test_a_session_gives_the_very_pixels_bytes_and_times_that_were_recorded(sess
         )
 
 
-def test_a_session_says_what_it_holds(session):
+def test_a_session_knows_size_rate_duration_and_intrinsics(session):
     with open_source(str(session)) as source:
         assert isinstance(source, FrameSource)
         assert (source.size, source.rate, source.live) == (SIZE, 30.0, False)
@@ -127,7 +130,7 @@ def test_every_compression_of_mcap_is_read(tmp_path, compression):
     assert (len(frames), error) == (5, "")
 
 
-def test_an_h264_session_gives_one_frame_for_each_access_unit(tmp_path):
+def test_an_h264_session_returns_one_frame_per_access_unit(tmp_path):
     units = list(access_units(25))
     messages = [CompressedVideo(format="h264", data=unit) for unit in units]
     frames, error = read(write_session(tmp_path / "take.mcap", messages))
@@ -139,7 +142,7 @@ def test_an_h264_session_gives_one_frame_for_each_access_unit(tmp_path):
         assert np.abs(frame.image.astype(int) - picture(number)).mean() < 3
 
 
-def test_of_a_session_cut_at_any_byte_every_whole_frame_is_read(session, tmp_path):
+def test_every_complete_frame_of_a_truncated_session_is_read(session, tmp_path):
     data = session.read_bytes()
     whole, _ = read(session)
     path = tmp_path / "cut.mcap"
@@ -163,7 +166,7 @@ def test_of_a_session_cut_at_any_byte_every_whole_frame_is_read(session, tmp_pat
 
 @given(place=st.floats(0.1, 0.9), bit=st.integers(0, 7))
 @settings(max_examples=40)
-def test_a_flipped_bit_never_gives_a_wrong_picture(session, tmp_path_factory, place, bit):
+def test_a_flipped_bit_never_gives_a_wrong_image(session, tmp_path_factory, place, bit):
     data = bytearray(session.read_bytes())
     data[int(place * len(data))] ^= 1 << bit
     path = tmp_path_factory.getbasetemp() / "flipped.mcap"
@@ -180,13 +183,13 @@ def test_a_flipped_bit_never_gives_a_wrong_picture(session, tmp_path_factory, pl
         (b"\x89MCAP0\r\n", "is truncated: no frame could be read"),
     ],
 )
-def test_what_is_no_session_is_one_line(tmp_path, content, words):
+def test_an_invalid_session_is_refused_with_one_line(tmp_path, content, words):
     path = tmp_path / "letter.mcap"
     path.write_bytes(content)
     assert words in read(path)[1]
 
 
-def test_sessions_without_pictures_or_with_strange_ones_are_one_line(tmp_path):
+def test_sessions_without_or_with_unknown_images_are_refused_with_one_line(tmp_path):
     path = tmp_path / "take.mcap"
     assert "holds no camera frame on /camera/image" in read(write_session(path, []))[1]
     webp = CompressedImage(format="webp", data=b"RIFF")
@@ -209,7 +212,7 @@ def write_video(path, count=20, rate=25, **options):
 
 
 @pytest.mark.parametrize("kind", ["mp4", "mkv", "avi"])
-def test_a_video_gives_its_frames_at_the_times_of_its_container(tmp_path, kind):
+def test_a_video_returns_its_frames_with_the_times_of_its_container(tmp_path, kind):
     path = write_video(tmp_path / f"take.{kind}")
     frames, error = read(path)
     assert not error
@@ -225,14 +228,14 @@ def test_a_video_gives_its_frames_at_the_times_of_its_container(tmp_path, kind):
         assert source.intrinsics is None
 
 
-def test_a_video_cut_short_gives_what_it_has(tmp_path):
+def test_a_truncated_video_returns_the_frames_it_has(tmp_path):
     path = write_video(tmp_path / "take.mkv", count=60)
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     frames, _ = read(path)
     assert 5 < len(frames) < 60
 
 
-def test_what_is_no_video_is_one_line(tmp_path):
+def test_an_invalid_video_is_refused_with_one_line(tmp_path):
     text = tmp_path / "letter.mp4"
     text.write_text("dear grandmother", encoding="utf-8")
     assert "letter.mp4' is not a video" in read(text)[1]
@@ -240,9 +243,18 @@ def test_what_is_no_video_is_one_line(tmp_path):
     assert "there is no file" in read(tmp_path)[1]
 
 
-def test_an_unknown_kind_of_address_is_one_line():
+def test_an_unknown_scheme_is_refused_with_one_line():
     with pytest.raises(TrackingError, match="use camera, http, https, synthetic or a file"):
         open_source("rtsp://phone/video")
+
+
+def test_a_new_source_is_a_module_and_one_line_of_the_table(monkeypatch, session):
+    module = ModuleType("brand_new")
+    module.open_uri = lambda uri, size, clock: open_source(str(session))  # type: ignore[attr-defined]
+    monkeypatch.setitem(sys.modules, "brand_new", module)
+    monkeypatch.setitem(SCHEMES, "new", "brand_new")
+    with open_source("new://anything") as source:
+        assert source.size == SIZE
 
 
 @given(st.floats(0, 1e9))

@@ -1,4 +1,4 @@
-"""Cameras and phones: the newest frame, and one line in time when nothing comes."""
+"""Cameras and phones: the newest frame, and a one-line error in time if none arrives."""
 
 import itertools
 import queue
@@ -15,7 +15,7 @@ from tracking.sources.camera import MJPG, CameraSource
 from tracking.sources.http import HttpSource
 
 SIZE = (64, 48)
-ENOUGH_S = 10.0
+TEST_TIMEOUT_S = 10.0
 """Real time after which a test that waits for another thread has failed."""
 
 
@@ -30,13 +30,13 @@ def jpeg(number):
 
 
 def fast_clock(step=0.25):
-    """A clock that runs as fast as it is looked at, so that seconds pass in milliseconds."""
+    """A clock that advances with every reading, so that seconds pass in milliseconds."""
     ticks = itertools.count()
     return lambda: next(ticks) * step
 
 
 class FakeCapture:
-    """Behaves as `cv2.VideoCapture` does on V4L2, good drivers and bad ones."""
+    """Behaves like `cv2.VideoCapture` on V4L2, with good and bad drivers."""
 
     def __init__(self, *, opened=True, honours_mjpg=True, rate=30.0):
         self.opened, self.honours_mjpg, self.rate = opened, honours_mjpg, rate
@@ -72,7 +72,7 @@ class FakeCapture:
 
 
 def encoded(number):
-    """A JPEG as V4L2 gives it: one row of bytes."""
+    """A JPEG as V4L2 returns it: one row of bytes."""
     return np.frombuffer(jpeg(number), np.uint8)[None]
 
 
@@ -80,14 +80,14 @@ def encoded(number):
 def capture():
     made = FakeCapture()
     yield made
-    made.frames.put(None)  # lets a thread that still reads come to its end
+    made.frames.put(None)  # ends a thread that still reads
 
 
 def open_camera(capture, clock=None):
     return CameraSource(0, SIZE, clock=clock or (lambda: 0.0), capture=lambda device: capture)
 
 
-def test_a_camera_is_asked_for_jpeg_of_the_wanted_size_and_hands_out_its_own_bytes(capture):
+def test_a_camera_is_set_to_jpeg_and_size_and_returns_its_own_bytes(capture):
     capture.frames.put(encoded(0))
     with open_camera(capture) as source:
         assert (source.size, source.rate, source.live) == (SIZE, 30.0, True)
@@ -99,13 +99,13 @@ def test_a_camera_is_asked_for_jpeg_of_the_wanted_size_and_hands_out_its_own_byt
     np.testing.assert_array_equal(frame.image, cv2.imdecode(encoded(0), 1))
 
 
-def test_what_a_driver_leaves_behind_the_picture_is_cut_off(capture):
+def test_data_after_the_jpeg_is_cut_off(capture):
     capture.frames.put(np.frombuffer(jpeg(0) + bytes(999) + jpeg(1)[200:], np.uint8)[None])
     with open_camera(capture) as source:
         assert next(iter(source)).encoded == jpeg(0)
 
 
-def test_a_camera_without_jpeg_gives_pixels(capture):
+def test_a_camera_without_jpeg_returns_pixels(capture):
     capture.honours_mjpg = False
     capture.frames.put(picture(3))
     with open_camera(capture) as source:
@@ -115,7 +115,7 @@ def test_a_camera_without_jpeg_gives_pixels(capture):
     np.testing.assert_array_equal(frame.image, picture(3))
 
 
-def test_raw_and_grey_pictures_become_bgr(capture):
+def test_yuv_and_grey_images_become_bgr(capture):
     capture.frames.put(np.full((48, 64, 2), 128, np.uint8))
     with open_camera(capture) as source:
         frames = iter(source)
@@ -124,8 +124,8 @@ def test_raw_and_grey_pictures_become_bgr(capture):
         assert next(frames).image[5, 5].tolist() == [77, 77, 77]
 
 
-def test_who_comes_late_gets_the_newest_frame(capture):
-    capture.patience = ENOUGH_S  # so that each question but the last was answered
+def test_a_slow_reader_gets_the_newest_frame(capture):
+    capture.patience = TEST_TIMEOUT_S  # so that each question but the last was answered
     capture.frames.put(encoded(0))
     with open_camera(capture) as source:
         frames = iter(source)
@@ -133,19 +133,19 @@ def test_who_comes_late_gets_the_newest_frame(capture):
         for number in (1, 2, 3):
             capture.frames.put(encoded(number))
         for _ in range(5):  # the fifth question means that four frames were taken
-            assert capture.asked.acquire(timeout=ENOUGH_S)
+            assert capture.asked.acquire(timeout=TEST_TIMEOUT_S)
         frame = next(frames)
         assert frame.encoded == jpeg(3)
         assert frame.index == 1
 
 
-def test_torn_pictures_are_left_out(capture):
+def test_truncated_images_are_skipped(capture):
     capture.frames.put(encoded(0))
     with open_camera(capture) as source:
         frames = iter(source)
         next(frames)
         capture.frames.put(encoded(1)[:, :200])
-        assert capture.asked.acquire(timeout=ENOUGH_S)
+        assert capture.asked.acquire(timeout=TEST_TIMEOUT_S)
         capture.frames.put(encoded(2))
         assert next(frames).encoded == jpeg(2)
 
@@ -157,18 +157,18 @@ def fails(make, words):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("patience", [0.001, ENOUGH_S])
-def test_a_camera_that_opens_but_never_gives_a_frame_is_one_line(capture, patience):
-    """Whether `read` fails at once, or blocks for ever."""
+@pytest.mark.parametrize("patience", [0.001, TEST_TIMEOUT_S])
+def test_a_camera_that_never_delivers_an_image_is_one_line(capture, patience):
+    """Both if `read` fails immediately and if it blocks."""
     capture.patience = patience
     fails(lambda: open_camera(capture, fast_clock()), "camera 0 delivered no image for 2 s")
 
 
-def test_a_driver_that_blocks_for_ever_while_opening_hangs_nobody():
+def test_a_driver_that_blocks_while_opening_does_not_block_the_caller():
     never = threading.Event()
 
     def block(device):
-        never.wait(ENOUGH_S)
+        never.wait(TEST_TIMEOUT_S)
         return FakeCapture(opened=False)
 
     fails(
@@ -178,23 +178,23 @@ def test_a_driver_that_blocks_for_ever_while_opening_hangs_nobody():
     never.set()
 
 
-def test_a_camera_that_was_left_behind_while_opening_is_released_when_it_comes():
+def test_a_camera_abandoned_while_opening_is_released_later():
     opened, came = threading.Event(), FakeCapture()
     came.frames.put(None)
 
     def slow(device):
-        opened.wait(ENOUGH_S)
+        opened.wait(TEST_TIMEOUT_S)
         return came
 
     fails(lambda: CameraSource(0, SIZE, clock=fast_clock(), capture=slow), "did not open")
     opened.set()
-    assert came.released.wait(ENOUGH_S)
+    assert came.released.wait(TEST_TIMEOUT_S)
 
 
 def test_a_camera_that_does_not_open_is_one_line():
     closed = FakeCapture(opened=False)
     fails(lambda: open_camera(closed), "camera 0 does not open: another program may use it")
-    assert closed.released.wait(ENOUGH_S)
+    assert closed.released.wait(TEST_TIMEOUT_S)
 
 
 def test_a_driver_that_raises_is_one_line():
@@ -204,7 +204,7 @@ def test_a_driver_that_raises_is_one_line():
     fails(lambda: CameraSource(0, SIZE, capture=broken), "camera 0 failed: no such ioctl")
 
 
-def test_a_camera_that_is_unplugged_gives_its_last_frame_and_then_one_line(capture):
+def test_an_unplugged_camera_returns_its_last_frame_and_then_fails_with_one_line(capture):
     capture.frames.put(encoded(0))
     with open_camera(capture, fast_clock()) as source:
         frames = iter(source)
@@ -213,8 +213,8 @@ def test_a_camera_that_is_unplugged_gives_its_last_frame_and_then_one_line(captu
         fails(lambda: next(frames), "camera 0 delivered no image for 3")
 
 
-def test_a_camera_that_repeats_its_last_frame_for_ever_counts_as_gone(capture):
-    """OpenCV #5746: after an unplug, some drivers hand out the same picture again and again."""
+def test_a_camera_that_repeats_its_last_image_counts_as_lost(capture):
+    """OpenCV #5746: after an unplug, some drivers repeat the same image."""
     capture.frames.get = lambda timeout: encoded(0)
 
     def watch():
@@ -225,7 +225,7 @@ def test_a_camera_that_repeats_its_last_frame_for_ever_counts_as_gone(capture):
     fails(watch, "camera 0 has repeated the same image for 3")
 
 
-def test_garbage_that_goes_on_is_one_line(capture):
+def test_undecodable_images_are_one_line(capture):
     capture.patience = 0.001
     garbage = (np.full((1, 500), number % 256, np.uint8) for number in itertools.count())
     wait, capture.frames.get = capture.frames.get, lambda timeout: next(garbage)
@@ -233,7 +233,7 @@ def test_garbage_that_goes_on_is_one_line(capture):
     capture.frames.get = wait
 
 
-def test_a_picture_that_changes_its_size_is_one_line(capture):
+def test_a_change_of_size_is_one_line(capture):
     capture.frames.put(picture(0))
     with open_camera(capture) as source:
         frames = iter(source)
@@ -249,16 +249,16 @@ def test_close_ends_the_iteration_and_releases_the_camera(capture):
     source.close()
     source.close()
     assert list(source) == []
-    assert capture.released.wait(ENOUGH_S)
+    assert capture.released.wait(TEST_TIMEOUT_S)
 
 
-def test_a_camera_that_is_not_there_is_one_line():
+def test_a_camera_that_does_not_exist_is_one_line():
     fails(lambda: open_source("camera:97"), "camera 97")
     fails(lambda: open_source("camera:/dev/none"), "camera /dev/none")
 
 
 class Phone(BaseHTTPRequestHandler):
-    """Serves what phone apps serve, and what they should not."""
+    """Serves valid and invalid streams of phone apps."""
 
     ended = threading.Event()
     heard: ClassVar[list[str]] = []
@@ -293,7 +293,7 @@ class Phone(BaseHTTPRequestHandler):
                 self.answer("text/html", 302, Location="http://elsewhere/video")
             case "/silent":
                 self.answer(kind)
-                self.ended.wait(ENOUGH_S)
+                self.ended.wait(TEST_TIMEOUT_S)
             case "/bare":
                 self.answer('multipart/x-mixed-replace; boundary="--frame"')
                 for number in range(3):
@@ -303,7 +303,7 @@ class Phone(BaseHTTPRequestHandler):
                 self.answer(kind)
                 self.part(jpeg(0))
                 self.part(jpeg(1))
-                self.ended.wait(ENOUGH_S)
+                self.ended.wait(TEST_TIMEOUT_S)
             case "/stops":
                 self.answer(kind)
                 self.part(jpeg(0))
@@ -315,7 +315,7 @@ class QuietServer(ThreadingHTTPServer):
     daemon_threads = True
 
     def handle_error(self, request, client_address):
-        """The client hung up, as it may."""
+        """Clients may close the connection."""
 
 
 @pytest.fixture(scope="module")
@@ -332,12 +332,12 @@ def phone():
 
 
 def lost(source):
-    """Take frames until there are none, and have no patience with that."""
+    """Read frames until there are none, without patience."""
     while True:
         source.wait(0.05, patience=0.0)
 
 
-def test_a_phone_gives_its_own_jpeg_bytes(phone):
+def test_a_phone_returns_its_own_jpeg_bytes(phone):
     with open_source(f"http://{phone}/video?quality=high", clock=lambda: 5.0) as source:
         assert (source.size, source.live, source.intrinsics) == (SIZE, True, None)
         frame = next(iter(source))
@@ -345,14 +345,14 @@ def test_a_phone_gives_its_own_jpeg_bytes(phone):
         assert (frame.encoding, frame.timestamp) == ("jpeg", 5.0)
 
 
-def test_a_phone_that_bends_the_standard_is_understood(phone):
+def test_a_stream_without_lengths_is_understood(phone):
     with open_source(f"http://{phone}/bare") as source:
         frames = iter(source)
         assert next(frames).encoded in {jpeg(number) for number in range(3)}
         fails(lambda: lost(source), "ended its stream")
 
 
-def test_name_and_password_go_to_the_phone_and_into_no_message(phone):
+def test_name_and_password_are_sent_but_not_printed(phone):
     Phone.heard.clear()
     with pytest.raises(TrackingError) as caught:
         open_source(f"http://anna:s%20cret@{phone}/secret")
@@ -370,7 +370,7 @@ def test_name_and_password_go_to_the_phone_and_into_no_message(phone):
         ("/none", "answers 404"),
     ],
 )
-def test_an_answer_that_is_no_stream_is_one_line(phone, path, words):
+def test_an_answer_other_than_a_stream_is_one_line(phone, path, words):
     fails(lambda: open_source(f"http://{phone}{path}"), words)
 
 
@@ -378,14 +378,14 @@ def test_a_phone_that_falls_silent_is_one_line(phone):
     fails(lambda: HttpSource(f"http://{phone}/silent", clock=fast_clock(0.05)), "no image for 2 s")
 
 
-def test_a_phone_that_hangs_up_is_one_line_after_its_last_frame(phone):
+def test_a_closed_stream_is_one_line_after_its_last_frame(phone):
     with open_source(f"http://{phone}/stops") as source:
         frames = iter(source)
         assert next(frames).encoded == jpeg(0)
         fails(lambda: lost(source), "ended its stream")
 
 
-def test_a_phone_that_hangs_up_is_connected_to_again(phone):
+def test_a_closed_stream_is_opened_again(phone):
     with open_source(f"http://{phone}/stops", clock=fast_clock(0.02)) as source:
         frames = iter(source)
         first, second = next(frames), next(frames)
@@ -395,7 +395,7 @@ def test_a_phone_that_hangs_up_is_connected_to_again(phone):
         assert source.health.gaps >= 1
 
 
-def test_addresses_where_nobody_answers_are_one_line(phone):
+def test_addresses_without_a_server_are_one_line(phone):
     fails(lambda: open_source("http://127.0.0.1:1/video"), "cannot connect to http://127.0.0.1:1")
     fails(lambda: open_source("http://"), "names no host")
     fails(lambda: open_source("http://phone:ninety/"), "is not a web address")

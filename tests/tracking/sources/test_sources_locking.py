@@ -1,4 +1,4 @@
-"""Exposure and focus: locked where the driver allows, and said where it does not."""
+"""Exposure and focus: locked if the driver allows it, and reported if not."""
 
 import cv2
 import numpy as np
@@ -12,8 +12,8 @@ from tracking.sources.device import DeviceSetting
 SIZE = (64, 48)
 
 
-class Driver:
-    """A camera with controls, as V4L2 drivers have them, good ones and bad ones."""
+class FakeV4l2Driver:
+    """A camera with controls, like good and bad V4L2 drivers."""
 
     def __init__(self, **controls):
         self.controls = {
@@ -66,7 +66,7 @@ class Driver:
 
 
 def after(driver, pictures, **options):
-    """What became of the settings after so many pictures."""
+    """Return the settings after a number of images."""
     device = CaptureDevice(driver, "camera 0", SIZE, CameraOptions(**options))
     for _ in range(pictures):
         device.read()
@@ -74,14 +74,14 @@ def after(driver, pictures, **options):
 
 
 def test_nothing_is_locked_before_it_has_settled():
-    driver = Driver()
+    driver = FakeV4l2Driver()
     settings = after(driver, 29)
     assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
     assert settings["exposure"] == DeviceSetting("exposure", False, "still automatic")
 
 
-def test_exposure_and_focus_are_locked_where_they_settled():
-    driver = Driver()
+def test_exposure_and_focus_are_locked_once_they_have_settled():
+    driver = FakeV4l2Driver()
     settings = after(driver, 100)
     assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 1.0
     assert driver.controls[cv2.CAP_PROP_AUTOFOCUS] == 0.0
@@ -89,8 +89,8 @@ def test_exposure_and_focus_are_locked_where_they_settled():
     assert settings["focus"] == DeviceSetting("focus", True, "locked at 30")
 
 
-def test_an_exposure_that_the_camera_misreports_is_left_automatic():
-    driver = Driver()
+def test_a_misreported_exposure_stays_automatic():
+    driver = FakeV4l2Driver()
     driver.manual_light = 40
     settings = after(driver, 100)
     assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
@@ -98,9 +98,9 @@ def test_an_exposure_that_the_camera_misreports_is_left_automatic():
     assert "does not report the value" in settings["exposure"].detail
 
 
-def test_the_automatics_are_on_again_when_the_camera_is_closed():
-    driver = Driver()
-    driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] = 0.0  # this driver's word for automatic
+def test_closing_the_camera_restores_the_automatic_modes():
+    driver = FakeV4l2Driver()
+    driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] = 0.0  # this driver's value for automatic
     device = CaptureDevice(driver, "camera 0", SIZE, CameraOptions(focus=60.0))
     for _ in range(100):
         device.read()
@@ -110,24 +110,24 @@ def test_the_automatics_are_on_again_when_the_camera_is_closed():
     assert driver.controls[cv2.CAP_PROP_AUTOFOCUS] == 1.0
 
 
-def test_an_exposure_that_a_killed_program_left_locked_settles_anew():
-    driver = Driver()
+def test_an_exposure_left_locked_by_a_killed_program_settles_again():
+    driver = FakeV4l2Driver()
     driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] = 1.0
     after(driver, 10)
     assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
     assert after(driver, 100)["exposure"].applied
 
 
-def test_a_focus_that_hunts_is_left_automatic():
-    driver = Driver()
+def test_a_focus_that_hunts_stays_automatic():
+    driver = FakeV4l2Driver()
     driver.hunting = True
     settings = after(driver, MAX_SETTLING_IMAGES + 30)
     assert driver.controls[cv2.CAP_PROP_AUTOFOCUS] == 1.0
     assert "does not settle" in settings["focus"].detail
 
 
-def test_what_a_driver_refuses_is_said():
-    driver = Driver()
+def test_refused_and_missing_controls_are_reported():
+    driver = FakeV4l2Driver()
     driver.refused = {cv2.CAP_PROP_AUTO_EXPOSURE}
     driver.absent = {cv2.CAP_PROP_FOCUS, cv2.CAP_PROP_AUTOFOCUS}
     settings = after(driver, 100)
@@ -137,37 +137,37 @@ def test_what_a_driver_refuses_is_said():
     assert not settings["focus"].applied
 
 
-def test_a_short_exposure_is_set_at_once_and_read_back():
-    driver = Driver()
+def test_a_given_exposure_is_set_immediately_and_read_back():
+    driver = FakeV4l2Driver()
     settings = after(driver, 0, exposure=5.0, focus=60.0)
     assert driver.controls[cv2.CAP_PROP_EXPOSURE] == 50.0
     assert settings["exposure"] == DeviceSetting("exposure", True, "set to 5 ms")
     assert settings["focus"] == DeviceSetting("focus", True, "set to 60")
-    clamped = Driver()
+    clamped = FakeV4l2Driver()
     clamped.clamp = 20.0
     assert after(clamped, 0, exposure=5.0)["exposure"].detail == "refused: the camera reports 2 ms"
     assert clamped.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
 
 
-def test_nothing_is_touched_without_the_lock():
-    driver = Driver()
+def test_nothing_is_changed_with_lock_0():
+    driver = FakeV4l2Driver()
     settings = after(driver, 100, lock=False)
     assert driver.controls[cv2.CAP_PROP_AUTO_EXPOSURE] == 3.0
     assert set(settings) == {"buffers"}
 
 
-def test_the_queue_is_asked_for_and_what_the_driver_gives_is_said():
-    assert after(Driver(), 0)["buffers"] == DeviceSetting("buffers", True, "2, requested 2")
-    stubborn = Driver()
+def test_the_number_of_buffers_is_requested_and_reported():
+    assert after(FakeV4l2Driver(), 0)["buffers"] == DeviceSetting("buffers", True, "2, requested 2")
+    stubborn = FakeV4l2Driver()
     stubborn.refused = {cv2.CAP_PROP_BUFFERSIZE}
     assert after(stubborn, 0)["buffers"] == DeviceSetting("buffers", False, "4, requested 2")
-    silent = Driver()
+    silent = FakeV4l2Driver()
     silent.absent = {cv2.CAP_PROP_BUFFERSIZE}
     assert "does not report" in after(silent, 0)["buffers"].detail
 
 
-def test_the_drivers_milliseconds_become_the_frames_timestamp():
-    driver = Driver()
+def test_the_drivers_time_becomes_the_frames_timestamp():
+    driver = FakeV4l2Driver()
     driver.time, driver.only = 99_960.5, 1
     with CameraSource(0, SIZE, clock=lambda: 100.0, capture=lambda device: driver) as source:
         assert next(iter(source)).timestamp == pytest.approx(99.9605, abs=1e-9)
@@ -186,7 +186,7 @@ def test_the_drivers_milliseconds_become_the_frames_timestamp():
         ("0?buffers=99", "buffers must be from 1 to 10"),
     ],
 )
-def test_a_wrong_option_is_one_line(uri, words):
+def test_a_wrong_option_is_refused_with_one_line(uri, words):
     with pytest.raises(TrackingError) as caught:
         open_source(f"camera:{uri}")
     assert words in str(caught.value)

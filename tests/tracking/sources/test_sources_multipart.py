@@ -1,4 +1,4 @@
-"""Parts come out whole wherever the network cuts the stream."""
+"""Parts are complete however the network splits the stream."""
 
 import pytest
 from hypothesis import given
@@ -32,9 +32,7 @@ def stream(parts, *, line=b"\r\n", lengths=True, preamble=b"", dashes=b""):
     dashes=st.sampled_from([b"", b"--"]),
     data=st.data(),
 )
-def test_the_same_parts_come_out_however_the_stream_is_cut(
-    parts, line, lengths, preamble, dashes, data
-):
+def test_the_parts_do_not_depend_on_the_chunks(parts, line, lengths, preamble, dashes, data):
     written = stream(parts, line=line, lengths=lengths, preamble=preamble, dashes=dashes)
     cuts = data.draw(st.lists(st.integers(0, len(written)), max_size=8).map(sorted))
     parser = MultipartParser((dashes + b"cut").decode())
@@ -45,7 +43,7 @@ def test_the_same_parts_come_out_however_the_stream_is_cut(
     assert parser.ended
 
 
-def test_a_stream_cut_at_every_byte():
+def test_a_stream_can_arrive_byte_by_byte():
     parts = [b"\xff\xd8one\xff\xd9", b"\xff\xd8\r\n--cu two\r\n\xff\xd9"]
     for lengths in (True, False):
         parser = MultipartParser("cut")
@@ -54,13 +52,13 @@ def test_a_stream_cut_at_every_byte():
         assert got == parts
 
 
-def test_a_length_lets_a_body_hold_the_boundary_itself():
+def test_a_body_with_a_length_may_contain_the_boundary():
     parts = [b"\xff\xd8\r\n--cut\r\n\r\n\xff\xd9"]
     assert MultipartParser("cut").feed(stream(parts)) == parts
 
 
-def test_a_part_comes_out_as_soon_as_its_last_byte_is_in():
-    """With a length nothing waits for the next boundary: a whole frame of delay less."""
+def test_a_part_is_returned_with_its_last_byte():
+    """With a length it need not wait for the next boundary, which saves a frame of delay."""
     parser = MultipartParser("cut")
     assert parser.feed(b"--cut\r\nContent-Length: 3\r\n\r\nabc") == [b"abc"]
 
@@ -72,7 +70,7 @@ def test_garbage_gives_no_exception(chunks):
         parser.feed(chunk)
 
 
-def test_a_stream_without_boundaries_does_not_fill_the_memory():
+def test_a_stream_without_boundaries_is_limited_in_memory():
     parser = MultipartParser("cut")
     for _ in range(MAX_PART_BYTES // 2**20):
         assert parser.feed(bytes(2**20)) == []

@@ -1,4 +1,4 @@
-"""Cameras that come and go, on a clock that stands still until a test moves it."""
+"""Cameras that are lost and come back, on a clock that the test controls."""
 
 import queue
 import threading
@@ -13,14 +13,14 @@ from tracking.sources.capture_timing import DISTRUST_IMAGES, ExposureClock, Queu
 from tracking.sources.live import LiveSource
 from tracking.sources.video_device import persistent_path
 
-ENOUGH_S = 10.0
+TEST_TIMEOUT_S = 10.0
 """Real time after which a test that waits for another thread has failed."""
 
-GONE = object()
+UNPLUG = object()
 
 
 class Clock:
-    """Time that a test moves."""
+    """A clock that the test moves."""
 
     def __init__(self):
         self.now = 100.0
@@ -29,8 +29,8 @@ class Clock:
         return self.now
 
 
-class Bench:
-    """Makes devices that give what the test puts into their queue."""
+class CameraBench:
+    """Opens fake devices that return what the test puts into their queue."""
 
     def __init__(self):
         self.clock = Clock()
@@ -57,9 +57,9 @@ class Bench:
         self.pictures.put(np.full((48, 64, 3), number, np.uint8))
 
     def until(self, met):
-        """Wait in real time for what the capture thread does by itself."""
+        """Wait in real time for the capture thread."""
         ended = threading.Event()
-        for _ in range(int(ENOUGH_S / 0.005)):
+        for _ in range(int(TEST_TIMEOUT_S / 0.005)):
             if met():
                 return
             ended.wait(0.005)
@@ -81,13 +81,13 @@ class FakeDevice:
         bench = self._bench
         bench.asked.release()
         if bench.blocks:
-            bench.hold.wait(ENOUGH_S)
+            bench.hold.wait(TEST_TIMEOUT_S)
             return None
         try:
             picture = bench.pictures.get(timeout=0.005)
         except queue.Empty:
             return None
-        if picture is GONE:
+        if picture is UNPLUG:
             raise TrackingError("camera 0 was pulled out")
         return picture
 
@@ -100,7 +100,7 @@ class FakeDevice:
 
 @pytest.fixture
 def bench():
-    made = Bench()
+    made = CameraBench()
     yield made
     made.hold.set()
 
@@ -117,13 +117,13 @@ def source(bench):
 
 
 def at(bench, seconds, source):
-    """What the source says of itself at a time."""
+    """The source's health at a time."""
     bench.clock.now = 100.0 + seconds
     return source.health
 
 
 def awaited(source, bench):
-    """The next frame, given real time to come and no time of the clock."""
+    """The next frame, waiting in real time only."""
     found: list[Frame] = []
 
     def came():
@@ -134,18 +134,18 @@ def awaited(source, bench):
     return found[0]
 
 
-def test_silence_is_told_within_a_second_though_the_driver_never_returns(bench, source):
+def test_silence_is_reported_within_a_second_while_the_driver_blocks(bench, source):
     bench.blocks = True
     assert at(bench, 0.7, source).state == "running"
     health = at(bench, 1.0, source)
     assert (health.state, health.since) == ("lost", 100.0)
     assert "delivered no image for 1 s" in health.problem
-    assert source.wait(0.0) is None  # blocks nobody
+    assert source.wait(0.0) is None  # does not block
 
 
-def test_a_camera_that_is_plugged_in_again_goes_on_by_itself(bench, source):
+def test_a_camera_that_is_plugged_in_again_continues(bench, source):
     bench.plugged = False
-    bench.pictures.put(GONE)
+    bench.pictures.put(UNPLUG)
     bench.until(lambda: source.health.state == "lost")
     assert source.health.problem == "camera 0 was pulled out"
     assert bench.held == 0, "the lost device was not let go of"
@@ -168,16 +168,16 @@ def test_a_camera_that_is_plugged_in_again_goes_on_by_itself(bench, source):
     assert bench.most_held == 1
 
 
-def test_patience_that_is_over_is_one_line(bench, source):
+def test_a_loss_longer_than_the_patience_is_one_line(bench, source):
     bench.plugged = False
-    bench.pictures.put(GONE)
+    bench.pictures.put(UNPLUG)
     bench.until(lambda: source.health.state == "lost")
     bench.clock.now += 5.0
     with pytest.raises(TrackingError, match=r"^camera 0 does not exist$|^camera 0 was pulled out$"):
         source.wait(0.0, patience=5.0)
 
 
-def test_a_frozen_picture_is_told_within_a_second_and_only_another_one_ends_it(bench, source):
+def test_a_frozen_image_is_reported_until_another_one_arrives(bench, source):
     bench.clock.now = 100.9
     bench.put(1)
     bench.until(lambda: source.health.state == "frozen")
@@ -189,7 +189,7 @@ def test_a_frozen_picture_is_told_within_a_second_and_only_another_one_ends_it(b
         return bench.opened == 2
 
     bench.until(reopened)
-    bench.put(1)  # what it gave before is still no news
+    bench.put(1)  # still the same image
     bench.until(lambda: bench.pictures.empty())
     assert source.wait(0.0) is None
     assert not source.health.running
@@ -198,7 +198,7 @@ def test_a_frozen_picture_is_told_within_a_second_and_only_another_one_ends_it(b
     assert source.health.state == "running"
 
 
-def test_a_stall_that_ends_by_itself_counts_as_a_gap_without_opening_again(bench, source):
+def test_a_stall_counts_as_a_gap_without_reopening(bench, source):
     bench.blocks = True
     bench.until(lambda: bench.asked.acquire(blocking=False))
     assert at(bench, 2.0, source).state == "lost"
@@ -209,11 +209,11 @@ def test_a_stall_that_ends_by_itself_counts_as_a_gap_without_opening_again(bench
     assert (source.health.state, source.health.gaps) == ("running", 1)
 
 
-def test_a_thread_that_never_returns_is_left_behind_and_another_opens_the_camera(bench, source):
+def test_a_blocked_thread_is_replaced(bench, source):
     bench.blocks = True
     while bench.asked.acquire(blocking=False):
         pass
-    assert bench.asked.acquire(timeout=ENOUGH_S)
+    assert bench.asked.acquire(timeout=TEST_TIMEOUT_S)
     bench.clock.now += STUCK_TIMEOUT_S - 1.0
     source.wait(0.0)
     assert bench.opened == 1, "opened while the old thread may yet return"
@@ -223,12 +223,12 @@ def test_a_thread_that_never_returns_is_left_behind_and_another_opens_the_camera
     bench.until(lambda: bench.opened == 2)
     bench.put(9)
     assert awaited(source, bench).image[0, 0, 0] == 9
-    bench.hold.set()  # the old thread returns: it lets go and says nothing
+    bench.hold.set()  # the old thread returns: it releases the device silently
     bench.until(lambda: bench.held == 1)
     assert source.health.running
 
 
-def test_only_so_many_threads_are_left_behind(bench, source):
+def test_the_number_of_abandoned_threads_is_limited(bench, source):
     bench.blocks = True
     bench.until(lambda: bench.asked.acquire(blocking=False))
     for number in range(MAX_ABANDONED_THREADS + 3):
@@ -239,7 +239,7 @@ def test_only_so_many_threads_are_left_behind(bench, source):
     assert bench.opened == 1 + MAX_ABANDONED_THREADS
 
 
-def test_the_drivers_time_is_taken_where_it_is_sane(bench, source):
+def test_a_plausible_driver_time_is_used(bench, source):
     bench.clock.now, bench.exposed = 100.5, 100.46
     bench.put(2)
     assert awaited(source, bench).timestamp == 100.46
@@ -251,7 +251,7 @@ def test_the_drivers_time_is_taken_where_it_is_sane(bench, source):
     [0.0, -0.001, 5.0, 98.9, 100.2, 1.7e9],
     ids=["zero", "none", "wrap_angle", "old", "ahead", "epoch"],
 )
-def test_a_wrong_driver_time_gives_way_to_the_arrival_for_a_while(wrong):
+def test_a_wrong_driver_time_is_replaced_by_the_arrival_for_a_while(wrong):
     clock = ExposureClock()
     assert clock.stamp(99.9, 99.87) == 99.87
     assert clock.stamp(100.0, wrong) == 100.0
@@ -260,7 +260,7 @@ def test_a_wrong_driver_time_gives_way_to_the_arrival_for_a_while(wrong):
     assert given[DISTRUST_IMAGES + 1] == 99.96 + DISTRUST_IMAGES + 2
 
 
-def test_a_driver_time_that_stands_still_or_goes_back_is_not_believed():
+def test_a_driver_time_that_does_not_increase_is_not_used():
     clock = ExposureClock()
     clock.stamp(10.0, 9.95)
     assert clock.stamp(10.033, 9.95) == 10.033
@@ -289,14 +289,14 @@ def test_the_rate_is_that_of_the_arrivals():
     assert gauge.rate == pytest.approx(15.0)
 
 
-def test_pictures_that_nobody_took_are_counted(bench, source):
+def test_dropped_images_are_counted(bench, source):
     for number in (2, 3, 4):
         bench.put(number)
     bench.until(lambda: source.health.dropped == 2)
     assert awaited(source, bench).image[0, 0, 0] == 4
 
 
-def test_a_camera_whose_number_moved_is_found_by_its_name(tmp_path):
+def test_a_camera_with_a_new_number_is_found_by_its_name(tmp_path):
     links = tmp_path / "by-id"
     links.mkdir()
     first, second = tmp_path / "video0", tmp_path / "video2"

@@ -1,4 +1,4 @@
-"""The synthetic camera draws the cube exactly where it says it is, and always the same."""
+"""The synthetic camera renders the cube exactly at its true pose, and reproducibly."""
 
 import cv2
 import numpy as np
@@ -39,7 +39,7 @@ def edge_crossing(profile: Array, middle: float) -> float:
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.25, 0.5, 0.8])
-def test_pixel_centres_are_at_whole_numbers(shift: float) -> None:
+def test_pixel_centres_are_at_integers(shift: float) -> None:
     """The borders of a large marker that looks at the camera lie where they are projected to."""
     options = SyntheticOptions(noise=0, defocus=0.7, distortion=0, clutter=False, shadow=False)
     camera = CameraRays(webcam(options))
@@ -63,7 +63,7 @@ def test_pixel_centres_are_at_whole_numbers(shift: float) -> None:
         assert edge_crossing(profiles.mean(axis=1), middle) == pytest.approx(truth, abs=0.03)
 
 
-def test_marker_corners_are_drawn_where_the_truth_projects_them() -> None:
+def test_marker_corners_are_rendered_at_their_true_projection() -> None:
     """Through perspective and distortion: what OpenCV finds has no common offset."""
     source = open_synthetic(f"poses?{CLEAN}&seed=4")
     dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
@@ -87,7 +87,7 @@ def test_marker_corners_are_drawn_where_the_truth_projects_them() -> None:
     assert np.median(np.linalg.norm(apart, axis=-1)) < 0.3
 
 
-def test_a_folded_cube_is_seen_where_its_measured_corners_are() -> None:
+def test_folding_errors_are_rendered() -> None:
     source = open_synthetic("wave?fold=2&noise=0&defocus=0.3")
     frame = source.frame(4)
     grey = cv2.cvtColor(frame.image, cv2.COLOR_BGR2GRAY)
@@ -112,7 +112,7 @@ def test_a_folded_cube_is_seen_where_its_measured_corners_are() -> None:
         assert away[1] > 3
 
 
-def test_the_same_seed_gives_the_same_pictures() -> None:
+def test_the_same_seed_gives_the_same_images() -> None:
     one, other = (open_synthetic("follow?seed=3&width=640&height=360") for _ in range(2))
     for index in (0, 75):
         assert np.array_equal(one.frame(index).image, other.frame(index).image)
@@ -143,7 +143,7 @@ def test_every_script_moves_smoothly_and_ends(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["follow", "sketch", "companion", "tip"])
-def test_a_cube_at_rest_is_perfectly_still_and_flat_on_the_desk(name: str) -> None:
+def test_a_cube_at_rest_is_still_and_flat_on_the_desk(name: str) -> None:
     source = open_synthetic(name)
     resting = [index for index in range(source.count) if source.state(index).resting]
     assert len(resting) > source.count / 10
@@ -168,7 +168,7 @@ def test_turns_are_counted_clockwise_from_above() -> None:
     assert turns[-1] == pytest.approx(0, abs=0.01)
 
 
-def test_the_cube_is_in_the_picture_all_the_time() -> None:
+def test_the_cube_is_always_in_the_image() -> None:
     for name in ("follow", "sketch", "companion"):
         source = open_synthetic(name)
         assert source.intrinsics is not None
@@ -179,7 +179,7 @@ def test_the_cube_is_in_the_picture_all_the_time() -> None:
         assert (pixels < np.array(source.size) - 60).all()
 
 
-def test_a_fast_cube_is_blurred_along_its_way_about_the_truth() -> None:
+def test_motion_blur_is_centred_on_the_true_pose() -> None:
     """The shutter is centred on the frame's time: blur moves no edge to one side."""
     still = open_synthetic(f"sweep?{CLEAN}&speed=1")
     moving = open_synthetic(f"sweep?{CLEAN.replace('blur=0', 'blur=0.02')}&speed=1")
@@ -201,7 +201,7 @@ def test_a_fast_cube_is_blurred_along_its_way_about_the_truth() -> None:
     assert abs(shift) < 1.5
 
 
-def test_it_is_a_source_like_any_other() -> None:
+def test_the_synthetic_camera_is_a_frame_source() -> None:
     with open_source("synthetic:static?frames=2&width=320&height=180") as source:
         assert isinstance(source, FrameSource)
         assert not source.live
@@ -221,7 +221,7 @@ def test_it_is_a_source_like_any_other() -> None:
         ("turn?size=1280", "size=1280"),
     ],
 )
-def test_a_wrong_name_or_option_is_refused_in_one_line(name: str, says: str) -> None:
+def test_a_wrong_name_or_option_is_refused_with_one_line(name: str, says: str) -> None:
     with pytest.raises(TrackingError, match=says) as caught:
         open_synthetic(name)
     assert "\n" not in str(caught.value)
