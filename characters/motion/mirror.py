@@ -19,9 +19,13 @@ from characters.motion.motion import Motion, RootDelta
 from characters.motion.phase import as_cyclic, has_footfalls
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.symmetry import check_symmetry, paired_joints, paired_names
+from characters.skeleton.symmetry import (
+    REFLECTION,
+    check_symmetry,
+    paired_joints,
+    paired_names,
+)
 
-_REFLECTION = np.array([-1.0, 1.0, 1.0])
 _QUATERNION_REFLECTION = np.array([1.0, -1.0, -1.0, 1.0])
 LENGTH_TOLERANCE = 1e-5
 """Relative difference below which two lengths count as equal."""
@@ -124,7 +128,7 @@ class Mirror:
         # F = M Q, and so Q = M G(p)ᵀ M G, where G are the rotations only.
         theirs = rotations.conjugate(turns[partners])
         between = rotations.multiply(theirs * _QUATERNION_REFLECTION, turns)
-        apart = positions * _REFLECTION - positions[partners]
+        apart = positions * REFLECTION - positions[partners]
         tolerance = LENGTH_TOLERANCE * float(np.ptp(positions, axis=0).max())
         asymmetric = np.linalg.norm(apart, axis=-1) > tolerance
         translations = rotations.rotate(theirs, apart) / scales[partners, None]
@@ -153,14 +157,14 @@ class Mirror:
         turns = turns * _QUATERNION_REFLECTION
         # The origin of the partner's frame in the frame of the joint.
         origins = -rotations.rotate(
-            rotations.conjugate(frames.rotations), frames.translations * _REFLECTION / frames.scales
+            rotations.conjugate(frames.rotations), frames.translations * REFLECTION / frames.scales
         )
         scales, translations = pose.scales, pose.translations
         if frames.translations.any():
             scaled = origins if scales is None else origins * scales
             translations = translations + rotations.rotate(pose.rotations, scaled)
         translations = rotations.rotate(parents.rotations, translations)
-        translations = translations * _REFLECTION * parents.scales
+        translations = translations * REFLECTION * parents.scales
         ratios = parents.scales / frames.scales
         if scales is not None:
             # F S F⁻¹ along the partner's axes, which differ by quarter turns at most.

@@ -10,7 +10,9 @@ from characters.errors import CharacterError
 from characters.skeleton.joint_chains import children_of
 from characters.skeleton.pose import Array, Skeleton
 
-_REFLECTION = np.array([-1.0, 1.0, 1.0])
+REFLECTION = np.array([-1.0, 1.0, 1.0])
+"""Factors of a position that is mirrored about x = 0."""
+
 _MAX_ASYMMETRY = 0.25  # median distance from symmetry over the distance from left to right
 # Penalties for names that do not match, in body sizes: another name, another number.
 _NAME_PENALTY, _NUMBER_PENALTY = 0.1, 0.01
@@ -39,7 +41,7 @@ def paired_joints(
         other = int(partners[parent]) if parent >= 0 else -1
         ours, theirs = children.get(parent, []), children.get(other, [])
         apart = {
-            (a, b): float(np.linalg.norm(positions[a] * _REFLECTION - positions[b])) / size
+            (a, b): float(np.linalg.norm(positions[a] * REFLECTION - positions[b])) / size
             + _misfit(skeleton.names[a], skeleton.names[b])
             + (0.0 if given.get(a, b) == b and given.get(b, a) == a else np.inf)
             for a in ours
@@ -75,7 +77,7 @@ def check_symmetry(skeleton: Skeleton, positions: Array, partners: NDArray[np.in
     paired = np.flatnonzero(partners != np.arange(len(partners)))
     if not len(paired):
         return
-    apart = positions[paired] * _REFLECTION - positions[partners[paired]]
+    apart = positions[paired] * REFLECTION - positions[partners[paired]]
     apart -= np.median(apart, axis=0)  # the plane may be off the origin
     away = np.linalg.norm(apart, axis=-1)
     across = np.linalg.norm(positions[paired] - positions[partners[paired]], axis=-1)

@@ -1,9 +1,8 @@
-"""How long one update of a character takes: `python -m tests.bench.animation`.
+"""Time of one update of a character: `python -m tests.bench.animation`.
 
-The full update is everything at once: a point of the locomotion space that keeps changing, a layer
-of waving arms over it, head and eyes that follow a point, blinks, breath, feet that are held, and a
-mood that shows in face and bearing.
-Ends with 1 where its median is beyond the limit.
+A full update includes locomotion at a changing speed, a layer of waving arms, head and eyes that
+follow a point, blinks, breath, foot lock, and a mood in face and posture. Exits with 1 if its
+median exceeds `LIMIT_MS`.
 """
 
 import sys
@@ -29,7 +28,7 @@ from characters.motion.layers import overlaid
 FRAMES = 600
 
 LIMIT_MS = 0.5
-"""What the median of a full update may take."""
+"""Limit of the median of a full update."""
 
 
 def measure(work: Callable[[int], object]) -> tuple[float, float]:
@@ -45,7 +44,7 @@ def measure(work: Callable[[int], object]) -> tuple[float, float]:
 
 
 def wandering(animator: Animator, speed: float) -> Callable[[int], object]:
-    """Return the work of chasing a target that runs round a circle."""
+    """Return the work of following a target on a circle."""
 
     def work(number: int) -> object:
         angle = number / 60
@@ -56,9 +55,9 @@ def wandering(animator: Animator, speed: float) -> Callable[[int], object]:
 
 
 def everything(animator: Animator, speed: float, mood: str = "happy") -> Callable[[int], object]:
-    """Return the work of a full update: chasing, a layer on top, a moving point to look at, a mood.
+    """Return the work of a full update: locomotion, a layer, a moving gaze target, and a mood.
 
-    Without a word for the mood nothing is felt.
+    An empty mood is no emotion.
     """
     character = animator.character
     arms = mask_of(character.skeleton, {"LeftShoulder": 1.0, "RightShoulder": 1.0})
@@ -79,7 +78,7 @@ def everything(animator: Animator, speed: float, mood: str = "happy") -> Callabl
 
 
 def acting(animator: Animator, action: str) -> Callable[[int], object]:
-    """Return the work of an action whose intensity rises and falls."""
+    """Return the work of an action with changing intensity."""
 
     def work(number: int) -> object:
         weight = float(np.sin(number / 40))
@@ -89,7 +88,7 @@ def acting(animator: Animator, action: str) -> Callable[[int], object]:
 
 
 def switching(animator: Animator) -> Callable[[int], object]:
-    """Return the work of setting off and stopping again and again: always in a transition."""
+    """Return the work of repeated starts and stops: always in a transition."""
 
     def work(number: int) -> object:
         speed = 2.0 if number // 6 % 2 else 0.0
@@ -108,10 +107,10 @@ def main() -> int:
         "walk": wandering(Animator(human), 2.0),
         "walk and run mixed": wandering(Animator(human), 3.0),
         "run": wandering(Animator(human), 4.5),
-        "set off and stop": switching(Animator(human)),
-        "full update, nothing felt": everything(Animator(human), 3.0, ""),
+        "start and stop": switching(Animator(human)),
+        "full update without emotion": everything(Animator(human), 3.0, ""),
         "kiss, intensity changing": acting(Animator(vleo), "kiss"),
-        "globals of the human alone": lambda number: rest.globals(human.skeleton),
+        "globals of the human only": lambda number: rest.globals(human.skeleton),
     }
     full = {
         f"full update at Speed {speed:g}": everything(Animator(human), speed)

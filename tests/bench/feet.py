@@ -1,11 +1,11 @@
-"""How far standing feet slide, everywhere a walker can go: `python -m tests.bench.feet`.
+"""How fast standing feet slide at all points of the locomotion space: `python -m tests.bench.feet`.
 
-Exits with 1 where the mean slide of a planted foot reaches 10 mm/s at any point of the locomotion
-space or in any script. Lengths are those of a person 1.7 m tall.
+Exits with 1 if the mean slide of a planted foot reaches 10 mm/s at any point of the locomotion
+space or in any script. Lengths are scaled to a person 1.7 m tall.
 
-What is planted is seen from outside, by height alone: the ball of a foot within 12 mm of the
-ground for at least 0.1 s. A foot that is just landing or leaving is that low as well and does move
-in the best of clips: the first and the last 33 ms of each stay count only in the column "strict".
+A foot is planted if its ball is within 12 mm of the ground for at least 0.1 s. While landing or
+leaving, a foot is also that low but moves even in the best clips: the first and the last 33 ms of
+each stay count only in the column "strict".
 "skate" is the height-weighted speed of Zhang et al., "Mode-adaptive neural networks for quadruped
 motion control", SIGGRAPH 2018: v (2 − 2^(h/H)), H = 25 mm, over all frames.
 """
@@ -30,23 +30,23 @@ from characters.skeleton.feet import find_feet
 
 Array = NDArray[np.float64]
 
-RATE = 60
-TALL = 1.7
-LIMIT = 10.0
+FRAME_RATE = 60
+BODY_HEIGHT_M = 1.7
+MAX_SLIDE_MM_S = 10.0
 """Mean slide at which the benchmark fails [mm/s]."""
 
-_NEAR = 0.012  # [m]
-_SHORTEST, _EDGE = 6, 2  # frames: of a stay, and at either end of it
-_SKATE = 0.025  # [m]
-_SETTLED = 60  # frames that a point of the grid takes to get going
+_MAX_PLANTED_HEIGHT_M = 0.012  # [m]
+_MIN_STAY_FRAMES, _EDGE_FRAMES = 6, 2  # frames: of a stay, and at either end of it
+_SKATE_HEIGHT_M = 0.025  # [m]
+_SETTLING_FRAMES = 60  # frames before the measurement starts at a point of the grid
 
 Script = Callable[[int, Walker], SteeringOutput | CharacterCommand]
-"""What is asked for in a frame."""
+"""Returns the input for a frame."""
 
 
 @dataclass(frozen=True)
 class Take:
-    """A walker's feet, filmed."""
+    """Recorded feet of a walker."""
 
     balls: Array
     """In the world, (frames, feet, 3) [m of a person 1.7 m tall]."""
@@ -58,46 +58,46 @@ class Take:
     """Rotations of the legs' joints, (frames, joints, 4)."""
 
     lowest: float
-    """How far the feet dip into the ground [m], not negative."""
+    """Largest depth of the feet below the ground [m], not negative."""
 
 
 @dataclass(frozen=True)
 class Slide:
-    """How feet slide in a take."""
+    """Measures of sliding feet."""
 
     mean: float
-    """Of planted feet [mm/s]."""
+    """Mean speed of planted feet [mm/s]."""
 
     strict: float
-    """The same with the frames of landing and leaving [mm/s]."""
+    """The same including the frames of landing and leaving [mm/s]."""
 
     skate: float
-    """Height-weighted, over all frames [mm/s]."""
+    """Height-weighted speed over all frames [mm/s]."""
 
     planted: float
-    """Part of the time that a foot is planted."""
+    """Fraction of the time that a foot is planted."""
 
     jerk: float
     """99.9th percentile of the legs' angular acceleration [rad/s²]."""
 
     dip: float
-    """How far a foot's ball gets below its height at rest [mm]."""
+    """Largest depth of a foot's ball below its height at rest [mm]."""
 
 
 def film(character: Character, script: Script, frames: int, hold: bool = True) -> Take:
-    """Play a script at 60 Hz and return where the feet were."""
+    """Play a script at 60 Hz and return the recorded feet."""
     walker = Walker(character, 1.0, None)
     if not hold:
         walker.release()
     poses: list[Pose] = []
     places: list[RootDelta] = []
     for number in range(frames):
-        wish = script(number, walker)
-        elapsed = 1.0 / RATE if number else 0.0
-        if isinstance(wish, SteeringOutput):
-            poses.append(walker.go(wish, elapsed))
+        command = script(number, walker)
+        elapsed = 1.0 / FRAME_RATE if number else 0.0
+        if isinstance(command, SteeringOutput):
+            poses.append(walker.go(command, elapsed))
         else:
-            poses.append(walker.update(wish, elapsed))
+            poses.append(walker.update(command, elapsed))
         places.append(walker.place)
     feet = find_feet(character.skeleton)
     joints = [foot[-1] for foot in feet]
@@ -107,31 +107,31 @@ def film(character: Character, script: Script, frames: int, hold: bool = True) -
     seen = stacked.globals(character.skeleton)[..., :3, 3][:, joints]
     at = np.array([(step.x, 0.0, step.z) for step in places])
     yaw = rotations.about("y", np.array([step.yaw for step in places]))
-    size = TALL / character.height
+    size = BODY_HEIGHT_M / character.height
     balls = (rotations.rotate(yaw[:, None], seen) + at[:, None]) * size
     level = character.skeleton.rest.globals(character.skeleton)[..., 1, 3][joints] * size
     return Take(balls, level, turns[:, legs], float(max((level - balls[..., 1]).max(), 0.0)))
 
 
 def measure(take: Take, start: int = 0) -> Slide:
-    """Return how feet slide from a frame on."""
+    """Return the measures from a frame on."""
     steps = np.diff(take.balls[start:], axis=0)[..., [0, 2]]
-    speeds = np.linalg.norm(steps, axis=-1) * RATE  # of the intervals between frames
+    speeds = np.linalg.norm(steps, axis=-1) * FRAME_RATE  # of the intervals between frames
     above = take.balls[start:, :, 1] - take.level
-    near = above < _NEAR
+    near = above < _MAX_PLANTED_HEIGHT_M
     stays = near[1:] & near[:-1]
     core, whole = np.zeros_like(stays), np.zeros_like(stays)
     for foot in range(stays.shape[1]):
         for first, length in spans(stays[:, foot], loop=False):
-            if length >= _SHORTEST:
+            if length >= _MIN_STAY_FRAMES:
                 whole[first : first + length, foot] = True
-                core[first + _EDGE : first + length - _EDGE, foot] = True
-    height = np.clip((above[1:] + above[:-1]) / 2, 0.0, _SKATE)
-    skate = speeds * (2 - 2 ** (height / _SKATE))
+                core[first + _EDGE_FRAMES : first + length - _EDGE_FRAMES, foot] = True
+    height = np.clip((above[1:] + above[:-1]) / 2, 0.0, _SKATE_HEIGHT_M)
+    skate = speeds * (2 - 2 ** (height / _SKATE_HEIGHT_M))
     spins = rotations.to_rotation_vector(
         rotations.multiply(take.turns[1:], rotations.conjugate(take.turns[:-1]))
     )
-    bends = np.linalg.norm(np.diff(spins, axis=0), axis=-1) * RATE**2
+    bends = np.linalg.norm(np.diff(spins, axis=0), axis=-1) * FRAME_RATE**2
     return Slide(
         mean=1e3 * float(speeds[core].mean()) if core.any() else 0.0,
         strict=1e3 * float(speeds[whole].mean()) if whole.any() else 0.0,
@@ -145,7 +145,7 @@ def measure(take: Take, start: int = 0) -> Slide:
 def points(
     speeds: Iterable[float], degrees: Iterable[float], strides: Iterable[float]
 ) -> dict[tuple[float, float, float], SteeringOutput]:
-    """Return the courses of a grid over Speed, Angular [degrees] and stride."""
+    """Return a grid over Speed, Angular [degrees] and stride."""
     angles = list(degrees)
     return {
         (speed, angle, stride): SteeringOutput(speed, math.radians(angle), stride)
@@ -158,13 +158,13 @@ def points(
 def at_point(
     character: Character, course: SteeringOutput, seconds: float, hold: bool = True
 ) -> Slide:
-    """Return how feet slide at one point of the locomotion space, once under way."""
-    frames = _SETTLED + round(seconds * RATE)
-    return measure(film(character, lambda _, __: course, frames, hold), _SETTLED)
+    """Return the measures at one point of the locomotion space, after settling."""
+    frames = _SETTLING_FRAMES + round(seconds * FRAME_RATE)
+    return measure(film(character, lambda _, __: course, frames, hold), _SETTLING_FRAMES)
 
 
 def _upward(character: Character, joint: int) -> list[int]:
-    """Return a joint and those above it, upward."""
+    """Return a joint and its ancestors, upward."""
     line = [joint]
     while character.skeleton.parents[line[-1]] >= 0:
         line.append(character.skeleton.parents[line[-1]])
@@ -173,18 +173,18 @@ def _upward(character: Character, joint: int) -> list[int]:
 
 def _start_stop(number: int, _: Walker) -> CharacterCommand:
     speed = (0.0, 2.0, 0.0, 4.5)[number // 75 % 4]
-    return CharacterCommand(number / RATE, LocomotionIntent(speed, np.array([0.0, 1e4])))
+    return CharacterCommand(number / FRAME_RATE, LocomotionIntent(speed, np.array([0.0, 1e4])))
 
 
 def _speed_changes(number: int, _: Walker) -> CharacterCommand:
     speed = 2.75 + 2.0 * math.sin(number / 40)
-    return CharacterCommand(number / RATE, LocomotionIntent(speed, np.array([0.0, 1e4])))
+    return CharacterCommand(number / FRAME_RATE, LocomotionIntent(speed, np.array([0.0, 1e4])))
 
 
 def _turn_on_the_spot(number: int, _: Walker) -> CharacterCommand:
     way = number // 180 * 2.2
     look = np.array([math.sin(way), math.cos(way)]) * 1e3
-    return CharacterCommand(number / RATE, LocomotionIntent(facing=look))
+    return CharacterCommand(number / FRAME_RATE, LocomotionIntent(facing=look))
 
 
 def _slalom(number: int, _: Walker) -> SteeringOutput:
@@ -197,15 +197,15 @@ def _jumps_of_course(number: int, _: Walker) -> SteeringOutput:
 
 
 def _follow(number: int, _: Walker) -> CharacterCommand:
-    angle = number / RATE / 2
+    angle = number / FRAME_RATE / 2
     target = np.array([3.0 * math.sin(angle), 3.0 * math.sin(2 * angle)])
-    return CharacterCommand(number / RATE, LocomotionIntent(3.0, target))
+    return CharacterCommand(number / FRAME_RATE, LocomotionIntent(3.0, target))
 
 
 def _near_targets(number: int, _: Walker) -> CharacterCommand:
     turn = number // 150 * 2.4
     target = np.array([math.sin(turn), math.cos(turn)])
-    return CharacterCommand(number / RATE, LocomotionIntent(2.0, target))
+    return CharacterCommand(number / FRAME_RATE, LocomotionIntent(2.0, target))
 
 
 SCRIPTS: dict[str, Script] = {
@@ -217,7 +217,7 @@ SCRIPTS: dict[str, Script] = {
     "moving target": _follow,
     "near targets": _near_targets,
 }
-"""Ways to go that are no point of the grid; a table metre is a metre here."""
+"""Inputs that change over time; a metre on the table is a metre of the character."""
 
 
 def main() -> None:
@@ -246,7 +246,7 @@ def main() -> None:
             _row(table, name, hold, slide)
             worst = max(worst, slide.mean)
     console.print(table)
-    sys.exit(worst >= LIMIT)
+    sys.exit(worst >= MAX_SLIDE_MM_S)
 
 
 def _row(table: Table, where: str, hold: bool, slide: Slide) -> None:

@@ -36,11 +36,11 @@ def test_ground_speed_rises_with_speed_without_a_jump(gaits):
     assert steps.max() < 0.15  # [m/s] for a twentieth of Speed
 
 
-def test_the_speed_of_a_pace_is_the_inverse_of_the_pace_of_a_speed(gaits):
+def test_speed_is_the_inverse_of_pace(gaits):
     assert np.allclose([gaits.speed(gaits.pace(speed)) for speed in SPEEDS], SPEEDS)
 
 
-def test_no_step_is_hurried_or_in_slow_motion(gaits):
+def test_step_durations_are_natural(gaits):
     durations = [gaits.at(s, 0.0).duration for s in SPEEDS]
     assert min(durations) > 0.45
     assert max(durations) < 1.7
@@ -58,7 +58,7 @@ def test_a_sharper_angular_turns_faster_to_its_side(gaits, side, speed):
 
 
 @pytest.mark.parametrize("degrees", [-90, -60, -30, 30, 60, 90])
-def test_walking_turns_by_one_and_a_half_degrees_a_second_for_each_of_angular(gaits, degrees):
+def test_walking_turns_by_1_5_degrees_a_second_for_each_degree_of_angular(gaits, degrees):
     for speed in np.linspace(1.8, 2.2, 41):  # where the walk plays at the rate it was made for
         motion = gaits.at(speed, math.radians(degrees))
         if abs(motion.rate - 1) < 0.02:

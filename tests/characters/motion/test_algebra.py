@@ -136,7 +136,7 @@ trees = st.recursive(leaves, nested, max_leaves=5)
 
 @settings(max_examples=150)
 @given(trees, times)
-def test_any_tree_of_motions_gives_poses_and_the_same_ones_again(motion, time):
+def test_any_tree_of_motions_gives_the_same_poses_again(motion, time):
     assert isinstance(motion, Motion)
     assert motion.duration >= 0.0
     pose, again = motion.sample(time), motion.sample(time)
@@ -151,7 +151,7 @@ def test_any_tree_of_motions_gives_poses_and_the_same_ones_again(motion, time):
 
 @settings(max_examples=100)
 @given(trees, st.lists(times, min_size=3, max_size=3))
-def test_the_parts_of_any_way_add_up_to_the_whole(motion, at):
+def test_deltas_of_parts_compose_to_the_delta_of_the_whole(motion, at):
     start, middle, end = sorted(at)
     whole = motion.travel(start, end)
     parts = motion.travel(start, middle).then(motion.travel(middle, end))
@@ -164,7 +164,7 @@ def test_the_parts_of_any_way_add_up_to_the_whole(motion, at):
 
 
 @given(st.lists(unit, min_size=4, max_size=4), st.lists(times, min_size=3, max_size=3))
-def test_ways_of_blends_of_arcs_are_arcs(weights, at):
+def test_blends_of_arcs_are_arcs(weights, at):
     start, middle, end = sorted(at)
     total = sum(weights)
     blend = Blend(tuple(CLIPS), tuple(w / total for w in weights))
@@ -174,7 +174,7 @@ def test_ways_of_blends_of_arcs_are_arcs(weights, at):
     assert (parts.x, parts.z, parts.yaw) == pytest.approx((whole.x, whole.z, whole.yaw), abs=1e-3)
 
 
-def test_a_loop_goes_on_from_where_it_led():
+def test_a_loop_continues_from_its_end():
     once = Clip("once", RATE, CLIPS[0].poses, False, True)
     loop, clip = Loop(once), CLIPS[0]
     for start, end in ((0.0, 0.5), (0.3, 4.7), (1.0, 2.0)):
@@ -203,7 +203,7 @@ def test_time_may_run_backwards():
     assert (there.length, there.yaw) == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
-def test_a_displaced_motion_takes_place_elsewhere():
+def test_a_root_offset_moves_the_whole_motion():
     clip, step = CLIPS[0], RootDelta(2.0, -1.0, 0.7)
     moved = RootOffset(clip, step)
 
@@ -244,7 +244,7 @@ def test_a_displaced_motion_takes_place_elsewhere():
         (lambda: Action(CLIPS[0], weight=-1.0), "give 0 or more"),
     ],
 )
-def test_what_cannot_be_played_is_refused_in_one_line(make, message):
+def test_invalid_motions_are_refused_in_one_line(make, message):
     with pytest.raises(CharacterError, match=message) as refused:
         make()
     assert "\n" not in str(refused.value)

@@ -48,7 +48,7 @@ def same(a: Pose, b: Pose) -> bool:
     )
 
 
-def test_a_layer_leaves_other_joints_bit_for_bit():
+def test_a_layer_keeps_the_exact_values_of_other_joints():
     base, over = Swing(1), Swing(2)
     mask = mask_of(SKELETON, {"arm": 1.0})
     below, above = base.sample(0.3), over.sample(0.3)
@@ -58,7 +58,7 @@ def test_a_layer_leaves_other_joints_bit_for_bit():
     assert MaskedLayer(base, over, mask).travel(0.0, 1.0) == base.travel(0.0, 1.0)
 
 
-def test_a_layer_goes_the_shorter_way():
+def test_a_layer_rotates_the_shorter_way():
     a = StaticPose(Pose(REST.translations, rotations.about("y", np.full(3, 0.4))), 1.0)
     b = StaticPose(Pose(REST.translations, -rotations.about("y", np.full(3, 0.8))), 1.0)
     pose = MaskedLayer(a, b, weight=0.5).sample(0.0)
@@ -66,7 +66,7 @@ def test_a_layer_goes_the_shorter_way():
 
 
 @given(numbers, numbers)
-def test_adding_nothing_changes_not_one_bit(time, weight):
+def test_an_additive_layer_without_difference_changes_nothing(time, weight):
     base, over = Swing(3), Swing(4).sample(0.7)
     pose, expected = (
         AdditiveLayer(base, StaticPose(over, 1.0), weight=weight).sample(time),
@@ -103,7 +103,7 @@ def test_masks_name_joints_subtrees_and_roles():
 
 @settings(max_examples=40)
 @given(st.lists(st.tuples(st.sampled_from("abc"), st.floats(0.0, 0.4)), max_size=8))
-def test_a_machine_switching_at_any_time_never_pops(requests):
+def test_a_state_machine_is_continuous_at_any_switch(requests):
     states = {name: Swing(seed) for seed, name in enumerate("abc")}
     machine = StateMachine(states, "a")
     now, step = 0.0, 0.005
@@ -125,7 +125,7 @@ def _assert_near(before: Pose, after: Pose, step: float) -> None:
     assert np.abs(after.translations - before.translations).max() < 30.0 * step + 1e-6
 
 
-def test_a_switch_costs_one_source_pose_a_frame():
+def test_a_transition_samples_one_pose_a_frame():
     old, new = Swing(0), Swing(1)
     machine = StateMachine({"a": old, "b": new}, "a")
     machine.request("b", 0.5)
@@ -135,7 +135,7 @@ def test_a_switch_costs_one_source_pose_a_frame():
     assert (old.asked, new.asked) == (0, 20)
 
 
-def test_a_cross_fade_costs_two_and_only_while_it_lasts():
+def test_a_cross_fade_samples_two_poses_only_while_it_lasts():
     old, new = Swing(0), Swing(1)
     fade = CrossFade(old, new, 0.5, 0.25)
     for time in (0.2, 0.6, 0.9):
@@ -148,7 +148,7 @@ def test_a_cross_fade_costs_two_and_only_while_it_lasts():
 
 @settings(max_examples=40)
 @given(st.lists(st.tuples(st.sampled_from("abc"), st.sampled_from([0.0, 0.2])), max_size=4))
-def test_a_machine_may_cross_fade_between_any_switches(requests):
+def test_a_state_machine_may_cross_fade_between_any_switches(requests):
     states = {name: Swing(seed) for seed, name in enumerate("abc")}
     machine = StateMachine(states, "a")
     now = 0.0
@@ -166,7 +166,7 @@ def test_a_machine_may_cross_fade_between_any_switches(requests):
     assert sum(motion.asked for motion in states.values()) == 1
 
 
-def test_a_cross_fading_machine_shows_what_a_cross_fade_shows():
+def test_a_cross_fading_state_machine_equals_a_cross_fade():
     machine = StateMachine({"a": Swing(0), "b": Swing(1)}, "a")
     fade = CrossFade(Swing(0), Swing(1), 0.5, 0.25)
     machine.request("b", 0.5, crossfade=0.25)

@@ -29,7 +29,7 @@ def places(pose: Pose, skeleton: Skeleton):
 @pytest.mark.parametrize(
     "name", ["human", "vleo", "CesiumMan.glb", "RobotExpressive.glb", "dino_t-rex.glb"]
 )
-def test_mirroring_reflects_every_place_and_undoes_itself(name):
+def test_mirroring_reflects_every_position_and_is_its_own_inverse(name):
     character = load(name)
     skeleton = character.skeleton
     mirror = Mirror.of(skeleton, character.morphs)
@@ -63,7 +63,7 @@ def test_a_skin_is_mirrored_about_the_pose_it_was_bound_in(name):
             assert "Right" in names[other]
 
 
-def test_the_left_footfall_of_a_mirrored_walk_is_the_walks_right_one():
+def test_the_left_footfall_of_a_mirrored_walk_is_the_right_footfall_of_the_walk():
     human = load("human")
     skeleton, walk = human.skeleton, human.clips["Walk"]
     mirror = Mirror.of(skeleton)
@@ -100,7 +100,7 @@ def test_a_motion_without_steps_is_mirrored_in_time():
     assert np.allclose(pose.rotations, mirror.pose(clip.at(0.25)).rotations)
 
 
-def test_morphs_of_the_sides_change_places(skeleton):
+def test_morphs_of_the_two_sides_are_exchanged(skeleton):
     mirror = Mirror.of(skeleton, ("happy", "blinkLeft", "blinkRight"))
     rest, looks = skeleton.rest, np.array([0.1, 0.2, 0.3])
     mirrored = mirror.pose(Pose(rest.translations, rest.rotations, None, looks)).morphs

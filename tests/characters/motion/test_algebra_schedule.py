@@ -134,7 +134,7 @@ def test_smooth_fades_start_and_end_without_speed(shape):
         assert abs(at - before) / tiny < 1e-4
 
 
-def test_fades_go_along_their_formulas():
+def test_fades_follow_their_formulas():
     u = 0.3
     assert ease(u, "linear") == u
     assert ease(u, "cubic") == pytest.approx(3 * u**2 - 2 * u**3)
@@ -159,7 +159,7 @@ def test_one_key_frame_times_a_curve_raises_the_eyebrows():
     assert [x_of(schedule, t)[0] for t in (0.0, 0.5, 1.0, 2.0)] == pytest.approx([0, 0.5, 1, 0])
 
 
-def test_always_plays_outside_its_time_and_nothing_shows_the_rest_pose():
+def test_always_plays_outside_its_time_and_idle_joints_show_the_rest_pose():
     schedule = Schedule((Action(still(5.0, 1.0), start=1.0),), REST)
     assert [x_of(schedule, t)[0] for t in (0.5, 1.0, 2.0, 2.5)] == [0.0, 5.0, 5.0, 0.0]
     endless = Schedule((Action(still(5.0, 1.0), start=1.0, always=True),), REST)
@@ -167,14 +167,14 @@ def test_always_plays_outside_its_time_and_nothing_shows_the_rest_pose():
     assert schedule.duration == 2.0
 
 
-def test_faces_and_bodies_do_not_dampen_each_other():
+def test_actions_without_morphs_do_not_dampen_morphs():
     body, smile = Action(still(1.0)), Action(still(0.0, morphs=[0.8]), mask=np.zeros(3))
     pose = Schedule((body, smile), REST).sample(0.5)
     assert pose.morphs == pytest.approx([0.8])
     assert pose.translations[:, 0] == pytest.approx(1.0)
 
 
-def test_actions_come_and_go_while_it_plays_without_a_pop():
+def test_actions_come_and_go_without_a_jump():
     live = LiveSchedule(Schedule((Action(still(0.0), always=True, weight=0.1),), REST))
     live.add(Action(still(1.0, 9.0), start=1.0, weight=FadeCurve(0.5), name="wave"))
     times = np.arange(0.9, 4.0, 0.01)
@@ -193,12 +193,12 @@ def test_actions_come_and_go_while_it_plays_without_a_pop():
         live.cut("wave", 5.0)
 
 
-def test_two_actions_of_one_name_are_refused():
+def test_duplicate_action_names_are_refused():
     with pytest.raises(CharacterError, match="two actions are named 'a'"):
         Schedule((Action(still(0.0), name="a"), Action(still(1.0), name="a")), REST)
 
 
-def test_the_root_goes_where_the_loudest_of_joint_nought_leads():
+def test_the_root_follows_the_actions_by_their_weight_of_joint_0():
     shifts = np.zeros((11, 3, 3))
     shifts[:, 0, 2] = np.arange(11) / 10
     turns = np.tile(rotations.IDENTITY, (11, 3, 1))

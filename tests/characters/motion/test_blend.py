@@ -43,7 +43,7 @@ def test_weights_in_the_plane_are_a_partition_of_one(ps, at):
 
 
 @given(points)
-def test_at_a_point_of_the_plane_only_its_motion_sounds(ps):
+def test_at_a_point_of_the_plane_only_its_motion_is_active(ps):
     for number, at in enumerate(ps):
         assert plane(ps).weights(at)[number] == pytest.approx(1)
 
@@ -79,25 +79,25 @@ def test_shares_make_weights_that_a_blend_takes(weights):
         shares([0.0 for _ in weights])
 
 
-def test_poses_of_two_skeletons_are_not_mixed():
+def test_mixing_poses_of_two_skeletons_is_refused():
     two = Pose(np.zeros((2, 3)), np.tile(rotations.IDENTITY, (2, 1)))
     with pytest.raises(CharacterError, match="retarget"):
         mix([still(0.0).pose, two], [0.5, 0.5])
 
 
 @given(st.floats(-150, 150))
-def test_on_a_line_at_most_two_neighbours_sound(value):
+def test_on_a_line_at_most_two_neighbours_are_active(value):
     space = BlendSpace1D((-90.0, -30.0, 0.0, 45.0, 90.0), tuple(still(0.0) for _ in range(5)))
     weights = np.array(space.weights(value))
-    heard = np.flatnonzero(weights)
+    active = np.flatnonzero(weights)
     assert weights.sum() == pytest.approx(1)
     assert weights.min() >= 0
-    assert len(heard) <= 2
-    assert np.ptp(heard) <= 1
+    assert len(active) <= 2
+    assert np.ptp(active) <= 1
     assert weights @ space.knots == pytest.approx(np.clip(value, -90, 90))
 
 
-def test_knots_out_of_order_and_points_alike_are_refused():
+def test_descending_knots_and_equal_points_are_refused():
     with pytest.raises(CharacterError, match="ascending"):
         BlendSpace1D((1.0, 0.0), (still(0), still(1)))
     with pytest.raises(CharacterError, match="a different point"):
@@ -128,7 +128,7 @@ def test_blends_nest_and_are_motions(walker, skeleton):
     assert np.allclose(outer.sample(0.3).translations, flat.sample(0.3).translations)
 
 
-def test_a_blend_is_paced_by_the_mean_of_its_members_paces(walker, skeleton):
+def test_the_speed_of_a_blend_is_the_mean_of_its_members_speeds(walker, skeleton):
     walk, run = (phased(walker.clips[name], skeleton) for name in ("Walk", "Run"))
     blend = Blend((walk, run), (0.25, 0.75))
     assert 1 / blend.duration == pytest.approx(0.25 / walk.duration + 0.75 / run.duration)
@@ -149,14 +149,14 @@ def test_in_any_blend_of_walk_and_run_left_feet_land_together(walker, skeleton, 
     assert np.abs(away).max() < 0.06
 
 
-def test_clips_without_steps_start_together_at_phase_nought(actor):
+def test_clips_without_footfalls_have_phase_0_at_their_start(actor):
     clip = actor.clips["kiss_tail"]
     assert np.allclose(
         PhasedMotion(clip).at(0.25).rotations, clip.sample(0.25 * clip.duration).rotations
     )
 
 
-def test_what_has_no_cycle_is_paced_by_the_clock():
+def test_motions_without_a_cycle_play_in_real_time():
     rest = Pose(np.zeros((1, 3)), np.array([[0.0, 0.0, 0.0, 1.0]]))
     empty = Schedule((), rest)
     assert TimeScaled(as_cyclic(empty), 2.0).sample(3.0).rotations.shape == (1, 4)

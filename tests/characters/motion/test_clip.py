@@ -17,13 +17,13 @@ def close(a: RootDelta, b: RootDelta) -> bool:
 
 
 @given(steps, steps, steps)
-def test_steps_form_a_group(a, b, c):
+def test_root_deltas_form_a_group(a, b, c):
     assert close(a.then(b).then(c), a.then(b.then(c)))
     assert close(a.then(a.inverse()), RootDelta())
 
 
 @given(steps, st.integers(0, 12))
-def test_many_cycles_equal_one_after_the_other(step, times):
+def test_a_repeated_delta_equals_repeated_composition(step, times):
     walked = RootDelta()
     for _ in range(times):
         walked = walked.then(step)
@@ -41,7 +41,7 @@ def test_a_sample_at_a_frame_is_that_frame(walker):
     assert np.allclose(pose.rotations[2], clip.poses.rotations[7, 2])
 
 
-def test_the_root_stands_still_in_samples_and_its_way_is_in_travel(walker):
+def test_root_motion_is_in_travel_only(walker):
     clip = walker.clips["WalkLeftShort"]
     pose = clip.sample(0.37)
     assert np.allclose(pose.translations[0], 0, atol=1e-9)

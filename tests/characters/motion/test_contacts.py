@@ -43,13 +43,13 @@ def off(found, down):
     return (found != down)[:-1].sum(axis=0)
 
 
-def test_contacts_of_the_authored_gaits_are_found_to_a_frame_or_two(human, authored):
+def test_contacts_of_the_authored_gaits_are_found_within_two_frames(human, authored):
     clip, down = authored
     assert (off(find_contacts(clip, human.skeleton, find_feet(human.skeleton)), down) <= 3).all()
 
 
 @pytest.mark.parametrize("rooted", [True, False])
-def test_contacts_are_found_in_place_too_even_in_curves(human, authored, rooted):
+def test_contacts_are_found_in_clips_in_place_also_in_curves(human, authored, rooted):
     clip, down = authored
     still = Clip(clip.name, clip.rate, clip.in_place, loop=True, root_motion=rooted)
     found = find_contacts(still, human.skeleton, find_feet(human.skeleton))
@@ -68,7 +68,7 @@ def test_the_treadmill_of_a_walk_in_place_runs_as_fast_as_the_walk(human, author
 
 @settings(max_examples=15)
 @given(shift=st.integers(1, 61), size=st.floats(0.05, 40), lift=st.floats(-1, 1))
-def test_neither_size_nor_start_nor_floor_matter(human, shift, size, lift):
+def test_contacts_do_not_depend_on_size_start_or_floor_height(human, shift, size, lift):
     clip = human.clips["Walk"]
     frames = np.append((np.arange(62) + shift) % 62, shift)
     poses, rest = clip.in_place[frames], human.skeleton.rest
@@ -84,11 +84,11 @@ def test_neither_size_nor_start_nor_floor_matter(human, shift, size, lift):
     assert (off(find_contacts(moved, skeleton, find_feet(skeleton)), down) <= 5).all()
 
 
-def test_who_stands_stands_on_both_feet(human):
+def test_both_feet_have_contact_while_standing(human):
     assert find_contacts(human.clips["idle"], human.skeleton, find_feet(human.skeleton)).all()
 
 
-def test_flickers_are_no_contacts_and_no_gaps(gait, skeleton):
+def test_short_contacts_and_gaps_are_dropped(gait, skeleton):
     clip = gait("walk", 1.3, 0.0, 1.0)
     translations = clip.poses.translations.copy()
     translations[10, 3, 1] += 0.2  # a standing foot is off its place for one frame
@@ -119,7 +119,7 @@ def test_spans_cover_the_contacts_and_nothing_else(flags, loop):
         ("dino_apatosaurus.glb", "Armature|Apatosaurus_Run", [1, 1, 1, 1]),
     ],
 )
-def test_each_foot_of_a_strangers_cycle_lands_once(name, clip, steps):
+def test_each_foot_lands_once_a_cycle_in_third_party_clips(name, clip, steps):
     path = DATA / "gltf" / name
     if not path.exists():
         pytest.skip("no shared data")
@@ -134,7 +134,7 @@ def test_each_foot_of_a_strangers_cycle_lands_once(name, clip, steps):
 @pytest.mark.parametrize(
     ("name", "share"), [("16_15", (0.55, 0.7)), ("16_21", (0.5, 0.65)), ("16_35", (0.25, 0.5))]
 )
-def test_people_stand_as_much_of_the_time_as_they_do(name, share):
+def test_the_contact_share_of_recorded_people_is_plausible(name, share):
     path = DATA / "cmu-mocap" / "16" / f"{name}.amc"  # a slow and a long walk, and a jog
     if not path.exists():
         pytest.skip("no shared data")

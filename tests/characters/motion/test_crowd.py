@@ -15,7 +15,7 @@ def vleo() -> Character:
     return Character.load("vleo")
 
 
-def test_a_crowd_of_one_voice_each_shows_what_its_clips_show(vleo):
+def test_a_crowd_with_one_clip_each_shows_the_poses_of_the_clips(vleo):
     clips = list(vleo.clips.values())
     bank = ClipBank.of(vleo.skeleton, clips, np.float64)
     rng = np.random.default_rng(3)
@@ -67,7 +67,7 @@ def test_matrices_of_any_skeleton_are_those_of_its_poses(seed):
 
 
 @pytest.mark.parametrize("name", Character.bundled())
-def test_a_crowd_stands_where_its_poses_do(name):
+def test_crowd_matrices_are_those_of_the_sampled_poses(name):
     character = Character.load(name)
     clips = list(character.clips.values())
     bank = ClipBank.of(character.skeleton, clips, np.float64)
@@ -79,7 +79,7 @@ def test_a_crowd_stands_where_its_poses_do(name):
     np.testing.assert_allclose(crowd_globals(bank, *played, weights), each, atol=1e-9)
 
 
-def test_joints_that_turn_all_the_way_round_are_mixed_the_shorter_way():
+def test_joints_that_turn_by_a_full_circle_are_mixed_the_shorter_way():
     rest = Pose(np.zeros((1, 3)), np.array([[0.0, 0.0, 0.0, 1.0]]))
     skeleton = Skeleton(("spinner",), (-1,), rest)
     angles = np.linspace(0.0, 2 * np.pi, 9)
@@ -95,8 +95,8 @@ def test_joints_that_turn_all_the_way_round_are_mixed_the_shorter_way():
 def test_one_character_is_blended_as_a_crowd_is(name):
     character = Character.load(name)
     clips = list(character.clips.values())
-    beside = [np.arange(float(len(clip)))[:, None] for clip in clips]
-    bank = ClipBank.of(character.skeleton, clips, np.float64, beside)
+    extra = [np.arange(float(len(clip)))[:, None] for clip in clips]
+    bank = ClipBank.of(character.skeleton, clips, np.float64, extra)
     rng = np.random.default_rng(6)
     numbers, times = rng.integers(0, len(clips), 3), rng.uniform(-1.0, 5.0, 3)
     weights = rng.dirichlet(np.ones(3))

@@ -53,7 +53,7 @@ def switched(old, new, at=1.0):
 
 
 @given(spins, spins)
-def test_a_switch_pops_neither_in_position_nor_in_velocity(old, new):
+def test_a_switch_is_continuous_in_position_and_velocity(old, new):
     machine = switched(old, new)
     before, after = machine.sample(1.0 - 1e-9), machine.sample(1.0)
     aligned = rotations.align(after.rotations, before.rotations)
@@ -74,7 +74,7 @@ def test_after_the_transition_only_the_new_motion_is_left(old, new):
 
 
 @given(spins, spins, spins, st.floats(0.001, 0.3))
-def test_a_switch_within_a_transition_does_not_pop_either(first, second, third, later):
+def test_a_switch_within_a_transition_is_continuous(first, second, third, later):
     machine = StateMachine({"a": first, "b": second, "c": third}, "a", LENGTH)
     machine.request("b", 1.0)
     before, speed = machine.sample(1.0 + later), velocity(machine, 1.0 + later)
@@ -86,7 +86,7 @@ def test_a_switch_within_a_transition_does_not_pop_either(first, second, third, 
 
 
 @given(numbers, numbers)
-def test_a_fade_starts_and_ends_as_promised(offset, speed):
+def test_an_offset_decay_starts_and_ends_as_specified(offset, speed):
     fade = OffsetDecay(np.array([offset]), np.array([speed]), LENGTH)
     assert fade.at(0.0)[0] == pytest.approx(offset)
     assert (fade.at(TINY) - fade.at(0.0))[0] / TINY == pytest.approx(speed, abs=0.05)
@@ -97,13 +97,13 @@ def test_a_fade_starts_and_ends_as_promised(offset, speed):
 
 
 @given(numbers, numbers)
-def test_a_fade_overshoots_by_little(offset, speed):
+def test_an_offset_decay_overshoots_by_little(offset, speed):
     fade = OffsetDecay(np.array([offset]), np.array([speed]), LENGTH)
     largest = max(abs(fade.at(t)[0]) for t in np.linspace(0, LENGTH, 50))
     assert largest <= abs(offset) + 0.2 * abs(speed) * LENGTH + 1e-9
 
 
-def test_the_way_over_the_ground_is_whole_across_a_switch():
+def test_travel_across_a_switch_is_composed_of_its_parts():
     machine = switched(Spin("y", 0, 0, 1.0), Spin("y", 0, 0, 3.0))
     parts = RootDelta()
     for start in np.arange(0.5, 1.5, 0.01):
@@ -111,7 +111,7 @@ def test_the_way_over_the_ground_is_whole_across_a_switch():
     assert parts.z == pytest.approx(machine.travel(0.5, 1.5).z)
 
 
-def test_a_machine_is_a_motion_and_knows_its_states():
+def test_a_state_machine_is_a_motion_with_named_states():
     machine = switched(Spin("y", 0, 0, 0), Spin("x", 1, 0, 0))
     motion: Motion = machine
     assert isinstance(motion, Motion)
@@ -124,7 +124,7 @@ def test_a_machine_is_a_motion_and_knows_its_states():
         machine.request("old", 0.5)
 
 
-def test_a_loop_that_does_not_quite_close_is_entered_calmly():
+def test_entering_a_loop_with_a_gap_is_smooth():
     turns = rotations.about("x", np.linspace(0.0, 0.1, 31)[:, None])
     open_loop = Clip("open", 30.0, Pose(np.zeros((31, 1, 3)), turns), loop=True)
     machine = StateMachine({"old": Spin("x", 0, 0, 0), "new": open_loop}, "old", LENGTH)

@@ -73,7 +73,7 @@ def builder(human, text):
     return read, Builder(read, human.skeleton, human.clips, human.anatomy, lambda: mirror)
 
 
-def test_a_character_walks_as_the_file_beside_it_says(human, tmp_path):
+def test_a_character_plays_the_plan_of_its_sidecar(human, tmp_path):
     human.save(tmp_path / "own.glb")
     (tmp_path / "own.toml").write_text(HUMAN_TOML)
     animator = Animator(Character.load(tmp_path / "own.glb"))
@@ -143,7 +143,7 @@ def test_every_kind_of_motion_plays(human):
     assert not bindings.motions
 
 
-def test_steered_motions_follow_their_parameters_and_keep_their_phase(human):
+def test_parametric_motions_follow_their_parameters_and_keep_their_phase(human):
     read, made = builder(human, EVERY_KIND.replace('play = "all"', 'play = "topped"'))
     assert read.root is not None
     values = dict.fromkeys(PARAMETERS, 0.0)
@@ -196,14 +196,14 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("text", MISTAKES)
-def test_a_mistake_is_told_with_its_place(text):
+def test_a_mistake_is_reported_with_its_place_in_the_file(text):
     with pytest.raises(CharacterError, match=MISTAKES[text]) as caught:
         plan(text)
     assert str(caught.value).startswith("x.toml: ")
     assert "\n" not in str(caught.value)
 
 
-def test_a_motion_that_cannot_be_played_is_told_with_its_place(human):
+def test_an_unplayable_motion_is_reported_with_its_place_in_the_file(human):
     text = "play = {kind = 'window', of = 'Walk', start = 2, end = 1}"
     read, made = builder(human, text)
     assert read.root is not None
@@ -211,7 +211,7 @@ def test_a_motion_that_cannot_be_played_is_told_with_its_place(human):
         made.build(read.root, dict.fromkeys(PARAMETERS, 0.0))
 
 
-def test_a_mask_of_a_joint_that_is_not_there_is_told(human):
+def test_a_mask_of_an_unknown_joint_is_reported(human):
     text = "play = {kind = 'layer', base = 'Walk', over = 'idle', mask = 'm'}\n"
     read, made = builder(human, text + "[masks.m]\njoints = {hed = 1.0}")
     assert read.root is not None
@@ -228,7 +228,7 @@ def test_a_mask_of_a_joint_that_is_not_there_is_told(human):
         ("done", {"done": True}, True),
     ],
 )
-def test_conditions_mean_what_they_say(text, values, holds):
+def test_conditions_are_evaluated(text, values, holds):
     numbers = frozenset({"speed", "weight", "done"})
     condition = Condition.read(text, frozenset({"action"}), numbers)
     assert condition.holds(values) is holds
@@ -239,7 +239,7 @@ def test_conditions_mean_what_they_say(text, values, holds):
     ["speed + 1 > 2", "__import__('os')", "speed.real > 0", "[x for x in y]", "speed > 'a'", ""]
     + ["action < 'b'", "1", "speed if done else 0", "speed is 1", "(" * 300, "f'{speed}' == 'a'"],
 )
-def test_a_condition_does_nothing_but_compare(text):
+def test_expressions_other_than_comparisons_are_refused(text):
     with pytest.raises(ConditionError):
         Condition.read(text, frozenset({"action"}), frozenset({"speed", "done"}))
 
@@ -258,16 +258,16 @@ def test_any_document_is_read_or_refused_in_one_line(data):
                 break
             table = table[key]
         table[key] = data.draw(junk)
-    told = "x.toml: "
+    message = "x.toml: "
     try:
         read_plan(document, "x.toml", CLIPS)
     except CharacterError as error:
-        told = str(error)
-    assert told.startswith("x.toml: ")
-    assert "\n" not in told
+        message = str(error)
+    assert message.startswith("x.toml: ")
+    assert "\n" not in message
 
 
-def test_a_file_beside_says_what_joints_are(human, tmp_path):
+def test_a_sidecar_declares_body_parts(human, tmp_path):
     human.save(tmp_path / "own.glb")
     (tmp_path / "own.toml").write_text("[joints]\nhead = 'neck'\n")
     assert Character.load(tmp_path / "own.glb").semantics["head"] == "neck"
@@ -277,7 +277,7 @@ def test_a_file_beside_says_what_joints_are(human, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "message"),
     [
         ("a = = 1", "not TOML"),
         ("[jonts]\nx = 1", r"\[jonts\] is not a known table"),
@@ -286,10 +286,10 @@ def test_a_file_beside_says_what_joints_are(human, tmp_path):
         ("\xff", "not TOML"),
     ],
 )
-def test_a_file_beside_that_cannot_be_read_is_refused(tmp_path, text, told):
+def test_an_invalid_sidecar_is_refused(tmp_path, text, message):
     path = Path(tmp_path / "own.toml")
     path.write_bytes(text.encode("latin-1"))
-    with pytest.raises(CharacterError, match=told):
+    with pytest.raises(CharacterError, match=message):
         read_sidecar(path, CLIPS)
 
 
@@ -329,7 +329,7 @@ def test_quotes_in_a_condition_are_escaped():
     assert '  any -> state0 [label="action == \\"a\\"", style=dashed' in to_dot(read)
 
 
-def test_the_example_in_the_documents_is_sound():
+def test_the_documented_example_is_a_valid_plan():
     page = (Path(__file__).parents[3] / "docs" / "motion-files.md").read_text(encoding="utf-8")
     example = page.split("```toml")[1].split("```")[0]
     read = plan(example, ["idle", "Walk", "WalkLeft", "Run", "Wave"])

@@ -102,7 +102,7 @@ def skeleton_of(joints):
 
 
 @pytest.mark.parametrize("style", STYLES)
-def test_every_way_of_naming_joints_is_understood(style):
+def test_every_naming_convention_is_recognised(style):
     skeleton, truth = body(style)
     anatomy = Anatomy.guess(skeleton)
     found = {part: skeleton.names[joint] for part, joint in anatomy.joints.items()}
@@ -112,7 +112,7 @@ def test_every_way_of_naming_joints_is_understood(style):
 
 
 @pytest.mark.parametrize("name", ["human", "vleo"])
-def test_the_bundled_characters_lack_nothing(name):
+def test_the_bundled_characters_have_all_parts(name):
     anatomy = Character.load(name).anatomy
     assert anatomy.kind == ("humanoid" if name == "human" else "quadruped")
     assert anatomy.missing == ()
@@ -131,7 +131,7 @@ def test_the_bundled_characters_lack_nothing(name):
         ("dino_t-rex", "quadruped", {"rightFrontFoot": "FrontFoot.R", "hips": "Body"}),
     ],
 )
-def test_models_of_other_people_are_understood(file, kind, some):
+def test_third_party_models_are_recognised(file, kind, some):
     path = DATA / f"{file}.glb"
     if not path.exists():
         pytest.skip("no shared data")
@@ -141,7 +141,7 @@ def test_models_of_other_people_are_understood(file, kind, some):
     assert {part: names[character.anatomy.joints[part]] for part in some} == some
 
 
-def test_what_is_said_goes_before_what_is_guessed():
+def test_declared_parts_have_priority_over_guesses():
     skeleton, _ = body("Mixamo")
     anatomy = Anatomy.guess(skeleton, {"chest": "mixamorig:Spine", "leftToes": ""})
     assert anatomy.joint("chest") == skeleton.index("mixamorig:Spine")
@@ -149,7 +149,7 @@ def test_what_is_said_goes_before_what_is_guessed():
     assert anatomy.joint("spine") is None  # one joint is one part
 
 
-def test_a_joint_that_there_is_not_is_refused_with_a_suggestion():
+def test_an_unknown_joint_is_refused_with_a_suggestion():
     skeleton, _ = body("Unity")
     with pytest.raises(CharacterError, match=r"leftFoot = 'LeftFoo'.*mean 'LeftFoot'"):
         Anatomy.guess(skeleton, {"leftFoot": "LeftFoo"})
@@ -157,7 +157,7 @@ def test_a_joint_that_there_is_not_is_refused_with_a_suggestion():
         Anatomy.guess(skeleton, {"LeftFoot": "LeftFoot"})
 
 
-def test_what_is_missing_is_told():
+def test_missing_parts_are_listed():
     skeleton, _ = body("Unity")
     keep = [j for j, name in enumerate(skeleton.names) if "LeftHand" not in name]
     joints = {skeleton.names[j]: (skeleton.names[skeleton.parents[j]] if j else "") for j in keep}
@@ -167,7 +167,7 @@ def test_what_is_missing_is_told():
     assert anatomy.missing == ("leftHand",)
 
 
-def test_a_lamp_is_neither_man_nor_beast():
+def test_a_lamp_is_neither_humanoid_nor_quadruped():
     lamp = skeleton_of({"base": ("", (0, 0, 0)), "stick": ("base", (0, 1, 0))})
     anatomy = Anatomy.guess(lamp)
     assert anatomy.kind == "other"

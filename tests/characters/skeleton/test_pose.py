@@ -38,7 +38,7 @@ def test_globals_take_any_leading_axes():
     assert np.allclose(together[4, 1], alone)
 
 
-def test_a_chain_twelve_deep_takes_four_products():
+def test_a_hierarchy_of_twelve_levels_takes_four_products():
     joints = 13
     rest = Pose(np.zeros((joints, 3)), np.tile(rotations.IDENTITY, (joints, 1)))
     chain = Skeleton(tuple(map(str, range(joints))), tuple(range(-1, joints - 1)), rest)

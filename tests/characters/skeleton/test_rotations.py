@@ -33,7 +33,7 @@ def test_a_matrix_gives_back_its_quaternion(q):
 
 
 @given(quaternions)
-def test_logarithm_and_exponential_undo_each_other(q):
+def test_logarithm_and_exponential_are_inverse(q):
     vector = rotations.to_rotation_vector(q)
     assert np.allclose(vector, Rotation.from_quat(q).as_rotvec(), atol=1e-6) or np.allclose(
         np.linalg.norm(vector, axis=1).max(), np.pi, atol=1e-5
@@ -42,14 +42,14 @@ def test_logarithm_and_exponential_undo_each_other(q):
 
 
 @given(quaternions, vectors)
-def test_rotating_keeps_lengths_and_the_conjugate_turns_back(q, v):
+def test_rotation_keeps_lengths_and_the_conjugate_is_its_inverse(q, v):
     turned = rotations.rotate(q, v)
     assert np.allclose(np.linalg.norm(turned, axis=1), np.linalg.norm(v, axis=1))
     assert np.allclose(rotations.rotate(rotations.conjugate(q), turned), v)
 
 
 @given(quaternions, quaternions, st.floats(0, 1))
-def test_slerp_takes_equal_parts_of_the_shorter_way(a, b, u):
+def test_slerp_has_constant_speed_along_the_shorter_way(a, b, u):
     middle = rotations.slerp(a, b, u)
     whole = np.abs((a * b).sum(1)).clip(0, 1)
     part = np.abs((a * middle).sum(1)).clip(0, 1)
@@ -57,7 +57,7 @@ def test_slerp_takes_equal_parts_of_the_shorter_way(a, b, u):
 
 
 @given(quaternions, quaternions)
-def test_the_sign_of_a_quaternion_does_not_matter_to_mixes(a, b):
+def test_mixes_do_not_depend_on_quaternion_signs(a, b):
     assume(np.abs((a * b).sum(1)).min() > 1e-6)  # half a turn apart, both ways are the shorter one
     assert same(rotations.nlerp(a, b, 0.4), rotations.nlerp(a, -b, 0.4))
     assert same(rotations.slerp(a, b, 0.4), rotations.slerp(a, -b, 0.4))

@@ -12,13 +12,13 @@ EIGHT = np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]])
 
 
 @given(st.floats(-10, 10), st.integers(-3, 3))
-def test_every_time_round_is_the_same(along, rounds):
+def test_points_repeat_every_round(along, rounds):
     path = ClosedPath(SQUARE)
     assert path.at(along) == pytest.approx(path.at(along + rounds * path.length), abs=1e-9)
 
 
 @pytest.mark.parametrize("points", [SQUARE, EIGHT])
-def test_who_follows_the_point_ahead_walks_the_whole_loop_in_order(points):
+def test_following_the_look_ahead_point_walks_the_whole_loop_in_order(points):
     path = ClosedPath(points)
     position = points[0].copy()
     visited: list[int] = []
@@ -33,13 +33,13 @@ def test_who_follows_the_point_ahead_walks_the_whole_loop_in_order(points):
     assert visited[:8] == [0, 1, 2, 3, 0, 1, 2, 3]
 
 
-def test_the_point_ahead_is_as_far_as_asked_where_the_loop_allows():
+def test_the_look_ahead_point_is_at_the_look_ahead_distance():
     path = ClosedPath(SQUARE)
     target = path.ahead(np.array([0.5, -0.02]), 0.1)
     assert np.linalg.norm(target - [0.5, -0.02]) == pytest.approx(0.1, abs=0.01)
 
 
-def test_a_loop_smaller_than_the_look_ahead_ends():
+def test_a_path_shorter_than_the_look_ahead_distance_is_followed():
     assert np.isfinite(ClosedPath(SQUARE * 0.001).ahead(np.zeros(2), 0.1)).all()
 
 

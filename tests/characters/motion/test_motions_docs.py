@@ -8,7 +8,7 @@ from characters import Motion
 PAGE = Path(__file__).parents[3] / "docs" / "motions.md"
 
 
-def test_the_examples_of_the_page_run_and_make_motions():
+def test_the_examples_in_the_documentation_run_and_make_motions():
     names: dict[str, object] = {}
     for block in re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL):
         exec(block, names)

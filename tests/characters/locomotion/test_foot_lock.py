@@ -1,4 +1,4 @@
-"""Feet that hold: the fast version of `tests.bench.feet`, and what holding them may not break."""
+"""Foot lock: a coarser grid of `tests.bench.feet`, and side effects of the lock."""
 
 import math
 
@@ -8,7 +8,7 @@ import pytest
 from characters import Animator, Character, CharacterCommand, LocomotionIntent
 from characters.control.walker import Walker
 from characters.locomotion.steering import SteeringOutput
-from tests.bench.feet import LIMIT, RATE, SCRIPTS, at_point, film, measure, points
+from tests.bench.feet import FRAME_RATE, MAX_SLIDE_MM_S, SCRIPTS, at_point, film, measure, points
 
 GRID = points((0.6, 2.0, 2.9, 4.5), (-80, 0, 40), (1.0,)) | points((1.2,), (60,), (0.0, 0.5))
 
@@ -19,50 +19,50 @@ def human():
 
 
 @pytest.mark.parametrize("point", GRID, ids=str)
-def test_planted_feet_hold_everywhere_in_the_locomotion_space(human, point):
+def test_planted_feet_do_not_slide_in_the_locomotion_space(human, point):
     slide = at_point(human, GRID[point], 1.0)
     assert slide.planted > 0.1
-    assert slide.mean < LIMIT
+    assert slide.mean < MAX_SLIDE_MM_S
     assert slide.strict < 120.0  # with the frames of landing and leaving: see the benchmark
     assert slide.dip < 1.0  # [mm]
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
-def test_planted_feet_hold_through_starts_stops_and_turns(human, name):
+def test_planted_feet_do_not_slide_during_starts_stops_and_turns(human, name):
     slide = measure(film(human, SCRIPTS[name], 230))
-    assert slide.mean < LIMIT
+    assert slide.mean < MAX_SLIDE_MM_S
     assert slide.dip < 1.0
 
 
-def test_without_the_lock_they_would_slide(human):
+def test_planted_feet_slide_without_the_foot_lock(human):
     script = SCRIPTS["start and stop"]
-    assert measure(film(human, script, 200, hold=False)).mean > 3 * LIMIT
+    assert measure(film(human, script, 200, hold=False)).mean > 3 * MAX_SLIDE_MM_S
 
 
-def test_knees_bend_hardly_harder_for_it(human):
+def test_the_foot_lock_adds_little_joint_acceleration(human):
     course = SteeringOutput(1.5, math.radians(-75), 1.0)
     free, held = (at_point(human, course, 1.5, hold).jerk for hold in (False, True))
     assert held < 1.5 * free + 100.0
 
 
-def test_who_has_stopped_comes_to_rest_and_stays(human):
+def test_feet_stay_in_place_after_a_stop(human):
     walker = Walker(human, 0.1, None)
     for number in range(60):
-        walker.go(SteeringOutput(2.0, 1.0, 1.0), 1 / RATE if number else 0.0)
+        walker.go(SteeringOutput(2.0, 1.0, 1.0), 1 / FRAME_RATE if number else 0.0)
     for _ in range(120):
-        walker.go(SteeringOutput(0.0, 0.0, 1.0), 1 / RATE)
+        walker.go(SteeringOutput(0.0, 0.0, 1.0), 1 / FRAME_RATE)
     lock = walker.lock
     assert lock is not None
     assert all(foot.held for foot in lock.feet)
     assert max(foot.offset.length for foot in lock.feet) < 0.03 * human.height
     anchors = [foot.anchor for foot in lock.feet]
     for _ in range(60):
-        walker.go(SteeringOutput(0.0, 0.0, 1.0), 1 / RATE)
+        walker.go(SteeringOutput(0.0, 0.0, 1.0), 1 / FRAME_RATE)
     assert anchors == [foot.anchor for foot in lock.feet]
 
 
 @pytest.mark.parametrize("rate", [24, 120])
-def test_feet_hold_at_any_frame_rate(human, rate):
+def test_planted_feet_do_not_slide_at_any_frame_rate(human, rate):
     animator = Animator(human)
     toes = [human.skeleton.index("LeftToe"), human.skeleton.index("RightToe")]
     level = human.skeleton.rest.globals(human.skeleton)[toes, 1, 3]
@@ -80,5 +80,5 @@ def test_feet_hold_at_any_frame_rate(human, rate):
     assert np.median(speeds[low]) < 2e-3  # [m/s]
 
 
-def test_a_character_without_knees_walks_as_before(walker):
+def test_a_character_without_knees_has_no_foot_lock(walker):
     assert Walker(walker, 0.1, None).lock is None
