@@ -1,4 +1,4 @@
-"""Players and robots at one broker in virtual time, on lines that lose, double and reorder."""
+"""Players and robots at one broker in virtual time, with lost, doubled and delayed messages."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -20,22 +20,22 @@ NAMES = tuple(f"{player}{number}" for player in "abc" for number in range(1, 100
 
 
 class FakeRobot:
-    """Plays at once, and keeps what it was asked."""
+    """Records its commands."""
 
     def __init__(self) -> None:
         self.played: list[str] = []
-        self.felt: list[Emotion] = []
+        self.shown: list[Emotion] = []
         self.link: LinkState = "ready"
         self.busy = False
         self.catalogue = Catalogue("fake", "1", (), NAMES, (), ("neutral", "happy", "angry"))
 
     @property
     def telemetry(self) -> Telemetry:
-        last = self.felt[-1] if self.felt else None
+        last = self.shown[-1] if self.shown else None
         return Telemetry(self.link, commanded=last, acknowledged=last, observed=last)
 
     def express(self, emotion: Emotion, label: str | None = None) -> None:
-        self.felt.append(emotion)
+        self.shown.append(emotion)
 
     def play(self, name: str) -> None:
         if self.busy:
@@ -44,28 +44,28 @@ class FakeRobot:
 
 
 @dataclass
-class Harm:
-    """What happens to a message on its last stretch, from the broker to a member."""
+class DeliveryFaults:
+    """Probabilities of faults between the broker and a member."""
 
     drop: float = 0.0
     double: float = 0.0
     late: float = 0.0
 
 
-class Room:
-    """A broker, and whoever is at it."""
+class NetworkWorld:
+    """A broker and its members."""
 
     def __init__(self, seed: int = 0) -> None:
         self.now = 1000.0
         self.broker = MemoryBroker()
-        self.harm = Harm()
+        self.faults = DeliveryFaults()
         self.random = np.random.default_rng(seed)
         self.buses: dict[str, MemoryBus] = {}
-        self.stations: dict[str, BusClient[Any]] = {}
+        self.clients: dict[str, BusClient[Any]] = {}
         self.robots: dict[str, FakeRobot] = {}
         self.made: dict[str, list[str]] = {}
-        self.held: set[str] = set()  # who cannot reconnect
-        self._mail: list[tuple[float, Handler, str, bytes]] = []
+        self.offline: set[str] = set()  # members that cannot reconnect
+        self.in_flight: list[tuple[float, Handler, str, bytes]] = []
         self._sessions = 100
 
     def player(self, name: str, max_age: float = np.inf, session: int | None = None) -> Player:
@@ -85,23 +85,23 @@ class Room:
 
     def act(self, name: str) -> None:
         self.made[name].append(f"{name}{len(self.made[name]) + 1}")
-        self.stations[name].endpoint.act(self.made[name][-1], 0.0, self.now)
+        self.clients[name].endpoint.act(self.made[name][-1], 0.0, self.now)
 
     def run(self, seconds: float, step: float = 0.02) -> None:
         for _ in range(round(seconds / step)):
             self.now += step
-            due = [mail for mail in self._mail if mail[0] <= self.now]
-            self._mail = [mail for mail in self._mail if mail[0] > self.now]
+            due = [one for one in self.in_flight if one[0] <= self.now]
+            self.in_flight = [one for one in self.in_flight if one[0] > self.now]
             for _, handler, topic, payload in due:
                 handler(topic, payload)
-            for name, station in self.stations.items():
-                if self.buses[name].state == "away" and name not in self.held:
+            for name, client in self.clients.items():
+                if self.buses[name].state == "away" and name not in self.offline:
                     self.buses[name].reconnect()
-                station.step()
+                client.step()
 
     def vanish(self, name: str) -> None:
-        """Kill a member's program: no goodbye."""
-        del self.stations[name]
+        """Kill a member's program, without closing messages."""
+        del self.clients[name]
         self.buses.pop(name).disconnect()
 
     def _session(self) -> int:
@@ -109,33 +109,35 @@ class Room:
         return self._sessions
 
     def _put(self, name: str, endpoint: Player | RobotNode) -> None:
-        bus = HarmedBus(self)
+        bus = FaultyBus(self)
         self.buses[name] = bus
-        self.stations[name] = BusClient(endpoint, bus, lambda: self.now)
+        self.clients[name] = BusClient(endpoint, bus, lambda: self.now)
         bus.open()
 
 
-class HarmedBus(MemoryBus):
-    """Its messages meet their fates one by one."""
+class FaultyBus(MemoryBus):
+    """A bus with delivery faults."""
 
-    def __init__(self, room: Room) -> None:
-        super().__init__(room.broker)
-        self._room = room
+    def __init__(self, network: NetworkWorld) -> None:
+        super().__init__(network.broker)
+        self._network = network
 
     def subscribe(self, topic_filter: str, handler: Handler) -> None:
-        super().subscribe(topic_filter, lambda topic, payload: self._mail(handler, topic, payload))
+        super().subscribe(
+            topic_filter, lambda topic, payload: self._deliver(handler, topic, payload)
+        )
 
-    def _mail(self, handler: Handler, topic: str, payload: bytes) -> None:
-        room = self._room
-        drop, double, late = room.random.random(3)
-        for _ in range((drop >= room.harm.drop) * (1 + (double < room.harm.double))):
-            delay = room.random.random() * 2.0 if late < room.harm.late else 0.0
-            room._mail.append((room.now + delay, handler, topic, payload))
+    def _deliver(self, handler: Handler, topic: str, payload: bytes) -> None:
+        network = self._network
+        drop, double, late = network.random.random(3)
+        for _ in range((drop >= network.faults.drop) * (1 + (double < network.faults.double))):
+            delay = network.random.random() * 2.0 if late < network.faults.late else 0.0
+            network.in_flight.append((network.now + delay, handler, topic, payload))
 
 
 @pytest.fixture
-def room() -> Room:
-    return Room()
+def network() -> NetworkWorld:
+    return NetworkWorld()
 
 
 @pytest.fixture

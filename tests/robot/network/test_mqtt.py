@@ -1,4 +1,4 @@
-"""A real broker: killed in the middle, behind passwords and TLS, hung, absent."""
+"""A real broker: killed, with passwords and TLS, hanging, absent."""
 
 import math
 import os
@@ -39,12 +39,12 @@ from tests.robot.network.mosquitto import needs_mosquitto
 pytestmark = needs_mosquitto
 
 
-FAST = 20.0
-"""Robots that take seconds for a motion live so many times faster, and so do their drivers."""
+SPEED_UP = 20.0
+"""Speed factor of slow robots and their drivers."""
 
 
-class Watched:
-    """A robot that notes what it accepted to play."""
+class RecordingRobot:
+    """A robot that records the actions that it accepted."""
 
     def __init__(self, url: str, speed: float) -> None:
         self.robot = robot.connect(url, clock=lambda: speed * time.monotonic())
@@ -65,11 +65,11 @@ class Watched:
 
 
 @pytest.fixture
-def robots(monkeypatch, soon) -> Iterator[dict[str, Watched]]:
-    """Three robots of three kinds; of the first, what its body was made to play is noted, too."""
+def robots(monkeypatch, soon) -> Iterator[dict[str, RecordingRobot]]:
+    """Return three robots of three kinds; of the first, the actions of the body are recorded too."""
     bodies: list[tuple[int, int]] = []
 
-    def noted(seed: int) -> Simulator:
+    def recording(seed: int) -> Simulator:
         simulator = Simulator(seed)
         play = simulator.body.play
 
@@ -80,9 +80,13 @@ def robots(monkeypatch, soon) -> Iterator[dict[str, Watched]]:
         monkeypatch.setattr(simulator.body, "play", seen)
         return simulator
 
-    monkeypatch.setitem(SIMULATORS, "cubeling", noted)
-    urls = {"rex": ("sim:cubeling", 1.0), "max": ("sim:pleo", FAST), "ida": ("sim:opencat", FAST)}
-    made = {name: Watched(url, speed) for name, (url, speed) in urls.items()}
+    monkeypatch.setitem(SIMULATORS, "cubeling", recording)
+    urls = {
+        "rex": ("sim:cubeling", 1.0),
+        "max": ("sim:pleo", SPEED_UP),
+        "ida": ("sim:opencat", SPEED_UP),
+    }
+    made = {name: RecordingRobot(url, speed) for name, (url, speed) in urls.items()}
     yield made
     catalogue = made["rex"].catalogue
     words = {m.ITEM_MOTION: catalogue.motions, m.ITEM_SOUND: catalogue.sounds}
@@ -93,17 +97,17 @@ def robots(monkeypatch, soon) -> Iterator[dict[str, Watched]]:
 
 @pytest.fixture
 def join(request):
-    """Put members on a broker; they leave with the test."""
-    stations: list[BusClient[Any]] = []
+    """Connect members to a broker; they are closed with the test."""
+    clients: list[BusClient[Any]] = []
 
     def put(broker, endpoint, name: str) -> BusClient[Any]:
-        station = BusClient(endpoint, MqttBus(Address.of(broker.url), name), time.monotonic)
-        stations.append(station)
-        return station.open()
+        client = BusClient(endpoint, MqttBus(Address.of(broker.url), name), time.monotonic)
+        clients.append(client)
+        return client.open()
 
     yield put
-    for station in stations:
-        station.close()
+    for client in clients:
+        client.close()
 
 
 def everyone(pattern: str = "*") -> tuple[Pattern, ...]:
@@ -136,14 +140,14 @@ def test_a_broker_killed_in_the_middle_costs_no_action_and_doubles_none(
 
     def all_have_taken_all() -> bool:
         return all(
-            station.endpoint.pending == 0
+            client.endpoint.pending == 0
             and all(
-                one.taken == len(done[name]) for one in station.endpoint.followers.robots.values()
+                one.taken == len(done[name]) for one in client.endpoint.followers.robots.values()
             )
-            for name, station in players.items()
+            for name, client in players.items()
         )
 
-    soon(lambda: all(len(station.endpoint.followers.robots) == 3 for station in players.values()))
+    soon(lambda: all(len(client.endpoint.followers.robots) == 3 for client in players.values()))
     act("ann", MOTIONS, 2)
     act("bob", SOUNDS, 2)
     soon(all_have_taken_all)
@@ -154,7 +158,7 @@ def test_a_broker_killed_in_the_middle_costs_no_action_and_doubles_none(
     act("ann", MOTIONS, 3)
     with players["ann"].lock:
         players["ann"].endpoint.feel(Emotion(0.75, 0.5, "happy"))
-    soon(lambda: all(station.state == "away" for station in players.values()))
+    soon(lambda: all(client.state == "away" for client in players.values()))
     assert "127.0.0.1" in players["ann"].problem
     broker.start()
     soon(all_have_taken_all, within=10.0)
@@ -219,7 +223,7 @@ def test_a_wrong_password_is_refused_in_one_line_that_does_not_show_it(mosquitto
         MqttBus(Address.of(broker.url), "ann").open()
 
 
-def test_what_the_broker_does_not_allow_is_told(mosquitto, tmp_path, soon):
+def test_a_forbidden_topic_is_reported(mosquitto, tmp_path, soon):
     rules = tmp_path / "acl"
     rules.write_text("topic read #\ntopic write cubeling/1/hall/player/ann/#\n")
     broker = mosquitto(f"acl_file {rules}")
@@ -230,7 +234,7 @@ def test_what_the_broker_does_not_allow_is_told(mosquitto, tmp_path, soon):
     bus.close()
 
 
-def test_the_example_rules_let_each_speak_for_itself_alone(mosquitto, tmp_path, soon):
+def test_the_example_rules_let_each_user_publish_only_as_itself(mosquitto, tmp_path, soon):
     rules = Path(robot.__file__).parent / "network" / "mosquitto.example.acl"
     passwords = tmp_path / "passwords"
     passwords.touch()
@@ -268,7 +272,7 @@ def openssl(*words: str) -> None:
 
 @pytest.fixture
 def authority(tmp_path):
-    """Make an authority, a broker's certificate by it, and another authority."""
+    """Make a certificate authority, a broker's certificate by it, and another authority."""
     if shutil.which("openssl") is None:
         pytest.skip("the openssl command is not installed")
     key = ["-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days", "2"]
@@ -290,7 +294,7 @@ def tls(folder, *more: str) -> list[str]:
             f"keyfile {folder}/broker.key", *more]  # fmt: skip
 
 
-def test_tls_with_the_right_authority_and_no_other(mosquitto, authority, join, soon):
+def test_tls_needs_the_right_authority(mosquitto, authority, join, soon):
     broker = mosquitto(*tls(authority))
     url = f"mqtts://localhost:{broker.port}"
     bus = MqttBus(Address.of(url, Credentials(ca=authority / "ca.pem")), "ann")
@@ -307,7 +311,7 @@ def test_tls_with_the_right_authority_and_no_other(mosquitto, authority, join, s
             MqttBus(Address.of(url, wrong), "ann").open()
 
 
-def test_what_tls_has_decrypted_already_is_read_at_once(authority, soon):
+def test_messages_that_tls_has_already_decrypted_are_read_at_once(authority, soon):
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.load_cert_chain(authority / "broker.pem", authority / "broker.key")
     topic = b"cubeling/x"
@@ -350,7 +354,7 @@ def test_a_broker_that_asks_for_a_certificate_gets_one(mosquitto, authority):
     bus.close()
 
 
-def test_tls_where_none_is_spoken_and_the_reverse_are_told(mosquitto, authority, soon):
+def test_tls_on_a_plain_port_and_the_reverse_are_reported(mosquitto, authority, soon):
     plain, secret = mosquitto(), mosquitto(*tls(authority))
     given = Credentials(ca=authority / "ca.pem")
     for url, access, hint in (
@@ -363,7 +367,7 @@ def test_tls_where_none_is_spoken_and_the_reverse_are_told(mosquitto, authority,
         bus.close()
 
 
-def test_a_broker_that_is_away_stops_nobody_and_is_found_when_it_comes(mosquitto, soon):
+def test_an_absent_broker_blocks_nobody_and_is_found_when_it_starts(mosquitto, soon):
     broker = mosquitto()
     broker.kill()
     bus = MqttBus(Address.of(broker.url), "ann")
@@ -397,7 +401,7 @@ def test_a_broker_that_hangs_fills_no_memory_and_delays_no_publisher(mosquitto):
     assert sorted(took)[4950] < 0.005  # the last percent is the scheduler's
 
 
-def test_a_port_where_nobody_speaks_mqtt_is_left_in_bounded_time(monkeypatch, soon):
+def test_a_port_without_an_mqtt_broker_is_given_up_in_bounded_time(monkeypatch, soon):
     monkeypatch.setattr("robot.network.mqtt.bus.KEEPALIVE_S", 1)
     with socket.create_server(("127.0.0.1", 0)) as mute:
         bus = MqttBus(Address.of(f"mqtt://127.0.0.1:{mute.getsockname()[1]}"), "ann")
