@@ -29,7 +29,7 @@ def verdicts(report) -> set[str]:
 
 
 class Silent(Mutant):
-    def hear(self, number, session, body):
+    def on_body(self, number, session, body):
         pass
 
 
@@ -42,7 +42,7 @@ def test_a_robot_that_says_nothing_is_given_up_after_two_seconds():
 
 
 class Babbler(Silent):
-    def live(self):
+    def on_advance(self):
         self.write(bytes(range(256)))
 
 
@@ -52,7 +52,7 @@ def test_a_robot_that_only_babbles_is_given_up_too():
 
 
 class BabblingRobot(Mutant):
-    def live(self):
+    def on_advance(self):
         if round(self.now * 1000) % 20 == 0:
             self.write(b"\0oh so much to say" * 5)
 
@@ -72,7 +72,7 @@ def test_a_robot_that_babbles_between_its_frames_fails_in_bounded_time():
 class StatesWithoutEnd(Mutant):
     """Sends a valid STATE every millisecond, in a session or not."""
 
-    def live(self):
+    def on_advance(self):
         state = m.State(0, 0, 0, 0.0, 0.0, 1.0, 0, m.NOTHING, m.NOTHING, (0.0,) * 16)
         self.send(self.session or 1, state)
 
@@ -86,17 +86,17 @@ def test_a_robot_that_never_stops_sending_states_fills_no_memory(monkeypatch):
 
 
 class Hangs(Mutant):
-    def prepare(self):
+    def set_up(self):
         self.heard = 0
 
-    def hear(self, number, session, body):
+    def on_body(self, number, session, body):
         self.heard += 1
         if self.heard < 300:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
 
-    def say(self, session, message):
+    def send_message(self, session, message):
         if self.heard < 300:
-            super().say(session, message)
+            super().send_message(session, message)
 
 
 def test_a_robot_that_hangs_in_the_middle_fails_and_the_rest_is_left_out():
@@ -198,12 +198,12 @@ def test_a_robot_that_does_not_read_its_line_is_given_up():
 
 
 class Version1(Mutant):
-    def hear(self, number, session, body):
+    def on_body(self, number, session, body):
         if number == 0x01 and len(body) > 3:
             body = body[:3] + bytes([min(body[3], 1)]) + body[4:]
         if number == 0x10:
             body = body[:11]
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 def test_a_robot_of_version_1_conforms():

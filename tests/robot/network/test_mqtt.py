@@ -66,7 +66,7 @@ class RecordingRobot:
 
 @pytest.fixture
 def robots(monkeypatch, soon) -> Iterator[dict[str, RecordingRobot]]:
-    """Return three robots of three kinds; of the first, the actions of the body are recorded too."""
+    """Return robots of three kinds; of the first, the actions of the body are recorded too."""
     bodies: list[tuple[int, int]] = []
 
     def recording(seed: int) -> Simulator:

@@ -20,15 +20,15 @@ FIRST_ACTION = 3
 
 @breaks("session zero changes nothing")
 class GoesToNeutralForSessionZero(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number == 1 and session == 0:
             self.body.neutral()
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("session zero changes nothing")
 class TakesTheHostOfSessionZero(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number == 1 and session == 0:
             target = self.body.target
             _, hello = unpack(body, "host")
@@ -36,25 +36,25 @@ class TakesTheHostOfSessionZero(Mutant):
             self.robot.bytes_to_send()
             self.body.express(target)
         else:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
 
 
 @breaks("hello repeated")
 class CountsBeatsFromEveryHello(Greeter):
     begun = False
 
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         self.begun = self.begun and number != 3
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
     def hello(self, session: int, hello: m.Hello) -> None:
         self.begun = True
         super().hello(session, hello)
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State) and self.begun:
             message = replace(message, beat=0)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("version agreed")
@@ -71,9 +71,9 @@ class KeepsTheFirstVersionOfASession(Greeter):
 class SaysGoneEvery10Milliseconds(Mutant):
     said = 0.0
 
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number == 1 or session == self.session:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
         elif self.now - self.said >= 0.010:
             self.said = self.now
             self.send(session, m.Gone())
@@ -122,9 +122,9 @@ class DoesNotCountAsk(CountsAllBut):
 
 @breaks("any message counts")
 class DoesNotCountAVainAsk(Timed):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         heard = self.heard
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
         if number == 2 and body[3] > m.ITEM_MOOD:
             self.heard = heard
 
@@ -139,7 +139,7 @@ class Left(Stating):
     sound = False
     motion = False
 
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         neutral, express = self.body.neutral, self.body.express
         play, stop = self.body.play, self.body.stop
 
@@ -167,32 +167,32 @@ class Left(Stating):
 
 @breaks("failsafe goes to neutral", "bye goes to neutral", "another host goes to neutral")
 class SoundsOnWhenAlone(Left):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, sound=5) if self.left and self.sound else state
 
 
 @breaks("failsafe goes to neutral", "bye goes to neutral", "another host goes to neutral")
 class IsStoppedWhenAlone(Left):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, flags=state.flags | m.STILL) if self.left else state
 
 
 @breaks("failsafe does not jump")
 class JumpsToNeutral(Left):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, valence=0.0, arousal=0.0) if self.left else state
 
 
 @breaks("failsafe ends the movement")
 class MovesOnWhenAlone(Left):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         sway = 0.3 * sin(20 * self.now) if self.left and self.motion else 0.0
         return replace(state, joints=(sway, *(0.0,) * 15))
 
 
 @breaks("stopped robot stays still")
 class SwaysWhenStoppedAndAlone(Left):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         if not (self.left and state.flags & m.STILL):
             return state
         return replace(state, joints=(0.2, *state.joints[1:]))
@@ -214,20 +214,20 @@ class WakesUpForAnotherHost(Greeter):
 
 @breaks("emotion shown")
 class IsNeverCalmerThanCalm(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, arousal=max(state.arousal, 0.0))
 
 
 @breaks("joints within limits")
 class BendsTooFarInOneMotion(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         far = state.motion == FIRST_ACTION
         return replace(state, joints=(1.1, *state.joints[1:])) if far else state
 
 
 @breaks("joints within speed")
 class JerksInOneMotion(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         if state.motion != FIRST_ACTION:
             return state
         tail = 1.5 if self.now % 0.4 < 0.2 else -1.5

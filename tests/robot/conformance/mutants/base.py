@@ -1,4 +1,4 @@
-"""A robot that keeps every rule but one: what comes and goes is altered around a good simulator."""
+"""Robots that violate one rule: the messages of a conforming simulator are altered."""
 
 from collections.abc import Callable
 from contextlib import suppress
@@ -11,11 +11,11 @@ from robot.protocol.wire import MAX_BODY, MAX_FRAME, FrameError, decode_frame, e
 from robot.simulators.cubeling.simulator import Simulator
 
 MUTANTS: dict[str, list[type["Mutant"]]] = {}
-"""The robots that break the rule of a check, by the check's name."""
+"""The robots that fail each check, by the check's name."""
 
 
 def breaks(*checks: str) -> Callable[[type["Mutant"]], type["Mutant"]]:
-    """Enter a robot as one that fails each of these checks."""
+    """Register a robot that fails each of these checks."""
 
     def enter(mutant: type["Mutant"]) -> type["Mutant"]:
         for check in checks:
@@ -26,7 +26,7 @@ def breaks(*checks: str) -> Callable[[type["Mutant"]], type["Mutant"]]:
 
 
 class Mutant:
-    """A good robot; its children are not."""
+    """A conforming robot; its subclasses are not."""
 
     edge = b"\0"
 
@@ -36,58 +36,58 @@ class Mutant:
         self.now = 0.0
         self.pending = b""
         self.out = b""
-        self.prepare()
+        self.set_up()
 
     @property
     def session(self) -> int:
         return self.robot.link.session
 
-    # --- The points at which a child goes wrong ------------------------------------------------
+    # --- Hooks for subclasses ------------------------------------------------------------------
 
-    def prepare(self) -> None:
-        """Spoil the body."""
+    def set_up(self) -> None:
+        """Alter the body."""
 
     def frames(self, data: bytes) -> list[bytes]:
-        """Cut the stream."""
+        """Split the stream into frames."""
         *ended, rest = (self.pending + data).split(b"\0")
         self.pending = rest[: MAX_FRAME + 1]
         return [piece for piece in ended if piece]
 
     def decode(self, frame: bytes) -> bytes | None:
-        """Check a frame."""
+        """Return the body of a frame; None if it is not valid."""
         try:
             return decode_frame(frame)
         except FrameError:
             return None
 
-    def hear(self, number: int, session: int, body: bytes) -> None:
-        """Take a body; `give` hands it to the good robot."""
-        self.give(body)
+    def on_body(self, number: int, session: int, body: bytes) -> None:
+        """Process a body; `forward` passes it to the simulator."""
+        self.forward(body)
 
-    def live(self) -> None:
-        """Do what is due, after the good robot has."""
+    def on_advance(self) -> None:
+        """Do something after each step of the simulator."""
 
-    def say(self, session: int, message: Any) -> None:
-        """Send a message of the good robot; `send` does."""
+    def send_message(self, session: int, message: Any) -> None:
+        """Send a message of the simulator."""
         self.send(session, message)
 
     def write(self, data: bytes) -> None:
         """Send bytes."""
         self.out += data
 
-    # --- What they can use ---------------------------------------------------------------------
+    # --- Helpers for subclasses ----------------------------------------------------------------
 
-    def give(self, body: bytes) -> None:
+    def forward(self, body: bytes) -> None:
         self.robot.receive(encode_frame(body[:MAX_BODY]), self.now)
         self.collect()
 
-    def tell(self, message: Any, session: int | None = None) -> None:
-        """Say something to the good robot as if the host had."""
-        self.give(pack(message, self.session if session is None else session))
+    def inject(self, message: Any, session: int | None = None) -> None:
+        """Send a message to the simulator as the host."""
+        self.forward(pack(message, self.session if session is None else session))
 
     def keep_alive(self) -> None:
-        """Feed the failsafe by a question that has no answer."""
-        self.tell(m.Ask(9, 0))
+        """Keep the session open by a question without an answer."""
+        self.inject(m.Ask(9, 0))
 
     def send(self, session: int, message: Any) -> None:
         self.write(encode_frame(pack(message, session)))
@@ -95,7 +95,7 @@ class Mutant:
     def collect(self) -> None:
         for frame in self.robot.bytes_to_send().split(b"\0"):
             if frame:
-                self.say(*unpack(decode_frame(frame), "robot"))
+                self.send_message(*unpack(decode_frame(frame), "robot"))
 
     # --- A simulated robot ---------------------------------------------------------------------
 
@@ -104,20 +104,22 @@ class Mutant:
         for frame in self.frames(data):
             body = self.decode(frame)
             if body is not None and len(body) >= 3:
-                with suppress(MessageError, IndexError):  # a child looked at what is to be skipped
-                    self.hear(body[0], int.from_bytes(body[1:3], "little"), body)
+                with suppress(
+                    MessageError, IndexError
+                ):  # a subclass parsed a body that is to be skipped
+                    self.on_body(body[0], int.from_bytes(body[1:3], "little"), body)
             elif body:
-                self.hear_stub(body)
+                self.on_short_body(body)
 
-    def hear_stub(self, body: bytes) -> None:
-        """Take a body that is shorter than a header."""
-        self.give(body)
+    def on_short_body(self, body: bytes) -> None:
+        """Process a body that is shorter than a header."""
+        self.forward(body)
 
     def advance(self, now: float) -> None:
         self.now = now
         self.robot.advance(now)
         self.collect()
-        self.live()
+        self.on_advance()
 
     def bytes_to_send(self) -> bytes:
         out, self.out = self.out, b""

@@ -15,69 +15,69 @@ class Commanded(Mutant):
 
     taken = 0
 
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number == 1:
             self.taken = 0
         if number not in (0x10, 0x11, 0x12) or session != self.session:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
             return
         _, command = unpack(body, "host")
-        self.obey(command)
+        self.on_command(command)
         self.taken = max(self.taken, command.number)
 
-    def obey(self, command: Any) -> None:
-        self.tell(command)
+    def on_command(self, command: Any) -> None:
+        self.inject(command)
 
 
 @breaks("command acknowledged")
 class DoesNotAcknowledgeStop(Commanded):
     stopping = False
 
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         self.stopping = isinstance(command, m.Stop)
-        super().obey(command)
+        super().on_command(command)
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if not (self.stopping and isinstance(message, m.Ack)):
-            super().say(session, message)
+            super().send_message(session, message)
 
 
 @breaks("taken reported")
 class DoesNotSayWhatItHasTaken(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State):
             message = replace(message, taken=0)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("repeat acknowledged")
 class AcknowledgesOnce(Commanded):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if command.number > self.taken:
-            super().obey(command)
+            super().on_command(command)
 
 
 @breaks("repeat without effect", "failsafe keeps the numbers")
 class ObeysRepeats(Commanded):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if isinstance(command, m.Express):
             self.body.express(Emotion(command.valence, command.arousal), m.NOTHING)
-        super().obey(command)
+        super().on_command(command)
 
 
 @breaks("repeat without effect")
 class StopsAtOldStops(Commanded):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if isinstance(command, m.Stop):
             self.body.stop()
-        super().obey(command)
+        super().on_command(command)
 
 
 @breaks("numbers compared unsigned")
 class ReadsNumbersSigned(Commanded):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if command.number < 0x80000000:
-            super().obey(command)
+            super().on_command(command)
         else:
             self.send(self.session, m.Ack(command.number, m.TAKEN))
 
@@ -90,10 +90,10 @@ class TakesTheFirstOfTwo(Commanded):
 
 @breaks("unknown index refused", "unknown mood refused")
 class AgreesToEverything(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Ack):
             message = replace(message, result=m.TAKEN)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("unknown index refused", "unknown mood refused")
@@ -101,68 +101,68 @@ class DoesNotUseTheNumberOfARefusal(Commanded):
     refused = 0
     before = 0
 
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         self.before = self.taken
-        super().obey(command)
+        super().on_command(command)
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Ack) and message.result:
             self.refused = message.number
         if isinstance(message, m.State) and message.taken and message.taken == self.refused:
             message = replace(message, taken=self.before)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("unknown mood refused")
 class ShowsAnotherMoodInstead(Commanded):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if isinstance(command, m.Express) and command.mood >= 3:
             self.body.express(Emotion(command.valence, command.arousal), m.NOTHING)
-        super().obey(command)
+        super().on_command(command)
 
 
 @breaks("motion played", "sound played")
 class PlaysNothing(Mutant):
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         self.body.play = lambda item, index: None  # type: ignore[method-assign]
 
 
 @breaks("stop stops", "stop holds the pose")
 class DoesNotStop(Mutant):
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         self.body.stop = lambda: None  # type: ignore[method-assign]
 
 
 @breaks("stop stops")
 class PlaysOnWhenStopped(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State) and message.motion == m.NOTHING:
             message = replace(message, motion=1)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("stop holds the pose")
 class TremblesWhenStopped(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State) and message.flags & m.STILL:
             head = 0.1 * sin(self.now * 20)
             message = replace(message, joints=(head, *message.joints[1:]))
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("stop holds the pose")
 class KeepsItsFeelingsWhenStopped(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State) and message.flags & m.STILL:
             message = replace(message, valence=0.4)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("express after stop", "play after stop")
 class StaysStopped(Mutant):
     stopped = False
 
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         stop = self.body.stop
 
         def stopping() -> None:
@@ -171,7 +171,7 @@ class StaysStopped(Mutant):
 
         self.body.stop = stopping  # type: ignore[method-assign]
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State) and self.stopped:
             message = replace(message, flags=message.flags | m.STILL)
-        super().say(session, message)
+        super().send_message(session, message)

@@ -109,16 +109,16 @@ class DiesOfTooMuchNoise(Mutant):
 
 @breaks("sends valid frames")
 class PrintsWhatItDoes(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         self.write(b"beat\r\n")
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("sends valid frames")
 class SendsAWrongCheck(Mutant):
     count = 0
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         self.count += 1
         frame = bytearray(encode_frame(pack(message, session)))
         frame[-2] ^= self.count % 5 == 0
@@ -129,7 +129,7 @@ class SendsAWrongCheck(Mutant):
 class SendsALongerState(Mutant):
     count = 0
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         self.count += 1
         more = b"\7" if self.count % 5 == 0 else b""
         self.write(encode_frame(pack(message, session) + more))
@@ -137,14 +137,14 @@ class SendsALongerState(Mutant):
 
 @breaks("sends valid frames")
 class EchoesTheHost(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         self.write(encode_frame(body))
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("sends valid frames")
 class HasABatteryBeyondFull(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         frame = pack(message, session)
         if isinstance(message, m.State) and message.beat % 3 == 0:
             frame = frame[:14] + (12000).to_bytes(2, "little") + frame[16:]
@@ -156,39 +156,39 @@ class HasABatteryBeyondFull(Mutant):
 
 @breaks("unknown message skipped")
 class AcknowledgesWhatItDoesNotKnow(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number not in MESSAGES:
             self.send(session, m.Ack(1, m.UNKNOWN))
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("unknown message skipped", "echo skipped")
 class LooksAtTheSessionFirst(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         form = MESSAGES.get(number)
         if (form is None or form.sender == "robot") and session != self.session:
             self.send(session, m.Gone())
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("short body skipped")
 class FillsShortBodiesUp(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number in MESSAGES:
             body += bytes(max(MESSAGES[number].size - len(body), 0))
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("longer body used")
 class WantsExactLengths(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number not in MESSAGES or len(body) <= MESSAGES[number].parts[-1].end:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
 
 
 @breaks("field out of range skipped")
 class ClampsFields(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number == 0x10:
             clamped = bytearray(body)
             for place in (7, 9):
@@ -196,28 +196,28 @@ class ClampsFields(Mutant):
                 value = max(-10000, min(10000, value))
                 clamped[place : place + 2] = value.to_bytes(2, "little", signed=True)
             body = bytes(clamped)
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("field out of range skipped")
 class GreetsAnyVersion(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number == 1 and body[3] == 0:
             body = body[:3] + b"\1" + body[4:]
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("express of version 1 used")
 class KnowsOnlyTheLongExpress(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number != 0x10 or len(body) >= 12:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
 
 
 @breaks("express of version 2 used")
 class IgnoresTheMood(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
-        super().hear(number, session, body[:11] if number == 0x10 else body)
+    def on_body(self, number: int, session: int, body: bytes) -> None:
+        super().on_body(number, session, body[:11] if number == 0x10 else body)
 
 
 def _check(encoded: bytes) -> bytes:

@@ -13,18 +13,18 @@ from tests.robot.conformance.mutants.sessions import Greeter
 class Stating(Mutant):
     """A robot whose STATE is not what it should be."""
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State):
-            message = self.alter(message)
-        super().say(session, message)
+            message = self.alter_state(message)
+        super().send_message(session, message)
 
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return state
 
 
 @breaks("beat answered")
 class CountsBeatsInSevenBits(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, beat=state.beat & 0x7FFF)
 
 
@@ -32,7 +32,7 @@ class CountsBeatsInSevenBits(Stating):
 class RemembersTheLastBeat(Stating):
     last = 0
 
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         self.last = state.beat or self.last
         return replace(state, beat=self.last)
 
@@ -41,83 +41,83 @@ class RemembersTheLastBeat(Stating):
 class SpeaksOnlyWhenAsked(Mutant):
     asked = False
 
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         self.asked = number == 3
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
         self.asked = False
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if self.asked or not isinstance(message, m.State):
-            super().say(session, message)
+            super().send_message(session, message)
 
 
 @breaks("state values valid")
 class ShowsAMoodThatItDoesNotHave(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, mood=9)
 
 
 @breaks("state values valid")
 class HasAJointTooMany(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, joints=(*state.joints[:15], 0.5))
 
 
 @breaks("state values valid")
 class HasFlagsOfItsOwn(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, flags=state.flags | 0x40)
 
 
 @breaks("emotion shown")
 class NeverGetsThere(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, valence=0.8 * state.valence)
 
 
 @breaks("emotion shown")
 class WaversOnItsWay(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         wavering = 0.3 < state.valence < 0.5 and state.beat % 2
         return replace(state, valence=0.0) if wavering else state
 
 
 @breaks("emotion rate bounded")
 class TellsWhatItWasTold(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         told = self.body.target
         return replace(state, valence=told.valence, arousal=told.arousal)
 
 
 @breaks("joints within limits")
 class BendsAJointTooFar(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, joints=(1.1, *state.joints[1:]))
 
 
 @breaks("joints within speed")
 class JerksItsTail(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         tail = 1.5 if self.now % 0.6 < 0.3 else -1.5
         return replace(state, joints=(*state.joints[:9], tail, *state.joints[10:]))
 
 
 @breaks("state rate bounded")
 class SaysEverythingThreeTimes(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         for _ in range(3):
-            super().say(session, message)
+            super().send_message(session, message)
 
 
 @breaks("round trip short")
 class IsSlow(Mutant):
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         self.late: list[tuple[float, bytes]] = []
 
     def write(self, data: bytes) -> None:
         self.late.append((self.now + 0.03, data))
 
-    def live(self) -> None:
+    def on_advance(self) -> None:
         while self.late and self.late[0][0] <= self.now:
             self.out += self.late.pop(0)[1]
 
@@ -127,7 +127,7 @@ class IsSlow(Mutant):
 
 @breaks("session ends after silence", "silent after failsafe", "failsafe forgets the emotion")
 class HasNoFailsafe(Mutant):
-    def live(self) -> None:
+    def on_advance(self) -> None:
         if self.session:
             self.keep_alive()
 
@@ -138,17 +138,17 @@ class Timed(Mutant):
     after = 0.45
     heard = 0.0
 
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if self.counts(number, session):
             self.heard = self.now
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
     def counts(self, number: int, session: int) -> bool:
         return session == self.session or number == 1
 
-    def live(self) -> None:
+    def on_advance(self) -> None:
         if self.session and self.now - self.heard >= self.after:
-            self.tell(m.Bye())
+            self.inject(m.Bye())
 
 
 @breaks("session survives short silence")
@@ -160,8 +160,8 @@ class LosesPatience(Timed):
 class IsPatient(Timed):
     after = 0.6
 
-    def live(self) -> None:
-        super().live()
+    def on_advance(self) -> None:
+        super().on_advance()
         if self.session:
             self.keep_alive()
 
@@ -176,12 +176,12 @@ class CountsBeatsAlone(Timed):
 class SaysThatItIsStillInForce(Mutant):
     taken = 0
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Ack):
             self.taken = message.number
         if isinstance(message, m.Welcome):
             message = replace(message, taken=self.taken)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("failsafe keeps the numbers")
@@ -195,7 +195,7 @@ class ForgetsNumbersWithTheSession(Greeter):
 
 @breaks("failsafe goes to neutral", "bye goes to neutral", "another host goes to neutral")
 class DoesNotGoToNeutral(Mutant):
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         self.body.neutral = lambda: None  # type: ignore[method-assign]
 
 
@@ -203,7 +203,7 @@ class DoesNotGoToNeutral(Mutant):
 class PlaysOnWhenAlone(Mutant):
     playing = False
 
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         play = self.body.play
 
         def playing(item: int, index: int) -> None:
@@ -212,28 +212,28 @@ class PlaysOnWhenAlone(Mutant):
 
         self.body.play = playing  # type: ignore[method-assign]
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State) and self.playing:
             message = replace(message, motion=7)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("failsafe goes to neutral", "bye goes to neutral", "another host goes to neutral")
 class KeepsItsMoodWhenAlone(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return replace(state, mood=2)
 
 
 @breaks("failsafe acts in time")
 class GoesToNeutralWhenGreeted(Mutant):
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         self.neutral = self.body.neutral
         self.body.neutral = lambda: None  # type: ignore[method-assign]
 
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number == 1 and not self.session:
             self.neutral()
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("failsafe not reset by noise")
@@ -246,25 +246,25 @@ class CountsAnyByte(Mutant):
 
 @breaks("failsafe not reset by other sessions")
 class CountsAnySession(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if self.session and number in MESSAGES:
             self.keep_alive()
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("failsafe not reset by skipped bodies")
 class CountsAnyFrameOfItsSession(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if self.session and session == self.session:
             self.keep_alive()
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("bye ends the session", "gone without session")
 class IgnoresBye(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number != 0x1F:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
 
 
 @breaks("same host keeps the emotion")
@@ -276,7 +276,7 @@ class GoesToNeutralInEverySession(Greeter):
 
 @breaks("stopped robot stays still")
 class WakesUpWhenAlone(Mutant):
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         neutral = self.body.neutral
         stop = self.body.stop
         inside = False

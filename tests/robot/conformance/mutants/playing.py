@@ -21,7 +21,7 @@ MOTIONS = 8
 class PlaysWithoutEnd(Stating):
     playing = m.NOTHING
 
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         play, neutral = self.body.play, self.body.neutral
 
         def playing(item: int, index: int) -> None:
@@ -34,88 +34,88 @@ class PlaysWithoutEnd(Stating):
 
         self.body.play, self.body.neutral = playing, ending  # type: ignore[method-assign]
 
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return state if self.playing == m.NOTHING else replace(state, motion=self.playing)
 
 
 @breaks("old play without effect")
 class PlaysOldPlays(Commanded):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if isinstance(command, m.Play) and command.number < self.taken:
             self.body.play(command.item, command.index)
-        super().obey(command)
+        super().on_command(command)
 
 
 @breaks("old play without effect")
 class BeginsAgainAtARepeat(Commanded):
     played = (0, 0)
 
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if isinstance(command, m.Play):
             played = (command.item, command.index)
             if command.number == self.taken and played == self.played:
                 self.body.play(*played)
             if command.number > self.taken:
                 self.played = played
-        super().obey(command)
+        super().on_command(command)
 
 
 @breaks("old play without effect")
 class BeginsAgainWhenItIsOver(BeginsAgainAtARepeat):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         state = self.body.state()
         if self.played[1] in (state.motion, state.sound):
-            Commanded.obey(self, command)
+            Commanded.on_command(self, command)
         else:
-            super().obey(command)
+            super().on_command(command)
 
 
 @breaks("motion and sound together")
 class PlaysOneAtATime(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return state if state.sound == m.NOTHING else replace(state, motion=m.NOTHING)
 
 
 @breaks("motion and sound together")
 class FallsSilentWhenItMoves(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         return state if state.motion < ACTIONS else replace(state, sound=m.NOTHING)
 
 
 @breaks("refused play ends nothing")
 class EndsEverythingAtARefusal(Commanded):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if isinstance(command, m.Play) and command.index >= MOTIONS:
             self.body.neutral()
-        super().obey(command)
+        super().on_command(command)
 
 
 @breaks("refusal changes nothing")
 class WakesUpAtARefusal(Commanded):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if isinstance(command, m.Express) and command.mood != m.NOTHING:
             self.body.express(Emotion(0.0, 0.0), m.NOTHING)
-        super().obey(command)
+        super().on_command(command)
 
 
 @breaks("refusal changes nothing")
 class AgreesAtTheSecondTime(Mutant):
     refused = 0
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Ack) and message.result:
             if message.number == self.refused:
                 message = replace(message, result=m.TAKEN)
             self.refused = message.number
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("motion survives an emotion")
 class EndsMotionsForEmotions(Commanded):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if isinstance(command, m.Express):
             self.body.neutral()
-        super().obey(command)
+        super().on_command(command)
 
 
 # --- Moods ---------------------------------------------------------------------------------------
@@ -123,17 +123,17 @@ class EndsMotionsForEmotions(Commanded):
 
 @breaks("named mood shown at once")
 class ShowsItsMoodOnceItIsFelt(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         near = abs(self.body.target.valence - state.valence) < 0.3
         return state if near else replace(state, mood=0)
 
 
 @breaks("named mood shown at once")
 class FeelsOnlyWithoutANamedMood(Commanded):
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if isinstance(command, m.Express) and command.mood != m.NOTHING:
             command = replace(command, valence=0.0, arousal=0.0)
-        super().obey(command)
+        super().on_command(command)
 
 
 class Named(Commanded):
@@ -141,15 +141,15 @@ class Named(Commanded):
 
     named = m.NOTHING
 
-    def obey(self, command: Any) -> None:
+    def on_command(self, command: Any) -> None:
         if isinstance(command, m.Express) and command.mood != m.NOTHING:
             self.named = command.mood
-        super().obey(command)
+        super().on_command(command)
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State) and self.named != m.NOTHING and self.keeps(message):
             message = replace(message, mood=self.named)
-        super().say(session, message)
+        super().send_message(session, message)
 
     def keeps(self, state: m.State) -> bool:
         return True
@@ -170,7 +170,7 @@ class KeepsItsMoodWhenStopped(Named):
 class KeepsItsMoodWithoutItsHost(Named):
     keeps_until = 0.0
 
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         neutral, express = self.body.neutral, self.body.express
 
         def leaving() -> None:
@@ -194,7 +194,7 @@ class KeepsItsMoodWithoutItsHost(Named):
 class TakesAnotherPoseEachTime(Stating):
     stops = 0
 
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         stop = self.body.stop
 
         def stopping() -> None:
@@ -203,7 +203,7 @@ class TakesAnotherPoseEachTime(Stating):
 
         self.body.stop = stopping  # type: ignore[method-assign]
 
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         if not state.flags & m.STILL:
             return state
         return replace(state, joints=(0.1 * (self.stops % 2), *state.joints[1:]))
@@ -211,7 +211,7 @@ class TakesAnotherPoseEachTime(Stating):
 
 @breaks("stop holds the pose")
 class SwaysSlowlyWhenStopped(Stating):
-    def alter(self, state: m.State) -> m.State:
+    def alter_state(self, state: m.State) -> m.State:
         if not state.flags & m.STILL:
             return state
         return replace(state, joints=(0.1 * sin(self.now), *state.joints[1:]))

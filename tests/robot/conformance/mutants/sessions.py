@@ -11,29 +11,29 @@ from tests.robot.conformance.mutants.base import Mutant, breaks
 class Greeter(Mutant):
     """A robot that does something with HELLO before it is understood."""
 
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number == 1 and len(body) >= 8 and session:
             session, hello = unpack(body, "host")
             self.hello(session, hello)
         else:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
 
     def hello(self, session: int, hello: m.Hello) -> None:
-        self.tell(hello, session)
+        self.inject(hello, session)
 
 
 @breaks("hello answered")
 class GreetsLate(Mutant):
-    def prepare(self) -> None:
+    def set_up(self) -> None:
         self.late: list[tuple[float, int, m.Welcome]] = []
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Welcome):
             self.late.append((self.now + 0.15, session, message))
         else:
-            super().say(session, message)
+            super().send_message(session, message)
 
-    def live(self) -> None:
+    def on_advance(self) -> None:
         while self.late and self.late[0][0] <= self.now:
             _, session, message = self.late.pop(0)
             self.send(session, message)
@@ -43,14 +43,14 @@ class GreetsLate(Mutant):
 class ForgetsToOpenTheSession(Greeter):
     def hello(self, session: int, hello: m.Hello) -> None:
         super().hello(session, hello)
-        self.tell(m.Bye())
+        self.inject(m.Bye())
 
 
 @breaks("hello repeated")
 class BeginsAnewAtARepeatedHello(Greeter):
     def hello(self, session: int, hello: m.Hello) -> None:
         if session == self.session:
-            self.tell(replace(hello, host=hello.host ^ 1), session)
+            self.inject(replace(hello, host=hello.host ^ 1), session)
         super().hello(session, hello)
 
 
@@ -58,37 +58,37 @@ class BeginsAnewAtARepeatedHello(Greeter):
 class OpensSessionZero(Mutant):
     inside = 0x7777
 
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if session == 0:
             body = body[:1] + self.inside.to_bytes(2, "little") + body[3:]
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
-    def say(self, session: int, message: Any) -> None:
-        super().say(0 if session == self.inside else session, message)
+    def send_message(self, session: int, message: Any) -> None:
+        super().send_message(0 if session == self.inside else session, message)
 
 
 @breaks("session zero refused")
 class BelievesThatSessionZeroIsOpen(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if session == self.session == 0 and number == 3:
             self.send(0, m.Ack(1, m.TAKEN))
         else:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
 
 
 @breaks("highest numbers accepted")
 class ReadsSessionsSigned(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if session < 0x8000:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
 
 
 @breaks("newest session wins", "other session reported")
 class DoesNotLookAtSessions(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number != 1 and self.session:
             body = body[:1] + self.session.to_bytes(2, "little") + body[3:]
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 @breaks("many hellos survived")
@@ -131,46 +131,46 @@ class ForgetsInEverySession(Greeter):
 
 @breaks("other session reported")
 class NamesItsOwnSessionInGone(Mutant):
-    def say(self, session: int, message: Any) -> None:
-        super().say(self.session if isinstance(message, m.Gone) else session, message)
+    def send_message(self, session: int, message: Any) -> None:
+        super().send_message(self.session if isinstance(message, m.Gone) else session, message)
 
 
 @breaks("other session reported", "session ends after silence")
 class NeverSaysGone(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if not isinstance(message, m.Gone):
-            super().say(session, message)
+            super().send_message(session, message)
 
 
 @breaks("other session reported")
 class EndsAtAnyBye(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
-        super().hear(number, session, body)
+    def on_body(self, number: int, session: int, body: bytes) -> None:
+        super().on_body(number, session, body)
         if number == 0x1F and self.session:
-            self.tell(m.Bye())
+            self.inject(m.Bye())
 
 
 @breaks("gone without session")
 class SaysGoneOnlyInASession(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if self.session or not isinstance(message, m.Gone):
-            super().say(session, message)
+            super().send_message(session, message)
 
 
 @breaks("gone rate bounded")
 class SaysGoneToEverything(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if session != self.session and number != 1:
             self.send(session, m.Gone())
         else:
-            super().hear(number, session, body)
+            super().on_body(number, session, body)
 
 
 @breaks("silent without session", "silent after failsafe")
 class CallsForAHost(Mutant):
     called = 0.0
 
-    def live(self) -> None:
+    def on_advance(self) -> None:
         if not self.session and self.now - self.called > 0.2:
             self.called = self.now
             self.send(1, m.Gone())
@@ -180,12 +180,12 @@ class CallsForAHost(Mutant):
 class AnswersBye(Mutant):
     delay = 0.0
 
-    def hear(self, number: int, session: int, body: bytes) -> None:
-        super().hear(number, session, body)
+    def on_body(self, number: int, session: int, body: bytes) -> None:
+        super().on_body(number, session, body)
         if number == 0x1F:
             self.delay = self.now + 0.06
 
-    def live(self) -> None:
+    def on_advance(self) -> None:
         if self.delay and self.now >= self.delay:
             self.delay = 0.0
             self.send(1, m.Gone())
@@ -193,26 +193,26 @@ class AnswersBye(Mutant):
 
 @breaks("own session in header")
 class SendsForTheSessionBefore(Mutant):
-    def say(self, session: int, message: Any) -> None:
-        super().say(session, message)
+    def send_message(self, session: int, message: Any) -> None:
+        super().send_message(session, message)
         if isinstance(message, m.State):
-            super().say(session - 1, message)
+            super().send_message(session - 1, message)
 
 
 @breaks("version agreed")
 class SpeaksVersion2ToAll(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Welcome):
             message = replace(message, version=2)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("version 1 spoken")
 class FlagsOfVersion2InVersion1(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State):
             message = replace(message, flags=message.flags | m.RECKONED)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 # --- The catalogue -------------------------------------------------------------------------------
@@ -220,71 +220,71 @@ class FlagsOfVersion2InVersion1(Mutant):
 
 @breaks("catalogue complete")
 class CannotSayItsLastJoint(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if not (isinstance(message, m.Joint) and message.index == 13):
-            super().say(session, message)
+            super().send_message(session, message)
 
 
 @breaks("catalogue complete")
 class NamesEverythingZero(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Name):
             message = replace(message, index=0)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("names distinct")
 class CallsEverythingTheSame(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Name):
             message = replace(message, name="thing")
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("names distinct")
 class HasNoName(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Welcome):
             message = replace(message, name="")
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("joint limits sensible")
 class HasAJointTheWrongWayRound(Mutant):
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Joint) and message.index == 3:
             message = replace(message, low=message.high, high=message.low)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("catalogue constant")
 class CountsItsGreetings(Mutant):
     greeted = 0
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Welcome):
             self.greeted += 1
             message = replace(message, catalogue=self.greeted)
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("catalogue constant")
 class NamesThingsAnewEachTime(Mutant):
     asked = 0
 
-    def say(self, session: int, message: Any) -> None:
+    def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Name):
             self.asked += 1
             message = replace(message, name=f"thing {self.asked}")
-        super().say(session, message)
+        super().send_message(session, message)
 
 
 @breaks("no entry beyond the catalogue")
 class AnswersEveryQuestion(Mutant):
-    def hear(self, number: int, session: int, body: bytes) -> None:
+    def on_body(self, number: int, session: int, body: bytes) -> None:
         if number == 2 and body[4] == 255 and session == self.session:
             self.send(session, m.Name(m.ITEM_MOTION, 255, "?"))
-        super().hear(number, session, body)
+        super().on_body(number, session, body)
 
 
 assert MESSAGES[2].kind is m.Ask
