@@ -1,6 +1,7 @@
 """The robot of a session: a real one, a simulated one on a real port, or none."""
 
 import threading
+import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
@@ -15,7 +16,7 @@ from robot import Robot, RobotError, SimulatedPort, SteppedRobot, connect
 from robot.contract.closeable import Closeable
 
 OnBytes = Callable[[str, bytes, float], None]
-"""Called with ("tx" | "rx", bytes, time of the session's clock [s]) for all bytes on the wire."""
+"""Called with ("tx" | "rx", bytes, time of the robot's clock [s]) for all bytes on the wire."""
 
 Clock = Callable[[], float]
 """Returns the time of the session [s]."""
@@ -31,13 +32,16 @@ class RobotLine(Closeable):
     def __init__(
         self,
         robot: Robot | None = None,
+        clock: Clock = time.monotonic,
         *,
         real: bool = False,
-        stepper: "RobotStepper | None" = None,
+        stepped: SteppedRobot | None = None,
     ) -> None:
+        self.clock = clock
+        """The time that `on_bytes` receives [s]."""
         self._robot = robot
         self._real = real
-        self._stepper = stepper
+        self._stepped = stepped
         self._closing = ExitStack()
         self._target: EmotionTarget | None = None
 
@@ -74,27 +78,28 @@ class RobotLine(Closeable):
             The port does not open or no robot answers.
         """
         if url == "none":
-            return cls()
+            return cls(clock=clock)
         simulated = url == "sim" or url.startswith("sim:")
         with ExitStack() as closing:
             if simulated and stepped:
-                stepper = RobotStepper(url, clock, on_bytes, settings)
-                closing.enter_context(stepper.robot)
-                line = cls(stepper.robot, stepper=stepper)
+                name = "sim:cubeling" if url == "sim" else url
+                robot = SteppedRobot(name, on_bytes=on_bytes, settings=settings)
+                line = cls(robot, lambda: robot.now, stepped=robot)
+                closing.enter_context(robot)
             else:
                 if url == "sim":
                     url = closing.enter_context(SimulatedPort(clock=clock)).url
-                robot = connect(url, clock=clock, on_bytes=on_bytes, settings=settings)
-                closing.enter_context(robot)
-                line = cls(robot, real=not simulated)
+                connected = connect(url, clock=clock, on_bytes=on_bytes, settings=settings)
+                line = cls(closing.enter_context(connected), clock, real=not simulated)
             line._closing = closing.pop_all()
         return line
 
     def feel(self, target: EmotionTarget) -> None:
         """Ask the robot to express an emotion; return at once."""
+        previous = self._target or target
         self._target = target
-        if self._stepper is not None:
-            self._stepper.advance_to(target.timestamp)
+        if self._stepped is not None:
+            self._stepped.advance(max(0.0, target.timestamp - previous.timestamp))
         if self._robot is not None:
             self._robot.express(target.emotion)
 
@@ -129,48 +134,6 @@ class RobotLine(Closeable):
         self._robot = None
 
 
-class RobotStepper:
-    """Advances a simulated robot with the frames.
-
-    Parameters
-    ----------
-    url
-        "sim", or what `SteppedRobot` takes.
-    clock
-        The session's time, which `on_bytes` receives [s].
-    on_bytes, settings
-        See `RobotLine.open`. Bytes from before the first frame are reported with that frame.
-    """
-
-    def __init__(
-        self, url: str, clock: Clock, on_bytes: OnBytes | None, settings: Path | None
-    ) -> None:
-        self._clock = clock
-        self._on_bytes = on_bytes
-        self._early: list[tuple[str, bytes, float]] = []
-        self._offset = 0.0
-        self._frame_time: float | None = None
-        url = "sim:cubeling" if url == "sim" else url
-        self.robot = SteppedRobot(url, on_bytes=self._report, settings=settings)
-        """The robot."""
-
-    def advance_to(self, timestamp: float) -> None:
-        """Advance the robot to the frame with this timestamp [s]."""
-        if self._frame_time is None:
-            self._frame_time = timestamp
-            self._offset = self._clock() - self.robot.now
-            for direction, data, time in self._early:
-                self._report(direction, data, time)
-        self.robot.advance(max(0.0, timestamp - self._frame_time))
-        self._frame_time = timestamp
-
-    def _report(self, direction: str, data: bytes, time: float) -> None:
-        if self._frame_time is None:
-            self._early.append((direction, data, time))
-        elif self._on_bytes is not None:
-            self._on_bytes(direction, data, time + self._offset)
-
-
 class WireRecorder:
     """Records the robot's bytes with the timestamps of the frames.
 
@@ -190,7 +153,7 @@ class WireRecorder:
         self._offset: float | None = None
 
     def __call__(self, direction: str, data: bytes, time: float) -> None:
-        """Record bytes of one direction at a time of the session's clock [s]."""
+        """Record bytes of one direction at a time of the robot's clock [s]."""
         with self._lock:
             if self._offset is None:
                 self._early.append((direction, data, time))

@@ -49,7 +49,7 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
             else:
                 gaps.end(frame)
                 if session.wire is not None:
-                    session.wire.align(frame.timestamp - session.clock())
+                    session.wire.align(frame.timestamp - session.robot.clock())
                 step = loop.step(frame)
                 if progress is not None:
                     progress(step)
