@@ -16,11 +16,11 @@ from affect import Emotion
 from affect.words import PLACES
 from robot import Robot, RobotError, Telemetry, connect
 
-LOOK_EVERY = 0.05
-"""How often the robot is looked at [s]."""
+POLL_INTERVAL_S = 0.05
+"""How often the telemetry is read."""
 
-LONGEST = 3600.0
-"""A mood is held no longer [s]."""
+MAX_MOOD_S = 3600.0
+"""The longest time for which a mood may be held."""
 
 
 def try_(
@@ -33,78 +33,80 @@ def try_(
     ] = None,
     seconds: Annotated[float, typer.Option(help="How long each mood is held.")] = 5.0,
     settings: Annotated[
-        Path | None, typer.Option(help="A .toml file for the robot: what it does in each mood.")
+        Path | None, typer.Option(help="A .toml file for the robot: what it does for each mood.")
     ] = None,
 ) -> None:
-    """Let a robot show its moods one after the other, and tell how well it does.
+    """Let a robot show its moods one after the other, and report the result of each.
 
-    For each: how soon the robot acknowledged it, how soon it showed it where it says what it shows,
-    and what it complains of. Ends with the robot neutral; Ctrl-C ends it earlier.
+    The result says how soon the robot acknowledged the mood, how soon it showed it if the robot
+    reports that, and the robot's own error messages. It ends with the robot neutral, or at Ctrl-C.
 
     Example: [cyan]cubeling robot try pleo:/dev/ttyACM0 --settings my-pleo.toml[/]
     """
     console = Console(highlight=False)
-    if not 0.1 <= seconds <= LONGEST:
-        raise RobotError(f"a mood is held for 0.1 to {LONGEST:g} seconds, not {seconds:g}")
+    if not 0.1 <= seconds <= MAX_MOOD_S:
+        raise RobotError(f"a mood is held for 0.1 to {MAX_MOOD_S:g} seconds, not {seconds:g}")
     with connect(port, settings=settings) as robot:
-        words = robot.catalogue.moods
-        for one in mood or ():
-            if one not in words:
-                raise RobotError(f"{robot.catalogue.name} has no mood {one!r}: {', '.join(words)}")
-        console.print(_introduction(robot), soft_wrap=True)
+        moods = robot.catalogue.moods
+        for name in mood or ():
+            if name not in moods:
+                raise RobotError(f"{robot.catalogue.name} has no mood {name!r}: {', '.join(moods)}")
+        console.print(_describe(robot), soft_wrap=True)
         with suppress(KeyboardInterrupt):
-            for word in mood or (*words, words[0]):
-                console.print(_show(robot, word, seconds, console), soft_wrap=True)
+            for name in mood or (*moods, moods[0]):
+                console.print(_try_mood(robot, name, seconds, console), soft_wrap=True)
         robot.stop()
         robot.check()
 
 
-def _introduction(robot: Robot) -> str:
-    has = robot.catalogue
-    lists = (("moods", has.moods), ("motions", has.motions), ("sounds", has.sounds))
-    told = "; ".join(f"{name} {', '.join(words)}" for name, words in lists if words)
-    return f"[bold]{has.name}[/] ({has.firmware}), {len(has.joints)} joints; {told}"
+def _describe(robot: Robot) -> str:
+    catalogue = robot.catalogue
+    lists = ("moods", catalogue.moods), ("motions", catalogue.motions), ("sounds", catalogue.sounds)
+    contents = "; ".join(f"{name} {', '.join(words)}" for name, words in lists if words)
+    joints = len(catalogue.joints)
+    return f"[bold]{catalogue.name}[/] ({catalogue.firmware}), {joints} joints; {contents}"
 
 
-def _show(robot: Robot, word: str, seconds: float, console: Console) -> str:
-    """Ask for a mood, watch for a while, and say what came of it in a line."""
+def _try_mood(robot: Robot, word: str, seconds: float, console: Console) -> str:
+    """Request a mood, watch the telemetry, and return the result in a line."""
     emotion = Emotion(*PLACES.get(word, (0.0, 0.0)), word)
     began = time.monotonic()
     robot.express(emotion)
-    taken = shown = math.nan
+    acknowledged_s = shown_s = math.nan
     with Live(console=console, transient=True, refresh_per_second=10) as live:
         while (now := time.monotonic()) < began + seconds:
-            known = robot.telemetry
-            if math.isnan(taken) and known.acknowledged == emotion:
-                taken = now - began
-            if math.isnan(shown) and known.label == word:
-                shown = now - began
+            telemetry = robot.telemetry
+            if math.isnan(acknowledged_s) and telemetry.acknowledged == emotion:
+                acknowledged_s = now - began
+            if math.isnan(shown_s) and telemetry.label == word:
+                shown_s = now - began
             if console.is_terminal:
-                live.update(_state(known))
-            time.sleep(LOOK_EVERY)
-    known = robot.telemetry
-    acknowledged = (
-        "[red]not acknowledged[/]" if math.isnan(taken) else f"acknowledged {taken:.2f} s"
-    )
-    if not math.isnan(shown):
-        seen = f"shown {shown:.2f} s"
-    else:
-        silent = known.observed is None
-        seen = "it does not say what it shows" if silent else "[red]not shown[/]"
-    limp = "  [red]its motors have no power[/]" if known.limp else ""
-    complaint = f"  [red]it complains: {escape(known.complaint)}[/]" if known.complaint else ""
-    return f"{word:12} {acknowledged}, {seen}; link {known.state}{limp}{complaint}"
+                live.update(_table(telemetry))
+            time.sleep(POLL_INTERVAL_S)
+    telemetry = robot.telemetry
+    acknowledged, shown = f"acknowledged {acknowledged_s:.2f} s", f"shown {shown_s:.2f} s"
+    if math.isnan(acknowledged_s):
+        acknowledged = "[red]not acknowledged[/]"
+    if math.isnan(shown_s):
+        has_feedback = telemetry.observed is not None
+        shown = "[red]not shown[/]" if has_feedback else "it does not say what it shows"
+    limp = "  [red]its motors have no power[/]" if telemetry.limp else ""
+    complaint = telemetry.complaint
+    error = f"  [red]it complains: {escape(complaint)}[/]" if complaint else ""
+    return f"{word:12} {acknowledged}, {shown}; link {telemetry.state}{limp}{error}"
 
 
-def _state(known: Telemetry) -> Table:
+def _table(telemetry: Telemetry) -> Table:
     table = Table(show_header=False, box=None, padding=(0, 2))
-    battery = "" if known.battery is None else f"{100 * known.battery:.0f} %"
-    table.add_row("link", known.state, "battery", battery)
-    table.add_row("asked", _point(known.commanded), "taken", _point(known.acknowledged))
-    table.add_row("shown", _point(known.observed), "as", known.label or "")
-    table.add_row("motion", known.motion or "", "sound", known.sound or "")
-    counts = known.counts
-    table.add_row("repeats", str(counts.retries), "damaged", str(counts.crc_errors))
+    battery = "" if telemetry.battery is None else f"{100 * telemetry.battery:.0f} %"
+    table.add_row("link", telemetry.state, "battery", battery)
+    table.add_row(
+        "requested", _point(telemetry.commanded), "acknowledged", _point(telemetry.acknowledged)
+    )
+    table.add_row("shown", _point(telemetry.observed), "as", telemetry.label or "")
+    table.add_row("motion", telemetry.motion or "", "sound", telemetry.sound or "")
+    counts = telemetry.counts
+    table.add_row("retries", str(counts.retries), "damaged", str(counts.crc_errors))
     return table
 
 

@@ -7,10 +7,9 @@ from contextlib import contextmanager
 from app.errors import AppError
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import Step
-from app.running.gaps import CameraGaps
 from app.running.opening import OpenedSession
 from app.running.summary import Summary
-from app.session import START_OVER_EVENT, frame_encoder
+from app.session import START_OVER_EVENT, Recorder, frame_encoder
 from app.ui.notice import notice
 from robot import RobotError
 from tracking import Frame, Health, LiveFrames, TrackingError
@@ -27,6 +26,10 @@ ATTENDED_RECONNECT_TIMEOUT_S = 30.0
 UNATTENDED_RECONNECT_TIMEOUT_S = 3.0
 """How long it may be lost without a window: long enough for a network's short stalls."""
 
+CAMERA_LOST = "camera lost"
+CAMERA_BACK = "camera back"
+"""The events of a recording between which there are no pictures."""
+
 
 def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
     """Run a session to its end, until the player closes the window, or until Ctrl-C.
@@ -39,7 +42,7 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
     summary = Summary(session.playground.scenario.name)
     with _end_on_interrupt(summary):
         loop = _FrameLoop(session, summary)
-        gaps = CameraGaps(summary, session.recorder)
+        gaps = _CameraGaps(summary, session.recorder)
         for frame in _frames(session, summary):
             if isinstance(frame, Health):
                 message = notice(frame)
@@ -114,6 +117,39 @@ class _FrameLoop:
             recorder.event("shaken", now)
         if recorder.problem is not None:
             raise AppError(recorder.problem)
+
+
+class _CameraGaps:
+    """Notes when the camera was lost and when it came back.
+
+    Parameters
+    ----------
+    summary
+        Collects the gaps of the session.
+    recorder
+        Records their begin and end as events, or None.
+    """
+
+    def __init__(self, summary: Summary, recorder: Recorder | None) -> None:
+        self._summary, self._recorder = summary, recorder
+        self._start: float | None = None
+
+    def begin(self) -> None:
+        """Begin a gap at the last frame; further calls within the gap do nothing."""
+        if self._start is None:
+            self._start = self._summary.last
+            self._record(CAMERA_LOST, self._start)
+
+    def end(self, frame: Frame) -> None:
+        """End the gap, if there is one, at this frame."""
+        if self._start is not None:
+            self._summary.gaps.append((self._start, frame.timestamp - self._start))
+            self._start = None
+            self._record(CAMERA_BACK, frame.timestamp)
+
+    def _record(self, event: str, timestamp: float) -> None:
+        if self._recorder is not None:
+            self._recorder.event(event, timestamp)
 
 
 def _frames(session: OpenedSession, summary: Summary) -> Iterator[Frame | Health]:
