@@ -13,6 +13,7 @@ from tracking.cube.model import aruco_dictionary
 from tracking.cube.printing.layout import PAPERS
 from tracking.cube.printing.pdf_page import PdfPage
 from tracking.errors import TrackingError
+from tracking.files import write_whole
 
 Array = NDArray[np.float64]
 
@@ -95,10 +96,7 @@ def write_board(path: str | Path, paper: str = "a4") -> Board:
     pen = PdfPage(width, height, "ChArUco board")
     pen.fill(_black_areas(board, np.array([(width - 5000 * board.square) / 2, MARGIN_MM])), BLACK)
     _draw_ruler(pen, width, height - MARGIN_MM)
-    try:
-        pen.save(Path(path))
-    except OSError as error:
-        raise TrackingError(f"cannot write the board '{path}': {error.strerror}") from error
+    write_whole(path, pen.to_bytes(), "board")
     return board
 
 

@@ -11,13 +11,13 @@ from tracking.cube.model import CubeModel, Face
 Array = NDArray[np.float64]
 
 POINTS_PER_CELL = 5
-"""Points on each cell's length of an edge: 2 to 3 px apart at arm's length, so that their noise is
+"""Points along an edge for each cell: at arm's length they are 2 to 3 px apart, so their noise is
 independent."""
 
 
 @dataclass(frozen=True)
 class EdgeModel:
-    """Points on every border between black and white of every marker, the outer and the inner ones.
+    """Points on every border between black and white of every marker, outer and inner ones.
 
     All arrays have the same length N.
     """
@@ -26,10 +26,10 @@ class EdgeModel:
     """Points in the cube frame, (N, 3) [m]."""
 
     along: Array
-    """Vector of one cell's length along the edge, (N, 3) [m]."""
+    """Vector along the edge, one cell long, (N, 3) [m]."""
 
     across: Array
-    """Vector of one cell's length across the edge in the face, from black to white, (N, 3) [m]."""
+    """Vector across the edge from black to white, one cell long, (N, 3) [m]."""
 
     to_end: Array
     """Distance along the edge to its nearer end, (N,) [cells]."""
@@ -38,16 +38,13 @@ class EdgeModel:
     """Whether the edge is the outer border of its marker, with white paper on one side, (N,)."""
 
     face: NDArray[np.intp]
-    """Number of the face in `CubeModel.faces`, (N,)."""
+    """Index of the face in `CubeModel.faces`, (N,)."""
 
     line: NDArray[np.intp]
-    """Number of the straight line that the edge lies on, white on one and the same side, (N,).
-
-    It never falls from one point to the next.
-    """
+    """Index of the straight line of the edge, with white on one side of it, (N,), ascending."""
 
     def of_faces(self, faces: tuple[int, ...]) -> "EdgeModel":
-        """Keep the edges of some faces, by their numbers."""
+        """Return the edges of some faces, by their indices."""
         return self._of(np.flatnonzero(np.isin(self.face, faces)))
 
     def _of(self, chosen: NDArray[np.intp]) -> "EdgeModel":
@@ -63,13 +60,13 @@ class EdgeModel:
 
     @classmethod
     def of(cls, cube: CubeModel) -> "EdgeModel":
-        """Lay out the edges of a cube."""
+        """Place points on the edges of a cube."""
         parts = [_face_edges(cube, face) for face in cube.faces]
         points, along, across, to_end, outline = (
             np.concatenate(columns) for columns in zip(*parts, strict=True)
         )
         numbers = np.repeat(np.arange(len(parts)), [len(part[0]) for part in parts])
-        # In one face a line is told by the way to its white side and how far out it lies that way.
+        # Within a face, a line is identified by the direction of its white side and its distance.
         places = np.einsum("ij,ij->i", points, across)
         keys = np.column_stack([numbers, np.round(np.column_stack([across, places]), 9)])
         line = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
@@ -81,11 +78,9 @@ def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, ...]:
     white = ~marker_cells(cube.dictionary, face.marker_id)
     cells = np.pad(white, 1, constant_values=True)
     count = len(cells) - 2
-    # Upright edges (between columns), then level ones (between rows), in units of cells from the
-    # top-left.
-    upright = _runs(cells)
-    level = _runs(cells.T)
-    flat = np.concatenate([upright, level[:, [1, 0, 3, 2, 5, 4, 6]]])
+    # Vertical edges (between columns), then horizontal ones, in cells from the top left.
+    vertical, horizontal = _vertical_edges(cells), _vertical_edges(cells.T)
+    flat = np.concatenate([vertical, horizontal[:, [1, 0, 3, 2, 5, 4, 6]]])
     top_left, top_right, _, bottom_left = face.corners
     axes = np.stack([top_right - top_left, bottom_left - top_left]) / count
     points = top_left + flat[:, 0:2] @ axes
@@ -93,12 +88,13 @@ def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, ...]:
     return points, flat[:, 2:4] @ axes, flat[:, 4:6] @ axes, flat[:, 6], outline
 
 
-def _runs(cells: NDArray[np.bool_]) -> Array:
-    """Lay points on the upright edges of a padded pattern.
+def _vertical_edges(cells: NDArray[np.bool_]) -> Array:
+    """Place points on the vertical edges of a padded pattern.
 
     Returns
     -------
-    Place x y, one cell along the edge (2), one across it (2), and to its end, (N, 7) [cells].
+    Position (2), one cell along the edge (2), one across it (2), and the distance to its nearer
+    end, (N, 7) [cells].
     """
     rows = []
     for column in range(1, cells.shape[1]):

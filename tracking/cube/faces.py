@@ -1,4 +1,4 @@
-"""Which faces of the cube look at the camera."""
+"""The planes of the cube's faces, and which of them face the camera."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,13 +10,7 @@ Array = NDArray[np.float64]
 
 
 class FacePlanes:
-    """The planes of the cube's faces, measured corners and all.
-
-    Parameters
-    ----------
-    cube
-        The cube, as printed.
-    """
+    """The planes of the cube's faces, by their measured corners."""
 
     def __init__(self, cube: CubeModel) -> None:
         self.names = tuple(face.name for face in cube.faces)
@@ -26,29 +20,29 @@ class FacePlanes:
         """Centres of the markers, (faces, 3) [m]."""
 
     def cosines(self, camera_from_cube: Array) -> Array:
-        """Cosines between each face's normal and its line of sight, (faces,): 1 is square on."""
-        turn, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
-        sights = self.centres @ turn.T + origin
-        towards = -((self.normals @ turn.T) * sights).sum(axis=1)
+        """Cosine between each face's normal and its line of sight, (faces,): 1 is square on."""
+        rotation, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
+        sights = self.centres @ rotation.T + origin
+        towards = -((self.normals @ rotation.T) * sights).sum(axis=1)
         return np.asarray(towards / np.sqrt((sights * sights).sum(axis=1)), np.float64)
 
-    def facing(self, camera_from_cube: Array, least: float) -> tuple[int, ...]:
-        """Numbers of the faces whose cosine is greater than `least`."""
-        return tuple(np.flatnonzero(self.cosines(camera_from_cube) > least).tolist())
+    def facing(self, camera_from_cube: Array, min_cosine: float) -> tuple[int, ...]:
+        """Return the indices of the faces whose cosine is greater than `min_cosine`."""
+        return tuple(np.flatnonzero(self.cosines(camera_from_cube) > min_cosine).tolist())
 
     def mirrored(self, camera_from_cube: Array, face: int) -> Array:
-        """Pose of the cube if one face leans to the other side of its line of sight, (4, 4).
+        """Pose of the cube with one face tilted to the other side of its line of sight, (4, 4).
 
         The centre of the face stays where it is.
         """
-        turn = camera_from_cube[:3, :3]
-        centre = turn @ self.centres[face] + camera_from_cube[:3, 3]
-        normal, back = turn @ self.normals[face], -centre / np.linalg.norm(centre)
+        rotation = camera_from_cube[:3, :3]
+        centre = rotation @ self.centres[face] + camera_from_cube[:3, 3]
+        normal, back = rotation @ self.normals[face], -centre / np.linalg.norm(centre)
         axis = np.cross(normal, back)
         sine = float(np.linalg.norm(axis))
         angle = 2 * float(np.arctan2(sine, normal @ back))
-        turned = se3.rotation(axis / max(sine, 1e-9) * angle) @ turn
-        return se3.pose(turned, centre - turned @ self.centres[face])
+        mirrored = se3.rotation(axis / max(sine, 1e-9) * angle) @ rotation
+        return se3.pose(mirrored, centre - mirrored @ self.centres[face])
 
 
 def plane_normal(face: Face) -> Array:

@@ -1,28 +1,27 @@
 """Writing a cube as the TOML file that `CubeModel.load` reads."""
 
 import json
-import os
 from pathlib import Path
 
 import numpy as np
 
 from tracking.cube.model import CubeModel, Face, face_corners
 from tracking.errors import TrackingError
+from tracking.files import write_whole
 
 
 def write_cube(cube: CubeModel, path: str | Path) -> None:
-    """Write a cube, with the measured corners of the faces that are not where they should be.
+    """Write a cube, with the measured corners of the faces that differ from the ideal ones.
 
-    The file appears whole or not at all.
+    The file is written completely or not at all.
 
     Raises
     ------
     TrackingError
-        The path does not end in .toml, or nothing can be written there.
+        The path does not end in .toml, or cannot be written.
     """
-    target = Path(path)
-    if target.suffix != ".toml":
-        raise TrackingError(f"a cube is kept in a .toml file, not in '{path}'")
+    if Path(path).suffix != ".toml":
+        raise TrackingError(f"a cube is written to a .toml file, not to '{path}'")
     lines = [
         f"name = {_quoted(cube.name)}",
         *([f"hint = {_quoted(cube.hint)}"] if cube.hint else []),
@@ -31,13 +30,7 @@ def write_cube(cube: CubeModel, path: str | Path) -> None:
         f"marker_mm = {cube.marker_size * 1000:.10g}",
         *(line for face in cube.faces for line in _face(cube, face)),
     ]
-    partial = target.with_name(target.name + ".partial")
-    try:
-        partial.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        os.replace(partial, target)
-    except OSError as error:
-        partial.unlink(missing_ok=True)
-        raise TrackingError(f"cannot write the cube '{path}': {error.strerror}") from error
+    write_whole(path, ("\n".join(lines) + "\n").encode(), "cube")
 
 
 def _face(cube: CubeModel, face: Face) -> list[str]:
@@ -60,5 +53,5 @@ def _face(cube: CubeModel, face: Face) -> list[str]:
 
 
 def _quoted(text: str) -> str:
-    # What JSON escapes, TOML's basic strings escape alike.
+    # The escapes of JSON strings are those of TOML's basic strings.
     return json.dumps(text, ensure_ascii=False)

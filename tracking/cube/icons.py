@@ -1,8 +1,8 @@
-"""The little pictures beside the markers, as outlines that paper and screen can fill.
+"""The icons next to the markers, as outlines to fill on paper and on screen.
 
 An icon is a list of loops in the unit square, x right and y down. They are filled by the
-**nonzero** rule: loops that run clockwise as seen are ink and may overlap, loops that run the other
-way are holes. Painting them one after the other, ink or paper, gives the same picture.
+**nonzero** rule: clockwise loops are ink and may overlap, counter-clockwise loops are holes.
+Painting them one after the other, ink or paper, gives the same result.
 """
 
 import itertools
@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 Loop = NDArray[np.float64]
 Point = tuple[float, float]
 
-ROUND = 40
-"""Corners of a circle: at 6 mm its sides are half a millimetre, and look round."""
+CIRCLE_POINTS = 40
+"""Points of a circle: at 6 mm its sides are half a millimetre long and look round."""
 
 INK: dict[str, tuple[int, int, int]] = {
     "stand": (42, 157, 143),
@@ -30,7 +30,7 @@ INK: dict[str, tuple[int, int, int]] = {
 }
 """Colour of each icon that a face can carry (red, green, blue).
 
-None is dark: a marker's white border must stay brighter than its black for a camera out of focus.
+None is dark: next to a marker, a dark colour would look like its black to a camera out of focus.
 """
 
 
@@ -51,11 +51,11 @@ def icon_paths(name: str) -> list[Loop]:
 
 
 def icon_mask(name: str, pixels: int) -> NDArray[np.uint8]:
-    """Draw an icon: how much of each pixel is ink, 0 to 255, (pixels, pixels)."""
-    finer = 8
-    mask = np.zeros((pixels * finer, pixels * finer), np.uint8)
+    """Draw an icon as the coverage of each pixel, 0 to 255, (pixels, pixels)."""
+    oversampling = 8
+    mask = np.zeros((pixels * oversampling, pixels * oversampling), np.uint8)
     for loop in icon_paths(name):
-        corners = np.rint(loop * (pixels * finer * 16) - 8).astype(np.int32)
+        corners = np.rint(loop * (pixels * oversampling * 16) - 8).astype(np.int32)
         cv2.fillPoly(mask, [corners], 255 if signed_area(loop) > 0 else 0, shift=4)
     small = cv2.resize(mask, (pixels, pixels), interpolation=cv2.INTER_AREA)
     return np.asarray(small, np.uint8)
@@ -68,8 +68,8 @@ def signed_area(loop: Loop) -> float:
 
 
 def _disc(x: float, y: float, radius: float) -> Loop:
-    turn = np.linspace(0, 2 * math.pi, ROUND, endpoint=False)
-    return np.column_stack([x + radius * np.cos(turn), y + radius * np.sin(turn)])
+    angle = np.linspace(0, 2 * math.pi, CIRCLE_POINTS, endpoint=False)
+    return np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)])
 
 
 def _hole(loop: Loop) -> Loop:
@@ -77,7 +77,7 @@ def _hole(loop: Loop) -> Loop:
 
 
 def _limb(*joints: tuple[float, float, float]) -> list[Loop]:
-    """Round-ended strokes from joint to joint, each joint (x, y, radius)."""
+    """Strokes with round ends from joint to joint, each joint (x, y, radius)."""
     loops = []
     for one, other in itertools.pairwise(joints):
         circles = np.concatenate([_disc(*one), _disc(*other)]).astype(np.float32)
@@ -92,16 +92,18 @@ def _stroke(width: float, *points: Point) -> list[Loop]:
 
 def _arc(x: float, y: float, radius: float, width: float, start: float, end: float) -> Loop:
     """Return part of a ring; angles in degrees, clockwise from the right."""
-    turn = np.radians(np.linspace(start, end, ROUND))
-    way = np.column_stack([np.cos(turn), np.sin(turn)])
-    ring = np.concatenate([way * (radius + width / 2), way[::-1] * (radius - width / 2)])
+    angle = np.radians(np.linspace(start, end, CIRCLE_POINTS))
+    direction = np.column_stack([np.cos(angle), np.sin(angle)])
+    ring = np.concatenate(
+        [direction * (radius + width / 2), direction[::-1] * (radius - width / 2)]
+    )
     return np.asarray(ring + np.array([x, y]))
 
 
 def _heart(x: float, y: float, size: float) -> Loop:
-    turn = np.linspace(0, 2 * math.pi, 2 * ROUND, endpoint=False)
-    across = 16 * np.sin(turn) ** 3
-    upwards = 13 * np.cos(turn) - 5 * np.cos(2 * turn) - 2 * np.cos(3 * turn) - np.cos(4 * turn)
+    angle = np.linspace(0, 2 * math.pi, 2 * CIRCLE_POINTS, endpoint=False)
+    across = 16 * np.sin(angle) ** 3
+    upwards = 13 * np.cos(angle) - 5 * np.cos(2 * angle) - 2 * np.cos(3 * angle) - np.cos(4 * angle)
     return np.column_stack([across, -upwards - 2.5]) * (size / 32) + (x, y)
 
 
@@ -173,9 +175,9 @@ def _kiss() -> list[Loop]:
 
 def _shout() -> list[Loop]:
     spikes = 11
-    turn = np.radians(np.arange(2 * spikes) * 180 / spikes - 90)
+    angle = np.radians(np.arange(2 * spikes) * 180 / spikes - 90)
     reach = np.where(np.arange(2 * spikes) % 2, 0.34, 0.49)
-    burst = np.column_stack([np.cos(turn), np.sin(turn)]) * reach[:, None] + 0.5
+    burst = np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None] + 0.5
     stroke = _limb((0.5, 0.27, 0.062), (0.5, 0.52, 0.036))[0]
     return [burst, _hole(stroke), _hole(_disc(0.5, 0.69, 0.055))]
 
@@ -221,4 +223,4 @@ ICONS: dict[str, Callable[[], list[Loop]]] = {
     "fold": _fold,
     "glue": _glue,
 }
-"""Every icon. Those with a colour in `INK` stand on faces, the others in instructions."""
+"""All icons. Those with a colour in `INK` are printed on faces, the others in the instructions."""

@@ -1,4 +1,4 @@
-"""The black shape of a marker as outlines, for a picture of any size."""
+"""The cells of a marker, and its black shape as outlines."""
 
 import cv2
 import numpy as np
@@ -8,12 +8,12 @@ from tracking.cube.model import aruco_dictionary
 
 Loop = NDArray[np.float64]
 
-TURNS = ((1, 0), (0, 1), (-1, 0), (0, -1))
+GRID_STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))
 """Steps along cell borders, clockwise with y down."""
 
 
 def marker_cells(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
-    """Return which cells of a marker are black, its border included, (cells, cells), rows first."""
+    """Return which cells of a marker are black, with its border, (rows, columns)."""
     pattern = aruco_dictionary(dictionary)
     picture = cv2.aruco.generateImageMarker(pattern, marker_id, pattern.markerSize + 2)
     return np.asarray(picture) < 128
@@ -22,18 +22,18 @@ def marker_cells(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
 def marker_loops(dictionary: str, marker_id: int) -> list[Loop]:
     """Outline the black of a marker.
 
-    One filled path has no seams between its cells, as squares side by side have.
+    One filled path has no seams between its cells, unlike adjacent squares.
 
     Returns
     -------
-    Loops (N, 2) in the unit square, x right and y down, first corner anywhere: clockwise around
-    black, the other way around the white inside it, so the nonzero and the even-odd rule agree.
+    Loops (N, 2) in the unit square, x right and y down: clockwise around black, counter-clockwise
+    around white inside it, so the nonzero and the even-odd rule agree.
     """
     cells = marker_cells(dictionary, marker_id)
     outgoing = _borders(cells)
     loops = []
     while outgoing:
-        start = point = min(outgoing)  # a corner of its loop, as nothing lies left of it
+        start = point = min(outgoing)  # a corner of its loop: nothing is left of it
         step = last = outgoing[start][0]
         loop: list[tuple[int, int]] = []
         while True:
@@ -52,26 +52,26 @@ def marker_loops(dictionary: str, marker_id: int) -> list[Loop]:
 
 
 def _borders(cells: NDArray[np.bool_]) -> dict[tuple[int, int], list[tuple[int, int]]]:
-    """List the steps along black cells from each grid point, black on the right hand."""
+    """List the steps along black cells from each grid point, with black on the right."""
     around = np.pad(cells, 1)
     steps: dict[tuple[int, int], list[tuple[int, int]]] = {}
     for row, column in np.argwhere(cells):
         corner = np.array(
             [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)]
         )
-        beside = (
+        neighbours = (
             (row, column + 1),
             (row + 1, column + 2),
             (row + 2, column + 1),
             (row + 1, column),
         )
-        for (x, y), step, neighbour in zip(corner, TURNS, beside, strict=True):
+        for (x, y), step, neighbour in zip(corner, GRID_STEPS, neighbours, strict=True):
             if not around[neighbour]:
                 steps.setdefault((int(x), int(y)), []).append(step)
     return steps
 
 
 def _next_step(choices: list[tuple[int, int]], last: tuple[int, int]) -> tuple[int, int]:
-    """Where two black cells meet at a corner only, stay with the cell at hand: turn right first."""
-    right = TURNS[(TURNS.index(last) + 1) % 4]
+    """Turn right first: where two black cells meet only at a corner, stay with the same cell."""
+    right = GRID_STEPS[(GRID_STEPS.index(last) + 1) % 4]
     return right if right in choices else choices[0]

@@ -1,4 +1,4 @@
-"""Where the markers of a hand-folded cube really are: `corners_mm` in its file."""
+"""Measured corners of the markers of a hand-folded cube: `corners_mm` in its file."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,11 +7,11 @@ from tracking.errors import TrackingError
 
 Corners = NDArray[np.float64]
 
-UNEVEN = 0.02
+MAX_DISTORTION = 0.02
 """A marker is a square to this share of its side."""
 
-ASTRAY = 0.15
-"""No corner of a face that is where it belongs is further off than this share of its side."""
+MAX_DISPLACEMENT = 0.15
+"""No corner is displaced by more than this share of the marker's side."""
 
 
 def measured_corners(value: object, ideal: Corners, marker: float, of_face: str) -> Corners:
@@ -20,13 +20,13 @@ def measured_corners(value: object, ideal: Corners, marker: float, of_face: str)
     Parameters
     ----------
     value
-        What stands in the file: 4 corners of 3 numbers [mm].
+        The value in the file: 4 corners of 3 numbers [mm].
     ideal
-        Where the corners should be, (4, 3) [m].
+        The ideal corners, (4, 3) [m].
     marker
         Side of the black square [m].
     of_face
-        Names file and face in errors.
+        File and face, for errors.
 
     Returns
     -------
@@ -35,7 +35,7 @@ def measured_corners(value: object, ideal: Corners, marker: float, of_face: str)
     Raises
     ------
     TrackingError
-        They are no corners of such a square near its place.
+        They are not the corners of such a square near its ideal place.
     """
     try:
         corners = np.array(value, np.float64) / 1000
@@ -45,14 +45,14 @@ def measured_corners(value: object, ideal: Corners, marker: float, of_face: str)
         raise TrackingError(f"{of_face} needs 4 corners of 3 numbers each as corners_mm")
     spans, right = (np.linalg.norm(c[:, None] - c, axis=2) for c in (corners, ideal))
     warp = np.linalg.norm(corners[0] - corners[1] + corners[2] - corners[3])
-    if max(np.abs(spans - right).max(), warp) > UNEVEN * marker:
+    if max(np.abs(spans - right).max(), warp) > MAX_DISTORTION * marker:
         raise TrackingError(
-            f"{of_face}: corners_mm are those of no square of {marker * 1000:g} mm, the marker_mm"
+            f"{of_face}: corners_mm do not form a square of {marker * 1000:g} mm, the marker_mm"
         )
     away = float(np.linalg.norm(corners - ideal, axis=1).max())
-    if away > ASTRAY * marker:
+    if away > MAX_DISPLACEMENT * marker:
         raise TrackingError(
-            f"{of_face}: corners_mm lie {away * 1000:.1f} mm from where the marker should be; "
+            f"{of_face}: corners_mm are {away * 1000:.1f} mm from where the marker should be; "
             "check their order (top-left, top-right, bottom-right, bottom-left) and roll_deg"
         )
     return corners

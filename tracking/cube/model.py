@@ -1,4 +1,4 @@
-"""The cube as a TOML file describes it, and its markers in space."""
+"""The model of a cube: its TOML file, and its markers in space."""
 
 import tomllib
 from collections.abc import Sequence
@@ -36,33 +36,33 @@ class Face:
     """One of `FACE_AXES`."""
 
     marker_id: int
-    """Number of the marker in the cube's dictionary."""
+    """Id of the marker in the cube's dictionary."""
 
     corners: NDArray[np.float64]
     """Corners of the black square in the cube frame, (4, 3) in metres.
 
-    Top-left, top-right, bottom-right, bottom-left of the marker, seen from outside: where they
-    should be, or where `cubeling calibrate` found them on the cube as it was folded (`corners_mm`).
+    Top-left, top-right, bottom-right, bottom-left of the marker, seen from outside: the ideal ones,
+    or those that `cubeling calibrate` measured on the folded cube (`corners_mm`).
     """
 
     role: str = ""
     """What the face means to a scenario: "idle", "walk", "kiss" … or ""."""
 
     icon: str = ""
-    """Name of the icon printed beside the marker, or ""."""
+    """Name of the icon printed next to the marker, or ""."""
 
     roll_deg: int = 0
-    """How the marker is turned on its face: 0, 90, 180 or 270, clockwise from outside."""
+    """Rotation of the marker on its face: 0, 90, 180 or 270, clockwise seen from outside."""
 
     @property
     def normal(self) -> NDArray[np.float64]:
-        """Outward unit normal in the cube frame, (3,); that of the corners where they are askew."""
+        """Outward unit normal in the cube frame, (3,), by the measured corners."""
         right, up = FACE_AXES[self.name]
         square = np.cross(right, up).astype(np.float64)
         first, second = self.corners[2] - self.corners[0], self.corners[1] - self.corners[3]
         normal = np.cross(first, second)
         normal /= np.linalg.norm(normal)
-        # An axis to the last bit, or recorded sessions would replay in other bits.
+        # Exactly the axis where the face is not askew, so recorded sessions replay bit for bit.
         return square if np.abs(normal - square).max() < 1e-9 else normal
 
 
@@ -104,7 +104,7 @@ class CubeModel:
         Raises
         ------
         TrackingError
-            The file is absent, is not TOML, or describes no printable cube.
+            The file is missing, is not TOML, or does not describe a printable cube.
         """
         path = Path(name_or_path)
         if path.suffix != ".toml":
@@ -124,7 +124,7 @@ class CubeModel:
 
     @classmethod
     def from_document(cls, document: dict[str, Any], where: str, name: str) -> Self:
-        """Make a cube from the tables of its TOML file, (`where` names it in errors)."""
+        """Make a cube from the tables of its TOML file. `where` names the file in errors."""
         edge_mm, marker_mm = (_length(document, key, where) for key in ("edge_mm", "marker_mm"))
         if marker_mm >= edge_mm:
             raise TrackingError(
@@ -165,7 +165,7 @@ class CubeModel:
         Raises
         ------
         TrackingError
-            Nobody can hold a cube of that size: 10 to 1000 mm can be.
+            The size is not 10 to 1000 mm.
         """
         if not 0.01 <= edge <= 1:
             raise TrackingError(f"the edge must be 10 to 1000 mm, not {edge * 1000:g} mm")
@@ -185,7 +185,7 @@ CUBES = Path(__file__).parents[1] / "cubes"
 
 
 def bundled() -> tuple[str, ...]:
-    """Names of the cubes that come with Cubeling."""
+    """Names of the bundled cubes."""
     return tuple(sorted(path.stem for path in CUBES.glob("*.toml")))
 
 

@@ -40,13 +40,7 @@ class Marker:
 
 
 class MarkerDetector:
-    """Detects all markers of one dictionary.
-
-    Parameters
-    ----------
-    dictionary
-        Name of the OpenCV dictionary, "DICT_4X4_50" …
-    """
+    """Detects all markers of one dictionary of OpenCV, "DICT_4X4_50" …"""
 
     def __init__(self, dictionary: str) -> None:
         parameters = cv2.aruco.DetectorParameters()

@@ -45,11 +45,6 @@ class PartlyHiddenMarkerDetector:
     OpenCV looks for whole quads: a finger on one corner loses the marker. Here four straight
     segments of one blob's border are enough. The result is a proposal, not a proof: a hand can
     cover the cells that tell two markers apart, so a pose must be checked on all edges of the cube.
-
-    Parameters
-    ----------
-    cube
-        The cube whose markers to detect.
     """
 
     def __init__(self, cube: CubeModel) -> None:

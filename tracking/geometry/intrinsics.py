@@ -2,7 +2,6 @@
 
 import contextlib
 import math
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
@@ -13,6 +12,7 @@ import yaml
 from numpy.typing import ArrayLike, NDArray
 
 from tracking.errors import TrackingError
+from tracking.files import write_whole
 
 Array = NDArray[np.float64]
 
@@ -151,18 +151,8 @@ class Intrinsics:
             "rectification_matrix": _table(np.eye(3)),
             "projection_matrix": _table(np.hstack([self.matrix, np.zeros((3, 1))])),
         }
-        target = Path(path)
-        partial = target.with_name(target.name + ".partial")
-        try:
-            partial.write_text(
-                yaml.safe_dump(document, sort_keys=False, default_flow_style=None), encoding="utf-8"
-            )
-            os.replace(partial, target)
-        except OSError as error:
-            partial.unlink(missing_ok=True)
-            raise TrackingError(
-                f"cannot write the camera file '{path}': {error.strerror}"
-            ) from error
+        text = yaml.safe_dump(document, sort_keys=False, default_flow_style=None)
+        write_whole(path, text.encode(), "camera file")
 
 
 def _integer(document: dict[Any, Any], key: str) -> int:

@@ -40,17 +40,7 @@ blur extent. Measured as the coverage that `make bench-tracking` prints."""
 
 
 class BlurSearch:
-    """Aligns the image of one moving cube, and tells whether it shows the cube.
-
-    Parameters
-    ----------
-    cube
-        The cube, as printed.
-    projection
-        The camera.
-    edges
-        What refines a pose further where the edges are not smeared too far.
-    """
+    """Aligns the image of one moving cube, and tells whether it shows the cube."""
 
     def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
         self._aligner = MotionBlurAligner(cube, projection)
@@ -65,24 +55,10 @@ class BlurSearch:
         camera: CameraModel,
         coarse: bool | None = None,
     ) -> Alignment | None:
-        """Align the image of a cube whose motion is roughly known.
+        """Align the image of a cube at an expected pose and with an expected motion.
 
-        Parameters
-        ----------
-        patch
-            The image around the cube.
-        start
-            Expected pose, (4, 4).
-        blur_motion
-            Expected pose delta during the exposure, (6,).
-        camera
-            How well the exposure is known.
-        coarse
-            Whether to search coarsely first; None to do so only where the fine search fails.
-
-        Returns
-        -------
-        None where the image does not show the cube.
+        None where the image does not show the cube. `coarse` searches coarsely first; None does so
+        only where the fine search fails.
         """
         share, shift, turn = MOTION_SPREAD if camera.exposure_known else FIRST_MOTION_SPREAD
         sizes = [np.linalg.norm(blur_motion[:3]), np.linalg.norm(blur_motion[3:])]

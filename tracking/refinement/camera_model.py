@@ -106,14 +106,10 @@ class CameraModelEstimator:
         )
 
     def learn(self, blur: BlurObservation | None, studied: bool) -> None:
-        """Learn from one frame.
+        """Learn from the blur of one frame.
 
-        Parameters
-        ----------
-        blur
-            What its blur tells, if anything.
-        studied
-            Whether a sharp image was aligned only for this, which is done `MAX_STUDIES` times.
+        `studied` tells whether a sharp image was aligned only for this, which happens at most
+        `MAX_STUDIES` times.
         """
         self._studies += studied
         if blur is None or blur.blur_extent * blur.pixels_per_cell < MIN_BLUR_PX:
@@ -141,17 +137,7 @@ class ExposureEstimator:
         return len(self._samples) > EXPOSURE_SAMPLES // 2
 
     def learn(self, weighted_motion: Array, information: Array, velocity: Array) -> None:
-        """Learn from one blurred image of a cube whose velocity is known.
-
-        Parameters
-        ----------
-        weighted_motion
-            Information times the blur motion that explains the image best, (6,).
-        information
-            About the blur motion, from the image alone, (6, 6).
-        velocity
-            Of the cube, (6,).
-        """
+        """Learn from `Alignment.motion_information` of a cube with a known velocity, (6,)."""
         strength = float(velocity @ information @ velocity)
         if strength * self.exposure**2 < MIN_MOTION_INFORMATION:
             return

@@ -76,19 +76,7 @@ class EdgeSearch:
     def match(
         self, patch: Patch, start: Array, blur_motion: Array | None = None, wide: bool = False
     ) -> EdgeMatch | None:
-        """Refine a pose on the edges; None where too few are found.
-
-        Parameters
-        ----------
-        patch
-            The image around the cube.
-        start
-            Pose of the cube, (4, 4), right to about half a cell.
-        blur_motion
-            Pose delta of the cube during the exposure, (6,); None for a cube at rest.
-        wide
-            Whether the pose is right to a whole cell only.
-        """
+        """Refine a pose as `EdgeRefiner.refine` does, and judge it; None where that finds nothing."""
         found = self._refiner.refine(patch, start, blur_motion, wide)
         if found is None:
             return None

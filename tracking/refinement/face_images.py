@@ -12,15 +12,7 @@ Image = NDArray[np.float32]
 
 
 class FaceTextures:
-    """Textures of all faces of a cube, from black 0 to white 1.
-
-    Parameters
-    ----------
-    cube
-        The cube.
-    side
-        Texels along the edge of a face.
-    """
+    """Textures of all faces of a cube, `side` texels wide, from black 0 to white 1."""
 
     def __init__(self, cube: CubeModel, side: int) -> None:
         self._texel = cube.edge / side

@@ -45,19 +45,10 @@ class Footprint:
         turn = float(np.linalg.norm(blur_motion[3:]))
         return (shift + self.half_edge * turn) / self.cell
 
-    def patch(
-        self, image: NDArray[np.uint8], camera_from_cube: Array, tone: Floats
-    ) -> Patch | None:
-        """Cut the cube at a pose out of an image; None where it is not in view.
+    def crop(self, image: NDArray[np.uint8], camera_from_cube: Array, tone: Floats) -> Patch | None:
+        """Crop the cube at a pose from an image, (H, W, 3) BGR; None where it is not in view.
 
-        Parameters
-        ----------
-        image
-            The image, (H, W, 3) BGR.
-        camera_from_cube
-            The pose, (4, 4).
-        tone
-            Light for each grey value, (256,).
+        `tone` is the light for each grey value, (256,).
         """
         region = self.region(camera_from_cube)
         return Patch.crop(image, region, tone) if region else None

@@ -26,15 +26,7 @@ MIN_HALVED_HEIGHT_PX = 480
 
 
 class FrameMarkers:
-    """The markers of one frame, read when they are asked for, and once for all cubes.
-
-    Parameters
-    ----------
-    frame
-        The frame.
-    detectors
-        One for each dictionary, by its name.
-    """
+    """The markers of one frame, read when they are asked for, and once for all cubes."""
 
     def __init__(self, frame: Frame, detectors: Mapping[str, MarkerDetector]) -> None:
         self._image = frame.image
@@ -66,19 +58,7 @@ class FrameMarkers:
 
 
 class GlobalDetector:
-    """Finds one cube without a past.
-
-    Parameters
-    ----------
-    cube
-        The cube, as printed.
-    projection
-        The camera.
-    edges
-        What proves poses by the edges.
-    blur
-        What aligns blurred images.
-    """
+    """Finds one cube without a past: by its markers and `edges`, or by its blurred image."""
 
     def __init__(
         self, cube: CubeModel, projection: Projection, edges: EdgeSearch, blur: BlurSearch
@@ -97,24 +77,11 @@ class GlobalDetector:
         tone: Floats,
         thorough: bool,
     ) -> list[Candidate]:
-        """Propose up to two poses.
+        """Propose up to two poses for an image, (H, W, 3) BGR, with its markers.
 
-        Parameters
-        ----------
-        image
-            The image, (H, W, 3) BGR.
-        markers
-            The markers in it.
-        expected
-            Predicted pose of the cube, (4, 4), if there is one.
-        tone
-            Light for each grey value, (256,).
-        thorough
-            Whether to look for partly hidden markers too, where no others prove the cube.
-
-        Returns
-        -------
-        The first that edges prove without a choice, else those of the most thorough search.
+        These are the first that edges prove and that leave no choice, else those of the most
+        thorough search: `thorough` looks for partly hidden markers too. `expected` is the predicted
+        pose, if there is one, and `tone` the light for each grey value.
         """
         patch = Patch.crop(markers.grey, None, tone)
         found: list[Candidate] = []
@@ -145,7 +112,7 @@ class GlobalDetector:
         """Align the blurred image at poses that rest on corners alone, where it shows the cube."""
         found = []
         for each in candidates:
-            patch = self._footprint.patch(image, each.camera_from_cube, tone)
+            patch = self._footprint.crop(image, each.camera_from_cube, tone)
             aligned = patch and self._blur.align_unknown_motion(patch, each.camera_from_cube)
             if patch and aligned:
                 found.append(self._blur.candidate(patch, aligned))

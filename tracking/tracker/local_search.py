@@ -37,17 +37,7 @@ class LocalMatch:
 
 
 class LocalTracker:
-    """Finds one cube near its predicted pose.
-
-    Parameters
-    ----------
-    cube
-        The cube, as printed.
-    projection
-        The camera.
-    edges, blur
-        The two ways to find it.
-    """
+    """Finds one cube near its predicted pose, by `edges` or by `blur`."""
 
     def __init__(
         self, cube: CubeModel, projection: Projection, edges: EdgeSearch, blur: BlurSearch
@@ -63,20 +53,8 @@ class LocalTracker:
         prediction: Prediction,
         camera: CameraModel,
     ) -> LocalMatch:
-        """Find the cube near its predicted pose.
-
-        Parameters
-        ----------
-        image
-            The image, (H, W, 3) BGR.
-        track
-            The last poses.
-        prediction
-            What they say of this frame.
-        camera
-            Exposure and tone curve of the camera.
-        """
-        patch = self._footprint.patch(image, prediction.camera_from_cube, camera.tone)
+        """Find the cube in an image, (H, W, 3) BGR, near its predicted pose."""
+        patch = self._footprint.crop(image, prediction.camera_from_cube, camera.tone)
         if patch is None:
             return LocalMatch()
         found = self._by_edges(patch, track, prediction, camera)

@@ -43,17 +43,7 @@ CELLS_PER_MARKER = 6
 
 
 class MarkerPoses:
-    """Proposes poses of one cube seen by one camera from the corners of its markers.
-
-    Parameters
-    ----------
-    cube
-        The cube, as printed.
-    projection
-        The camera.
-    edges
-        What refines the poses, and proves that they show the cube.
-    """
+    """Proposes poses of one cube from the corners of its markers, refined and proved by `edges`."""
 
     def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
         self._solver = CornerPoseSolver(cube, projection)
@@ -64,14 +54,7 @@ class MarkerPoses:
     ) -> list[Candidate]:
         """Propose up to two poses for the markers that were read in an image.
 
-        Parameters
-        ----------
-        patch
-            The image.
-        observations
-            The markers.
-        expected
-            Predicted pose of the cube, (4, 4), if there is one.
+        `expected` is the predicted pose of the cube, (4, 4), if there is one.
         """
         solutions = self._solver.solve(observations, expected)
         solutions = [each for each in solutions if not _is_contradicted(each, observations)]

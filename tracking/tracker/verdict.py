@@ -67,17 +67,7 @@ class Verdict:
 
 
 class FollowedPoseJudge:
-    """Judges poses found near the predicted one: a single face may tilt towards the camera or away.
-
-    Parameters
-    ----------
-    cube
-        The cube, as printed.
-    projection
-        The camera.
-    edges
-        What refines the other pose of a face.
-    """
+    """Judges poses found near the predicted one: a single face may tilt towards the camera or away."""
 
     def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
         self._footprint = Footprint(cube, projection)
@@ -89,34 +79,21 @@ class FollowedPoseJudge:
         """Tell which way a face tilts: by its edges, else by its past, else not at all.
 
         Once the tilt is known it stays known until the face comes square to the camera, where one
-        pose can become the other.
-
-        Parameters
-        ----------
-        candidate
-            The pose.
-        image
-            The image, (H, W, 3) BGR.
-        tone
-            Light for each grey value, (256,).
-        past
-            What is remembered of the frames before.
+        pose can become the other. `image` is (H, W, 3) BGR, `tone` the light for each grey value.
         """
-        settled = replace(past, tilt_settled=True)
+        settled, unsettled = (replace(past, tilt_settled=known) for known in (True, False))
+        ambiguous = Verdict(candidate, "ambiguous", past)
         if len(candidate.faces) != 1:
             return _unless_uncertain(candidate, settled)
         if candidate.blur_motion is not None:
-            if past.tilt_settled:
-                return _unless_uncertain(candidate, past)
-            return Verdict(candidate, "ambiguous", past)
+            return _unless_uncertain(candidate, past) if past.tilt_settled else ambiguous
         mirrored = self._edges.mirrored_pose(candidate)
         planar_ambiguity_angle = se3.angle_between(candidate.camera_from_cube, mirrored)
-        unsettled = replace(past, tilt_settled=False)
         if planar_ambiguity_angle < MIN_DISTINCT_ANGLE:
             return _unless_uncertain(candidate, unsettled)
         if past.tilt_settled and planar_ambiguity_angle > MIN_LASTING_ANGLE:
             return _unless_uncertain(candidate, past)
-        patch = self._footprint.patch(image, candidate.camera_from_cube, tone)
+        patch = self._footprint.crop(image, candidate.camera_from_cube, tone)
         other = self._edges.search(patch, mirrored) if patch else None
         if other is None:
             return _unless_uncertain(candidate, past)
@@ -127,7 +104,7 @@ class FollowedPoseJudge:
             return _unless_uncertain(best, settled)
         if planar_ambiguity_angle < MIN_HARMFUL_ANGLE:
             return _unless_uncertain(candidate.widened_to(other), past)
-        return Verdict(candidate, "ambiguous", past)
+        return ambiguous
 
 
 def judge_detected(
@@ -135,16 +112,7 @@ def judge_detected(
 ) -> Verdict:
     """Choose between poses found anywhere in the image, and refuse those that cannot be.
 
-    Parameters
-    ----------
-    candidates
-        The poses, which explain the same markers.
-    prediction
-        Where the cube should be, if that is known.
-    past
-        What is remembered of the frames before.
-    now
-        Time of the frame [s].
+    `now` is the time of the frame [s].
     """
     fitting = [each for each in candidates if _fits(each, prediction)]
     if not fitting:

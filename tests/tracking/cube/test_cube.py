@@ -242,8 +242,8 @@ SQUARE = "[[-22.5, 22.5, 30], [22.5, 22.5, 30], [22.5, -22.5, 30], [-22.5, -22.5
         ("[[1, 2, 3]]", "4 corners of 3 numbers"),
         ('"none"', "4 corners of 3 numbers"),
         (SQUARE.replace("30]]", "nan]]"), "4 corners of 3 numbers"),
-        (SQUARE.replace("22.5", "21.5"), "no square of 45 mm"),
-        (SQUARE.replace("[[-22.5, 22.5, 30]", "[[-22.5, 22.5, 32]"), "no square of 45 mm"),
+        (SQUARE.replace("22.5", "21.5"), "not form a square of 45 mm"),
+        (SQUARE.replace("[[-22.5, 22.5, 30]", "[[-22.5, 22.5, 32]"), "not form a square of 45 mm"),
         (SQUARE.replace("30", "-30"), "60.0 mm from where the marker should be"),
     ],
 )
@@ -254,7 +254,7 @@ def test_measured_corners_that_are_not_the_marker_are_refused(tmp_path, corners,
 
 def test_a_cube_is_written_to_a_toml_file_or_not_at_all(tmp_path):
     cube = CubeModel.load("companion")
-    with pytest.raises(TrackingError, match=r"\.toml file, not in"):
+    with pytest.raises(TrackingError, match=r"\.toml file, not to"):
         write_cube(cube, tmp_path / "cube.yaml")
     with pytest.raises(TrackingError, match="cannot write the cube"):
         write_cube(cube, tmp_path / "none" / "cube.toml")

@@ -1,4 +1,4 @@
-"""Where everything stands on the sheet."""
+"""Layout of the printed sheet."""
 
 from dataclasses import dataclass
 
@@ -12,10 +12,10 @@ from tracking.errors import TrackingError
 Array = NDArray[np.float64]
 
 PAPERS = {"a4": (297.0, 210.0), "letter": (279.4, 215.9), "a3": (420.0, 297.0)}
-"""Width and height, lying [mm]."""
+"""Width and height in landscape [mm]."""
 
-UNPRINTED_MM = 5.0
-"""What most home printers leave white around the page."""
+PRINTER_MARGIN_MM = 5.0
+"""Margin around the page that most home printers cannot print on."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class PageArea:
 
 
 class SheetLayout:
-    """Where everything stands on the page: the one place that turns metres into millimetres."""
+    """Layout of the page; the only place that converts metres to millimetres."""
 
     def __init__(self, cube: CubeModel, paper: str) -> None:
         if paper not in PAPERS:
@@ -48,27 +48,31 @@ class SheetLayout:
             )
         self.cube = cube
         self.net = Unfolding(cube.edge)
-        self.page = PAPERS[paper]
+        self.page_size = PAPERS[paper]
         _check_fits(cube.edge, paper)
         corners = self.net.outline() * (1000, -1000)
         middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
-        self._origin = np.array(self.page) / 2 - middle
+        self._origin = np.array(self.page_size) / 2 - middle
 
     def place(self, points: ArrayLike) -> Array:
-        """From the net's paper frame [m] to the page [mm from the top left], (…, 2)."""
+        """Map points of the net's paper frame [m] to the page [mm from the top left], (…, 2)."""
         return np.asarray(np.asarray(points, float) * (1000.0, -1000.0) + self._origin)
 
-    def corner(self, row: str, column: str) -> "PageArea":
-        """Free space beside the cross: row "top" or "bottom", column "left" or "right"."""
-        inset = UNPRINTED_MM + 4
+    def corner(self, row: str, column: str) -> PageArea:
+        """Free space next to the cross: row "top" or "bottom", column "left" or "right"."""
+        inset = PRINTER_MARGIN_MM + 4
         (right, upper), (left, lower) = self.place(self.net.square("front"))[[1, 3]]
         tab = TAB_DEPTH * self.cube.edge * 1000
-        x = (inset, left - 7) if column == "left" else (right + 8, self.page[0] - inset)
-        y = (inset, upper - tab - 3) if row == "top" else (lower + tab + 4, self.page[1] - inset)
+        x = (inset, left - 7) if column == "left" else (right + 8, self.page_size[0] - inset)
+        y = (
+            (inset, upper - tab - 3)
+            if row == "top"
+            else (lower + tab + 4, self.page_size[1] - inset)
+        )
         return PageArea(float(x[0]), float(y[0]), float(x[1]), float(y[1]))
 
     def marker_corners(self, face: Face) -> Array:
-        """Corners of a face's marker on the page, (4, 2) [mm], by unfolding those of the cube."""
+        """Corners of a face's marker on the page, (4, 2) [mm], unfolded from the cube."""
         face_from_cube = np.linalg.inv(self.net.cube_from_face(face.name))
         flat = face.corners @ face_from_cube[:3, :3].T + face_from_cube[:3, 3]
         return self.place(flat[:, :2] + self.net.centre(face.name))
@@ -90,5 +94,5 @@ def _check_fits(edge: float, paper: str) -> None:
 
 def largest_edge_mm(paper: str) -> float:
     """Edge of the largest cube whose net fits a paper, in whole millimetres."""
-    room = np.array(PAPERS[paper]) - 2 * UNPRINTED_MM
+    room = np.array(PAPERS[paper]) - 2 * PRINTER_MARGIN_MM
     return float(np.floor(np.min(room / Unfolding(1.0).size()) + 1e-9))

@@ -1,4 +1,4 @@
-"""What stands around the net: the title, what the faces mean, three steps, and the ruler."""
+"""The notes around the net: title, meaning of the faces, instructions, and ruler."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,49 +20,51 @@ STEPS: tuple[tuple[str, str, Colour], ...] = (
     ("fold", "Fold every dashed line away from you, and sharply.", (42, 157, 143)),
     ("glue", "Glue the tabs inside. Press each and count to ten.", (142, 118, 200)),
 )
-RULER_WORDS = "must be 100 mm: print at 100 %, no fit-to-page"
+RULER_NOTE = "must be 100 mm: print at 100 %, no fit-to-page"
 
 VIEW = np.array([[0.8, -0.45], [0.0, 1.0], [-0.8, -0.45]]) * (1, 0.9)
-"""How the little cube is drawn: where one step along the cube's x, y, z goes on paper, y up."""
+"""Axonometric projection of the cube's x, y, z axes on paper, y up."""
 
 
-def draw_notes(pen: PdfPage, sheet: SheetLayout) -> None:
-    """Fill the four corners that the cross leaves free."""
-    _draw_little_cube(pen, sheet, sheet.corner("top", "left"))
-    _draw_title(pen, sheet, sheet.corner("top", "right"))
+def draw_notes(page: PdfPage, sheet: SheetLayout) -> None:
+    """Fill the four corners next to the cross."""
+    _draw_cube_view(page, sheet, sheet.corner("top", "left"))
+    _draw_title(page, sheet, sheet.corner("top", "right"))
     box = sheet.corner("bottom", "right")
-    _draw_steps(pen, box)
-    _draw_ruler(pen, box.left, box.bottom - 1)
-    _draw_facts(pen, sheet, sheet.corner("bottom", "left"))
+    _draw_steps(page, box)
+    _draw_ruler(page, box.left, box.bottom - 1)
+    _draw_facts(page, sheet, sheet.corner("bottom", "left"))
 
 
-def _draw_title(pen: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
+def _draw_title(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
     cube, width = sheet.cube, box.right - box.left
     title = f"The {cube.name} cube"
-    size = min(10.0, 10.0 * width / pen.text_width(title, 10.0, bold=True))
+    size = min(10.0, 10.0 * width / page.text_width(title, 10.0, bold=True))
     y = box.top + 0.75 * size
-    pen.text(title, box.left, y, size, DARK, bold=True)
+    page.text(title, box.left, y, size, DARK, bold=True)
     y += 3
-    for line in pen.lines(cube.hint, width, 4.0):
+    for line in page.lines(cube.hint, width, 4.0):
         y += 5.2
-        pen.text(line, box.left, y, 4.0, WORDS)
+        page.text(line, box.left, y, 4.0, WORDS)
     roles = {face.role or face.icon: face.icon for face in cube.faces if face.icon}
     icon = min(15.0, (width - 8 * len(roles)) / max(len(roles), 1))
     y = min(y + 6, box.bottom - icon - 6)
     for number, (role, name) in enumerate(roles.items()):
         x = box.left + number * (icon + 10)
-        pen.fill([loop * icon + (x, y) for loop in icon_paths(name)], INK[name])
-        pen.text(role, x + icon / 2, y + icon + 4.6, 4.0, INK[name], bold=True, align=0.5)
+        page.fill([loop * icon + (x, y) for loop in icon_paths(name)], INK[name])
+        page.text(role, x + icon / 2, y + icon + 4.6, 4.0, INK[name], bold=True, align=0.5)
 
 
-def _draw_little_cube(pen: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
-    """Show the finished cube, with icons for markers, so that no camera takes it for the cube."""
+def _draw_cube_view(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
+    """Draw the finished cube with icons instead of markers, which no camera takes for the cube."""
     edge = min(19.0, (box.right - box.left) / 1.9, (box.bottom - box.top) / 2)
     middle = np.array([(box.left + box.right) / 2, (box.top + box.bottom) / 2])
     icons = {face.name: face.icon for face in sheet.cube.faces}
     for name, shade in (("front", 252), ("right", 236), ("top", 245)):
         right, up = (np.array(axis, float) for axis in FACE_AXES[name])
-        corner = (np.cross(right, up) - right + up) / 2  # the face's upper left one, in edges
+        corner = (
+            np.cross(right, up) - right + up
+        ) / 2  # the upper left corner of the face, in edges
 
         def on_page(
             loop: Array, corner: Array = corner, right: Array = right, up: Array = up
@@ -71,54 +73,54 @@ def _draw_little_cube(pen: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
             return np.asarray(middle + edge * (points @ VIEW) * (1, -1))
 
         square = on_page(np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float))
-        pen.fill([square], (shade, shade, shade - 6))
+        page.fill([square], (shade, shade, shade - 6))
         if icon := icons.get(name):
             loops = [on_page(loop * 0.7 + 0.15) for loop in icon_paths(icon)]
-            pen.fill(loops, INK[icon])
-        pen.stroke(square, 0.5, DARK, closed=True)
+            page.fill(loops, INK[icon])
+        page.stroke(square, 0.5, DARK, closed=True)
 
 
-def _draw_steps(pen: PdfPage, box: PageArea) -> None:
+def _draw_steps(page: PdfPage, box: PageArea) -> None:
     column = (box.right - box.left) / len(STEPS)
     radius, size = 6.0, 3.4
     for number, (icon, words, colour) in enumerate(STEPS):
         x, y = box.left + number * column, box.top
         turn = np.linspace(0, 2 * np.pi, 60, endpoint=False)
         disc = np.column_stack([np.cos(turn), np.sin(turn)]) * radius + (x + radius, y + radius)
-        pen.fill([disc], colour)
+        page.fill([disc], colour)
         picture = [loop * 7.4 + (x + radius - 3.7, y + radius - 3.7) for loop in icon_paths(icon)]
-        pen.fill(picture, WHITE)
+        page.fill(picture, WHITE)
         name, rest = words.split(" ", 1)
         left = x + 2 * radius + 2.5
-        pen.text(f"{number + 1}. {name}", left, y + 3.4, 4.2, colour, bold=True)
-        for row, line in enumerate(pen.lines(rest, column - 2 * radius - 5, size)):
-            pen.text(line, left, y + 8 + 4.2 * row, size, WORDS)
+        page.text(f"{number + 1}. {name}", left, y + 3.4, 4.2, colour, bold=True)
+        for row, line in enumerate(page.lines(rest, column - 2 * radius - 5, size)):
+            page.text(line, left, y + 8 + 4.2 * row, size, WORDS)
 
 
-def _draw_ruler(pen: PdfPage, x: float, y: float) -> None:
-    pen.text(RULER_WORDS, x, y, 3.2, WORDS)
+def _draw_ruler(page: PdfPage, x: float, y: float) -> None:
+    page.text(RULER_NOTE, x, y, 3.2, WORDS)
     line = y - 5.5
-    pen.stroke([(x, line), (x + 100, line)], 0.25, DARK)
+    page.stroke([(x, line), (x + 100, line)], 0.25, DARK)
     for millimetre in range(0, 101, 5):
         height = 3.2 if millimetre % 50 == 0 else 2.4 if millimetre % 10 == 0 else 1.4
         at = x + millimetre
-        pen.stroke([(at, line), (at, line - height)], 0.25, DARK)
+        page.stroke([(at, line), (at, line - height)], 0.25, DARK)
         if millimetre % 10 == 0:
-            pen.text(str(millimetre), at, line - 4.2, 2.6, WORDS, align=0.5)
+            page.text(str(millimetre), at, line - 4.2, 2.6, WORDS, align=0.5)
 
 
-def _draw_facts(pen: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
+def _draw_facts(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
     cube = sheet.cube
     height = min(38.0, box.right - box.left, box.bottom - box.top - 16)
     if height > 10:
         x, y = (box.left + box.right - height) / 2, box.top
         mascot = "idle" if any(face.icon == "idle" for face in cube.faces) else "run"
-        pen.fill([loop * height + (x, y) for loop in icon_paths(mascot)], PALE)
-        pen.stroke([(x - 2, y + height * 0.945), (x + height, y + height * 0.945)], 0.5, PALE)
+        page.fill([loop * height + (x, y) for loop in icon_paths(mascot)], PALE)
+        page.stroke([(x - 2, y + height * 0.945), (x + height, y + height * 0.945)], 0.5, PALE)
     facts = (
         f"edge {cube.edge * 1000:.4g} mm",
         f"markers {cube.marker_size * 1000:.4g} mm, {cube.dictionary}",
         f"cubeling cube {cube.name}",
     )
     for row, fact in enumerate(reversed(facts)):
-        pen.text(fact, box.left, box.bottom - 1 - 4 * row, 2.8, WORDS)
+        page.text(fact, box.left, box.bottom - 1 - 4 * row, 2.8, WORDS)

@@ -1,8 +1,7 @@
-"""A pen on a page of paper: filled outlines, lines and words, in millimetres from the top left."""
+"""A PDF page with filled outlines, lines and text, in millimetres from the top left."""
 
 from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
-from pathlib import Path
 
 import numpy as np
 from fpdf import FPDF, ViewerPreferences
@@ -14,9 +13,9 @@ Array = NDArray[np.float64]
 
 
 class PdfPage:
-    """Draws on one page of a PDF, as vectors.
+    """One page of a PDF with vector graphics.
 
-    The same strokes give the same bytes on every machine: the date is fixed and nothing is packed.
+    The same calls give the same bytes on every machine: a fixed date, and no compression.
     """
 
     def __init__(self, width: float, height: float, title: str) -> None:
@@ -25,7 +24,7 @@ class PdfPage:
         self._pdf.set_creation_date(datetime(2026, 1, 1, tzinfo=UTC))
         self._pdf.set_title(title)
         self._pdf.set_creator("cubeling")
-        # The print dialogue then offers "actual size" first.
+        # Print dialogues then suggest "actual size".
         self._pdf.viewer_preferences = ViewerPreferences(print_scaling="None")
         self._pdf.set_auto_page_break(False)
         self._pdf.add_page()
@@ -41,7 +40,7 @@ class PdfPage:
         self._path([points], stroke=colour, width=width, closed=closed)
 
     def dashes(self, start: ArrayLike, end: ArrayLike, width: float, colour: Colour) -> None:
-        """Draw a dashed line that begins and ends with half a dash, so that corners are marked."""
+        """Draw a dashed line that begins and ends with half a dash, so corners are marked."""
         one, other = np.asarray(start, float), np.asarray(end, float)
         length = float(np.linalg.norm(other - one))
         count = max(2, round(length / 3.2))
@@ -66,9 +65,9 @@ class PdfPage:
         Parameters
         ----------
         words
-            Characters outside Latin-1 become "?", as PDF's own fonts hold no others.
+            Characters outside Latin-1 become "?": the built-in fonts of PDF have no others.
         x, y
-            The point on the baseline at the share `align` of the line's length.
+            Position on the baseline, at the share `align` of the length of the line.
         size
             Height of the font [mm].
         turn
@@ -99,9 +98,9 @@ class PdfPage:
                 lines.append(word)
         return lines
 
-    def save(self, path: Path) -> None:
-        """Write the page."""
-        path.write_bytes(bytes(self._pdf.output()))
+    def to_bytes(self) -> bytes:
+        """Return the PDF file."""
+        return bytes(self._pdf.output())
 
     def _font(self, size: float, bold: bool) -> None:
         self._pdf.set_font("Helvetica", "B" if bold else "", size * 72 / 25.4)

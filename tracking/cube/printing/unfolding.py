@@ -1,10 +1,10 @@
-"""The cube unfolded on paper: its squares, its glue tabs, and how they fold.
+"""The net of the cube on paper: its squares, its glue tabs, and how they fold.
 
 The printed side of the paper becomes the outside of the cube. All lengths are metres.
 
 Frames: **paper**, x right, y up, z towards the reader, origin in the middle of `front`; **face**,
-the same axes with the origin in the middle of that face; **cube** as everywhere. A face's frame
-stays on its face while that folds, so what is printed on a face keeps its coordinates.
+the same axes with the origin in the middle of that face; **cube** as everywhere. The frame of a
+face folds with it, so what is printed on a face keeps its coordinates.
 """
 
 import math
@@ -21,7 +21,7 @@ SIDES: dict[str, tuple[int, int]] = {
     "left": (-1, 0),
     "down": (0, -1),
 }
-"""The sides of a square on paper, counter-clockwise, and the way out over each."""
+"""The sides of a square on paper, counter-clockwise, with their outward directions."""
 
 HINGES: dict[str, tuple[str, str]] = {
     "top": ("front", "up"),
@@ -30,7 +30,7 @@ HINGES: dict[str, tuple[str, str]] = {
     "right": ("front", "right"),
     "back": ("right", "right"),
 }
-"""For each face but `front`: the face it hangs on, and the side of that face."""
+"""For each face except `front`: the face that it is joined to, and the side of that face."""
 
 TABS: dict[tuple[str, str], str] = {
     ("left", "up"): "top",
@@ -41,15 +41,14 @@ TABS: dict[tuple[str, str], str] = {
     ("back", "down"): "bottom",
     ("back", "right"): "left",
 }
-"""Where the glue tabs are, (face, side), and the face that each is glued under.
+"""The glue tabs, (face, side), and the face that each is glued under.
 
-All but one stand beside the cross's arms, in space that the cross leaves free; so a net of edge e
-takes 4 e plus one tab by 3 e of paper.
+All but one are next to the arms of the cross, in free space. So a net of edge e needs 4 e plus one
+tab by 3 e of paper.
 """
 
 TAB_DEPTH = 0.18
 """Depth of a tab as a share of the edge."""
-
 
 TAB_SLANT = 1.12
 """How far a tab narrows at each end, as a share of its depth; 1 is 45°."""
@@ -59,12 +58,12 @@ TAB_SLANT = 1.12
 class Tab:
     """A glue tab: a trapezoid that folds under another face.
 
-    Tabs that meet under one face share its corner. Slants of 45° would let them touch; these are a
-    little flatter, so that thick paper and a child's scissors leave room.
+    Tabs that meet under one face share its corner. With slants of 45° they would touch; these are a
+    little flatter, to leave room for thick paper and imprecise scissors.
     """
 
     face: str
-    """The face it hangs on."""
+    """The face that it is joined to."""
 
     side: str
     """The side of that face, one of `SIDES`."""
@@ -96,7 +95,7 @@ class Unfolding:
         return self.centre(face) + half * np.array([(1, -1), (1, 1), (-1, 1), (-1, -1)])
 
     def cube_from_face(self, face: str, angle: float = math.pi / 2) -> Array:
-        """Where a face comes to lie when every fold is bent by `angle`, (4, 4).
+        """Pose of a face when every fold is bent by `angle`, (4, 4).
 
         Right angles make the cube; 0 leaves the paper flat in the plane of `front`.
 
@@ -115,7 +114,7 @@ class Unfolding:
         )
 
     def cube_from_tab(self, tab: Tab, angle: float = math.pi / 2) -> Array:
-        """Where a tab comes to lie, (4, 4), from paper axes with the origin amid its fold."""
+        """Pose of a tab, (4, 4), with paper axes and the origin in the middle of its fold."""
         return self.cube_from_face(tab.face, angle) @ self._over(tab.side, angle, 0.0)
 
     def folds(self) -> tuple[tuple[Array, Array], ...]:
@@ -162,7 +161,7 @@ class Unfolding:
         return np.array([first, first + outwards + along, last + outwards - along, last])
 
     def _over(self, side: str, angle: float, beyond: float) -> Array:
-        """From what hangs over a side, `beyond` past the fold, to the face: the fold itself."""
+        """Pose, in the frame of a face, of a part `beyond` the fold over one of its sides."""
         x, y = SIDES[side]
         half = self.edge / 2
         bend = _turn(x, y, angle)
@@ -179,7 +178,7 @@ def _shift(x: float, y: float, z: float) -> Array:
 
 
 def _turn(x: int, y: int, angle: float) -> Array:
-    """Turn the paper's direction (x, y) away from the reader."""
+    """Rotate the paper's direction (x, y) away from the reader."""
     cosine, sine = math.cos(angle), math.sin(angle)
     matrix = np.eye(4)
     if x:
@@ -190,6 +189,6 @@ def _turn(x: int, y: int, angle: float) -> Array:
 
 
 def _micrometres(point: Array) -> tuple[int, int]:
-    """Name a corner, so that the two faces that meet there find each other."""
+    """Return a key for a corner, by which the two faces that meet there find each other."""
     x, y = np.rint(point * 1e6).astype(int)
     return int(x), int(y)
