@@ -40,7 +40,7 @@ class Marker:
 
 
 class MarkerDetector:
-    """Detects all markers of one dictionary of OpenCV, "DICT_4X4_50" …"""
+    """Detects all markers of one dictionary of OpenCV, such as "DICT_4X4_50"."""
 
     def __init__(self, dictionary: str) -> None:
         parameters = cv2.aruco.DetectorParameters()

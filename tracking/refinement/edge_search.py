@@ -76,7 +76,7 @@ class EdgeSearch:
     def match(
         self, patch: Patch, start: Array, blur_motion: Array | None = None, wide: bool = False
     ) -> EdgeMatch | None:
-        """Refine a pose as `EdgeRefiner.refine` does, and judge it; None where that finds nothing."""
+        """Refine a pose as `EdgeRefiner.refine` does, and tell whether it is the cube's."""
         found = self._refiner.refine(patch, start, blur_motion, wide)
         if found is None:
             return None

@@ -67,7 +67,7 @@ class Verdict:
 
 
 class FollowedPoseJudge:
-    """Judges poses found near the predicted one: a single face may tilt towards the camera or away."""
+    """Judges poses found near the predicted one: a single face may tilt to the camera or away."""
 
     def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
         self._footprint = Footprint(cube, projection)
