@@ -3,12 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel, Face
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array, Flags, Indices
 
 POINTS_PER_CELL = 5
 """Points along an edge for each cell: at arm's length they are 2 to 3 px apart, so their noise is
@@ -34,20 +32,20 @@ class EdgeModel:
     to_end: Array
     """Distance along the edge to its nearer end, (N,) [cells]."""
 
-    outline: NDArray[np.bool_]
+    outline: Flags
     """Whether the edge is the outer border of its marker, with white paper on one side, (N,)."""
 
-    face: NDArray[np.intp]
+    face: Indices
     """Index of the face in `CubeModel.faces`, (N,)."""
 
-    line: NDArray[np.intp]
+    line: Indices
     """Index of the straight line of the edge, with white on one side of it, (N,), ascending."""
 
     def of_faces(self, faces: tuple[int, ...]) -> "EdgeModel":
         """Return the edges of some faces, by their indices."""
         return self._of(np.flatnonzero(np.isin(self.face, faces)))
 
-    def _of(self, chosen: NDArray[np.intp]) -> "EdgeModel":
+    def _of(self, chosen: Indices) -> "EdgeModel":
         return EdgeModel(
             points=self.points[chosen],
             along=self.along[chosen],
@@ -88,7 +86,7 @@ def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, ...]:
     return points, flat[:, 2:4] @ axes, flat[:, 4:6] @ axes, flat[:, 6], outline
 
 
-def _vertical_edges(cells: NDArray[np.bool_]) -> Array:
+def _vertical_edges(cells: Flags) -> Array:
     """Place points on the vertical edges of a padded pattern.
 
     Returns

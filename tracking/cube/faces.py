@@ -1,12 +1,10 @@
 """The planes of the cube's faces, and which of them face the camera."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel, Face
 from tracking.geometry import se3
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 
 class FacePlanes:

@@ -11,9 +11,9 @@ from collections.abc import Callable
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-Loop = NDArray[np.float64]
+from tracking.geometry.arrays import Array, Image
+
 Point = tuple[float, float]
 
 CIRCLE_POINTS = 40
@@ -34,7 +34,7 @@ None is dark: next to a marker, a dark colour would look like its black to a cam
 """
 
 
-def icon_paths(name: str) -> list[Loop]:
+def icon_paths(name: str) -> list[Array]:
     """Return the loops of an icon, (N, 2) each, in the unit square.
 
     Parameters
@@ -50,7 +50,7 @@ def icon_paths(name: str) -> list[Loop]:
     return ICONS[name]()
 
 
-def icon_mask(name: str, pixels: int) -> NDArray[np.uint8]:
+def icon_mask(name: str, pixels: int) -> Image:
     """Draw an icon as the coverage of each pixel, 0 to 255, (pixels, pixels)."""
     oversampling = 8
     mask = np.zeros((pixels * oversampling, pixels * oversampling), np.uint8)
@@ -61,22 +61,22 @@ def icon_mask(name: str, pixels: int) -> NDArray[np.uint8]:
     return np.asarray(small, np.uint8)
 
 
-def signed_area(loop: Loop) -> float:
+def signed_area(loop: Array) -> float:
     """Area of a loop, positive where it runs clockwise with y down."""
     x, y = loop.T
     return float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2
 
 
-def _disc(x: float, y: float, radius: float) -> Loop:
+def _disc(x: float, y: float, radius: float) -> Array:
     angle = np.linspace(0, 2 * math.pi, CIRCLE_POINTS, endpoint=False)
     return np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)])
 
 
-def _hole(loop: Loop) -> Loop:
+def _hole(loop: Array) -> Array:
     return loop[::-1]
 
 
-def _limb(*joints: tuple[float, float, float]) -> list[Loop]:
+def _limb(*joints: tuple[float, float, float]) -> list[Array]:
     """Strokes with round ends from joint to joint, each joint (x, y, radius)."""
     loops = []
     for one, other in itertools.pairwise(joints):
@@ -86,11 +86,11 @@ def _limb(*joints: tuple[float, float, float]) -> list[Loop]:
     return loops
 
 
-def _stroke(width: float, *points: Point) -> list[Loop]:
+def _stroke(width: float, *points: Point) -> list[Array]:
     return _limb(*((x, y, width / 2) for x, y in points))
 
 
-def _arc(x: float, y: float, radius: float, width: float, start: float, end: float) -> Loop:
+def _arc(x: float, y: float, radius: float, width: float, start: float, end: float) -> Array:
     """Return part of a ring; angles in degrees, clockwise from the right."""
     angle = np.radians(np.linspace(start, end, CIRCLE_POINTS))
     direction = np.column_stack([np.cos(angle), np.sin(angle)])
@@ -100,14 +100,14 @@ def _arc(x: float, y: float, radius: float, width: float, start: float, end: flo
     return np.asarray(ring + np.array([x, y]))
 
 
-def _heart(x: float, y: float, size: float) -> Loop:
+def _heart(x: float, y: float, size: float) -> Array:
     angle = np.linspace(0, 2 * math.pi, 2 * CIRCLE_POINTS, endpoint=False)
     across = 16 * np.sin(angle) ** 3
     upwards = 13 * np.cos(angle) - 5 * np.cos(2 * angle) - 2 * np.cos(3 * angle) - np.cos(4 * angle)
     return np.column_stack([across, -upwards - 2.5]) * (size / 32) + (x, y)
 
 
-def _stand() -> list[Loop]:
+def _stand() -> list[Array]:
     return [
         _disc(0.5, 0.155, 0.125),
         *_stroke(0.24, (0.5, 0.42), (0.5, 0.56)),
@@ -118,7 +118,7 @@ def _stand() -> list[Loop]:
     ]
 
 
-def _walk() -> list[Loop]:
+def _walk() -> list[Array]:
     return [
         _disc(0.55, 0.145, 0.12),
         *_stroke(0.19, (0.53, 0.4), (0.5, 0.55)),
@@ -129,7 +129,7 @@ def _walk() -> list[Loop]:
     ]
 
 
-def _run() -> list[Loop]:
+def _run() -> list[Array]:
     return [
         _disc(0.68, 0.135, 0.115),
         *_stroke(0.185, (0.59, 0.37), (0.51, 0.52)),
@@ -143,8 +143,8 @@ def _run() -> list[Loop]:
     ]
 
 
-def _turn() -> list[Loop]:
-    loops: list[Loop] = [_disc(0.5, 0.5, 0.09)]
+def _turn() -> list[Array]:
+    loops: list[Array] = [_disc(0.5, 0.5, 0.09)]
     for start in (-70, 110):
         loops.append(_arc(0.5, 0.5, 0.35, 0.12, start, start + 118))
         end = math.radians(start + 112)
@@ -157,7 +157,7 @@ def _turn() -> list[Loop]:
     return loops
 
 
-def _dinosaur() -> list[Loop]:
+def _dinosaur() -> list[Array]:
     return [
         *_limb((0.36, 0.6, 0.14), (0.47, 0.57, 0.165), (0.58, 0.57, 0.145)),
         *_limb((0.61, 0.54, 0.12), (0.72, 0.36, 0.078), (0.79, 0.2, 0.07)),
@@ -169,11 +169,11 @@ def _dinosaur() -> list[Loop]:
     ]
 
 
-def _kiss() -> list[Loop]:
+def _kiss() -> list[Array]:
     return [_heart(0.42, 0.57, 0.78), _heart(0.85, 0.17, 0.27)]
 
 
-def _shout() -> list[Loop]:
+def _shout() -> list[Array]:
     spikes = 11
     angle = np.radians(np.arange(2 * spikes) * 180 / spikes - 90)
     reach = np.where(np.arange(2 * spikes) % 2, 0.34, 0.49)
@@ -182,7 +182,7 @@ def _shout() -> list[Loop]:
     return [burst, _hole(stroke), _hole(_disc(0.5, 0.69, 0.055))]
 
 
-def _cut() -> list[Loop]:
+def _cut() -> list[Array]:
     return [
         *_limb((0.3, 0.68, 0.05), (0.74, 0.08, 0.03)),
         *_limb((0.7, 0.68, 0.05), (0.26, 0.08, 0.03)),
@@ -193,7 +193,7 @@ def _cut() -> list[Loop]:
     ]
 
 
-def _fold() -> list[Loop]:
+def _fold() -> list[Array]:
     return [
         np.array([(0.04, 0.62), (0.46, 0.62), (0.46, 0.96), (0.04, 0.96)]),
         *_stroke(0.06, (0.57, 0.65), (0.57, 0.93)),
@@ -203,7 +203,7 @@ def _fold() -> list[Loop]:
     ]
 
 
-def _glue() -> list[Loop]:
+def _glue() -> list[Array]:
     return [
         np.array([(0.43, 0.04), (0.57, 0.04), (0.64, 0.26), (0.36, 0.26)]),
         np.array([(0.3, 0.3), (0.7, 0.3), (0.74, 0.4), (0.74, 0.96), (0.26, 0.96), (0.26, 0.4)]),
@@ -211,7 +211,7 @@ def _glue() -> list[Loop]:
     ]
 
 
-ICONS: dict[str, Callable[[], list[Loop]]] = {
+ICONS: dict[str, Callable[[], list[Array]]] = {
     "stand": _stand,
     "walk": _walk,
     "run": _run,

@@ -2,24 +2,22 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import aruco_dictionary
-
-Loop = NDArray[np.float64]
+from tracking.geometry.arrays import Array, Flags
 
 GRID_STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))
 """Steps along cell borders, clockwise with y down."""
 
 
-def marker_cells(dictionary: str, marker_id: int) -> NDArray[np.bool_]:
+def marker_cells(dictionary: str, marker_id: int) -> Flags:
     """Return which cells of a marker are black, with its border, (rows, columns)."""
     pattern = aruco_dictionary(dictionary)
     picture = cv2.aruco.generateImageMarker(pattern, marker_id, pattern.markerSize + 2)
     return np.asarray(picture) < 128
 
 
-def marker_loops(dictionary: str, marker_id: int) -> list[Loop]:
+def marker_loops(dictionary: str, marker_id: int) -> list[Array]:
     """Outline the black of a marker.
 
     One filled path has no seams between its cells, unlike adjacent squares.
@@ -51,7 +49,7 @@ def marker_loops(dictionary: str, marker_id: int) -> list[Loop]:
     return loops
 
 
-def _borders(cells: NDArray[np.bool_]) -> dict[tuple[int, int], list[tuple[int, int]]]:
+def _borders(cells: Flags) -> dict[tuple[int, int], list[tuple[int, int]]]:
     """List the steps along black cells from each grid point, with black on the right."""
     around = np.pad(cells, 1)
     steps: dict[tuple[int, int], list[tuple[int, int]]] = {}

@@ -1,11 +1,9 @@
 """Measured corners of the markers of a hand-folded cube: `corners_mm` in its file."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.errors import TrackingError
-
-Corners = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 MAX_DISTORTION = 0.02
 """A marker is a square to this share of its side."""
@@ -14,7 +12,7 @@ MAX_DISPLACEMENT = 0.15
 """No corner is displaced by more than this share of the marker's side."""
 
 
-def measured_corners(value: object, ideal: Corners, marker: float, of_face: str) -> Corners:
+def measured_corners(value: object, ideal: Array, marker: float, of_face: str) -> Array:
     """Read the corners that `write_cube` wrote.
 
     Parameters
@@ -30,7 +28,7 @@ def measured_corners(value: object, ideal: Corners, marker: float, of_face: str)
 
     Returns
     -------
-    Corners in the cube frame, (4, 3) [m].
+    Array in the cube frame, (4, 3) [m].
 
     Raises
     ------

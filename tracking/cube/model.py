@@ -8,11 +8,11 @@ from typing import Any, Self
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.icons import INK
 from tracking.cube.measured_corners import measured_corners
 from tracking.errors import TrackingError
+from tracking.geometry.arrays import Array
 
 FACE_AXES: dict[str, tuple[tuple[int, int, int], tuple[int, int, int]]] = {
     "front": ((1, 0, 0), (0, 1, 0)),
@@ -38,7 +38,7 @@ class Face:
     marker_id: int
     """Id of the marker in the cube's dictionary."""
 
-    corners: NDArray[np.float64]
+    corners: Array
     """Corners of the black square in the cube frame, (4, 3) in metres.
 
     Top-left, top-right, bottom-right, bottom-left of the marker, seen from outside: the ideal ones,
@@ -55,7 +55,7 @@ class Face:
     """Rotation of the marker on its face: 0, 90, 180 or 270, clockwise seen from outside."""
 
     @property
-    def normal(self) -> NDArray[np.float64]:
+    def normal(self) -> Array:
         """Outward unit normal in the cube frame, (3,), by the measured corners."""
         right, up = FACE_AXES[self.name]
         square = np.cross(right, up).astype(np.float64)
@@ -195,7 +195,7 @@ def aruco_dictionary(name: str) -> cv2.aruco.Dictionary:
     return cv2.aruco.getPredefinedDictionary(number)
 
 
-def face_corners(name: str, roll_deg: int, marker: float, edge: float) -> NDArray[np.float64]:
+def face_corners(name: str, roll_deg: int, marker: float, edge: float) -> Array:
     """Corners of a marker in the cube frame, (4, 3), in the order of `Face.corners`.
 
     >>> face_corners("front", 0, 0.04, 0.06)[0].tolist()

@@ -4,11 +4,8 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Picture = NDArray[np.uint8]
-Index = NDArray[np.intp]
+from tracking.geometry.arrays import Array, Flags, Image, Indices
 
 THRESHOLD_WINDOW_PX = 25
 """Window of the local mean that a dark pixel must be below: larger dark cells become hollow, but
@@ -52,7 +49,7 @@ class BorderSegments:
     end: Array
     """End of each, (N, 2) [px]."""
 
-    blob: Index
+    blob: Indices
     """Index of the blob of each, (N,), ascending."""
 
     def __len__(self) -> int:
@@ -63,12 +60,12 @@ class BorderSegments:
         """Lengths, (N,) [px]."""
         return np.asarray(np.hypot(*(self.end - self.start).T))
 
-    def select(self, chosen: Index | NDArray[np.bool_]) -> "BorderSegments":
+    def select(self, chosen: Indices | Flags) -> "BorderSegments":
         """Return some of them."""
         return BorderSegments(self.start[chosen], self.end[chosen], self.blob[chosen])
 
 
-def find_border_segments(grey: Picture) -> BorderSegments:
+def find_border_segments(grey: Image) -> BorderSegments:
     """Find the straight borders of the dark blobs in a grey image, (H, W), slightly blurred."""
     dark = cv2.adaptiveThreshold(
         grey,
@@ -97,7 +94,7 @@ def find_border_segments(grey: Picture) -> BorderSegments:
     return _longest(segments.select(_has_contrast(segments, grey)))
 
 
-def _has_contrast(segments: BorderSegments, grey: Picture) -> NDArray[np.bool_]:
+def _has_contrast(segments: BorderSegments, grey: Image) -> Flags:
     """Whether there is a step from dark to bright across the middle of each segment."""
     height, width = grey.shape
     direction = (segments.end - segments.start) / segments.length[:, None]
@@ -124,7 +121,7 @@ def _longest(segments: BorderSegments) -> BorderSegments:
     return segments.select(np.sort(order[(rank < MAX_SEGMENTS) & (count > 2)]))
 
 
-def quadrilaterals(segments: BorderSegments) -> tuple[Index, Array]:
+def quadrilaterals(segments: BorderSegments) -> tuple[Indices, Array]:
     """Combine segments that can be the four sides of one dark quad, parts of which are hidden.
 
     Returns
@@ -149,7 +146,7 @@ def quadrilaterals(segments: BorderSegments) -> tuple[Index, Array]:
     return chain[whole], corners
 
 
-def _neighbours(segments: BorderSegments) -> tuple[Index, Index, Array]:
+def _neighbours(segments: BorderSegments) -> tuple[Indices, Indices, Array]:
     """Pairs of segments of one blob that meet clockwise, (P,), (P,), and where, (P, 2)."""
     begin = np.searchsorted(segments.blob, segments.blob, side="left")
     count = np.searchsorted(segments.blob, segments.blob, side="right") - begin
@@ -173,8 +170,8 @@ def _neighbours(segments: BorderSegments) -> tuple[Index, Index, Array]:
 
 
 def _extended(
-    chain: Index, meets: Array, begins: Index, second: Index, corner: Array
-) -> tuple[Index, Array]:
+    chain: Indices, meets: Array, begins: Indices, second: Indices, corner: Array
+) -> tuple[Indices, Array]:
     """Append to each chain of segments every segment that its last one meets."""
     last = chain[:, -1]
     count = begins[last + 1] - begins[last]

@@ -3,16 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.faces import FacePlanes
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
-from tracking.geometry.image_region import Floats, Patch
+from tracking.geometry.arrays import Array, Flags, Floats
+from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.geometry.robust_statistics import quantile
-
-Array = NDArray[np.float64]
 
 MIN_FACING_COSINE = 0.2
 """Cosine of the viewing angle below which a marker's cells are too foreshortened to be read."""
@@ -80,7 +78,7 @@ class CellReader:
         )
 
 
-def _agreement(value: Floats, white: NDArray[np.bool_]) -> float:
+def _agreement(value: Floats, white: Flags) -> float:
     bright, dark = value[white], value[~white]
     if not len(bright) or not len(dark):
         return 0.0

@@ -5,11 +5,9 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel, Face, aruco_dictionary
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array, Image
 
 
 @dataclass(frozen=True)
@@ -56,7 +54,7 @@ class MarkerDetector:
         parameters.adaptiveThreshWinSizeStep = 10
         self._detector = cv2.aruco.ArucoDetector(aruco_dictionary(dictionary), parameters)
 
-    def detect(self, grey: NDArray[np.uint8]) -> list[Marker]:
+    def detect(self, grey: Image) -> list[Marker]:
         """Detect markers in a grey image, (H, W)."""
         quads, ids = self._detector.detectMarkers(grey)[:2]
         # None where there is no marker; (N,) in OpenCV 5, (N, 1) in OpenCV 4.

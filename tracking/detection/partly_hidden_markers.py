@@ -2,17 +2,13 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import Observation
 from tracking.detection.quads import Quads, find_quads, sampled
+from tracking.geometry.arrays import Array, Flags, Image, Indices
 from tracking.geometry.image_region import Region
-
-Array = NDArray[np.float64]
-Picture = NDArray[np.uint8]
-Flags = NDArray[np.bool_]
 
 UNREAD_BAND = 0.15
 """A cell closer to the middle between black and white than this share of the contrast is unread."""
@@ -62,7 +58,7 @@ class PartlyHiddenMarkerDetector:
         depth = np.minimum(np.minimum(x, y), count - np.maximum(x, y))
         self._paper, self._border, self._bits = depth < 0, (depth > 0) & (depth < 1), depth > 1
 
-    def detect(self, grey: Picture, region: Region | None = None) -> list[Observation]:
+    def detect(self, grey: Image, region: Region | None = None) -> list[Observation]:
         """Detect markers in a grey image, (H, W), or in a region of it.
 
         Returns
@@ -87,7 +83,7 @@ class PartlyHiddenMarkerDetector:
                 found.append(seen)
         return found
 
-    def _read(self, soft: Picture, quads: Quads) -> tuple[NDArray[np.intp], Array]:
+    def _read(self, soft: Image, quads: Quads) -> tuple[Indices, Array]:
         """Identify the marker in each quad: 4 × index of its face + rotation, or −1; its fit."""
         places = quads.map(self._places)
         values = sampled(soft, places)
@@ -104,9 +100,7 @@ class PartlyHiddenMarkerDetector:
         hidden = quads.gaps.max(axis=1) > MAX_GAP_CELLS / self._count
         return self._matched(sign[:, self._bits], framed, np.where(hidden, MAX_WRONG_SHARE, 0.0))
 
-    def _matched(
-        self, sign: Array, framed: Flags, wrong_share: Array
-    ) -> tuple[NDArray[np.intp], Array]:
+    def _matched(self, sign: Array, framed: Flags, wrong_share: Array) -> tuple[Indices, Array]:
         """Find the marker that agrees best with the signs of the inner cells, (N, cells)."""
         fit = sign @ (2 * self._white - 1).T  # right minus wrong
         read = np.abs(sign).sum(axis=1)

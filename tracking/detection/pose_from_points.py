@@ -5,15 +5,13 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel, Face
 from tracking.detection.markers import Observation
 from tracking.geometry import se3
+from tracking.geometry.arrays import Array
 from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.geometry.robust_statistics import quantile
-
-Array = NDArray[np.float64]
 
 MIN_FACING_COSINE = 0.05
 """Cosine between a face's normal and the line of sight below which its marker cannot be read."""

@@ -4,12 +4,9 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.detection.borders import BorderSegments, find_border_segments, quadrilaterals
-
-Array = NDArray[np.float64]
-Picture = NDArray[np.uint8]
+from tracking.geometry.arrays import Array, Image
 
 MIN_SIDE_PX = 14.0
 """Shortest side of a quad."""
@@ -62,7 +59,7 @@ class Quads:
         return np.asarray(above / (g[:, None] * u + h[:, None] * v + 1.0)[..., None], np.float64)
 
 
-def find_quads(grey: Picture) -> Quads:
+def find_quads(grey: Image) -> Quads:
     """Find dark quads in a grey image, (H, W), slightly blurred."""
     sides = find_border_segments(grey)
     chosen, corners = quadrilaterals(sides)
@@ -80,7 +77,7 @@ def find_quads(grey: Picture) -> Quads:
     return Quads(corners, _gaps(used, corners), share[keep].mean(axis=1))
 
 
-def sampled(grey: Picture, places: Array) -> Array:
+def sampled(grey: Image, places: Array) -> Array:
     """Grey values between pixel centres, bilinear, places (N, M, 2) [px] → (N, M)."""
     x, y = np.moveaxis(places.astype(np.float32), -1, 0)
     border = cv2.BORDER_REPLICATE
@@ -97,7 +94,7 @@ def _side_lengths(corners: Array) -> Array:
     return np.asarray(np.hypot(edges[..., 0], edges[..., 1]), np.float64)
 
 
-def _refined_corners(grey: Picture, used: BorderSegments) -> Array:
+def _refined_corners(grey: Image, used: BorderSegments) -> Array:
     """Move sides, four for each quad, to the greatest gradient of the image; return the corners."""
     direction = (used.end - used.start) / used.length[:, None]
     across = np.stack([direction[:, 1], -direction[:, 0]], axis=1)  # towards the bright side

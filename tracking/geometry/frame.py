@@ -2,15 +2,14 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
+from tracking.geometry.arrays import Image
 
 
 @dataclass(frozen=True)
 class Frame:
     """One camera image with its time."""
 
-    image: NDArray[np.uint8]
+    image: Image
     """Pixels, (height, width, 3), BGR."""
 
     timestamp: float

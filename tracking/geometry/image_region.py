@@ -5,11 +5,8 @@ from typing import Self
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-
-Floats = NDArray[np.float32]
+from tracking.geometry.arrays import Array, Floats, Image
 
 Region = tuple[int, int, int, int]
 """Left, top, right, bottom [px]; right and bottom are exclusive."""
@@ -31,7 +28,7 @@ class Patch:
     @classmethod
     def crop(
         cls,
-        image: NDArray[np.uint8],
+        image: Image,
         region: Region | None = None,
         tone: Floats | None = None,
     ) -> Self:

@@ -9,12 +9,11 @@ from typing import Any, Self
 import cv2
 import numpy as np
 import yaml
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tracking.errors import TrackingError
 from tracking.files import write_whole
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 GUESSED_FIELD_OF_VIEW = math.radians(60)
 """Horizontal field of view of a common webcam [rad]."""

@@ -2,12 +2,9 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from tracking.geometry.arrays import Array
 from tracking.geometry.intrinsics import Intrinsics
-
-Array = NDArray[np.float64]
-
 
 MIN_DEPTH = 0.03
 """A cube closer to the camera than this [m] is not seen whole; such a pose is wrong."""

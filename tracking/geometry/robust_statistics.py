@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 
 def quantile(values: NDArray[np.floating[Any]], share: float) -> float:

@@ -6,9 +6,8 @@ so a distance of metres never scales an error of rotation.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 SMALL_ANGLE = 1e-6
 """Below this angle [rad] the series is used; its first dropped term is below 1e-24."""

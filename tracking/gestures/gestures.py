@@ -4,17 +4,15 @@ from collections import deque
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
+from tracking.geometry.arrays import Array
 from tracking.geometry.state import CubeControls, CubeState
 from tracking.gestures.shaking import ShakeDetector
 from tracking.gestures.stillness import StillnessDetector
 from tracking.gestures.table import DIRECTIONS, Table, TableEstimator
 from tracking.gestures.turning import TurnCounter, clockwise_angle, clockwise_angle_of, wrap_angle
-
-Array = NDArray[np.float64]
 
 MAX_REST_TILT = np.deg2rad(10.0)
 """A face that is tilted less than this lies on the table [rad] (M11)."""

@@ -3,9 +3,8 @@
 from collections import deque
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 MIN_REVERSALS, WINDOW_S = 4, 0.8
 """This many reversals within this time make a shake."""

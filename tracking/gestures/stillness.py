@@ -4,11 +4,9 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.geometry import se3
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 WINDOW_S = 0.3
 """How long the cube must keep still to count as still."""

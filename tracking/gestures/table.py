@@ -17,12 +17,10 @@ The rule in full:
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import FACE_AXES
 from tracking.geometry import se3
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 PRIOR_UP = np.array([0.0, -np.cos(np.deg2rad(35)), -np.sin(np.deg2rad(35))])
 """Up in the camera frame for an upright camera that looks down by 35°."""

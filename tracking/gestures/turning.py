@@ -1,11 +1,9 @@
 """Angles about the table's up axis, and unwrapped turns."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracking.geometry.arrays import Array
 from tracking.gestures.table import DIRECTIONS
-
-Array = NDArray[np.float64]
 
 
 def wrap_angle(angle: float) -> float:

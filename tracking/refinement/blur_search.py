@@ -1,9 +1,9 @@
 """A cube found by its motion-blurred image, where its edges are smeared too far."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel
+from tracking.geometry.arrays import Array
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.camera_model import CameraModel
@@ -12,8 +12,6 @@ from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
 from tracking.refinement.motion_blur_alignment import MotionBlurAligner
 from tracking.refinement.photometric_fit import Alignment
-
-Array = NDArray[np.float64]
 
 MAX_EDGE_BLUR_CELLS = 0.6
 """Cells that an edge may cross during the exposure and still be measured as an edge."""

@@ -4,12 +4,9 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tracking.geometry.image_region import Floats
+from tracking.geometry.arrays import Array, Floats
 from tracking.refinement.photometric_fit import Alignment
-
-Array = NDArray[np.float64]
 
 FIRST_EXPOSURE_S = 0.010
 """Exposure that is assumed before it is measured: roughly that of a webcam indoors."""

@@ -4,11 +4,9 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.geometry import se3
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 MIN_LOG_LIKELIHOOD_RATIO = 8.0
 """Twice the logarithm of a likelihood ratio from which on the better of two poses is right."""

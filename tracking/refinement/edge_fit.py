@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracking.geometry.arrays import Array, Flags, Indices
 from tracking.geometry.image_region import Patch
 from tracking.geometry.robust_statistics import quantile, tukey_weight
 from tracking.refinement.profiles import EdgeMeasurements, EdgeProfiles, measure_profiles
-
-Array = NDArray[np.float64]
 
 BLOOM_PX = 0.3
 """How far white grows over black, one standard deviation: gamma, ink and overexposure."""
@@ -48,7 +46,7 @@ class EdgeFit:
     solution: Array
     """Pose delta from the pose of the profiles, then the two blooms, (8,)."""
 
-    strong: NDArray[np.intp]
+    strong: Indices
     """Numbers of the profiles in which an edge was seen, (M,)."""
 
     rows: Array
@@ -114,7 +112,7 @@ def fit_edges(
     return EdgeFit(measured, solution, strong, rows, weights, robust, residual, normal)
 
 
-def _is_printed(face: NDArray[np.intp], measured: EdgeMeasurements) -> NDArray[np.bool_]:
+def _is_printed(face: Indices, measured: EdgeMeasurements) -> Flags:
     """Whether each edge has as much contrast as the other edges of its face, (N,).
 
     Weber contrast, relative to the local light, is used: ink on paper keeps it in a shadow, where
@@ -129,7 +127,7 @@ def _is_printed(face: NDArray[np.intp], measured: EdgeMeasurements) -> NDArray[n
     return np.asarray((weber > least) & (measured.contrast > overall), np.bool_)
 
 
-def covariance(fit: EdgeFit, lines: NDArray[np.intp], pixels: Array) -> Array:
+def covariance(fit: EdgeFit, lines: Indices, pixels: Array) -> Array:
     """Covariance of the pose delta, (6, 6), with each straight line as one measurement.
 
     The errors of the points of one line are not independent: they share the paper, the light and
@@ -162,9 +160,7 @@ def covariance(fit: EdgeFit, lines: NDArray[np.intp], pixels: Array) -> Array:
     )
 
 
-def _phase_covariance(
-    inverse: Array, starts: NDArray[np.intp], weighted: Array, pixels: Array
-) -> Array:
+def _phase_covariance(inverse: Array, starts: Indices, weighted: Array, pixels: Array) -> Array:
     """Covariance of the errors that come from the phase of a line on the pixel grid, (6, 6).
 
     All points of a line that is parallel to the rows or columns of pixels are off together by a few

@@ -9,19 +9,17 @@ and Stennett, 1990); the profile fit, the bloom and the covariance are ours.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.edges import EdgeModel
 from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
+from tracking.geometry.arrays import Array, Indices
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.geometry.robust_statistics import quantile
 from tracking.refinement.edge_fit import MIN_EDGE_POINTS, EdgeFit, covariance, fit_edges
 from tracking.refinement.profiles import EdgeMeasurements, EdgeProfiles, place_profiles
-
-Array = NDArray[np.float64]
 
 MIN_FACING_COSINE = 0.15
 """Cosine of the viewing angle below which the edges of a face are too foreshortened to help."""
@@ -163,9 +161,7 @@ class EdgeRefiner:
         )
 
 
-def _sharpness(
-    measured: EdgeMeasurements, kept: NDArray[np.intp], lines: NDArray[np.intp]
-) -> tuple[float, float]:
+def _sharpness(measured: EdgeMeasurements, kept: Indices, lines: Indices) -> tuple[float, float]:
     """Return `sharpness_ratio` and `sharpness` of the lines."""
     starts = np.flatnonzero(np.diff(lines, prepend=-1))
     rise = np.add.reduceat(measured.rise[kept], starts)

@@ -3,18 +3,16 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
 from tracking.detection.marker_check import CellReader, CellReading
+from tracking.geometry.arrays import Array
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_refinement import EdgeRefinement, EdgeRefiner
 from tracking.refinement.footprint import Footprint
-
-Array = NDArray[np.float64]
 
 MIN_EDGE_SUPPORT = 0.55
 """Share of the edges in view that must be found for the edges alone to prove the cube."""

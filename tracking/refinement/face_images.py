@@ -2,13 +2,10 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
-
-Array = NDArray[np.float64]
-Image = NDArray[np.float32]
+from tracking.geometry.arrays import Array, Floats, Indices
 
 
 class FaceTextures:
@@ -27,8 +24,8 @@ class FaceTextures:
         self._derivatives = np.stack([np.ones_like(right), right, below]).astype(np.complex64)
 
     def blurred(
-        self, faces: NDArray[np.intp], texels_to_pixels: Array, sigma: float
-    ) -> tuple[Image, Array]:
+        self, faces: Indices, texels_to_pixels: Array, sigma: float
+    ) -> tuple[Floats, Array]:
         """Blur faces by a Gaussian that is round in the camera's image, not on the paper.
 
         A tilted face is blurred more along its tilt. The faces have white borders, so the blur may
@@ -60,7 +57,7 @@ class FaceTextures:
         return np.ascontiguousarray(layers, np.float32), widest
 
 
-def _texture(cube: CubeModel, face: int, side: int) -> Image:
+def _texture(cube: CubeModel, face: int, side: int) -> Floats:
     """Draw a face, 1 white and 0 black, (side, side)."""
     fine = 4
     cells = marker_cells(cube.dictionary, cube.faces[face].marker_id)

@@ -1,14 +1,12 @@
 """Where a cube at a pose appears in the image, and how large."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
-from tracking.geometry.image_region import Floats, Patch, Region
+from tracking.geometry.arrays import Array, Floats, Image
+from tracking.geometry.image_region import Patch, Region
 from tracking.geometry.projection import MIN_DEPTH, Projection
-
-Array = NDArray[np.float64]
 
 MARGIN_SHARE, MARGIN_PX = 0.15, 12
 """Margin around the predicted cube, for the acceleration of a hand: a share of its size, and [px]
@@ -45,7 +43,7 @@ class Footprint:
         turn = float(np.linalg.norm(blur_motion[3:]))
         return (shift + self.half_edge * turn) / self.cell
 
-    def crop(self, image: NDArray[np.uint8], camera_from_cube: Array, tone: Floats) -> Patch | None:
+    def crop(self, image: Image, camera_from_cube: Array, tone: Floats) -> Patch | None:
         """Crop the cube at a pose from an image, (H, W, 3) BGR; None where it is not in view.
 
         `tone` is the light for each grey value, (256,).

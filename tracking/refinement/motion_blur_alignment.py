@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.faces import FacePlanes, face_frame
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
+from tracking.geometry.arrays import Array, Flags, Floats, Indices
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.refinement.face_images import FaceTextures
@@ -26,9 +26,6 @@ from tracking.refinement.photometric_fit import (
     PhotometricSamples,
     fit_tones,
 )
-
-Array = NDArray[np.float64]
-Image = NDArray[np.float32]
 
 TEXELS_PER_CELL = 8
 """Texels of a face texture along a cell of its marker."""
@@ -209,9 +206,7 @@ class MotionBlurAligner:
         met = np.linalg.inv(planes) @ samples.rays
         return met[:, :, 0] / met[:, :, 2], met[:, :, 1] / met[:, :, 2]
 
-    def _looked_up(
-        self, samples: "_Samples", u: Array, v: Array
-    ) -> tuple[Image, NDArray[np.bool_]]:
+    def _looked_up(self, samples: "_Samples", u: Array, v: Array) -> tuple[Floats, Flags]:
         """Read the textures with their gradients; tell which samples always stay on their face."""
         size, half = self._side, self._half
         inside = np.maximum(np.abs(u), np.abs(v)) < half - samples.border[:, None]
@@ -257,7 +252,7 @@ class MotionBlurAligner:
 class _Samples:
     """Where an image is compared with its rendering."""
 
-    facing: NDArray[np.intp]
+    facing: Indices
     """Indices of the faces in view, (faces,)."""
 
     rays: Array
@@ -269,10 +264,10 @@ class _Samples:
     values: Array
     """Light of the image, (faces · N,)."""
 
-    inside: NDArray[np.bool_]
+    inside: Flags
     """Whether each sample is inside the image, (faces · N,)."""
 
-    layers: Image
+    layers: Floats
     """Blurred textures of the faces with their derivatives, (faces · side, side, 3)."""
 
     border: Array

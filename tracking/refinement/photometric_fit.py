@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracking.geometry.arrays import Array, Indices
 from tracking.geometry.robust_statistics import quantile
-
-Array = NDArray[np.float64]
 
 MAX_RESIDUAL_SIGMAS = 2.0
 """Residuals beyond this many standard deviations lose their weight: fingers, glare, shadows."""
@@ -24,10 +22,10 @@ MIN_FACE_SAMPLES = 30
 class PhotometricSamples:
     """Rendered and measured values of the samples in view."""
 
-    face: NDArray[np.intp]
+    face: Indices
     """Index of each sample's face, 0 for the first in view, (N,)."""
 
-    block: NDArray[np.intp]
+    block: Indices
     """Index of its block: the errors of one block are not independent, (N,)."""
 
     seen: Array
@@ -147,7 +145,7 @@ class PhotometricFit:
         normal[np.diag_indices_from(normal)] += diagonal
         return normal
 
-    def _blocks(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    def _blocks(self) -> tuple[Indices, Indices]:
         order = np.argsort(self.samples.block, kind="stable")
         return np.flatnonzero(np.diff(self.samples.block[order], prepend=-1)), order
 

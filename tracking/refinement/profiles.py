@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.edges import EdgeModel
-from tracking.geometry.image_region import Floats, Patch
+from tracking.geometry.arrays import Array, Floats, Indices
+from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import MIN_DEPTH, Projection
-
-Array = NDArray[np.float64]
 
 MIN_CELL_PX = 2.5
 """Smallest cell across an edge: below, the two edges of a cell blur into one."""
@@ -40,7 +38,7 @@ class EdgeProfiles:
     model: EdgeModel
     """The edges of the faces in view."""
 
-    numbers: NDArray[np.intp]
+    numbers: Indices
     """Indices of these points in `model`, ascending, (N,)."""
 
     pixels: Array
@@ -59,7 +57,7 @@ class EdgeProfiles:
     """How far each edge moved along its normal during the exposure, (N,) [px]."""
 
     @property
-    def face(self) -> NDArray[np.intp]:
+    def face(self) -> Indices:
         """Number of each point's face, (N,)."""
         return self.model.face[self.numbers]
 

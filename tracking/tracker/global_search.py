@@ -5,21 +5,19 @@ from functools import cached_property
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import Marker, MarkerDetector, Observation, markers_of
 from tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
+from tracking.geometry.arrays import Array, Floats, Image
 from tracking.geometry.frame import Frame
-from tracking.geometry.image_region import Floats, Patch
+from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.blur_search import BlurSearch
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
 from tracking.tracker.marker_poses import MarkerPoses
-
-Array = NDArray[np.float64]
 
 MIN_HALVED_HEIGHT_PX = 480
 """Images of at least this height are searched at half their size first."""
@@ -34,7 +32,7 @@ class FrameMarkers:
         self._read: dict[tuple[str, bool], list[Marker]] = {}
 
     @cached_property
-    def grey(self) -> NDArray[np.uint8]:
+    def grey(self) -> Image:
         """The image in grey, (H, W)."""
         return np.asarray(cv2.cvtColor(self._image, cv2.COLOR_BGR2GRAY), np.uint8)
 
@@ -71,7 +69,7 @@ class GlobalDetector:
 
     def detect(
         self,
-        image: NDArray[np.uint8],
+        image: Image,
         markers: FrameMarkers,
         expected: Array | None,
         tone: Floats,
@@ -107,7 +105,7 @@ class GlobalDetector:
             yield self._hidden.detect(markers.grey)
 
     def _align_blurred(
-        self, image: NDArray[np.uint8], tone: Floats, candidates: list[Candidate]
+        self, image: Image, tone: Floats, candidates: list[Candidate]
     ) -> list[Candidate]:
         """Align the blurred image at poses that rest on corners alone, where it shows the cube."""
         found = []

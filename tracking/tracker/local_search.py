@@ -2,10 +2,8 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tracking.cube.model import CubeModel
+from tracking.geometry.arrays import Array, Image
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.blur_search import MAX_EDGE_BLUR_CELLS, MIN_CORRELATION_ALONE, BlurSearch
@@ -15,8 +13,6 @@ from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
 from tracking.refinement.photometric_fit import Alignment
 from tracking.tracker.prediction import Prediction, Track
-
-Array = NDArray[np.float64]
 
 MAX_MOTION_SURPRISE_CELLS = 0.07
 """The edges are measured again where the measured blur motion differs by more from the expected."""
@@ -48,7 +44,7 @@ class LocalTracker:
 
     def search(
         self,
-        image: NDArray[np.uint8],
+        image: Image,
         track: Track,
         prediction: Prediction,
         camera: CameraModel,

@@ -1,18 +1,14 @@
 """Candidate poses from the markers of one frame, refined on the edges."""
 
-import numpy as np
-from numpy.typing import NDArray
-
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import Observation
 from tracking.detection.pose_from_points import CornerPose, CornerPoseSolver
 from tracking.geometry import se3
+from tracking.geometry.arrays import Array
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeMatch, EdgeSearch
-
-Array = NDArray[np.float64]
 
 MAX_CORNER_DISTANCE_CELLS = 1.0
 """Edges and corners must agree to this share of a cell, or the edges found something else."""

@@ -3,11 +3,9 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.geometry import se3
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 MAX_PREDICTION_S = 0.2
 """A pose is extrapolated for this long at most; after that the cube may be anywhere."""

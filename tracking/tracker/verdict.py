@@ -4,18 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
-from tracking.geometry.image_region import Floats
+from tracking.geometry.arrays import Floats, Image
 from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
 from tracking.tracker.prediction import MAX_PREDICTION_S, Prediction, Track, TrackedPose
-
-Array = NDArray[np.float64]
 
 MIN_DISTINCT_ANGLE, MIN_HARMFUL_ANGLE, MIN_LASTING_ANGLE = np.deg2rad((3, 7, 10))
 """Angle between the two poses of one face [rad]: below the first they need not be told apart, below
@@ -73,9 +70,7 @@ class FollowedPoseJudge:
         self._footprint = Footprint(cube, projection)
         self._edges = edges
 
-    def judge(
-        self, candidate: Candidate, image: NDArray[np.uint8], tone: Floats, past: Past
-    ) -> Verdict:
+    def judge(self, candidate: Candidate, image: Image, tone: Floats, past: Past) -> Verdict:
         """Tell which way a face tilts: by its edges, else by its past, else not at all.
 
         Once the tilt is known it stays known until the face comes square to the camera, where one

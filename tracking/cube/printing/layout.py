@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from tracking.cube.model import CubeModel, Face
 from tracking.cube.printing.unfolding import TAB_DEPTH, Unfolding
 from tracking.errors import TrackingError
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 PAPERS = {"a4": (297.0, 210.0), "letter": (279.4, 215.9), "a3": (420.0, 297.0)}
 """Width and height in landscape [mm]."""

@@ -1,14 +1,12 @@
 """The notes around the net: title, meaning of the faces, instructions, and ruler."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.icons import INK, icon_paths
 from tracking.cube.model import FACE_AXES
 from tracking.cube.printing.layout import PageArea, SheetLayout
 from tracking.cube.printing.pdf_page import Colour, PdfPage
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 DARK: Colour = (52, 58, 78)
 WORDS: Colour = (96, 102, 118)

@@ -6,10 +6,9 @@ from datetime import UTC, datetime
 import numpy as np
 from fpdf import FPDF, ViewerPreferences
 from fpdf.enums import PathPaintRule
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 Colour = tuple[int, int, int]
-Array = NDArray[np.float64]
 
 
 class PdfPage:

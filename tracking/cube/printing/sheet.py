@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.icons import INK, icon_paths
 from tracking.cube.marker import marker_loops
@@ -15,8 +14,6 @@ from tracking.files import write_whole
 
 if TYPE_CHECKING:
     from tracking.cube.printing.pdf_page import PdfPage
-
-Array = NDArray[np.float64]
 
 CUT = (70, 76, 90)
 FOLD = (150, 156, 168)

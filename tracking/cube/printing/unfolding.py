@@ -11,9 +11,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 SIDES: dict[str, tuple[int, int]] = {
     "right": (1, 0),
