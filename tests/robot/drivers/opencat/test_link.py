@@ -38,14 +38,14 @@ def test_a_whole_session_line_by_line(desk):
         "b16 4 12 4",
         "kbalance",
     ]
-    assert [text for _, text in d.robot.board.log] == d.lines
-    assert not d.robot.board.forbidden
+    assert [text for _, text in d.robot.log] == d.lines
+    assert not d.robot.forbidden
 
 
 def test_it_says_nothing_while_the_board_starts_and_then_knows_it(desk):
     d = desk()
     d.until(lambda: d.sent != [], 30.0)
-    assert len(d.robot.board.log) == 0
+    assert len(d.robot.log) == 0
     d.ready()
     assert d.host.catalogue.name == "Bittle X"
     assert d.host.catalogue.firmware == "OpenCat B10_241013"
@@ -95,7 +95,7 @@ def test_a_board_that_asks_whether_to_erase_its_calibration_gets_no_byte(desk, q
     robot.receive(b"n", d.now)  # its owner answers, in Petoi's own program
     d.ready()
     d.settle()
-    assert not robot.board.forbidden
+    assert not robot.forbidden
     d.host.close()
 
 
@@ -384,7 +384,7 @@ def test_a_robot_that_nobody_wants_anything_of_lies_down_and_wakes_for_a_new_moo
     d.settle()
     d.until(lambda: d.telemetry.limp, 130.0)
     assert d.lines[-1] == "d"
-    assert not d.robot.board.body.powered
+    assert not d.robot.body.powered
     assert d.telemetry.acknowledged is None
     d.run(3 * REST_INTERVAL_S)
     assert set(d.lines[-3:]) == {"d"}, "no other question: it would switch balancing on"
@@ -456,7 +456,7 @@ def test_joints_are_read_in_radians_and_called_reckoned(desk):
     d.feel("sad")
     d.settle()
     d.until(lambda: d.telemetry.joints != {}, 40.0)
-    angles = d.robot.board.body.angles(d.now)
+    angles = d.robot.body.angles(d.now)
     assert d.telemetry.joints["head"] == pytest.approx(math.radians(-40))
     assert d.telemetry.joints["left back knee"] == pytest.approx(math.radians(angles[15]), abs=0.01)
     assert d.telemetry.reckoned
@@ -490,7 +490,7 @@ def test_lines_that_would_run_together_are_never_sent_together(desk):
     for word in ("happy", "sad", "angry", "neutral", "happy"):
         d.feel(word)
         d.run(6.0)
-    assert all("\n" not in text for _, text in d.robot.board.log)
+    assert all("\n" not in text for _, text in d.robot.log)
     assert d.shown == "happy"
 
 
@@ -569,5 +569,5 @@ def test_a_robot_that_lies_is_let_lie_though_its_sign_of_life_is_lost(desk, quie
     d.until(lambda: d.state == "ready", 5.0)
     d.run(2 * REST_INTERVAL_S)
     assert not any(line[0] == "k" for line in d.lines[before:])
-    assert not robot.board.body.powered
+    assert not robot.body.powered
     assert d.telemetry.limp

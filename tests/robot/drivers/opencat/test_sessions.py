@@ -47,7 +47,7 @@ class Watch:
     def __call__(self) -> None:
         now = self.desk.telemetry
         if now.acknowledged not in (None, self.before):
-            log = self.desk.robot.board.log
+            log = self.desk.robot.log
             skills = [text[1:] for at, text in log if text[0] == "k" and at < self.desk.now]
             postures = {
                 mood.posture: word
@@ -91,10 +91,10 @@ def test_an_hour_with_an_ugly_board(kind, seed, desk):
         d.feel("sad")
     d.settle(SETTLED_WITHIN)
     assert d.shown == {"happy": "happy", "sad": "sad"}[_word(d.telemetry.commanded)]
-    assert not d.robot.board.forbidden
-    assert d.robot.board.lost == 0
+    assert not d.robot.forbidden
+    assert d.robot.lost == 0
     assert watch.claims > 50
-    assert max(len(text) for _, text in d.robot.board.log) < tokens.MAX_LINE_BYTES
+    assert max(len(text) for _, text in d.robot.log) < tokens.MAX_LINE_BYTES
 
 
 def _word(emotion) -> str:
@@ -111,7 +111,7 @@ def test_a_line_that_loses_and_flips_bytes_only_delays(seed, desk):
         d.feel(WORDS[random.integers(len(WORDS))])
         d.settle(4 * SETTLED_WITHIN)
         d.run(2.0)
-    assert not d.robot.board.forbidden
+    assert not d.robot.forbidden
 
 
 def test_a_day_leaves_nothing_behind(desk):
@@ -247,9 +247,9 @@ def test_over_a_real_port(soon):
             with pytest.raises(RobotError, match="cannot play 'c'"):
                 bittle.play("c")
             assert simulator.portrait() == (0.8, "happy")
-            soon(lambda: [text for _, text in simulator.board.log][-1] == "b14 8 18 8 21 8")
-        soon(lambda: not simulator.board.body.powered)
-        soon(lambda: [text for _, text in simulator.board.log][-1] == "d")
+            soon(lambda: [text for _, text in simulator.log][-1] == "b14 8 18 8 21 8")
+        soon(lambda: not simulator.body.powered)
+        soon(lambda: [text for _, text in simulator.log][-1] == "d")
 
 
 @pytest.mark.parametrize(
