@@ -1,8 +1,9 @@
-"""Head and eyes that look at a point, as far as a body can.
+"""Head and eyes that look at a point, within the limits of a body.
 
-Eyes jump, the head follows, and while it follows the eyes turn back by as much: the gaze stays
-where it is. The head leaves small turns to the eyes (Stahl, "Amplitude of human head movements
-associated with horizontal saccades", 1999; Guitton and Volle, "Gaze control in humans", 1987).
+Eyes jump (a saccade), the head follows, and meanwhile the eyes turn back by as much, so that the
+gaze stays on the point. The head leaves small turns to the eyes (Stahl, "Amplitude of human head
+movements associated with horizontal saccades", 1999; Guitton and Volle, "Gaze control in humans",
+1987).
 """
 
 import math
@@ -28,35 +29,35 @@ from characters.smoothing import damped_spring
 
 
 @dataclass(frozen=True)
-class Limits:
-    """How far a body can look, from where its chest faces."""
+class GazeLimits:
+    """How far a body can look, relative to its chest."""
 
     head_yaw: float = math.radians(72)
-    """Of the head to either side [rad]."""
+    """Yaw of the head to either side [rad]."""
 
     head_up: float = math.radians(42)
-    """Of the head upwards [rad]."""
+    """Pitch of the head upwards [rad]."""
 
     head_down: float = math.radians(48)
-    """Of the head downwards [rad]."""
+    """Pitch of the head downwards [rad]."""
 
     eye_yaw: float = math.radians(24)
-    """Of the eyes to either side in the head [rad]."""
+    """Yaw of the eyes in the head to either side [rad]."""
 
     eye_pitch: float = math.radians(15)
-    """Of the eyes up and down in the head [rad]."""
+    """Pitch of the eyes in the head up and down [rad]."""
 
-    given_up: float = math.radians(130)
-    """What is farther round than this is not looked at: the head stays as it is [rad]."""
+    max_target_yaw: float = math.radians(130)
+    """Yaw beyond which a target is ignored [rad]."""
 
 
-HUMAN = Limits()
-"""Ranges of motion of a healthy adult's neck, a little within (Youdas et al., 1992); of the eyes,
-what is used without effort, since drawn lids hide no more."""
+HUMAN_GAZE = GazeLimits()
+"""Slightly within the range of motion of a healthy adult's neck (Youdas et al., 1992), and within
+that of the eyes, since drawn lids hide no more."""
 
-_EYES_ALONE = math.radians(9)  # the head leaves turns up to this to the eyes
-_HEAD_SHARE = 0.92  # of what is beyond it, the head takes this part
-_HEAD_LAG, _EYE_LAG = 0.34, 0.035  # [s]
+EYES_ONLY_RAD = math.radians(9)  # turns up to this are made by the eyes alone
+HEAD_SHARE = 0.92  # part of the rest that the head takes
+HEAD_LAG_S, EYE_LAG_S = 0.34, 0.035
 _AHEAD: Vector = (0.0, 0.0, 1.0)
 
 
@@ -65,26 +66,26 @@ class _Joint:
     """A joint on the way from the root to the head or an eye."""
 
     number: int
-    """In the skeleton."""
+    """Its index in the skeleton."""
 
     parent: int
-    """Place of its parent among such joints; −1 for none."""
+    """Index of its parent among these joints; −1 for none."""
 
     rest: Quaternion
-    """Its rotation at rest, in the character."""
+    """Its rotation at rest, in the character frame."""
 
     turn: Quaternion = IDENTITY
-    """Its rotation now, in the character."""
+    """Its present rotation, in the character frame."""
 
     place: Vector = (0.0, 0.0, 0.0)
-    """Where it is now."""
+    """Its present position."""
 
     scale: Vector = (1.0, 1.0, 1.0)
-    """How its children's shifts are stretched now."""
+    """Its present scale, which stretches its children's translations."""
 
     @property
     def facing(self) -> Quaternion:
-        """How the body's axes lie as this joint carries them."""
+        """The body's axes as this joint turns them."""
         return multiply(self.turn, conjugate(self.rest))
 
 
@@ -94,25 +95,26 @@ class Gaze:
     Parameters
     ----------
     skeleton, anatomy
-        Whose.
+        The body.
     limits
-        How far they turn.
+        Limits of its turns.
     """
 
-    def __init__(self, skeleton: Skeleton, anatomy: Anatomy, limits: Limits = HUMAN) -> None:
+    def __init__(
+        self, skeleton: Skeleton, anatomy: Anatomy, limits: GazeLimits = HUMAN_GAZE
+    ) -> None:
         head = anatomy.joint("head")
-        self.able = head is not None
-        """Whether there is a head to turn."""
+        self._able = head is not None
         self._limits = limits
         self._yaw = self._pitch = self._yaw_speed = self._pitch_speed = 0.0
-        self.jumped = 0.0
-        """How far the eyes' aim went in the last update [rad]."""
+        self.shift = 0.0
+        """Angle by which the target moved in the last update [rad]."""
         self._aim: tuple[float, float] | None = None
         if head is None:
             return
         line = _line(head, anatomy.joint("neck"), skeleton)
         eyes = [j for side in ("left", "right") if (j := anatomy.joint(f"{side}Eye")) is not None]
-        self._joints = _carriers(skeleton, [*line, *eyes])
+        self._joints = _with_ancestors(skeleton, [*line, *eyes])
         places = {joint.number: place for place, joint in enumerate(self._joints)}
         self._numbers = np.array([joint.number for joint in self._joints], np.intp)
         self._line = [self._joints[places[joint]] for joint in line]
@@ -126,27 +128,27 @@ class Gaze:
         elapsed: float,
         head_share: float = 1.0,
         *,
-        pace: float = 1.0,
-        bow: float = 0.0,
+        tempo: float = 1.0,
+        head_drop: float = 0.0,
     ) -> Pose:
         """Advance by a time [s] and return the pose with head and eyes turned.
 
         Parameters
         ----------
         pose
-            As the body holds it.
+            The pose.
         target
-            What is looked at, (3,) in the character frame [m]; None for nothing.
+            The point to look at, (3,) in the character frame [m]; None for none.
         elapsed
-            Since the last call.
+            Time since the last call [s].
         head_share
-            How much of its part the head takes, 0…1; the eyes look anyway.
-        pace
-            How much quicker the head turns than usual.
-        bow
-            How far the head hangs beside [rad]; the eyes look up from it.
+            Part of its turn that the head makes, 0…1; the eyes look in any case.
+        tempo
+            Tempo of the head; 1 is normal.
+        head_drop
+            How far the head drops as well [rad]; the eyes compensate.
         """
-        if not self.able:
+        if not self._able:
             return pose
         self._place(pose)
         body, head = self._body(), self._line[-1]
@@ -156,17 +158,17 @@ class Gaze:
             x, y, z = target.tolist()
             point = (x, y, z)
         aim = self._aimed(body, point)
-        self.jumped = 0.0 if aim is None or self._aim is None else math.dist(aim, self._aim)
+        self.shift = 0.0 if aim is None or self._aim is None else math.dist(aim, self._aim)
         self._aim = aim
-        wish = (0.0, 0.0) if aim is None else self._head_wish(aim, held, head_share)
-        lag = _HEAD_LAG / pace
+        turn = (0.0, 0.0) if aim is None else self._head_turn(aim, held, head_share)
+        lag = HEAD_LAG_S / tempo
         self._yaw, self._yaw_speed = damped_spring(
-            self._yaw, self._yaw_speed, wish[0], elapsed, lag
+            self._yaw, self._yaw_speed, turn[0], elapsed, lag
         )
         self._pitch, self._pitch_speed = damped_spring(
-            self._pitch, self._pitch_speed, wish[1], elapsed, lag
+            self._pitch, self._pitch_speed, turn[1], elapsed, lag
         )
-        aimed = held[0] + self._yaw, held[1] + self._pitch - bow
+        aimed = held[0] + self._yaw, held[1] + self._pitch - head_drop
         turned = rotate(body, _turn_between(held, aimed))
         local = pose.rotations.copy()
         self._turn_line(local, turned)
@@ -175,7 +177,7 @@ class Gaze:
         return Pose(pose.translations, local, pose.scales, pose.morphs)
 
     def _place(self, pose: Pose) -> None:
-        """Work out where the joints are in a pose."""
+        """Compute the joints' rotations and positions in a pose."""
         turns = pose.rotations[self._numbers].tolist()
         shifts = pose.translations[self._numbers].tolist()
         scales = None if pose.scales is None else pose.scales[self._numbers].tolist()
@@ -189,18 +191,18 @@ class Gaze:
                 px, py, pz = above.place
                 joint.turn, joint.place = multiply(above.turn, own), (x + px, y + py, z + pz)
             if scales is not None:
-                # Bodies are stretched along their joints' axes or evenly: shear is left out.
+                # Shear is neglected: bodies are scaled along their joints' axes, or uniformly.
                 before = self._joints[joint.parent].scale if joint.parent >= 0 else (1.0, 1.0, 1.0)
                 sx, sy, sz = scales[number]
                 joint.scale = (before[0] * sx, before[1] * sy, before[2] * sz)
 
     def _body(self) -> Quaternion:
-        """Return which way the chest faces."""
+        """Return the rotation of the chest."""
         base = self._line[0].parent
         return self._joints[base].facing if base >= 0 else IDENTITY
 
     def _aimed(self, body: Quaternion, point: Vector | None) -> tuple[float, float] | None:
-        """Return yaw and pitch of a point from where the chest faces; None if it is not seen."""
+        """Return yaw and pitch of a point relative to the chest; None if it is ignored."""
         if point is None:
             return None
         eyes = self._eyes or self._line[-1:]
@@ -209,26 +211,26 @@ class Gaze:
         if max(map(abs, way)) < 1e-6:
             return None
         aim = _angles(rotate(conjugate(body), way))
-        return aim if abs(aim[0]) < self._limits.given_up else None
+        return aim if abs(aim[0]) < self._limits.max_target_yaw else None
 
-    def _head_wish(
+    def _head_turn(
         self, aim: tuple[float, float], held: tuple[float, float], share: float
     ) -> tuple[float, float]:
-        """Return how far the head is to turn beside what the pose does [rad]: yaw, pitch."""
-        limits, wished = self._limits, []
+        """Return the turn of the head relative to the pose [rad]: yaw, pitch."""
+        limits, turns = self._limits, []
         ranges = ((-limits.head_yaw, limits.head_yaw), (-limits.head_down, limits.head_up))
         for angle, now, (low, high) in zip(aim, held, ranges, strict=True):
             away = angle - now
-            beyond = math.copysign(max(abs(away) - _EYES_ALONE, 0.0) * _HEAD_SHARE, away)
+            beyond = math.copysign(max(abs(away) - EYES_ONLY_RAD, 0.0) * HEAD_SHARE, away)
             at = min(max(now + beyond, low), high)
-            wished.append((at - now) * share)
-        return wished[0], wished[1]
+            turns.append((at - now) * share)
+        return turns[0], turns[1]
 
     def _turn_line(self, local: Array, turned: Vector) -> None:
-        """Turn neck and head: each joint of the line by an equal part, so that they bend alike.
+        """Turn neck and head: each joint of the chain by an equal part.
 
-        Powers of one rotation commute: each joint's parent has made its part already, so the part
-        of each is the same vector, seen from the parent as it was.
+        Powers of one rotation commute: the part of each joint is the same vector, in the frame of
+        its parent before the turn.
         """
         x, y, z = (value / len(self._line) for value in turned)
         for joint in self._line:
@@ -240,31 +242,31 @@ class Gaze:
     def _turn_eyes(
         self, local: Array, turned: Vector, point: Vector | None, elapsed: float
     ) -> None:
-        """Turn the eyes in the head that has turned, each to the point by itself."""
+        """Turn each eye in the turned head to the point."""
         head, whole = self._line[-1], from_rotation_vector(turned)
         back = conjugate(multiply(whole, head.facing))
-        kept = math.exp(-elapsed / _EYE_LAG)
+        kept = math.exp(-elapsed / EYE_LAG_S)
         for number, eye in enumerate(self._eyes):
-            wish = (0.0, 0.0)
+            target = (0.0, 0.0)
             if point is not None:
                 x, y, z = rotate(whole, subtract(eye.place, head.place))
                 place = (x + head.place[0], y + head.place[1], z + head.place[2])
                 yaw, pitch = _angles(rotate(back, subtract(point, place)))
                 yaw_most, pitch_most = self._limits.eye_yaw, self._limits.eye_pitch
-                wish = (
+                target = (
                     min(max(yaw, -yaw_most), yaw_most),
                     min(max(pitch, -pitch_most), pitch_most),
                 )
             before = self._eye_turns[number]
-            yaw, pitch = (w + (b - w) * kept for w, b in zip(wish, before, strict=True))
+            yaw, pitch = (w + (b - w) * kept for w, b in zip(target, before, strict=True))
             self._eye_turns[number] = yaw, pitch
             # About the body's up, and about its left downwards, in the frame of the eye.
             own = rotate(conjugate(eye.rest), (-pitch, yaw, 0.0))
             local[eye.number] = multiply(local[eye.number].tolist(), from_rotation_vector(own))
 
 
-def _carriers(skeleton: Skeleton, joints: list[int]) -> list[_Joint]:
-    """Return some joints with all that carry them, parents first."""
+def _with_ancestors(skeleton: Skeleton, joints: list[int]) -> list[_Joint]:
+    """Return joints with all their ancestors, parents first."""
     order = skeleton.with_ancestors(joints)
     place = {joint: number for number, joint in enumerate(order)} | {-1: -1}
     matrices = skeleton.rest.globals(skeleton)[order, :3, :3]
@@ -277,7 +279,7 @@ def _carriers(skeleton: Skeleton, joints: list[int]) -> list[_Joint]:
 
 
 def _line(head: int, neck: int | None, skeleton: Skeleton) -> list[int]:
-    """Return the joints from the neck to the head; the head alone where there is no neck."""
+    """Return the joints from the neck to the head; without a neck, the head alone."""
     line = [head]
     while neck is not None and line[-1] not in (neck, -1):
         line.append(skeleton.parents[line[-1]])
@@ -291,7 +293,7 @@ def _angles(direction: Vector) -> tuple[float, float]:
 
 
 def _turn_between(start: tuple[float, float], end: tuple[float, float]) -> Vector:
-    """Return what turns one direction to another, level to level, as a rotation vector [rad].
+    """Return the rotation from one direction to another without roll, as a rotation vector [rad].
 
     The directions are yaws to the left and pitches upwards: first back to straight ahead by
     the yaw of one, then by the difference of the pitches, then by the yaw of the other.

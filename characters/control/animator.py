@@ -1,84 +1,45 @@
 """From commands to a posed character on the table, frame by frame."""
 
 import math
-from typing import Protocol
+from collections.abc import Sequence
 
 import numpy as np
 
+from characters.body.posture import ExpressivityFilter
 from characters.control.command import CharacterCommand, LocomotionIntent, PosedCharacter
-from characters.control.in_place import Actor
-from characters.control.liveliness import Life
-from characters.control.tree import TreePlayer
-from characters.control.walker import Walker
+from characters.control.controllers import controller_for
+from characters.control.layers import LAYERS, FrameContext, LayerFactory
 from characters.errors import CharacterError
-from characters.face.affect_display import RECIPES
-from characters.locomotion.gaits import TOP_SPEED
 from characters.model.character import Character
 from characters.motion.motion import RootDelta
-from characters.skeleton.pose import Array, Pose
+from characters.skeleton.pose import Array
+from characters.smoothing import low_pass
 
-LONGEST_STEP = 0.25
-"""Time that one update may advance at most [s]: after a gap the character does not leap."""
+MAX_TIME_STEP_S = 0.25
+"""Time that one update may advance at most [s], so that the character does not leap after a gap."""
 
-WALKER_HEIGHT = 0.17
-"""Height on the table of a character that walks [m]."""
-
-ACTOR_HEIGHT = 0.15
-"""Height on the table of a character that acts on the spot [m]."""
-
-
-class Performer(Protocol):
-    """A way to play a character: walking about, or acting on the spot."""
-
-    state: str
-    """What it is doing."""
-
-    speed: float
-    """AvatAR's Speed in use."""
-
-    angular: float
-    """How sharply it turns [rad], positive to its right."""
-
-    weight: float
-    """The intensity in use, −1…1."""
-
-    place: RootDelta
-    """Where it stands on the table [m] and where it looks [rad]."""
-
-    height: float
-    """How high it is over the table [m]."""
-
-    @property
-    def actions(self) -> tuple[str, ...]:
-        """What it can be asked to do beside standing, walking and running."""
-        ...
-
-    def update(self, command: CharacterCommand, elapsed: float) -> Pose:
-        """Advance by a time [s] under a command and return the pose, with the root in place."""
-        ...
+REST_LAG_S = 0.5
+"""Time constant with which a body comes to rest [s]."""
 
 
 class Animator:
-    """Plays a character under commands.
+    """Animates a character under commands: one controller, then an ordered list of layers.
 
-    A character is played as the file beside it says (`TreePlayer`). Without one, a character with
-    a clip "Walk" that moves its root walks and runs (`Walker`); any other acts on the spot and
-    hops (`Actor`).
+    The controller is the first of `CONTROLLERS` that suits the character: the plan of the file
+    beside it, walking and running, or acting in place.
 
     Parameters
     ----------
     character
-        Who plays.
+        The character.
     scale
-        Table metres for each metre of the character; by default a walker stands 0.17 m tall and
-        another character 0.15 m.
+        Table metres per metre of the character; by default as its controller has it.
     place
-        Where it first stands on the table [m] and looks [rad].
+        Where it first stands on the table [m] and faces [rad].
     seed
-        Of blinks and small movements: two of a kind with different seeds do not move together.
-    alive
-        Whether it looks, blinks, breathes, stirs and shows what it feels; without, its clips are
-        shown as they are.
+        Seed of blinks and sway.
+    layers
+        What is applied to the controller's poses, in order.
     """
 
     def __init__(
@@ -87,31 +48,23 @@ class Animator:
         scale: float | None = None,
         place: RootDelta | None = None,
         seed: int = 0,
-        alive: bool = True,
+        layers: Sequence[LayerFactory] = LAYERS,
     ) -> None:
-        walks = Walker.suits(character)
-        planned = TreePlayer.suits(character)
+        kind = controller_for(character)
         if scale is None:
-            scale = (WALKER_HEIGHT if walks else ACTOR_HEIGHT) / max(character.height, 1e-9)
+            scale = kind.height(character) / max(character.height, 1e-9)
         self.character = character
         self.scale = scale
-        self._now: float | None = None
-        kind: type[Walker | Actor | TreePlayer] = Walker if walks else Actor
-        self._performer: Performer = (TreePlayer if planned else kind)(character, scale, place)
-        self._life: Life | None = None
-        if alive:
-            self._life = Life(
-                character.skeleton,
-                character.anatomy,
-                character.morphs,
-                seed,
-                meshes=character.meshes,
-            )
+        self._controller = kind.make(character, scale, place)
+        self._layers = [layer(character, seed) for layer in layers]
+        self._expressivity = ExpressivityFilter()
+        self._rest = 1.0
+        self._timestamp: float | None = None
 
     @property
     def actions(self) -> tuple[str, ...]:
-        """What the character can be asked to do beside standing, walking and running."""
-        return self._performer.actions
+        """The actions that the character knows, besides standing, walking and running."""
+        return self._controller.actions
 
     def update(self, command: CharacterCommand) -> PosedCharacter:
         """Advance to the command's time and return the character as it is to be drawn.
@@ -124,38 +77,39 @@ class Animator:
             If a number in the command is not finite, or the character does not know the action.
         """
         _check(command)
-        elapsed = 0.0 if self._now is None else command.timestamp - self._now
-        self._now = command.timestamp
-        elapsed = min(max(elapsed, 0.0), LONGEST_STEP)
-        performer = self._performer
-        if self._life is not None and isinstance(performer, Actor):
-            performer.tempo = self._life.tempo
-        pose = performer.update(command, elapsed)
-        placed = _placed(performer.place, performer.height, self.scale)
-        if self._life is not None:
-            pose = self._life.update(
-                pose,
-                elapsed,
-                target=None if command.gaze is None else _seen_from(placed, command.gaze),
-                effort=performer.speed / TOP_SPEED,
-                busy=float(performer.state not in ("idle", "walk", "run")),
-                emotion=command.emotion,
-                played=performer.state in RECIPES,
-            )
+        elapsed = 0.0 if self._timestamp is None else command.timestamp - self._timestamp
+        self._timestamp = command.timestamp
+        elapsed = min(max(elapsed, 0.0), MAX_TIME_STEP_S)
+        tempo = math.sqrt(self._expressivity.value.tempo)
+        frame = self._controller.update(command, elapsed, tempo)
+        context = FrameContext(
+            elapsed,
+            command,
+            frame,
+            self.scale,
+            _table_from_character(frame.place, frame.height, self.scale),
+            self._expressivity.update(elapsed, command.emotion),
+            self._rest,
+        )
+        activity = max(float(frame.acting), min(2.0 * context.effort, 1.0))
+        context.rest = self._rest = low_pass(self._rest, 1.0 - activity, elapsed, REST_LAG_S)
+        pose = frame.pose
+        for layer in self._layers:
+            pose = layer.update(pose, context)
         return PosedCharacter(
             pose=pose,
-            table_from_character=placed,
+            table_from_character=context.table_from_character,
             visible=command.visible,
-            state=performer.state,
-            speed=performer.speed,
-            angular=performer.angular,
-            weight=performer.weight,
+            state=frame.state,
+            speed=frame.speed,
+            angular=frame.angular,
+            weight=frame.weight,
             timestamp=command.timestamp,
         )
 
 
 def _check(command: CharacterCommand) -> None:
-    """Refuse numbers that would stay with the character for ever."""
+    """Refuse numbers that are not finite: they would stay in the state for ever."""
     numbers = [command.timestamp, command.speed, command.weight]
     going = command.locomotion or LocomotionIntent()
     for point in (going.target, going.facing, command.gaze):
@@ -169,8 +123,8 @@ def _check(command: CharacterCommand) -> None:
         )
 
 
-def _placed(place: RootDelta, height: float, scale: float) -> Array:
-    """Return `table_from_character`: scaled, turned about +y, and put down."""
+def _table_from_character(place: RootDelta, height: float, scale: float) -> Array:
+    """Return the placement of a character: scaled, turned about +y, and translated."""
     sine, cosine = math.sin(place.yaw) * scale, math.cos(place.yaw) * scale
     return np.array(
         [
@@ -180,11 +134,3 @@ def _placed(place: RootDelta, height: float, scale: float) -> Array:
             [0.0, 0.0, 0.0, 1.0],
         ]
     )
-
-
-def _seen_from(placed: Array, point: Array) -> Array:
-    """Return a point of the table frame, (3,), in the frame of a character placed there."""
-    turn_and_scale = placed[:3, :3]
-    squared = float(placed[1, 1]) ** 2
-    seen: Array = (np.asarray(point, float) - placed[:3, 3]) @ turn_and_scale / squared
-    return seen

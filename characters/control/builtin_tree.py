@@ -1,9 +1,9 @@
-"""What a character does without a file that says so, as a plan: for people to see."""
+"""The behaviour of a character without a plan, written as a plan, for people to read."""
 
 from collections.abc import Iterable, Mapping
 
-from characters.control.actions import clips_of_acts
-from characters.control.walker import NO_ACTS, Walker
+from characters.control.controllers.actions import clips_of_actions
+from characters.control.controllers.walk import NOT_ACTIONS, WalkController
 from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS, WALK_RUN_SPEEDS
 from characters.model.character import Character
 from characters.motion.trees.conditions import Condition
@@ -11,12 +11,11 @@ from characters.motion.trees.plan import PARAMETERS, Node, Plan, Row, StateGraph
 
 
 def built_in(character: Character) -> Plan:
-    """Return what `Animator` plays a character without a plan by.
+    """Return the plan that corresponds to the built-in controller of a character.
 
-    It is a drawing of `characters.control.walker` and `in_place`, which steer, plant feet and hop
-    besides; played from a file it would do less.
+    The controllers also steer, plant feet and hop; played from a file, this plan does less.
     """
-    states = _walker(character) if Walker.suits(character) else _actor(character)
+    states = _walking(character) if WalkController.suits(character) else _in_place(character)
     start = next(iter(states))
     changes = [
         Transition(
@@ -38,7 +37,7 @@ def built_in(character: Character) -> Plan:
     return Plan(character.name, None, StateGraph(states, start, tuple(changes)))
 
 
-def _walker(character: Character) -> dict[str, Node]:
+def _walking(character: Character) -> dict[str, Node]:
     trees = [
         Row(_space(name, "angular", there), {"value": at})
         for name, knots, at in zip(
@@ -48,18 +47,18 @@ def _walker(character: Character) -> dict[str, Node]:
     ]
     move = Node("space", "move", "locomotion", {"by": "speed"}, {}, tuple(trees))
     idle = "idle" if "idle" in character.clips else "Walk"
-    return {"idle": _clip(idle), "move": move, **_acts(character, NO_ACTS)}
+    return {"idle": _clip(idle), "move": move, **_actions(character, NOT_ACTIONS)}
 
 
-def _actor(character: Character) -> dict[str, Node]:
+def _in_place(character: Character) -> dict[str, Node]:
     idle = [name for name in character.clips if "idle" in name.lower()] or [*character.clips][:1]
-    return {**({"idle": _clip(idle[0])} if idle else {}), **_acts(character, idle[:1])}
+    return {**({"idle": _clip(idle[0])} if idle else {}), **_actions(character, idle[:1])}
 
 
-def _acts(character: Character, besides: Iterable[str]) -> dict[str, Node]:
+def _actions(character: Character, besides: Iterable[str]) -> dict[str, Node]:
     return {
         action: _space(action, "weight", clips) if len(clips) > 1 else _clip(*clips.values())
-        for action, clips in clips_of_acts(character.clips, besides).items()
+        for action, clips in clips_of_actions(character.clips, besides).items()
     }
 
 

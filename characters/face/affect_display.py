@@ -1,7 +1,7 @@
-"""The face that a feeling makes: which expressions, how strongly, and when it keeps out of the way.
+"""Affect display: the face that shows an emotion, and when an action has priority.
 
-The words and their places in the plane of valence and arousal are Russell's ("A circumplex model of
-affect", 1980); which expression goes with which word is what children draw.
+The places of the words in the plane of valence and arousal are Russell's ("A circumplex model of
+affect", 1980); which expressions go with which word is ours.
 """
 
 import math
@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from operator import mul
 
 from affect import Emotion
-from characters.face.expressions import EXPRESSIONS, Expressions
+from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from characters.skeleton.pose import Array
 from characters.smoothing import low_pass
 
@@ -33,141 +33,161 @@ RECIPES: dict[str, tuple[float, ...]] = {
     "depressed": (0.00, 0.00, 1.00, 0.00, 0.00, 0.20),
     "relaxed":   (0.20, 0.00, 0.00, 0.00, 0.60, 0.20),
 }  # fmt: skip
-"""For each word how far every one of `EXPRESSIONS` is on, and how far the lids hang, 0…1."""
+"""Weights of `EXPRESSIONS` and closure of the lids for each word, 0…1."""
 
-_ALIKE = {"joy": "happy", "gratification": "happy", "anger": "angry", "hate": "angry",
-          "surprise": "surprised", "fear": "afraid", "disgust": "disgusted",
-          "distress": "sad", "pity": "sad"}  # fmt: skip
-RECIPES.update((word, RECIPES[alike]) for word, alike in _ALIKE.items())
+_SYNONYMS = {
+    "joy": "happy",
+    "gratification": "happy",
+    "anger": "angry",
+    "hate": "angry",
+    "surprise": "surprised",
+    "fear": "afraid",
+    "disgust": "disgusted",
+    "distress": "sad",
+    "pity": "sad",
+}
+RECIPES.update((word, RECIPES[synonym]) for word, synonym in _SYNONYMS.items())
 
-HINTED = 0.6
-"""How much of a feeling shows that is still called neutral."""
+EMOTIONAL_WORDS = frozenset(RECIPES)
+"""Words with an expression of their own; an action named so shows the emotion by its clip."""
 
-FULL, LEAST = 0.85, 0.4
-"""So far from neutral an expression is all there, and so much of it there is at least: who is
-called angry looks angry."""
+NEUTRAL_SHARE = 0.6
+"""Share of the expression that is shown while the word is "neutral"."""
 
-LAG = 0.4
-"""How slowly a face follows a feeling [s]."""
+FULL_DISTANCE = 0.85
+"""Distance from the origin of the plane from which on an expression is complete."""
 
-_LOUD, _QUIET = (
-    0.75,
-    0.35,
-)  # morphs of the mouth from which on it speaks, and below which it is mute
-_SPEAKS = 0.5  # expression of an action that leaves no room for another
-_GIVES_WAY, _RETURNS = 0.15, 0.7  # [s]: lags of the mood's face when an action speaks, and after
+MIN_STRENGTH = 0.4
+"""Least strength of the expression of a word: who is called angry looks angry."""
+
+FACE_LAG_S = 0.4
+"""Lag with which a face follows an emotion [s]."""
+
+SPEECH_START, SPEECH_FULL = 0.35, 0.75
+"""Weights of mouth morphs from which on an action speaks, and at which it leaves no room."""
+
+FULL_EXPRESSION = 0.5
+"""Weight of an action's own expression that leaves no room for another."""
+
+YIELD_LAG_S, RETURN_LAG_S = 0.15, 0.7
+"""Lags with which the emotion's face yields to an action, and returns [s]."""
+
+NEGLIGIBLE = 1e-4
+"""Weight below which an expression is not visible."""
 
 _CHANNELS = len(EXPRESSIONS) + 1  # and the lids
-_NOTHING = (0.0,) * _CHANNELS
+_NONE = (0.0,) * _CHANNELS
 _SURPRISED = EXPRESSIONS.index("surprised")
-_GONE = 1e-4  # of an expression that is not seen any more
 
 
-def wish(emotion: Emotion) -> tuple[float, ...]:
-    """Return how far each of `EXPRESSIONS` is to be on, and how far the lids are to hang, (6,).
+def expression_weights(emotion: Emotion) -> tuple[float, ...]:
+    """Return the weights of `EXPRESSIONS`, and the closure of the lids, for an emotion, (6,).
 
-    A word of `RECIPES` has a face of its own. "neutral" shows a hint of the place in the plane of
-    valence and arousal; another word, or none, all of it.
+    A word of `RECIPES` has a face of its own. "neutral" shows a share of what the place in the
+    plane of valence and arousal gives; another word, or none, all of it.
     """
     place = emotion.valence, emotion.arousal
-    strength = math.hypot(*place) / FULL
     recipe = RECIPES.get(emotion.word or "")
     if recipe is not None:
-        strength = min(max(strength, LEAST), 1.0)
+        strength = min(max(math.hypot(*place) / FULL_DISTANCE, MIN_STRENGTH), 1.0)
         return tuple(strength * part for part in recipe)
-    share = HINTED if emotion.word == "neutral" else 1.0
+    share = NEUTRAL_SHARE if emotion.word == "neutral" else 1.0
     return tuple(share * part for part in _from_place(*place))
 
 
 def _from_place(valence: float, arousal: float) -> tuple[float, ...]:
-    """Return what the place alone says, without a word."""
-    good, bad, calm = max(valence, 0.0), max(-valence, 0.0), max(-arousal, 0.0)
-    stirred = min(max(0.5 + arousal, 0.0), 1.0)
+    """Return the weights that valence and arousal give without a word."""
+    pleasant, unpleasant, calm = max(valence, 0.0), max(-valence, 0.0), max(-arousal, 0.0)
+    excited = min(max(0.5 + arousal, 0.0), 1.0)
     return (
-        good * (0.4 + 0.6 * stirred),
-        bad * stirred,
-        bad * (1.0 - stirred),
+        pleasant * (0.4 + 0.6 * excited),
+        unpleasant * excited,
+        unpleasant * (1.0 - excited),
         0.15 * max(arousal, 0.0) * (1.0 - abs(valence)),
-        0.75 * calm * (1.0 - bad),
+        0.75 * calm * (1.0 - unpleasant),
         0.74 * calm * calm,
     )
 
 
-class Face:
+class AffectDisplay:
     """The face of one character.
 
-    An action that speaks, by the mouth or by an expression of its own, wins over the mood, which
-    comes back when it is over. Nothing here touches a face that feels nothing.
+    An action that speaks, by the mouth or by an expression of its own, has priority over the
+    emotion. Without an emotion the face is left to the clips.
 
     Parameters
     ----------
     morphs
         Names of the character's morphs.
     blinks
-        How much of a blink is in each, (morphs,), as `blinks_in` gives it.
+        How far each closes the lids, (morphs,): see `blink_shares`.
     """
 
     def __init__(self, morphs: Sequence[str], blinks: Array) -> None:
-        there = Expressions.of(morphs)
-        self.able = bool(there)
-        """Whether it can show anything."""
+        found = ExpressionMorphs.of(morphs)
+        self._able = bool(found)
         # A face has a few morphs only: plain numbers are quicker than arrays.
-        self._speech: list[int] = there.speech.tolist()
+        self._speech: list[int] = found.speech.tolist()
         self._parts = [
             (number, [(column, weight) for column, weight in enumerate(row) if weight > 0.0])
-            for number, row in zip(there.numbers.tolist(), there.weights.tolist(), strict=True)
+            for number, row in zip(found.numbers.tolist(), found.weights.tolist(), strict=True)
         ]
-        self._shut: list[float] = (blinks[there.numbers] @ there.weights).tolist()
-        self._now, self._speeds = [0.0] * _CHANNELS, [0.0] * _CHANNELS
+        self._closing: list[float] = (blinks[found.numbers] @ found.weights).tolist()
+        self._weights, self._rates = [0.0] * _CHANNELS, [0.0] * _CHANNELS
         self._room = 1.0
-        self.felt = False
-        """Whether there is anything to be shown."""
+        self._visible = False
+
+    @property
+    def active(self) -> bool:
+        """Whether there is an expression to be shown."""
+        return self._able and self._visible
 
     def update(self, elapsed: float, emotion: Emotion | None) -> None:
         """Advance by a time [s] towards the face of an emotion; None for that of the clips."""
-        wished = _NOTHING if emotion is None else wish(emotion)
-        stirred = any(wished)
-        if not self.felt and not stirred:
+        targets = _NONE if emotion is None else expression_weights(emotion)
+        asked = any(targets)
+        if not self._visible and not asked:
             return
-        rate = 2.0 / LAG
+        rate = 2.0 / FACE_LAG_S
         decay = math.exp(-rate * elapsed)  # of a critically damped spring, as in `damped_spring`
-        for number, to in enumerate(wished):
-            away, speed = self._now[number] - to, self._speeds[number]
-            push = speed + rate * away
-            self._now[number] = to + (away + push * elapsed) * decay
-            self._speeds[number] = (speed - rate * push * elapsed) * decay
-        self.felt = stirred or max(map(abs, (*self._now, *self._speeds))) > _GONE
-        if not self.felt:
-            self._now, self._speeds = [0.0] * _CHANNELS, [0.0] * _CHANNELS
+        for channel, target in enumerate(targets):
+            offset, speed = self._weights[channel] - target, self._rates[channel]
+            slope = speed + rate * offset
+            self._weights[channel] = target + (offset + slope * elapsed) * decay
+            self._rates[channel] = (speed - rate * slope * elapsed) * decay
+        largest = max(map(abs, (*self._weights, *self._rates)))
+        self._visible = asked or largest > NEGLIGIBLE
+        if not self._visible:
+            self._weights, self._rates = [0.0] * _CHANNELS, [0.0] * _CHANNELS
 
-    def show(
+    def apply(
         self, weights: Array, elapsed: float, closed: float, acting: float
     ) -> tuple[float, float]:
-        """Lay the face over the weights of morphs (morphs,) that clips give, in place.
+        """Lay the face over the morph weights (morphs,) of the clips, in place.
 
         Parameters
         ----------
         weights
-            Of all morphs.
+            Weights of all morphs.
         elapsed
-            Since the last call [s].
+            Time since the last call [s].
         closed
             How far a blink has closed the lids, 0…1.
         acting
-            How much an action shows a feeling of its own, 0…1.
+            How far an action shows an emotion of its own, 0…1.
 
         Returns
         -------
-        How far the expressions hold the lids closed, and how far they are to hang, 0…1.
+        How far the expressions close the lids, and how far the emotion lowers them, 0…1.
         """
         values = weights.tolist()
         room = self._room_beside(values, acting)
-        lag = _GIVES_WAY if room < self._room else _RETURNS
+        lag = YIELD_LAG_S if room < self._room else RETURN_LAG_S
         self._room = low_pass(self._room, room, elapsed, lag)
         room = self._room
-        *shown, hang = [min(max(value * room, 0.0), 1.0) for value in self._now]
+        *shown, lowered = [min(max(value * room, 0.0), 1.0) for value in self._weights]
         left = 1.0 - min(sum(shown), 1.0)
-        shut = sum(map(mul, shown, self._shut))
+        closing = sum(map(mul, shown, self._closing))
         shown[_SURPRISED] *= 1.0 - closed  # wide eyes would not close
         for number, parts in self._parts:
             values[number] *= left
@@ -176,15 +196,15 @@ class Face:
         for number in self._speech:
             values[number] *= left
         weights[:] = values
-        return min(shut, 1.0), hang
+        return min(closing, 1.0), lowered
 
     def _room_beside(self, values: list[float], acting: float) -> float:
-        """Return how much room the clips leave for a mood, 0…1."""
+        """Return the room that the clips leave for an emotion, 0…1."""
         speaking = 0.0
         if self._speech:
             loudest = max([values[number] for number in self._speech])
-            speaking = (loudest - _QUIET) / (_LOUD - _QUIET)
+            speaking = (loudest - SPEECH_START) / (SPEECH_FULL - SPEECH_START)
         if acting > 0.0:
             strongest = max(values[number] for number, _ in self._parts)
-            speaking = max(speaking, acting * strongest / _SPEAKS)
+            speaking = max(speaking, acting * strongest / FULL_EXPRESSION)
         return 1.0 - min(max(speaking, 0.0), 1.0)

@@ -1,31 +1,34 @@
-"""When a character blinks, and how far its lids are closed.
+"""Blinks: when they happen, and how far the lids are closed.
 
-People who rest blink about 17 times a minute, at uneven intervals (Bentivoglio et al., "Analysis of
+People at rest blink about 17 times a minute, at uneven intervals (Bentivoglio et al., "Analysis of
 blink rate patterns in normal subjects", 1997); a lid falls in about 90 ms and rises in 170
-(Evinger, Manning and Sibony, "Eyelid movements", 1991). A large turn of the gaze brings a blink
-along (Evinger et al., "Not looking while leaping", 1994).
+(Evinger, Manning and Sibony, "Eyelid movements", 1991). A large shift of gaze triggers a
+blink (Evinger et al., "Not looking while leaping", 1994).
 """
 
 import math
 
 import numpy as np
 
-MEAN_INTERVAL = 3.6
-"""Between two blinks [s]."""
+MEAN_INTERVAL_S = 3.6
+"""Mean time between two blinks [s]."""
 
-SHORTEST_INTERVAL = 0.7
-"""Between two blinks [s]; a pair of them comes as close as this."""
+MIN_INTERVAL_S = 0.7
+"""Shortest time between two blinks [s]."""
 
-_CLOSING, _SHUT, _OPENING = 0.09, 0.03, 0.17  # [s]
+GAZE_SHIFT_RAD = math.radians(25)
+"""Gaze shift from which on a blink goes along [rad]."""
+
+CLOSING_S, CLOSED_S, OPENING_S = 0.09, 0.03, 0.17
 
 
-class Blinking:
-    """Blinks at uneven intervals; the same seed blinks alike.
+class BlinkTimer:
+    """Blinks at random intervals; the same seed gives the same blinks.
 
     Parameters
     ----------
     seed
-        Characters with different seeds do not blink together.
+        Seed of the intervals.
     """
 
     def __init__(self, seed: int) -> None:
@@ -33,45 +36,44 @@ class Blinking:
         self._now = 0.0
         self._start = self._wait()
 
-    def update(self, elapsed: float, turned: float = 0.0, pace: float = 1.0) -> float:
+    def update(self, elapsed: float, gaze_shift: float = 0.0, tempo: float = 1.0) -> float:
         """Advance by a time [s] and return how far the lids are closed, 0…1.
 
         Parameters
         ----------
         elapsed
-            Since the last call.
-        turned
-            How far the gaze has jumped since then [rad].
-        pace
-            How much quicker blinks follow each other; lids themselves only slow down, for those
-            who are drowsy.
+            Time since the last call.
+        gaze_shift
+            Shift of the gaze since then [rad].
+        tempo
+            Tempo of the blinks. The lids themselves become slower with it, but not faster.
         """
         waiting = self._now < self._start
-        self._now += elapsed * (pace if waiting else min(pace, 1.0))
-        open_again = self._start + _CLOSING + _SHUT + _OPENING
-        if self._now > open_again:
-            self._now -= open_again
+        self._now += elapsed * (tempo if waiting else min(tempo, 1.0))
+        end = self._start + CLOSING_S + CLOSED_S + OPENING_S
+        if self._now > end:
+            self._now -= end
             self._start = self._wait()
-        if turned > math.radians(25) and self._now + SHORTEST_INTERVAL / 2 < self._start:
+        if gaze_shift > GAZE_SHIFT_RAD and self._now + MIN_INTERVAL_S / 2 < self._start:
             self._start = self._now
-        return closed(self._now - self._start)
+        return lid_closure(self._now - self._start)
 
     def _wait(self) -> float:
-        """Return the time until the next blink: never at once, and without a longest one [s]."""
-        return SHORTEST_INTERVAL + float(self._rng.exponential(MEAN_INTERVAL - SHORTEST_INTERVAL))
+        """Return the time until the next blink [s], from a shifted exponential distribution."""
+        return MIN_INTERVAL_S + float(self._rng.exponential(MEAN_INTERVAL_S - MIN_INTERVAL_S))
 
 
-def closed(time: float) -> float:
-    """Return how far the lids are closed a time [s] after they began to fall.
+def lid_closure(time: float) -> float:
+    """Return how far the lids are closed, 0…1, a time [s] after the start of a blink.
 
-    >>> closed(-1.0), closed(0.1), closed(1.0)
+    >>> lid_closure(-1.0), lid_closure(0.1), lid_closure(1.0)
     (0.0, 1.0, 0.0)
     """
-    if time <= 0.0 or time >= _CLOSING + _SHUT + _OPENING:
+    if time <= 0.0 or time >= CLOSING_S + CLOSED_S + OPENING_S:
         return 0.0
-    if time < _CLOSING:
-        return _smooth(time / _CLOSING)
-    return _smooth(1.0 - max(time - _CLOSING - _SHUT, 0.0) / _OPENING)
+    if time < CLOSING_S:
+        return _smooth(time / CLOSING_S)
+    return _smooth(1.0 - max(time - CLOSING_S - CLOSED_S, 0.0) / OPENING_S)
 
 
 def _smooth(u: float) -> float:

@@ -1,4 +1,4 @@
-"""Which morphs make which expression, and which move the mouth: there is no one name for them."""
+"""The morphs of expressions and of the mouth, by any of their common names."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.face.lids import plain
+from characters.face.lids import normalized
 from characters.skeleton.pose import Array
 
 EXPRESSIONS = ("happy", "angry", "sad", "surprised", "relaxed")
-"""What a face can show, by VRM 1.0's names of its emotions."""
+"""The expressions, by the names that VRM 1.0 gives to those of emotion."""
 
-# VRM 1.0, VRM 0 and VRoid have a morph for each, under three names.
+# VRM 1.0, VRM 0 and VRoid have one morph for each, under different names.
 _WHOLE = {
     "happy": ("happy", "joy", "fclalljoy"),
     "angry": ("angry", "fclallangry"),
@@ -20,8 +20,8 @@ _WHOLE = {
     "surprised": ("surprised", "fclallsurprised"),
     "relaxed": ("relaxed", "fun", "fclallfun"),
 }
-# ARKit and Mixamo, Ready Player Me and Character Creator have parts of them, a pair or a single
-# one each: how much of it there is in an expression.
+# ARKit and Mixamo, Ready Player Me and Character Creator have morphs of parts of the face, a pair
+# or a single one each: their weights in each expression.
 _PARTS = {
     "happy": {"mouthsmile": 0.9, "cheeksquint": 0.5, "eyesquint": 0.3},
     "angry": {"browdown": 1.0, "nosesneer": 0.5, "mouthfrown": 0.5, "eyesquint": 0.3},
@@ -34,32 +34,32 @@ _SPEECH = ("aa", "ih", "ou", "ee", "oh", "a", "i", "u", "e", "o", "jawopen", "mo
 
 
 @dataclass(frozen=True)
-class Expressions:
-    """How the morphs of one character make faces."""
+class ExpressionMorphs:
+    """How the morphs of one character make expressions."""
 
     numbers: NDArray[np.intp]
-    """Numbers of the morphs that take part, (n,)."""
+    """The morphs that take part, (n,)."""
 
     weights: Array
-    """How far each of them is on in each of `EXPRESSIONS`, (n, 5)."""
+    """Their weights in each of `EXPRESSIONS`, (n, 5)."""
 
     speech: NDArray[np.intp]
-    """Numbers of the morphs that move the mouth alone, as it does to speak, to kiss or to shout."""
+    """The morphs that move the mouth alone, to speak, kiss or shout."""
 
     able: tuple[bool, ...]
-    """Which of `EXPRESSIONS` there are."""
+    """Which of `EXPRESSIONS` the character has."""
 
     @staticmethod
-    def of(morphs: Sequence[str]) -> "Expressions":
+    def of(morphs: Sequence[str]) -> "ExpressionMorphs":
         """Find them among the names of a character's morphs.
 
-        >>> Expressions.of(["blink", "happy", "sad", "aa"]).able
+        >>> ExpressionMorphs.of(["blink", "happy", "sad", "aa"]).able
         (True, False, True, False, False)
         """
         found: dict[str, int] = {}
         for number, name in enumerate(morphs):
             for form in (name, name.rpartition(".")[2]):
-                found.setdefault(plain(form), number)
+                found.setdefault(normalized(form), number)
         weights = np.zeros((len(morphs), len(EXPRESSIONS)))
         for column, expression in enumerate(EXPRESSIONS):
             whole = next((n for n in _WHOLE[expression] if n in found), None)
@@ -68,7 +68,7 @@ class Expressions:
                 weights[found[name], column] = weight
         numbers = np.flatnonzero(weights.any(axis=1))
         speech = [number for name, number in found.items() if name in _SPEECH]
-        return Expressions(
+        return ExpressionMorphs(
             numbers,
             weights[numbers],
             np.array(sorted(set(speech) - set(numbers.tolist())), np.intp),
@@ -81,7 +81,7 @@ class Expressions:
 
 
 def _parts(expression: str, found: dict[str, int]) -> dict[str, float]:
-    """Return the morphs that make an expression together; none where there is no mouth or brow."""
+    """Return the morphs that make an expression together; none without a mouth or a brow."""
     parts = {
         stem + side: weight
         for stem, weight in _PARTS[expression].items()

@@ -1,4 +1,4 @@
-"""Which morphs close the eyes: there is no one name for them."""
+"""The morphs that close the eyes, by any of their common names."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Array
 
-# Without capitals, marks and what stands before a dot. VRM, ARKit and Mixamo, Ready Player Me,
-# VRoid, Character Creator and MikuMikuDance (whose names are Japanese) call it so.
+# Normalised names of VRM, ARKit and Mixamo, Ready Player Me, VRoid, Character Creator and
+# MikuMikuDance (whose names are Japanese).
 _BOTH = ("blink", "eyeblink", "eyesblink", "eyesclosed", "eyeclosed", "eyesclose", "eyeclose",
          "closeeyes", "fcleyeclose", "まばたき")  # fmt: skip
 _PAIRS = (*_BOTH, "blinkeye", "closeeye")
 _SIDES = (("left", "right"), ("l", "r"))
 
-_LEAST_CLOSED = 0.1  # so much of the lids may be closed less than `blinks_in` says
+_MIN_CLOSED_QUANTILE = 0.1  # part of the lids that may be closed less than `blink_shares` says
 
 
 @dataclass(frozen=True)
@@ -25,10 +25,10 @@ class Lids:
     """Morphs that close the eyes."""
 
     both: int | None
-    """That of both eyes at once."""
+    """The morph of both eyes, or None."""
 
     sides: NDArray[np.intp]
-    """Those of the left and the right eye, two or none."""
+    """The morphs of the left and the right eye: two or none."""
 
     @staticmethod
     def of(morphs: Sequence[str]) -> "Lids":
@@ -40,7 +40,7 @@ class Lids:
         found: dict[str, int] = {}
         for number, name in enumerate(morphs):
             for form in (name, name.rpartition(".")[2]):
-                found.setdefault(plain(form), number)
+                found.setdefault(normalized(form), number)
         both = next((found[name] for name in _BOTH if name in found), None)
         pairs = (
             (found[stem + left], found[stem + right])
@@ -55,16 +55,16 @@ class Lids:
         return self.both is not None or self.sides.size > 0
 
     def closed(self, weights: Array | None) -> float:
-        """Return how far weights of morphs (morphs,) close the eyes by the lids' own morphs."""
+        """Return how far morph weights (morphs,) close the eyes by these morphs."""
         if weights is None or not self:
             return 0.0
         apart = float(weights[self.sides].max()) if self.sides.size else 0.0
         return apart if self.both is None else max(apart, float(weights[self.both]))
 
     def close(self, weights: Array, closed: float) -> None:
-        """Close the eyes at least so far, 0…1, in weights of morphs (morphs,).
+        """Close the eyes at least this far, 0…1, in morph weights (morphs,).
 
-        A lid that is closed already, whether by the one morph or by the other, is not closed twice.
+        A lid that is closed by one morph is not closed again by another.
         """
         if closed <= 0.0:
             return
@@ -74,28 +74,27 @@ class Lids:
         apart = float(weights[self.sides].max()) if self.sides.size else 0.0
         weights[self.both] = max(float(weights[self.both]), min(closed, 1.0 - apart))
 
-    def narrow(self, weights: Array, most: float) -> None:
-        """Close the eyes at most so far, 0…1, in weights of morphs (morphs,)."""
+    def limit(self, weights: Array, most: float) -> None:
+        """Close the eyes at most this far, 0…1, in morph weights (morphs,)."""
         for number in self.sides if self.both is None else (self.both, *self.sides):
             if weights[number] > most:
                 weights[number] = most
 
 
-def plain(name: str) -> str:
-    """Return a morph's name without capitals, blanks and marks.
+def normalized(name: str) -> str:
+    """Return a morph's name in lower case, without blanks and punctuation.
 
-    >>> plain("Eye Blink_L")
+    >>> normalized("Eye Blink_L")
     'eyeblinkl'
     """
     return re.sub(r"[\W_]", "", name).lower()
 
 
-def blinks_in(morphs: Sequence[str], meshes: Iterable[Mesh], lids: Lids) -> Array:
-    """Return how much of a blink there is in each morph, (morphs,), 0…1, from what they move.
+def blink_shares(morphs: Sequence[str], meshes: Iterable[Mesh], lids: Lids) -> Array:
+    """Return how far each morph closes the lids, (morphs,), 0…1, from the vertices that it moves.
 
-    1 is a morph that closes the eyes as a blink does; a blink beside it closes them too far by just
-    this. What counts is the part of the lids that it closes least (`_LEAST_CLOSED`), so that
-    slanted lids leave no gap.
+    1 is a morph that closes the eyes as a blink does. The part of the lids that it closes least
+    (`_MIN_CLOSED_QUANTILE`) counts, so that slanted lids leave no gap.
     """
     names = [morphs[number] for number in (lids.sides if lids.both is None else [lids.both])]
     ways, moved = [np.zeros((0, 3))], [np.zeros((len(morphs), 0, 3))]
@@ -118,6 +117,6 @@ def blinks_in(morphs: Sequence[str], meshes: Iterable[Mesh], lids: Lids) -> Arra
     # Vertices that a blink moves far count for more than those at the corners of the eye.
     order = np.argsort(shares, axis=1)
     up_to = np.cumsum(lengths[order], axis=1) / lengths.sum()
-    least = np.argmax(up_to >= _LEAST_CLOSED, axis=1)
+    least = np.argmax(up_to >= _MIN_CLOSED_QUANTILE, axis=1)
     found = np.take_along_axis(shares, np.take_along_axis(order, least[:, None], 1), 1)[:, 0]
     return np.asarray(np.clip(found, 0.0, 1.0))

@@ -21,7 +21,9 @@ from rich.console import Console
 from rich.table import Table
 
 from characters import Character, CharacterCommand, LocomotionIntent, Pose
-from characters.control.walker import Walker
+from characters.body.posture import NEUTRAL_EXPRESSIVITY
+from characters.control.controllers.walk import WalkController
+from characters.control.layers import FootLockLayer, FrameContext
 from characters.locomotion.steering import SteeringOutput
 from characters.motion.contacts import spans
 from characters.motion.motion import RootDelta
@@ -40,7 +42,7 @@ _MIN_STAY_FRAMES, _EDGE_FRAMES = 6, 2  # frames: of a stay, and at either end of
 _SKATE_HEIGHT_M = 0.025  # [m]
 _SETTLING_FRAMES = 60  # frames before the measurement starts at a point of the grid
 
-Script = Callable[[int, Walker], SteeringOutput | CharacterCommand]
+Script = Callable[[int, WalkController], SteeringOutput | CharacterCommand]
 """Returns the input for a frame."""
 
 
@@ -84,21 +86,37 @@ class Slide:
     """Largest depth of a foot's ball below its height at rest [mm]."""
 
 
+class Walking:
+    """A walking character whose steering can be told, with its feet locked or free."""
+
+    def __init__(self, character: Character, scale: float = 1.0, hold: bool = True) -> None:
+        self.controller = WalkController(character, scale, None)
+        self.feet = FootLockLayer(character)
+        self._scale, self._hold = scale, hold
+
+    def step(self, asked: SteeringOutput | CharacterCommand, elapsed: float) -> Pose:
+        """Advance by a time [s] and return the pose."""
+        if isinstance(asked, SteeringOutput):
+            frame, command = self.controller.steer(asked, elapsed), CharacterCommand(0.0)
+        else:
+            frame, command = self.controller.update(asked, elapsed), asked
+        if not self._hold:
+            return frame.pose
+        context = FrameContext(
+            elapsed, command, frame, self._scale, np.eye(4), NEUTRAL_EXPRESSIVITY, 1.0
+        )
+        return self.feet.update(frame.pose, context)
+
+
 def film(character: Character, script: Script, frames: int, hold: bool = True) -> Take:
     """Play a script at 60 Hz and return the recorded feet."""
-    walker = Walker(character, 1.0, None)
-    if not hold:
-        walker.release()
+    walker = Walking(character, hold=hold)
     poses: list[Pose] = []
     places: list[RootDelta] = []
     for number in range(frames):
-        command = script(number, walker)
-        elapsed = 1.0 / FRAME_RATE if number else 0.0
-        if isinstance(command, SteeringOutput):
-            poses.append(walker.go(command, elapsed))
-        else:
-            poses.append(walker.update(command, elapsed))
-        places.append(walker.place)
+        asked = script(number, walker.controller)
+        poses.append(walker.step(asked, 1.0 / FRAME_RATE if number else 0.0))
+        places.append(walker.controller.place)
     feet = find_feet(character.skeleton)
     joints = [foot[-1] for foot in feet]
     legs = sorted({above for foot in feet for above in _upward(character, foot[-1])[:4]})
@@ -171,38 +189,38 @@ def _upward(character: Character, joint: int) -> list[int]:
     return line
 
 
-def _start_stop(number: int, _: Walker) -> CharacterCommand:
+def _start_stop(number: int, _: WalkController) -> CharacterCommand:
     speed = (0.0, 2.0, 0.0, 4.5)[number // 75 % 4]
     return CharacterCommand(number / FRAME_RATE, LocomotionIntent(speed, np.array([0.0, 1e4])))
 
 
-def _speed_changes(number: int, _: Walker) -> CharacterCommand:
+def _speed_changes(number: int, _: WalkController) -> CharacterCommand:
     speed = 2.75 + 2.0 * math.sin(number / 40)
     return CharacterCommand(number / FRAME_RATE, LocomotionIntent(speed, np.array([0.0, 1e4])))
 
 
-def _turn_on_the_spot(number: int, _: Walker) -> CharacterCommand:
+def _turn_on_the_spot(number: int, _: WalkController) -> CharacterCommand:
     way = number // 180 * 2.2
     look = np.array([math.sin(way), math.cos(way)]) * 1e3
     return CharacterCommand(number / FRAME_RATE, LocomotionIntent(facing=look))
 
 
-def _slalom(number: int, _: Walker) -> SteeringOutput:
+def _slalom(number: int, _: WalkController) -> SteeringOutput:
     return SteeringOutput(2.2, 1.3 * math.sin(number / 30), 1.0)
 
 
-def _jumps_of_course(number: int, _: Walker) -> SteeringOutput:
+def _jumps_of_course(number: int, _: WalkController) -> SteeringOutput:
     speed = (1.0, 2.5, 4.0, 2.9, 0.6)[number // 60 % 5]
     return SteeringOutput(speed, (-1.5, 0.0, 1.5, 0.7)[number // 45 % 4], 1.0)
 
 
-def _follow(number: int, _: Walker) -> CharacterCommand:
+def _follow(number: int, _: WalkController) -> CharacterCommand:
     angle = number / FRAME_RATE / 2
     target = np.array([3.0 * math.sin(angle), 3.0 * math.sin(2 * angle)])
     return CharacterCommand(number / FRAME_RATE, LocomotionIntent(3.0, target))
 
 
-def _near_targets(number: int, _: Walker) -> CharacterCommand:
+def _near_targets(number: int, _: WalkController) -> CharacterCommand:
     turn = number // 150 * 2.4
     target = np.array([math.sin(turn), math.cos(turn)])
     return CharacterCommand(number / FRAME_RATE, LocomotionIntent(2.0, target))

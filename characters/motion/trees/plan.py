@@ -257,7 +257,7 @@ class Plan:
     """Masks by name."""
 
     lags: Mapping[str, float] = field(default_factory=dict)
-    """Time constants of parameters [s]; defaults are `characters.control.tree.LAGS`."""
+    """Time constants of parameters [s]; defaults are `characters.control.controllers.tree.LAGS`."""
 
     @property
     def roots(self) -> tuple[Node, ...]:

@@ -14,6 +14,7 @@ from characters import (
     CharacterError,
     LocomotionIntent,
 )
+from characters.control.layers import FOOT_LAYERS
 from characters.locomotion.gaits import Gaits
 from characters.locomotion.steering import ARRIVAL_DISTANCE_M
 from characters.motion.motion import RootDelta
@@ -246,7 +247,7 @@ def test_an_action_plays_and_says_its_name(performer):
 
 @pytest.mark.parametrize(("weight", "ending"), [(-1.0, "head"), (0.0, "legs"), (1.0, "tail")])
 def test_each_intensity_is_its_clip(performer, weight, ending):
-    frames = play(Animator(performer, alive=False), 1.0, activity="shout", weight=weight)
+    frames = play(Animator(performer, layers=FOOT_LAYERS), 1.0, activity="shout", weight=weight)
     clip = performer.clips[f"shout_{ending}"]
     expected = clip.sample(29 / RATE)
     shown = rotations.align(frames[-1].pose.rotations, expected.rotations)
@@ -344,7 +345,7 @@ def test_a_walker_does_what_its_other_clips_are_once(human):
 
 
 def test_a_walker_that_is_called_away_from_an_action_goes_without_a_jump(human):
-    animator = Animator(human, alive=False)
+    animator = Animator(human, layers=FOOT_LAYERS)
     frames = play(animator, 0.9, rate=60, activity="cheer")
     frames += play(animator, 1.0, 0.9, 60, activity="move", speed=2.0, target=np.array([9.0, 0.0]))
     assert frames[-1].state == "walk"

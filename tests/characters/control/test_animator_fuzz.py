@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import Animator, Character, CharacterError
-from characters.control.animator import LONGEST_STEP
+from characters.control.animator import MAX_TIME_STEP_S
 from characters.motion.motion import RootDelta
 from tests.characters.commands import command
 
@@ -67,7 +67,7 @@ def played(someone, story):
         asked = command(time, actions[number % len(actions)], **said)
         for _ in range(count):
             time += gap
-            elapsed += min(max(gap, 0.0), LONGEST_STEP)
+            elapsed += min(max(gap, 0.0), MAX_TIME_STEP_S)
             try:
                 yield elapsed, animator.update(replace(asked, timestamp=time))
                 elapsed = 0.0

@@ -18,12 +18,17 @@ from characters import (
     CharacterCommand,
     LocomotionIntent,
 )
-from characters.body.posture import PLAIN, Bearing, manner
-from characters.control.in_place import Actor
-from characters.face.affect_display import RECIPES, Face, wish
-from characters.face.blink import Blinking
-from characters.face.expressions import EXPRESSIONS, Expressions
-from characters.face.lids import Lids, blinks_in
+from characters.body.posture import (
+    NEUTRAL_EXPRESSIVITY,
+    ExpressivityFilter,
+    Posture,
+    expressivity_of,
+)
+from characters.control.controllers.in_place import InPlaceController
+from characters.face.affect_display import RECIPES, AffectDisplay, expression_weights
+from characters.face.blink import BlinkTimer
+from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
+from characters.face.lids import Lids, blink_shares
 from characters.model.character import skin
 from tests.characters.commands import command
 
@@ -79,14 +84,14 @@ def test_who_feels_nothing_moves_as_ever_to_the_bit(someone):
 
 
 def test_a_feeling_that_is_over_leaves_nothing_behind(someone):
-    bearing = Bearing(someone.skeleton, someone.anatomy)
-    own = Face(someone.morphs, np.zeros(len(someone.morphs)))
+    expressivity = ExpressivityFilter()
+    own = AffectDisplay(someone.morphs, np.zeros(len(someone.morphs)))
     for number in range(900):
         emotion = Emotion(-0.7, 0.6, "angry") if number < 60 else None
-        bearing.update(STEP, emotion)
+        expressivity.update(STEP, emotion)
         own.update(STEP, emotion)
-    assert bearing.manner is PLAIN
-    assert not own.felt
+    assert expressivity.value is NEUTRAL_EXPRESSIVITY
+    assert not own.active
 
 
 @pytest.mark.parametrize("word", ["happy", "angry", "sad", "surprised"])
@@ -100,7 +105,7 @@ def test_a_face_says_what_is_felt(someone, word):
 
 def test_the_sleepy_have_heavy_lids_and_bow_their_heads(someone):
     awake, sleepy = (lived(someone, felt(word, 3))[-40:] for word in ("neutral", "sleepy"))
-    blinks = blinks_in(someone.morphs, someone.meshes, Lids.of(someone.morphs))
+    blinks = blink_shares(someone.morphs, someone.meshes, Lids.of(someone.morphs))
     assert min(float(pose.morphs @ blinks) for pose in sleepy) > 0.5
     assert min(float(pose.morphs @ blinks) for pose in awake) < 0.1
     assert pitch(someone, sleepy[-1]) < pitch(someone, awake[-1]) - math.radians(3)
@@ -117,13 +122,13 @@ def test_the_sad_hang_their_heads_and_the_happy_hold_them_high(someone):
 @pytest.mark.parametrize("valence", [-0.8, -0.3, 0.3, 0.8])
 def test_without_a_word_or_with_an_unknown_one_the_place_tells(valence):
     for word in ("", "jaunty", "neutral"):
-        happy, angry, sad, *_ = wish(Emotion(valence, 0.2, word))
+        happy, angry, sad, *_ = expression_weights(Emotion(valence, 0.2, word))
         assert (happy > angry + sad) == (valence > 0)
 
 
 def test_every_word_that_pleases_smiles_and_none_that_hurts():
     for word, place in PLACES.items():
-        happy, angry, sad, surprised, relaxed, _ = wish(Emotion(*place, word))
+        happy, angry, sad, surprised, relaxed, _ = expression_weights(Emotion(*place, word))
         if place[0] > 0.2:
             assert happy + relaxed > angry + sad, word
         if place[0] < -0.2 and place[1] > -0.5:
@@ -168,11 +173,14 @@ def test_no_morph_leaves_its_range_and_none_pops(name, plan, action):
 
 
 def test_a_bearing_changes_without_a_jolt():
-    bearing = Bearing(CAST["human"].skeleton, CAST["human"].anatomy)
-    last = bearing.turns(1.0)
+    posture = Posture(CAST["human"].skeleton, CAST["human"].anatomy)
+    expressivity = ExpressivityFilter()
+    last = posture.rotation_vectors(expressivity.value, 1.0)
     for number in range(300):
-        bearing.update(STEP, (Emotion(-1, -1), Emotion(1, 1), Emotion(-1, 1))[number // 20 % 3])
-        now = bearing.turns(1.0)
+        expressivity.update(
+            STEP, (Emotion(-1, -1), Emotion(1, 1), Emotion(-1, 1))[number // 20 % 3]
+        )
+        now = posture.rotation_vectors(expressivity.value, 1.0)
         assert np.abs(now - last).max() < math.radians(45) * STEP
         last = now
 
@@ -180,14 +188,14 @@ def test_a_bearing_changes_without_a_jolt():
 @pytest.mark.parametrize("word", sorted(RECIPES.keys() & PLACES.keys()))
 def test_a_blink_closes_the_eyes_whatever_is_felt(someone, word):
     lids = Lids.of(someone.morphs)
-    blinks = blinks_in(someone.morphs, someone.meshes, lids)
-    own = Face(someone.morphs, blinks)
+    blinks = blink_shares(someone.morphs, someone.meshes, lids)
+    own = AffectDisplay(someone.morphs, blinks)
     for _ in range(150):
         own.update(STEP, Emotion(*PLACES[word], word))
     weights = np.zeros(len(someone.morphs))
-    shut, _ = own.show(weights, STEP, 1.0, 0.0)
+    shut, _ = own.apply(weights, STEP, 1.0, 0.0)
     lids.close(weights, 1.0)
-    lids.narrow(weights, 1.0 - shut)
+    lids.limit(weights, 1.0 - shut)
     blink = {"blink": 1.0}
     shown = dict(zip(someone.morphs, weights, strict=True))
     left = []
@@ -245,35 +253,35 @@ def test_a_smile_of_the_clip_does_not_stay_on_an_angry_face():
 
 
 def test_arousal_quickens_and_enlarges_and_calm_does_the_opposite():
-    calm, plain, stirred = manner(0.0, -0.9), manner(0.0, 0.0), manner(0.0, 0.9)
-    assert calm.pace < plain.pace == 1.0 < stirred.pace
-    assert calm.size < plain.size == 1.0 < stirred.size
+    calm, plain, stirred = (
+        expressivity_of(0.0, -0.9),
+        expressivity_of(0.0, 0.0),
+        expressivity_of(0.0, 0.9),
+    )
+    assert calm.tempo < plain.tempo == 1.0 < stirred.tempo
+    assert calm.amplitude < plain.amplitude == 1.0 < stirred.amplitude
     counts = []
-    for pace in (calm.pace, stirred.pace):
-        blinking = Blinking(4)
-        lids = np.array([blinking.update(1 / 60, pace=pace) for _ in range(60 * 300)])
+    for tempo in (calm.tempo, stirred.tempo):
+        blinking = BlinkTimer(4)
+        lids = np.array([blinking.update(1 / 60, tempo=tempo) for _ in range(60 * 300)])
         counts.append(int(((lids[1:] > 0.9) & (lids[:-1] <= 0.9)).sum()))
     assert counts[1] > 1.5 * counts[0]
 
 
 def test_a_calm_animal_idles_more_slowly():
+    """After the emotion has built up, a second of idling shows another part of the clip."""
     vleo = CAST["vleo"]
-    for word, quicker in (("sleepy", False), ("excited", True)):
-        animator = Animator(vleo)
-        for number in range(90):
-            animator.update(CharacterCommand(number * STEP, emotion=Emotion(*PLACES[word], word)))
-        actor = animator._performer
-        assert isinstance(actor, Actor)
-        assert (actor.tempo > 1.1) == quicker
-        assert (actor.tempo < 0.9) != quicker
-    slow, quick = Actor(vleo, 1.0, None), Actor(vleo, 1.0, None)
-    quick.tempo = 1.5
+    slow, quick = InPlaceController(vleo, 1.0, None), InPlaceController(vleo, 1.0, None)
     for _ in range(30):
-        one, other = (
-            slow.update(CharacterCommand(0.0), 0.06),
-            quick.update(CharacterCommand(0.0), 0.04),
-        )
+        one = slow.update(CharacterCommand(0.0), 0.06).pose
+        other = quick.update(CharacterCommand(0.0), 0.04, tempo=1.5).pose
     np.testing.assert_allclose(one.rotations, other.rotations, atol=1e-9)
+    calm, plain, excited = (
+        expressivity_of(*PLACES[word]).tempo for word in ("sleepy", "neutral", "excited")
+    )
+    assert calm < 0.81
+    assert plain == 1.0
+    assert excited > 1.21
 
 
 @pytest.mark.parametrize(
@@ -287,7 +295,7 @@ def test_a_calm_animal_idles_more_slowly():
     ],
 )
 def test_faces_are_made_of_whatever_morphs_there_are(names, able):
-    found = Expressions.of(names)
+    found = ExpressionMorphs.of(names)
     assert tuple(name for name, there in zip(EXPRESSIONS, found.able, strict=True) if there) == able
     assert found.weights.max(initial=0.0) <= 1.0
 

@@ -6,12 +6,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import Animator, Character, CharacterCommand, Pose, Skeleton
-from characters.body.gaze import HUMAN, Gaze
-from characters.control.liveliness import Life
-from characters.face.blink import Blinking, closed
+from characters.body.gaze import HUMAN_GAZE, Gaze
+from characters.face.blink import BlinkTimer, lid_closure
 from characters.face.lids import Lids
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
+from tests.characters.layers import AppliedLayers
 
 STEP = 1 / 60
 NAMES = ("hips", "spine", "chest", "neck", "head", "LeftEye", "RightEye", "LeftFoot")
@@ -20,6 +20,10 @@ PLACES = np.array(
     [[0, 1, 0], [0, 0.1, 0], [0, 0.2, 0], [0, 0.2, 0], [0, 0.1, 0]]
     + [[0.03, 0.1, 0.08], [-0.03, 0.1, 0.08], [0.1, -0.9, 0]]
 )
+
+
+SEMANTICS = {name: name for name in ("hips", "spine", "chest", "neck", "head")}
+SEMANTICS |= {"leftEye": "LeftEye", "rightEye": "RightEye"}
 
 
 def bust(seed):
@@ -31,10 +35,8 @@ def bust(seed):
     parents = np.array([world[p] if p >= 0 else rotations.IDENTITY for p in PARENTS])
     back = rotations.conjugate(parents)
     rest = Pose(rotations.rotate(back, PLACES), rotations.multiply(back, world))
-    semantics = {"hips": "hips", "spine": "spine", "chest": "chest", "neck": "neck"}
-    semantics |= {"head": "head", "leftEye": "LeftEye", "rightEye": "RightEye"}
     skeleton = Skeleton(NAMES, PARENTS, rest)
-    return skeleton, Anatomy.guess(skeleton, semantics)
+    return skeleton, Anatomy.guess(skeleton, SEMANTICS)
 
 
 def looking(skeleton, pose, joint):
@@ -73,10 +75,10 @@ def test_nothing_turns_farther_than_a_body_can(seed, target):
     for _ in range(90):
         pose = gaze.update(skeleton.rest, np.array(target), STEP)
         head = looking(skeleton, pose, 4)
-        assert abs(math.atan2(head[0], head[2])) < HUMAN.head_yaw + math.radians(1)
-        assert -HUMAN.head_down - 0.02 < math.asin(head[1]) < HUMAN.head_up + 0.02
+        assert abs(math.atan2(head[0], head[2])) < HUMAN_GAZE.head_yaw + math.radians(1)
+        assert -HUMAN_GAZE.head_down - 0.02 < math.asin(head[1]) < HUMAN_GAZE.head_up + 0.02
         for eye in (5, 6):
-            most = math.hypot(HUMAN.eye_yaw, HUMAN.eye_pitch)
+            most = math.hypot(HUMAN_GAZE.eye_yaw, HUMAN_GAZE.eye_pitch)
             assert angle(looking(skeleton, pose, eye), head) < most + 1e-6
 
 
@@ -106,13 +108,13 @@ def test_what_is_behind_is_not_looked_at_and_the_head_comes_back():
 def test_a_body_without_a_head_is_left_alone():
     rest = Pose(np.zeros((1, 3)), np.array([[0.0, 0, 0, 1]]))
     skeleton = Skeleton(("box",), (-1,), rest)
-    life = Life(skeleton, Anatomy.guess(skeleton))
-    pose = life.update(rest, STEP, target=np.ones(3))
+    box = Character("box", skeleton, {}, ())
+    pose = AppliedLayers(box).update(rest, STEP, target=np.ones(3))
     assert np.array_equal(pose.rotations, rest.rotations)
 
 
 def test_blinks_come_as_often_as_peoples_and_never_in_step():
-    blinking, other = Blinking(1), Blinking(2)
+    blinking, other = BlinkTimer(1), BlinkTimer(2)
     lids = np.array([blinking.update(STEP) for _ in range(60 * 600)])
     others = np.array([other.update(STEP) for _ in range(60 * 600)])
     shut = (lids[1:] > 0.95) & (lids[:-1] <= 0.95)
@@ -125,15 +127,15 @@ def test_blinks_come_as_often_as_peoples_and_never_in_step():
 
 
 def test_a_great_turn_of_the_gaze_brings_a_blink():
-    blinking = Blinking(5)
+    blinking = BlinkTimer(5)
     assert blinking.update(STEP) == 0.0
-    blinking.update(STEP, turned=1.0)
+    blinking.update(STEP, gaze_shift=1.0)
     assert max(blinking.update(STEP) for _ in range(12)) == 1.0
 
 
 @given(st.floats(-1, 1))
 def test_lids_move_smoothly(time):
-    assert abs(closed(time + 1e-4) - closed(time)) < 3e-3
+    assert abs(lid_closure(time + 1e-4) - lid_closure(time)) < 3e-3
 
 
 @pytest.mark.parametrize(
@@ -153,8 +155,8 @@ def test_lids_move_smoothly(time):
 )
 def test_eyes_blink_whatever_their_morphs_are_called(names):
     morphs = ("jawOpen", *names, "eyeSquintLeft")
-    skeleton, anatomy = bust(0)
-    life = Life(skeleton, anatomy, morphs)
+    skeleton, _ = bust(0)
+    life = AppliedLayers(Character("bust", skeleton, {}, (), morphs, SEMANTICS))
     weights = np.array([life.update(skeleton.rest, STEP).morphs for _ in range(900)])
     shut = weights[:, 1:-1].max(axis=1) > 0.99
     assert shut.any()
@@ -181,7 +183,7 @@ def someone(request):
 def test_standing_still_is_never_quite_still_and_the_feet_stay(someone):
     clip = someone.clips["idle"]
     anatomy = Anatomy.guess(someone.skeleton, someone.semantics)
-    life = Life(someone.skeleton, anatomy, someone.morphs)
+    life = AppliedLayers(someone)
     still = clip.sample(0.0)
     feet = [anatomy.joints["leftFoot"], anatomy.joints["rightFoot"]]
     heads, soles = [], []
@@ -195,14 +197,14 @@ def test_standing_still_is_never_quite_still_and_the_feet_stay(someone):
 
 
 def test_breath_quickens_with_effort_and_calms_down_later(someone):
-    life = Life(someone.skeleton, Anatomy.guess(someone.skeleton, someone.semantics))
+    life = AppliedLayers(someone)
     pose = someone.clips["idle"].sample(0.0)
 
     def breaths(seconds, effort):
         full = []
         for _ in range(seconds * 60):
             life.update(pose, STEP, effort=effort)
-            full.append(life.breath)
+            full.append(life.context.breath)
         crossed = np.diff((np.array(full) > 0.5).astype(int)) > 0
         return crossed.sum() / seconds
 

@@ -6,9 +6,18 @@ import numpy as np
 import pytest
 
 from characters import Animator, Character, CharacterCommand, LocomotionIntent
-from characters.control.walker import Walker
+from characters.control.layers import FootLockLayer
 from characters.locomotion.steering import SteeringOutput
-from tests.bench.feet import FRAME_RATE, MAX_SLIDE_MM_S, SCRIPTS, at_point, film, measure, points
+from tests.bench.feet import (
+    FRAME_RATE,
+    MAX_SLIDE_MM_S,
+    SCRIPTS,
+    Walking,
+    at_point,
+    film,
+    measure,
+    points,
+)
 
 GRID = points((0.6, 2.0, 2.9, 4.5), (-80, 0, 40), (1.0,)) | points((1.2,), (60,), (0.0, 0.5))
 
@@ -46,18 +55,18 @@ def test_the_foot_lock_adds_little_joint_acceleration(human):
 
 
 def test_feet_stay_in_place_after_a_stop(human):
-    walker = Walker(human, 0.1, None)
+    walker = Walking(human, 0.1)
     for number in range(60):
-        walker.go(SteeringOutput(2.0, 1.0, 1.0), 1 / FRAME_RATE if number else 0.0)
+        walker.step(SteeringOutput(2.0, 1.0, 1.0), 1 / FRAME_RATE if number else 0.0)
     for _ in range(120):
-        walker.go(SteeringOutput(0.0, 0.0, 1.0), 1 / FRAME_RATE)
-    lock = walker.lock
+        walker.step(SteeringOutput(0.0, 0.0, 1.0), 1 / FRAME_RATE)
+    lock = walker.feet.lock
     assert lock is not None
     assert all(foot.held for foot in lock.feet)
     assert max(foot.offset.length for foot in lock.feet) < 0.03 * human.height
     anchors = [foot.anchor for foot in lock.feet]
     for _ in range(60):
-        walker.go(SteeringOutput(0.0, 0.0, 1.0), 1 / FRAME_RATE)
+        walker.step(SteeringOutput(0.0, 0.0, 1.0), 1 / FRAME_RATE)
     assert anchors == [foot.anchor for foot in lock.feet]
 
 
@@ -81,4 +90,4 @@ def test_planted_feet_do_not_slide_at_any_frame_rate(human, rate):
 
 
 def test_a_character_without_knees_has_no_foot_lock(walker):
-    assert Walker(walker, 0.1, None).lock is None
+    assert FootLockLayer(walker).lock is None

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from characters import Animator, Character, CharacterCommand, CharacterError, LocomotionIntent
 from characters.control.builtin_tree import built_in
+from characters.control.layers import FOOT_LAYERS
 from characters.model.mirroring import mirror_of
 from characters.model.sidecar import read_sidecar
 from characters.motion.trees.building import Builder
@@ -89,7 +90,7 @@ def test_a_character_plays_the_plan_of_its_sidecar(human, tmp_path):
 
 def test_no_joint_jumps_while_states_and_parameters_change(human):
     read, _ = builder(human, HUMAN_TOML)
-    animator = Animator(replace(human, plan=read), alive=False)
+    animator = Animator(replace(human, plan=read), layers=FOOT_LAYERS)
     rng = np.random.default_rng(5)
     turns = []
     for number in range(600):

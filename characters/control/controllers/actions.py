@@ -1,8 +1,9 @@
-"""What a character can be asked to do beside standing and walking, at any intensity."""
+"""Actions: what a character can perform besides standing and walking, at any intensity."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from characters.face.affect_display import EMOTIONAL_WORDS
 from characters.model.character import Character
 from characters.motion.blend import BlendSpace1D
 from characters.motion.clip import Clip
@@ -14,23 +15,23 @@ from characters.skeleton.feet import Feet
 from characters.skeleton.pose import Pose, Skeleton
 
 INTENSITIES = (("head", -1.0), ("legs", 0.0), ("tail", 1.0))
-"""Endings of an action's clips and the weights that they stand for (thesis, section 5.3)."""
+"""Suffixes of an action's clips and the weights that they stand for (thesis, section 5.3)."""
 
-WEIGHT_LAG = 0.12
-"""How slowly the intensity of an action follows its wish [s]."""
+WEIGHT_LAG_S = 0.12
+"""Time constant with which the intensity of an action follows the command [s]."""
 
 
 @dataclass(frozen=True)
-class Footing:
+class ActionContacts:
     """Which feet an action has on the ground, in each frame of its clip."""
 
     down: list[list[bool]]
     """(frames, feet)."""
 
     @staticmethod
-    def of(clip: Clip, skeleton: Skeleton, feet: Feet) -> "Footing":
-        """Return the footing that is found in a clip."""
-        return Footing(find_contacts(clip, skeleton, feet).tolist())
+    def of(clip: Clip, skeleton: Skeleton, feet: Feet) -> "ActionContacts":
+        """Return the contacts that are detected in a clip."""
+        return ActionContacts(find_contacts(clip, skeleton, feet).tolist())
 
     def at(self, phase: float) -> list[bool]:
         """Return which feet are down at a phase."""
@@ -39,18 +40,22 @@ class Footing:
         return self.down[min(int(frame), last)]
 
 
-class Act:
-    """An action that plays at an intensity which may change meanwhile; a `Motion`.
+class ActionMotion:
+    """An action whose intensity may change while it plays; a `Motion`.
 
     Parameters
     ----------
+    name
+        Its name.
     space
-        Its clips over the intensity, which start together.
+        Its clips over the intensity; they start together.
     once
-        Whether it ends; else it repeats.
+        Whether it ends; otherwise it repeats.
     """
 
-    def __init__(self, space: BlendSpace1D, once: bool) -> None:
+    def __init__(self, name: str, space: BlendSpace1D, once: bool) -> None:
+        self.shows_emotion = name in EMOTIONAL_WORDS
+        """Whether its clips show an emotion themselves: it is named after one."""
         self._space = space
         self._once = once
         self._motion = space.at(0.0)
@@ -58,22 +63,22 @@ class Act:
 
     @property
     def duration(self) -> float:
-        """How long it takes at the present intensity [s]."""
+        """Duration at the present intensity [s]."""
         return self._motion.duration
 
     def begin(self, weight: float) -> None:
-        """Start over at time 0, at an intensity −1…1."""
+        """Restart at time 0, at an intensity −1…1."""
         self._motion, self._phase, self._time = self._space.at(weight), 0.0, 0.0
 
     def change(self, weight: float, time: float) -> None:
-        """Go on at another intensity from a time on [s]."""
+        """Continue at another intensity from a time on [s]."""
         phase = self.phase(time)
-        # Whole rounds are dropped, so that a long session does not lose precision.
+        # Whole cycles are dropped, so that a long session does not lose precision.
         self._phase, self._time = phase if self._once else phase % 1.0, time
         self._motion = self._space.at(weight)
 
     def over(self, time: float) -> bool:
-        """Whether it has ended by a time [s]."""
+        """Whether it has ended at a time [s]."""
         return self._once and self.phase(time) >= 1.0
 
     def sample(self, time: float) -> Pose:
@@ -81,7 +86,7 @@ class Act:
         return self._motion.at(self.phase(time))
 
     def travel(self, start: float, end: float) -> RootDelta:
-        """Return how the root moves over the ground between two times [s]."""
+        """Return the motion of the root over the ground between two times [s]."""
         return self._motion.between(self.phase(start), self.phase(end))
 
     @property
@@ -101,13 +106,15 @@ class Act:
         return min(phase, 1.0) if self._once else phase
 
 
-def clips_of_acts(clips: Iterable[str], besides: Iterable[str] = ()) -> dict[str, dict[float, str]]:
-    """Return the clips of each action by the intensity that they stand for.
+def clips_of_actions(
+    clips: Iterable[str], besides: Iterable[str] = ()
+) -> dict[str, dict[float, str]]:
+    """Return the clips of each action by intensity.
 
     An action X is the clips X_head, X_legs and X_tail, for weights −1, 0 and 1. A clip without
-    such an ending is an action of one intensity.
+    such a suffix is an action of one intensity.
 
-    >>> clips_of_acts(["idle", "kiss_head", "kiss_tail", "nod"])
+    >>> clips_of_actions(["idle", "kiss_head", "kiss_tail", "nod"])
     {'kiss': {-1.0: 'kiss_head', 1.0: 'kiss_tail'}, 'nod': {0.0: 'nod'}}
 
     Parameters
@@ -115,40 +122,44 @@ def clips_of_acts(clips: Iterable[str], besides: Iterable[str] = ()) -> dict[str
     clips
         Names of all clips of a character.
     besides
-        Clips that are something else, as "idle" is anyway.
+        Clips that are not actions; "idle" never is one.
     """
     known, others = list(clips), {"idle", *besides}
-    acts: dict[str, dict[float, str]] = {}
+    actions: dict[str, dict[float, str]] = {}
     for name in known:
-        action, _, ending = name.rpartition("_")
-        if not action or ending not in dict(INTENSITIES):
+        action, _, suffix = name.rpartition("_")
+        if not action or suffix not in dict(INTENSITIES):
             action = name
-        if action in acts or action in others or name in others:
+        if action in actions or action in others or name in others:
             continue
-        there = {w: f"{action}_{e}" for e, w in INTENSITIES if f"{action}_{e}" in known}
-        acts[action] = there or {0.0: name}
-    return acts
+        found = {w: f"{action}_{e}" for e, w in INTENSITIES if f"{action}_{e}" in known}
+        actions[action] = found or {0.0: name}
+    return actions
 
 
-def acts_of(character: Character, besides: Iterable[str] = ()) -> dict[str, Act]:
-    """Return what a character knows to do; see `clips_of_acts`."""
-    acts: dict[str, Act] = {}
-    for action, names in clips_of_acts(character.clips, besides).items():
+def actions_of(character: Character, besides: Iterable[str] = ()) -> dict[str, ActionMotion]:
+    """Return the actions of a character by name; see `clips_of_actions`."""
+    actions: dict[str, ActionMotion] = {}
+    for action, names in clips_of_actions(character.clips, besides).items():
         clips = [character.clips[name] for name in names.values()]
         space = BlendSpace1D(tuple(names), tuple(PhasedMotion(clip) for clip in clips))
-        acts[action] = Act(space, once=not any(clip.loop for clip in clips))
-    return acts
+        actions[action] = ActionMotion(action, space, once=not any(clip.loop for clip in clips))
+    return actions
 
 
-def proceed(
-    machine: StateMachine, acts: Mapping[str, Act], wish: str, done: str, now: float
+def next_action(
+    machine: StateMachine,
+    actions: Mapping[str, ActionMotion],
+    asked: str,
+    finished: str,
+    now: float,
 ) -> tuple[str, str]:
-    """Return the action to play for a wish, and the one that was wished for and has ended.
+    """Return the action to play when `asked` for one, and the asked action that has finished.
 
-    An action that ends is followed by "idle" for as long as the wish stays the same.
+    An action that ends is followed by "idle" for as long as the same action is asked for.
     """
-    if wish != done:
-        done = ""
-    if wish == machine.state and wish in acts and acts[wish].over(now - machine.entered):
-        done = wish
-    return ("idle" if done else wish), done
+    if asked != finished:
+        finished = ""
+    if asked == machine.state and asked in actions and actions[asked].over(now - machine.entered):
+        finished = asked
+    return ("idle" if finished else asked), finished

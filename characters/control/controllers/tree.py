@@ -1,8 +1,10 @@
-"""Plays a character as the file beside it says."""
+"""A character that is played as the file beside it describes."""
 
 import math
 
 from characters.control.command import CharacterCommand, LocomotionIntent
+from characters.control.controllers.controller import ControllerFrame
+from characters.face.affect_display import EMOTIONAL_WORDS
 from characters.locomotion.steering import ARRIVAL_DISTANCE_M, DEPARTURE_DISTANCE_M
 from characters.model.character import Character
 from characters.model.mirroring import mirror_of
@@ -11,29 +13,34 @@ from characters.motion.state_machine import StateMachine
 from characters.motion.trees.building import Builder
 from characters.motion.trees.parametric import ParameterBindings
 from characters.motion.trees.plan import PARAMETERS, Plan, Transition
-from characters.skeleton.pose import Pose
 from characters.smoothing import low_pass
 
-LAGS = {"speed": 0.15, "angular": 0.15, "weight": 0.12}
-"""How slowly parameters follow where the file does not say [s]: a wish that jumps is no pop."""
+DEFAULT_LAGS_S = {"speed": 0.15, "angular": 0.15, "weight": 0.12}
+"""Time constants of the parameters where the file has none [s]."""
 
-_BRAKING = 63.0  # Speed for each metre on the table that is left to go
-_SLOW_TURN = math.radians(60)  # a target farther round than this is approached at a walk
-_TURNING_SPEED = 1.5
+GAIT_STATES = ("idle", "walk", "run")
+"""Names of states that leave head and face free; every other state is an action."""
+
+BRAKING_PER_M = 63.0
+"""Limit of the Speed for each metre on the table that is left to go [1/m]."""
+
+SLOW_TURN_RAD = math.radians(60)
+"""A target farther to the side than this is approached at `TURNING_SPEED`."""
+
+TURNING_SPEED = 1.5
 
 
-class TreePlayer:
-    """Plays a plan; a `Performer`.
+class TreeController:
+    """Plays a plan of blend trees and states; a `CharacterController`.
 
-    The root moves as the motions say. A target is steered for by the parameters alone: it is the
-    plan that turns them into steps.
+    The root moves as the motions do. Steering sets parameters only; the plan turns them into steps.
 
     Parameters
     ----------
     character
-        With a plan.
+        A character with a plan.
     scale
-        Table metres for each metre of the character.
+        Table metres per metre of the character.
     place
         Where it first stands on the table.
     """
@@ -42,8 +49,7 @@ class TreePlayer:
         if character.plan is None:
             raise ValueError(f"{character.name} has no plan")
         self._plan: Plan = character.plan
-        self.place = place or RootDelta()
-        self.state, self.speed, self.angular, self.weight, self.height = "idle", 0.0, 0.0, 0.0, 0.0
+        self._place = place or RootDelta()
         self._scale = scale
         self._time = 0.0
         self._arrived = True
@@ -59,69 +65,80 @@ class TreePlayer:
         nodes = {"": self._plan.root} if machine is None else machine.states
         built = {n: builder.build(node, self._values) for n, node in nodes.items() if node}
         self._motions: dict[str, Motion] = {name: motion for name, (motion, _) in built.items()}
-        self._steering: dict[str, ParameterBindings] = {
-            name: steer for name, (_, steer) in built.items()
+        self._bindings: dict[str, ParameterBindings] = {
+            name: bindings for name, (_, bindings) in built.items()
         }
         self._machine = StateMachine(self._motions, "" if machine is None else machine.start)
 
     @property
     def actions(self) -> tuple[str, ...]:
-        """Names of its states: what each answers to, its conditions say."""
+        """The names of its states; their conditions decide which action enters them."""
         return () if self._plan.machine is None else tuple(self._plan.machine.states)
 
     @staticmethod
     def suits(character: Character) -> bool:
-        """Whether a file says how a character is to be played."""
+        """Whether a character has a plan."""
         return character.plan is not None
 
-    def update(self, command: CharacterCommand, elapsed: float) -> Pose:
-        """Advance by a time [s] under a command and return the pose, with the root in place."""
+    def update(
+        self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
+    ) -> ControllerFrame:
+        """Advance by a time [s] under a command and return what is played."""
         self._read(command, elapsed)
         now, self._time = self._time, self._time + elapsed
         self._change(command, now)
         state = self._machine.state
-        self._steering[state].set_values(self._values, now - self._machine.entered)
-        self._report(command)
+        self._bindings[state].set_values(self._values, now - self._machine.entered)
         step = self._machine.travel(now, self._time)
-        self.place = self.place.then(
+        self._place = self._place.then(
             RootDelta(step.x * self._scale, step.z * self._scale, step.yaw)
         )
-        return self._machine.sample(self._time)
+        name = state or command.activity
+        return ControllerFrame(
+            self._machine.sample(self._time),
+            name,
+            self._place,
+            speed=self._values["speed"],
+            angular=math.radians(self._values["angular"]),
+            weight=self._values["weight"],
+            acting=name not in GAIT_STATES,
+            shows_emotion=name in EMOTIONAL_WORDS,
+        )
 
     def _read(self, command: CharacterCommand, elapsed: float) -> None:
-        """Take the parameters from a command."""
-        wish = dict.fromkeys(PARAMETERS, 0.0)
-        wish["weight"] = min(max(command.weight, -1.0), 1.0)
+        """Move the parameters towards those of a command."""
+        target_values = dict.fromkeys(PARAMETERS, 0.0)
+        target_values["weight"] = min(max(command.weight, -1.0), 1.0)
         going = command.locomotion or LocomotionIntent()
         if going.facing is not None:
-            wish["bearing"] = math.degrees(self.place.bearing(*map(float, going.facing)))
+            target_values["bearing"] = math.degrees(self._place.bearing(*map(float, going.facing)))
         if command.activity == "move" and going.target is not None:
             x, z = map(float, going.target)
-            away = math.hypot(x - self.place.x, z - self.place.z)
+            away = math.hypot(x - self._place.x, z - self._place.z)
             self._arrived = going.stop and away < (
                 DEPARTURE_DISTANCE_M if self._arrived else ARRIVAL_DISTANCE_M
             )
             if not self._arrived:
-                wish |= self._course(going, (x, z), away)
-        for name, value in wish.items():
-            lag = self._plan.lags.get(name, LAGS.get(name, 0.0))
+                target_values |= self._course(going, (x, z), away)
+        for name, value in target_values.items():
+            lag = self._plan.lags.get(name, DEFAULT_LAGS_S.get(name, 0.0))
             self._values[name] = low_pass(self._values[name], value, elapsed, lag) if lag else value
 
     def _course(
         self, going: LocomotionIntent, target: tuple[float, float], away: float
     ) -> dict[str, float]:
         """Return the parameters that lead to a target."""
-        right = -self.place.bearing(*target)
+        right = -self._place.bearing(*target)
         speed = min(max(going.speed, 0.0), 5.0)
         if going.stop:
-            speed = min(speed, 0.6 + _BRAKING * max(away - ARRIVAL_DISTANCE_M, 0.0))
-        if abs(right) > _SLOW_TURN:
-            speed = min(speed, _TURNING_SPEED)
+            speed = min(speed, 0.6 + BRAKING_PER_M * max(away - ARRIVAL_DISTANCE_M, 0.0))
+        if abs(right) > SLOW_TURN_RAD:
+            speed = min(speed, TURNING_SPEED)
         angular = min(max(2.0 * math.degrees(right), -90.0), 90.0)
         return {"speed": speed, "angular": angular, "distance": away / self._scale}
 
     def _change(self, command: CharacterCommand, now: float) -> None:
-        """Enter another state if a condition says so; one at a time."""
+        """Enter the state of the first transition whose condition holds."""
         machine = self._plan.machine
         if machine is None:
             return
@@ -131,26 +148,21 @@ class TreePlayer:
         values: dict[str, float | str | bool] = {**self._values, "time": spent, "done": ended}
         values["action"] = command.activity
         for change in machine.transitions:
-            if _leads_on(change, state) and change.when.holds(values):
+            if _starts_in(change, state) and change.when.holds(values):
                 self._enter(change, now)
                 return
 
     def _enter(self, change: Transition, now: float) -> None:
-        """Enter a state; its motion starts over once the old one has been looked at."""
-        steering = self._steering[change.end]
+        """Enter a state; its motion restarts once the old pose has been sampled."""
+        bindings = self._bindings[change.end]
         self._machine.length = change.seconds
         self._machine.request(
             change.end,
             now,
             change.seconds if change.crossfade else 0.0,
-            lambda: steering.restart_with(self._values),
+            lambda: bindings.restart_with(self._values),
         )
 
-    def _report(self, command: CharacterCommand) -> None:
-        self.state = self._machine.state or command.activity
-        self.speed, self.weight = self._values["speed"], self._values["weight"]
-        self.angular = math.radians(self._values["angular"])
 
-
-def _leads_on(change: Transition, state: str) -> bool:
+def _starts_in(change: Transition, state: str) -> bool:
     return change.end != state and change.start in (state, "*")

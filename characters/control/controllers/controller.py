@@ -1,0 +1,93 @@
+"""What every controller is: it decides what a character plays, and where it stands."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+from characters.control.command import CharacterCommand
+from characters.model.character import Character
+from characters.motion.motion import RootDelta
+from characters.skeleton.pose import Pose
+
+
+@dataclass(frozen=True)
+class ControllerFrame:
+    """What a controller plays in one frame."""
+
+    pose: Pose
+    """The pose of its clips, with the root in place."""
+
+    state: str
+    """What the character is doing: "idle", "walk", "run", or the name of an action."""
+
+    place: RootDelta
+    """Where it stands on the table [m] and where it faces [rad]."""
+
+    height: float = 0.0
+    """Its height above the table [m]."""
+
+    speed: float = 0.0
+    """AvatAR's Speed in use, 0…5."""
+
+    angular: float = 0.0
+    """How sharply it turns [rad], positive to its right."""
+
+    weight: float = 0.0
+    """The intensity in use, −1…1."""
+
+    acting: bool = False
+    """Whether an action needs head and trunk, so that less is laid over them."""
+
+    shows_emotion: bool = False
+    """Whether the clip shows an emotion itself, so that the face need not."""
+
+    feet_down: list[bool] | None = None
+    """Which feet the clips have on the ground; None if feet are not to be held."""
+
+    standing: bool = False
+    """Whether the feet step back to their places where they were left elsewhere."""
+
+
+class CharacterController(Protocol):
+    """Plays one character under commands: one of `CONTROLLERS`."""
+
+    @property
+    def actions(self) -> tuple[str, ...]:
+        """The actions that it knows, besides standing, walking and running."""
+        ...
+
+    def update(
+        self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
+    ) -> ControllerFrame:
+        """Advance by a time and return what is played.
+
+        Parameters
+        ----------
+        command
+            What is asked for.
+        elapsed
+            Time since the last call [s].
+        tempo
+            Tempo of standing: an emotion changes it.
+
+        Raises
+        ------
+        CharacterError
+            If the character does not know the action.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class ControllerType:
+    """A controller as it is registered."""
+
+    suits: Callable[[Character], bool]
+    """Whether it can play a character."""
+
+    make: Callable[[Character, float, RootDelta | None], CharacterController]
+    """Makes it for a character at a scale (table metres per metre of the character) and a first
+    place; without one it starts where it is first sent."""
+
+    height: Callable[[Character], float]
+    """Default height of a character on the table [m]."""

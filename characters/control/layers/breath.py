@@ -1,0 +1,26 @@
+"""Breath that shows in a morph of the chest."""
+
+import numpy as np
+
+from characters.control.layers.layer import FrameContext
+from characters.model.character import Character
+from characters.skeleton.pose import Pose
+
+MORPH = "breath"
+"""The morph of a full chest."""
+
+
+class BreathLayer:
+    """Sets the morph of the chest; a character without one is left alone."""
+
+    def __init__(self, character: Character, seed: int = 0) -> None:
+        self._count = len(character.morphs)
+        self._morph = character.morphs.index(MORPH) if MORPH in character.morphs else None
+
+    def update(self, pose: Pose, context: FrameContext) -> Pose:
+        """Return the pose with the chest filled by the breath."""
+        if self._morph is None:
+            return pose
+        weights = np.zeros(self._count) if pose.morphs is None else pose.morphs.copy()
+        weights[self._morph] += context.breath
+        return Pose(pose.translations, pose.rotations, pose.scales, weights)

@@ -1,0 +1,48 @@
+"""The face: blinks, and the expression of an emotion."""
+
+import numpy as np
+
+from characters.control.layers.layer import FrameContext
+from characters.face.affect_display import AffectDisplay
+from characters.face.blink import BlinkTimer
+from characters.face.lids import Lids, blink_shares
+from characters.model.character import Character
+from characters.skeleton.pose import Pose
+
+WIDE_EYES = "surprised"
+"""A morph that opens the eyes wide, and keeps them from closing."""
+
+
+class FaceLayer:
+    """Sets the morphs of lids and expressions."""
+
+    def __init__(self, character: Character, seed: int) -> None:
+        morphs = character.morphs
+        self._count = len(morphs)
+        self._lids = Lids.of(morphs)
+        self._blinks = BlinkTimer(seed)
+        self._display = AffectDisplay(morphs, blink_shares(morphs, character.meshes, self._lids))
+        self._wide = morphs.index(WIDE_EYES) if WIDE_EYES in morphs else None
+
+    def update(self, pose: Pose, context: FrameContext) -> Pose:
+        """Return the pose with lids and expression."""
+        frame = context.frame
+        self._display.update(context.elapsed, None if frame.shows_emotion else context.emotion)
+        closed = self._blinks.update(
+            context.elapsed, context.gaze_shift, context.expressivity.tempo
+        )
+        if not self._lids and not self._display.active:
+            return pose
+        weights = np.zeros(self._count) if pose.morphs is None else pose.morphs.copy()
+        if self._display.active:
+            closing, lowered = self._display.apply(
+                weights, context.elapsed, closed, float(frame.acting)
+            )
+            # A lid that an expression holds half closed is only closed by the other half.
+            self._lids.close(weights, max(closed, lowered - closing))
+            self._lids.limit(weights, 1.0 - closing)
+        else:
+            self._lids.close(weights, closed)
+        if self._wide is not None:
+            weights[self._wide] *= 1.0 - closed  # morphs add up: wide eyes would not close
+        return Pose(pose.translations, pose.rotations, pose.scales, weights)

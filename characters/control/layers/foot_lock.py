@@ -1,0 +1,25 @@
+"""Feet that stay where they landed."""
+
+from characters.control.layers.layer import FrameContext
+from characters.ik.legs import find_legs
+from characters.locomotion.foot_lock import FootLock
+from characters.model.character import Character
+from characters.motion.motion import RootDelta
+from characters.skeleton.pose import Pose
+
+
+class FootLockLayer:
+    """Holds planted feet by inverse kinematics, for controllers that know which feet are down."""
+
+    def __init__(self, character: Character, seed: int = 0) -> None:
+        legs = find_legs(character.skeleton)
+        self.lock = None if legs is None else FootLock(legs, character.height)
+        """What holds the feet; None without legs that bend."""
+
+    def update(self, pose: Pose, context: FrameContext) -> Pose:
+        """Return the pose with its planted feet held."""
+        frame, scale = context.frame, context.scale
+        if self.lock is None or frame.feet_down is None:
+            return pose
+        place = RootDelta(frame.place.x / scale, frame.place.z / scale, frame.place.yaw)
+        return self.lock.apply(pose, place, frame.feet_down, frame.standing, context.elapsed)

@@ -1,0 +1,79 @@
+"""What every pose layer is: it takes a pose and returns one, once a frame."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from affect import Emotion
+from characters.body.posture import Expressivity
+from characters.control.command import CharacterCommand
+from characters.control.controllers.controller import ControllerFrame
+from characters.locomotion.gaits import TOP_SPEED
+from characters.model.character import Character
+from characters.skeleton.pose import Array, Pose
+
+
+@dataclass
+class FrameContext:
+    """What the layers of one frame take besides the pose."""
+
+    elapsed: float
+    """Time since the last frame [s]."""
+
+    command: CharacterCommand
+    """What is asked of the character."""
+
+    frame: ControllerFrame
+    """What its controller plays."""
+
+    scale: float
+    """Table metres per metre of the character."""
+
+    table_from_character: Array
+    """Where it stands, (4, 4)."""
+
+    expressivity: Expressivity
+    """How its body moves by itself, because of its emotion."""
+
+    rest: float
+    """1 standing still … 0 running or in the midst of an action; smoothed."""
+
+    gaze_shift: float = 0.0
+    """Set by the gaze layer for those after it: angle by which the gaze target moved [rad]."""
+
+    breath: float = 0.0
+    """Set by the posture layer for those after it: filling of the lungs, 0…1."""
+
+    @property
+    def effort(self) -> float:
+        """How hard the body works, 0 at rest … 1 at a full run."""
+        return self.frame.speed / TOP_SPEED
+
+    @property
+    def emotion(self) -> Emotion | None:
+        """The emotion to show."""
+        return self.command.emotion
+
+    @property
+    def gaze_target(self) -> Array | None:
+        """The point to look at, (3,) in the character frame [m], or None."""
+        if self.command.gaze is None:
+            return None
+        placed = self.table_from_character
+        offset = np.asarray(self.command.gaze, float) - placed[:3, 3]
+        target: Array = offset @ placed[:3, :3] / float(placed[1, 1]) ** 2
+        return target
+
+
+class PoseLayer(Protocol):
+    """Changes the poses of one character, in the order of time."""
+
+    def update(self, pose: Pose, context: FrameContext) -> Pose:
+        """Return the pose with this layer applied."""
+        ...
+
+
+LayerFactory = Callable[[Character, int], PoseLayer]
+"""Makes the layer of a character, with a seed for what is random in it."""
