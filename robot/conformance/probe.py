@@ -37,12 +37,6 @@ EMOTION_CHANGE = 0.05
 TIMING_SLACK_S = 0.050
 """Longest delay between the sending of a frame and its reading here, on a busy computer [s]."""
 
-PACED_WRITE_BYTES = 256
-"""Bytes of noise in one write; a line of 115200 baud takes 22 ms for them."""
-
-PACED_WRITE_EVERY_S = 0.025
-"""Time between two such writes [s]."""
-
 MAX_QUEUED_FRAMES = 10_000
 """Most received frames in the queue; older ones are dropped."""
 
@@ -123,12 +117,6 @@ class Probe:
         if not keep:
             self.receive(0)
         self._channel.write(data)
-
-    def write_paced(self, data: bytes) -> None:
-        """Send many bytes, no faster than a serial line takes them."""
-        for start in range(0, len(data), PACED_WRITE_BYTES):
-            self._channel.write(data[start : start + PACED_WRITE_BYTES])
-            self.receive(PACED_WRITE_EVERY_S)
 
     def send(self, *messages: Any, session: int | None = None, version: int | None = None) -> None:
         """Send messages in one write, in the open session or in another."""

@@ -1,7 +1,7 @@
 """Endpoints of the bus: a player, a robot's node or an observer, without clock, thread or bus."""
 
 import math
-from typing import Literal, Protocol
+from typing import Literal
 
 from robot.network.bus import Message
 from robot.network.messages import MAX_INTEGER, StatusMessage, encode
@@ -57,20 +57,24 @@ class SessionEpoch:
         return self.meet(status.session, now, alive=status.status == "online")
 
 
-class Endpoint(Protocol):
-    """A member's part of the communication, driven by the owner of clock and bus. Never blocks."""
+class Endpoint:
+    """A member's part of the communication, driven by the owner of clock and bus. Never blocks.
+
+    This one receives nothing and publishes nothing.
+    """
+
+    topic_filters: tuple[str, ...] = ()
+    """Its subscriptions, in the order in which it needs the retained messages."""
 
     @property
     def will(self) -> Message | None:
         """The message that the broker publishes when the connection breaks."""
-
-    @property
-    def topic_filters(self) -> tuple[str, ...]:
-        """Its subscriptions, in the order in which it needs the retained messages."""
+        return None
 
     @property
     def problem(self) -> str:
         """Why it stopped publishing, in one line; "" while it publishes."""
+        return ""
 
     def connected(self, now: float) -> None:
         """Publish everything again: the broker may have lost it."""
@@ -83,12 +87,14 @@ class Endpoint(Protocol):
 
     def outgoing(self, now: float) -> list[Message]:
         """Return the messages to be published now, each once."""
+        return []
 
     def closing_messages(self) -> tuple[Message, ...]:
         """Return the last messages."""
+        return ()
 
 
-class MemberEndpoint:
+class MemberEndpoint(Endpoint):
     """Base of players and robots' nodes: session epoch, heartbeat, last will.
 
     Parameters

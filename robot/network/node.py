@@ -35,7 +35,7 @@ class RobotControl(Protocol):
 
 
 class RobotNode(MemberEndpoint):
-    """The node of a robot, without clock, thread or bus; an `Endpoint`.
+    """The node of a robot, without clock, thread or bus.
 
     Parameters
     ----------

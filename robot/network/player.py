@@ -63,7 +63,7 @@ class PlayerCounts:
 
 
 class Player(MemberEndpoint):
-    """A player, without clock, thread or bus; an `Endpoint`.
+    """A player, without clock, thread or bus.
 
     Parameters
     ----------

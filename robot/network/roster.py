@@ -5,8 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from robot.network import messages as m
-from robot.network.bus import Message
-from robot.network.endpoint import LOST_AFTER_S
+from robot.network.endpoint import LOST_AFTER_S, Endpoint
 from robot.network.messages import MalformedError, decode
 from robot.network.topics import ANY, ROOT, Member, member_of
 
@@ -36,8 +35,8 @@ class RosterEntry:
         return "lost" if status.status == "online" and silent else str(status.status)
 
 
-class Roster:
-    """An observer of all members, which publishes nothing; an `Endpoint`.
+class Roster(Endpoint):
+    """An observer of all members, which publishes nothing.
 
     Parameters
     ----------
@@ -47,20 +46,14 @@ class Roster:
         Called with every message.
     """
 
-    will: Message | None = None
-    problem = ""
-
     def __init__(self, site: str = ANY, on_message: OnMessage | None = None) -> None:
         place = "+" if site == ANY else site
-        self.topic_filters: tuple[str, ...] = (f"{ROOT}/{place}/+/+/+",)
+        self.topic_filters = (f"{ROOT}/{place}/+/+/+",)
         self.members: dict[Member, RosterEntry] = {}
         """The known members."""
         self.malformed = 0
         """Messages that were not valid."""
         self._on_message = on_message
-
-    def connected(self, now: float) -> None:
-        """Do nothing: there is nothing to publish."""
 
     def receive(self, topic: str, payload: bytes, now: float) -> None:
         """Process a message."""
@@ -87,14 +80,3 @@ class Roster:
             entry.last_heartbeat = now
         if self._on_message is not None:
             self._on_message(member, kind, message)
-
-    def tick(self, now: float) -> None:
-        """Do nothing: nothing is ever due."""
-
-    def outgoing(self, now: float) -> list[Message]:
-        """Return no messages."""
-        return []
-
-    def closing_messages(self) -> tuple[Message, ...]:
-        """Return no messages."""
-        return ()

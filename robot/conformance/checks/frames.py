@@ -11,6 +11,12 @@ from robot.protocol.wire import MAX_BODY, crc16, encode_frame
 
 FRAMES = CheckGroup("Frames", 2)
 
+NOISE_BYTES = 256
+"""Bytes of noise in one write; a line of 115200 baud takes 22 ms for them."""
+
+NOISE_EVERY_S = 0.025
+"""Time between two such writes [s]."""
+
 BYTE_EVERY_S = 0.003
 """Time between two bytes of a frame that arrives in pieces [s]."""
 
@@ -134,8 +140,10 @@ def longer_frame_dropped(probe: Probe) -> None:
 def flood_survived(probe: Probe) -> None:
     """After 8 kB of noise at full speed, with and without edges, the robot answers HELLO."""
     probe.open_session()
-    probe.write_paced(_RANDOM)
-    probe.write_paced(_RANDOM.replace(b"\0", b"\1"))
+    noise = _RANDOM + _RANDOM.replace(b"\0", b"\1")
+    for start in range(0, len(noise), NOISE_BYTES):
+        probe.write(noise[start : start + NOISE_BYTES], keep=True)
+        probe.receive(NOISE_EVERY_S)
     probe.next_session()
     probe.hello()
     probe.beat("8 kB of noise and HELLO")

@@ -9,39 +9,33 @@ PULSE_RANGE_US = (400, 2600)
 class Servo:
     """A row of the table; raises ValueError, in one line, if it is not valid."""
 
-    def __init__(
-        self,
-        name: str,
-        pin: int,
-        low: int,
-        high: int,
-        neutral: int,
-        direction: int,
-        trim: int,
-        speed: int,
-        shortest: int,
-        longest: int,
-    ) -> None:
+    name: str
+    """Name of the joint."""
+    pin: int
+    """Pin of the board, or channel of the driver."""
+    low: int
+    """Smallest angle of the joint [°]."""
+    high: int
+    """Largest angle of the joint [°]."""
+    neutral: int
+    """Position of the servo when the joint is at 0 [°]."""
+    direction: int
+    """1, or -1 if the servo turns the other way."""
+    trim: int
+    """Correction of that position [°]."""
+    speed: int
+    """Top speed [°/s]."""
+    shortest: int
+    """Pulse width at the servo's 0° [µs]."""
+    longest: int
+    """Pulse width at its 180° [µs]."""
+
+    def __init__(self, name: str, *numbers: int) -> None:
+        if len(numbers) != 9:
+            raise ValueError(f"a row of SERVOS has 10 values, not {1 + len(numbers)}: {name}")
         self.name = name
-        """Name of the joint."""
-        self.pin = pin
-        """Pin of the board, or channel of the driver."""
-        self.low = low
-        """Smallest angle of the joint [°]."""
-        self.high = high
-        """Largest angle of the joint [°]."""
-        self.neutral = neutral
-        """Position of the servo when the joint is at 0 [°]."""
-        self.direction = direction
-        """1, or -1 if the servo turns the other way."""
-        self.trim = trim
-        """Correction of that position [°]."""
-        self.speed = speed
-        """Top speed [°/s]."""
-        self.shortest = shortest
-        """Pulse width at the servo's 0° [µs]."""
-        self.longest = longest
-        """Pulse width at its 180° [µs]."""
+        self.pin, self.low, self.high, self.neutral = numbers[:4]
+        self.direction, self.trim, self.speed, self.shortest, self.longest = numbers[4:]
         self._check()
 
     def _check(self) -> None:
@@ -75,11 +69,7 @@ class ServoTable:
 
     def __init__(self, module: object) -> None:
         self.name: str = getattr(module, "NAME")
-        self.servos: list[Servo] = []
-        for row in getattr(module, "SERVOS"):
-            if len(row) != 10:
-                raise ValueError(f"a row of SERVOS has 10 values, not {len(row)}: {row}")
-            self.servos.append(Servo(*row))
+        self.servos = [Servo(*row) for row in getattr(module, "SERVOS")]
         self.port: tuple[int, int, int] | None = getattr(module, "PORT")
         self.driver: tuple[int, int, int, int] | None = getattr(module, "DRIVER")
         self.buzzer: int | None = getattr(module, "BUZZER")
