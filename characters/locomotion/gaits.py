@@ -12,6 +12,7 @@ from characters.locomotion.foot_trajectories import FootTrajectories
 from characters.locomotion.stride_blending import StrideBlend
 from characters.motion.blend import Blend, BlendSpace1D, TimeScaled
 from characters.motion.clip import Clip
+from characters.motion.motion import Motion
 from characters.motion.phase import PhasedMotion, StaticPose, phased
 from characters.skeleton.pose import Pose, Skeleton
 from characters.smoothing import interpolate
@@ -73,17 +74,18 @@ class Gaits:
     """
 
     def __init__(self, clips: Mapping[str, Clip], skeleton: Skeleton, standing: Pose) -> None:
-        self._walk = _tree(clips, WALK_CLIPS, skeleton)
-        self._run = _tree(clips, RUN_CLIPS, skeleton) if "Run" in clips else self._walk
+        walks = _phased_clips(clips, WALK_CLIPS, skeleton)
+        runs = _phased_clips(clips, RUN_CLIPS, skeleton) if "Run" in clips else {}
+        self._walk = BlendSpace1D(tuple(walks), tuple(walks.values()))
+        self._run = BlendSpace1D(tuple(runs), tuple(runs.values())) if runs else self._walk
         self.legs = find_legs(skeleton)
         """The legs that keep feet from sliding, or None if the skeleton has no suitable legs."""
         self._still = StaticPose(standing, self._walk.at(0.0).duration)
         self._trajectories: FootTrajectories | None = None
         if self.legs is not None:
-            motions = [*self._walk.motions, *(() if self._run is self._walk else self._run.motions)]
-            both = [motion for motion in motions if isinstance(motion, PhasedMotion)]
-            self._trajectories = FootTrajectories.of(both, skeleton, self.legs, standing)
-            self._numbers = {id(motion): number for number, motion in enumerate(both)}
+            motions = [*walks.values(), *runs.values()]
+            self._trajectories = FootTrajectories.of(motions, skeleton, self.legs, standing)
+            self._numbers = {id(motion): number for number, motion in enumerate(motions)}
         straight = [tree.at(0.0) for tree in (self._walk, self._run)]
         self._lengths = [motion.between(0.0, 1.0).length for motion in straight]
         self._cadences = [1.0 / motion.duration for motion in straight]
@@ -140,24 +142,21 @@ class Gaits:
         share = rate**_STEP_LENGTH_EXPONENT if rate < 1.0 and running == 0.0 else 1.0
         return rate / share, share
 
-    def _active(self, running: float, degrees: float) -> list[tuple[PhasedMotion, float]]:
+    def _active(self, running: float, degrees: float) -> list[tuple[Motion, float]]:
         """Return the clips of positive weight and their weights."""
-        active: list[tuple[PhasedMotion, float]] = []
+        active: list[tuple[Motion, float]] = []
         for tree, part in ((self._walk, 1.0 - running), (self._run, running)):
             weights = tree.weights(degrees) if part > 0.0 else ()
             active += [
                 (motion, part * weight)
                 for motion, weight in zip(tree.motions, weights, strict=False)
-                if weight > 0.0 and isinstance(motion, PhasedMotion)
+                if weight > 0.0
             ]
         return active
 
 
-def _tree(
+def _phased_clips(
     clips: Mapping[str, Clip], names: Mapping[float, str], skeleton: Skeleton
-) -> BlendSpace1D:
-    """Return the tree of the available clips."""
-    available = {knot: name for knot, name in names.items() if name in clips}
-    return BlendSpace1D(
-        tuple(available), tuple(phased(clips[name], skeleton) for name in available.values())
-    )
+) -> dict[float, PhasedMotion]:
+    """Return the available clips of a tree by Angular [degrees]."""
+    return {knot: phased(clips[name], skeleton) for knot, name in names.items() if name in clips}

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from characters.errors import CharacterError
 from characters.motion.motion import Motion, RootDelta, mean_delta
-from characters.motion.phase import Cyclic, PhaseDriven, UnphasedMotion, as_cyclic, cycle_length
+from characters.motion.phase import Cyclic, PhaseDriven, as_cyclic, cycle_length
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
@@ -95,16 +95,20 @@ class Blend(PhaseDriven):
     @property
     def duration(self) -> float:
         """Length of one cycle [s]."""
-        if self._unphased:
+        durations = [(weight, member.duration) for member, weight in self._active]
+        if all(math.isinf(duration) for _, duration in durations):
             return math.inf
-        cycles = [(w, m.duration) for m, w in self._active if 0.0 < m.duration < math.inf]
+        cycles = [(w, duration) for w, duration in durations if 0.0 < duration < math.inf]
         if not cycles:
             return 0.0
         return sum(w for w, _ in cycles) / sum(w / duration for w, duration in cycles)
 
     def at(self, phase: float) -> Pose:
         """Return the mixed pose at a phase, or at a time [s] if no member has an end."""
-        poses = [member.at(phase * self._rate(member)) for member, _ in self._active]
+        poses = [
+            member.at(phase * rate)
+            for (member, _), rate in zip(self._active, self._rates, strict=True)
+        ]
         weights = [weight for _, weight in self._active]
         mixed = mix(poses, weights)
         if self.legs is None or len(poses) == 1:
@@ -119,19 +123,17 @@ class Blend(PhaseDriven):
         for part in range(parts):
             low, high = (start + (end - start) * p / parts for p in (part, part + 1))
             deltas = [
-                member.between(low * self._rate(member), high * self._rate(member))
-                for member, _ in self._active
+                member.between(low * rate, high * rate)
+                for (member, _), rate in zip(self._active, self._rates, strict=True)
             ]
             total = total.then(mean_delta(deltas, weights))
         return total
 
-    def _rate(self, member: Cyclic) -> float:
-        """Return the change of a member's own phase per unit of phase."""
-        return cycle_length(self.duration) if isinstance(member, UnphasedMotion) else 1.0
-
     @cached_property
-    def _unphased(self) -> bool:
-        return all(isinstance(member, UnphasedMotion) for member, _ in self._active)
+    def _rates(self) -> list[float]:
+        """Change of each member's phase per unit of phase; without an end, its phase is time."""
+        cycle = cycle_length(self.duration)
+        return [cycle if math.isinf(member.duration) else 1.0 for member, _ in self._active]
 
     @cached_property
     def _active(self) -> list[tuple[Cyclic, float]]:
