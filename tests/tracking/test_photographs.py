@@ -85,7 +85,7 @@ def test_no_bundled_cube_is_seen_in_any_photograph(path: Path) -> None:
             assert not any(state.visible for state in states)
 
 
-def test_markers_on_a_real_sheet_lie_alike() -> None:
+def test_markers_on_a_real_sheet_have_the_same_pose() -> None:
     """Six markers, each a cube of its own, know nothing of each other; the paper is flat.
 
     Its lens is not that of the file to a percent, so sizes and tilts need not fit each other; but

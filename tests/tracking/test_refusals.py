@@ -198,7 +198,7 @@ def test_one_wrong_bit_on_one_face_leaves_the_cube_where_it_is() -> None:
 
 @pytest.mark.parametrize("lean", [0.0, -0.3, -0.8, -1.1])
 @pytest.mark.parametrize("second", ["right", "back"])
-def test_two_markers_in_one_plane_are_no_cube(lean: float, second: str) -> None:
+def test_two_markers_in_one_plane_are_not_a_cube(lean: float, second: str) -> None:
     pose = turned(lean, 0.2, 0.1, (0, 0, 0.4))
     picture = add_sheet(empty(), pose, {(0, 0): BLACK["front"], (1, 0): BLACK[second]})
     assert not any(state.visible for state in watched(exposed(picture)))
@@ -211,7 +211,7 @@ NET |= {(1, 2): "bottom"}
 @pytest.mark.parametrize(
     "view", [(0, 0, 0), (-0.5, 0, 0), (-0.9, 0.2, 0.4), (0.3, 0.6, 0.8), (-1.1, 0, 0)]
 )
-def test_the_sheet_before_it_is_folded_is_no_whole_cube(view: tuple[float, float, float]) -> None:
+def test_the_flat_sheet_is_not_a_cube(view: tuple[float, float, float]) -> None:
     """At most one of its six markers is taken for the only visible one of a cube."""
     pose = turned(*view, (0, 0, 0.5))
     sheet = {place: BLACK[name] for place, name in NET.items()}
@@ -237,7 +237,7 @@ def on_a_screen(picture: Picture, pose: Array, width: float = 0.14) -> Picture:
 
 @pytest.mark.parametrize("turn", [(0, 0.5, 0), (0.5, 0.3, 0.2), (0, -0.8, 0)])
 @pytest.mark.parametrize("view", VIEWS)
-def test_a_cube_on_a_screen_seen_from_aside_is_refused(
+def test_a_cube_on_a_screen_seen_from_the_side_is_refused(
     view: tuple[float, float, float], turn: tuple[float, float, float]
 ) -> None:
     shown = exposed(add_cube(empty(), tilted(*view, at=(0, 0, 0.25))))

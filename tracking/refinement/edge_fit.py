@@ -70,21 +70,9 @@ def fit_edges(
 ) -> EdgeFit | None:
     """Measure all profiles, and solve for the pose delta and the blooms with robust weights.
 
-    Parameters
-    ----------
-    patch
-        The image.
-    profiles
-        Where to measure.
-    shifts
-        How far along their normals the edges have moved since the profiles were placed, (N,) [px];
-        None for not at all.
-    blur
-        Width of an edge at rest [px].
-
-    Returns
-    -------
-    None where too few edges are visible.
+    `shifts` is how far along their normals the edges have moved since the profiles were placed,
+    (N,) [px], or None. `blur` is the width of an edge at rest [px]. None where too few edges are
+    visible.
     """
     measured = measure_profiles(patch, profiles, 0.0 if shifts is None else shifts, blur)
     good = _is_printed(profiles.face, measured)
@@ -134,14 +122,8 @@ def covariance(fit: EdgeFit, lines: Indices, pixels: Array) -> Array:
     their phase on the pixel grid. So the sandwich estimator for clusters is used (Liang and Zeger,
     1986): normal⁻¹ (Σ s sᵀ) normal⁻¹, with s the sum of the scores of the points of one line.
 
-    Parameters
-    ----------
-    fit
-        The last step.
-    lines
-        Number of the line of each profile of the fit, ascending, (M,).
-    pixels
-        Position of each, (M, 2) [px].
+    `lines` is the index of the line of each profile of the fit, ascending, (M,), and `pixels` its
+    position, (M, 2) [px].
     """
     inverse = np.asarray(np.linalg.inv(fit.normal), np.float64)
     starts = np.flatnonzero(np.diff(lines, prepend=-1))

@@ -79,23 +79,10 @@ class MotionBlurAligner:
     def align(
         self, patch: Patch, start: Array, blur_motion: Array, prior: Array, coarse: bool = True
     ) -> Alignment | None:
-        """Align from a pose that is right to about a cell in the image.
+        """Align from a pose, (4, 4), that is right to about a cell in the image.
 
-        Parameters
-        ----------
-        patch
-            The image around the cube.
-        start
-            Pose of the cube in the middle of the exposure, (4, 4).
-        blur_motion
-            Expected pose delta during the exposure, (6,).
-        prior
-            Its standard deviations, (6,).
-        coarse
-            Whether to search with image and rendering much blurred first.
-
-        Returns
-        -------
+        `blur_motion` is the expected pose delta during the exposure, (6,), with the standard
+        deviations `prior`, (6,). `coarse` searches with image and rendering much blurred first.
         None where the cube is not in view.
         """
         pose, motion = start, blur_motion
@@ -227,14 +214,8 @@ class MotionBlurAligner:
         A point X = (x Z, y Z, Z) of the face moves by Ẋ; the point under the ray then moves by
         u̇ = −B⁻¹ ẋ on the face, with ẋ = (Ẋ − x Ż)/Z and B the Jacobian of x by u.
 
-        Parameters
-        ----------
-        axes
-            Axes of the faces, (faces, 3, 2).
-        arm
-            Vectors from the cube's origin to the samples, (faces, 3, N) [m].
-        rays
-            The samples' rays, (faces, 3, N).
+        `axes` are those of the faces, (faces, 3, 2), `arm` the vectors from the cube's origin to
+        the samples, (faces, 3, N) [m], and `rays` the samples' rays, (faces, 3, N).
         """
         x, y = rays[:, 0], rays[:, 1]
         a, b = (axes[:, 0, n, None] - x * axes[:, 2, n, None] for n in (0, 1))

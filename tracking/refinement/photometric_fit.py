@@ -67,14 +67,10 @@ class PhotometricFit:
     """Standard deviation of the residual."""
 
     def step(self, expected: Array, prior: Array) -> Array:
-        """Solve for the step of pose and blur motion, (12,), with a prior of the motion.
+        """Solve for the step of pose and blur motion, (12,).
 
-        Parameters
-        ----------
-        expected
-            Step of the motion that the prior expects, (6,).
-        prior
-            Standard deviations of the motion, (6,).
+        The prior of the motion expects the step `expected`, (6,), with the standard deviations
+        `prior`, (6,).
         """
         normal, right_side = self._with(prior), self.right_side.copy()
         right_side[6:12] += expected / prior**2
@@ -98,14 +94,8 @@ class PhotometricFit:
     def motion_information(self, motion: Array, step: Array, prior: Array) -> tuple[Array, Array]:
         """Information times blur motion, (6,), and information, (6, 6), from the image alone.
 
-        Parameters
-        ----------
-        motion
-            The blur motion before the step, (6,).
-        step
-            The result of `step`, (12,).
-        prior
-            Its prior, which does not count here, (6,).
+        `motion` is the blur motion before the step, (6,), and `step` the result of `step` with this
+        prior, which does not count here.
         """
         inverse = np.linalg.inv(self._with(prior))
         marginal = np.linalg.inv(inverse[6:12, 6:12]) - np.diag(1 / prior**2)
@@ -189,15 +179,7 @@ class Alignment:
 
 
 def fit_tones(samples: PhotometricSamples, faces: int) -> PhotometricFit:
-    """Fit the tones of all faces with robust weights.
-
-    Parameters
-    ----------
-    samples
-        What is rendered and seen.
-    faces
-        Number of faces in view: each has its own light.
-    """
+    """Fit the tones of all faces in view with robust weights: each face has its own light."""
     face, rendered, seen = samples.face, samples.rendered, samples.seen
     light = (face[:, None] == np.arange(faces)).astype(np.float64)
     mixed = (rendered * (1 - rendered))[:, None]

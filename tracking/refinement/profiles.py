@@ -93,26 +93,11 @@ def place_profiles(
     blur_motion: Array | None,
     wide: bool,
 ) -> EdgeProfiles | None:
-    """Place profiles across the edges of a cube at a pose.
+    """Place profiles across the edges in view of a cube at a pose, as far as a patch shows them.
 
-    Parameters
-    ----------
-    model
-        The edges of the faces in view.
-    projection
-        The camera.
-    camera_from_cube
-        The pose, (4, 4).
-    patch
-        The image; edges outside it are left out.
-    blur_motion
-        Pose delta of the cube during the exposure, (6,), or None for a cube at rest.
-    wide
-        Whether to use the outlines only, with profiles of a whole cell.
-
-    Returns
-    -------
-    None where the cube is too close to the camera.
+    `blur_motion` is the pose delta of the cube during the exposure, (6,), or None for a cube at
+    rest. `wide` uses the outlines only, with profiles of a whole cell. None where the cube is too
+    close to the camera.
     """
     rotation = camera_from_cube[:3, :3]
     rotated = model.points @ rotation.T
@@ -152,20 +137,8 @@ def measure_profiles(
     The model a + b·S(u/σ) − b·δ·s(u/σ)/σ, with S a smooth step and s its derivative, is linear in
     a, b and b·δ. Its parts are orthogonal after centring, so no iteration and no matrix is needed.
 
-    Parameters
-    ----------
-    patch
-        The image.
-    profiles
-        Where to measure.
-    shifts
-        Shifts of the profiles along their normals, (N,) [px].
-    blur
-        Width of an edge at rest [px].
-
-    Returns
-    -------
-    The measurements, with offsets from the shifted positions.
+    `shifts` are those of the profiles along their normals, (N,) [px]; the measured offsets are from
+    the shifted positions. `blur` is the width of an edge at rest [px].
     """
     reach, normals = profiles.reach.astype(np.float32), profiles.normals.astype(np.float32)
     places = profiles.pixels + np.reshape(shifts, (-1, 1)) * profiles.normals

@@ -77,7 +77,7 @@ def test_a_recording_without_a_frame_leaves_no_file(tmp_path):
     assert not path.exists()
 
 
-def test_a_folder_that_is_not_there_is_one_line(tmp_path):
+def test_a_missing_folder_is_refused_in_one_line(tmp_path):
     with pytest.raises(AppError, match="cannot record"):
         Recorder(tmp_path / "no" / "x.mcap", {})
 

@@ -96,7 +96,7 @@ def test_a_scaled_cube_keeps_its_proportions(edge):
 
 
 @pytest.mark.parametrize("edge", [0.0, -0.06, 0.009, 1.1, math.nan, math.inf])
-def test_a_cube_is_not_scaled_to_what_nobody_can_hold(edge):
+def test_a_cube_is_not_scaled_to_an_impossible_size(edge):
     with pytest.raises(TrackingError, match="10 to 1000 mm"):
         CubeModel.load("companion").scaled(edge)
 
@@ -144,13 +144,13 @@ def test_a_bad_file_is_refused_in_one_line_that_says_what_to_change(tmp_path, ol
     assert words in refusal(tmp_path, GOOD.replace(old, new))
 
 
-def test_faces_that_are_no_tables_are_refused(tmp_path):
+def test_faces_that_are_not_tables_are_refused(tmp_path):
     head = GOOD.split("[[face]]", maxsplit=1)[0]
     assert "at least one" in refusal(tmp_path, head + "face = 3")
     assert "must be a table" in refusal(tmp_path, head + "face = [1, 2]")
 
 
-def test_a_file_that_is_not_there_and_a_name_that_is_not_known():
+def test_a_missing_file_and_an_unknown_name_are_refused():
     with pytest.raises(TrackingError, match="no cube is called 'sphere': choose companion"):
         CubeModel.load("sphere")
     with pytest.raises(TrackingError, match="cannot read the cube"):
@@ -181,7 +181,7 @@ documents = st.dictionaries(
 
 
 @given(documents)
-def test_whatever_stands_in_a_file_it_is_a_printable_cube_or_a_tracking_error(document):
+def test_any_file_gives_a_printable_cube_or_a_tracking_error(document):
     with contextlib.suppress(TrackingError):
         assert_printable(CubeModel.from_document(document, "cube.toml", "any"))
 

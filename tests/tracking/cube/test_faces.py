@@ -36,7 +36,7 @@ def test_a_pose_mirrored_twice_is_the_same_pose(
 
 
 @given(turns, places, st.integers(0, 5))
-def test_a_mirrored_face_keeps_its_centre_and_leans_as_far_to_the_other_side(
+def test_a_mirrored_face_keeps_its_centre_and_tilts_as_far_to_the_other_side(
     turn: tuple[float, ...], place: tuple[float, ...], face: int
 ) -> None:
     pose = posed(turn, place)
@@ -88,7 +88,7 @@ def test_a_face_that_was_folded_askew_still_has_a_right_angled_frame() -> None:
         assert np.allclose(frame[:3, 3], face.corners.mean(axis=0))
 
 
-def test_only_faces_that_look_at_the_camera_face_it() -> None:
+def test_only_faces_towards_the_camera_face_it() -> None:
     """Half a metre away and square on: one face, and its neighbours seen from behind."""
     pose = se3.pose(np.diag([1.0, -1.0, -1.0]), np.array([0, 0, 0.5]))
     assert [FACES.names[number] for number in FACES.facing(pose, 0.1)] == ["front"]

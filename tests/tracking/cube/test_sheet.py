@@ -167,7 +167,7 @@ def test_the_same_cube_gives_the_same_bytes(tmp_path):
         (float("nan"), "a4", "10 to 1000 mm"),
     ],
 )
-def test_what_does_not_fit_is_refused_and_leaves_nothing_behind(tmp_path, edge_mm, paper, words):
+def test_a_cube_that_does_not_fit_is_refused_and_leaves_no_file(tmp_path, edge_mm, paper, words):
     with pytest.raises(TrackingError, match=words) as caught:
         write_sheet(
             CubeModel.load("companion"), tmp_path / "cube.pdf", edge_mm=edge_mm, paper=paper
@@ -188,7 +188,7 @@ def test_a_marker_larger_than_its_face_is_refused(tmp_path):
         write_sheet(cube, tmp_path / "cube.pdf")
 
 
-def test_a_folder_that_is_not_there_is_one_line(tmp_path):
+def test_a_missing_folder_is_refused_in_one_line(tmp_path):
     with pytest.raises(TrackingError, match="cannot write the sheet"):
         write_sheet(CubeModel.load("companion"), tmp_path / "no" / "cube.pdf")
 

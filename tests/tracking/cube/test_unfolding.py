@@ -20,7 +20,7 @@ def carried(matrix, points):
 
 
 @pytest.mark.parametrize("name", bundled())
-def test_folding_the_net_in_numbers_puts_every_marker_where_the_model_has_it(name):
+def test_the_folded_net_has_every_marker_where_the_model_has_it(name):
     cube = CubeModel.load(name)
     net = Unfolding(cube.edge)
     assert {face.name for face in cube.faces} == set(FACE_AXES)
@@ -30,7 +30,7 @@ def test_folding_the_net_in_numbers_puts_every_marker_where_the_model_has_it(nam
         np.testing.assert_allclose(folded, face.corners, rtol=0, atol=1e-12)
 
 
-def test_unfolded_flat_the_faces_lie_where_the_paper_shows_them():
+def test_the_flat_net_has_the_faces_where_the_paper_shows_them():
     net = Unfolding(EDGE)
     for face in FACE_AXES:
         flat = net.cube_from_face(face, angle=0.0)

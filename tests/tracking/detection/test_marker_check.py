@@ -39,7 +39,7 @@ def seen(request: pytest.FixtureRequest) -> tuple[Picture, Array]:
     return photograph(scene((CUBE, VIEWS[request.param]))), VIEWS[request.param]
 
 
-def test_at_the_true_pose_the_cells_agree(seen: tuple[Picture, Array]) -> None:
+def test_the_cells_agree_at_the_true_pose(seen: tuple[Picture, Array]) -> None:
     picture, pose = seen
     reading = read(picture, pose)
     faces = square_enough(pose)
@@ -49,7 +49,7 @@ def test_at_the_true_pose_the_cells_agree(seen: tuple[Picture, Array]) -> None:
     assert reading.best == 1.0
 
 
-def test_so_they_do_in_another_drawing_with_a_lens() -> None:
+def test_the_cells_agree_through_a_distorting_lens_too() -> None:
     source = open_synthetic("static?frames=1")
     assert source.intrinsics is not None
     reader = CellReader(source.cube, Projection(source.intrinsics))
@@ -58,7 +58,7 @@ def test_so_they_do_in_another_drawing_with_a_lens() -> None:
         assert reading.agreement[name] >= 0.97
 
 
-def test_one_cell_beside_it_they_do_not(seen: tuple[Picture, Array]) -> None:
+def test_the_cells_disagree_one_cell_off(seen: tuple[Picture, Array]) -> None:
     picture, pose = seen
     shares = []
     for name in square_enough(pose):
@@ -90,7 +90,7 @@ def half_covered(picture: Picture, pose: Array, name: str, side: int, grey: int)
     return covered
 
 
-def test_a_marker_that_is_half_covered_is_not_called_read(seen: tuple[Picture, Array]) -> None:
+def test_a_half_covered_marker_is_not_read(seen: tuple[Picture, Array]) -> None:
     """Covered cells agree by chance: most of a marker is black, and a flat cover counts as that."""
     picture, pose = seen
     shares = []
@@ -113,12 +113,12 @@ def test_without_contrast_nothing_is_read(seen: tuple[Picture, Array]) -> None:
     assert read(black, pose).best == 0.0
 
 
-def test_a_negative_is_not_read(seen: tuple[Picture, Array]) -> None:
+def test_an_inverted_marker_is_not_read(seen: tuple[Picture, Array]) -> None:
     picture, pose = seen
     assert read(255 - picture, pose).best == 0.0
 
 
-def test_out_of_the_picture_and_behind_the_camera_there_is_no_face() -> None:
+def test_no_face_is_read_outside_the_image_or_behind_the_camera() -> None:
     picture = np.zeros((480, 640, 3), np.uint8)
     for place in ((3.0, 0, 0.4), (0, 0, -0.4)):
         reading = read(picture, held(at=place))
@@ -126,7 +126,7 @@ def test_out_of_the_picture_and_behind_the_camera_there_is_no_face() -> None:
         assert reading.read == ()
 
 
-def test_a_face_that_is_cut_off_is_read_by_what_is_left() -> None:
+def test_a_face_at_the_border_is_read_by_its_visible_part() -> None:
     for x, there in ((-0.19, True), (-0.205, False)):
         pose = held(0.2, 0.0, 0.0, at=(x, 0, 0.4))
         points = CUBE.face("front").corners @ pose[:3, :3].T + pose[:3, 3]

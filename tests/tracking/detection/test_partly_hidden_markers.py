@@ -140,7 +140,7 @@ def test_whole_markers_are_found_to_a_twentieth_of_a_cell(
         assert max(errors[name] for name in markers) < 0.05
 
 
-def test_a_corner_may_lie_outside_the_picture(
+def test_a_marker_with_a_corner_outside_the_image_is_found(
     scenes: list[tuple[Picture, dict[str, Array]]],
 ) -> None:
     tried = 0
@@ -158,7 +158,7 @@ def test_a_corner_may_lie_outside_the_picture(
     assert tried >= 4
 
 
-def test_a_region_gives_places_in_the_whole_picture(
+def test_corners_in_a_region_are_those_of_the_whole_image(
     scenes: list[tuple[Picture, dict[str, Array]]],
 ) -> None:
     image, markers = scenes[0]
@@ -169,7 +169,7 @@ def test_a_region_gives_places_in_the_whole_picture(
     assert {seen.face.name for seen in found if off(seen, markers) < 0.05} == set(markers)
 
 
-def test_markers_of_other_cubes_are_left_alone() -> None:
+def test_markers_of_other_cubes_are_not_found() -> None:
     own = {face.marker_id for face in CUBE.faces}
     for number in range(50):
         picture = np.full((160, 160), 210, np.uint8)
@@ -179,7 +179,7 @@ def test_markers_of_other_cubes_are_left_alone() -> None:
         assert found == ({number} & own)
 
 
-def test_pictures_without_a_marker_hold_none() -> None:
+def test_no_marker_is_found_in_an_image_without_markers() -> None:
     random = np.random.default_rng(0)
     noise = random.integers(0, 256, (300, 400)).astype(np.uint8)
     square = np.full((200, 200), 255, np.uint8)

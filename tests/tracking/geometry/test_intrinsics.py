@@ -54,7 +54,7 @@ def test_a_file_of_ros_is_read(tmp_path):
     np.testing.assert_array_equal(camera.distortion, [-0.361976, 0.11051, 1e-05, 0.000506, 0])
 
 
-def test_the_guess_sees_sixty_degrees_from_edge_to_edge():
+def test_the_guess_has_a_field_of_view_of_sixty_degrees():
     camera = Intrinsics.guess((1280, 720))
     left = np.degrees(np.arctan((-0.5 - camera.matrix[0, 2]) / camera.matrix[0, 0]))
     right = np.degrees(np.arctan((1279.5 - camera.matrix[0, 2]) / camera.matrix[0, 0]))

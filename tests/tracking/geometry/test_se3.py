@@ -46,7 +46,7 @@ def test_half_a_turn_has_an_axis(direction: Array) -> None:
 
 
 @given(directions, angles, directions, directions, angles)
-def test_motion_is_what_moved_applies(
+def test_delta_is_the_inverse_of_moved(
     first: Array, angle: float, shift: Array, second: Array, other: float
 ) -> None:
     start = se3.pose(se3.rotation(vector(first, angle)), shift)
@@ -64,7 +64,7 @@ def test_wrapping_keeps_the_direction(angle: float) -> None:
 
 
 @given(st.floats(-10, 10), st.lists(st.floats(-3.1, 3.1), min_size=1, max_size=50))
-def test_turns_add_up_whatever_the_way(start: float, steps: list[float]) -> None:
+def test_turns_add_up_along_any_path(start: float, steps: list[float]) -> None:
     counter = TurnCounter()
     counter.restart(wrap_angle(start))
     angle = start

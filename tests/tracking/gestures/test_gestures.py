@@ -100,7 +100,7 @@ def hand() -> Hand:
     return Hand()
 
 
-def test_the_first_rest_teaches_the_table_and_is_placed_once(hand: Hand) -> None:
+def test_the_first_rest_gives_the_table_and_is_placed_once(hand: Hand) -> None:
     controls = hand.hold(standing(), 1.0)
     assert controls.resting
     assert not controls.lifted
@@ -163,7 +163,7 @@ def test_turns_survive_a_short_hiding(hand: Hand) -> None:
     assert hand.play(poses).turns == pytest.approx(2)
 
 
-def test_a_lift_starts_the_turns_anew(hand: Hand) -> None:
+def test_a_lift_resets_the_turns(hand: Hand) -> None:
     hand.hold(standing(), 1)
     hand.play(turning(0, 400, 3))
     hand.play(between(standing(turn_deg=40), standing(x=0.1), 1, lift=0.08))

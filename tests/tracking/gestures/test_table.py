@@ -106,7 +106,7 @@ def test_more_places_make_the_table_better() -> None:
     assert desk.error(last)[1] < np.deg2rad(0.6)
 
 
-def test_a_trembling_hand_teaches_only_until_the_table_does() -> None:
+def test_a_trembling_rest_counts_only_until_a_firm_one() -> None:
     desk = Desk(camera(35))
     assert desk.rest(at(y=0.1), 0.9, tremor=8e-4)[-1].top_face is None
     in_air = desk.rest(at(y=0.1), 0.5, tremor=8e-4)[-1]
@@ -116,7 +116,7 @@ def test_a_trembling_hand_teaches_only_until_the_table_does() -> None:
     assert on_table.resting
 
 
-def test_a_steady_hand_does_not_teach_for_good() -> None:
+def test_a_steady_hand_in_the_air_is_forgotten() -> None:
     desk = Desk(camera(35))
     assert desk.error(desk.rest(at(y=0.1), 1.0)[-1])[0] == pytest.approx(0.1, abs=1e-3)
     assert desk.error(desk.rest(at(), 2.5)[-1])[0] < 5e-4
@@ -153,7 +153,7 @@ def test_a_moved_camera_is_noticed(moved: Callable[[], Array]) -> None:
     assert last.resting
 
 
-def test_a_side_that_looks_away_is_never_up() -> None:
+def test_a_side_that_faces_away_is_never_up() -> None:
     away = se3.pose(np.diag([1.0, -1.0, -1.0]), np.array([0, 0, 0.5]))
     rest = rest_of(away, EDGE)
     assert rest is None or rest.up[2] < 0.2

@@ -41,7 +41,7 @@ def test_edges_lie_between_black_and_white() -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_a_rough_start_ends_at_the_truth(
+def test_a_rough_start_converges_to_the_truth(
     scene: tuple[EdgeRefiner, Patch, Array], seed: int
 ) -> None:
     refiner, patch, truth = scene
@@ -54,7 +54,7 @@ def test_a_rough_start_ends_at_the_truth(
     assert result.support > 0.8
 
 
-def test_a_wide_search_comes_from_a_whole_cell_away(
+def test_a_wide_search_converges_from_a_whole_cell_away(
     scene: tuple[EdgeRefiner, Patch, Array],
 ) -> None:
     refiner, patch, truth = scene
@@ -75,7 +75,7 @@ def test_other_markers_are_not_taken_for_the_cube(
     assert result is None or result.inner_support < 0.6
 
 
-def test_a_picture_without_edges_refines_nothing(
+def test_an_image_without_edges_gives_no_pose(
     scene: tuple[EdgeRefiner, Patch, Array],
 ) -> None:
     refiner, patch, truth = scene

@@ -44,7 +44,7 @@ def blurred(picture: Image, sigma: float) -> Image:
 
 @pytest.mark.parametrize("seen", [SQUARE, LEANING, ROLLED, SHEARED])
 @pytest.mark.parametrize("sigma", [1.5, 3.0])
-def test_a_blurred_drawing_seen_by_the_camera_is_what_the_camera_blurs(
+def test_a_blurred_texture_looks_like_an_image_that_the_camera_blurs(
     seen: Array, sigma: float
 ) -> None:
     for face in range(len(CUBE.faces)):
@@ -73,14 +73,14 @@ def variances(texels_to_pixels: Array, sigma: float) -> Array:
     return np.array(spread)
 
 
-def test_a_face_that_leans_by_sixty_degrees_is_blurred_twice_as_much_along_its_lean() -> None:
+def test_a_face_tilted_by_sixty_degrees_is_blurred_twice_as_much_along_its_tilt() -> None:
     across, along = np.sqrt(variances(LEANING, 1.5))
     assert across == pytest.approx(1.0, rel=0.03)
     assert along == pytest.approx(2.0, rel=0.03)
     assert np.sqrt(variances(SQUARE, 1.5)) == pytest.approx([1.0, 1.0], rel=0.03)
 
 
-def test_the_widest_blur_is_told_in_metres() -> None:
+def test_the_widest_blur_is_in_metres() -> None:
     texel = CUBE.edge / SIDE
     assert drawn(SQUARE, 1.5)[1] == pytest.approx(texel)
     assert drawn(LEANING, 1.5)[1] == pytest.approx(2 * texel)
@@ -88,7 +88,7 @@ def test_the_widest_blur_is_told_in_metres() -> None:
 
 
 @pytest.mark.parametrize("seen", [SQUARE, ROLLED])
-def test_the_slopes_are_those_of_the_drawing(seen: Array) -> None:
+def test_the_derivatives_are_those_of_the_texture(seen: Array) -> None:
     layers = drawn(seen, 2.5)[0].astype(np.float64)
     right = (layers[:, 2:, 0] - layers[:, :-2, 0]) / 2
     down = (layers[2:, :, 0] - layers[:-2, :, 0]) / 2
@@ -104,7 +104,7 @@ def test_blur_keeps_the_light_and_the_paper_white() -> None:
     assert -0.01 < soft.min() < soft.max() < 1.01
 
 
-def test_faces_lie_below_each_other_each_blurred_by_its_own_lean() -> None:
+def test_faces_are_stacked_each_blurred_by_its_own_tilt() -> None:
     seen = np.stack([SQUARE, LEANING, ROLLED])
     layers, widest = DRAWING.blurred(np.array([4, 0, 2]), seen, 1.5)
     assert layers.shape == (3 * SIDE, SIDE, 3)

@@ -1,4 +1,4 @@
-"""A blurred picture tells where the cube was in mid-exposure, and how it moved."""
+"""A blurred image gives the pose in the middle of the exposure, and the motion."""
 
 from dataclasses import dataclass
 
@@ -26,8 +26,8 @@ CUBE, OTHER = CubeModel.load("locomotion"), CubeModel.load("companion")
 ALIGNER = MotionBlurAligner(CUBE, Projection(CAMERA))
 LIGHT = ToneCurve().table
 VIEWS = [held(), held(0.8, -0.5, 0.4), held(0.4, 2.2, -0.3), held(-0.6, 0.7, 1.0)]
-WAYS = (0.0, 1.0, 2.0)
-FAR = 1.0 / 60
+DIRECTIONS = (0.0, 1.0, 2.0)
+DISTANCE = 1.0 / 60
 """At 1 m/s with the shutter open for a sixtieth of a second [m]."""
 
 
@@ -37,13 +37,13 @@ class Shot:
 
     patch: Patch
     pose: Array
-    sweep: Array
+    motion: Array
 
     def align(
         self, start: Array, aligner: MotionBlurAligner = ALIGNER, coarse: bool = True
     ) -> Alignment | None:
-        """Align with a past that expects a sweep 15 % too short, and knows that it may be off."""
-        expected = 0.85 * self.sweep
+        """Align with a past that expects a motion 15 % too short, and knows that it may be off."""
+        expected = 0.85 * self.motion
         sizes = [np.linalg.norm(expected[:3]), np.linalg.norm(expected[3:])]
         prior = np.hypot(0.35 * np.repeat(sizes, 3), np.repeat([0.004, 0.06], 3))
         return aligner.align(self.patch, start, expected, prior, coarse)
@@ -54,8 +54,10 @@ class Shot:
         return alignment
 
 
-def shot(pose: Array, sweep: Array, cube: CubeModel = CUBE) -> Shot:
-    return Shot(Patch.crop(photograph(scene((cube, pose), sweep=sweep)), None, LIGHT), pose, sweep)
+def shot(pose: Array, motion: Array, cube: CubeModel = CUBE) -> Shot:
+    return Shot(
+        Patch.crop(photograph(scene((cube, pose), sweep=motion)), None, LIGHT), pose, motion
+    )
 
 
 def beside(pose: Array, random: np.random.Generator) -> Array:
@@ -71,8 +73,8 @@ def shots() -> list[Shot]:
     random = np.random.default_rng(1)
     shots = []
     for view in VIEWS:
-        for way in WAYS:
-            across = FAR * np.array([np.cos(way), np.sin(way), 0.0])
+        for way in DIRECTIONS:
+            across = DISTANCE * np.array([np.cos(way), np.sin(way), 0.0])
             shots.append(shot(view, np.append(across, random.normal(0, 0.02, 3))))
     return shots
 
@@ -83,7 +85,7 @@ def alignments(shots: list[Shot]) -> list[tuple[Shot, Alignment | None]]:
     return [(each, each.align(beside(each.pose, random))) for each in shots for _ in range(4)]
 
 
-def test_the_pose_in_mid_exposure_is_found_from_three_millimetres_and_two_degrees_off(
+def test_the_pose_is_found_from_three_millimetres_and_two_degrees_off(
     alignments: list[tuple[Shot, Alignment | None]],
 ) -> None:
     found = [(each, alignment) for each, alignment in alignments if alignment]
@@ -94,20 +96,22 @@ def test_the_pose_in_mid_exposure_is_found_from_three_millimetres_and_two_degree
     assert min(alignment.min_correlation for _, alignment in found) > 0.95
 
 
-def test_no_such_start_is_given_up(alignments: list[tuple[Shot, Alignment | None]]) -> None:
+def test_alignment_succeeds_from_every_such_start(
+    alignments: list[tuple[Shot, Alignment | None]],
+) -> None:
     assert all(alignment for _, alignment in alignments)
 
 
-def test_the_way_across_the_picture_is_measured(
+def test_the_motion_across_the_image_is_measured(
     alignments: list[tuple[Shot, Alignment | None]],
 ) -> None:
     for each, alignment in alignments:
         if alignment:
-            error = np.linalg.norm((alignment.blur_motion - each.sweep)[:2])
-            assert error < 0.15 * np.linalg.norm(each.sweep[:2])
+            error = np.linalg.norm((alignment.blur_motion - each.motion)[:2])
+            assert error < 0.15 * np.linalg.norm(each.motion[:2])
 
 
-def test_the_picture_alone_tells_the_way_across_it_without_what_was_expected(
+def test_the_motion_information_does_not_depend_on_the_prior(
     alignments: list[tuple[Shot, Alignment | None]],
 ) -> None:
     for each, alignment in alignments:
@@ -115,7 +119,7 @@ def test_the_picture_alone_tells_the_way_across_it_without_what_was_expected(
             pull, information = alignment.motion_information
             assert np.allclose(information, information.T, rtol=1e-6)
             told = np.linalg.solve(information, pull)
-            assert np.linalg.norm((told - each.sweep)[:2]) < 0.15 * FAR
+            assert np.linalg.norm((told - each.motion)[:2]) < 0.15 * DISTANCE
 
 
 def test_the_covariance_is_symmetric_and_positive(
@@ -140,7 +144,7 @@ def test_a_good_start_needs_no_coarse_search(shots: list[Shot]) -> None:
         assert off(alignment.camera_from_cube, each.pose)[0] < 0.5
 
 
-def test_a_cube_at_rest_sweeps_no_more_than_a_lens_blurs() -> None:
+def test_the_blur_motion_of_a_cube_at_rest_is_below_the_blur_of_a_lens() -> None:
     still = shot(VIEWS[0], np.zeros(6))
     alignment = still.found(se3.moved(VIEWS[0], np.array([4e-4, -3e-4, 5e-4, 4e-3, 0, 3e-3])))
     assert off(alignment.camera_from_cube, VIEWS[0])[0] < 0.2
@@ -148,19 +152,19 @@ def test_a_cube_at_rest_sweeps_no_more_than_a_lens_blurs() -> None:
     assert pixels < MIN_BLUR_PX
 
 
-def test_a_finger_on_a_face_does_not_pull_the_cube(shots: list[Shot]) -> None:
+def test_a_finger_on_a_face_does_not_shift_the_pose(shots: list[Shot]) -> None:
     each = shots[0]
     grey = each.patch.grey.copy()
     grey[236:262, 282:306] = 90
-    covered = Shot(Patch(grey, 0, 0), each.pose, each.sweep)
+    covered = Shot(Patch(grey, 0, 0), each.pose, each.motion)
     alignment = covered.found(se3.moved(each.pose, np.array([1e-3, 0, 0, 0, 0.01, 0])))
     assert off(alignment.camera_from_cube, each.pose)[0] < 1.0
-    assert np.linalg.norm((alignment.blur_motion - each.sweep)[:2]) < 0.15 * FAR
+    assert np.linalg.norm((alignment.blur_motion - each.motion)[:2]) < 0.15 * DISTANCE
 
 
-def test_another_cube_is_not_like_it(shots: list[Shot]) -> None:
+def test_another_cube_does_not_correlate(shots: list[Shot]) -> None:
     for each in shots[::3]:
-        other = shot(each.pose, each.sweep, OTHER)
+        other = shot(each.pose, each.motion, OTHER)
         itself = MotionBlurAligner(OTHER, Projection(CAMERA))
         right = other.align(each.pose, itself, coarse=False)
         assert right is not None
@@ -170,15 +174,15 @@ def test_another_cube_is_not_like_it(shots: list[Shot]) -> None:
             assert wrong is None or wrong.min_correlation < MIN_CORRELATION
 
 
-def test_an_even_picture_is_not_like_it(shots: list[Shot]) -> None:
+def test_an_even_image_does_not_correlate(shots: list[Shot]) -> None:
     random = np.random.default_rng(4)
     grey = (120 + random.normal(0, 2, (480, 640))).astype(np.float32)
-    nothing = Shot(Patch(grey, 0, 0), shots[0].pose, shots[0].sweep).align(shots[0].pose)
+    nothing = Shot(Patch(grey, 0, 0), shots[0].pose, shots[0].motion).align(shots[0].pose)
     assert nothing is None or nothing.min_correlation < 0.5
 
 
 @pytest.mark.parametrize("place", [(2.0, 0, 0.4), (0, 0, -0.4), (0, 0, 0.02)])
-def test_out_of_the_picture_and_behind_the_camera_there_is_no_cube(
+def test_no_cube_is_found_outside_the_image_or_behind_the_camera(
     shots: list[Shot], place: tuple[float, float, float]
 ) -> None:
     assert shots[0].align(held(at=place)) is None

@@ -156,7 +156,7 @@ def test_a_cube_with_a_covered_corner_on_every_marker_is_found(
     assert degrees < 0.2
 
 
-def test_covered_markers_are_not_sought_where_that_is_not_asked_for(
+def test_partly_hidden_markers_are_only_detected_on_request(
     static: tuple[Frame, Array, CubeModel, Intrinsics],
 ) -> None:
     frame, truth, cube, camera = static

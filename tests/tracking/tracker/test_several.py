@@ -46,7 +46,7 @@ def test_two_cubes_are_followed_in_the_order_given(cubes: tuple[CubeModel, ...])
             assert degrees < 0.2
 
 
-def test_each_is_where_a_tracker_of_its_own_finds_it() -> None:
+def test_each_state_is_that_of_a_tracker_of_its_own() -> None:
     """To the last bit: nothing that is shared may change a pose, out of sight or in."""
     cubes = (LEFT, RIGHT)
     together, alone = CubesTracker(cubes, CAMERA), [CubeTracker(cube, CAMERA) for cube in cubes]
@@ -77,7 +77,7 @@ def test_a_lost_one_is_found_again_while_the_other_is_followed() -> None:
     assert off(right.camera_from_cube, pose_of(RIGHT, 12))[0] < 0.5
 
 
-def test_neither_is_taken_for_the_other() -> None:
+def test_no_cube_is_taken_for_the_other() -> None:
     for shown, there in ((LEFT, 0), (RIGHT, 1)):
         states = CubesTracker((LEFT, RIGHT), CAMERA).update(frame(0, shown))
         assert [state.visible for state in states] == [number == there for number in (0, 1)]
