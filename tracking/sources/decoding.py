@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from av.codec.context import Flags
 
-from tracking.sources.device import Image
+from tracking.sources.device import Image, decode_jpeg
 
 
 @dataclass(frozen=True)
@@ -27,17 +27,6 @@ class EncodedImage:
 
 class ImageDecodeError(Exception):
     """The data is not an image; the message says what is wrong."""
-
-
-def decode_jpeg(data: bytes) -> Image | None:
-    """Decode a JPEG to BGR; None if the data is not a complete JPEG.
-
-    A truncated image is refused before libjpeg, which would fill it with grey and print a warning.
-    """
-    if not data.startswith(b"\xff\xd8") or b"\xff\xd9" not in data:
-        return None
-    image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
-    return None if image is None else np.asarray(image, np.uint8)
 
 
 def bgr_of(frame: av.VideoFrame) -> Image:

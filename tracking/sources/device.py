@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, Protocol, TypeAlias
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -129,3 +130,14 @@ class Device(Protocol):
     def close(self) -> None:
         """Release the device."""
         ...
+
+
+def decode_jpeg(data: bytes) -> Image | None:
+    """Decode a JPEG to BGR; None if the data is not a complete JPEG.
+
+    A truncated image is refused before libjpeg, which would fill it with grey and print a warning.
+    """
+    if not data.startswith(b"\xff\xd8") or b"\xff\xd9" not in data:
+        return None
+    image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    return None if image is None else np.asarray(image, np.uint8)

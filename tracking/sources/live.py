@@ -16,8 +16,14 @@ from tracking.sources.capture import (
     CaptureThread,
 )
 from tracking.sources.capture_timing import RECENT_IMAGES
-from tracking.sources.decoding import decode_jpeg
-from tracking.sources.device import CapturedImage, Clock, Device, Health, SourceState
+from tracking.sources.device import (
+    CapturedImage,
+    Clock,
+    Device,
+    Health,
+    SourceState,
+    decode_jpeg,
+)
 
 MAX_ITERATION_GAP_S = 30.0
 """How long a plain iteration waits for a lost device."""

@@ -1,5 +1,7 @@
 """Rays of a camera at sub-pixel positions, for ray casting."""
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -66,14 +68,17 @@ class CameraRays:
         high = np.ceil(pixels.max(axis=0) + margin) + 1
         low = np.clip(low, 0, self.size).astype(int)
         high = np.clip(high, 0, self.size).astype(int)
-        return PixelRegion(int(low[0]), int(low[1]), int(high[0] - low[0]), int(high[1] - low[1]))
+        return PixelRegion(*low.tolist(), *np.maximum(high - low, 0).tolist())
 
 
+@dataclass(frozen=True)
 class PixelRegion:
     """A rectangle of pixels."""
 
-    def __init__(self, x: int, y: int, width: int, height: int) -> None:
-        self.x, self.y, self.width, self.height = x, y, max(0, width), max(0, height)
+    x: int
+    y: int
+    width: int
+    height: int
 
     @property
     def right(self) -> int:

@@ -90,7 +90,7 @@ class PaperCube:
         Parameters
         ----------
         region
-            PixelRegion of the image.
+            Region of the image.
         poses
             `camera_from_cube` at times spread evenly over the exposure.
         to_light
