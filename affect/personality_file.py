@@ -1,4 +1,4 @@
-"""Personalities as TOML files: every key is known, every number in its range."""
+"""Reads the TOML files of personalities; refuses unknown keys and numbers out of range."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,29 +9,29 @@ from affect.errors import AffectError
 from affect.settings import Table, parse, read
 from affect.traits import AffectImpulse, Ocean
 
-FOLDER = Path(__file__).parent / "personalities"
-"""Where the bundled ones lie."""
+BUNDLED_FOLDER = Path(__file__).parent / "personalities"
+"""Folder of the bundled personalities."""
 
-_PLANE = ("valence", "arousal")
+_AXES = ("valence", "arousal")
 _TEXTS = ("name", "description", "labels", "arousal")
 _NUMBERS = {"hysteresis": "hysteresis", "dwell_s": "dwell"}
 _TABLES = ("temperament", "half_life_s", "gains", "events", "movement", "ocean")
 
 
 def bundled() -> tuple[str, ...]:
-    """Names of the personalities that come with the program, the thesis' first."""
-    names = sorted(path.stem for path in FOLDER.glob("*.toml"))
+    """Return the names of the bundled personalities, that of the thesis first."""
+    names = sorted(path.stem for path in BUNDLED_FOLDER.glob("*.toml"))
     return tuple(sorted(names, key=lambda name: name != "thesis"))
 
 
 def bundled_text(name: str) -> str:
-    """Return the file of a bundled personality; raises AffectError where there is none."""
+    """Return the file of a bundled personality; raise AffectError if there is none."""
     if name not in bundled():
         raise AffectError(
             f"there is no personality {name!r}: choose one of {', '.join(bundled())}, "
             "or give a .toml file"
         )
-    return (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
+    return (BUNDLED_FOLDER / f"{name}.toml").read_text(encoding="utf-8")
 
 
 def read_fields(path: Path) -> dict[str, Any]:
@@ -45,26 +45,26 @@ def parse_fields(text: str, source: str) -> dict[str, Any]:
 
 
 def _fields(document: Mapping[str, Any], source: str) -> dict[str, Any]:
-    said = Table(document, source)
-    said.only(*_TEXTS, *_NUMBERS, *_TABLES)
-    found: dict[str, Any] = {"name": Path(source).stem}
-    found |= {key: said.text(key) for key in _TEXTS if key in said}
-    found |= {field: said.number(key) for key, field in _NUMBERS.items() if key in said}
-    if "ocean" in said:
-        traits = said.table("ocean", *vars(Ocean()))
-        found["ocean"] = Ocean(**{key: traits.number(key, 0.0, 1.0) for key in traits.names()})
-        found["temperament"] = found["ocean"].temperament
-    if "temperament" in said:
-        home = said.table("temperament", *_PLANE)
-        valence, arousal = (home.number(axis, -1.0, 1.0, 0.0) for axis in _PLANE)
-        found["temperament"] = Emotion(valence, arousal)
-    half_lives = said.table("half_life_s", *_PLANE)
-    found |= {f"{axis}_half_life": half_lives.number(axis) for axis in half_lives.names()}
+    table = Table(document, source)
+    table.only(*_TEXTS, *_NUMBERS, *_TABLES)
+    fields: dict[str, Any] = {"name": Path(source).stem}
+    fields |= {key: table.text(key) for key in _TEXTS if key in table}
+    fields |= {field: table.number(key) for key, field in _NUMBERS.items() if key in table}
+    if "ocean" in table:
+        traits = table.table("ocean", *vars(Ocean()))
+        fields["ocean"] = Ocean(**{key: traits.number(key, 0.0, 1.0) for key in traits.names()})
+        fields["temperament"] = fields["ocean"].temperament
+    if "temperament" in table:
+        home = table.table("temperament", *_AXES)
+        valence, arousal = (home.number(axis, -1.0, 1.0, 0.0) for axis in _AXES)
+        fields["temperament"] = Emotion(valence, arousal)
+    half_lives = table.table("half_life_s", *_AXES)
+    fields |= {f"{axis}_half_life": half_lives.number(axis) for axis in half_lives.names()}
     for key in ("gains", "events"):
-        found[key] = {name: _impulse(push) for name, push in said.tables(key, *_PLANE).items()}
-    found["movement"] = said.table("movement", "arousal").number("arousal", default=0.0)
-    return found
+        fields[key] = {name: _impulse(push) for name, push in table.tables(key, *_AXES).items()}
+    fields["movement"] = table.table("movement", "arousal").number("arousal", default=0.0)
+    return fields
 
 
-def _impulse(said: Table) -> AffectImpulse:
-    return AffectImpulse(**{axis: said.number(axis) for axis in said.names()})
+def _impulse(table: Table) -> AffectImpulse:
+    return AffectImpulse(**{axis: table.number(axis) for axis in table.names()})

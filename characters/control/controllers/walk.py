@@ -151,8 +151,9 @@ class WalkController:
         state, spent = self._machine.state, self._time - self._machine.entered
         if state in self._actions:
             return self._contacts[state].at(self._actions[state].phase(spent))
-        if state == "idle" or not isinstance(self._motion, StrideBlend):
+        if state == "idle":
             return [True] * self._feet
+        assert isinstance(self._motion, StrideBlend)  # as always for a character with legs
         return [part > 0.5 for part in self._motion.contacts(self._strides.phase(spent))]
 
     def _course(self, command: CharacterCommand) -> SteeringOutput:
