@@ -106,7 +106,7 @@ class Window:
             return Inputs()
         if step.picture is not None:
             self._last = overlay(step.picture, step, robot, self._virtual_robot)
-            self._paint(self._last)
+            self.paint(self._last)
         self._shown_at.append(time.perf_counter())
         self._draw_panel(step, robot)
         glfw.swap_buffers(self._window)
@@ -119,7 +119,7 @@ class Window:
         if self.closed:
             return
         if notice is not None and self._last is not None:
-            self._paint(interrupted(self._last, notice))
+            self.paint(interrupted(self._last, notice))
             glfw.swap_buffers(self._window)
         glfw.poll_events()
 
@@ -138,7 +138,8 @@ class Window:
         glfw.destroy_window(self._window)
         glfw.terminate()
 
-    def _paint(self, picture: NDArray[np.uint8]) -> None:
+    def paint(self, picture: NDArray[np.uint8]) -> None:
+        """Draw a picture into the back buffer, as large as it fits."""
         self._texture.write(np.ascontiguousarray(picture))
         screen = self.context.detect_framebuffer(0)
         screen.use()
@@ -155,7 +156,7 @@ class Window:
 
     def _start_panel(self) -> None:
         # Our callbacks first: imgui chains to those that are already set.
-        glfw.set_key_callback(self._window, self._key)
+        glfw.set_key_callback(self._window, self._on_key)
         imgui.create_context()
         imgui.get_io().set_ini_filename("")
         address = ctypes.cast(self._window, ctypes.c_void_p).value
@@ -191,11 +192,14 @@ class Window:
         imgui.text(HELP)
         imgui.end()
 
-    def _key(self, window: Any, key: int, _scan: int, action: int, _mods: int) -> None:
-        if action != glfw.PRESS:
-            return
+    def _on_key(self, _window: Any, key: int, _scan: int, action: int, _mods: int) -> None:
+        if action == glfw.PRESS:
+            self.press(key)
+
+    def press(self, key: int) -> None:
+        """Handle a key press; `key` is one of GLFW's constants."""
         if key in (glfw.KEY_ESCAPE, glfw.KEY_Q):
-            glfw.set_window_should_close(window, True)
+            glfw.set_window_should_close(self._window, True)
         elif key == glfw.KEY_H:
             self._panel = not self._panel
         elif key == glfw.KEY_C:

@@ -30,6 +30,6 @@ class CoachWindow(Window):
         """Show the picture with the advice over it."""
         if self.closed:
             return
-        self._paint(self._coach.draw(picture, timestamp, advice))
+        self.paint(self._coach.draw(picture, timestamp, advice))
         glfw.swap_buffers(self._window)
         glfw.poll_events()

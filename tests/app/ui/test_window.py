@@ -1,6 +1,6 @@
-"""The window, opened for real on a screen that nobody sees.
+"""The window, opened on a virtual display.
 
-Each test runs in a process of its own: a graphics driver keeps its first display for life.
+Each test runs in its own process: a graphics driver keeps the first display that it opens.
 """
 
 import os
@@ -43,7 +43,7 @@ def on_screen(tmp_path):
     server.stdout.close()
 
 
-def test_the_window_shows_the_picture_and_hears_the_keys(on_screen, short_session):
+def test_the_window_shows_the_picture_and_handles_keys(on_screen, short_session):
     done = on_screen(SCRIPT, short_session)
     assert done.returncode == 0, done.stderr
 

@@ -1,4 +1,4 @@
-"""Opens the window and plays with it: `test_window` runs this in a process of its own."""
+"""Opens the window and presses its keys; `test_window` runs this in its own process."""
 
 import sys
 
@@ -26,7 +26,7 @@ def main(session: str) -> None:
         assert (step.picture != before).any(), "no cards lie over the picture"
 
         # What was swapped away is undefined, so paint once more before looking.
-        window._paint(step.picture)
+        window.paint(step.picture)
         screen = window.context.detect_framebuffer(0)
         shown = np.frombuffer(screen.read(), np.uint8).reshape(*screen.size[::-1], 3)
         assert screen.size == source.size
@@ -39,11 +39,11 @@ def main(session: str) -> None:
         assert shown.mean() < 0.7 * step.picture.mean(), "the last picture is not dimmed"
         assert shown.max() > 200, "no card lies over it"
         for key in (glfw.KEY_H, glfw.KEY_C):
-            window._key(window._window, key, 0, glfw.PRESS, 0)
+            window.press(key)
         assert window.show(step, robot).clear
         assert not window.show(step, robot).clear
         quits = [window.closed]
-        window._key(window._window, glfw.KEY_ESCAPE, 0, glfw.PRESS, 0)
+        window.press(glfw.KEY_ESCAPE)
         quits.append(window.closed)
         assert quits == [False, True]
         playground.close()

@@ -1,4 +1,4 @@
-"""Portraits: whoever it is and whatever it does, all of it is in the picture and fills it."""
+"""Portraits: any character in any pose is completely in the picture and fills it."""
 
 from dataclasses import replace
 
@@ -15,10 +15,10 @@ SIZE = (90, 120)
 
 
 @pytest.fixture
-def studio(ctx):
-    studio = PortraitRenderer(ctx, SIZE)
-    yield studio
-    studio.release()
+def renderer(ctx):
+    renderer = PortraitRenderer(ctx, SIZE)
+    yield renderer
+    renderer.release()
 
 
 @pytest.fixture(scope="module")
@@ -64,9 +64,7 @@ def holds_all_of_it(picture):
     height=st.integers(40, 400),
 )
 @example(points=[(0.0, 0.0, 0.0), (0.0, 0.0, 0.5)], elevation=0.0, width=40, height=40)
-def test_a_camera_sees_all_points_and_stands_no_further_off_than_needed(
-    points, elevation, width, height
-):
+def test_a_camera_sees_all_points_from_the_smallest_distance(points, elevation, width, height):
     framing = PortraitCamera.around(np.array(points), elevation, (width, height))
     pose = framing.camera_from_table
     assert np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3))
@@ -80,20 +78,20 @@ def test_a_camera_sees_all_points_and_stands_no_further_off_than_needed(
 
 
 @pytest.mark.parametrize("stretch", [(1.0, 1.0, 1.0), (1.0, 1.0, 6.0), (0.2, 5.0, 0.2)])
-def test_a_turntable_shows_all_of_any_character(studio, knight, stretch):
+def test_a_turntable_shows_all_of_any_character(renderer, knight, stretch):
     mesh = knight.meshes[0]
     bind = mesh.inverse_bind.copy()
     bind[:, :3] *= np.array(stretch)[None, :, None]
     stretched = replace(knight, meshes=(replace(mesh, inverse_bind=bind),))
-    table = studio.turntable(stretched, count=4)
+    table = renderer.turntable(stretched, count=4)
     assert table.shape == (SIZE[1], 4 * SIZE[0], 3)
     assert max(holds_all_of_it(cell) for cell in cells(table))
     sides = table[:, [0, SIZE[0] - 1, SIZE[0]]].reshape(-1, 3)
     assert np.abs(sides.astype(int) - PAPER_BGR).max() <= 2
 
 
-def test_a_strip_has_one_camera_and_room_for_the_whole_clip(studio, knight):
-    frames = cells(studio.strip(knight, "bow", 4, azimuth=1.5))
+def test_a_strip_has_one_camera_that_sees_the_whole_clip(renderer, knight):
+    frames = cells(renderer.strip(knight, "bow", 4, azimuth=1.5))
     feet = [np.flatnonzero(drawn(frame).any(axis=1))[-1] for frame in frames]
     tops = [np.flatnonzero(drawn(frame).any(axis=1))[0] for frame in frames]
     assert np.ptp(feet) <= 1
@@ -101,28 +99,28 @@ def test_a_strip_has_one_camera_and_room_for_the_whole_clip(studio, knight):
     assert all((np.flatnonzero(drawn(f).any(axis=0))[[0, -1]] % 89).all() for f in frames)
 
 
-def test_who_goes_far_is_followed(studio, knight):
-    strip = studio.strip(knight, knight.clips["slide"], 4)
+def test_a_character_that_moves_far_is_followed(renderer, knight):
+    strip = renderer.strip(knight, knight.clips["slide"], 4)
     assert all(holds_all_of_it(frame) for frame in cells(strip))
 
 
-def test_a_picture_may_leave_room_for_a_clip(studio, knight):
-    tight = studio.portrait(knight, azimuth=1.5)
-    roomy = studio.portrait(knight, azimuth=1.5, extent=knight.clips["slide"])
+def test_a_portrait_can_leave_room_for_a_clip(renderer, knight):
+    tight = renderer.portrait(knight, azimuth=1.5)
+    roomy = renderer.portrait(knight, azimuth=1.5, extent=knight.clips["slide"])
     assert drawn(roomy).sum() < 0.5 * drawn(tight).sum()
 
 
-def test_a_face_fills_the_picture(studio, knight):
-    face = studio.portrait(knight, focus="face")
-    assert np.array_equal(face, studio.portrait(knight, focus="head"))
+def test_a_face_fills_the_picture(renderer, knight):
+    face = renderer.portrait(knight, focus="face")
+    assert np.array_equal(face, renderer.portrait(knight, focus="head"))
     assert drawn(face)[20:80].mean() > 0.4
     with pytest.raises(CharacterError, match="leftHand"):
-        studio.portrait(knight, focus="leftHand")
+        renderer.portrait(knight, focus="leftHand")
 
 
-def test_a_character_is_seen_from_its_left(studio, knight):
-    """Who bows forward, bows to the left of the picture of one who stands on its left."""
+def test_a_character_is_seen_from_its_left(renderer, knight):
+    """A bow forward is a bow to the left in a picture taken from the character's left."""
     bowed = knight.clips["bow"].sample(1.0)
-    columns = np.flatnonzero(drawn(studio.portrait(knight, bowed, azimuth=np.pi / 2)).any(axis=0))
-    upright = studio.portrait(knight, bowed, azimuth=np.pi / 2)[: SIZE[1] // 2]
+    columns = np.flatnonzero(drawn(renderer.portrait(knight, bowed, azimuth=np.pi / 2)).any(axis=0))
+    upright = renderer.portrait(knight, bowed, azimuth=np.pi / 2)[: SIZE[1] // 2]
     assert np.flatnonzero(drawn(upright).any(axis=0)).mean() < columns.mean()

@@ -1,4 +1,4 @@
-"""Points fall where OpenCV says, to a small part of a pixel."""
+"""Points are drawn where OpenCV projects them, to a fraction of a pixel."""
 
 from dataclasses import replace
 
@@ -26,7 +26,7 @@ MATRIX = np.array([[310.0, 0.7, 158.2], [0.0, 305.0, 92.4], [0.0, 0.0, 1.0]])
     corner=st.tuples(st.integers(-50, 200), st.integers(-50, 200)),
     size=st.tuples(st.integers(1, 400), st.integers(1, 400)),
 )
-def test_clip_space_is_the_pinhole_with_centres_at_whole_numbers(point, corner, size):
+def test_clip_space_matches_the_pinhole_with_integer_pixel_centres(point, corner, size):
     part = Rectangle(*corner, *size)
     clip = clip_from_camera(MATRIX, part) @ [*point, 1.0]
     window = (clip[:2] / clip[3] + 1.0) / 2.0 * np.array(size)
@@ -35,7 +35,7 @@ def test_clip_space_is_the_pinhole_with_centres_at_whole_numbers(point, corner, 
 
 
 @pytest.mark.parametrize("at", [(0.0, 0.0), (-0.1, 0.04), (0.11, -0.05)])
-def test_a_drawn_square_lies_where_opencv_projects_it(ctx, view, pawn, at):
+def test_a_square_is_drawn_where_opencv_projects_it(ctx, view, pawn, at):
     """The centre of mass of a small white square, coverage by coverage, is where OpenCV puts it."""
     square = np.array([[0, 0.5, 0], [2, 2.1, 0], [0.4, 4.5, 0], [-1.6, 2.9, 0]], np.float32)
     mesh = replace(
@@ -68,7 +68,7 @@ def test_a_drawn_square_lies_where_opencv_projects_it(ctx, view, pawn, at):
     assert drawn == pytest.approx(centre, abs=0.05)
 
 
-def test_a_point_behind_the_camera_asks_for_the_whole_picture():
+def test_a_point_behind_the_camera_needs_the_whole_picture():
     points = np.array([[0, 0, 1.0], [0, 0, -1.0]])
     assert bounding_rectangle(points, MATRIX, np.eye(4), (320, 180)) == Rectangle(0, 0, 320, 180)
     assert bounding_rectangle(points[1:], MATRIX, np.eye(4), (320, 180)) is None
@@ -84,7 +84,7 @@ def test_a_point_behind_the_camera_asks_for_the_whole_picture():
         max_size=12,
     )
 )  # fmt: skip
-def test_merged_parts_hold_all_that_they_were_made_of(parts):
+def test_merged_rectangles_contain_the_originals(parts):
     fewer = merge_rectangles(parts)
     assert len(fewer) <= len(parts)
     for part in parts:
@@ -92,7 +92,7 @@ def test_merged_parts_hold_all_that_they_were_made_of(parts):
 
 
 @pytest.mark.parametrize("scale", [1e-7, 1e-4, 1.0, 1e5])
-def test_what_is_small_is_not_flat(scale):
+def test_a_small_scale_is_not_singular(scale):
     """A body of 1700 units, as one in millimetres is, comes to the table at a ten-thousandth."""
     assert is_invertible(np.diag([scale, scale, scale, 1.0]))
     assert not is_invertible(np.diag([scale, 0.0, scale, 1.0]))

@@ -1,4 +1,4 @@
-"""The picture as a whole: what is drawn, what is not, and what never breaks it."""
+"""Whole pictures: what is drawn, what is not drawn, and invalid input."""
 
 import gc
 from dataclasses import replace
@@ -21,34 +21,34 @@ LOOP = FloorPath(
 )
 
 
-def looks_like(name, picture, regenerate, far=24, share=0.004, mean=0.6):
-    """Compare with a golden picture: another driver may differ a little, at edges more."""
+def assert_golden(name, picture, regenerate, max_difference=24, max_share=0.004, max_mean=0.6):
+    """Compare with a golden picture: other drivers may differ a little, and more at edges."""
     path = GOLDEN / f"{name}.png"
     if regenerate:
         cv2.imwrite(str(path), picture, [cv2.IMWRITE_PNG_COMPRESSION, 9])
     golden = cv2.imread(str(path))
     assert golden is not None, f"no {path.name}: run CUBELING_GOLDEN=write pytest {__file__}"
     off = np.abs(golden.astype(int) - picture.astype(int)).max(axis=2)
-    assert off.mean() <= mean
-    assert (off > far).mean() <= share
+    assert off.mean() <= max_mean
+    assert (off > max_difference).mean() <= max_share
 
 
-def test_a_pawn_stands_on_the_table_as_in_the_golden_picture(stage, view, pawn, regenerate):
-    looks_like("pawn", stage.draw(view, [pawn.posed(bend=-0.5)]), regenerate)
+def test_a_pawn_on_the_table_matches_the_golden_picture(stage, view, pawn, regenerate):
+    assert_golden("pawn", stage.draw(view, [pawn.posed(bend=-0.5)]), regenerate)
 
 
-def test_cube_and_path_and_two_pawns_as_in_the_golden_picture(stage, view, pawn, cube, regenerate):
+def test_cube_path_and_two_pawns_match_the_golden_picture(stage, view, pawn, cube, regenerate):
     actors = [pawn.posed(bend=0.4, at=(-0.02, 0.0)), pawn.posed(at=(0.08, -0.02), height=0.09)]
     paper = np.where(cube_mask(view, cube, shrink=0)[..., None], 228, view.image).astype(np.uint8)
     picture = stage.draw(replace(view, image=paper, occluders=(cube,)), actors, [LOOP])
-    looks_like("scene", picture, regenerate)
+    assert_golden("scene", picture, regenerate)
 
 
-def test_without_actors_the_frame_passes_untouched(stage, view):
+def test_without_characters_the_frame_is_unchanged(stage, view):
     assert np.array_equal(stage.draw(view, []), view.image)
 
 
-def test_copies_of_one_character_are_each_in_their_own_pose(ctx, view, pawn):
+def test_copies_of_one_character_keep_their_own_poses(ctx, view, pawn):
     places = [(x, z) for z in (-0.06, 0.0, 0.06) for x in (-0.09, -0.03, 0.03, 0.09)]
     together = [pawn.posed(bend=5 * x, at=(x, z), height=0.05) for x, z in places]
     each = [replace(actor, character=replace(pawn)) for actor in together]
@@ -61,7 +61,7 @@ def test_copies_of_one_character_are_each_in_their_own_pose(ctx, view, pawn):
     assert np.array_equal(pictures[0], pictures[1])
 
 
-def test_only_what_is_near_the_actor_changes(stage, view, pawn):
+def test_only_the_area_around_the_character_changes(stage, view, pawn):
     changed = (stage.draw(view, [pawn.posed()]) != view.image).any(axis=2)
     rows, columns = np.nonzero(changed)
     assert changed.sum() > 1000
@@ -70,7 +70,7 @@ def test_only_what_is_near_the_actor_changes(stage, view, pawn):
     assert columns.max() < 260
 
 
-def test_the_cube_hides_pawn_and_shadow_and_marks(stage, view, pawn, cube):
+def test_the_cube_hides_pawn_shadow_and_path(stage, view, pawn, cube):
     actor = pawn.posed(at=(-0.05, 0.0))
     free = stage.draw(view, [actor], [LOOP]).astype(int)
     hidden = stage.draw(replace(view, occluders=(cube,)), [actor], [LOOP]).astype(int)
@@ -79,7 +79,7 @@ def test_the_cube_hides_pawn_and_shadow_and_marks(stage, view, pawn, cube):
     assert np.array_equal(hidden[inside], view.image[inside])
 
 
-def test_a_pawn_before_the_cube_is_not_hidden(stage, view, pawn, cube):
+def test_a_pawn_in_front_of_the_cube_is_not_hidden(stage, view, pawn, cube):
     actor = pawn.posed(at=(-0.055, 0.14))
     free = stage.draw(view, [actor]).astype(int)
     hidden = stage.draw(replace(view, occluders=(cube,)), [actor]).astype(int)
@@ -101,7 +101,7 @@ def test_the_shadow_is_darkest_at_the_foot_and_falls_to_the_right(stage, view, p
     assert at(0.12, 0.05) == pytest.approx(1.0, abs=0.01)
 
 
-def test_two_draws_of_the_same_give_the_same_bytes(ctx, view, pawn):
+def test_the_same_scenes_give_the_same_bytes(ctx, view, pawn):
     pictures = []
     for _ in range(2):
         stage = Stage(ctx, (320, 180))
@@ -110,7 +110,7 @@ def test_two_draws_of_the_same_give_the_same_bytes(ctx, view, pawn):
     assert np.array_equal(pictures[0], pictures[1])
 
 
-def test_a_window_shows_what_is_drawn_off_screen(ctx, view, pawn, cube):
+def test_a_window_shows_the_same_picture(ctx, view, pawn, cube):
     view = replace(view, occluders=(cube,), distortion=np.array([0.08, -0.05, 0, 0, 0]))
     actors, floor = [pawn.posed(bend=0.3, at=(-0.04, 0.0))], [LOOP]
     one, other = Stage(ctx, (320, 180)), Stage(ctx, (320, 180))
@@ -135,7 +135,7 @@ def test_a_character_that_is_not_visible_is_not_drawn(stage, view, pawn):
 
 @pytest.mark.parametrize("where", ["pose", "place", "table", "matrix", "box", "floor"])
 @pytest.mark.parametrize("value", [np.nan, np.inf, 0.0])
-def test_numbers_that_are_none_never_break_the_picture(stage, view, pawn, cube, where, value):
+def test_invalid_numbers_never_break_the_picture(stage, view, pawn, cube, where, value):
     actor, floor = pawn.posed(), LOOP
     broken = np.full((4, 4), value)
     if where == "pose":
@@ -157,7 +157,7 @@ def test_numbers_that_are_none_never_break_the_picture(stage, view, pawn, cube, 
         assert np.array_equal(picture, view.image)
 
 
-def test_a_character_around_the_camera_does_not_break_the_picture(stage, view, pawn):
+def test_a_character_around_the_camera_is_drawn_without_errors(stage, view, pawn):
     picture = stage.draw(view, [pawn.posed(at=(0.0, 0.36), height=0.7)])
     assert picture.shape == (180, 320, 3)
 
@@ -172,7 +172,7 @@ def test_without_a_frame_there_is_a_backdrop(stage, view, pawn):
     "image",
     [np.zeros((180, 320), np.uint8), np.zeros((180, 320, 3)), np.zeros((0, 9, 3), np.uint8)],
 )
-def test_an_image_that_is_none_is_refused_in_one_line(stage, view, image):
+def test_an_invalid_image_is_refused_in_one_line(stage, view, image):
     with pytest.raises(CharacterError, match="must be"):
         stage.draw(replace(view, image=image), [])
 
@@ -188,7 +188,7 @@ def test_a_size_that_cannot_be_drawn_is_refused(ctx, size):
         Stage(ctx, size)
 
 
-def test_five_hundred_draws_leave_nothing_behind(ctx, view, pawn, cube):
+def test_five_hundred_pictures_leak_no_memory(ctx, view, pawn, cube):
     stage = Stage(ctx, (320, 180))
     small = replace(view, occluders=(cube,))
 
@@ -246,6 +246,7 @@ def test_a_pass_of_ones_own_is_one_class_and_one_line(ctx, view, pawn):
 
 
 def test_a_second_release_does_nothing(ctx, view, pawn):
+    """Neither call raises, and the `ctx` fixture sees no GL error."""
     stage = Stage(ctx, (320, 180))
     stage.draw(view, [pawn.posed()], [LOOP])
     stage.release()
@@ -270,6 +271,6 @@ def cube_mask(view: View, cube, shrink):
 
 
 def resident() -> int:
-    """Return the memory of this process in bytes, or 0 where the system does not tell."""
+    """Return the resident memory of this process in bytes, or 0 if it is unknown."""
     statm = Path("/proc/self/statm")
     return int(statm.read_text().split()[1]) * 4096 if statm.exists() else 0

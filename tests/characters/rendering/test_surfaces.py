@@ -1,4 +1,4 @@
-"""Maps of a material: each says the same as a factor or a normal that is the same everywhere."""
+"""Textures of a material: a uniform one equals the corresponding factor or normal."""
 
 from dataclasses import replace
 
@@ -52,7 +52,7 @@ def shown(stage, view, pawn):
     return draw
 
 
-def test_a_plain_material_asks_for_nothing():
+def test_a_plain_material_has_no_features():
     assert surface_features(RED) == frozenset()
 
 
@@ -73,7 +73,7 @@ MAPPINGS = {
 
 @pytest.mark.parametrize("mapping", MAPPINGS)
 @pytest.mark.parametrize("lean", [(0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (-0.3, -0.4)])
-def test_a_normal_map_leans_normals_along_the_texture(shown, tile, mapping, lean):
+def test_a_normal_map_tilts_normals_along_the_texture(shown, tile, mapping, lean):
     uv_of_xz = np.array(MAPPINGS[mapping])
     right, up = lean
     rise = float(np.sqrt(1.0 - right**2 - up**2))
@@ -86,7 +86,7 @@ def test_a_normal_map_leans_normals_along_the_texture(shown, tile, mapping, lean
     assert np.abs(shown(mapped) - expected).max() <= 3
 
 
-def test_the_scale_of_a_normal_map_leans_normals_more(shown, tile):
+def test_the_scale_of_a_normal_map_tilts_normals_more(shown, tile):
     lean = replace(RED, bumps=even(178, 128, 238))
     steep = np.array([2.0 * 0.4, np.sqrt(1.0 - 0.4**2), 0.0])
     expected = shown(tile(RED, normal=steep / np.linalg.norm(steep)))
@@ -94,12 +94,12 @@ def test_the_scale_of_a_normal_map_leans_normals_more(shown, tile):
     assert np.array_equal(shown(tile(replace(lean, bump_scale=0.0))), shown(tile(RED)))
 
 
-def test_texture_coordinates_of_no_size_leave_the_normals(shown, tile):
+def test_degenerate_texture_coordinates_keep_the_normals(shown, tile):
     mapped = tile(replace(RED, bumps=even(200, 128, 238)), uv_of_xz=np.zeros((2, 2)))
     assert np.abs(shown(mapped) - shown(tile(RED))).max() <= 1
 
 
-def test_what_glows_is_seen_without_light(shown, tile, view):
+def test_emission_is_visible_without_light(shown, tile, view):
     black = replace(RED, base_color=(0.0, 0.0, 0.0, 1.0), roughness=1.0)
     dark, bright = shown(tile(black)), shown(tile(replace(black, glow=(0.0, 0.5, 0.0))))
     where = np.abs(dark - view.image).sum(axis=2) > 150
@@ -108,7 +108,7 @@ def test_what_glows_is_seen_without_light(shown, tile, view):
     assert np.abs((bright - dark)[where][:, [0, 2]]).max() <= 2
 
 
-def test_holes_show_what_is_behind(shown, tile, view):
+def test_holes_show_the_background(shown, tile, view):
     solid = tile(replace(RED, texture=even(255, 255, 255, 40)))
     holes = tile(replace(RED, texture=even(255, 255, 255, 40), cutoff=0.5))
     shut = tile(replace(RED, texture=even(255, 255, 255, 140), cutoff=0.5))
@@ -122,7 +122,7 @@ def test_holes_show_what_is_behind(shown, tile, view):
     assert np.array_equal(shown(tile(faint, alpha=0.6)), shown(solid))
 
 
-def test_materials_that_differ_in_a_map_are_drawn_apart(tile):
+def test_materials_with_different_textures_are_drawn_separately(tile):
     bumps = even(128, 128, 255)
     one, other = replace(RED, bumps=bumps), replace(RED, bumps=bumps.copy())
     meshes = [tile(material).meshes[0] for material in (one, other, one)]

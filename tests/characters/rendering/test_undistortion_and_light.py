@@ -1,4 +1,4 @@
-"""The camera's frame is straightened, fitted, and read for its light."""
+"""Camera frames are undistorted and fitted, and the light is estimated from them."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from characters.rendering.undistortion import Undistorter
 BENT = np.array([0.12, -0.2, 0.001, -0.002, 0.05])
 
 
-def test_a_straightened_frame_shows_points_where_the_pinhole_puts_them(view):
+def test_an_undistorted_frame_shows_points_at_their_pinhole_projection(view):
     point = np.array([0.09, -0.04, 0.6])
     bent, _ = cv2.projectPoints(point, np.zeros(3), np.zeros(3), view.matrix, BENT)
     yy, xx = np.mgrid[:180, :320]
@@ -27,14 +27,14 @@ def test_a_straightened_frame_shows_points_where_the_pinhole_puts_them(view):
     assert seen == pytest.approx((matrix @ point / point[2])[:2], abs=0.05)
 
 
-def test_a_frame_without_distortion_passes_untouched_and_is_not_shared(view):
+def test_a_frame_without_distortion_is_an_unchanged_copy(view):
     picture, matrix = Undistorter((320, 180)).undistort(view)
     assert np.array_equal(picture, view.image)
     assert not np.shares_memory(picture, view.image)
     assert np.array_equal(matrix, view.matrix)
 
 
-def test_a_frame_of_another_size_is_fitted_with_its_matrix(view):
+def test_a_frame_of_another_size_is_scaled_with_its_matrix(view):
     picture, matrix = Undistorter((640, 400)).undistort(view)
     assert picture.shape == (400, 640, 3)
     assert matrix[0, 0] == pytest.approx(2 * view.matrix[0, 0])
@@ -42,7 +42,7 @@ def test_a_frame_of_another_size_is_fitted_with_its_matrix(view):
     assert middle[:2] == pytest.approx([319.5, 199.5])
 
 
-def test_the_maps_are_made_once_a_camera(view, monkeypatch):
+def test_the_maps_are_computed_once_for_each_camera(view, monkeypatch):
     undistorter = Undistorter((320, 180))
     bent = replace(view, distortion=BENT)
     undistorter.undistort(bent)
@@ -52,7 +52,7 @@ def test_the_maps_are_made_once_a_camera(view, monkeypatch):
         undistorter.undistort(replace(view, distortion=2 * BENT))
 
 
-def test_a_darker_and_redder_room_gives_a_darker_and_redder_light(view):
+def test_a_darker_and_redder_picture_gives_a_darker_and_redder_light(view):
     bright = LightEstimator().update(np.full((180, 320, 3), 180, np.uint8))
     image = np.full((180, 320, 3), (40, 50, 70), np.uint8)
     dim = LightEstimator().update(image)
@@ -61,7 +61,7 @@ def test_a_darker_and_redder_room_gives_a_darker_and_redder_light(view):
     assert (LightEstimator().update(np.zeros_like(image)).white > 0.1).all()
 
 
-def test_the_light_follows_slowly(view):
+def test_the_light_changes_slowly(view):
     estimate = LightEstimator()
     first = estimate.update(np.full((180, 320, 3), 60, np.uint8)).white
     second = estimate.update(np.full((180, 320, 3), 240, np.uint8)).white
@@ -71,7 +71,7 @@ def test_the_light_follows_slowly(view):
     assert ((second - first) < 0.1 * (last - first)).all()
 
 
-def test_the_paper_of_a_cube_is_read_between_its_markers(view, cube):
+def test_the_paper_of_a_cube_is_measured_between_its_markers(view, cube):
     corners = np.array([(-1, 1, 1), (1, 1, 1), (1, -1, 1), (-1, -1, 1)]) / 2
     image = np.full_like(view.image, 255)
     for scale, value in ((1.0, 180), (0.66, 20)):

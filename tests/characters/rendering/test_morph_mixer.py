@@ -1,4 +1,4 @@
-"""Morphs on the card: where they move vertices, and that they leave no trace when they are off."""
+"""Morphs on the graphics card: they move vertices, and leave no trace at weight zero."""
 
 from dataclasses import replace
 
@@ -51,7 +51,7 @@ def corners(on_card, geometry):
 
 
 @pytest.mark.parametrize("weights", [(0, 0, 0), (1, 0, 0), (0.5, 9, 0.25), (-0.3, 0, 1.2)])
-def test_the_card_draws_the_shape_that_the_processor_measures(on_card, jester, weights):
+def test_the_card_morphs_and_skins_as_the_processor_does(on_card, jester, weights):
     joints = jester.posed(bend=0.6).posed.pose.globals(jester.skeleton)
     on_card.skin(joints, np.eye(4), np.array(weights, float))
     drawn = corners(on_card, CharacterVertices.of(jester.meshes))[:, :3]
@@ -60,7 +60,7 @@ def test_the_card_draws_the_shape_that_the_processor_measures(on_card, jester, w
     assert np.abs(drawn - np.concatenate(placed)).max() < 1e-5
 
 
-def test_normals_lean_with_the_surface(on_card, jester):
+def test_normals_are_morphed_too(on_card, jester):
     joints = np.tile(np.eye(4), (2, 1, 1))
     binds = jester.meshes[0].inverse_bind
     on_card.skin(np.linalg.inv(binds) @ joints, np.eye(4), np.array([0.8, 0.0, 0.0]))
@@ -72,7 +72,7 @@ def test_normals_lean_with_the_surface(on_card, jester):
     assert np.abs(drawn - leant[mesh.triangles.ravel()]).max() < 1e-4
 
 
-def test_a_morph_that_is_off_again_leaves_no_trace(stage, view, jester):
+def test_a_morph_that_returns_to_zero_leaves_no_trace(stage, view, jester):
     actor = jester.posed(bend=0.2)
 
     def shown(weights):
@@ -89,7 +89,7 @@ def test_a_morph_that_is_off_again_leaves_no_trace(stage, view, jester):
     assert np.array_equal(shown([np.nan, 0.0, 0.0]), view.image)
 
 
-def test_only_what_a_morph_moves_is_sent(jester):
+def test_only_the_moved_vertices_are_uploaded(jester):
     geometry = CharacterVertices.of(jester.meshes)
     morphing = MorphMixer(geometry.shape_records[: geometry.moved], geometry.morphs, NAMES)
     touched = sum(len(mesh.morphs[-1].vertices) for mesh in jester.meshes)
@@ -110,7 +110,7 @@ def test_weights_of_another_character_are_refused_in_one_line(stage, view, jeste
 
 @settings(max_examples=20, deadline=None)
 @given(grin=st.floats(0, 1), tall=st.floats(0, 1), bend=st.floats(-1.5, 1.5))
-def test_the_outline_encloses_the_shapes_too(jester, grin, tall, bend):
+def test_the_extreme_vertices_bound_morphed_shapes_too(jester, grin, tall, bend):
     geometry = CharacterVertices.of(jester.meshes)
     shape = geometry.positions.copy()
     morphing = MorphMixer(geometry.shape_records[: geometry.moved], geometry.morphs, NAMES)

@@ -1,4 +1,4 @@
-"""Outlines of real cubes, which hide what is on the table behind them."""
+"""Outlines of real cubes, which hide the table behind them."""
 
 import numpy as np
 from hypothesis import given
@@ -37,7 +37,7 @@ coordinate = st.floats(-1.5, 1.5)
 
 
 @given(st.tuples(coordinate, coordinate, coordinate), st.floats(0.2, 0.9))
-def test_an_outline_holds_the_cube_tightly(turn, depth):
+def test_an_outline_bounds_the_cube_tightly(turn, depth):
     box = box_at(turn, (0.02, -0.01, depth))
     outlines = CubeOutlines.of([box], MATRIX, PART)
     corners = inside(outlines, on_part(box, box.edge * UNIT_CUBE))
@@ -50,14 +50,14 @@ def test_an_outline_holds_the_cube_tightly(turn, depth):
     assert 4 <= len(sides) <= MAX_SIDES
 
 
-def test_a_cube_that_reaches_behind_the_lens_is_cut_off_there():
+def test_a_cube_behind_the_camera_is_clipped_at_the_near_plane():
     box = box_at((0.3, 0.5, 0.1), (0.0, 0.0, 0.03))
     outlines = CubeOutlines.of([box], MATRIX, PART)
     assert np.isfinite(outlines.sides).all()
     assert inside(outlines, np.array([[100.0, 60.0]]))[0] > 0.0
 
 
-def test_the_nearest_cubes_are_known_where_there_are_many():
+def test_the_nearest_of_many_cubes_are_kept():
     boxes = [box_at((0, 0, 0), (0, 0, 0.9 - 0.05 * number)) for number in range(MAX_CUBES + 2)]
     outlines = CubeOutlines.of(boxes, MATRIX, PART)
     assert outlines.count == MAX_CUBES
