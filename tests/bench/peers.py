@@ -1,10 +1,10 @@
-"""What a bad robot costs the picture: `python -m tests.bench.peers [--rounds N]`.
+"""Cost of a misbehaving robot for the picture: `python -m tests.bench.peers [--rounds N]`.
 
-The whole line with its picture, on recorded frames, in turns with no robot and with each of these
-behind a real pseudo-terminal, each in a process of its own as a real one is: one that behaves, one
-that falls silent, one that does not read either, one that babbles as fast as it is let, and one
-that floods us with valid frames of our session made to keep us busy. Exit code 1 if a frame
-of the worst takes more than 5 % longer than with none.
+It measures the whole pipeline with its picture, on recorded frames, alternately without a robot and
+with each of these behind a real pseudo-terminal, each in its own process: one that behaves, one
+that falls silent, one that does not read either, one that sends noise at full speed, and one that
+floods the host with valid frames of its session. The exit code is 1 if a frame with the worst takes
+more than 5 % longer than without a robot.
 """
 
 import argparse
@@ -35,17 +35,14 @@ from robot.simulators.cubeling.simulator import Simulator
 from tracking import Frame, Intrinsics, open_source
 
 KINDS = ("well", "silent", "deaf", "babbling", "hostile")
-NOBODY = ("none", "none again")  # the second tells how much of a difference is noise
+NO_ROBOT = ("none", "none again")  # the second shows how much of a difference is noise
 FRAMES = 90
-MOST = 1.05
-"""What a frame may cost with the worst robot, against none."""
-
-
-# --- The robot's side, in its own process --------------------------------------------------------
+MAX_TIME_RATIO = 1.05
+"""Largest ratio of the time of a frame with the worst robot to that without one."""
 
 
 def misbehave(kind: str) -> None:
-    """Be a good robot until a line comes on the standard input, then a bad one until it ends."""
+    """Behave until a line arrives on the standard input, then misbehave until it is closed."""
     near, far = os.openpty()
     tty.setraw(far)
     os.set_blocking(near, False)
@@ -70,7 +67,7 @@ def misbehave(kind: str) -> None:
 
 
 def _waited(readers: list[int], writers: list[int]) -> tuple[list[int], list[int]]:
-    """Wait for one of them, but no longer than a robot's own step; it costs nothing meanwhile."""
+    """Wait for one of them, at most one step of the robot."""
     readable, writable, _ = select.select(readers, writers, [], 0.020)
     return readable, writable
 
@@ -96,25 +93,22 @@ def _flood(kind: str, session: int) -> bytes:
     )
 
 
-# --- The host's side -----------------------------------------------------------------------------
-
-
 @contextmanager
 def peer(kind: str):
-    """Start a robot; give its port and what makes it bad."""
+    """Start a robot; yield its port and a function that makes it misbehave."""
     command = [sys.executable, "-m", "tests.bench.peers", "--peer", kind]
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as process:
         assert process.stdin is not None
         assert process.stdout is not None
         url = process.stdout.readline().decode().strip()
 
-        def turn_bad() -> None:
+        def misbehave_now() -> None:
             assert process.stdin is not None
             process.stdin.write(b"go\n")
             process.stdin.flush()
 
         try:
-            yield url, turn_bad
+            yield url, misbehave_now
         finally:
             process.stdin.close()
             process.wait(5.0)
@@ -123,17 +117,17 @@ def peer(kind: str):
 def block(
     kind: str, frames: list[Frame], intrinsics: Intrinsics, context: moderngl.Context
 ) -> list[float]:
-    """Return the milliseconds of each frame with such a robot."""
+    """Return the time of each frame with such a robot [ms]."""
     with ExitStack() as closing:
         playground = Playground("companion", intrinsics, context=context)
         closing.callback(playground.close)
         url = "none"
-        turn_bad = None
+        misbehave_now = None
         if kind != "none":
-            url, turn_bad = closing.enter_context(peer(kind))
+            url, misbehave_now = closing.enter_context(peer(kind))
         line = closing.enter_context(RobotLine.open(url, time.monotonic))
-        if turn_bad is not None:
-            turn_bad()
+        if misbehave_now is not None:
+            misbehave_now()
         took = []
         for frame in frames:
             began = time.perf_counter()
@@ -160,24 +154,24 @@ def main() -> None:
     block("none", frames, intrinsics, context)  # warm
     took: dict[str, list[list[float]]] = defaultdict(list)
     for turn in range(asked.rounds):
-        for kind in (*NOBODY, *KINDS)[:: 1 if turn % 2 else -1]:
-            url = "none" if kind in NOBODY else kind
+        for kind in (*NO_ROBOT, *KINDS)[:: 1 if turn % 2 else -1]:
+            url = "none" if kind in NO_ROBOT else kind
             took[kind].append(block(url, frames, intrinsics, context))
     context.release()
     table = Table("robot", "frame, ms", "p99, ms", "against none")
     # Frames differ, so each is compared with itself: its median over the rounds.
     typical = {kind: np.median(times, axis=0) for kind, times in took.items()}
     worst = 0.0
-    alone = np.mean([typical[kind].sum() for kind in NOBODY])
-    for kind in (*NOBODY, *KINDS):
+    alone = np.mean([typical[kind].sum() for kind in NO_ROBOT])
+    for kind in (*NO_ROBOT, *KINDS):
         ratio = float(typical[kind].sum() / alone)
         worst = max(worst, ratio if kind in KINDS else 0.0)
         slow = np.percentile(took[kind], 99)
         table.add_row(kind, f"{typical[kind].mean():.2f}", f"{slow:.1f}", f"× {ratio:.3f}")
-    verdict = "reached" if worst <= MOST else "MISSED"
-    table.add_row("worst", "", f"target × {MOST:.2f}", f"× {worst:.3f}: {verdict}")
+    verdict = "reached" if worst <= MAX_TIME_RATIO else "MISSED"
+    table.add_row("worst", "", f"target × {MAX_TIME_RATIO:.2f}", f"× {worst:.3f}: {verdict}")
     Console().print(table)
-    sys.exit(worst > MOST)
+    sys.exit(worst > MAX_TIME_RATIO)
 
 
 if __name__ == "__main__":

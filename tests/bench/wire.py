@@ -1,4 +1,4 @@
-"""How fast the robot's wire is: `python -m tests.bench.wire`.
+"""Latency of the robot's line: `python -m tests.bench.wire`.
 
 Over a real pseudo-terminal with the real thread at each end, and over a line in virtual time that
 loses 5 % of the frames.
@@ -25,18 +25,18 @@ SAMPLES = 1000
 
 
 class WatchedSimulator(Simulator):
-    """Notes when the body is told to feel something."""
+    """Records when the body receives an emotion."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.felt = threading.Event()
-        self.felt_at = 0.0
+        self.received = threading.Event()
+        self.received_at = 0.0
         express = self.body.express
 
         def watched(emotion: Emotion, mood: int = 255) -> None:
-            self.felt_at = time.perf_counter()
+            self.received_at = time.perf_counter()
             express(emotion, mood)
-            self.felt.set()
+            self.received.set()
 
         self.body.express = watched  # type: ignore[method-assign] # a spy on this one body
 
@@ -48,13 +48,15 @@ def emotion_latency() -> tuple[list[float], list[float]]:
     random = np.random.default_rng(0)
     with robot.SimulatedPort(simulator) as port, robot.connect(port.url) as dino:
         for index in range(SAMPLES // 2):
-            simulator.felt.clear()
+            simulator.received.clear()
             start = time.perf_counter()
             dino.express(Emotion((index + 1) / 10_000, 0.0))
-            assert simulator.felt.wait(2.0), "the robot was not told within 2 s"
-            took.append(simulator.felt_at - start)
+            assert simulator.received.wait(2.0), "the robot received no emotion within 2 s"
+            took.append(simulator.received_at - start)
             trips.append(dino.telemetry.round_trip or 0.0)
-            time.sleep(float(random.uniform(0.0, 0.01)))  # any phase of the threads' waits
+            time.sleep(
+                float(random.uniform(0.0, 0.01))
+            )  # so that every phase of the threads' waits occurs
     return took, trips
 
 
@@ -92,7 +94,7 @@ def latency_with_loss(drop: float) -> list[float]:
     now, step = 0.0, 0.001
     host.port_opened(now)
 
-    def turn() -> None:
+    def step_once() -> None:
         nonlocal now
         now += step
         faulty.advance(now)
@@ -101,22 +103,22 @@ def latency_with_loss(drop: float) -> list[float]:
         faulty.receive(host.bytes_to_send(), now)
 
     for _ in range(1000):
-        turn()
+        step_once()
     took = []
     for index in range(1, 2001):
         wanted = Emotion(index / 10_000, 0.0)
         host.express(wanted)
         start = now
         while device.body.target != wanted:
-            turn()
+            step_once()
         took.append(now - start)
         for _ in range(index % 50):
-            turn()
+            step_once()
     return took
 
 
 def codec_time() -> list[float]:
-    """Time to encode and decode one EXPRESS [s], each sample the mean of 100."""
+    """Time to encode and decode an EXPRESS [s]; each sample is the mean of 100."""
     from robot.protocol.messages import Express
 
     message, took = Express(7, 0.5, -0.5), []
@@ -137,10 +139,10 @@ def main() -> None:
         figures = (f"{1000 * f(seconds):.3f} ms" for f in (np.median, _p99, np.max))
         table.add_row(what, *figures, bar)
 
-    felt, trips = emotion_latency()
+    latencies, trips = emotion_latency()
     row("BEAT → STATE over a pseudo-terminal, bare pySerial", bare_round_trip(), "median ≤ 2 ms")
     row("BEAT → STATE as the link measures it, smoothed", trips, "median ≤ 2 ms")
-    row("express() → the robot's body over a pseudo-terminal", felt, "median ≤ 50 ms")
+    row("express() → the robot's body over a pseudo-terminal", latencies, "median ≤ 50 ms")
     for drop in (0.0, 0.05):
         what = f"express() → body, virtual time, {drop:.0%} of frames lost"
         row(what, latency_with_loss(drop), "≤ 50 ms, p99 ≤ 150 ms")

@@ -13,7 +13,7 @@ from robot.simulators.channel import FaultyChannel
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.faults import Faults
 
-# A busy machine is no reason for a property to fail.
+# A property must not fail because the machine is busy.
 settings.register_profile("no deadline", deadline=None)
 settings.load_profile("no deadline")
 
@@ -21,7 +21,7 @@ settings.load_profile("no deadline")
 class World:
     """A host and a simulated robot on one virtual clock, with a line of each direction between.
 
-    `harm` is what both lines do, in the fields of `Faults`.
+    `harm` sets the faults of both lines, as fields of `Faults`.
     """
 
     def __init__(self, seed: int = 0, step: float = 0.005, **harm: float) -> None:

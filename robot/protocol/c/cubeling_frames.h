@@ -1,7 +1,6 @@
-/* Frames of the protocol "cubeling" in C99: where one begins and ends, and whether it arrived whole.
+/* Framing of the protocol "cubeling" in C99: delimiters and a checksum.
  *
- * See robot/PROTOCOL.md, section 2. No allocation, no library but the freestanding headers; safe for
- * any bytes from the line.
+ * See robot/PROTOCOL.md, section 2. No allocation, only freestanding headers; safe for any input.
  */
 #ifndef CUBELING_FRAMES_H
 #define CUBELING_FRAMES_H
@@ -10,8 +9,8 @@
 #include <stdint.h>
 
 #define CUBELING_MAX_BODY 120u
-#define CUBELING_MAX_FRAME (CUBELING_MAX_BODY + 1u + 3u) /* between its edges */
-#define CUBELING_MAX_WIRE (CUBELING_MAX_FRAME + 2u)      /* with its edges */
+#define CUBELING_MAX_FRAME (CUBELING_MAX_BODY + 1u + 3u) /* between its delimiters */
+#define CUBELING_MAX_WIRE (CUBELING_MAX_FRAME + 2u)      /* with its delimiters */
 
 /* CRC-16/CCITT-FALSE; of "123456789" it is 0x29B1. */
 static inline uint16_t cubeling_crc16(const uint8_t *data, size_t size)
@@ -34,14 +33,14 @@ static inline void cubeling_check(const uint8_t *encoded, size_t size, uint8_t c
     check[2] = (uint8_t)(0x80u | (crc & 0x3Fu));
 }
 
-/* Write the frame of a body, edges included, into CUBELING_MAX_WIRE bytes.
+/* Write the frame of a body, delimiters included, into CUBELING_MAX_WIRE bytes.
  * Returns its size; 0 if the body is empty or too long. */
 static inline size_t cubeling_encode(const uint8_t *body, size_t size, uint8_t *wire)
 {
     if (size < 1 || size > CUBELING_MAX_BODY)
         return 0;
     uint8_t *encoded = wire + 1;
-    size_t run = 0; /* where the length of the piece being written stands */
+    size_t run = 0; /* index of the length of the current run */
     wire[0] = 0;
     encoded[0] = 1;
     for (size_t at = 0; at < size; at++) {

@@ -146,7 +146,7 @@ def test_a_driver_that_hears_a_flood_does_not_grow(name, flood):
 
 @pytest.mark.parametrize("flood", FLOODS)
 @pytest.mark.parametrize("name", SIMULATORS)
-def test_a_robot_that_hears_a_flood_does_not_grow_though_nobody_reads_it(name, flood):
+def test_a_flooded_robot_does_not_grow_while_its_output_is_not_read(name, flood):
     robot = SIMULATORS[name](1)
     check_held(robot, lambda now: robot.receive(FLOODS[flood], now))
 

@@ -96,7 +96,7 @@ def test_both_directions_can_be_recorded(port, soon):
         assert reader.errors == 0
 
 
-def test_a_robot_that_falls_silent_stops_nobody_and_is_found_again(soon):
+def test_a_silent_robot_blocks_nothing_and_is_found_again(soon):
     simulator = SilencedSimulator()
     with SimulatedPort(simulator) as port, robot.connect(port.url) as dino:
         dino.check()
@@ -241,7 +241,7 @@ def test_a_port_that_another_program_uses_is_refused():
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are not on Windows")
-def test_a_robot_that_does_not_read_its_line_stops_nobody(soon):
+def test_a_robot_that_does_not_read_blocks_nothing(soon):
     near, far = os.openpty()
     try:
         with pytest.raises(RobotError, match="nobody on"):
@@ -251,7 +251,7 @@ def test_a_robot_that_does_not_read_its_line_stops_nobody(soon):
         os.close(far)
 
 
-def test_a_line_that_babbles_is_given_up_in_time_and_stops_nobody():
+def test_a_line_full_of_noise_is_given_up_in_time():
     # Somebody sends garbage as fast as the line takes it.
     ending = threading.Event()
     with socket.create_server(("127.0.0.1", 0)) as server:

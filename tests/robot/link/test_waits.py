@@ -1,4 +1,4 @@
-"""Every wait that the README names is as long as it says."""
+"""Every wait has the length that the README states."""
 
 import re
 from pathlib import Path

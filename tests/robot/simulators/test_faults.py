@@ -209,7 +209,7 @@ class Storm(RuleBasedStateMachine):
             assert w.now - w.robot.link.last_received < timing.FAILSAFE_PROMISE + w.step
 
     @rule()
-    def all_is_well_again_and_the_last_wish_comes_true(self) -> None:
+    def the_last_request_is_fulfilled_once_the_faults_end(self) -> None:
         w = self.world
         w.to_robot.cut = w.from_robot.cut = False
         w.run_until(lambda: w.telemetry.state == "ready", within=30)
@@ -220,7 +220,7 @@ class Storm(RuleBasedStateMachine):
 
     def teardown(self) -> None:
         if hasattr(self, "world"):
-            self.all_is_well_again_and_the_last_wish_comes_true()
+            self.the_last_request_is_fulfilled_once_the_faults_end()
 
 
 def test_whatever_happens_in_whatever_order_the_promises_are_kept(world):

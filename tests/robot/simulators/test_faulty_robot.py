@@ -1,4 +1,4 @@
-"""What befalls a simulated robot: the same each time, in the robot, in a port and in a link."""
+"""The faults of a simulated robot: repeatable, and the same in a port and in a link."""
 
 import pytest
 import serial
@@ -99,7 +99,7 @@ def test_what_waits_in_a_robot_that_hangs_is_bounded():
     assert faulty.counts["lost"] > 40_000
 
 
-def test_after_a_sleep_nothing_has_befallen_the_robot():
+def test_no_fault_occurs_during_a_sleep_of_the_computer():
     faulty = FaultyRobot(Simulator(), Faults(stall=Outage(1.0, 1.0), babble=1e5), 1)
     faulty.advance(0.0)
     faulty.advance(1e9)  # at once: not a billion stalls

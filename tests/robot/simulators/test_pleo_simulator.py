@@ -154,7 +154,7 @@ def test_a_seed_gives_the_same_bytes_again(seed):
     assert len(life()) > 400
 
 
-def test_nobody_who_does_not_read_makes_it_grow():
+def test_a_client_that_does_not_read_does_not_make_it_grow():
     robot = PleoSimulator(1)
     for number in range(5000):
         robot.advance(number)

@@ -47,7 +47,7 @@ def test_a_time_that_has_no_end_or_is_none_is_refused(seconds):
     assert robot.now == now
 
 
-def test_whatever_befalls_the_line_the_last_emotion_is_on_the_robot_in_the_end():
+def test_the_last_emotion_reaches_the_robot_despite_faults():
     _, robot = lived(FAULTS)
     robot.express(Emotion(-0.9, 0.7, "angry"))
     for _ in range(400):

@@ -23,7 +23,7 @@ def open_world(world):
     return opened
 
 
-def test_a_robot_introduces_itself_whole(open_world):
+def test_a_robot_reports_its_whole_catalogue(open_world):
     told = open_world.host.catalogue
     assert told.name == "Dino"
     assert (told.motions, told.sounds, told.moods) == (
@@ -62,7 +62,7 @@ def test_only_the_latest_of_many_emotions_is_sent(open_world):
     assert w.applied[-1][1] == Emotion(0.999, 0)
 
 
-def test_the_same_emotion_again_costs_nothing(open_world):
+def test_the_same_emotion_is_sent_once(open_world):
     w = open_world
     w.run(0.5, lambda: w.host.express(HAPPY))
     assert [emotion for _, emotion in w.applied] == [HAPPY]
@@ -111,7 +111,7 @@ def test_stop_overtakes_what_waits_and_holds_the_neutral_pose(open_world):
     assert not w.telemetry.stopped
 
 
-def test_an_action_asked_for_while_the_robot_is_lost_is_dropped_and_not_played_late(open_world):
+def test_an_action_is_dropped_while_the_robot_is_lost(open_world):
     w = open_world
     w.to_robot.cut = w.from_robot.cut = True
     w.run(1)
@@ -142,7 +142,7 @@ def test_a_robot_is_neutral_within_half_a_second_of_silence(open_world):
     assert w.robot.body.emotion == Emotion(0, 0)
 
 
-def test_a_robot_that_is_looked_after_only_every_50_ms_keeps_the_promise(world):
+def test_a_robot_that_advances_only_every_50_ms_is_neutral_in_time(world):
     w = world(step=0.050)
     w.run_until(lambda: w.telemetry.state == "ready", within=5)
     w.host.express(HAPPY)
@@ -153,7 +153,7 @@ def test_a_robot_that_is_looked_after_only_every_50_ms_keeps_the_promise(world):
     assert w.neutral_at[-1] - silent_since <= timing.FAILSAFE_PROMISE + 1e-9
 
 
-def test_the_link_says_how_it_is_and_comes_back_with_the_last_emotion(open_world):
+def test_the_link_reports_its_state_and_recovers_with_the_last_emotion(open_world):
     w = open_world
     w.host.express(HAPPY)
     w.run(1)
@@ -172,7 +172,7 @@ def test_the_link_says_how_it_is_and_comes_back_with_the_last_emotion(open_world
     assert [emotion for _, emotion in w.applied] == [HAPPY, ANGRY]
 
 
-def test_an_emotion_that_the_failsafe_ended_is_restated(open_world):
+def test_an_emotion_that_the_failsafe_ended_is_sent_again(open_world):
     w = open_world
     w.host.express(HAPPY)
     w.run(1)
@@ -184,7 +184,7 @@ def test_an_emotion_that_the_failsafe_ended_is_restated(open_world):
     assert w.robot.body.target == HAPPY
 
 
-def test_an_action_taken_meanwhile_does_not_speak_for_an_emotion_that_was_lost(open_world):
+def test_a_later_action_does_not_acknowledge_a_lost_emotion(open_world):
     # EXPRESS 1 is lost with its session; PLAY 2 is taken first in the next one, which ends too.
     w = open_world
     w.to_robot.cut = True
@@ -202,7 +202,7 @@ def test_an_action_taken_meanwhile_does_not_speak_for_an_emotion_that_was_lost(o
     assert w.robot.body.target == HAPPY
 
 
-def test_a_state_that_names_a_command_stands_for_its_lost_acknowledgement(open_world):
+def test_a_state_replaces_a_lost_acknowledgement(open_world):
     w = open_world
     w.run(0.03)
     w.host.express(HAPPY)
@@ -215,7 +215,7 @@ def test_a_state_that_names_a_command_stands_for_its_lost_acknowledgement(open_w
     assert w.telemetry.counts.retries == 0
 
 
-def test_a_repeat_carries_the_latest_emotion(open_world):
+def test_a_retry_has_the_latest_emotion(open_world):
     w = open_world
     w.to_robot.cut = True
     w.host.express(HAPPY)
@@ -257,7 +257,7 @@ def test_a_port_that_comes_back_before_the_failsafe_does_not_repeat_the_emotion(
     assert w.telemetry.counts.sessions == 2
 
 
-def test_only_the_robots_voice_lost_does_not_take_the_emotion_from_it(open_world):
+def test_a_robot_that_is_not_heard_keeps_its_emotion(open_world):
     w = open_world
     w.host.express(HAPPY)
     w.run(0.3)
@@ -270,7 +270,7 @@ def test_only_the_robots_voice_lost_does_not_take_the_emotion_from_it(open_world
     assert (len(w.applied), w.neutral_at) == (1, [])
 
 
-def test_a_robot_that_was_not_ticked_looks_at_its_clock_before_its_mail():
+def test_a_robot_processes_the_time_before_its_input():
     robot = Simulator()
     robot.link.receive(encode_frame(pack(m.Hello(1, 5), 1)), 0.0)
     robot.link.receive(encode_frame(pack(m.Express(1, 0.5, 0), 1)), timing.FAILSAFE_PROMISE)
@@ -278,7 +278,7 @@ def test_a_robot_that_was_not_ticked_looks_at_its_clock_before_its_mail():
     assert robot.body.target == Emotion(0, 0)
 
 
-def test_goodbye_makes_the_robot_neutral_at_once(open_world):
+def test_close_makes_the_robot_neutral_at_once(open_world):
     w = open_world
     w.host.express(HAPPY)
     w.run(1)
@@ -290,7 +290,7 @@ def test_goodbye_makes_the_robot_neutral_at_once(open_world):
     assert w.host.bytes_to_send() == b""
 
 
-def test_bytes_that_waited_while_the_robot_hung_command_nothing(open_world):
+def test_bytes_that_waited_during_a_stall_have_no_effect(open_world):
     w = open_world
     w.run(0.2)
     w.stalled_until = w.now + 3
@@ -345,7 +345,7 @@ def test_another_host_finds_a_neutral_robot_that_counts_from_one():
     assert foreign.say(m.Express(1, 0.5, 0), session=2) == [m.Ack(1, m.TAKEN)]
 
 
-def test_a_session_that_is_not_open_is_gone_and_gone_is_not_said_all_the_time():
+def test_a_session_that_is_not_open_is_answered_by_gone_at_a_limited_rate():
     foreign = ForeignHost()
     assert foreign.say(m.Express(1, 0.5, 0), session=9, now=0.0) == [m.Gone()]
     assert foreign.say(m.Beat(1), session=9, now=0.01) == []
@@ -358,7 +358,7 @@ def test_a_newer_host_is_answered_in_the_robots_version():
     assert welcome.version == timing.VERSION
 
 
-def test_a_robot_states_itself_even_when_no_beat_reaches_it():
+def test_a_robot_sends_its_state_without_a_beat():
     foreign = ForeignHost()
     foreign.say(m.Hello(1, 5))
     foreign.robot.advance(timing.STATE_EVERY)

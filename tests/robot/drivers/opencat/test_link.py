@@ -42,7 +42,7 @@ def test_a_whole_session_line_by_line(desk):
     assert not d.robot.forbidden
 
 
-def test_it_says_nothing_while_the_board_starts_and_then_knows_it(desk):
+def test_nothing_is_sent_while_the_board_starts_and_then_its_model_is_known(desk):
     d = desk()
     d.until(lambda: d.sent != [], 30.0)
     assert len(d.robot.log) == 0
@@ -54,7 +54,7 @@ def test_it_says_nothing_while_the_board_starts_and_then_knows_it(desk):
     assert d.telemetry.limp, "a board that has just started has let go of its servos"
 
 
-def test_nybble_is_known_with_its_eleven_joints(desk):
+def test_nybble_is_recognised_with_its_eleven_joints(desk):
     d = desk(nybble(3)).ready()
     assert d.host.catalogue.name == "Nybble"
     names = [joint.name for joint in d.host.catalogue.joints]
@@ -66,7 +66,7 @@ def test_nybble_is_known_with_its_eleven_joints(desk):
 
 
 @pytest.mark.parametrize("model", ["", "bittle"])
-def test_an_old_board_that_does_not_say_what_it_is_shows_moods_all_the_same(model, desk, quiet):
+def test_an_old_board_that_reports_no_model_shows_moods_too(model, desk, quiet):
     robot = OpenCatSimulator(1, quirks=replace(quiet, answers_query=False))
     d = desk(robot, parse_settings({"opencat": {"model": model}}, "mine.toml")).ready()
     assert d.host.catalogue.name == "OpenCat"
@@ -99,14 +99,14 @@ def test_a_board_that_asks_whether_to_erase_its_calibration_gets_no_byte(desk, q
     d.host.close()
 
 
-def test_a_board_that_asks_gets_no_goodbye_either(desk, quiet):
+def test_a_board_that_asks_gets_no_rest_command_at_close(desk, quiet):
     d = desk(OpenCatSimulator(2, quirks=quiet, new_board=True))
     d.run(30.0)
     d.host.close()
     assert d.host.bytes_to_send() == b""
 
 
-def test_a_board_that_did_not_start_anew_is_asked_after_a_second(desk):
+def test_a_board_that_did_not_restart_is_asked_after_a_second(desk):
     d = desk()
     d.robot.advance(90.0)
     d.robot.advance(99.0)
@@ -115,7 +115,7 @@ def test_a_board_that_did_not_start_anew_is_asked_after_a_second(desk):
     assert not d.telemetry.limp
 
 
-def test_of_a_flood_of_moods_the_last_one_wins(desk):
+def test_the_last_of_many_moods_wins(desk):
     d = desk().ready()
     for index in range(500):
         d.feel(["happy", "angry", "sad"][index % 3])
@@ -168,7 +168,7 @@ def test_what_is_acknowledged_stays_until_the_next_mood_is(desk):
     assert d.telemetry.acknowledged is None
 
 
-def test_what_is_felt_while_another_posture_is_taken_is_not_acknowledged_yet(desk):
+def test_an_emotion_is_not_acknowledged_while_another_posture_is_pending(desk):
     d = desk().ready()
     d.feel("happy")
     d.settle()
@@ -185,7 +185,7 @@ def test_what_is_felt_while_another_posture_is_taken_is_not_acknowledged_yet(des
     assert d.telemetry.acknowledged == Emotion(0.9, 0.6, "happy")
 
 
-def test_what_was_last_felt_of_a_displaced_mood_is_acknowledged_with_its_echo(desk):
+def test_the_last_emotion_of_a_displaced_mood_is_acknowledged_with_its_echo(desk):
     d = desk().ready()
     d.feel("happy")
     d.until(lambda: d.lines[-1] == "kbuttUp", 5.0)
@@ -195,7 +195,7 @@ def test_what_was_last_felt_of_a_displaced_mood_is_acknowledged_with_its_echo(de
     assert d.telemetry.acknowledged == Emotion(0.9, 0.7, "happy")
 
 
-def test_half_an_order_that_was_displaced_is_no_acknowledgement(desk):
+def test_half_of_a_displaced_mood_is_not_acknowledged(desk):
     d = desk().ready()
     d.feel("happy")
     d.settle()
@@ -208,13 +208,13 @@ def test_half_an_order_that_was_displaced_is_no_acknowledgement(desk):
     assert "i0 -40" not in d.lines
 
 
-def test_what_a_board_complained_of_before_it_started_anew_is_still_told():
+def test_an_error_message_survives_a_restart_of_the_board():
     host = _introduced()
     host.receive(b"Low power: 6.71V. The robot won't move.\r\n* Start *\r\nReady!\r\n", 3.0)
     assert host.telemetry(3.0).complaint == "Low power: 6.71V. The robot won't move."
 
 
-def test_a_fall_ends_what_is_acknowledged():
+def test_a_fall_clears_what_is_acknowledged():
     host = _introduced()
     host.express(HAPPY)
     host.tick(3.0)
@@ -263,7 +263,7 @@ def test_a_late_echo_counts_for_its_own_command_and_for_no_later_one(desk, quiet
     assert d.lines.count("kbuttUp") == 1
 
 
-def test_an_echo_after_the_questions_is_no_echo_of_the_command_given_up(desk, quiet):
+def test_an_echo_after_the_questions_is_not_the_given_up_commands(desk, quiet):
     host = OpenCatHost()
     host.port_opened(0.0)
     host.tick(2.0)
@@ -289,7 +289,7 @@ def test_an_echo_after_the_questions_is_no_echo_of_the_command_given_up(desk, qu
     assert host.telemetry(13.2).acknowledged == HAPPY
 
 
-def test_the_echo_of_what_a_falling_robot_did_by_itself_counts_for_nothing():
+def test_the_echo_of_a_skill_after_a_fall_is_ignored():
     host = OpenCatHost()
     host.port_opened(0.0)
     host.tick(2.0)
@@ -325,7 +325,7 @@ def test_a_reboot_in_the_middle_is_noticed_and_the_mood_is_taken_again(desk):
     assert d.lines.count("b14 8 18 8 21 8") == 1, "the mood has not begun anew"
 
 
-def test_the_k_that_a_board_says_as_it_starts_echoes_nothing(desk):
+def test_the_k_of_a_starting_board_is_no_echo(desk):
     d = desk().ready()
     d.feel("happy")
     d.until(lambda: "kbuttUp" in d.lines, 5.0)
@@ -366,7 +366,7 @@ def test_a_silent_board_is_lost_within_the_stated_time_and_found_again(desk, qui
     assert d.state == "ready"
 
 
-def test_gestures_come_at_their_time_and_the_posture_is_taken_again(desk):
+def test_gestures_are_played_at_their_interval_and_the_posture_is_taken_again(desk):
     d = desk().ready()
     d.feel("happy")
     d.settle()
@@ -378,7 +378,7 @@ def test_gestures_come_at_their_time_and_the_posture_is_taken_again(desk):
     assert d.telemetry.acknowledged is not None
 
 
-def test_a_robot_that_nobody_wants_anything_of_lies_down_and_wakes_for_a_new_mood(desk):
+def test_an_idle_robot_lies_down_and_wakes_for_a_new_mood(desk):
     d = desk().ready()
     d.feel("happy")
     d.settle()
@@ -398,7 +398,7 @@ def test_a_robot_that_nobody_wants_anything_of_lies_down_and_wakes_for_a_new_moo
     assert not d.telemetry.limp
 
 
-def test_a_robot_with_a_low_battery_is_called_limp_and_is_not_asked_to_move(desk, quiet):
+def test_a_robot_with_a_low_battery_is_limp_and_gets_no_moving_commands(desk, quiet):
     d = desk(OpenCatSimulator(1, quirks=replace(quiet, battery_lasts=30.0))).ready()
     d.feel("happy")
     d.settle()
@@ -413,7 +413,7 @@ def test_a_robot_with_a_low_battery_is_called_limp_and_is_not_asked_to_move(desk
     assert not d.telemetry.limp
 
 
-def test_a_skill_that_the_board_does_not_know_is_counted_and_not_insisted_on(desk):
+def test_an_unknown_skill_is_counted_and_given_up(desk):
     said = {"bittle": {"moods": {"happy": {"posture": "zz"}}}}
     d = desk(settings=parse_settings(said, "mine.toml")).ready()
     d.feel("angry")
@@ -451,7 +451,7 @@ def test_motions_and_sounds_are_played_once_and_only_while_there_is_a_link(desk)
     assert d.telemetry.counts.dropped >= 4
 
 
-def test_joints_are_read_in_radians_and_called_reckoned(desk):
+def test_joint_angles_are_read_in_radians_and_marked_as_calculated(desk):
     d = desk().ready()
     d.feel("sad")
     d.settle()
@@ -470,7 +470,7 @@ def test_an_idle_line_is_kept_alive_but_a_beeping_board_is_not_asked_more_often(
     assert d.telemetry.silence < 11.0
 
 
-def test_after_the_goodbye_nothing_is_sent_or_taken(desk):
+def test_nothing_is_sent_or_processed_after_close(desk):
     d = desk().ready()
     d.feel("happy")
     d.host.close()
@@ -484,7 +484,7 @@ def test_after_the_goodbye_nothing_is_sent_or_taken(desk):
     assert d.host.bytes_to_send() == b""
 
 
-def test_lines_that_would_run_together_are_never_sent_together(desk):
+def test_lines_are_never_sent_so_close_that_the_board_merges_them(desk):
     quirks = BoardQuirks(slow=1.0, brown_outs=0.0, mangled=0.0, restless=0.0)
     d = desk(OpenCatSimulator(5, quirks=quirks)).ready()
     for word in ("happy", "sad", "angry", "neutral", "happy"):
@@ -504,7 +504,7 @@ def _introduced(at: float = 2.0) -> OpenCatHost:
     return host
 
 
-def test_a_question_asked_before_a_fall_does_not_tell_when_the_fall_is_over():
+def test_a_question_asked_before_a_fall_does_not_end_the_doubt():
     host = _introduced()
     host.tick(13.0)
     assert host.bytes_to_send() == b"j\n"
@@ -532,7 +532,7 @@ def test_an_echo_from_a_board_without_power_is_no_acknowledgement():
     assert host.bytes_to_send() == b"kbuttUp\n"
 
 
-def test_the_answer_to_a_question_of_before_the_unplugging_is_not_believed():
+def test_an_answer_to_a_question_before_the_unplugging_is_ignored():
     host = _introduced()
     host.tick(13.0)
     assert host.bytes_to_send() == b"j\n"
@@ -556,7 +556,7 @@ class Unheard(OpenCatSimulator):
         return b"" if self.held else said
 
 
-def test_a_robot_that_lies_is_let_lie_though_its_sign_of_life_is_lost(desk, quiet):
+def test_a_resting_robot_stays_at_rest_when_its_sign_of_life_is_lost(desk, quiet):
     robot = Unheard(4, quirks=quiet)
     d = desk(robot).ready()
     d.feel("happy")

@@ -66,7 +66,7 @@ PLACES = {"neutral": (0.0, 0.0), "happy": (0.7, 0.6), "angry": (-0.7, 0.6), "sad
 
 @pytest.mark.parametrize("kind", BOARDS)
 @pytest.mark.parametrize("seed", range(2))
-def test_an_hour_with_an_ugly_board(kind, seed, desk):
+def test_an_hour_with_a_quirky_board(kind, seed, desk):
     d = desk(BOARDS[kind](seed), step=0.2)
     random = np.random.default_rng(seed)
     watch = Watch(d)
@@ -102,7 +102,7 @@ def _word(emotion) -> str:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_line_that_loses_and_flips_bytes_only_delays(seed, desk):
+def test_lost_and_flipped_bytes_only_delay(seed, desk):
     d = desk(OpenCatSimulator(seed, quirks=replace(UGLY, battery_lasts=1e9)), step=0.05, seed=seed,
              flip=0.005, drop=0.005)  # fmt: skip
     d.ready()
@@ -114,7 +114,7 @@ def test_a_line_that_loses_and_flips_bytes_only_delays(seed, desk):
     assert not d.robot.forbidden
 
 
-def test_a_day_leaves_nothing_behind(desk):
+def test_nothing_grows_in_a_day(desk):
     d = desk(OpenCatSimulator(3), step=1.0)
     random = np.random.default_rng(3)
     sizes = []
@@ -201,7 +201,7 @@ def test_a_line_without_end_is_not_kept():
     assert host.telemetry(1.0).counts.crc_errors == 1
 
 
-def test_a_board_that_babbles_without_a_pause_is_asked_all_the_same():
+def test_a_board_that_never_pauses_is_asked_too():
     host = OpenCatHost()
     host.port_opened(0.0)
     asked = None
@@ -215,7 +215,7 @@ def test_a_board_that_babbles_without_a_pause_is_asked_all_the_same():
 
 
 @pytest.mark.parametrize("maker", [OpenCatSimulator, nybble])
-def test_a_simulator_does_the_same_for_the_same_seed_however_often_it_is_looked_at(maker):
+def test_a_simulator_is_deterministic_whatever_the_step(maker):
     def hear(step: float) -> bytearray:
         board = maker(9)
         heard = bytearray()
@@ -281,7 +281,7 @@ def test_settings_choose_the_baud_rate(tmp_path, monkeypatch):
     assert load_settings(path).dwell == load_settings().dwell
 
 
-def test_a_settings_file_that_is_none_is_refused_in_one_line(tmp_path):
+def test_a_file_that_is_no_settings_file_is_refused_in_one_line(tmp_path):
     for content in (b"[opencat", b"\xff\xfe", None):
         path = tmp_path / "x.toml"
         path.unlink(missing_ok=True)
@@ -292,7 +292,7 @@ def test_a_settings_file_that_is_none_is_refused_in_one_line(tmp_path):
         assert "\n" not in str(refusal.value)
 
 
-def test_a_goodbye_on_the_heels_of_a_command_keeps_its_distance():
+def test_the_last_line_keeps_its_distance_from_a_command():
     import time
 
     class Wire:
@@ -319,7 +319,7 @@ def test_a_goodbye_on_the_heels_of_a_command_keeps_its_distance():
 
 
 @pytest.mark.parametrize("protocol", ["opencat", "nybble"])
-def test_the_distance_between_lines_is_less_than_their_rate_asks_for(protocol):
+def test_the_spacing_of_writes_is_below_the_rate_limit(protocol):
     kind = DRIVERS[protocol]
     assert kind.spacing >= 0.1
     assert kind.spacing <= 1.0 / load_settings().commands_per_s, (

@@ -16,7 +16,7 @@ ALLOWED = b"kibd?j"
 
 
 @given(st.binary(max_size=40))
-def test_whatever_is_admitted_begins_with_an_allowed_token_and_is_one_line(line):
+def test_an_allowed_line_begins_with_an_allowed_token(line):
     if tokens.why_not(line) is None:
         assert line[:1] in [bytes([token]) for token in ALLOWED]
         assert line.endswith(b"\n")
@@ -25,7 +25,7 @@ def test_whatever_is_admitted_begins_with_an_allowed_token_and_is_one_line(line)
 
 
 @given(st.sampled_from([chr(code) for code in range(256)]), st.text(max_size=10))
-def test_no_other_token_is_admitted_with_whatever_behind_it(token, rest):
+def test_no_other_token_is_allowed(token, rest):
     line = (token + rest + "\n").encode("latin-1", "replace")
     if line[0] not in ALLOWED:
         with pytest.raises(RobotError):
@@ -113,7 +113,7 @@ def test_settings_that_may_not_be_sent_are_refused_in_one_line(mood, tmp_path):
     ({"bittle": {"sounds": {"loud": [[10**5000, 8]]}}}, "pairs, not something so long"),
     ({"bittle": {"sounds": {"a.b": [[5, 8]]}}}, "letters"),
 ])  # fmt: skip
-def test_settings_that_make_no_sense_are_refused_in_one_line(said, reason):
+def test_wrong_settings_are_refused_in_one_line(said, reason):
     with pytest.raises(RobotError, match=reason) as refusal:
         parse_settings(said, "mine.toml")
     assert "\n" not in str(refusal.value)
@@ -151,7 +151,7 @@ def test_the_bundled_settings_may_be_sent_and_all_moods_differ():
         assert len(set(looks)) == len(looks)
 
 
-def test_nothing_leaves_a_host_but_through_the_gate(monkeypatch):
+def test_every_line_of_a_host_is_checked(monkeypatch):
     host = OpenCatHost()
     host.port_opened(0.0)
     monkeypatch.setattr(tokens, "checked", lambda line: (_ for _ in ()).throw(RobotError("gate")))
@@ -160,7 +160,7 @@ def test_nothing_leaves_a_host_but_through_the_gate(monkeypatch):
     assert host.bytes_to_send() == b""
 
 
-def test_the_example_in_the_document_loads_and_says_what_the_document_says(tmp_path):
+def test_the_example_in_the_document_loads_with_the_values_it_states(tmp_path):
     text = (Path(__file__).parents[4] / "docs" / "opencat.md").read_text("utf-8")
     example = tmp_path / "example.toml"
     example.write_text(text.split("```toml\n")[1].split("```")[0], "utf-8")

@@ -189,7 +189,7 @@ def test_garbage_raises_nothing_and_the_link_works_afterwards(chunks):
 
 
 @pytest.mark.parametrize("faults", ["drop=0.1", "reboot=20s", "stall=2s/10s&dup=0.05&delay=20ms"])
-def test_whatever_befalls_the_line_moods_go_on_being_taken(faults):
+def test_moods_are_acknowledged_despite_faults_of_the_line(faults):
     robot, driver, now = simulator_of(f"sim:pleo?{faults}"), PleoDriver(load_settings()), 10.0
     driver.port_opened(now)
     taken = 0

@@ -41,7 +41,7 @@ def test_the_bytes_of_a_mood_change(script):
     assert pleo.telemetry.acknowledged == Emotion(-0.9, 0.9)
 
 
-def test_the_console_does_not_tell_what_pleo_does_so_nobody_claims_to_know(script):
+def test_telemetry_claims_nothing_that_the_console_does_not_report(script):
     pleo = script().started()
     pleo.express("happy")
     for _ in range(4):

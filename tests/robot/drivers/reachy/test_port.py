@@ -92,7 +92,7 @@ def test_a_mood_reaches_the_robot_and_what_it_measures_comes_back(connected, soo
     assert mini.calls == ["go 1", "go 1"]  # slowly to where it begins, and back there at the end
 
 
-def test_a_robot_that_is_not_listening_holds_nobody_up(connected, soon):
+def test_a_hanging_robot_delays_nothing(connected, soon):
     mini = StandIn()
     mini.hangs = threading.Event()
     with connected(mini) as reachy:
@@ -112,7 +112,7 @@ def test_a_daemon_that_dies_is_a_port_that_is_unplugged_and_comes_back(connected
         soon(lambda: reachy.telemetry.acknowledged == HAPPY)
 
 
-def test_a_line_without_a_daemon_is_read_as_a_port_that_is_gone(soon):
+def test_a_port_without_a_daemon_is_gone(soon):
     def refuse(host: str, port: int) -> None:
         raise ConnectionError
 
