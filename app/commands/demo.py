@@ -9,10 +9,9 @@ import typer
 from rich.console import Console
 
 from app.commands.play import DEFAULT_CAMERA, PersonalityOption
-from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
-from app.running.opening import open_session
+from app.commands.progress import play_session
 from app.scenarios import scenario_cube
-from app.session import SessionOptions
+from app.session import SessionOptions, session_info
 from app.session.bundled import bundled
 from app.ui.display import has_display
 from tracking import FrameSource, TrackingError, open_source
@@ -58,25 +57,18 @@ def demo(
             options = SessionOptions(
                 scenario=scenario, source=DEFAULT_CAMERA, personality=personality
             )
-        session = closing.enter_context(open_session(options, source=camera))
-        report_guessed_lens(session, console)
-        summary = run_with_progress(session, console, scenario)
-    console.print(summary)
-    summary.check()
+        play_session(options, scenario, source=camera)
 
 
 def render(scenario: str, output: Path, console: Console, personality: str | None = None) -> None:
     """Render the bundled recording of a scenario to a video, and print the summary."""
-    options = replace(_recording_options(scenario, personality), output=output)
-    with open_session(options) as session:
-        console.print(
-            f"The bundled recording of [bold]{scenario}[/] ({session.source.duration or 0:.0f} s) "
-            f"is rendered to [bold]{output}[/], as there is no display or you asked for it."
-        )
-        summary = run_with_progress(session, console, f"rendering {output.name}")
-    console.print(summary)
-    console.print(video_ready(output.resolve()))
-    summary.check()
+    options = _recording_options(scenario, personality)
+    console.print(
+        f"The bundled recording of [bold]{scenario}[/] "
+        f"({session_info(Path(options.source)).duration:.0f} s) "
+        f"is rendered to [bold]{output}[/], as there is no display or you asked for it."
+    )
+    play_session(replace(options, output=output.resolve()), f"rendering {output.name}")
 
 
 def _recording_options(scenario: str, personality: str | None) -> SessionOptions:

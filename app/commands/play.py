@@ -5,12 +5,10 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
-from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
+from app.commands.progress import play_session
 from app.running.network import SITE
-from app.running.opening import open_session
 from app.scenarios import scenario_cube
 from app.session import SessionOptions
 from app.ui.display import require_display
@@ -122,13 +120,6 @@ def play(
     scenario_cube(scenario)  # refuses a misspelt scenario before a missing display
     if options.windowed:
         require_display()
-    console = Console()
     with ExitStack() as closing:
         line = publisher(mqtt, player, site, Credentials(None, password_file, ca), closing)
-        session = closing.enter_context(open_session(options, player=line))
-        report_guessed_lens(session, console)
-        summary = run_with_progress(session, console, f"playing {scenario}")
-    console.print(summary)
-    if output is not None:
-        console.print(video_ready(output))
-    summary.check()
+        play_session(options, f"playing {scenario}", player=line)

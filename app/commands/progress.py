@@ -1,15 +1,39 @@
-"""Running a session with a progress bar, and what is printed about it."""
-
-from pathlib import Path
+"""Playing a session: its progress bar, and what is printed about it."""
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from app.errors import AppError
 from app.pipeline.step import Step
-from app.running.opening import OpenedSession
+from app.running.opening import OpenedSession, open_session
+from app.running.players import PlayerPublisher
 from app.running.runner import run
 from app.running.summary import Summary
+from app.session import SessionOptions
+from tracking import FrameSource
+
+
+def play_session(
+    options: SessionOptions,
+    title: str,
+    *,
+    source: FrameSource | None = None,
+    player: PlayerPublisher | None = None,
+) -> None:
+    """Open a session, run it, and print its summary; see `open_session`."""
+    console = Console()
+    with open_session(options, source=source, player=player) as session:
+        if options.intrinsics is None and session.source.intrinsics is None:
+            console.print(
+                "[dim]The camera is not calibrated: a lens of 60° is guessed. "
+                "[cyan]cubeling calibrate[/] finds the true one in 20 s.[/]"
+            )
+        summary = run_with_progress(session, console, title)
+    console.print(summary)
+    if options.output is not None:
+        size = options.output.stat().st_size / 1e6
+        console.print(f"[bold]{options.output}[/] is ready: {size:.1f} MB")
+    summary.check()
 
 
 def run_with_progress(session: OpenedSession, console: Console, title: str) -> Summary:
@@ -43,17 +67,3 @@ def run_with_progress(session: OpenedSession, console: Console, title: str) -> S
     if summary.frames == 0 and not summary.interrupted:
         raise AppError("the source gave no picture at all")
     return summary
-
-
-def report_guessed_lens(session: OpenedSession, console: Console) -> None:
-    """Say that the lens is guessed, and what to do about it."""
-    if session.options.intrinsics is None and session.source.intrinsics is None:
-        console.print(
-            "[dim]The camera is not calibrated: a lens of 60° is guessed. "
-            "[cyan]cubeling calibrate[/] finds the true one in 20 s.[/]"
-        )
-
-
-def video_ready(path: Path) -> str:
-    """Return one line that says where a video is."""
-    return f"[bold]{path}[/] is ready: {path.stat().st_size / 1e6:.1f} MB"

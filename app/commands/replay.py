@@ -19,9 +19,8 @@ from app.commands.play import (
     RobotOption,
     RobotSettingsOption,
 )
-from app.commands.progress import report_guessed_lens, run_with_progress, video_ready
+from app.commands.progress import play_session
 from app.running.network import SITE
-from app.running.opening import open_session
 from app.running.replay_check import check_session
 from app.session import session_info
 from app.ui.display import has_display
@@ -67,7 +66,6 @@ def replay(
 
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """
-    console = Console()
     recorded = session_info(session, salvage=salvage).options
     options = replace(
         recorded,
@@ -85,14 +83,8 @@ def replay(
     )
     if check:
         result = check_session(session, options)
-        console.print(result)
+        Console().print(result)
         raise typer.Exit(0 if result.identical else 1)
     with ExitStack() as closing:
         line = publisher(mqtt, player, site, Credentials(None, password_file, ca), closing)
-        opened = closing.enter_context(open_session(options, player=line))
-        report_guessed_lens(opened, console)
-        summary = run_with_progress(opened, console, f"replaying {session.name}")
-    console.print(summary)
-    if output is not None:
-        console.print(video_ready(output))
-    summary.check()
+        play_session(options, f"replaying {session.name}", player=line)

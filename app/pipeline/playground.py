@@ -10,7 +10,7 @@ from app.pipeline.attention import Attention
 from app.pipeline.scenario import Inputs, Outcome, Scenario, make_scenario
 from app.pipeline.step import ReplayInputs, Step
 from characters import Animator, Character, CharacterCommand, PosedCharacter
-from characters.rendering import Box, FloorPath, SceneCharacter, Stage, View
+from characters.rendering import Box, SceneCharacter, Stage, View
 from tracking import (
     CubeControls,
     CubeGestures,
@@ -129,17 +129,6 @@ class Playground:
         """Draw the picture; return None without a graphics context."""
         if self._stage is None:
             return None
-        return self._stage.draw(*self.shot(frame, state, controls, outcome, posed))
-
-    def shot(
-        self,
-        frame: Frame,
-        state: CubeState,
-        controls: CubeControls,
-        outcome: Outcome,
-        posed: PosedCharacter,
-    ) -> tuple[View, tuple[SceneCharacter, ...], tuple[FloorPath, ...]]:
-        """Return what the stage draws: the view, the characters, and the paths on the floor."""
         boxes: tuple[Box, ...] = ()
         if state.camera_from_cube is not None:
             boxes = (Box(state.camera_from_cube, self.cube.edge),)
@@ -151,8 +140,8 @@ class Playground:
             boxes,
         )
         seen = posed.visible and controls.camera_from_table is not None
-        actors = (SceneCharacter(self.character, posed),) if seen else ()
-        return view, actors, outcome.floor if seen else ()
+        characters = (SceneCharacter(self.character, posed),) if seen else ()
+        return self._stage.draw(view, characters, outcome.floor if seen else ())
 
     def close(self) -> None:
         """Release the stage; a second call does nothing."""

@@ -26,10 +26,18 @@ CHUNK_BYTES = 128 * 1024
 MAX_QUEUED_WRITES = 256
 """Writes that may wait for a slow disk; with more, recording stops instead of delaying frames."""
 
-EVENT_SCHEMA = b'{"type":"object","properties":{"event":{"type":"string"}}}'
-WIRE_SCHEMA = (
-    b'{"type":"object","properties":{"direction":{"enum":["tx","rx"]},"hex":{"type":"string"}}}'
-)
+JSON_SCHEMAS = {
+    **{topic: (f"cubeling.{kind.__name__}", schema(kind)) for topic, kind in MESSAGE_TYPES.items()},
+    "/robot/wire": (
+        "cubeling.Wire",
+        b'{"type":"object","properties":{"direction":{"enum":["tx","rx"]},"hex":{"type":"string"}}}',
+    ),
+    "/events": (
+        "cubeling.Event",
+        b'{"type":"object","properties":{"event":{"type":"string"}}}',
+    ),
+}
+"""Name and text of the JSON Schema of each topic."""
 
 
 class Recorder:
@@ -155,33 +163,29 @@ class Recorder:
         self._protobuf("/camera/image", message, frame.timestamp)
 
     def _protobuf(self, topic: str, message: Any, timestamp: float) -> None:
-        def write() -> None:
-            if topic not in self._channels:
-                number = register_schema(self._writer, type(message))
-                self._channels[topic] = self._writer.register_channel(topic, "protobuf", number)
-            self._add(topic, message.SerializeToString(), timestamp)
-
-        self._submit(write)
+        schema_id = partial(register_schema, self._writer, type(message))
+        self._message(topic, "protobuf", schema_id, message.SerializeToString, timestamp)
 
     def _json(self, topic: str, document: Callable[[], bytes], timestamp: float) -> None:
+        name, text = JSON_SCHEMAS[topic]
+        schema_id = partial(self._writer.register_schema, name, "jsonschema", text)
+        self._message(topic, "json", schema_id, document, timestamp)
+
+    def _message(
+        self,
+        topic: str,
+        encoding: str,
+        schema_id: Callable[[], int],
+        document: Callable[[], bytes],
+        timestamp: float,
+    ) -> None:
+        """Write a message on the recorder's thread, and before the first one its channel."""
+
         def write() -> None:
             if topic not in self._channels:
-                name, text = self._schema(topic)
-                number = self._writer.register_schema(name, "jsonschema", text)
-                self._channels[topic] = self._writer.register_channel(topic, "json", number)
-            self._add(topic, document(), timestamp)
+                channel = self._writer.register_channel(topic, encoding, schema_id())
+                self._channels[topic] = channel
+            time = nanoseconds_of(timestamp)
+            self._writer.add_message(self._channels[topic], time, document(), time)
 
         self._submit(write)
-
-    def _schema(self, topic: str) -> tuple[str, bytes]:
-        if topic in MESSAGE_TYPES:
-            return f"cubeling.{MESSAGE_TYPES[topic].__name__}", schema(MESSAGE_TYPES[topic])
-        return (
-            ("cubeling.Wire", WIRE_SCHEMA)
-            if topic == "/robot/wire"
-            else ("cubeling.Event", EVENT_SCHEMA)
-        )
-
-    def _add(self, topic: str, data: bytes, timestamp: float) -> None:
-        time = nanoseconds_of(timestamp)
-        self._writer.add_message(self._channels[topic], time, data, time)
