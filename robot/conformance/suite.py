@@ -44,7 +44,7 @@ MAX_ATTEMPTS = 3
 """Most attempts of a check that fails while this computer is busy."""
 
 MAX_SILENT_CHECKS = 2
-"""After so many checks without an answer in a row, the remaining ones are skipped."""
+"""After this many consecutive checks without an answer, the others are skipped."""
 
 Verdict = Literal["ok", "failed", "skipped"]
 

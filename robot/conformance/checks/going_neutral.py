@@ -176,8 +176,8 @@ def stopped_robot_stays_still(probe: Probe) -> None:
 def _excite(probe: Probe) -> dict[int, int]:
     """Show an emotion, and play a motion and a sound if the robot has more than one.
 
-    Returns what is played, by item. Of a single motion or sound nobody could tell whether the
-    robot plays it by itself.
+    Returns what is played, by item. A single motion or sound is left out: the robot may play it
+    by itself.
     """
     welcome = probe.open_session()
     probe.express(0.8, 0.8, welcome.moods - 1 if _names_moods(probe) else m.NOTHING)

@@ -49,7 +49,7 @@ def command(action: str, **changes: Any) -> CharacterCommand:
     return CharacterCommand(0.0, LocomotionIntent(1.0), intent, **changes)
 
 
-def test_an_action_is_published_when_it_begins_and_only_if_it_is_seen():
+def test_an_action_is_published_when_it_begins_and_only_if_visible():
     with Network(Access()) as network:
         line = PlayerPublisher(network, "ann")
         for what in (
@@ -110,7 +110,7 @@ def wrong_inputs() -> dict[str, tuple[list[str], str]]:
 
 
 @pytest.mark.parametrize("what", wrong_inputs())
-def test_what_is_wrong_ends_in_one_line(cubeling, what):
+def test_invalid_options_end_in_one_line(cubeling, what):
     words, says = wrong_inputs()[what]
     code, _, err = cubeling(*words)
     assert (code, err.count("\n")) == (2, 1)
@@ -123,14 +123,14 @@ def test_the_help_has_an_example(cubeling):
     assert "Example: cubeling bridge --mqtt" in out
 
 
-def test_a_session_that_is_none_is_refused_and_leaves_nothing_open(tmp_path):
+def test_an_invalid_session_is_refused_and_leaves_nothing_open(tmp_path):
     text = tmp_path / "text.mcap"
     text.write_text("no session")
     with Network(Access()) as network, pytest.raises(AppError, match="not a session"):
         Bridge(BridgeOptions({"rex": "sim"}, {"ann": text}), network)
 
 
-def test_a_broker_that_is_away_is_said_in_one_line(cubeling):
+def test_an_absent_broker_is_reported_in_one_line(cubeling):
     code, out, _ = cubeling("bridge", "--mqtt", "mqtt://127.0.0.1:1", "--seconds", "0.5")
     assert code == 0
     assert out.count("trying again") == 1
@@ -180,7 +180,7 @@ def test_a_bridge_that_is_killed_is_lost_by_its_last_will(broker):
 
 
 @needs_mosquitto
-def test_a_player_says_once_that_the_broker_is_gone(broker):
+def test_a_lost_broker_is_reported_once(broker):
     said: list[str] = []
     with Network(Access(broker.url)) as network:
         line = PlayerPublisher(network, "ann", on_problem=said.append)
@@ -202,7 +202,7 @@ def test_a_player_says_once_that_the_broker_is_gone(broker):
 
 
 @needs_mosquitto
-def test_a_broker_that_hangs_does_not_hold_up_the_picture(broker):
+def test_a_hanging_broker_does_not_delay_the_picture(broker):
     with Network(Access(broker.url)) as network:
         line = PlayerPublisher(network, "ann")
         soon(lambda: line.state == "connected")

@@ -34,7 +34,7 @@ def only(*names):
     return [part for name in names for part in ("--only", name)]
 
 
-def test_a_good_robot_behind_a_real_port_conforms(conform, tmp_path):
+def test_a_good_robot_at_a_real_port_conforms(conform, tmp_path):
     with SimulatedPort() as port:
         code, out, err = conform(port.url, *only(*FAST), "--json", "found.json")
     assert (code, err) == (0, "")
@@ -75,7 +75,7 @@ def test_a_robot_that_fails_is_reported_with_what_was_expected_and_received(conf
         (("sim:cubeling", "--json", "no/such/folder/file"), "No such file"),
     ],
 )
-def test_what_cannot_be_tried_is_said_in_one_line(conform, arguments, told):
+def test_invalid_options_are_reported_in_one_line(conform, arguments, told):
     code, out, err = conform(*arguments)
     assert (code, out) == (2, "")
     assert told in err
@@ -83,7 +83,7 @@ def test_what_cannot_be_tried_is_said_in_one_line(conform, arguments, told):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no named pipes")
-def test_a_pipe_is_not_waited_for(conform, tmp_path):
+def test_a_pipe_does_not_block(conform, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     code, out, err = conform("sim:cubeling", "--json", str(tmp_path / "pipe"))
     assert (code, out) == (2, "")
@@ -96,7 +96,7 @@ def test_the_list_names_every_check_and_what_it_requires(conform):
     assert all(check.name in out for check in all_checks())
 
 
-def test_every_check_says_its_section_and_what_is_required_in_a_sentence():
+def test_every_check_has_a_section_and_a_requirement():
     for check in all_checks():
         assert 2 <= check.section <= 7
         assert check.requires.endswith(".")

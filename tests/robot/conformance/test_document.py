@@ -8,7 +8,7 @@ from robot.conformance import all_checks
 from tools.conformance_reference import DOCUMENT, checks_table, updated
 
 
-def test_the_document_is_as_the_code_would_draw_it():
+def test_the_document_is_current():
     document = DOCUMENT.read_text("utf-8")
     assert updated(document) == document, "run `python -m tools.conformance_reference`"
 
@@ -22,7 +22,7 @@ def test_the_table_names_every_check():
     assert all(f"| {check.name}" in checks_table() for check in all_checks())
 
 
-def test_the_picture_asks_nothing_of_the_network():
+def test_the_picture_loads_nothing_from_the_network():
     picture = (Path(DOCUMENT).parent / "pictures" / "conform.svg").read_text("utf-8")
     assert "http" not in picture.replace("http://www.w3.org/", "")
     assert len(picture) < 40_000

@@ -33,7 +33,7 @@ class Silent(Mutant):
         pass
 
 
-def test_a_robot_that_says_nothing_is_given_up_after_two_seconds():
+def test_a_silent_robot_is_given_up_after_two_seconds():
     line = SimulatedChannel(Silent())
     begin = line.now()
     with pytest.raises(RobotError, match=r"no robot of this protocol answers.*nothing received"):
@@ -46,7 +46,7 @@ class Babbler(Silent):
         self.write(bytes(range(256)))
 
 
-def test_a_robot_that_only_babbles_is_given_up_too():
+def test_a_robot_that_sends_only_noise_is_given_up_too():
     with pytest.raises(RobotError, match=r"bytes received, but no WELCOME"):
         run_checks(SimulatedChannel(Babbler()), all_checks(), 1)
 
@@ -57,7 +57,7 @@ class BabblingRobot(Mutant):
             self.write(b"\0oh so much to say" * 5)
 
 
-def test_a_robot_that_babbles_between_its_frames_fails_in_bounded_time():
+def test_a_robot_that_sends_noise_between_frames_fails_in_bounded_time():
     line = SimulatedChannel(BabblingRobot())
     begin = line.now()
     report = run_checks(line, all_checks(), 1)
@@ -99,7 +99,7 @@ class Hangs(Mutant):
             super().send_message(session, message)
 
 
-def test_a_robot_that_hangs_in_the_middle_fails_and_the_rest_is_left_out():
+def test_after_a_hang_of_the_robot_the_other_checks_are_skipped():
     line = SimulatedChannel(Hangs())
     begin = line.now()
     report = run_checks(line, all_checks(), 1)
@@ -110,7 +110,7 @@ def test_a_robot_that_hangs_in_the_middle_fails_and_the_rest_is_left_out():
     assert line.now() - begin < 10
 
 
-def test_when_time_is_up_the_rest_is_left_out_and_the_robot_does_not_conform():
+def test_when_time_is_up_the_other_checks_are_skipped_and_the_robot_does_not_conform():
     report = run_checks(SimulatedChannel(Simulator()), all_checks(), 1, max_duration=1.0)
     assert "have taken 1 s" in report.cut_short
     assert not report.conforms
@@ -137,7 +137,7 @@ class Listener(Simulator):
         super().receive(data, now)
 
 
-def test_whatever_happens_the_robot_is_left_neutral_and_without_a_session():
+def test_the_robot_is_always_left_neutral_and_without_a_session():
     robot = Listener()
 
     def interrupt(result) -> None:

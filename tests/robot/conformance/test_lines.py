@@ -83,7 +83,7 @@ class BusyComputer(SlowLine):
         return super().read(until)
 
 
-def test_what_fails_while_the_computer_is_held_up_is_tried_again():
+def test_a_check_that_fails_on_a_busy_computer_is_retried():
     report = run_checks(BusyComputer(0.0, 0.001), all_checks(), 1)
     assert report.conforms
     assert any("busy for 4" in one.remark for one in report.results)

@@ -34,5 +34,5 @@ def test_a_mutant_without_a_mutation_passes():
     assert failures(Mutant(), all_checks()) == []
 
 
-def test_the_chosen_checks_are_those_whose_names_hold_the_word():
+def test_the_selected_checks_have_the_word_in_their_names():
     assert [check.name for check in select_checks(["wrong-mark"])] == ["wrong mark dropped"]

@@ -1,4 +1,4 @@
-"""The firmware in virtual time: a board that only remembers, and the robot on it."""
+"""The firmware in virtual time, on a board that only records."""
 
 import contextlib
 import threading
@@ -21,25 +21,25 @@ from robot.protocol.wire import FrameReader, encode_frame
 
 @dataclass(frozen=True)
 class Pulse:
-    """What a servo was told."""
+    """A change of a servo's pulse width."""
 
     time: int
-    """When [ms]."""
+    """Time [ms]."""
 
     pin: int
     us: int
-    """Length [µs]; 0 for none."""
+    """Pulse width [µs]; 0 for no pulses."""
 
 
 class VirtualBoard(Board):
-    """A board whose line and time belong to the test."""
+    """A board whose line and time the test controls."""
 
     def __init__(self) -> None:
         self.now = 0
         self.incoming = b""
         self.outgoing = b""
         self.takes = 10_000
-        """How many bytes the line takes in one go."""
+        """How many bytes the line takes at once."""
         self.pulses: list[Pulse] = []
         self.tones: list[int] = []
         self.dead = False
@@ -106,19 +106,19 @@ class Dino:
         body = self.robot.body
         return body.valence / 10_000, body.moods[body.mood]
 
-    # What tests ask in their own words.
+    # Helpers for tests.
 
-    def says(self) -> list[tuple[int, Any]]:
-        """Return the messages that it has sent since, with their sessions."""
+    def sent(self) -> list[tuple[int, Any]]:
+        """Return the messages that it has sent since the last call, with their sessions."""
         return [unpack(body, "robot") for body in FrameReader().feed(self.bytes_to_send())]
 
-    def hears(self, message: object, session: int = 1, version: int = VERSION) -> None:
-        """Let it hear a message now."""
+    def send(self, message: object, session: int = 1, version: int = VERSION) -> None:
+        """Send it a message now."""
         self.board.incoming += encode_frame(pack(message, session, version))
         self.robot.step(self.board.now)
 
-    def lives(self, ms: int, step: int = 5) -> None:
-        """Let time pass."""
+    def run(self, ms: int, step: int = 5) -> None:
+        """Advance the time."""
         end = self.board.now + ms
         while self.board.now < end:
             self.board.now = min(self.board.now + step, end)
@@ -127,13 +127,13 @@ class Dino:
 
 @pytest.fixture
 def dino() -> Dino:
-    """Make a robot that nobody has greeted."""
+    """Return a robot without a session."""
     return Dino()
 
 
 @pytest.fixture
 def desk() -> Iterator[PtyBoard]:
-    """Run the firmware, as it is, behind a pseudo-terminal."""
+    """Run the firmware on a pseudo-terminal."""
     made = PtyBoard()
 
     def live() -> None:

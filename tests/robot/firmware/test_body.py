@@ -1,4 +1,4 @@
-"""The firmware's body: servos that are never hurried, feelings at their own pace, and rest."""
+"""The firmware's body: limited servo speeds, emotions at a bounded rate, and rest."""
 
 from itertools import pairwise
 from math import radians
@@ -37,23 +37,23 @@ COMMANDS = st.lists(
     ),
     max_size=12,
 )  # fmt: skip
-"""Commands, how long each lasts [ms], and how often the board gets to look meanwhile [ms]."""
+"""Commands, the time after each [ms], and the period of the main loop then [ms]."""
 
 
 def obey(dino: Dino, commands: list[tuple[Any, int, int]]) -> None:
-    """Let the body do what it is told."""
-    dino.hears(m.Hello(2, 9))
+    """Send commands to the robot."""
+    dino.send(m.Hello(2, 9))
     number = 0
     for command, lasts, step in commands:
         if command is not None:
             number += 1
-            dino.hears(type(command)(number, *list(vars(command).values())[1:]))
-        dino.lives(lasts, step)
+            dino.send(type(command)(number, *list(vars(command).values())[1:]))
+        dino.run(lasts, step)
 
 
 @given(COMMANDS)
 @settings(max_examples=60)
-def test_no_servo_is_ever_sent_faster_than_its_top_speed_or_beyond_its_limits(commands):
+def test_no_servo_exceeds_its_top_speed_or_its_limits(commands):
     dino = Dino()
     obey(dino, commands)
     last: dict[int, Pulse] = {}
@@ -70,25 +70,25 @@ def test_no_servo_is_ever_sent_faster_than_its_top_speed_or_beyond_its_limits(co
         last[pulse.pin] = pulse
 
 
-def test_a_joint_stops_at_its_limit_however_far_a_motion_would_take_it():
+def test_a_joint_stops_at_its_limit_in_a_motion_beyond_it():
     rows = [(*row[:2], -5, 5, *row[4:]) for row in servos.SERVOS]
     dino = Dino(SimpleNamespace(**(vars(servos) | {"SERVOS": rows})))
     obey(dino, [(m.Express(1, 1.0, 1.0, 1), 400, 5)] * 8)
     assert max(dino.joints.angles) <= 500
-    dino.hears(m.Beat(1))
-    assert max(dino.says()[-1][1].joints) == pytest.approx(radians(5), abs=1e-3)
+    dino.send(m.Beat(1))
+    assert max(dino.sent()[-1][1].joints) == pytest.approx(radians(5), abs=1e-3)
 
 
-def test_after_a_hang_it_is_late_and_not_hasty(dino):
+def test_after_a_hang_no_joint_jumps(dino):
     obey(dino, [(m.Express(1, 1.0, 1.0, 1), 400, 5)] * 5)
     before = list(dino.joints.angles)
-    dino.lives(400, step=400)
+    dino.run(400, step=400)
     for servo, one, other in zip(dino.table.servos, before, dino.joints.angles, strict=True):
         assert abs(one - other) <= 100 * servo.speed * body.MAX_STEP_MS / 1000
 
 
 def test_servos_get_their_first_pulse_at_neutral_and_one_after_the_other(dino):
-    dino.lives(2000, step=1)
+    dino.run(2000, step=1)
     first: dict[int, Pulse] = {}
     for pulse in dino.board.pulses:
         first.setdefault(pulse.pin, pulse)
@@ -101,78 +101,78 @@ def test_servos_get_their_first_pulse_at_neutral_and_one_after_the_other(dino):
         assert share == pytest.approx(servo.neutral / 180, abs=1e-3)
 
 
-def test_it_lives_without_a_host_then_rests_with_limp_servos_and_wakes_for_a_host(dino):
-    dino.lives(30_000)
+def test_without_a_host_it_rests_with_limp_servos_and_wakes_for_a_host(dino):
+    dino.run(30_000)
     assert len({pulse.us for pulse in dino.board.pulses}) > 50, "it should breathe"
-    dino.lives(40_000)
+    dino.run(40_000)
     assert [pulse.us for pulse in dino.board.pulses[-5:]] == [0] * 5
     assert dino.joints.neutral
     assert dino.joints.limp
     count = len(dino.board.pulses)
-    dino.lives(60_000)
+    dino.run(60_000)
     assert len(dino.board.pulses) == count
-    dino.hears(m.Hello(2, 9))
-    dino.hears(m.Beat(1))
-    flags = dino.says()[-1][1].flags
+    dino.send(m.Hello(2, 9))
+    dino.send(m.Beat(1))
+    flags = dino.sent()[-1][1].flags
     assert flags & m.LIMP
-    dino.lives(100)
-    dino.hears(m.Beat(2))
-    flags = dino.says()[-1][1].flags
+    dino.run(100)
+    dino.send(m.Beat(2))
+    flags = dino.sent()[-1][1].flags
     assert not flags & m.LIMP
     assert flags & m.RECKONED
 
 
-def test_a_servo_driver_that_is_unplugged_makes_it_limp_and_it_says_so(dino):
-    dino.hears(m.Hello(2, 9))
-    dino.lives(400)
+def test_an_unplugged_servo_driver_is_reported_as_limp(dino):
+    dino.send(m.Hello(2, 9))
+    dino.run(400)
     dino.board.dead = True
-    dino.lives(40)
-    dino.hears(m.Beat(1))
-    assert dino.says()[-1][1].flags & m.LIMP
+    dino.run(40)
+    dino.send(m.Beat(1))
+    assert dino.sent()[-1][1].flags & m.LIMP
     where = list(dino.joints.angles)
-    dino.lives(300)
+    dino.run(300)
     assert dino.joints.angles == where, "what has no power does not move"
     dino.board.dead = False
     dino.board.pulses.clear()
-    dino.lives(RETRY_EVERY_MS + 5 * POWER_ON_EVERY_MS + 100)
-    dino.hears(m.Beat(2))
+    dino.run(RETRY_EVERY_MS + 5 * POWER_ON_EVERY_MS + 100)
+    dino.send(m.Beat(2))
     assert {pulse.pin for pulse in dino.board.pulses} == set(SERVOS)
     assert all(dino.joints.powered)
 
 
-def test_a_feeling_is_shown_at_a_bounded_rate_in_any_direction():
+def test_an_emotion_changes_at_a_bounded_rate_in_any_direction():
     for valence, arousal in ((1.0, 0.0), (0.6, -0.8), (0.001, 1.0), (-1.0, 1.0)):
         dino = Dino()
-        dino.hears(m.Hello(2, 9))
-        dino.hears(m.Express(1, valence, arousal))
-        dino.lives(400)
+        dino.send(m.Hello(2, 9))
+        dino.send(m.Express(1, valence, arousal))
+        dino.run(400)
         shown = (dino.robot.body.valence**2 + dino.robot.body.arousal**2) ** 0.5
         assert 3900 <= shown <= 4020
         for _ in range(5):
-            dino.hears(m.Beat(0))
-            dino.lives(300)
+            dino.send(m.Beat(0))
+            dino.run(300)
         assert dino.robot.body.valence == round(1e4 * valence)
         assert dino.robot.body.arousal == round(1e4 * arousal)
 
 
 @given(st.lists(st.sampled_from([-1.0, -0.4, -0.3, -0.2, 0.0, 0.2, 0.3, 0.4, 1.0]), max_size=6))
 @settings(max_examples=40)
-def test_without_a_word_it_chooses_the_mood_that_the_simulated_robot_would(valences):
+def test_without_a_named_mood_it_chooses_the_mood_of_the_simulated_robot(valences):
     dino = Dino()
-    dino.hears(m.Hello(2, 9))
+    dino.send(m.Hello(2, 9))
     label: Label = "neutral"
     for number, valence in enumerate(valences, 1):
-        dino.hears(m.Express(number, valence, 0.0))
+        dino.send(m.Express(number, valence, 0.0))
         for _ in range(22):
-            dino.hears(m.Beat(0))
-            dino.lives(100, step=20)
+            dino.send(m.Beat(0))
+            dino.run(100, step=20)
             # 100 ms hold five steps; the words on the way may change in each of them.
             for _ in range(3):
                 label = next_label(label, dino.robot.body.valence / 1e4)
         assert dino.portrait() == (valence, label)
 
 
-def test_after_an_error_the_servos_are_limp_and_the_robot_is_back():
+def test_after_an_error_the_servos_are_limp_and_the_firmware_restarts():
     class Failing(VirtualBoard):
         errors: list[BaseException] = []  # noqa: RUF012 # one board, one test
         turns = 0
@@ -206,14 +206,14 @@ def test_after_an_error_the_servos_are_limp_and_the_robot_is_back():
 
 
 def test_the_watchdog_waits_for_the_first_host(dino):
-    dino.lives(100)
+    dino.run(100)
     assert dino.board.watched == 0
-    dino.hears(m.Hello(2, 9))
-    dino.lives(100)
+    dino.send(m.Hello(2, 9))
+    dino.run(100)
     assert dino.board.watched == 1
 
 
-def test_a_program_without_a_host_ends_when_the_developer_asks():
+def test_the_program_ends_at_a_developers_request_without_a_host():
     class Left(VirtualBoard):
         def elapsed(self) -> int:
             return 5
@@ -227,13 +227,13 @@ def test_a_program_without_a_host_ends_when_the_developer_asks():
 
 
 def test_sounds_glide_and_end(dino):
-    dino.hears(m.Hello(2, 9))
-    dino.hears(m.Play(1, m.ITEM_SOUND, 3))
-    dino.lives(400)
+    dino.send(m.Hello(2, 9))
+    dino.send(m.Play(1, m.ITEM_SOUND, 3))
+    dino.run(400)
     assert dino.robot.body.sound == 3
     assert 1800 in dino.board.tones
-    dino.hears(m.Beat(1))
-    dino.lives(200)
+    dino.send(m.Beat(1))
+    dino.run(200)
     assert (dino.robot.body.sound, dino.board.tones[-1]) == (m.NOTHING, 0)
 
 

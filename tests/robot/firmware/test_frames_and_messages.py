@@ -59,7 +59,7 @@ def test_every_vector_of_a_robot_is_packed_from_its_values(vector):
 
 
 @pytest.mark.parametrize("entry", VECTORS["skipped by a robot"], ids=lambda entry: entry["why"])
-def test_what_the_vectors_tell_a_robot_to_skip_is_skipped(entry):
+def test_vectors_to_be_skipped_are_skipped(entry):
     for body in read(bytes.fromhex(entry["bytes"])):
         assert codec.unpack(bytearray(body).ljust(MAX_BODY + 1), len(body)) is None
 
@@ -83,7 +83,7 @@ def test_any_stream_gives_the_frames_that_the_host_finds_in_it(stream):
 
 
 @given(BODIES, st.lists(st.integers(0, 8 * MAX_FRAME), min_size=1, max_size=3, unique=True))
-def test_up_to_three_wrong_bits_are_noticed(body, wrong):
+def test_up_to_three_wrong_bits_are_detected(body, wrong):
     encoded = bytearray(encode_frame(body)[1:-1])
     for bit in {bit % (8 * len(encoded)) for bit in wrong}:
         encoded[bit // 8] ^= 1 << bit % 8
@@ -136,7 +136,7 @@ def test_a_body_is_skipped_exactly_where_the_host_side_code_skips_it(number, res
     assert (values is None) == (expected is None)
 
 
-def test_what_finds_no_room_is_lost_whole():
+def test_a_frame_without_room_is_dropped_as_a_whole():
     out = frames.SendBuffer(100)
     for size in (40, 40, 40, 3):
         out.put(bytearray(40), size)

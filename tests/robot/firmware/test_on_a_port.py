@@ -13,7 +13,7 @@ HERE = Path(robot.firmware.__file__).parent
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="there are no pseudo-terminals")
 
 
-def test_it_is_connected_feels_plays_and_stops(desk, soon):
+def test_it_connects_shows_emotions_plays_and_stops(desk, soon):
     with robot.connect(desk.url) as dino:
         dino.express(robot.Emotion(0.5, 0.2, "happy"))
         soon(lambda: dino.telemetry.label == "happy")
@@ -29,7 +29,7 @@ def test_it_is_connected_feels_plays_and_stops(desk, soon):
     assert desk.errors == []
 
 
-def test_it_finds_the_way_back_after_an_error(desk, soon, capfd):
+def test_it_recovers_after_an_error(desk, soon, capfd):
     with robot.connect(desk.url) as dino:
         write = desk.write
         desk.write = None  # what a bug would look like
@@ -52,7 +52,7 @@ def start(*command: str, folder: Path) -> subprocess.Popen[str]:
     ],
     ids=["python -m robot.firmware", "main.py alone"],
 )
-def test_it_runs_on_a_desk(command, folder):
+def test_it_runs_on_a_pseudo_terminal(command, folder):
     with start(sys.executable, *command, folder=folder) as process:
         try:
             assert process.stdout is not None

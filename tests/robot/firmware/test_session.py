@@ -45,7 +45,7 @@ def test_it_conforms():
     assert report.conforms
 
 
-def test_our_host_gets_to_know_it_and_is_obeyed(dino_world):
+def test_our_host_reads_its_catalogue_and_controls_it(dino_world):
     w = dino_world()
     w.run_until(lambda: w.telemetry.state == "ready", within=0.5)
     catalogue = w.host.catalogue
@@ -73,36 +73,36 @@ def test_emotions_survive_a_bad_line_in_order(dino_world):
     assert valences == sorted(set(valences))
 
 
-def test_a_cut_line_makes_it_neutral_in_time_and_the_host_brings_it_back(dino):
-    dino.hears(m.Hello(2, 9))
-    dino.hears(m.Express(1, 0.5, 0.5, 1))
-    dino.lives(445, step=1)
+def test_a_cut_line_leads_to_neutral_in_time_and_the_host_restores_the_emotion(dino):
+    dino.send(m.Hello(2, 9))
+    dino.send(m.Express(1, 0.5, 0.5, 1))
+    dino.run(445, step=1)
     assert dino.robot.session.number == 1
-    dino.lives(10, step=1)
+    dino.run(10, step=1)
     assert dino.robot.session.number == 0
-    dino.lives(1500)
+    dino.run(1500)
     assert dino.portrait() == (0.0, "neutral")
-    dino.says()
-    dino.hears(m.Hello(2, 9), session=2)
-    ((_, welcome),) = dino.says()
+    dino.sent()
+    dino.send(m.Hello(2, 9), session=2)
+    ((_, welcome),) = dino.sent()
     assert welcome.taken == 0
 
 
-def test_bytes_that_waited_while_it_hung_are_of_no_session(dino):
-    dino.hears(m.Hello(2, 9))
-    dino.says()
+def test_bytes_that_waited_during_a_hang_belong_to_no_session(dino):
+    dino.send(m.Hello(2, 9))
+    dino.sent()
     dino.board.now += 700
-    dino.hears(m.Express(1, 0.5, 0.5))
-    assert dino.says() == [(1, m.Gone())]
+    dino.send(m.Express(1, 0.5, 0.5))
+    assert dino.sent() == [(1, m.Gone())]
 
 
-def test_a_host_of_version_1_is_spoken_to_in_version_1(dino):
-    dino.hears(m.Hello(1, 9))
-    dino.hears(m.Express(1, 0.9, 0.9), version=1)
-    dino.hears(m.Beat(4))
-    welcome, ack, state = [message for _, message in dino.says()]
+def test_a_host_of_version_1_gets_version_1(dino):
+    dino.send(m.Hello(1, 9))
+    dino.send(m.Express(1, 0.9, 0.9), version=1)
+    dino.send(m.Beat(4))
+    welcome, ack, state = [message for _, message in dino.sent()]
     assert (welcome.version, ack.result, state.flags) == (1, m.TAKEN, 0)
-    dino.lives(300)
+    dino.run(300)
     assert dino.robot.body.valence > 0
 
 
@@ -112,23 +112,23 @@ def test_the_catalogues_number_changes_when_the_catalogue_does():
     numbers = set()
     for change in ({}, {"BUZZER": None}, {"SERVOS": (further, *others)}, {"SERVOS": (first,)}):
         dino = Dino(SimpleNamespace(**(vars(servos) | change)))
-        dino.hears(m.Hello(2, 9))
-        ((_, welcome),) = dino.says()
+        dino.send(m.Hello(2, 9))
+        ((_, welcome),) = dino.sent()
         numbers.add(welcome.catalogue)
     assert len(numbers) == 4
 
 
-def test_a_line_that_takes_nothing_blocks_nothing(dino):
+def test_a_blocked_line_blocks_nothing_else(dino):
     dino.board.takes = 0
-    dino.hears(m.Hello(2, 9))
+    dino.send(m.Hello(2, 9))
     for count in range(100):
-        dino.hears(m.Beat(count))
-        dino.lives(50)
+        dino.send(m.Beat(count))
+        dino.run(50)
     assert dino.robot.session.number == 1
     dino.board.takes = 7
-    dino.lives(1000)
+    dino.run(1000)
     # What was whole in the queue comes out whole.
-    assert [type(message) for _, message in dino.says()][:2] == [m.Welcome, m.State]
+    assert [type(message) for _, message in dino.sent()][:2] == [m.Welcome, m.State]
 
 
 def _steps() -> st.SearchStrategy[list[tuple[int, int, object, int]]]:
@@ -156,7 +156,7 @@ def _steps() -> st.SearchStrategy[list[tuple[int, int, object, int]]]:
 
 @given(_steps())
 @settings(max_examples=60)
-def test_it_answers_whatever_comes_as_the_simulated_robot_does(steps):
+def test_it_answers_any_input_like_the_simulated_robot(steps):
     """The same bytes at the same times; only what is their own may differ."""
     ours, simulated = Dino(), Simulator(3)
     now = told = 0

@@ -29,12 +29,12 @@ def row(**changes: object) -> tuple[object, ...]:
 
 
 @pytest.mark.parametrize("platform", ["rp2", "esp32", "linux"])
-def test_the_table_as_it_comes_is_good_on_every_board(platform):
+def test_the_default_table_is_valid_on_every_board(platform):
     ServoTable(servos).check(platform)
 
 
 @pytest.mark.parametrize("path", LAYOUTS, ids=lambda path: path.stem)
-def test_every_layout_is_good_and_its_joints_move(path):
+def test_every_layout_is_valid_and_its_joints_move(path):
     table = ServoTable(SimpleNamespace(**run_path(str(path))))
     table.check("rp2")
     table.check("esp32")
@@ -63,7 +63,7 @@ def test_every_layout_is_good_and_its_joints_move(path):
         ({"pin": 13}, "pin 13 is used for a servo and for something else"),
     ],
 )
-def test_a_row_that_cannot_be_right_is_refused_in_one_line(changes, says):
+def test_an_invalid_row_is_refused_in_one_line(changes, says):
     with pytest.raises(ValueError, match=says) as caught:
         ServoTable(changed(SERVOS=(row(**changes),))).check("esp32")
     assert "\n" not in str(caught.value)
@@ -82,12 +82,12 @@ def test_a_row_that_cannot_be_right_is_refused_in_one_line(changes, says):
         ({"DRIVER": (0, 20, 21, 64), "SERVOS": (row(pin=16),)}, "channels 0 to 15, not 16"),
     ],
 )
-def test_a_table_that_cannot_be_right_is_refused_in_one_line(changes, says):
+def test_an_invalid_table_is_refused_in_one_line(changes, says):
     with pytest.raises(ValueError, match=says):
         ServoTable(changed(**changes)).check("esp32")
 
 
-def test_pins_that_share_a_pwm_are_refused_on_the_board_where_they_do():
+def test_pins_that_share_a_pwm_are_refused_on_that_board():
     buzzer = changed(SERVOS=(row(pin=23),))
     ServoTable(buzzer).check("esp32")
     with pytest.raises(ValueError, match="shares the frequency"):

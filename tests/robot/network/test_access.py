@@ -10,7 +10,7 @@ from robot.errors import RobotError
 from robot.network import Address, Credentials
 
 
-def test_a_url_says_where_and_who():
+def test_a_url_has_host_port_user_and_password():
     address = Address.of("mqtt://ann:se%40same@museum.local:1884")
     assert (address.host, address.port, address.user) == ("museum.local", 1884, "ann")
     assert address.password == "se@same"
@@ -19,7 +19,7 @@ def test_a_url_says_where_and_who():
 
 
 @pytest.mark.parametrize(("url", "port"), [("mqtt://h", 1883), ("mqtts://h/", 8883)])
-def test_each_scheme_has_its_usual_port(url, port):
+def test_each_scheme_has_its_default_port(url, port):
     address = Address.of(url)
     assert address.port == port
     assert (address.tls is not None) == (port == 8883)
@@ -54,14 +54,14 @@ def test_the_password_comes_from_the_url_then_the_file_then_the_environment(tmp_
         ("mqtt://h", {"user": "ann", "password_file": Path("absent")}, "absent"),
     ],
 )
-def test_what_is_wrong_is_said_in_one_line_without_the_password(url, given, says):
+def test_errors_are_one_line_without_the_password(url, given, says):
     with pytest.raises(RobotError, match=says) as refused:
         Address.of(url, Credentials(**given))
     assert "secret" not in str(refused.value)
     assert "\n" not in str(refused.value)
 
 
-def test_an_empty_password_file_and_one_that_is_no_certificate_are_refused(tmp_path):
+def test_an_empty_password_file_and_an_invalid_certificate_are_refused(tmp_path):
     file = tmp_path / "file"
     file.write_text("\n")
     with pytest.raises(RobotError, match="first line"):
@@ -71,7 +71,7 @@ def test_an_empty_password_file_and_one_that_is_no_certificate_are_refused(tmp_p
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no named pipes")
-def test_a_password_may_come_through_a_pipe_and_no_pipe_is_waited_for_for_ever(tmp_path):
+def test_a_password_may_come_from_a_pipe_with_a_timeout(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
     given = Credentials(user="ann", password_file=pipe)
@@ -88,7 +88,7 @@ def test_a_password_may_come_through_a_pipe_and_no_pipe_is_waited_for_for_ever(t
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="there is no /dev/zero")
-def test_a_device_is_no_password():
+def test_a_device_is_not_a_password_file():
     given = Credentials(user="ann", password_file=Path("/dev/zero"))
     with pytest.raises(RobotError, match="must be the password"):
         Address.of("mqtt://h", given)

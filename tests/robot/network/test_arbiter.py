@@ -23,7 +23,7 @@ ANGRY = Emotion(-0.8, 0.5, "angry")
 NEUTRAL = Emotion(0.0, 0.0, "neutral")
 
 
-def test_an_action_gives_the_robot_to_who_did_it(network):
+def test_an_action_makes_its_player_active(network):
     ann, bob = network.player("a"), network.player("b")
     network.node("rex")
     ann.feel(HAPPY)
@@ -44,7 +44,7 @@ def test_an_action_gives_the_robot_to_who_did_it(network):
 
 
 @pytest.mark.parametrize("end", ["goodbye", "last will", "silence"])
-def test_a_player_who_is_gone_keeps_its_mood_on_the_robot_for_a_while(network, end):
+def test_the_emotion_of_a_player_who_is_gone_is_held_for_a_while(network, end):
     ann = network.player("a")
     network.node("rex")
     ann.feel(HAPPY)
@@ -65,7 +65,7 @@ def test_a_player_who_is_gone_keeps_its_mood_on_the_robot_for_a_while(network, e
     assert rex.shown[-1] == NEUTRAL
 
 
-def test_a_robot_goes_from_a_player_who_is_gone_to_one_who_is_there(network):
+def test_another_online_player_becomes_active_when_one_is_gone(network):
     ann, bob = network.player("a"), network.player("b")
     network.node("rex")
     ann.feel(HAPPY)
@@ -77,7 +77,7 @@ def test_a_robot_goes_from_a_player_who_is_gone_to_one_who_is_there(network):
     assert network.robots["rex"].shown[-1] == ANGRY
 
 
-def test_a_robot_cut_off_from_the_broker_is_neutral_in_the_end(network):
+def test_a_robot_without_a_broker_goes_to_neutral(network):
     ann = network.player("a")
     network.node("rex")
     ann.feel(HAPPY)
@@ -90,7 +90,7 @@ def test_a_robot_cut_off_from_the_broker_is_neutral_in_the_end(network):
     assert network.robots["rex"].shown[-1] == HAPPY
 
 
-def test_what_comes_late_from_an_earlier_run_moves_nothing(network):
+def test_late_messages_of_an_earlier_epoch_have_no_effect(network):
     node = network.node("rex")
     for session, number in ((2, 1), (1, 1), (1, 2), (2, 2), (1, 3)):
         action = ActionMessage(session, number, 1, f"a{session}{number}")
@@ -118,7 +118,7 @@ def test_a_retained_emotion_of_a_closed_player_is_not_shown(network):
     assert network.robots["rex"].shown == []
 
 
-def test_a_robot_follows_whom_it_was_told_and_nobody_else(network):
+def test_a_robot_follows_only_the_given_players(network):
     network.player("a")
     network.player("b")
     network.node("rex", follow="b")
@@ -131,7 +131,7 @@ def test_a_robot_follows_whom_it_was_told_and_nobody_else(network):
     assert not network.clients["a"].endpoint.followers.robots
 
 
-def test_the_state_tells_what_the_robot_does_only_when_it_changes_and_not_too_often(network):
+def test_the_state_is_published_when_it_changes_at_a_limited_rate(network):
     ann = network.player("a")
     network.node("rex")
     topic = "cubeling/1/hall/robot/rex/state"
@@ -155,7 +155,7 @@ def test_the_state_tells_what_the_robot_does_only_when_it_changes_and_not_too_of
     assert status.status == "online"  # the node is, the robot is not
 
 
-def test_more_players_than_a_robot_can_count_make_no_memory_grow(network):
+def test_the_table_of_players_is_bounded(network):
     node = RobotNode(Member("hall", "robot", "rex"), FakeRobot(), 1, (Pattern.parse("*", "hall"),))
     for number in range(10 * MAX_PLAYERS):
         for kind, message in (
@@ -167,7 +167,7 @@ def test_more_players_than_a_robot_can_count_make_no_memory_grow(network):
     assert len(node.arbiter.players) == MAX_PLAYERS
 
 
-def test_more_robots_than_a_player_can_count_make_no_memory_grow(network):
+def test_the_table_of_robots_is_bounded(network):
     ann = network.player("a")
     for number in range(10 * MAX_ROBOTS):
         for status in ("online", "lost") if number % 2 else ("online",):
@@ -179,7 +179,7 @@ def test_more_robots_than_a_player_can_count_make_no_memory_grow(network):
 @pytest.mark.parametrize(
     "text", ["", "a/b/c", "a b", "+", "#", "hall/", "/a", "-a", "x" * 33, "\n"]
 )
-def test_what_can_be_no_name_is_refused_in_one_line(text):
+def test_an_invalid_name_is_refused_in_one_line(text):
     with pytest.raises(RobotError) as refused:
         Pattern.parse(text, "hall")
     assert "\n" not in str(refused.value)

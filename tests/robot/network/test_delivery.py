@@ -107,7 +107,7 @@ def test_emotions_are_rate_limited_and_the_latest_wins(network):
     assert len(shown) <= 2.0 / EMOTION_EVERY_S + 2
 
 
-def test_an_action_too_old_is_given_up_and_counted(network):
+def test_an_expired_action_is_dropped_and_counted(network):
     ann = network.player("a", max_age=MAX_AGE_S)
     network.node("rex")
     network.run(0.5)
@@ -122,7 +122,7 @@ def test_an_action_too_old_is_given_up_and_counted(network):
     assert (ann.counts.expired, ann.pending) == (1, 0)
 
 
-def test_only_so_many_actions_wait_and_those_given_up_are_counted(network):
+def test_pending_actions_are_bounded_and_dropped_ones_are_counted(network):
     ann = network.player("a")
     network.node("rex")
     network.run(0.5)
@@ -135,7 +135,7 @@ def test_only_so_many_actions_wait_and_those_given_up_are_counted(network):
     assert network.robots["rex"].played == network.made["a"][3:]
 
 
-def test_a_robot_whose_line_broke_gets_what_it_missed(network):
+def test_a_robot_gets_missed_actions_after_a_reconnection(network):
     network.player("a")
     network.node("rex")
     network.node("max")
@@ -151,7 +151,7 @@ def test_a_robot_whose_line_broke_gets_what_it_missed(network):
     assert network.robots["rex"].played == ["a1", "a2", "a3"]
 
 
-def test_a_node_that_is_started_anew_does_nothing_twice(network):
+def test_a_restarted_node_does_nothing_twice(network):
     network.player("a")
     network.node("rex")
     network.node("max")
@@ -167,7 +167,7 @@ def test_a_node_that_is_started_anew_does_nothing_twice(network):
     assert network.robots["rex"].played == ["a1", "a2"]
 
 
-def test_a_player_started_anew_begins_a_new_count_and_an_old_clock_does_no_harm(network):
+def test_a_restarted_player_starts_a_later_epoch_even_with_an_earlier_clock(network):
     network.player("a")
     network.node("rex")
     network.run(0.5)
@@ -181,7 +181,7 @@ def test_a_player_started_anew_begins_a_new_count_and_an_old_clock_does_no_harm(
     assert network.robots["rex"].played == ["a1", "a2"]
 
 
-def test_of_two_programs_under_one_name_the_one_started_last_speaks(network):
+def test_of_two_programs_with_one_name_the_later_one_publishes(network):
     first = network.player("a", session=500)
     old = network.clients["a"]
     rex = network.node("rex")
@@ -218,7 +218,7 @@ def test_a_busy_robot_gets_the_action_later(network):
     assert network.robots["rex"].played == ["a1", "a2"]
 
 
-def test_a_lost_robot_misses_the_action_and_its_node_says_so(network):
+def test_an_action_missed_by_a_lost_robot_is_counted(network):
     network.player("a")
     node = network.node("rex")
     network.run(0.5)
@@ -231,7 +231,7 @@ def test_a_lost_robot_misses_the_action_and_its_node_says_so(network):
     assert (node.counts["missed"], network.clients["a"].endpoint.pending) == (1, 0)
 
 
-def test_what_nobody_follows_is_not_waited_for_for_ever(network):
+def test_actions_without_followers_expire(network):
     ann = network.player("a", max_age=MAX_AGE_S)
     network.node("rex", follow="b")
     network.run(0.5)
@@ -241,7 +241,7 @@ def test_what_nobody_follows_is_not_waited_for_for_ever(network):
     assert network.robots["rex"].played == []
 
 
-def test_a_robot_that_said_goodbye_is_not_waited_for(network):
+def test_a_closed_robot_is_not_waited_for(network):
     ann = network.player("a")
     network.node("rex")
     network.node("max")
@@ -252,7 +252,7 @@ def test_a_robot_that_said_goodbye_is_not_waited_for(network):
     assert ann.pending == 0
 
 
-def test_a_robot_that_is_silent_is_waited_for_but_not_pestered(network):
+def test_actions_for_a_lost_robot_are_kept_but_not_resent(network):
     ann = network.player("a")
     network.node("rex")
     network.run(0.5)
@@ -265,7 +265,7 @@ def test_a_robot_that_is_silent_is_waited_for_but_not_pestered(network):
     assert (ann.counts.sent, ann.pending) == (sent, 1)
 
 
-def test_a_late_acknowledgement_takes_nothing_back():
+def test_a_late_acknowledgement_changes_nothing():
     ann, rex = Member("hall", "player", "a"), Member("hall", "robot", "rex")
     followers = Followers(ann)
     followers.receive_status(rex, StatusMessage(1, 1, "online", ("hall/a",)), 0.0)
@@ -274,7 +274,7 @@ def test_a_late_acknowledgement_takes_nothing_back():
     assert followers.taken_by_all() == 5
 
 
-def test_an_acknowledgement_of_the_session_before_says_nothing_of_this_one(network):
+def test_an_acknowledgement_of_an_earlier_session_is_ignored(network):
     ann = Player(Member("hall", "player", "a"), session=5)
     ann.connected(0.0)
     robot = "cubeling/1/hall/robot/rex"
@@ -293,7 +293,7 @@ def test_an_acknowledgement_of_the_session_before_says_nothing_of_this_one(netwo
     assert decode(ActionMessage, action.payload).session == 901
 
 
-def test_nothing_that_arrives_stops_a_member(network):
+def test_no_message_stops_a_member(network):
     ann, node = network.player("a"), network.node("rex")
     network.run(0.1)
     random = np.random.default_rng(3)

@@ -28,7 +28,7 @@ MESSAGES = st.one_of(
 
 
 @given(MESSAGES)
-def test_what_is_written_is_read(message):
+def test_decoding_reverses_encoding(message):
     assert decode(type(message), encode(message)) == message
 
 
@@ -48,7 +48,7 @@ JSON = st.recursive(
 
 
 @given(st.sampled_from(MESSAGE_TYPES), st.data())
-def test_whatever_comes_is_read_or_refused_with_the_one_error(kind, data):
+def test_any_payload_is_decoded_or_refused_with_one_error(kind, data):
     names = list(kind.__struct_fields__)
     document = data.draw(st.dictionaries(st.sampled_from(names), JSON))
     for payload in (json.dumps(document).encode(), data.draw(st.binary(max_size=60))):
@@ -83,7 +83,7 @@ def test_whatever_comes_is_read_or_refused_with_the_one_error(kind, data):
         (m.AckMessage, b'{"session":1,"number":1,"players":{"a/b":[1]}}', "players"),
     ],
 )
-def test_what_is_not_allowed_is_refused(kind, payload, says):
+def test_invalid_payloads_are_refused(kind, payload, says):
     with pytest.raises(MalformedError, match=says):
         decode(kind, payload)
 
@@ -99,7 +99,7 @@ def test_the_largest_messages_fit():
         assert decode(type(message), encode(message)) == message
 
 
-def test_the_document_says_what_the_code_says():
+def test_the_document_is_current():
     text = DOCUMENT.read_text("utf-8")
     assert updated(text) == text, "run python -m tools.network_reference"
     for form in MESSAGE_TYPES:
@@ -108,7 +108,7 @@ def test_the_document_says_what_the_code_says():
 
 
 @given(st.text(max_size=40))
-def test_a_name_never_means_anything_in_a_topic(text):
+def test_a_name_has_no_special_meaning_in_a_topic(text):
     if is_name(text):
         topic = Member(text, "robot", text).topic("state")
         assert member_of(topic) == (Member(text, "robot", text), "state")
@@ -120,5 +120,5 @@ def test_a_name_never_means_anything_in_a_topic(text):
     "topic", ["", "cubeling/1/a/robot/b", "cubeling/2/a/robot/b/state", "cubeling/1/a/cat/b/state",
               "cubeling/1//robot/b/state", "cubeling/1/a/robot/b/state/c", "x/cubeling/1/a/b/c"],
 )  # fmt: skip
-def test_topics_of_others_are_none_of_ours(topic):
+def test_other_topics_are_ignored(topic):
     assert member_of(topic) is None

@@ -118,9 +118,7 @@ MOTIONS = ["nod", "wag tail", "hi", "kiss", "sit", "bow", "shout"]
 SOUNDS = ["chirp", "growl", "purr"]
 
 
-def test_a_broker_killed_in_the_middle_costs_no_action_and_doubles_none(
-    mosquitto, join, robots, soon
-):
+def test_no_action_is_lost_or_doubled_when_the_broker_is_killed(mosquitto, join, robots, soon):
     broker = mosquitto()
     roster = join(broker, Roster(), "roster")
     for name, one in robots.items():
@@ -338,7 +336,7 @@ def test_messages_that_tls_has_already_decrypted_are_read_at_once(authority, soo
         thread.join(5.0)
 
 
-def test_a_broker_that_asks_for_a_certificate_gets_one(mosquitto, authority):
+def test_a_client_certificate_is_sent_to_a_broker_that_requires_one(mosquitto, authority):
     broker = mosquitto(*tls(authority, "require_certificate true"))
     url = f"mqtts://localhost:{broker.port}"
     ours = Credentials(
@@ -385,7 +383,7 @@ def test_an_absent_broker_blocks_nobody_and_is_found_when_it_starts(mosquitto, s
     assert changes[-1] == "closed"
 
 
-def test_a_broker_that_hangs_fills_no_memory_and_delays_no_publisher(mosquitto):
+def test_a_hanging_broker_fills_no_memory_and_delays_no_publisher(mosquitto):
     broker = mosquitto()
     bus = MqttBus(Address.of(broker.url), "ann")
     bus.open()
