@@ -19,7 +19,7 @@ Point = tuple[float, float]
 CIRCLE_POINTS = 40
 """Points of a circle: at 6 mm its sides are half a millimetre long and look round."""
 
-INK: dict[str, tuple[int, int, int]] = {
+ICON_COLOURS: dict[str, tuple[int, int, int]] = {
     "stand": (42, 157, 143),
     "walk": (238, 148, 46),
     "run": (231, 96, 70),
@@ -223,4 +223,4 @@ ICONS: dict[str, Callable[[], list[Array]]] = {
     "fold": _fold,
     "glue": _glue,
 }
-"""All icons. Those with a colour in `INK` are printed on faces, the others in the instructions."""
+"""All icons. Those in `ICON_COLOURS` are printed on faces, the others in the instructions."""

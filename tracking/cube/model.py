@@ -9,7 +9,7 @@ from typing import Any, Self
 import cv2
 import numpy as np
 
-from tracking.cube.icons import INK
+from tracking.cube.icons import ICON_COLOURS
 from tracking.cube.measured_corners import measured_corners
 from tracking.errors import TrackingError
 from tracking.geometry.arrays import Array
@@ -253,8 +253,10 @@ def _face(table: object, marker: float, edge: float, where: str) -> Face:
     if isinstance(roll, bool) or roll not in (0, 90, 180, 270):
         raise TrackingError(f"{of_face} has roll_deg {roll!r}; use 0, 90, 180 or 270")
     role, icon = (_text(table, key, where, f"face '{name}': ") for key in ("role", "icon"))
-    if icon and icon not in INK:
-        raise TrackingError(f"{of_face} has the icon '{icon}'; use one of {', '.join(INK)}")
+    if icon and icon not in ICON_COLOURS:
+        raise TrackingError(
+            f"{of_face} has the icon '{icon}'; use one of {', '.join(ICON_COLOURS)}"
+        )
     corners = face_corners(name, int(roll), marker, edge)
     if "corners_mm" in table:
         corners = measured_corners(table["corners_mm"], corners, marker, of_face)

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.cube.icons import ICONS, INK, icon_mask
+from tracking.cube.icons import ICON_COLOURS, ICONS, icon_mask
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import FACE_AXES, CubeModel, Face
 from tracking.synthetic.camera_rays import CameraRays, PixelRegion, averaged
@@ -201,7 +201,7 @@ def _print_icon(texture: Image, cube: CubeModel, face: Face) -> None:
     size = int(0.72 * margin)
     if face.icon not in ICONS or size < 8:
         return
-    ink = np.array(INK.get(face.icon, (60, 60, 60))[::-1], np.float32)
+    ink = np.array(ICON_COLOURS.get(face.icon, (60, 60, 60))[::-1], np.float32)
     mask = icon_mask(face.icon, size).astype(np.float32)[..., None] / 255
     top, left = TEXELS - int((margin + size) / 2), (TEXELS - size) // 2
     part = texture[top : top + size, left : left + size]

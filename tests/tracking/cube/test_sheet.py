@@ -8,7 +8,7 @@ import pypdfium2
 import pytest
 
 from tracking import CubeModel, TrackingError, icon_mask, icon_paths, write_sheet
-from tracking.cube.icons import ICONS, INK, signed_area
+from tracking.cube.icons import ICON_COLOURS, ICONS, signed_area
 from tracking.cube.marker import marker_cells, marker_loops
 from tracking.cube.model import aruco_dictionary, bundled
 from tracking.cube.printing.layout import PAPERS, largest_edge_mm
@@ -212,7 +212,7 @@ def test_icons_stay_in_their_square_and_are_told_apart_when_small(name):
     for loop in icon_paths(name):
         assert loop.min() >= 0
         assert loop.max() <= 1
-    small = {other: icon_mask(other, 16).astype(int) for other in INK}
+    small = {other: icon_mask(other, 16).astype(int) for other in ICON_COLOURS}
     for other, mask in small.items():
         if other != name:
             assert np.abs(mask - icon_mask(name, 16)).mean() > 20

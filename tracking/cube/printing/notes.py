@@ -2,16 +2,16 @@
 
 import numpy as np
 
-from tracking.cube.icons import INK, icon_paths
+from tracking.cube.icons import ICON_COLOURS, icon_paths
 from tracking.cube.model import FACE_AXES
 from tracking.cube.printing.layout import PageArea, SheetLayout
 from tracking.cube.printing.pdf_page import Colour, PdfPage
 from tracking.geometry.arrays import Array
 
-DARK: Colour = (52, 58, 78)
-WORDS: Colour = (96, 102, 118)
+LINE_COLOUR: Colour = (52, 58, 78)
+TEXT_COLOUR: Colour = (96, 102, 118)
 WHITE: Colour = (255, 255, 255)
-PALE: Colour = (205, 230, 210)
+MASCOT_COLOUR: Colour = (205, 230, 210)
 
 STEPS: tuple[tuple[str, str, Colour], ...] = (
     ("cut", "Cut along the thick line, around all the tabs.", (231, 96, 70)),
@@ -20,7 +20,7 @@ STEPS: tuple[tuple[str, str, Colour], ...] = (
 )
 RULER_NOTE = "must be 100 mm: print at 100 %, no fit-to-page"
 
-VIEW = np.array([[0.8, -0.45], [0.0, 1.0], [-0.8, -0.45]]) * (1, 0.9)
+AXONOMETRY = np.array([[0.8, -0.45], [0.0, 1.0], [-0.8, -0.45]]) * (1, 0.9)
 """Axonometric projection of the cube's x, y, z axes on paper, y up."""
 
 
@@ -39,18 +39,18 @@ def _draw_title(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
     title = f"The {cube.name} cube"
     size = min(10.0, 10.0 * width / page.text_width(title, 10.0, bold=True))
     y = box.top + 0.75 * size
-    page.text(title, box.left, y, size, DARK, bold=True)
+    page.text(title, box.left, y, size, LINE_COLOUR, bold=True)
     y += 3
     for line in page.lines(cube.hint, width, 4.0):
         y += 5.2
-        page.text(line, box.left, y, 4.0, WORDS)
+        page.text(line, box.left, y, 4.0, TEXT_COLOUR)
     roles = {face.role or face.icon: face.icon for face in cube.faces if face.icon}
     icon = min(15.0, (width - 8 * len(roles)) / max(len(roles), 1))
     y = min(y + 6, box.bottom - icon - 6)
     for number, (role, name) in enumerate(roles.items()):
         x = box.left + number * (icon + 10)
-        page.fill([loop * icon + (x, y) for loop in icon_paths(name)], INK[name])
-        page.text(role, x + icon / 2, y + icon + 4.6, 4.0, INK[name], bold=True, align=0.5)
+        page.fill([loop * icon + (x, y) for loop in icon_paths(name)], ICON_COLOURS[name])
+        page.text(role, x + icon / 2, y + icon + 4.6, 4.0, ICON_COLOURS[name], bold=True, align=0.5)
 
 
 def _draw_cube_view(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
@@ -68,14 +68,14 @@ def _draw_cube_view(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
             loop: Array, corner: Array = corner, right: Array = right, up: Array = up
         ) -> Array:
             points = corner + loop[:, :1] * right - loop[:, 1:] * up
-            return np.asarray(middle + edge * (points @ VIEW) * (1, -1))
+            return np.asarray(middle + edge * (points @ AXONOMETRY) * (1, -1))
 
         square = on_page(np.array([(0, 0), (1, 0), (1, 1), (0, 1)], float))
         page.fill([square], (shade, shade, shade - 6))
         if icon := icons.get(name):
             loops = [on_page(loop * 0.7 + 0.15) for loop in icon_paths(icon)]
-            page.fill(loops, INK[icon])
-        page.stroke(square, 0.5, DARK, closed=True)
+            page.fill(loops, ICON_COLOURS[icon])
+        page.stroke(square, 0.5, LINE_COLOUR, closed=True)
 
 
 def _draw_steps(page: PdfPage, box: PageArea) -> None:
@@ -92,19 +92,19 @@ def _draw_steps(page: PdfPage, box: PageArea) -> None:
         left = x + 2 * radius + 2.5
         page.text(f"{number + 1}. {name}", left, y + 3.4, 4.2, colour, bold=True)
         for row, line in enumerate(page.lines(rest, column - 2 * radius - 5, size)):
-            page.text(line, left, y + 8 + 4.2 * row, size, WORDS)
+            page.text(line, left, y + 8 + 4.2 * row, size, TEXT_COLOUR)
 
 
 def _draw_ruler(page: PdfPage, x: float, y: float) -> None:
-    page.text(RULER_NOTE, x, y, 3.2, WORDS)
+    page.text(RULER_NOTE, x, y, 3.2, TEXT_COLOUR)
     line = y - 5.5
-    page.stroke([(x, line), (x + 100, line)], 0.25, DARK)
+    page.stroke([(x, line), (x + 100, line)], 0.25, LINE_COLOUR)
     for millimetre in range(0, 101, 5):
         height = 3.2 if millimetre % 50 == 0 else 2.4 if millimetre % 10 == 0 else 1.4
         at = x + millimetre
-        page.stroke([(at, line), (at, line - height)], 0.25, DARK)
+        page.stroke([(at, line), (at, line - height)], 0.25, LINE_COLOUR)
         if millimetre % 10 == 0:
-            page.text(str(millimetre), at, line - 4.2, 2.6, WORDS, align=0.5)
+            page.text(str(millimetre), at, line - 4.2, 2.6, TEXT_COLOUR, align=0.5)
 
 
 def _draw_facts(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
@@ -113,12 +113,14 @@ def _draw_facts(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
     if height > 10:
         x, y = (box.left + box.right - height) / 2, box.top
         mascot = "idle" if any(face.icon == "idle" for face in cube.faces) else "run"
-        page.fill([loop * height + (x, y) for loop in icon_paths(mascot)], PALE)
-        page.stroke([(x - 2, y + height * 0.945), (x + height, y + height * 0.945)], 0.5, PALE)
+        page.fill([loop * height + (x, y) for loop in icon_paths(mascot)], MASCOT_COLOUR)
+        page.stroke(
+            [(x - 2, y + height * 0.945), (x + height, y + height * 0.945)], 0.5, MASCOT_COLOUR
+        )
     facts = (
         f"edge {cube.edge * 1000:.4g} mm",
         f"markers {cube.marker_size * 1000:.4g} mm, {cube.dictionary}",
         f"cubeling cube {cube.name}",
     )
     for row, fact in enumerate(reversed(facts)):
-        page.text(fact, box.left, box.bottom - 1 - 4 * row, 2.8, WORDS)
+        page.text(fact, box.left, box.bottom - 1 - 4 * row, 2.8, TEXT_COLOUR)

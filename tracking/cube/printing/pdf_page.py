@@ -74,7 +74,7 @@ class PdfPage:
         """
         self._font(size, bold)
         self._pdf.set_text_color(*colour)
-        words = words.encode("latin-1", "replace").decode("latin-1")
+        words = _latin_1(words)
         start = x - align * self._pdf.get_string_width(words)
         with self._pdf.rotation(turn, x, y):
             self._pdf.text(start, y, words)
@@ -82,16 +82,14 @@ class PdfPage:
     def text_width(self, words: str, size: float, *, bold: bool = False) -> float:
         """Length of a line [mm]."""
         self._font(size, bold)
-        return float(
-            self._pdf.get_string_width(words.encode("latin-1", "replace").decode("latin-1"))
-        )
+        return float(self._pdf.get_string_width(_latin_1(words)))
 
-    def lines(self, words: str, width: float, size: float, *, bold: bool = False) -> list[str]:
+    def lines(self, words: str, width: float, size: float) -> list[str]:
         """Break words into lines no longer than `width`; a single longer word stays whole."""
         lines: list[str] = []
         for word in words.split():
             longer = f"{lines[-1]} {word}" if lines else word
-            if lines and self.text_width(longer, size, bold=bold) <= width:
+            if lines and self.text_width(longer, size) <= width:
                 lines[-1] = longer
             else:
                 lines.append(word)
@@ -130,3 +128,7 @@ class PdfPage:
 
 def _hex(colour: Colour) -> str:
     return "#" + "".join(f"{channel:02x}" for channel in colour)
+
+
+def _latin_1(words: str) -> str:
+    return words.encode("latin-1", "replace").decode("latin-1")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tracking.cube.icons import INK, icon_paths
+from tracking.cube.icons import ICON_COLOURS, icon_paths
 from tracking.cube.marker import marker_loops
 from tracking.cube.model import CubeModel, Face
 from tracking.cube.printing.layout import SheetLayout
@@ -15,10 +15,10 @@ from tracking.files import write_whole
 if TYPE_CHECKING:
     from tracking.cube.printing.pdf_page import PdfPage
 
-CUT = (70, 76, 90)
-FOLD = (150, 156, 168)
-TAB_FILL = (246, 243, 236)
-SOFT = (128, 134, 148)
+CUT_COLOUR = (70, 76, 90)
+FOLD_COLOUR = (150, 156, 168)
+TAB_COLOUR = (246, 243, 236)
+CAPTION_COLOUR = (128, 134, 148)
 BLACK = (0, 0, 0)
 
 
@@ -68,20 +68,20 @@ def draw_net(page: "PdfPage", sheet: SheetLayout) -> None:
         page.fill([corners[0] + loop @ np.array([across, down]) for loop in loops], BLACK)
         _draw_caption(page, sheet, face)
     for start, end in sheet.net.folds():
-        page.dashes(sheet.place(start), sheet.place(end), 0.3, FOLD)
-    page.stroke(sheet.place(sheet.net.outline()), 0.45, CUT, closed=True)
+        page.dashes(sheet.place(start), sheet.place(end), 0.3, FOLD_COLOUR)
+    page.stroke(sheet.place(sheet.net.outline()), 0.45, CUT_COLOUR, closed=True)
 
 
 def _draw_tab(page: "PdfPage", sheet: SheetLayout, tab: Tab) -> None:
     corners = sheet.place(tab.corners)
-    page.fill([corners], TAB_FILL)
+    page.fill([corners], TAB_COLOUR)
     x, y = corners.mean(axis=0)
     depth = float(np.ptp(corners, axis=0).min())
     size = min(3.0, depth * 0.35)
     if tab.side == "right":
-        page.text("glue", x + size * 0.35, y, size, SOFT, align=0.5, turn=90)
+        page.text("glue", x + size * 0.35, y, size, CAPTION_COLOUR, align=0.5, turn=90)
     else:
-        page.text("glue", x, y + size * 0.35, size, SOFT, align=0.5)
+        page.text("glue", x, y + size * 0.35, size, CAPTION_COLOUR, align=0.5)
 
 
 def _draw_caption(page: "PdfPage", sheet: SheetLayout, face: Face) -> None:
@@ -101,11 +101,12 @@ def _draw_caption(page: "PdfPage", sheet: SheetLayout, face: Face) -> None:
     x -= (icon + sum(widths) + gap * (len(words) - 1 + bool(face.icon))) / 2
     if face.icon:
         page.fill(
-            [loop * height + (x, foot - height) for loop in icon_paths(face.icon)], INK[face.icon]
+            [loop * height + (x, foot - height) for loop in icon_paths(face.icon)],
+            ICON_COLOURS[face.icon],
         )
         x += icon + gap
     for word, width in zip(words, widths, strict=True):
         role = word is face.role
-        colour = INK.get(face.icon, SOFT) if role else SOFT
+        colour = ICON_COLOURS.get(face.icon, CAPTION_COLOUR) if role else CAPTION_COLOUR
         page.text(word, x, foot - 0.3 * height, size, colour, bold=role)
         x += width + gap
