@@ -1,7 +1,7 @@
 """Inverse kinematics of the legs of a skeleton.
 
 A mix of joint angles moves the feet along a path that belongs to no clip: they slide and sink into
-the ground. `LegIK` bends hips and knees so that feet reach given places, such as the mean of the
+the ground. `LegIK` bends hips and knees so that feet reach given positions, such as the mean of the
 clips' feet. A foot that stands still in every clip then stands still in the mix.
 """
 

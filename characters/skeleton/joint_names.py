@@ -168,7 +168,7 @@ def _split_side(word: str) -> list[str]:
             inner = word.removesuffix(side)
         if inner != word and inner in _KNOWN and word not in _KNOWN:
             return [side, inner]
-    for place in ("front", "hind", "back"):
-        if word.startswith(place) and word[len(place) :] in _KNOWN:
-            return [place, word[len(place) :]]
+    for pair in ("front", "hind", "back"):
+        if word.startswith(pair) and word[len(pair) :] in _KNOWN:
+            return [pair, word[len(pair) :]]
     return [word]

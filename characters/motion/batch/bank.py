@@ -254,8 +254,8 @@ class ClipBank:
             return
         turns = self._sign_ambiguous_table.take(numbers, axis=1)  # (4 n, characters, rows)
         heaviest = np.arange(len(numbers)), factors.argmax(1)
-        for place, joint in enumerate(self.sign_ambiguous.tolist()):
-            own = turns[4 * place : 4 * place + 4]
+        for number, joint in enumerate(self.sign_ambiguous.tolist()):
+            own = turns[4 * number : 4 * number + 4]
             dots = sum(part * part[heaviest][:, None] for part in own)
             signed = np.where(dots < 0, -factors, factors)
             total[:, 4 * joint : 4 * joint + 4] = np.einsum("kcv,cv->ck", own, signed)
