@@ -102,13 +102,13 @@ def blink_shares(morphs: Sequence[str], meshes: Iterable[Mesh], lids: Lids) -> A
         blink = np.zeros(mesh.positions.shape)
         for morph in mesh.morphs:
             if morph.name in names:
-                blink[morph.vertices] += morph.shifts
+                blink[morph.vertices] += morph.displacements
         lid = np.flatnonzero(blink.any(axis=1))
-        shifts = np.zeros((len(morphs), *blink.shape))
+        displacements = np.zeros((len(morphs), *blink.shape))
         for morph in mesh.morphs if lid.size else ():
-            shifts[morphs.index(morph.name), morph.vertices] = morph.shifts
+            displacements[morphs.index(morph.name), morph.vertices] = morph.displacements
         ways.append(blink[lid])
-        moved.append(shifts[:, lid])
+        moved.append(displacements[:, lid])
     way = np.concatenate(ways)
     if not len(way):
         return np.zeros(len(morphs))

@@ -147,7 +147,7 @@ def skin(
     matrices = character_from_joint @ mesh.inverse_bind
     positions = mesh.positions.astype(float)
     for morph in mesh.morphs:
-        positions[morph.vertices] += (morphs or {}).get(morph.name, 0.0) * morph.shifts
+        positions[morph.vertices] += (morphs or {}).get(morph.name, 0.0) * morph.displacements
     points = np.concatenate([positions, np.ones((len(positions), 1))], axis=1)
     skinned = np.zeros((len(points), 3))
     for influence in range(mesh.joints.shape[1]):

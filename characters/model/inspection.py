@@ -5,7 +5,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from characters.model.character import Character
 from characters.model.mesh import Mesh
@@ -101,10 +100,8 @@ def _weight_error(mesh: Mesh) -> float:
 
 
 def _texture_side(mesh: Mesh) -> int:
-    maps: list[NDArray[np.uint8] | None] = [
-        mesh.material.texture, mesh.material.surface, mesh.material.bumps
-    ]  # fmt: skip
-    return max((max(image.shape[:2]) for image in maps if image is not None), default=0)
+    images = mesh.material.textures
+    return max((max(image.shape[:2]) for image in images if image is not None), default=0)
 
 
 def _problems_of_joints(character: Character, feet: dict[str, tuple[int, ...]]) -> Iterator[str]:

@@ -11,7 +11,7 @@ class Material:
     """The part of glTF's metallic-roughness material that is drawn."""
 
     base_color: tuple[float, float, float, float] = (1.0, 1.0, 1.0, 1.0)
-    """Linear RGBA factor of vertex colour and texture."""
+    """Linear RGBA, multiplied by vertex colour and texture."""
 
     metallic: float = 0.0
     """0 dielectric … 1 metal."""
@@ -19,47 +19,53 @@ class Material:
     roughness: float = 0.8
     """0 mirror … 1 chalk."""
 
-    texture: NDArray[np.uint8] | None = None
+    base_color_texture: NDArray[np.uint8] | None = None
     """Base colour, (height, width, 4) sRGB with alpha, or None."""
 
-    surface: NDArray[np.uint8] | None = None
-    """Roughness in green and metalness in blue, (height, width, 3) linear, or None; factors of the
-    values above."""
+    metallic_roughness_texture: NDArray[np.uint8] | None = None
+    """Roughness in green and metalness in blue, (height, width, 3) linear, or None; multiplied by
+    the values above."""
 
-    bumps: NDArray[np.uint8] | None = None
-    """Normal map in tangent space, (height, width, 3), +y up as in glTF, or None."""
+    normal_texture: NDArray[np.uint8] | None = None
+    """Normals in tangent space, (height, width, 3), +y up as in glTF, or None."""
 
-    bump_scale: float = 1.0
-    """Strength of the normal map."""
+    normal_scale: float = 1.0
+    """Strength of the normal texture."""
 
-    glow: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Emission, linear RGB."""
+    emissive: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Emitted light, linear RGB; above 1 as with KHR_materials_emissive_strength."""
 
-    cutoff: float | None = None
+    alpha_cutoff: float | None = None
     """Alpha below which nothing is drawn; None for an opaque surface."""
 
     double_sided: bool = False
     """Whether back faces are drawn."""
 
+    @property
+    def textures(self) -> tuple[NDArray[np.uint8] | None, ...]:
+        """Textures of base colour, of metalness and roughness, and of normals."""
+        return self.base_color_texture, self.metallic_roughness_texture, self.normal_texture
+
 
 @dataclass(frozen=True)
 class Morph:
-    """A morph target of a mesh: a closed eye, an open mouth.
+    """A morph target of a mesh, such as a closed eye or an open mouth.
 
-    The position of a vertex is that in the mesh plus, for each morph, its weight times the shift.
+    The position of a vertex is that in the mesh plus, for each morph target, its weight times its
+    displacement.
     """
 
     name: str
     """One of `Character.morphs`; VRM's names of expressions if possible: "blink", "aa" …"""
 
     vertices: NDArray[np.uint32]
-    """Indices of the vertices that it moves, (n,), ascending."""
+    """Indices of the vertices that move, (n,), ascending."""
 
-    shifts: NDArray[np.float32]
-    """Displacement of each in the bind pose, (n, 3) [m]."""
+    displacements: NDArray[np.float32]
+    """Displacements of these vertices in the bind pose, (n, 3) [m]."""
 
-    normal_shifts: NDArray[np.float32] | None = None
-    """Change of their normals, (n, 3), or None for no change."""
+    normal_displacements: NDArray[np.float32] | None = None
+    """Changes of their normals, (n, 3), or None for no change."""
 
 
 @dataclass(frozen=True)

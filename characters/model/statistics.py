@@ -38,7 +38,7 @@ class CharacterStats:
     def of(cls, character: Character) -> "CharacterStats":
         """Measure a character."""
         materials = [mesh.material for mesh in character.meshes]
-        maps = [image for each in materials for image in (each.texture, each.surface, each.bumps)]
+        textures = [image for each in materials for image in each.textures]
         return cls(
             height=character.height,
             joints=len(character.skeleton),
@@ -46,7 +46,7 @@ class CharacterStats:
             vertices=sum(len(mesh.positions) for mesh in character.meshes),
             triangles=sum(len(mesh.triangles) for mesh in character.meshes),
             materials=len({id(material) for material in materials}),
-            textures=len({id(image) for image in maps if image is not None}),
+            textures=len({id(image) for image in textures if image is not None}),
             morphs=character.morphs,
         )
 

@@ -45,8 +45,8 @@ def with_morphs(character: Character, rng: np.random.Generator) -> Character:
     def faced(mesh: Mesh) -> Mesh:
         count = max(round(share * len(mesh.positions)), 1)
         highest = np.sort(np.argsort(mesh.positions[:, 1])[-count:]).astype(np.uint32)
-        shifts = rng.normal(0, 1e-3, (MORPHS, 2, count, 3)).astype(np.float32)
-        morphs = (Morph(n, highest, *row) for n, row in zip(names, shifts, strict=True))
+        displacements = rng.normal(0, 1e-3, (MORPHS, 2, count, 3)).astype(np.float32)
+        morphs = (Morph(n, highest, *row) for n, row in zip(names, displacements, strict=True))
         return replace(mesh, morphs=tuple(morphs))
 
     return replace(character, meshes=tuple(map(faced, character.meshes)), morphs=names)
@@ -58,12 +58,15 @@ def casts(character: Character, rng: np.random.Generator) -> dict[str, tuple[Cha
     bumps = np.dstack([noise[..., :2] // 8 + 112, np.full((1024, 1024), 250)]).astype(np.uint8)
     looks: dict[str, dict[str, Any]] = {
         "plain": vars(Material()),
-        "texture": {"texture": noise},
-        "texture, roughness and metalness": {"texture": noise, "surface": noise},
-        "texture, normal map": {"texture": noise, "bumps": bumps},
-        "texture, holes": {"texture": noise, "cutoff": 0.1},
+        "texture": {"base_color_texture": noise},
+        "texture, roughness and metalness": {
+            "base_color_texture": noise,
+            "metallic_roughness_texture": noise,
+        },
+        "texture, normal map": {"base_color_texture": noise, "normal_texture": bumps},
+        "texture, holes": {"base_color_texture": noise, "alpha_cutoff": 0.1},
     }
-    looks["all of it, glowing"] = {"glow": (0.1, 0.0, 0.0)}
+    looks["all of it, glowing"] = {"emissive": (0.1, 0.0, 0.0)}
     for name in list(looks)[1:-1]:
         looks["all of it, glowing"] |= looks[name]
     rows = {name: (with_material(character, **changes), 0) for name, changes in looks.items()}

@@ -57,7 +57,7 @@ def test_the_asset_is_what_the_code_makes(human: Character, made: Character) -> 
         for shipped_morph, morph in zip(shipped_mesh.morphs, mesh.morphs, strict=True):
             assert shipped_morph.name == morph.name
             assert np.array_equal(shipped_morph.vertices, morph.vertices)
-            assert np.allclose(shipped_morph.shifts, morph.shifts, atol=1e-5)
+            assert np.allclose(shipped_morph.displacements, morph.displacements, atol=1e-5)
 
 
 def test_knows_to_wait_the_twelve_gaits_and_five_actions(human: Character) -> None:
@@ -195,8 +195,8 @@ def test_is_light_enough_for_a_small_machine(human: Character) -> None:
 def test_the_face_shows_and_says_what_vrm_names(human: Character) -> None:
     assert human.morphs == (*SHUTTING, *MOODS, *VISEMES)
     for morph in human.meshes[0].morphs:
-        assert np.linalg.norm(morph.shifts, axis=1).max() > 0.012, morph.name
-        assert np.linalg.norm(morph.shifts, axis=1).max() < 0.12, morph.name
+        assert np.linalg.norm(morph.displacements, axis=1).max() > 0.012, morph.name
+        assert np.linalg.norm(morph.displacements, axis=1).max() < 0.12, morph.name
 
 
 @pytest.mark.parametrize(("yaw", "pitch"), [(0, 0), (20, 0), (-20, 0), (0, 12), (0, -12), (15, 9)])

@@ -56,7 +56,7 @@ def test_the_asset_is_what_the_code_makes(robot: Character) -> None:
         assert np.array_equal(shipped_mesh.triangles, mesh.triangles)
         assert np.allclose(skin(shipped_mesh, lit), skin(mesh, lit), atol=1e-5)
         assert np.allclose(shipped_mesh.weights, mesh.weights, atol=2e-3)
-        assert np.allclose(shipped_mesh.material.glow, mesh.material.glow, atol=1e-6)
+        assert np.allclose(shipped_mesh.material.emissive, mesh.material.emissive, atol=1e-6)
 
 
 def test_its_joints_are_known_for_a_quadrupeds(robot: Character) -> None:
@@ -182,7 +182,7 @@ def test_expressions_move_the_face_and_nothing_else(robot: Character) -> None:
     below = casing.positions[:, 1] < 0.18
     for morph in casing.morphs:
         assert not below[morph.vertices].any()
-        assert 0.004 < np.linalg.norm(morph.shifts, axis=1).max() < 0.06
+        assert 0.004 < np.linalg.norm(morph.displacements, axis=1).max() < 0.06
 
 
 def test_a_blink_shuts_both_eyes_and_a_wink_one(robot: Character) -> None:

@@ -49,8 +49,10 @@ def _check_mesh(mesh: Mesh, joints: int) -> None:
         shape = (len(morph.vertices), 3)
         ascends = bool((np.diff(morph.vertices.astype(np.int64)) > 0).all())
         inside = not len(morph.vertices) or int(morph.vertices[-1]) < count
-        normals_fit = morph.normal_shifts is None or morph.normal_shifts.shape == shape
-        if not (ascends and inside and normals_fit and morph.shifts.shape == shape):
+        normals_fit = (
+            morph.normal_displacements is None or morph.normal_displacements.shape == shape
+        )
+        if not (ascends and inside and normals_fit and morph.displacements.shape == shape):
             raise CharacterError(
                 f"mesh {mesh.name!r}: the arrays of its morph {morph.name!r} do not fit together"
             )

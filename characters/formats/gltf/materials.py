@@ -65,12 +65,12 @@ def _material(material: Json, images: ImageDecoder, where: str) -> MappedMateria
             base_color=(factor[0], factor[1], factor[2], factor[3]),
             metallic=0.0 if unlit else float(pbr.get("metallicFactor", 1.0)),
             roughness=1.0 if unlit else float(pbr.get("roughnessFactor", 1.0)),
-            texture=images.texture(color["index"], "RGBA") if color else None,
-            surface=images.texture(surface["index"], "RGB") if surface else None,
-            bumps=images.texture(bumps["index"], "RGB") if bumps else None,
-            bump_scale=float(bumps.get("scale", 1.0)) if bumps else 1.0,
-            glow=_emission(material, images),
-            cutoff=_cutoff(material),
+            base_color_texture=images.texture(color["index"], "RGBA") if color else None,
+            metallic_roughness_texture=images.texture(surface["index"], "RGB") if surface else None,
+            normal_texture=images.texture(bumps["index"], "RGB") if bumps else None,
+            normal_scale=float(bumps.get("scale", 1.0)) if bumps else 1.0,
+            emissive=_emission(material, images),
+            alpha_cutoff=_cutoff(material),
             double_sided=bool(material.get("doubleSided", False)),
         ),
         *mapping,
@@ -144,17 +144,17 @@ class MaterialWriter:
         item: Json = {"name": name, "pbrMetallicRoughness": pbr}
         if material.double_sided:
             item["doubleSided"] = True
-        if material.texture is not None:
-            pbr["baseColorTexture"] = self._texture(material.texture)
-        if material.surface is not None:
-            pbr["metallicRoughnessTexture"] = self._texture(material.surface)
-        if material.bumps is not None:
-            scale = {"scale": material.bump_scale}
-            item["normalTexture"] = self._texture(material.bumps) | scale
-        if any(material.glow):
-            self._set_emission(item, material.glow)
-        if material.cutoff is not None:
-            item |= {"alphaMode": "MASK", "alphaCutoff": material.cutoff}
+        if material.base_color_texture is not None:
+            pbr["baseColorTexture"] = self._texture(material.base_color_texture)
+        if material.metallic_roughness_texture is not None:
+            pbr["metallicRoughnessTexture"] = self._texture(material.metallic_roughness_texture)
+        if material.normal_texture is not None:
+            scale = {"scale": material.normal_scale}
+            item["normalTexture"] = self._texture(material.normal_texture) | scale
+        if any(material.emissive):
+            self._set_emission(item, material.emissive)
+        if material.alpha_cutoff is not None:
+            item |= {"alphaMode": "MASK", "alphaCutoff": material.alpha_cutoff}
         return self._builder.add("materials", item)
 
     def _set_emission(self, item: Json, emission: tuple[float, float, float]) -> None:

@@ -91,7 +91,8 @@ def read_morphs(
             shared[accessor] = file.floats(accessor, 3)
         if len(shared[accessor]) != vertices:
             raise DamagedFileError(
-                f"morph target {name!r} has {len(shared[accessor])} shifts for {vertices} vertices"
+                f"morph target {name!r} has {len(shared[accessor])} displacements "
+                f"for {vertices} vertices"
             )
         return shared[accessor]
 
@@ -103,9 +104,9 @@ def read_morphs(
         if turns is not None:
             moved |= np.abs(turns).max(axis=1, initial=0.0) > _MIN_DISPLACEMENT
         where = np.flatnonzero(moved)
-        normal_shifts = None if turns is None else turns[where].astype(np.float32)
-        kept_shifts = shifts[where].astype(np.float32)
-        morphs.append(Morph(name, where.astype(np.uint32), kept_shifts, normal_shifts))
+        displacements = shifts[where].astype(np.float32)
+        normal_displacements = None if turns is None else turns[where].astype(np.float32)
+        morphs.append(Morph(name, where.astype(np.uint32), displacements, normal_displacements))
     return tuple(morphs)
 
 
@@ -113,11 +114,11 @@ def renumbered_morph(morph: Morph, new_number: NDArray[np.int64]) -> Morph:
     """Return a morph for a mesh with renumbered vertices; −1 marks removed ones."""
     numbers = new_number[morph.vertices]
     kept = numbers >= 0
-    turns = morph.normal_shifts
+    turns = morph.normal_displacements
     return Morph(
         morph.name,
         numbers[kept].astype(np.uint32),
-        morph.shifts[kept],
+        morph.displacements[kept],
         None if turns is None else turns[kept],
     )
 
@@ -127,12 +128,13 @@ def transformed_morph(morph: Morph, normals: Array, linear: Array) -> Morph:
 
     `normals` are those of the mesh before, (vertices, 3).
     """
-    turned = morph.normal_shifts
+    turned = morph.normal_displacements
     if turned is not None:
         inverse = np.linalg.inv(linear)
         before = normals[morph.vertices]
         turned = (_unit((before + turned) @ inverse) - _unit(before @ inverse)).astype(np.float32)
-    return Morph(morph.name, morph.vertices, (morph.shifts @ linear.T).astype(np.float32), turned)
+    displacements = (morph.displacements @ linear.T).astype(np.float32)
+    return Morph(morph.name, morph.vertices, displacements, turned)
 
 
 def _unit(vectors: Array) -> Array:

@@ -115,15 +115,17 @@ def _expression_morphs(
 def _weighted_sum(name: str, weighted: list[tuple[Morph, float]]) -> Morph:
     """Return the weighted sum of several morphs."""
     where = np.unique(np.concatenate([morph.vertices for morph, _ in weighted]))
-    shifts = np.zeros((len(where), 3), np.float32)
-    normal_shifts: NDArray[np.float32] = np.zeros_like(shifts)
+    displacements = np.zeros((len(where), 3), np.float32)
+    normal_displacements: NDArray[np.float32] = np.zeros_like(displacements)
     for morph, weight in weighted:
         rows = np.searchsorted(where, morph.vertices)
-        shifts[rows] += weight * morph.shifts
-        if morph.normal_shifts is not None:
-            normal_shifts[rows] += weight * morph.normal_shifts
-    has_normals = any(morph.normal_shifts is not None for morph, _ in weighted)
-    return Morph(name, where.astype(np.uint32), shifts, normal_shifts if has_normals else None)
+        displacements[rows] += weight * morph.displacements
+        if morph.normal_displacements is not None:
+            normal_displacements[rows] += weight * morph.normal_displacements
+    has_normals = any(morph.normal_displacements is not None for morph, _ in weighted)
+    return Morph(
+        name, where.astype(np.uint32), displacements, normal_displacements if has_normals else None
+    )
 
 
 def _humanoid_1(extension: Json) -> VrmHumanoid:

@@ -119,9 +119,11 @@ class _CharacterWriter:
         self._builder.add("nodes", {"name": mesh.name, "mesh": number, "skin": skin})
 
     def _target(self, count: int, morph: Morph) -> dict[str, int]:
-        target = {"POSITION": self._builder.sparse(count, morph.vertices, morph.shifts)}
-        if morph.normal_shifts is not None:
-            target["NORMAL"] = self._builder.sparse(count, morph.vertices, morph.normal_shifts)
+        target = {"POSITION": self._builder.sparse(count, morph.vertices, morph.displacements)}
+        if morph.normal_displacements is not None:
+            target["NORMAL"] = self._builder.sparse(
+                count, morph.vertices, morph.normal_displacements
+            )
         return target
 
     def _columns(self, mesh: Mesh) -> list[int]:

@@ -26,15 +26,15 @@ class _DenseMorph:
     """
 
     first: int
-    shifts: NDArray[np.float32]
+    displacements: NDArray[np.float32]
     """Of position and normal, (n, 6)."""
 
     @classmethod
     def of(cls, morph: Morph) -> Self:
         first = int(morph.vertices[0])
-        shifts = np.zeros((int(morph.vertices[-1]) + 1 - first, 6), np.float32)
-        shifts[morph.vertices - first] = _shift_records(morph)
-        return cls(first, shifts)
+        displacements = np.zeros((int(morph.vertices[-1]) + 1 - first, 6), np.float32)
+        displacements[morph.vertices - first] = _displacement_records(morph)
+        return cls(first, displacements)
 
 
 class MorphMixer:
@@ -93,8 +93,8 @@ class MorphMixer:
         for number in np.flatnonzero(self._weights):
             morph = self._morphs[number]
             if morph is not None:  # None: no mesh that is drawn has it
-                self._mixed[morph.first : morph.first + len(morph.shifts)] += (
-                    np.float32(self._weights[number]) * morph.shifts
+                self._mixed[morph.first : morph.first + len(morph.displacements)] += (
+                    np.float32(self._weights[number]) * morph.displacements
                 )
         return self._mixed
 
@@ -119,14 +119,16 @@ def merge_morphs(meshes: Sequence[Mesh], starts: Sequence[int]) -> tuple[Morph, 
 
 def _sum(name: str, parts: Sequence[tuple[Morph, int]]) -> Morph:
     indices = np.concatenate([morph.vertices.astype(np.uint32) + start for morph, start in parts])
-    records = np.concatenate([_shift_records(morph) for morph, _ in parts])
+    records = np.concatenate([_displacement_records(morph) for morph, _ in parts])
     vertices, rows = np.unique(indices, return_inverse=True)
     total = np.zeros((len(vertices), 6), np.float32)
     np.add.at(total, rows, records)  # a mesh can have two morphs of one name
     return Morph(name, vertices, total[:, :3], total[:, 3:] if total[:, 3:].any() else None)
 
 
-def _shift_records(morph: Morph) -> NDArray[np.float32]:
-    """Return the shifts of positions and normals, (n, 6)."""
-    normals = np.zeros_like(morph.shifts) if morph.normal_shifts is None else morph.normal_shifts
-    return np.hstack([morph.shifts, normals]).astype(np.float32)
+def _displacement_records(morph: Morph) -> NDArray[np.float32]:
+    """Return the displacements of positions and normals, (n, 6)."""
+    positions, normals = morph.displacements, morph.normal_displacements
+    if normals is None:
+        normals = np.zeros_like(positions)
+    return np.hstack([positions, normals]).astype(np.float32)

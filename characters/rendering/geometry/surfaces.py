@@ -76,7 +76,7 @@ class SurfaceBuffers:
         first = 0
         for material, count in vertices.materials:
             features = surface_features(material)
-            images = (material.texture, material.surface, material.bumps)
+            images = material.textures
             textures = tuple(
                 (unit, self._texture(image, srgb=unit == TEXTURE_UNITS["base_texture"]))
                 for unit, image in enumerate(images)
@@ -142,15 +142,15 @@ def surface_features(material: Material) -> frozenset[str]:
     TEXTURED: a texture of the base colour; SURFACE: one of roughness and metalness; BUMPS: a normal
     map; GLOW: emitted light; CUTOFF: holes where alpha is low. The shaders test these names.
 
-    >>> sorted(surface_features(Material(glow=(0.0, 0.2, 0.0), cutoff=0.5)))
+    >>> sorted(surface_features(Material(emissive=(0.0, 0.2, 0.0), alpha_cutoff=0.5)))
     ['CUTOFF', 'GLOW']
     """
     has = {
-        "TEXTURED": material.texture is not None,
-        "SURFACE": material.surface is not None,
-        "BUMPS": material.bumps is not None and material.bump_scale != 0.0,
-        "GLOW": any(material.glow),
-        "CUTOFF": material.cutoff is not None,
+        "TEXTURED": material.base_color_texture is not None,
+        "SURFACE": material.metallic_roughness_texture is not None,
+        "BUMPS": material.normal_texture is not None and material.normal_scale != 0.0,
+        "GLOW": any(material.emissive),
+        "CUTOFF": material.alpha_cutoff is not None,
     }
     return frozenset(feature for feature, present in has.items() if present)
 

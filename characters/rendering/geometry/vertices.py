@@ -150,8 +150,8 @@ class CharacterVertices:
         if not self.morphs:
             return at_rest
         moved = np.concatenate([morph.vertices for morph in self.morphs])
-        shifts = np.concatenate([morph.shifts for morph in self.morphs])
-        morphed = extreme_vertices(self.positions[moved] + shifts, owner[moved])
+        displacements = np.concatenate([morph.displacements for morph in self.morphs])
+        morphed = extreme_vertices(self.positions[moved] + displacements, owner[moved])
         return np.union1d(at_rest, moved[morphed]).astype(np.intp)
 
     @property
@@ -226,9 +226,10 @@ def _or_default(
 
 def _material_key(material: Material) -> tuple[object, ...]:
     """Return a key that two materials share if they look the same; textures by identity."""
-    textures = (material.texture, material.surface, material.bumps)
-    rest = replace(material, texture=None, surface=None, bumps=None)
-    return (rest, *(id(texture) for texture in textures))
+    rest = replace(
+        material, base_color_texture=None, metallic_roughness_texture=None, normal_texture=None
+    )
+    return (rest, *(id(texture) for texture in material.textures))
 
 
 def _material_runs(meshes: Sequence[Mesh]) -> tuple[tuple[Material, int], ...]:

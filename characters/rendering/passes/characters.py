@@ -55,9 +55,9 @@ class CharacterPass(RenderPass):
                     set_uniforms(
                         program,
                         opacity=material.base_color[3],
-                        cutoff=material.cutoff or 0.0,
-                        bump_scale=material.bump_scale,
-                        glow=material.glow,
+                        cutoff=material.alpha_cutoff or 0.0,
+                        bump_scale=material.normal_scale,
+                        glow=material.emissive,
                     )
                 for unit, texture in part.textures:
                     texture.use(unit)

@@ -139,12 +139,12 @@ def test_a_texture_survives_saving_and_loading(tmp_path, walker):
     picture = np.arange(4 * 4 * 4, dtype=np.uint8).reshape(4, 4, 4)
     mesh = walker.meshes[0]
     fields = {**vars(mesh), "uvs": np.zeros((8, 2), np.float32)}
-    fields["material"] = type(mesh.material)(texture=picture, roughness=0.25)
+    fields["material"] = type(mesh.material)(base_color_texture=picture, roughness=0.25)
     textured = Character("t", walker.skeleton, {}, (type(mesh)(**fields),))
     textured.save(tmp_path / "t.glb")
     material = Character.load(tmp_path / "t.glb").meshes[0].material
-    assert material.texture is not None
-    assert np.array_equal(material.texture, picture)
+    assert material.base_color_texture is not None
+    assert np.array_equal(material.base_color_texture, picture)
     assert material.roughness == 0.25
 
 

@@ -103,7 +103,7 @@ def test_the_unchanged_file_loads():
         path.write_bytes(glb(document, blob))
         character = Character.load(path)
     assert character.morphs == ("aa",)
-    assert character.meshes[0].material.bumps is not None
+    assert character.meshes[0].material.normal_texture is not None
 
 
 def places(value, path=()):

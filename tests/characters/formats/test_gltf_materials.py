@@ -53,10 +53,10 @@ def test_textures_of_colour_roughness_and_normals_are_read(tmp_path):
         "alphaCutoff": 0.3,
     }
     mesh = load(tmp_path, dressed(material, encoded(color), encoded(surface), encoded(bumps)))
-    assert np.array_equal(mesh.material.texture, color)
-    assert np.array_equal(mesh.material.surface, surface)
-    assert np.array_equal(mesh.material.bumps, bumps)
-    assert (mesh.material.bump_scale, mesh.material.cutoff) == (0.5, 0.3)
+    assert np.array_equal(mesh.material.base_color_texture, color)
+    assert np.array_equal(mesh.material.metallic_roughness_texture, surface)
+    assert np.array_equal(mesh.material.normal_texture, bumps)
+    assert (mesh.material.normal_scale, mesh.material.alpha_cutoff) == (0.5, 0.3)
     assert (mesh.material.metallic, mesh.material.roughness) == (1.0, 1.0)
 
 
@@ -71,7 +71,7 @@ def test_images_of_any_mode_become_colours(tmp_path, mode):
     data = io.BytesIO()
     picture.save(data, "PNG")
     build = dressed({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}, data.getvalue())
-    texture = load(tmp_path, build).material.texture
+    texture = load(tmp_path, build).material.base_color_texture
     assert texture is not None
     assert np.array_equal(texture, np.dstack([grey, grey, grey, np.full((2, 2), 255)]))
 
@@ -82,7 +82,7 @@ def test_jpegs_and_image_files_are_read(tmp_path):
     build.document["images"] = [{"uri": "my%20skin.jpg"}]
     build.document["textures"] = [{"source": 0}]
     (tmp_path / "my skin.jpg").write_bytes(encoded(flat, "JPEG", quality=95))
-    texture = load(tmp_path, build).material.texture
+    texture = load(tmp_path, build).material.base_color_texture
     assert texture is not None
     assert np.abs(texture[..., :3].astype(int) - flat).max() < 6
 
@@ -107,23 +107,23 @@ def test_textures_with_other_coordinates_are_dropped_with_a_warning(tmp_path):
     build = dressed(material, encoded(pixels(3)), encoded(pixels(3)))
     with pytest.warns(CharacterWarning, match="material 0 has textures with different coordinates"):
         read = load(tmp_path, build).material
-    assert read.texture is not None
-    assert read.bumps is None
+    assert read.base_color_texture is not None
+    assert read.normal_texture is None
 
 
 def test_emission_is_its_factor_times_its_texture(tmp_path):
     strength = {"KHR_materials_emissive_strength": {"emissiveStrength": 4.0}}
     material = {"emissiveFactor": [1, 0.5, 0], "extensions": strength}
-    assert load(tmp_path, dressed(material)).material.glow == (4.0, 2.0, 0.0)
+    assert load(tmp_path, dressed(material)).material.emissive == (4.0, 2.0, 0.0)
     dark = encoded(np.zeros((2, 2, 3), np.uint8))
     material["emissiveTexture"] = {"index": 0}
-    assert load(tmp_path, dressed(material, dark)).material.glow == (0.0, 0.0, 0.0)
+    assert load(tmp_path, dressed(material, dark)).material.emissive == (0.0, 0.0, 0.0)
 
 
 def test_unlit_materials_are_rough_and_blended_ones_get_a_cutoff(tmp_path):
     material = {"extensions": {"KHR_materials_unlit": {}}, "alphaMode": "BLEND"}
     read = load(tmp_path, dressed(material)).material
-    assert (read.metallic, read.roughness, read.cutoff) == (0.0, 1.0, 0.5)
+    assert (read.metallic, read.roughness, read.alpha_cutoff) == (0.0, 1.0, 0.5)
 
 
 def test_normalised_integers_are_read(tmp_path):
@@ -147,12 +147,12 @@ def test_a_material_survives_saving_and_loading(tmp_path, walker):
         base_color=(0.5, 0.25, 1.0, 1.0),
         metallic=0.75,
         roughness=0.5,
-        texture=pixels(4),
-        surface=pixels(3),
-        bumps=pixels(3),
-        bump_scale=0.5,
-        glow=(3.0, 0.75, 0.0),
-        cutoff=0.25,
+        base_color_texture=pixels(4),
+        metallic_roughness_texture=pixels(3),
+        normal_texture=pixels(3),
+        normal_scale=0.5,
+        emissive=(3.0, 0.75, 0.0),
+        alpha_cutoff=0.25,
         double_sided=True,
     )
     mesh = replace(walker.meshes[0], material=material, uvs=np.zeros((8, 2), np.float32))

@@ -19,11 +19,11 @@ def load(tmp_path, build):
     return Character.load(tmp_path / "arm.glb")
 
 
-def with_targets(*shifts, names=None, weights=None):
-    """The arm, with a morph target a row of shifts (three vertices, 3)."""
+def with_targets(*targets, names=None, weights=None):
+    """The arm, with a morph target for each array of displacements, (3 vertices, 3)."""
     build = build_arm()
     mesh = build.document["meshes"][0]
-    mesh["primitives"][0]["targets"] = [{"POSITION": build.floats(s, "VEC3")} for s in shifts]
+    mesh["primitives"][0]["targets"] = [{"POSITION": build.floats(s, "VEC3")} for s in targets]
     if names:
         mesh["extras"] = {"targetNames": names}
     if weights:
@@ -32,9 +32,9 @@ def with_targets(*shifts, names=None, weights=None):
 
 
 def lift(vertex, height):
-    shifts = np.zeros((3, 3))
-    shifts[vertex, 2] = height
-    return shifts
+    displacements = np.zeros((3, 3))
+    displacements[vertex, 2] = height
+    return displacements
 
 
 def test_morph_targets_are_read_by_name_in_the_characters_frame(tmp_path):
@@ -42,7 +42,7 @@ def test_morph_targets_are_read_by_name_in_the_characters_frame(tmp_path):
     assert character.morphs == ("aa", "oh")
     aa, oh = character.meshes[0].morphs
     assert aa.vertices.tolist() == [2]
-    assert np.allclose(aa.shifts, [[0, 0.1, 0]], atol=1e-6)
+    assert np.allclose(aa.displacements, [[0, 0.1, 0]], atol=1e-6)
     assert oh.vertices.tolist() == [1]
     rest = character.skeleton.rest.globals(character.skeleton)
     assert np.allclose(skin(character.meshes[0], rest, {"aa": 0.5})[2], [0, 0.65, 0], atol=1e-6)
@@ -88,7 +88,9 @@ def test_cubic_weights_keep_their_tangents_apart(tmp_path):
 
 def test_a_target_of_another_size_is_refused(tmp_path):
     build = with_targets(lift(2, 1)[:2], names=["aa"])
-    with pytest.raises(CharacterError, match="morph target 'aa' has 2 shifts for 3 vertices"):
+    with pytest.raises(
+        CharacterError, match="morph target 'aa' has 2 displacements for 3 vertices"
+    ):
         load(tmp_path, build)
 
 
@@ -109,9 +111,9 @@ def meshes_of_morphs(draw):
         for name in chosen:
             where = draw(st.lists(st.integers(0, 7), unique=True, max_size=8).map(sorted))
             rows = st.tuples(numbers, numbers, numbers)
-            shifts = np.reshape([draw(rows) for _ in where], (-1, 3)).astype(np.float32)
-            turns = shifts[::-1] if draw(st.booleans()) else None
-            morphs.append(Morph(name, np.array(where, np.uint32), shifts, turns))
+            displacements = np.reshape([draw(rows) for _ in where], (-1, 3)).astype(np.float32)
+            turns = displacements[::-1] if draw(st.booleans()) else None
+            morphs.append(Morph(name, np.array(where, np.uint32), displacements, turns))
         own.append(tuple(morphs))
     return tuple(draw(st.permutations(names))), own
 
@@ -159,8 +161,8 @@ def same(loaded: tuple[Morph, ...], saved: tuple[Morph, ...]) -> bool:
     return len(loaded) == len(saved) and all(
         a.name == b.name
         and np.array_equal(a.vertices, b.vertices)
-        and np.array_equal(a.shifts, b.shifts)
-        and np.array_equal(np.array(a.normal_shifts), np.array(b.normal_shifts))
+        and np.array_equal(a.displacements, b.displacements)
+        and np.array_equal(np.array(a.normal_displacements), np.array(b.normal_displacements))
         for a, b in zip(loaded, saved, strict=True)
     )
 

@@ -105,9 +105,9 @@ def test_expressions_are_weighted_sums_of_morph_targets(tmp_path, human):
         ({"gasp": 1.0}, {"oh": 1.0, "surprised": 0.5}),
     ]
     for expression, targets in pairs:
-        shifts = moved(character, expression)
-        assert np.abs(shifts).max() > 1e-3
-        assert np.allclose(shifts, moved(plain, targets), atol=1e-6)
+        displacements = moved(character, expression)
+        assert np.abs(displacements).max() > 1e-3
+        assert np.allclose(displacements, moved(plain, targets), atol=1e-6)
 
 
 def test_an_old_vrm_is_turned_to_face_forward(tmp_path, human):

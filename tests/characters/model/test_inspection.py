@@ -90,7 +90,7 @@ def test_inspection_reports_weights_textures_and_triangles(sound):
     assert "the error is 0.2" in problems(sound, meshes=(heavy,))
     crowd = replace(mesh, triangles=np.tile(mesh.triangles, (30_000, 1)))
     assert "120,000 triangles" in problems(sound, meshes=(crowd,))
-    large = replace(mesh.material, bumps=np.zeros((2, 5000, 3), np.uint8))
+    large = replace(mesh.material, normal_texture=np.zeros((2, 5000, 3), np.uint8))
     assert "5000 pixels" in problems(sound, meshes=(replace(mesh, material=large),))
 
 

@@ -66,7 +66,7 @@ def test_normals_are_morphed_too(on_card, jester):
     on_card.skin(np.linalg.inv(binds) @ joints, np.eye(4), np.array([0.8, 0.0, 0.0]))
     mesh = jester.meshes[1]
     leant = mesh.normals.astype(float)
-    leant[mesh.morphs[0].vertices] += 0.8 * mesh.morphs[0].normal_shifts
+    leant[mesh.morphs[0].vertices] += 0.8 * mesh.morphs[0].normal_displacements
     leant /= np.linalg.norm(leant, axis=1, keepdims=True)
     drawn = corners(on_card, CharacterVertices.of(jester.meshes))[mesh.triangles.size :, 3:]
     assert np.abs(drawn - leant[mesh.triangles.ravel()]).max() < 1e-4

@@ -58,7 +58,9 @@ def test_a_plain_material_has_no_features():
 
 def test_maps_of_roughness_and_metalness_multiply_the_factors(shown, tile):
     factors = shown(tile(replace(RED, metallic=0.4, roughness=0.3)))
-    mapped = replace(RED, metallic=0.8, roughness=0.6, surface=even(77, 128, 128))
+    mapped = replace(
+        RED, metallic=0.8, roughness=0.6, metallic_roughness_texture=even(77, 128, 128)
+    )
     assert np.abs(shown(tile(mapped)) - factors).max() <= 1
     assert np.abs(shown(tile(RED)) - factors).max() > 10
 
@@ -82,26 +84,26 @@ def test_a_normal_map_tilts_normals_along_the_texture(shown, tile, mapping, lean
     xz_of_uv /= np.linalg.norm(xz_of_uv, axis=0)
     x, z = xz_of_uv @ [right, -up]  # up in a picture is against v
     expected = shown(tile(RED, normal=(x, rise, z)))
-    mapped = tile(replace(RED, bumps=even(*coded)), uv_of_xz=uv_of_xz)
+    mapped = tile(replace(RED, normal_texture=even(*coded)), uv_of_xz=uv_of_xz)
     assert np.abs(shown(mapped) - expected).max() <= 3
 
 
 def test_the_scale_of_a_normal_map_tilts_normals_more(shown, tile):
-    lean = replace(RED, bumps=even(178, 128, 238))
+    lean = replace(RED, normal_texture=even(178, 128, 238))
     steep = np.array([2.0 * 0.4, np.sqrt(1.0 - 0.4**2), 0.0])
     expected = shown(tile(RED, normal=steep / np.linalg.norm(steep)))
-    assert np.abs(shown(tile(replace(lean, bump_scale=2.0))) - expected).max() <= 3
-    assert np.array_equal(shown(tile(replace(lean, bump_scale=0.0))), shown(tile(RED)))
+    assert np.abs(shown(tile(replace(lean, normal_scale=2.0))) - expected).max() <= 3
+    assert np.array_equal(shown(tile(replace(lean, normal_scale=0.0))), shown(tile(RED)))
 
 
 def test_degenerate_texture_coordinates_keep_the_normals(shown, tile):
-    mapped = tile(replace(RED, bumps=even(200, 128, 238)), uv_of_xz=np.zeros((2, 2)))
+    mapped = tile(replace(RED, normal_texture=even(200, 128, 238)), uv_of_xz=np.zeros((2, 2)))
     assert np.abs(shown(mapped) - shown(tile(RED))).max() <= 1
 
 
 def test_emission_is_visible_without_light(shown, tile, view):
     black = replace(RED, base_color=(0.0, 0.0, 0.0, 1.0), roughness=1.0)
-    dark, bright = shown(tile(black)), shown(tile(replace(black, glow=(0.0, 0.5, 0.0))))
+    dark, bright = shown(tile(black)), shown(tile(replace(black, emissive=(0.0, 0.5, 0.0))))
     where = np.abs(dark - view.image).sum(axis=2) > 150
     assert where.sum() > 500
     assert (bright - dark)[where][:, 1].mean() > 80
@@ -109,21 +111,21 @@ def test_emission_is_visible_without_light(shown, tile, view):
 
 
 def test_holes_show_the_background(shown, tile, view):
-    solid = tile(replace(RED, texture=even(255, 255, 255, 40)))
-    holes = tile(replace(RED, texture=even(255, 255, 255, 40), cutoff=0.5))
-    shut = tile(replace(RED, texture=even(255, 255, 255, 140), cutoff=0.5))
+    solid = tile(replace(RED, base_color_texture=even(255, 255, 255, 40)))
+    holes = tile(replace(RED, base_color_texture=even(255, 255, 255, 40), alpha_cutoff=0.5))
+    shut = tile(replace(RED, base_color_texture=even(255, 255, 255, 140), alpha_cutoff=0.5))
     assert np.array_equal(shown(shut), shown(solid))
     red = shown(solid)[..., 2] - shown(solid)[..., 1] > 40
     seen = shown(holes)
     assert red.sum() > 1000
     assert (seen[..., 2] - seen[..., 1]).max() < 20
-    faint = replace(RED, cutoff=0.5)
+    faint = replace(RED, alpha_cutoff=0.5)
     assert np.array_equal(shown(tile(faint, alpha=0.4)), seen)
     assert np.array_equal(shown(tile(faint, alpha=0.6)), shown(solid))
 
 
 def test_materials_with_different_textures_are_drawn_separately(tile):
     bumps = even(128, 128, 255)
-    one, other = replace(RED, bumps=bumps), replace(RED, bumps=bumps.copy())
+    one, other = replace(RED, normal_texture=bumps), replace(RED, normal_texture=bumps.copy())
     meshes = [tile(material).meshes[0] for material in (one, other, one)]
     assert len(CharacterVertices.of(meshes).materials) == 2

@@ -32,14 +32,14 @@ def morphed(
 
 def difference(name: str, mesh: Mesh, other: Mesh) -> Morph | None:
     """Return the morph from one mesh to another of the same triangles; None if they are alike."""
-    shifts = other.positions - mesh.positions
-    moved = np.flatnonzero(np.abs(shifts).max(axis=1) > _STILL)
+    displacements = other.positions - mesh.positions
+    moved = np.flatnonzero(np.abs(displacements).max(axis=1) > _STILL)
     if not len(moved):
         return None
     turned = (other.normals - mesh.normals)[moved]
     return Morph(
         name,
         moved.astype(np.uint32),
-        shifts[moved].astype(np.float32),
+        displacements[moved].astype(np.float32),
         turned.astype(np.float32),
     )

@@ -93,14 +93,16 @@ def _joined_morphs(meshes: Sequence[Mesh], starts: Sequence[int]) -> tuple[Morph
             if morph.name == name
         ]
         turns = [
-            np.zeros_like(morph.shifts) if morph.normal_shifts is None else morph.normal_shifts
+            np.zeros_like(morph.displacements)
+            if morph.normal_displacements is None
+            else morph.normal_displacements
             for _, morph in pieces
         ]
         joined.append(
             Morph(
                 name,
                 np.concatenate([vertices for vertices, _ in pieces]),
-                np.concatenate([morph.shifts for _, morph in pieces]),
+                np.concatenate([morph.displacements for _, morph in pieces]),
                 np.concatenate(turns),
             )
         )

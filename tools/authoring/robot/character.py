@@ -63,4 +63,4 @@ def _lamps(mood: str, small: Skeleton, bound: Skeleton) -> Mesh:
     r, g, b = (GLOW * level for level in color)
     pieces = [grown(piece, bound) for piece in head_lenses(mood, color, small)]
     pieces += body_lenses(mood, color, bound)
-    return join(f"{mood} lamps", pieces, Material(roughness=0.3, glow=(r, g, b)))
+    return join(f"{mood} lamps", pieces, Material(roughness=0.3, emissive=(r, g, b)))

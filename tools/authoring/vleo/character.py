@@ -55,10 +55,10 @@ def mesh(bound: Skeleton) -> Mesh:
 def _welded(mesh: Mesh) -> Mesh:
     """Return the mesh with equal vertices merged and triangles without area left out."""
     colors = np.ones((len(mesh.positions), 4)) if mesh.colors is None else mesh.colors
-    shifts = np.zeros((len(mesh.morphs), len(mesh.positions), 3))
-    for row, morph in zip(shifts, mesh.morphs, strict=True):
-        row[morph.vertices] = morph.shifts
-    moved = shifts.swapaxes(0, 1).reshape(len(mesh.positions), -1)
+    displacements = np.zeros((len(mesh.morphs), len(mesh.positions), 3))
+    for row, morph in zip(displacements, mesh.morphs, strict=True):
+        row[morph.vertices] = morph.displacements
+    moved = displacements.swapaxes(0, 1).reshape(len(mesh.positions), -1)
     columns = (mesh.positions, mesh.normals, mesh.joints, mesh.weights, colors, moved)
     rows = np.hstack([np.asarray(column, np.float64) for column in columns])
     _, first, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
@@ -81,10 +81,10 @@ def _welded(mesh: Mesh) -> Mesh:
 def _kept(morph: Morph, order: NDArray[np.intp]) -> Morph:
     """Return a morph of the vertices that remain, in their order."""
     there = np.isin(morph.vertices, order)
-    turned = morph.normal_shifts
+    turned = morph.normal_displacements
     return replace(
         morph,
         vertices=np.searchsorted(order, morph.vertices[there]).astype(np.uint32),
-        shifts=morph.shifts[there],
-        normal_shifts=None if turned is None else turned[there],
+        displacements=morph.displacements[there],
+        normal_displacements=None if turned is None else turned[there],
     )
