@@ -1,7 +1,7 @@
 """The interface of the boards that the firmware runs on; `hardware` has the real one."""
 
 
-class Board:
+class RobotBoard:
     """A serial line, a clock, servos and a buzzer. Only `wait` blocks."""
 
     def elapsed(self) -> int:

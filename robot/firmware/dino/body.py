@@ -3,7 +3,7 @@
 from array import array
 from math import pi, sin, sqrt
 
-from .board import Board
+from .board import RobotBoard
 from .joints import ServoJoints
 from .messages import NOTHING
 from .motions import ANGRY_BELOW, HAPPY_ABOVE, HYSTERESIS, MOODS, MOTIONS, TURN
@@ -39,7 +39,9 @@ class DinoBody:
         Time without a session after which it rests and its servos lose power [ms].
     """
 
-    def __init__(self, joints: ServoJoints, board: Board, buzzer: bool, rest_after: int) -> None:
+    def __init__(
+        self, joints: ServoJoints, board: RobotBoard, buzzer: bool, rest_after: int
+    ) -> None:
         self.joints = joints
         self.motions = _NAMES
         """Names of the motions; the first are the loops of the moods."""

@@ -7,7 +7,7 @@ import time
 import machine
 import micropython
 
-from .board import Board
+from .board import RobotBoard
 from .table import ServoTable
 
 WATCHDOG_MS = 4000
@@ -23,7 +23,7 @@ MIN_SILENCE_MS = 100
 """Shortest silence before the first bytes of a developer's tool [ms]."""
 
 
-class Hardware(Board):
+class Hardware(RobotBoard):
     """The board with the microcontroller.
 
     Parameters

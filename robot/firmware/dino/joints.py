@@ -1,6 +1,6 @@
 """Servos with limited speed. Angles are integers in 1/100 degree."""
 
-from .board import Board
+from .board import RobotBoard
 from .table import Servo
 
 POWER_ON_EVERY_MS = 150
@@ -25,7 +25,7 @@ class ServoJoints:
         Generates the pulses.
     """
 
-    def __init__(self, servos: list[Servo], board: Board) -> None:
+    def __init__(self, servos: list[Servo], board: RobotBoard) -> None:
         count = len(servos)
         self._servos = servos
         self._board = board

@@ -9,10 +9,10 @@ import sys
 import time
 import traceback
 
-from .board import Board
+from .board import RobotBoard
 
 
-class PtyBoard(Board):
+class PtyBoard(RobotBoard):
     """A board on a pseudo-terminal; `close`, from any thread, ends the running firmware.
 
     Clients can open and close the port at `url` at any time.

@@ -1,6 +1,6 @@
 """The main loop: line, protocol and body, and the recovery from errors."""
 
-from .board import Board
+from .board import RobotBoard
 from .body import DinoBody
 from .frames import SendBuffer
 from .joints import ServoJoints
@@ -27,7 +27,7 @@ class Firmware:
         The servos; their expected angles survive an error.
     """
 
-    def __init__(self, board: Board, table: ServoTable, joints: ServoJoints) -> None:
+    def __init__(self, board: RobotBoard, table: ServoTable, joints: ServoJoints) -> None:
         self._board = board
         self._send_buffer = SendBuffer()
         self._to_send = memoryview(self._send_buffer.data)
@@ -55,7 +55,7 @@ class Firmware:
         board.feed_watchdog()
 
 
-def run_until_exit(board: Board, table: ServoTable, joints: ServoJoints) -> None:
+def run_until_exit(board: RobotBoard, table: ServoTable, joints: ServoJoints) -> None:
     """Run the main loop until an exit is requested."""
     firmware = Firmware(board, table, joints)
     now = 0
@@ -66,7 +66,7 @@ def run_until_exit(board: Board, table: ServoTable, joints: ServoJoints) -> None
         board.wait(WAIT_MS)
 
 
-def run(board: Board, table: ServoTable) -> None:
+def run(board: RobotBoard, table: ServoTable) -> None:
     """Run the firmware, and restart it after every error, until an exit is requested."""
     joints = ServoJoints(table.servos, board)
     board.begin(True)
@@ -85,7 +85,7 @@ def run(board: Board, table: ServoTable) -> None:
         board.begin(False)
 
 
-def pause(board: Board, time: int) -> None:
+def pause(board: RobotBoard, time: int) -> None:
     """Wait, and keep the watchdog fed."""
     board.elapsed()
     while time > 0 and not board.exit_requested():

@@ -1,7 +1,7 @@
 """The robot's side of the protocol: PROTOCOL.md, sections 5 to 7. Times are in ms."""
 
 from . import messages as m
-from .board import Board
+from .board import RobotBoard
 from .body import DinoBody
 from .codec import pack, unpack
 from .frames import FrameDecoder, SendBuffer, crc16
@@ -25,7 +25,9 @@ class HostSession:
         Measures the battery.
     """
 
-    def __init__(self, body: DinoBody, send_buffer: SendBuffer, name: str, board: Board) -> None:
+    def __init__(
+        self, body: DinoBody, send_buffer: SendBuffer, name: str, board: RobotBoard
+    ) -> None:
         self.number = 0
         """Number of the open session; 0 if none is."""
         self._body = body

@@ -1,6 +1,6 @@
 """Sounds for a piezo buzzer, and their player."""
 
-from .board import Board
+from .board import RobotBoard
 
 SOUNDS = (
     # name, (Hz at the beginning, Hz at the end, ms); 0 Hz is silence
@@ -25,7 +25,7 @@ class SoundPlayer:
         Whether it has a buzzer.
     """
 
-    def __init__(self, board: Board, buzzer: bool) -> None:
+    def __init__(self, board: RobotBoard, buzzer: bool) -> None:
         self._board = board
         self._buzzer = buzzer
         self.sound = -1

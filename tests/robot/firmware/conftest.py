@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from robot.firmware.dino import servos
-from robot.firmware.dino.board import Board
+from robot.firmware.dino.board import RobotBoard
 from robot.firmware.dino.joints import ServoJoints
 from robot.firmware.dino.pty_board import PtyBoard
 from robot.firmware.dino.robot import Firmware, run
@@ -31,7 +31,7 @@ class Pulse:
     """Pulse width [µs]; 0 for no pulses."""
 
 
-class VirtualBoard(Board):
+class VirtualBoard(RobotBoard):
     """A board whose line and time the test controls."""
 
     def __init__(self) -> None:

@@ -6,13 +6,13 @@
 # mypy: ignore-errors
 
 from dino import servos
-from dino.board import Board
+from dino.board import RobotBoard
 from dino.joints import ServoJoints
 from dino.robot import Firmware
 from dino.table import ServoTable
 
 
-class VirtualBoard(Board):
+class VirtualBoard(RobotBoard):
     def __init__(self):
         self.incoming = b""
         self.outgoing = bytearray()
