@@ -58,10 +58,11 @@ class ShadowPass(RenderPass):
         self.owned = (self._table,)
         self._maps: list[ShadowMap] = []
         self._count = 0
+        self._area: Rectangle | None = None
 
     def prepare(self, frame: FrameResources) -> Sequence[Rectangle]:
         """Render the shadow maps, and return one area for all shadows and their characters."""
-        self._count = len(frame.characters)
+        self._count, self._area = len(frame.characters), None
         if not self._count:
             return ()
         while len(self._maps) < self._count:
@@ -72,12 +73,12 @@ class ShadowPass(RenderPass):
             for shadow, character in zip(self._maps, frame.characters, strict=False)
         ]
         bodies = [character.enclosing for character in frame.characters]
-        area = frame.area_of(np.concatenate([*bodies, *corners]))
-        return () if area is None else (area,)
+        self._area = frame.area_of(np.concatenate([*bodies, *corners]))
+        return () if self._area is None else (self._area,)
 
     def draw(self, frame: FrameResources, region: Region) -> None:
         """Darken the table, except where real cubes hide it."""
-        if not self._count:
+        if self._area is None or not self._area.intersection(region.area):
             return
         region.use()
         frame.context.enable_only(moderngl.BLEND)
