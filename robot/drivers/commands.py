@@ -65,7 +65,7 @@ class DesiredState:
         """The word of the acknowledged emotion, until another command displaces it."""
 
     def follow(self, word: str, emotion: Emotion, *, sent: bool) -> None:
-        """Take over another emotion with the same word; `sent` tells if the word was sent."""
+        """Record another emotion with the same word; `sent`: whether that word was sent."""
         if sent:
             self.sent = emotion
         if self.shown == word:

@@ -16,7 +16,7 @@ STEP_S = 0.005
 
 
 class _StepDriver(PortExchange):
-    """Moves bytes when it is told to."""
+    """Moves bytes when `step` is called."""
 
     def __init__(
         self, open_port: Opener, driver: Driver, clock: Clock, on_bytes: ByteHook | None

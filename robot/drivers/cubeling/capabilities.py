@@ -15,7 +15,7 @@ class CapabilityQuery:
 
     def __init__(self, welcome: m.Welcome) -> None:
         self.welcome = welcome
-        """The message that told how many entries there are."""
+        """The message with the number of entries."""
         self._counts = (welcome.joints, welcome.motions, welcome.sounds, welcome.moods)
         self._joints: list[JointLimits] = []
         self._names: tuple[list[str], list[str], list[str]] = ([], [], [])

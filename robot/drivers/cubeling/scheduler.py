@@ -155,7 +155,7 @@ class CommandScheduler:
         """Start a session with a robot in which command `taken` is in force, 0 for none.
 
         Commands are taken in the order of their numbers, and the desired state was never skipped,
-        so a later number tells that it is in force too.
+        so a later number means that it is in force too.
         """
         if taken >= self._state_number > 0:
             if not self._unsent:

@@ -25,7 +25,7 @@ MAX_LINE_BYTES = 200
 """Longest line that is read [bytes]; the longest that matters, 16 angles, has about 90."""
 
 REST_INTERVAL_S = 60.0
-"""Interval at which a resting robot is told to rest again, as a sign of life [s]: any other
+"""Interval at which the rest command is repeated to a resting robot, as a sign of life [s]: any
 question would switch its balancing on."""
 
 Phase = Literal["port", "greeting", "open", "closed"]

@@ -1,4 +1,4 @@
-"""What the console was told so far, and the commands that a mood still needs.
+"""What was sent to the console so far, and the commands that a mood still needs.
 
 It is what was sent, not what Pleo does: the console reports neither speeds nor angles.
 """
