@@ -1,0 +1,63 @@
+"""Poses found anywhere in the image are trusted only where the image and the track allow it."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from tests.tracking.drawn import held
+from tracking.geometry import se3
+from tracking.refinement.candidate import Candidate
+from tracking.tracker.prediction import Track, TrackedPose
+from tracking.tracker.verdict import Past, judge_detected
+
+HERE, THERE = held(), held(at=(0.3, 0.0, 0.5))
+SURE = np.eye(6) * 1e-8
+FOUND = Candidate(HERE, SURE, "markers", ("front", "top"), 0.1, 0.1, certain=True)
+MOVED = replace(FOUND, camera_from_cube=THERE)
+
+
+def tracked(timestamp: float) -> Past:
+    """Past of a cube that was at rest."""
+    return Past(Track((TrackedPose(HERE, np.zeros(6), SURE, timestamp),)))
+
+
+def test_nothing_found_is_neither_trusted_nor_refused() -> None:
+    verdict = judge_detected([], None, Past(), 0.0)
+    assert (verdict.candidate, verdict.refused) == (None, "")
+
+
+def test_an_unproved_pose_is_refused() -> None:
+    for blurred, refused in ((False, "unproved"), (True, "blurred")):
+        candidate = replace(FOUND, certain=False, blurred=blurred)
+        assert judge_detected([candidate], None, Past(), 0.0).refused == refused
+
+
+def test_an_uncertain_pose_is_refused() -> None:
+    assert judge_detected([FOUND], None, Past(), 0.0).refused == ""
+    vague = replace(FOUND, covariance=np.eye(6) * 1e-4)
+    assert judge_detected([vague], None, Past(), 0.0).refused == "unsure"
+
+
+def test_a_jump_is_refused_until_a_second_pose_confirms_it() -> None:
+    past = tracked(0.0)
+    first = judge_detected([MOVED], past.track.predict(0.03), past, 0.03)
+    assert first.refused == "jump"
+    assert first.past.track == past.track
+    second = judge_detected([MOVED], past.track.predict(0.06), first.past, 0.06)
+    assert second.refused == ""
+    assert np.array_equal(second.past.track.poses[-1].camera_from_cube, THERE)
+
+
+def test_after_a_second_out_of_sight_the_cube_may_be_anywhere() -> None:
+    assert judge_detected([MOVED], None, tracked(0.0), 1.1).refused == ""
+
+
+def test_of_two_equally_good_poses_the_predicted_one_is_chosen() -> None:
+    tilted = se3.moved(HERE, np.array([0, 0, 0, np.deg2rad(40), 0, 0]))
+    both = [replace(FOUND, camera_from_cube=pose, faces=("front",)) for pose in (tilted, HERE)]
+    assert judge_detected(both, None, Past(), 0.0).refused == "ambiguous"
+    past = tracked(0.0)
+    verdict = judge_detected(both, past.track.predict(0.03), past, 0.03)
+    assert verdict.refused == ""
+    assert verdict.candidate is not None
+    assert np.array_equal(verdict.candidate.camera_from_cube, HERE)
