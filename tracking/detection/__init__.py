@@ -1,1 +1,1 @@
-"""Markers and quadrilaterals in a picture, and the pose that their corners agree on."""
+"""Markers and quads in an image, and the pose that their corners agree on."""

@@ -63,7 +63,7 @@ class CameraModel:
 
 @dataclass(frozen=True)
 class BlurObservation:
-    """What the blurred image of one cube tells of the camera."""
+    """Measurements of the camera from the blurred image of one cube."""
 
     aligned: Alignment
     """The pose and the motion that explain the image."""
@@ -188,7 +188,7 @@ def _exponent(used: float, bend: float, black: float) -> float:
     """Exponent that makes a mixture of half black and half white the middle of the two.
 
     With the exponent used, the middle reads as h = (1 + black)/2 + bend (1 − black)/4 of white. The
-    grey values of black, middle and white are their `used`-th roots; the exponent sought makes
+    grey values of black, middle and white are their `used`-th roots; this exponent e makes
     2 middle^e = black^e + 1.
     """
     black = min(max(black, 1e-3), 0.9)

@@ -29,7 +29,7 @@ PRECISE_STEPS_PX: tuple[float, ...] = (2.0, 1.0)
 """Widths of the fitted step: in the wide search, and first and last otherwise."""
 
 MAX_SHIFT_PX = 0.7
-"""The profiles are placed anew where an edge moves by more than this."""
+"""The profiles are placed again where an edge moves by more than this."""
 
 CONVERGED_PX = 0.04
 """The profiles are measured again while edges move by more than this."""

@@ -21,8 +21,7 @@ MIN_EDGE_SUPPORT_WITH_MARKERS = 0.25
 """The same where the markers can be read as well; fingers cover the rest."""
 
 MIN_SHARPNESS_RATIO = 0.65
-"""Where the dullest edges are duller than this beside the sharpest, the cube moved in a way that
-was not expected."""
+"""Below this ratio of the dullest to the sharpest edges, the cube moved in an unexpected way."""
 
 MAX_RESIDUAL_PX, MAX_RESIDUAL_SHARE = 0.5, 0.0063
 """Edges of a rigid cube lie within this of their places, or within this share of its edge,

@@ -26,7 +26,7 @@ class LocalMatch:
     """The cube; None where it was not found there."""
 
     blur: BlurObservation | None = None
-    """What its blur tells of the camera, where it tells anything."""
+    """Measurements of the camera from its blur, where it is blurred enough."""
 
     studied: bool = False
     """Whether a sharp image was aligned only to learn the camera from it."""
@@ -80,7 +80,7 @@ class LocalTracker:
     def _by_blur(
         self, patch: Patch, track: Track, prediction: Prediction, camera: CameraModel
     ) -> LocalMatch:
-        """Align the blurred image, which also tells what camera took it."""
+        """Align the blurred image, which also measures the camera."""
         expected = prediction.velocity * camera.exposure
         aligned = self._blur.align(patch, prediction.camera_from_cube, expected, camera)
         if aligned is None:
@@ -105,7 +105,7 @@ class LocalTracker:
         return LocalMatch(found, self._observed(aligned, velocity) if aligned else None, True)
 
     def _observed(self, aligned: Alignment, velocity: Array) -> BlurObservation | None:
-        """Return what an alignment tells of the camera; None where it may be wrong."""
+        """Return the measurements of the camera in an alignment; None where it may be wrong."""
         if not aligned.correlation >= MIN_CORRELATION_ALONE:
             return None
         return BlurObservation(

@@ -24,8 +24,7 @@ from tracking.tracker.prediction import TrackedPose
 from tracking.tracker.verdict import FollowedPoseJudge, Past, judge_detected
 
 MAX_THOROUGH_FRAMES, THOROUGH_INTERVAL = 30, 5
-"""A lost cube is sought by partly hidden markers, too, in this many frames, and then in one of
-this many."""
+"""Frames without the cube in which partly hidden markers are detected, then the interval."""
 
 
 class CubeTracker:
