@@ -1,7 +1,7 @@
-"""What looks and morphs cost: `python -m tests.bench.looks [--frames N]`.
+"""Cost of surface features and morphs: `python -m tests.bench.looks [--frames N]`.
 
-One character, drawn in turns with each look, so that the ratios hold on a busy machine. The maps
-are noise; a face of `FACE` vertices has as many morphs as VRM has expressions.
+One character is drawn with each feature in turn, so that the ratios hold on a busy machine. The
+textures are noise; a face of `FACE_VERTICES` vertices has as many morphs as VRM has expressions.
 """
 
 import argparse
@@ -20,11 +20,11 @@ from characters.model.mesh import Material, Mesh, Morph
 from characters.rendering import SceneCharacter, Stage, create_context
 from tests.bench.picture import SIZE, scene
 
-FACE = 3000
-MORPHS = 18
-MOST = 1.1
-"""What a picture of a character that has morphs, all off, may cost against one without: about 1,
-with room for the noise of a busy machine."""
+FACE_VERTICES = 3000
+MORPH_COUNT = 18
+MAX_RATIO = 1.1
+"""Largest ratio of the time with all morphs at zero to the time without morphs: about 1, with room
+for the noise of a busy machine."""
 
 
 def with_material(character: Character, **changes: Any) -> Character:
@@ -39,20 +39,20 @@ def with_material(character: Character, **changes: Any) -> Character:
 
 def with_morphs(character: Character, rng: np.random.Generator) -> Character:
     """Return a character whose highest vertices are a face."""
-    names = tuple(f"m{number}" for number in range(MORPHS))
-    share = FACE / sum(len(mesh.positions) for mesh in character.meshes)
+    names = tuple(f"m{number}" for number in range(MORPH_COUNT))
+    share = FACE_VERTICES / sum(len(mesh.positions) for mesh in character.meshes)
 
     def faced(mesh: Mesh) -> Mesh:
         count = max(round(share * len(mesh.positions)), 1)
         highest = np.sort(np.argsort(mesh.positions[:, 1])[-count:]).astype(np.uint32)
-        displacements = rng.normal(0, 1e-3, (MORPHS, 2, count, 3)).astype(np.float32)
+        displacements = rng.normal(0, 1e-3, (MORPH_COUNT, 2, count, 3)).astype(np.float32)
         morphs = (Morph(n, highest, *row) for n, row in zip(names, displacements, strict=True))
         return replace(mesh, morphs=tuple(morphs))
 
     return replace(character, meshes=tuple(map(faced, character.meshes)), morphs=names)
 
 
-def casts(character: Character, rng: np.random.Generator) -> dict[str, tuple[Character, int]]:
+def table_rows(character: Character, rng: np.random.Generator) -> dict[str, tuple[Character, int]]:
     """Return each row of the table: who is drawn, and how many morphs are on."""
     noise = rng.integers(0, 256, (1024, 1024, 4), dtype=np.uint8)
     bumps = np.dstack([noise[..., :2] // 8 + 112, np.full((1024, 1024), 250)]).astype(np.uint8)
@@ -71,7 +71,9 @@ def casts(character: Character, rng: np.random.Generator) -> dict[str, tuple[Cha
         looks["all of it, glowing"] |= looks[name]
     rows = {name: (with_material(character, **changes), 0) for name, changes in looks.items()}
     faced = with_morphs(rows["plain"][0], rng)
-    rows |= {f"plain, {on} of {MORPHS} morphs on": (faced, on) for on in (0, 1, 4, MORPHS)}
+    rows |= {
+        f"plain, {on} of {MORPH_COUNT} morphs on": (faced, on) for on in (0, 1, 4, MORPH_COUNT)
+    }
     rows["plain, once more"] = rows["plain"]
     return rows
 
@@ -85,7 +87,7 @@ def main() -> None:
     context = create_context()
     rng = np.random.default_rng(5)
     character = Character.load(options.character)
-    rows = casts(character, rng)
+    rows = table_rows(character, rng)
     stages = {name: Stage(context, SIZE) for name in rows}
     spent: dict[str, list[float]] = {name: [] for name in rows}
     view, actor = scene(character)
@@ -100,11 +102,11 @@ def main() -> None:
             start = time.perf_counter()
             stages[name].draw(view, [seen])
             spent[name].append(1e3 * (time.perf_counter() - start))
-    off = tell(options.character, {name: times[3:] for name, times in spent.items()})
-    raise SystemExit(off > MOST)
+    off = print_table(options.character, {name: times[3:] for name, times in spent.items()})
+    raise SystemExit(off > MAX_RATIO)
 
 
-def tell(name: str, spent: dict[str, Sequence[float]]) -> float:
+def print_table(name: str, spent: dict[str, Sequence[float]]) -> float:
     """Print the table, and return the ratio of the row with all morphs off."""
     table = Table(title=f"{name}, one picture of {SIZE[0]}×{SIZE[1]}")
     for heading in ("looks", "median [ms]", "against plain"):
@@ -115,7 +117,7 @@ def tell(name: str, spent: dict[str, Sequence[float]]) -> float:
         ratios[row] = statistics.median(each)
         table.add_row(row, f"{statistics.median(times):.2f}", f"{ratios[row]:.3f}")
     Console().print(table)
-    return ratios[f"plain, 0 of {MORPHS} morphs on"]
+    return ratios[f"plain, 0 of {MORPH_COUNT} morphs on"]
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""What drawing one picture costs, part by part: `python -m tests.bench.picture [--frames N]`.
+"""Time of drawing one picture, pass by pass: `python -m tests.bench.picture [--frames N]`.
 
 A bundled character of 18 cm at arm's length in a frame of 1280×720 with lens distortion. The first
-row is the time of a whole picture as it is used; for the rows below it the graphics card is waited
-for after each part, which adds a little. CPU is of all threads: software rendering has several.
+row is the time of a whole picture. For the rows below it, the benchmark waits for the graphics card
+after each part, which adds a little. CPU time is of all threads: software rendering has several.
 """
 
 import argparse
