@@ -25,7 +25,7 @@ _FRAME_NUMBER = re.compile(r"\n[ \t]*\d{1,11}[ \t]*\n")
 
 
 def load_motion(path: Path, options: MotionOptions) -> Performance:
-    """Read an .amc file and the .asf that goes with it.
+    """Read an .amc file and the .asf that goes with it; errors name the line of the problem.
 
     Every joint's rest rotation is the identity: joints keep the axes of the file, and the bones'
     own frames become part of the motion. Joints have the names of the bones, the hips are "root";
@@ -35,33 +35,21 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
     (16_08.amc: 16.asf), or the only one there. The rate left out is the one in the file, or 120 Hz.
     The scale left out is the stated unit if it makes a performer of 0.5 to 2.5 m, else it is
     recognised by size.
-
-    Raises
-    ------
-    CharacterError
-        If one of the files is absent or cannot be read, with the line of the problem.
     """
     file = TextFile.read(path)
-    body = load_skeleton(options.skeleton or find_skeleton(path))
-    header = _header(file, body.angle_unit)
-    rate = options.rate if options.rate is not None else header.rate
+    body = load_skeleton(options.skeleton or _find_skeleton(path))
+    angle_unit, rate, start = _header(file, body.angle_unit)
+    rate = options.rate if options.rate is not None else rate
     if not 0 < rate < _MAX_RATE_HZ:
         raise CharacterError(f"{path}: invalid rate of {rate:g} frames a second; give rate= in Hz")
-    values, notes = _values(file, header, body)
+    values, notes = _values(file, start, body)
     file.check_size(len(body.skeleton), len(values))
-    poses = body.channels(header.angle_unit).poses(values)
-    clip = Clip(path.stem, rate, poses, loop=False)
+    clip = Clip(path.stem, rate, body.channels(angle_unit).poses(values), loop=False)
     return metric_performance(path, clip, body.skeleton, options, notes, stated_unit=body.unit)
 
 
-def find_skeleton(path: Path) -> Path:
-    """Return the .asf in the folder of an .amc.
-
-    Raises
-    ------
-    CharacterError
-        If there is none, or if there are several and none has the name of the motion.
-    """
+def _find_skeleton(path: Path) -> Path:
+    """Return the .asf in the folder of an .amc, or refuse several without its name."""
     try:
         candidates = sorted(p for p in path.parent.iterdir() if p.suffix.lower() == ".asf")
     except OSError as error:
@@ -81,39 +69,23 @@ def find_skeleton(path: Path) -> Path:
     )
 
 
-@dataclass(frozen=True)
-class _Header:
-    """The lines before the first frame."""
+def _header(file: TextFile, angle_unit: float) -> tuple[float, float, int]:
+    """Return angle unit [rad], rate [Hz] and index of the first character of the first frame.
 
-    angle_unit: float
-    """Size of an angle of 1 [rad]."""
-
-    rate: float
-    """Frame rate [Hz]."""
-
-    lines: int
-    """Number of lines."""
-
-    characters: int
-    """Number of characters: the first frame starts there."""
-
-
-def _header(file: TextFile, angle_unit: float) -> _Header:
-    """Read the lines before the first frame; angles are as in the .asf if they do not say."""
-    text, rate, start, line = file.text, _CMU_RATE_HZ, 0, 0
-    while start < len(text):
-        end = text.find("\n", start)
-        end = len(text) if end < 0 else end
-        words = text[start:end].partition("#")[0].split()
-        if words and not words[0].startswith(":"):
-            return _Header(angle_unit, rate, line, start)
-        line += 1
-        start = end + 1
-        key = words[0].upper() if words else ""
+    Angles are in the unit of the .asf if the lines before the first frame do not say.
+    """
+    rate = _CMU_RATE_HZ
+    for number, line in enumerate(re.finditer(r".*\n?", file.text), start=1):
+        words = line[0].partition("#")[0].split()
+        if not words:
+            continue
+        if not words[0].startswith(":"):
+            return angle_unit, rate, line.start()
+        key = words[0].upper()
         if key in (":DEGREES", ":RADIANS"):
             angle_unit = 1.0 if key == ":RADIANS" else float(np.pi / 180)
         elif key == ":SAMPLES-PER-SECOND" and len(words) > 1:
-            rate = file.number(line, words[1])
+            rate = file.number(number, words[1])
     raise CharacterError(f"{file.path}: has no frames; is this a whole .amc?")
 
 
@@ -131,21 +103,16 @@ class _Frame:
     """Line and numbers by bone."""
 
 
-def _values(
-    file: TextFile, header: _Header, body: AcclaimSkeleton
-) -> tuple[Array, tuple[str, ...]]:
+def _values(file: TextFile, start: int, body: AcclaimSkeleton) -> tuple[Array, tuple[str, ...]]:
     """Return the numbers of all frames, (frames, numbers of a frame), and notes."""
-    text, columns = file.text, body.columns
-    blocks = list(_blocks(text, header.characters))
-    first = next(_frames(file, blocks[0], header.lines))
-    _row(file, body, columns, first, first)
+    blocks = list(_blocks(file.text, start))
+    first = next(_frames(file, blocks[0]))
+    _row(file, body, first, first)
     tables: list[Array] = []
     for block in blocks:
-        table = _uniform_table(text[slice(*block)], columns, first)
+        table = _uniform_table(file.text[slice(*block)], body, first)
         if table is None:  # frames list different bones, or one is invalid
-            line = text.count("\n", 0, block[0])
-            frames = _frames(file, block, line)
-            table = np.array([_row(file, body, columns, frame, first) for frame in frames])
+            table = np.array([_row(file, body, frame, first) for frame in _frames(file, block)])
         tables.append(table)
     table = np.concatenate(tables)
     notes = [
@@ -167,10 +134,11 @@ def _blocks(text: str, start: int) -> Iterator[tuple[int, int]]:
         start = end
 
 
-def _frames(file: TextFile, block: tuple[int, int], lines: int) -> Iterator[_Frame]:
-    """Yield the frames of a block that begins after so many lines; refuse invalid lines."""
+def _frames(file: TextFile, block: tuple[int, int]) -> Iterator[_Frame]:
+    """Yield the frames of a block; refuse invalid lines."""
     frame: _Frame | None = None
-    for line, content in enumerate(file.text[slice(*block)].split("\n"), start=lines + 1):
+    first_line = file.text.count("\n", 0, block[0]) + 1
+    for line, content in enumerate(file.text[slice(*block)].split("\n"), start=first_line):
         words = content.partition("#")[0].split()
         if not words:
             continue
@@ -190,7 +158,7 @@ def _frames(file: TextFile, block: tuple[int, int], lines: int) -> Iterator[_Fra
         yield frame
 
 
-def _uniform_table(text: str, columns: dict[str, slice], first: _Frame) -> Array | None:
+def _uniform_table(text: str, body: AcclaimSkeleton, first: _Frame) -> Array | None:
     """Return the table of a block whose frames list the bones in the order of the first frame.
 
     A row of the table is a frame's number and its values. The text is split into words and not
@@ -202,7 +170,7 @@ def _uniform_table(text: str, columns: dict[str, slice], first: _Frame) -> Array
     for name, (_, words) in first.rows.items():
         names[len(mask)] = name
         mask += [False] + [True] * len(words)
-        order += range(columns[name].start + 1, columns[name].stop + 1)
+        order += range(body.columns[name].start + 1, body.columns[name].stop + 1)
     tokens, period = text.split(), len(mask)
     frames = len(tokens) // period
     if frames * period != len(tokens):
@@ -212,30 +180,19 @@ def _uniform_table(text: str, columns: dict[str, slice], first: _Frame) -> Array
     found = parse_numbers(compress(tokens, cycle(mask)))
     if found is None:
         return None
-    table = np.zeros((frames, 1 + _width(columns)))
+    table = np.zeros((frames, 1 + body.width))
     table[:, order] = found.reshape(frames, len(order))
     return table
 
 
-def _width(columns: dict[str, slice]) -> int:
-    """Return the number of values of a frame."""
-    return max(int(part.stop) for part in columns.values())
-
-
-def _row(
-    file: TextFile,
-    body: AcclaimSkeleton,
-    columns: dict[str, slice],
-    frame: _Frame,
-    first: _Frame,
-) -> Array:
+def _row(file: TextFile, body: AcclaimSkeleton, frame: _Frame, first: _Frame) -> Array:
     """Return the number and the values of a frame in the skeleton's order, or refuse it."""
-    row = np.zeros(_width(columns))
+    row = np.zeros(body.width)
     for name, (line, words) in frame.rows.items():
-        if name not in columns:
+        if name not in body.columns:
             problem = f"{body.path.name} has no bone {quoted(name)}"
             raise file.error(line, problem, "give the .asf of the same performer with skeleton=")
-        part = columns[name]
+        part = body.columns[name]
         if len(words) != part.stop - part.start:
             problem = (
                 f"{quoted(name)} has {len(words)} numbers, but {part.stop - part.start} degrees "

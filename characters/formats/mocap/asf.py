@@ -6,6 +6,7 @@ the file. Joints keep these axes, so their rest rotations are the identity.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -41,7 +42,7 @@ class AcclaimSkeleton:
     angle_unit: float
     """Size of an angle of 1 [rad]."""
 
-    @property
+    @cached_property
     def columns(self) -> dict[str, slice]:
         """Which numbers of a frame belong to each bone."""
         ends = np.cumsum([len(bone.dof) for bone in self.bones]).tolist()
@@ -50,22 +51,24 @@ class AcclaimSkeleton:
             for bone, end in zip(self.bones, ends, strict=True)
         }
 
+    @property
+    def width(self) -> int:
+        """Number of values of a frame."""
+        return sum(len(bone.dof) for bone in self.bones)
+
     def channels(self, angle_unit: float) -> ChannelLayout:
         """Return how the numbers of a frame, with angles in this unit [rad], move the joints."""
-        children: dict[int, list[int]] = {}
-        for joint, parent in enumerate(self.skeleton.parents):
-            children.setdefault(parent, []).append(joint)
         rotating: list[AxisChannel] = []
         moving: list[AxisChannel] = []
-        columns = self.columns
         for joint, bone in enumerate(self.bones):
             frame = bone.file_from_bone(self.angle_unit)
             own: list[AxisChannel] = []
-            for column, dof in enumerate(bone.dof, start=columns[bone.name].start):
+            for column, dof in enumerate(bone.dof, start=self.columns[bone.name].start):
                 if dof == "l":
                     moving += [
                         AxisChannel(child, bone.direction, column)
-                        for child in children.get(joint, ())
+                        for child, parent in enumerate(self.skeleton.parents)
+                        if parent == joint
                     ]
                     continue
                 channel = AxisChannel(joint, frame[:, "xyz".index(dof[1])], column)
@@ -82,13 +85,7 @@ def refuse_motion(path: Path, options: MotionOptions) -> Performance:
 
 
 def load_skeleton(path: Path) -> AcclaimSkeleton:
-    """Read an .asf file.
-
-    Raises
-    ------
-    CharacterError
-        If it cannot be read, with the line of the problem.
-    """
+    """Read an .asf file; errors name the line of the problem."""
     file = TextFile.read(path)
     sections = read_sections(file)
     unit, angle_unit = _units(file, sections.get("units", []))
@@ -96,13 +93,12 @@ def load_skeleton(path: Path) -> AcclaimSkeleton:
     names = [bone.name for bone in bones]
     offsets: list[Array] = [bones[0].position]
     offsets += [bones[parent].direction * bones[parent].length for parent in parents[1:]]
-    inner, taken = set(parents), set(names)
+    inner = set(parents)
     for joint, bone in enumerate(bones):
         if joint and joint not in inner:
             end = bone.name + "_end"
-            while end in taken:
+            while end in names:
                 end += "_end"
-            taken.add(end)
             names.append(end)
             parents.append(joint)
             offsets.append(bone.direction * bone.length)

@@ -55,23 +55,8 @@ def metric_performance(
 ) -> Performance:
     """Return a recording in metres with +y up.
 
-    Parameters
-    ----------
-    path
-        The file, for messages.
-    clip, skeleton
-        In the file's axes and units.
-    options
-        Scale and vertical axis; each is recognised if it is None.
-    notes
-        Notes of the reader; those on guesses are added.
-    stated_unit
-        Unit in the file [m]: trusted if it makes a plausible performer.
-
-    Raises
-    ------
-    CharacterError
-        If scale or vertical axis is invalid.
+    Scale and vertical axis are recognised if the options leave them out; a unit stated by the
+    file [m] is trusted if it makes a plausible performer.
     """
     poses = clip.poses
     frames = np.linspace(0, len(clip) - 1, _SAMPLED_FRAMES).round().astype(int)

@@ -5,37 +5,186 @@ of Sheffield, 2001. Where files differ, this follows the usual practice of expor
 position channels replace its offset, as they do for the root.
 """
 
+from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 
+import numpy as np
+
+from characters.errors import CharacterError
 from characters.formats.loading import MotionOptions, Performance
 from characters.formats.mocap.axes_and_units import metric_performance
-from characters.formats.mocap.bvh_hierarchy import read_hierarchy
+from characters.formats.mocap.channels import AxisChannel, ChannelLayout
 from characters.formats.mocap.text import CUT_OFF, TextFile, parse_numbers, quoted
 from characters.motion.clip import Clip
-from characters.skeleton.pose import Array
+from characters.skeleton import rotations
+from characters.skeleton.pose import Array, Pose, Skeleton
 
 _FRAME_TIME_RANGE_S = (1e-5, 100.0)
 
 
 def load_motion(path: Path, options: MotionOptions) -> Performance:
-    """Read a .bvh file.
+    """Read a .bvh file; errors name the line of the problem.
 
     Every joint's rest rotation is the identity. End sites become joints with the name of the
     joint that they end: ``LeftToe_end``. The facing direction stays as it is.
-
-    Raises
-    ------
-    CharacterError
-        If the file cannot be read, with the line of the problem.
     """
     file = TextFile.read(path)
-    hierarchy = read_hierarchy(file)
-    rate, values, notes = _motion(file, hierarchy.end, hierarchy.channel_count)
-    file.check_size(len(hierarchy.skeleton), len(values))
-    poses = hierarchy.channels.poses(values)
-    clip = Clip(path.stem, rate, poses, loop=False)
-    return metric_performance(path, clip, hierarchy.skeleton, options, hierarchy.notes + notes)
+    tree, end = _read_hierarchy(file)
+    rate, values, notes = _motion(file, end, tree.channel_count)
+    file.check_size(len(tree.names), len(values))
+    clip = Clip(path.stem, rate, tree.channels().poses(values), loop=False)
+    return metric_performance(path, clip, tree.skeleton(), options, tree.notes() + notes)
+
+
+@dataclass
+class _Tree:
+    """The joints read so far."""
+
+    names: list[str] = field(default_factory=list)
+    parents: list[int] = field(default_factory=list)
+    offsets: list[Array] = field(default_factory=list)
+    rotations: list[AxisChannel] = field(default_factory=list)
+    translations: list[AxisChannel] = field(default_factory=list)
+    name_counts: dict[str, int] = field(default_factory=dict)
+
+    @property
+    def channel_count(self) -> int:
+        """Numbers in a frame."""
+        return len(self.rotations) + len(self.translations)
+
+    def add(self, name: str, parent: int, offset: Array) -> int:
+        """Add a joint under a unique name; return its number."""
+        unique = name
+        while (count := self.name_counts.get(unique, 0)) > 0:
+            self.name_counts[unique] = count + 1
+            unique = f"{unique}_{count + 1}"
+        self.name_counts[unique] = 1
+        self.names.append(unique)
+        self.parents.append(parent)
+        self.offsets.append(offset)
+        return len(self.names) - 1
+
+    def skeleton(self) -> Skeleton:
+        """Return the skeleton in the file's axes and units."""
+        unrotated = np.tile(rotations.IDENTITY, (len(self.names), 1))
+        rest = Pose(np.array(self.offsets), unrotated)
+        return Skeleton(tuple(self.names), tuple(self.parents), rest)
+
+    def channels(self) -> ChannelLayout:
+        """Return how the numbers of a frame move the joints."""
+        offsets = np.array(self.offsets)
+        for channel in self.translations:
+            offsets[channel.joint, channel.axis > 0] = 0.0
+        turning, moving = tuple(self.rotations), tuple(self.translations)
+        return ChannelLayout(offsets, turning, moving, angle_unit=float(np.pi / 180))
+
+    def notes(self) -> tuple[str, ...]:
+        """Return the repairs."""
+        repeated = [name for name, count in self.name_counts.items() if count > 1]
+        if not repeated:
+            return ()
+        return (f"{len(repeated)} joint names, as {repeated[0]}, repeat: they are numbered",)
+
+
+class _Words:
+    """The words of a file one by one, each with its line."""
+
+    def __init__(self, file: TextFile) -> None:
+        self.file, self.line = file, 1
+        self._words = (
+            (number, word)
+            for number, text in enumerate(file.text.split("\n"), start=1)
+            for word in text.replace("{", " { ").replace("}", " } ").split()
+        )
+
+    def error(self, problem: str, advice: str) -> CharacterError:
+        """Return the error for the current line."""
+        return self.file.error(self.line, problem, advice)
+
+    def next(self, expected: str) -> str:
+        """Return the next word; `expected` describes it in the message if there is none."""
+        word = next(self._words, None)
+        if word is None:
+            raise self.error(f"ends where {expected} is expected", CUT_OFF)
+        self.line = word[0]
+        return word[1]
+
+    def expect(self, *words: str) -> str:
+        """Return the next word in capitals, or refuse it if it is not one of these."""
+        expected = " or ".join(words)
+        word = self.next(expected)
+        if word.upper() not in words:
+            raise self.error(f"expected {expected}, found {quoted(word)}", "export again")
+        return word.upper()
+
+
+def _read_hierarchy(file: TextFile) -> tuple[_Tree, int]:
+    """Return the joints, which may have several roots, and the line of MOTION, from 1."""
+    words, tree = _Words(file), _Tree()
+    words.expect("HIERARCHY")
+    words.expect("ROOT")
+    while True:
+        _read_joint(words, tree, "ROOT")
+        if words.expect("ROOT", "MOTION") == "MOTION":
+            break
+    if not tree.channel_count:
+        raise words.error("no joint has channels", "export the joints with their channels")
+    return tree, words.line
+
+
+def _read_joint(words: _Words, tree: _Tree, kind: str) -> None:
+    """Read a joint whose keyword has been read, and all joints below it."""
+    open_joints = [_open_joint(words, tree, -1, kind)]
+    while open_joints:
+        word = words.expect("JOINT", "END", "CHANNELS", "}")
+        joint = open_joints[-1]
+        if word == "}":
+            open_joints.pop()
+        elif word == "CHANNELS":
+            _read_channels(words, tree, joint)
+        elif word == "JOINT":
+            open_joints.append(_open_joint(words, tree, joint, word))
+        else:
+            words.expect("SITE")
+            words.expect("{")
+            tree.add(tree.names[joint] + "_end", joint, _offset(words))
+            words.expect("}")
+
+
+def _open_joint(words: _Words, tree: _Tree, parent: int, kind: str) -> int:
+    """Read name, brace and offset of a joint; names may contain spaces."""
+    name: list[str] = []
+    while (word := words.next("the name of a joint and {")) != "{":
+        name.append(word)
+    if not name or "}" in name:
+        raise words.error(f"this {kind} has no name", "name it")
+    return tree.add(" ".join(name), parent, _offset(words))
+
+
+def _offset(words: _Words) -> Array:
+    words.expect("OFFSET")
+    numbers = [words.next("three numbers") for _ in range(3)]
+    return words.file.vector(words.line, numbers, "OFFSET")
+
+
+def _read_channels(words: _Words, tree: _Tree, joint: int) -> None:
+    """Read which numbers move a joint, in their order in a frame."""
+    count = words.next("a number of channels")
+    # isdecimal() also accepts digits of other scripts, which int() reads as well.
+    if not count.isdecimal() or len(count) > 6:
+        raise words.error(f"{quoted(count)} is not a number of channels", "give their count")
+    for _ in range(int(count)):
+        channel = words.next("the name of a channel")
+        axis, kind = "XYZ".find(channel[0].upper()), channel[1:].lower()
+        if axis < 0 or kind not in ("position", "rotation"):
+            raise words.error(
+                f"expected {count} channels of {quoted(tree.names[joint])}, found "
+                f"{quoted(channel)}",
+                "use Xposition … Zrotation, as many as stated",
+            )
+        moves = AxisChannel(joint, np.eye(3)[axis], tree.channel_count)
+        (tree.rotations if kind == "rotation" else tree.translations).append(moves)
 
 
 def _motion(file: TextFile, start: int, width: int) -> tuple[float, Array, tuple[str, ...]]:
@@ -54,10 +203,8 @@ def _motion(file: TextFile, start: int, width: int) -> tuple[float, Array, tuple
         raise file.error(row_lines[-1], problem, CUT_OFF)
     values = parse_numbers(chain.from_iterable(rows))
     if values is None:  # the first invalid number raises
-        for line, row in zip(row_lines, rows, strict=True):
-            for word in row:
-                file.number(line, word)
-        raise AssertionError("parse_numbers refused valid numbers")
+        read = zip(row_lines, rows, strict=True)
+        values = np.array([[file.number(line, word) for word in row] for line, row in read])
     notes: tuple[str, ...] = ()
     if len(rows) > stated:
         notes = (f"{stated:.0f} frames stated, {len(rows)} found: all are read",)

@@ -28,13 +28,7 @@ class TextFile:
 
     @classmethod
     def read(cls, path: Path) -> "TextFile":
-        """Read a UTF-8 file.
-
-        Raises
-        ------
-        CharacterError
-            If it cannot be read or is not text.
-        """
+        """Read a UTF-8 file, or refuse one that is not text."""
         data = read_file(path)
         try:
             text = data.decode("utf-8-sig")
