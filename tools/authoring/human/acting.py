@@ -25,7 +25,7 @@ from tools.authoring.human.limbs import (
     turned,
 )
 from tools.authoring.human.loose import drag
-from tools.authoring.modelling.loops import follow
+from tools.authoring.modelling.curves import follow, soft_limited
 from tools.authoring.modelling.rig import Puppet
 from tools.authoring.modelling.shapes import Array
 
@@ -168,8 +168,8 @@ def _hold_trunk(puppet: Puppet, score: Score, still: Array, seconds: float) -> N
     above = rotations.multiply(rotations.conjugate(puppet.facing("chest")), gaze)
     puppet.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.4))
     puppet.face("head", gaze)
-    across = _within(score.look[0] - look - 0.8 * own[0], 17)
-    down = _within(score.look[1] - nod - 0.8 * own[1], 13)
+    across = soft_limited(score.look[0] - look - 0.8 * own[0], 17)
+    down = soft_limited(score.look[1] - nod - 0.8 * own[1], 13)
     for side_name, _ in SIDES:
         puppet.turn(f"{side_name}Eye", turned(down, across))
 
@@ -198,8 +198,3 @@ def _eased(curve: Array, seconds: float, hertz: float, damping: float) -> Array:
     """Return how a spring follows a curve whose last value is its first."""
     eased = follow(curve[:-1], seconds, hertz, damping)
     return np.append(eased, eased[0])
-
-
-def _within(angle: Array, limit: float) -> Array:
-    """Return an angle that nears a limit instead of passing it."""
-    return np.asarray(limit * np.tanh(angle / limit))

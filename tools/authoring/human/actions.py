@@ -11,7 +11,7 @@ from characters.skeleton.pose import Skeleton
 from tools.authoring.human.acting import RATE, Score, perform
 from tools.authoring.human.idle import idle_weight
 from tools.authoring.human.limbs import Reach
-from tools.authoring.modelling.loops import keys
+from tools.authoring.modelling.curves import keys
 from tools.authoring.modelling.shapes import Array
 
 GRAVITY = 9.81

@@ -10,7 +10,7 @@ from tools.authoring.human.eyes import eyeballs
 from tools.authoring.human.head import head_pieces
 from tools.authoring.human.outfit import cords, outfit, ribbing
 from tools.authoring.human.shoes import soles_and_laces
-from tools.authoring.modelling.sculpt import join
+from tools.authoring.modelling.meshes import join
 
 
 def build_human_meshes(skeleton: Skeleton) -> tuple[Mesh, ...]:

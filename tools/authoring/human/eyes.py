@@ -11,9 +11,9 @@ from characters.skeleton.pose import Skeleton
 from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, Face, carried
 from tools.authoring.human.rig import JOINTS
 from tools.authoring.human.skull import EYE_WHITE, MAROON, SKIN, complexion, face_normals, on_face
-from tools.authoring.modelling.morphs import morphed
-from tools.authoring.modelling.rings import ringed, with_normals
-from tools.authoring.modelling.sculpt import coated, lathe
+from tools.authoring.modelling.lathe import lathe, loft
+from tools.authoring.modelling.meshes import blend_normals, morphed
+from tools.authoring.modelling.sculpt import coated
 from tools.authoring.modelling.shapes import Array, rgb
 
 INK = rgb("#1b1020")
@@ -114,9 +114,9 @@ def _lids(face: Face, sign: float, skeleton: Skeleton) -> Mesh:
     up = np.sin(angle) >= 0
     if sign < 0:  # built for the left eye, and mirrored
         rings, up = rings[:, ::-1] * [-1.0, 1.0, 1.0], up[::-1]
-    mesh = ringed(rings, _lid_colors(rings, up), "head", skeleton)
+    mesh = loft(rings, _lid_colors(rings, up), "head", skeleton)
     of_the_face = np.repeat(np.array([0, 0, 1.0, 0.75, 0.3, *[0] * 6]), COLUMNS)
-    return with_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
+    return blend_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
 
 
 def _lid_rings(angle: Array, face: Face, sign: float) -> Array:
@@ -128,9 +128,9 @@ def _lid_rings(angle: Array, face: Face, sign: float) -> Array:
     away = outer - edge
     thick = np.where(height >= 0, 0.0085 + 0.003 * np.cos(angle), 0.0025)  # more at the temple
     lash = edge + away * (thick / np.linalg.norm(away, axis=1))[:, None]
-    loft = LOFT[0] + (LOFT[1] - LOFT[0]) * np.clip(height, 0, 1) ** 0.7
+    lift = LOFT[0] + (LOFT[1] - LOFT[0]) * np.clip(height, 0, 1) ** 0.7
     flat = [*(lash + (outer - lash) * s for s in (1.0, 0.8, 0.55, 0.28)), lash, lash, edge, edge]
-    lofts = [loft, loft, loft, loft + 0.001, loft + 0.0025, loft + 0.0025, loft, 0 * loft - 0.004]
+    lofts = [lift, lift, lift, lift + 0.001, lift + 0.0025, lift + 0.0025, lift, 0 * lift - 0.004]
     share = np.repeat([1.0, 0.9, 0.55, 0.22, 0.0, 0.0, 0.0, 0.0], COLUMNS)
     rows = _on_eye(np.concatenate(flat), np.concatenate(lofts), share, face)
     rows = rows.reshape(len(flat), COLUMNS, 3)
@@ -152,15 +152,15 @@ def _edge(angle: Array, face: Face, sign: float) -> Array:
     return MIDDLE + np.stack([OPENING[0] * x, y], axis=-1)
 
 
-def _on_eye(flat: Array, loft: Array, share: Array, face: Face) -> Array:
+def _on_eye(flat: Array, lift: Array, share: Array, face: Face) -> Array:
     """Return points over the eyeball, (n, 3), of which `share` lies on the face instead."""
     centre = _centre(1.0)
     apart = flat - centre[:2]
     skin = on_face(flat[:, 0], flat[:, 1])
     # The rim dips under the face, so that one surface runs into the other without a step.
     skin += np.where(share < 1, 0.001, -0.0015)[:, None] * face_normals(skin)
-    height = centre[2] + np.sqrt((CURVATURE + loft) ** 2 - np.sum(apart**2, axis=1))
-    height = np.where(loft > 0, np.maximum(height, skin[:, 2] + 0.002), height)
+    height = centre[2] + np.sqrt((CURVATURE + lift) ** 2 - np.sum(apart**2, axis=1))
+    height = np.where(lift > 0, np.maximum(height, skin[:, 2] + 0.002), height)
     ball = np.column_stack([flat, height])
     skin += carried(skin, face)
     return np.asarray(ball + (skin - ball) * share[:, None])

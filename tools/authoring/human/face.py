@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.shapes import Array
 
 
@@ -115,15 +116,10 @@ MOUTH = np.array([0.0, 1.327])
 def carried(points: Array, face: Face) -> Array:
     """Return how far jaw and cheeks carry points of the skin, (n, 3) [m]."""
     x, y, z = points.T
-    front = _smooth(z / 0.11)
-    chin = _smooth((MOUTH[1] + 0.004 - y) / 0.04) * front
+    front = smoothstep(z / 0.11)
+    chin = smoothstep((MOUTH[1] + 0.004 - y) / 0.04) * front
     apart = ((np.abs(x) - 0.115) / 0.05) ** 2 + ((y - 1.362) / 0.04) ** 2
     cheek = np.exp(-apart) * front
     jaw = chin[:, None] * [0.0, -face.jaw, -0.25 * face.jaw]
     outward = np.stack([0.5 * np.sign(x), np.ones_like(x), 0.8 * np.ones_like(x)], axis=-1)
     return np.asarray(jaw + cheek[:, None] * outward * face.cheeks)
-
-
-def _smooth(u: Array) -> Array:
-    t = np.clip(u, 0.0, 1.0)
-    return np.asarray(t * t * (3 - 2 * t))

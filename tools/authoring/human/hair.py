@@ -2,9 +2,9 @@
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.cord import cord
 from tools.authoring.modelling.sculpt import Part
 from tools.authoring.modelling.shapes import Cone, Cut, Ellipsoid, Union, Vector, rgb
+from tools.authoring.modelling.tube import tube
 
 HAIR = rgb("#7c391d")
 
@@ -41,7 +41,7 @@ def cowlick(skeleton: Skeleton) -> list[Mesh]:
     """Return the pointed locks on the crown."""
     radii = [0.082, 0.055, 0.030, 0.003]
     joints = ["head", "Cowlick", "Cowlick", "Cowlick"]
-    return [cord(line, radii, HAIR, joints, skeleton, 9, 9) for line in COWLICK]
+    return [tube(line, radii, HAIR, joints, skeleton, 9, 9) for line in COWLICK]
 
 
 def _lock(a: Vector, b: Vector, ra: float, rb: float) -> Cone:

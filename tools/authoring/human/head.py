@@ -12,11 +12,10 @@ from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, Face, carried
 from tools.authoring.human.hair import HAIR, cowlick, hair
 from tools.authoring.human.mouth import mouth
 from tools.authoring.human.skull import SKIN, complexion, face_normals, head_shape, lining, on_face
-from tools.authoring.modelling.cord import cord
-from tools.authoring.modelling.morphs import morphed
-from tools.authoring.modelling.rings import averaged_normals
+from tools.authoring.modelling.meshes import averaged_normals, morphed
 from tools.authoring.modelling.sculpt import Part, sculpt
 from tools.authoring.modelling.shapes import Array, Cone
+from tools.authoring.modelling.tube import tube
 
 BROW = ((0.032, 1.541), (0.060, 1.550), (0.094, 1.547), (0.136, 1.524))
 """x and y of the left brow from its inner to its outer end [m]."""
@@ -63,4 +62,4 @@ def _brow(face: Face, sign: float, skeleton: Skeleton) -> Mesh:
     flat_y = y + face.brow + face.brow_inner * inner + face.brow_arch * arch
     line: Array = on_face(flat_x, flat_y)
     line += 0.004 * face_normals(line)
-    return cord(line * [sign, 1.0, 1.0], BROW_RADII, HAIR, "head", skeleton, 7, 10)
+    return tube(line * [sign, 1.0, 1.0], BROW_RADII, HAIR, "head", skeleton, 7, 10)

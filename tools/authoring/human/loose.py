@@ -8,7 +8,7 @@ import numpy as np
 
 from characters.skeleton import rotations
 from tools.authoring.human.limbs import SIDES, turned
-from tools.authoring.modelling.loops import follow
+from tools.authoring.modelling.curves import follow, soft_limited
 from tools.authoring.modelling.rig import Puppet
 from tools.authoring.modelling.shapes import Array
 
@@ -25,21 +25,21 @@ def drag(puppet: Puppet, seconds: float, aside: float = 0.0) -> None:
     """
     back = _pull(puppet, "chest", (0.0, 1.03, -0.2), seconds, aside)
     _swing_backpack(puppet, back, seconds)
-    flop = _bounded(-0.9 * follow(back[:, 1] - 0.5 * back[:, 2], seconds, 2.6, 0.35), 14)
+    flop = soft_limited(-0.9 * follow(back[:, 1] - 0.5 * back[:, 2], seconds, 2.6, 0.35), 14)
     puppet.turn("Hood", turned(x=_closed(-_off(flop, 4.0))))
     front = _pull(puppet, "chest", (0.0, 1.09, 0.13), seconds, aside)
     _swing_strings(puppet, front, seconds)
     crown = _pull(puppet, "head", (0.0, 1.74, -0.04), seconds, aside)
-    pitch = _bounded(-follow(crown[:, 2] - 0.4 * crown[:, 1], seconds, 3.2, 0.22) * 0.55, 24)
-    roll = _bounded(follow(crown[:, 0], seconds, 3.2, 0.22) * 0.55, 20)
+    pitch = soft_limited(-follow(crown[:, 2] - 0.4 * crown[:, 1], seconds, 3.2, 0.22) * 0.55, 24)
+    roll = soft_limited(follow(crown[:, 0], seconds, 3.2, 0.22) * 0.55, 20)
     puppet.turn("Cowlick", turned(x=_closed(pitch), z=_closed(roll)))
 
 
 def _swing_backpack(puppet: Puppet, pull: Array, seconds: float) -> None:
     """Let it bounce on the back and swing off it; it cannot swing far into it."""
-    bounce = _bounded(-follow(pull[:, 1], seconds, 3.4, 0.3) * 0.0009, 0.018)
-    away = _bounded(follow(1.2 * pull[:, 2] - 0.5 * pull[:, 1], seconds, 2.8, 0.3), 9)
-    sway = _bounded(follow(pull[:, 0], seconds, 2.4, 0.3) * -0.6, 6)
+    bounce = soft_limited(-follow(pull[:, 1], seconds, 3.4, 0.3) * 0.0009, 0.018)
+    away = soft_limited(follow(1.2 * pull[:, 2] - 0.5 * pull[:, 1], seconds, 2.8, 0.3), 9)
+    sway = soft_limited(follow(pull[:, 0], seconds, 2.4, 0.3) * -0.6, 6)
     puppet.shift("Backpack", _closed(bounce)[:, None] * [0.0, 1.0, 0.0])
     puppet.turn("Backpack", turned(x=_closed(_off(away, 2.0)), z=_closed(sway)))
 
@@ -49,8 +49,8 @@ def _swing_strings(puppet: Puppet, pull: Array, seconds: float) -> None:
     for number, (side, _) in enumerate(SIDES):
         hertz = 2.1 + 0.3 * number  # no two strings are of one length
         off = -follow(4.0 * pull[:, 2] + 1.2 * pull[:, 1], seconds, hertz, 0.2)
-        aside = _bounded(follow(pull[:, 0], seconds, hertz, 0.2) * -1.4, 18)
-        off = _off(_bounded(off, 40), 4.0)
+        aside = soft_limited(follow(pull[:, 0], seconds, hertz, 0.2) * -1.4, 18)
+        off = _off(soft_limited(off, 40), 4.0)
         puppet.turn(f"{side}String", turned(x=-_closed(off), z=_closed(aside)))
 
 
@@ -74,11 +74,6 @@ def _pull(
     felt = change / step**2 + [aside, GRAVITY, 0.0]
     felt = rotations.rotate(rotations.conjugate(facing), felt)
     return np.asarray(felt - [0.0, GRAVITY, 0.0])
-
-
-def _bounded(curve: Array, limit: float) -> Array:
-    """Return a curve that nears a limit instead of passing it."""
-    return np.asarray(limit * np.tanh(curve / limit))
 
 
 def _closed(curve: Array) -> Array:

@@ -7,8 +7,8 @@ from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
 from tools.authoring.human.face import EXPRESSIONS, MOUTH, NEUTRAL, Face, carried
 from tools.authoring.human.skull import MAROON, SKIN, complexion, face_normals, on_face
-from tools.authoring.modelling.morphs import morphed
-from tools.authoring.modelling.rings import ringed, with_normals
+from tools.authoring.modelling.lathe import loft
+from tools.authoring.modelling.meshes import blend_normals, morphed
 from tools.authoring.modelling.sculpt import coated
 from tools.authoring.modelling.shapes import Array, rgb
 
@@ -38,9 +38,9 @@ def _mouth(face: Face, skeleton: Skeleton) -> Mesh:
     under = skin[-1] - [0.0, 0.0, 0.006]
     behind = np.tile([0.0, MOUTH[1], 0.05], (COLUMNS, 1))
     rings = np.stack([behind, under, *skin[::-1], lips, lips, edge, *_cavity(edge, angle, face)])
-    mesh = ringed(rings, _colors(rings, np.sin(angle) >= 0), "head", skeleton)
+    mesh = loft(rings, _colors(rings, np.sin(angle) >= 0), "head", skeleton)
     of_the_face = np.repeat([0, 0, 1.0, 0.9, 0.5, 0.15, *[0] * (len(rings) - 6)], COLUMNS)
-    return with_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
+    return blend_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
 
 
 def _skin_rings(angle: Array, face: Face) -> list[Array]:

@@ -12,9 +12,9 @@ from characters.skeleton.pose import Skeleton
 from tools.authoring.human.hands import hand
 from tools.authoring.human.rig import JOINTS
 from tools.authoring.human.shoes import CREAM, shoe
-from tools.authoring.modelling.cord import cord
-from tools.authoring.modelling.reflect import reflected
-from tools.authoring.modelling.sculpt import Part, lathe, sculpt
+from tools.authoring.modelling.lathe import lathe
+from tools.authoring.modelling.meshes import mirrored_mesh
+from tools.authoring.modelling.sculpt import Part, sculpt
 from tools.authoring.modelling.shapes import (
     Array,
     Cone,
@@ -28,6 +28,7 @@ from tools.authoring.modelling.shapes import (
     rgb,
 )
 from tools.authoring.modelling.surface import project
+from tools.authoring.modelling.tube import tube
 
 TEAL = rgb("#12b3b3")
 DEEP_TEAL = rgb("#0c8a93")
@@ -40,7 +41,7 @@ PALE_INDIGO = rgb("#8590d4")
 def outfit(skeleton: Skeleton) -> list[Mesh]:
     """Return what is carved, of both sides."""
     sided = sculpt("", [hand(), *_leg_parts()], skeleton)
-    return [sculpt("", _torso_parts(), skeleton), sided, reflected(sided, skeleton)]
+    return [sculpt("", _torso_parts(), skeleton), sided, mirrored_mesh(sided, skeleton)]
 
 
 def cords(skeleton: Skeleton) -> list[Mesh]:
@@ -50,10 +51,10 @@ def cords(skeleton: Skeleton) -> list[Mesh]:
         flip = [sign, 1.0, 1.0]
         string = np.array(STRING) * flip
         swings = ["chest", *[f"{side}String"] * 3]
-        meshes.append(cord(string, STRING_RADII, CREAM, swings, skeleton, 6, 8))
+        meshes.append(tube(string, STRING_RADII, CREAM, swings, skeleton, 6, 8))
         strap = _on_hoodie(np.array(STRAP)) * flip
         over = ["chest", f"{side}Shoulder", "chest", "chest", "spine2", "spine2", "spine2"]
-        meshes.append(cord(strap, 0.019, LEATHER, over, skeleton, 6, 15))
+        meshes.append(tube(strap, 0.019, LEATHER, over, skeleton, 6, 15))
     return meshes
 
 

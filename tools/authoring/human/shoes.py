@@ -6,8 +6,8 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.cord import cord
-from tools.authoring.modelling.rings import ringed
+from tools.authoring.modelling.curves import smoothstep
+from tools.authoring.modelling.lathe import loft
 from tools.authoring.modelling.sculpt import Part
 from tools.authoring.modelling.shapes import (
     Cone,
@@ -20,6 +20,7 @@ from tools.authoring.modelling.shapes import (
     rgb,
 )
 from tools.authoring.modelling.surface import project
+from tools.authoring.modelling.tube import tube
 
 CREAM = rgb("#fff3dc")
 CORAL = rgb("#f75c43")
@@ -78,7 +79,7 @@ def soles_and_laces(skeleton: Skeleton) -> list[Mesh]:
             )
             lace = project(lambda p: _upper().distance(p) - 0.0035, high, 0.06, 8)
             joint = f"{side}Foot"
-            meshes.append(cord(lace * [sign, 1, 1], 0.0085, CREAM, joint, skeleton, 6, 7))
+            meshes.append(tube(lace * [sign, 1, 1], 0.0085, CREAM, joint, skeleton, 6, 7))
     return meshes
 
 
@@ -94,8 +95,7 @@ def _sole(side: str, sign: float, skeleton: Skeleton) -> Mesh:
     heel = 0.42 * np.clip(-0.064 - flat[..., 1], 0, None)  # it lands on a rounded heel
     height = profile[:, 1, None] + spring + heel
     rings = np.stack([flat[..., 0], height, flat[..., 1]], axis=-1) * [sign, 1.0, 1.0]
-    u = np.clip((rings[..., 2] - BALL[0]) / (BALL[1] - BALL[0]), 0, 1)
-    toes = u * u * (3 - 2 * u)
+    toes = smoothstep((rings[..., 2] - BALL[0]) / (BALL[1] - BALL[0]))
     weights = np.zeros((*toes.shape, len(skeleton.names)))
     weights[..., skeleton.names.index(f"{side}Foot")] = 1 - toes
     weights[..., skeleton.names.index(f"{side}Toe")] = toes
@@ -103,4 +103,4 @@ def _sole(side: str, sign: float, skeleton: Skeleton) -> Mesh:
         rings, weights = rings[:, ::-1], weights[:, ::-1]
     colors = np.tile(CREAM, (*toes.shape, 1))
     colors[:2] = RUBBER
-    return ringed(rings, colors, weights, skeleton)
+    return loft(rings, colors, weights, skeleton)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.skeleton import rotations
+from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.shapes import Array
 
 
@@ -136,7 +137,7 @@ def foot_motion(path: Path, steps: Steps, foot: Foot, side: float, phase: Array)
     swing_pitch = _hermite(
         u, ends[0][2], ends[1][2], (ends[0][2] - before[2]) / tiny * swing_time, 0
     )
-    ease = u * u * (3 - 2 * u)
+    ease = smoothstep(u)
     swing_yaw = ends[0][1] + (ends[1][1] - ends[0][1]) * ease
     room = foot.ball_height(swing[:, 1], swing_pitch) - foot.ball[0]
     peel = swing_pitch - np.arcsin(np.clip(room / foot.toes, -1.0, 1.0))  # the tip stays above 0
@@ -158,7 +159,7 @@ def _planted(
     place, yaw = path.seen(np.full_like(since, duration / 2), since)
     toe_out = side * steps.toe_out
     part = since / duration
-    strike = steps.heel_strike * (1 - _smooth(part / 0.18))
+    strike = steps.heel_strike * (1 - smoothstep(part / 0.18))
     rise = steps.toe_off * np.clip((part - steps.rise_from) / (1 - steps.rise_from), 0, 1) ** 2
     # Over the heel first, then flat, then over the ball.
     y, z = _about_pivot(foot.ankle, 0.0, 0.0, foot.heel, -strike)
@@ -186,9 +187,3 @@ def _hermite(u: Array, start: Array, end: Array, leave: Array, land: Array | flo
     u2, u3 = u * u, u * u * u
     mixed = (2 * u3 - 3 * u2 + 1) * start + (3 * u2 - 2 * u3) * end
     return np.asarray(mixed + (u3 - 2 * u2 + u) * leave + (u3 - u2) * land)
-
-
-def _smooth(x: Array) -> Array:
-    """Return the smooth step from 0 to 1."""
-    t = np.clip(x, 0.0, 1.0)
-    return np.asarray(t * t * (3 - 2 * t))

@@ -8,6 +8,7 @@ import numpy as np
 from characters.motion.clip import Clip
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose, Skeleton
+from tools.authoring.modelling.curves import follow
 from tools.authoring.modelling.ik import aim, bend
 from tools.authoring.modelling.shapes import Array
 
@@ -157,3 +158,33 @@ def clip(
     shown = [performance.morphs.get(morph, off)[again] for morph in morphs]
     face = np.stack(shown, axis=1) if morphs else None
     return Clip(name, RATE, Pose(pose.translations[again], turns, scales, face))
+
+
+def swing_tail(
+    act: Performance,
+    joints: Sequence[str],
+    up: Array,
+    left: Array,
+    tip: float,
+    hertz: float,
+    drag: float,
+    damping: tuple[float, float],
+) -> None:
+    """Swing a tail from its root; every joint follows the one before it like a damped spring.
+
+    Parameters
+    ----------
+    joints : from the root of the tail to its tip
+    up, left : rotation of the first joint, (frames,) [rad]; up lifts the tail
+    tip : rotation of the last joint over that of the first
+    hertz : natural frequency at the root, which falls towards the tip [Hz]
+    drag : factor of the delay of all joints; 1 is the natural tail
+    damping : of the movement up and down, and of that from side to side
+    """
+    for number, joint in enumerate(joints):
+        share = 1 + (tip - 1) * number / (len(joints) - 1)
+        if number:
+            natural = hertz / (drag * (1 + 0.12 * number))
+            up = follow(up, act.seconds, natural, damping[0])
+            left = follow(left, act.seconds, natural, damping[1])
+        act.turn(joint, up=-share * up, left=-share * left)

@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from characters.model.mesh import Material, Mesh, Morph
+from characters.model.mesh import Material, Mesh
 from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.curves import smoothstep
+from tools.authoring.modelling.meshes import bound_mesh, join
 from tools.authoring.modelling.shapes import Array, Shape, Solid, Vector
 from tools.authoring.modelling.surface import neighbour_mean, normals_of, polygonise
 
@@ -59,123 +60,6 @@ def sculpt(
     the picture, whatever the size of the triangles.
     """
     return join(name, [_sculpt_part(part, skeleton) for part in parts], material)
-
-
-def join(name: str, meshes: Sequence[Mesh], material: Material | None = None) -> Mesh:
-    """Return one mesh of several that are bound to the same skeleton."""
-    starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
-    colors = [np.ones((len(m.positions), 4)) if m.colors is None else m.colors for m in meshes]
-    return Mesh(
-        name=name,
-        positions=np.concatenate([mesh.positions for mesh in meshes]),
-        normals=np.concatenate([mesh.normals for mesh in meshes]),
-        triangles=np.concatenate(
-            [mesh.triangles + np.uint32(s) for mesh, s in zip(meshes, starts, strict=False)]
-        ),
-        joints=np.concatenate([mesh.joints for mesh in meshes]),
-        weights=np.concatenate([mesh.weights for mesh in meshes]),
-        inverse_bind=meshes[0].inverse_bind,
-        colors=np.concatenate(colors).astype(np.float32),
-        material=material or meshes[0].material,
-        morphs=_joined_morphs(meshes, starts.tolist()),
-    )
-
-
-def _joined_morphs(meshes: Sequence[Mesh], starts: Sequence[int]) -> tuple[Morph, ...]:
-    """Return the morphs of all meshes, those of one name as one, in order of appearance."""
-    names = dict.fromkeys(morph.name for mesh in meshes for morph in mesh.morphs)
-    joined = []
-    for name in names:
-        pieces = [
-            (morph.vertices + np.uint32(start), morph)
-            for mesh, start in zip(meshes, starts, strict=False)
-            for morph in mesh.morphs
-            if morph.name == name
-        ]
-        turns = [
-            np.zeros_like(morph.displacements)
-            if morph.normal_displacements is None
-            else morph.normal_displacements
-            for _, morph in pieces
-        ]
-        joined.append(
-            Morph(
-                name,
-                np.concatenate([vertices for vertices, _ in pieces]),
-                np.concatenate([morph.displacements for _, morph in pieces]),
-                np.concatenate(turns),
-            )
-        )
-    return tuple(joined)
-
-
-def lathe(
-    rings: Array,
-    colors: Sequence[Vector],
-    place: Array,
-    joint: str,
-    skeleton: Skeleton,
-    segments: int = 24,
-) -> Mesh:
-    """Return a rigid solid of revolution with crisp rings of colour: an eye, a button, a tooth.
-
-    Parameters
-    ----------
-    rings : (n, 2), radius and height from the first pole to the last [m]; both radii are zero
-    colors : n − 1 linear RGB, one a band between two rings
-    place : (3, 4) or (4, 4), character frame from the lathe's, whose axis is +z; the last ring
-        is at the top
-    joint : the joint that moves it
-    """
-    angle = np.linspace(0, 2 * np.pi, segments, endpoint=False)
-    circle = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)
-    axis = np.array([0.0, 0.0, 1.0])
-    border = [below != above for below, above in pairwise(colors)]
-    copies = np.array([1, *(1 + np.array(border, dtype=int)), 1])  # two rims where colours meet
-    profile = np.repeat(np.column_stack([rings, _ring_normals(np.asarray(rings))]), copies, axis=0)
-    points = profile[:, :1, None] * circle + profile[:, 1:2, None] * axis
-    normals = profile[:, 2:3, None] * circle + profile[:, 3:, None] * axis
-    turn, shift = np.asarray(place)[:3, :3], np.asarray(place)[:3, 3]
-    normals = normals.reshape(-1, 3) @ np.linalg.inv(turn)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    starts = np.cumsum(copies)[:-1] - 1
-    band = np.searchsorted(starts, np.arange(len(profile)), side="right") - 1
-    paint = np.array(colors)[np.minimum(band, len(colors) - 1)]
-    bones = np.zeros((len(points) * segments, len(skeleton.names)))
-    bones[:, skeleton.names.index(joint)] = 1.0
-    return bound_mesh(
-        points.reshape(-1, 3) @ turn.T + shift,
-        normals,
-        bands(starts, segments),
-        bones,
-        np.repeat(paint, segments, axis=0),
-        skeleton,
-    )
-
-
-def _ring_normals(rings: Array) -> Array:
-    """Return the normals of a profile at its rings, averaged over the bands beside them."""
-    across = np.diff(rings, axis=0)
-    slope = np.stack([across[:, 1], -across[:, 0]], axis=1)
-    slope /= np.linalg.norm(slope, axis=1, keepdims=True)
-    both = np.vstack([[0.0, -2.0], slope[:-1] + slope[1:], [0.0, 2.0]])
-    return np.asarray(both / np.linalg.norm(both, axis=1, keepdims=True))
-
-
-def bands(starts: ArrayLike, segments: int) -> NDArray[np.int64]:
-    """Return the triangles between rings of vertices, the first and last of which are poles.
-
-    Parameters
-    ----------
-    starts : number of the ring at which each band begins; it ends at the next ring
-    segments : vertices a ring
-    """
-    i = np.arange(segments)
-    j = (i + 1) % segments
-    lower = np.stack([i, j, j + segments], axis=1)  # empty in the first band
-    upper = np.stack([i, j + segments, i + segments], axis=1)  # empty in the last
-    first = segments * np.asarray(starts)
-    return np.concatenate([lower + s for s in first[1:]] + [upper + s for s in first[:-1]])
 
 
 def _sculpt_part(part: Part, skeleton: Skeleton) -> Mesh:
@@ -254,41 +138,6 @@ def coated(points: Array, colors: Array, paints: Sequence[Paint]) -> Array:
     """Return linear RGB (n, 3) of points (n, 3) under coats of paint."""
     for paint in paints:
         depth = 0.5 - paint.shape.distance(points) / max(paint.soft, 1e-6)
-        t = np.clip(depth, 0.0, 1.0)
-        cover = paint.strength * (t * t * (3 - 2 * t))[:, None]
+        cover = paint.strength * smoothstep(depth)[:, None]
         colors = colors * (1 - cover) + cover * np.array(paint.color)
     return np.asarray(colors)
-
-
-def bound_mesh(
-    points: Array,
-    normals: Array,
-    triangles: NDArray[np.int64],
-    weights: Array,
-    colors: Array,
-    skeleton: Skeleton,
-) -> Mesh:
-    """Return the arrays as the graphics card wants them, with the four largest weights.
-
-    Parameters
-    ----------
-    points, normals : (n, 3)
-    triangles : (m, 3)
-    weights : of every joint on every vertex, (n, joints)
-    colors : linear RGB, (n, 3)
-    skeleton : the vertices are bound to its rest pose
-    """
-    joints = np.argsort(-weights, axis=1, kind="stable")[:, :4]
-    four = np.take_along_axis(weights, joints, axis=1)
-    four[four < 0.01] = 0.0
-    four /= four.sum(axis=1, keepdims=True)
-    return Mesh(
-        name="",
-        positions=points.astype(np.float32),
-        normals=normals.astype(np.float32),
-        triangles=triangles.astype(np.uint32),
-        joints=np.where(four > 0, joints, 0).astype(np.uint16),
-        weights=four.astype(np.float32),
-        inverse_bind=np.asarray(np.linalg.inv(skeleton.rest.globals(skeleton)), np.float64),
-        colors=np.column_stack([colors, np.ones(len(points))]).astype(np.float32),
-    )

@@ -29,16 +29,11 @@ def polygonise(
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     values = field(grid.reshape(-1, 3)).reshape(size)
     points, quads = _surface_nets(values)
-    points = project(field, axes_origin(axes) + cell * points, cell)
+    points = project(field, low - cell + cell * points, cell)
     for _ in range(relax):
         points += 0.5 * _tangential(field, points, neighbour_mean(points, quads) - points, cell)
         points = project(field, points, cell)
     return points, _split(points, quads)
-
-
-def axes_origin(axes: list[Array]) -> Array:
-    """Return the first grid point, (3,)."""
-    return np.array([axis[0] for axis in axes])
 
 
 def gradient(field: Field, points: Array, step: float) -> Array:

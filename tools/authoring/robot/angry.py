@@ -1,6 +1,6 @@
 """The robot is angry: it glares and snaps, stomps, and at its worst rears up and whips its tail."""
 
-from tools.authoring.modelling.loops import keys, later, wave
+from tools.authoring.modelling.curves import keys, later, wave
 from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance
 from tools.authoring.robot.motion import degrees, face_ahead, neck, raised, tail
 from tools.authoring.robot.rig import lids, light, mouth

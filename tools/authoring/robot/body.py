@@ -6,23 +6,13 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.cord import cord
+from tools.authoring.modelling.lathe import frame_toward, lathe
 from tools.authoring.modelling.rig import joint_places
-from tools.authoring.modelling.sculpt import Part, lathe, sculpt
+from tools.authoring.modelling.sculpt import Part, sculpt
 from tools.authoring.modelling.shapes import Array, Cut, Ellipsoid, HalfSpace, Vector
 from tools.authoring.modelling.surface import normals_of, project
-from tools.authoring.robot.parts import (
-    PANEL,
-    RUBBER,
-    SHELL,
-    TRIM,
-    cup,
-    hub,
-    lens,
-    panel,
-    socket,
-    toward,
-)
+from tools.authoring.modelling.tube import tube
+from tools.authoring.robot.parts import PANEL, RUBBER, SHELL, TRIM, cup, hub, lens, panel, socket
 from tools.authoring.robot.rig import FEET, NECK, TAIL, TAIL_TIP
 
 FRONT = Ellipsoid(
@@ -79,9 +69,9 @@ def _cores(bound: Skeleton) -> list[Mesh]:
     neck += [at["head"] + [0, 0.015, 0.012]]
     tail = [at["tail1"] + [0, 0.006, 0.03], *(at[name] for name in TAIL), np.array(TAIL_TIP)]
     return [
-        cord(waist, [0.044, 0.0505, 0.0515, 0.0500, 0.042], RUBBER, spine, bound, 18),
-        cord(neck, 0.0245, RUBBER, ("chest", *NECK, "head", "head"), bound, 10),
-        cord(
+        tube(waist, [0.044, 0.0505, 0.0515, 0.0500, 0.042], RUBBER, spine, bound, 18),
+        tube(neck, 0.0245, RUBBER, ("chest", *NECK, "head", "head"), bound, 10),
+        tube(
             tail,
             [0.026, 0.026, 0.0215, 0.017, 0.013, 0.0095, 0.008],
             RUBBER,
@@ -126,13 +116,12 @@ def _legs(bound: Skeleton) -> list[Mesh]:
         wide = 0.0270 if "Front" in foot else 0.0300
         top, low = at[hip] + [-0.002 * side, 0.004, 0], at[knee] + 0.22 * (at[hip] - at[knee])
         shin = at[knee] + 0.16 * (at[foot] - at[knee])
+        servo = frame_toward([side, 0.10, 0], at[hip] + [side * (wide - 0.002), 0, 0])
         pieces += [
             cup(low, top, (wide - 0.004, wide), SHELL, hip, bound, dome=True),
             _ball(at[knee], wide - 0.0065, knee, bound),
             cup(at[foot] + [0, 0.004, 0], shin, (wide - 0.0030, wide - 0.0050), PANEL, knee, bound),
-            hub(
-                toward([side, 0.10, 0], at[hip] + [side * (wide - 0.002), 0, 0]), 0.0150, hip, bound
-            ),
+            hub(servo, 0.0150, hip, bound),
             *_foot(at[foot] * [1, 0, 1] + [0, 0, 0.008], wide, foot, bound),
         ]
     return pieces
@@ -141,7 +130,7 @@ def _legs(bound: Skeleton) -> list[Mesh]:
 def _ball(place: Array, radius: float, joint: str, bound: Skeleton) -> Mesh:
     angle = np.radians([180, 135, 90, 45, 0])
     rings = radius * np.stack([np.sin(angle), np.cos(angle)], axis=1)
-    return lathe(rings, [RUBBER] * 4, toward([1.0, 0, 0], place), joint, bound, 10)
+    return lathe(rings, [RUBBER] * 4, frame_toward([1.0, 0, 0], place), joint, bound, 10)
 
 
 def _foot(place: Array, wide: float, joint: str, bound: Skeleton) -> list[Mesh]:
@@ -149,14 +138,14 @@ def _foot(place: Array, wide: float, joint: str, bound: Skeleton) -> list[Mesh]:
     profile = np.array(
         [[0, 0], [0.94, 0], [1, 0.16], [1, 0.30], [0.93, 0.62], [0.62, 0.95], [0, 1]]
     )
-    frame = toward([0.0, 1.0, 0.0], place)
+    frame = frame_toward([0.0, 1.0, 0.0], place)
     frame[:3, :3] = frame[:3, :3] @ np.diag([wide * 1.02, wide * 1.16, 0.0310])
     pieces = [lathe(profile, [RUBBER] * 3 + [SHELL] * 3, frame, joint, bound, 16)]
     for across in (-0.5, 0.0, 0.5):
         way = np.array([np.sin(across), 0.0, np.cos(across)])
         toe = place + wide * way * [0.98, 0, 1.08] + [0, 0.0115, 0]
         dome = 0.0064 * np.array([[0, -1], [0.9, -0.6], [1, 0], [0.7, 0.7], [0, 1]])
-        pieces.append(lathe(dome, [TRIM] * 4, toward(way, toe), joint, bound, 6))
+        pieces.append(lathe(dome, [TRIM] * 4, frame_toward(way, toe), joint, bound, 6))
     return pieces
 
 
@@ -183,8 +172,8 @@ def lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
 def _chest_lamp() -> Array:
     near = np.array([[0.0, 0.107, 0.085]])
     place = project(FRONT.distance, near, 0.05, 8)
-    return toward(normals_of(FRONT.distance, place, 0.004)[0], place[0])
+    return frame_toward(normals_of(FRONT.distance, place, 0.004)[0], place[0])
 
 
 def _tail_lamp() -> Array:
-    return toward([0.0, 0.42, -1.0], np.array(TAIL_TIP))
+    return frame_toward([0.0, 0.42, -1.0], np.array(TAIL_TIP))

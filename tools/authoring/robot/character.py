@@ -4,8 +4,8 @@ from characters.model.character import Character
 from characters.model.mesh import Material, Mesh
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.meshes import join
 from tools.authoring.modelling.quadruped import clip
-from tools.authoring.modelling.sculpt import join
 from tools.authoring.modelling.shapes import Vector, rgb
 from tools.authoring.robot.angry import angry
 from tools.authoring.robot.body import body, sockets

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tools.authoring.modelling.loops import Array, keys, later, wave
+from tools.authoring.modelling.curves import Array, keys, later, wave
 from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance
 from tools.authoring.robot.motion import degrees, face_ahead, neck, raised, tail
 from tools.authoring.robot.rig import FEET, lids, light, mouth

@@ -6,8 +6,10 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.lathe import frame_toward, lathe
+from tools.authoring.modelling.meshes import bound_mesh
 from tools.authoring.modelling.rig import joint_places
-from tools.authoring.modelling.sculpt import Part, bound_mesh, lathe, sculpt
+from tools.authoring.modelling.sculpt import Part, sculpt
 from tools.authoring.modelling.shapes import (
     WHITE,
     Array,
@@ -32,7 +34,6 @@ from tools.authoring.robot.parts import (
     lens,
     panel,
     socket,
-    toward,
 )
 from tools.authoring.robot.rig import EYE, LID_YAW
 
@@ -136,7 +137,7 @@ def _lining(joint: str, proud: float, bound: Skeleton) -> Mesh:
 
 def _tongue(bound: Skeleton) -> Mesh:
     profile = np.array([[0, -0.6], [0.86, -0.5], [1, 0], [0.86, 0.6], [0.5, 0.92], [0, 1]])
-    place = toward((0.0, 1.0, 0.10), joint_places(bound)["tongue"])
+    place = frame_toward((0.0, 1.0, 0.10), joint_places(bound)["tongue"])
     place[:3, :3] = place[:3, :3] @ np.diag([0.0185, 0.0225, 0.0044])
     return lathe(profile, [ROSE] * 5, place, "tongue", bound, 18)
 
@@ -175,7 +176,7 @@ def _on_head(near: Vector | Array, sunk: float = 0.0) -> Array:
     """Return the frame on the head next to a place, its +z away from it."""
     place = project(HEAD.distance, np.asarray([near], float), 0.05, 8)
     normal = normals_of(HEAD.distance, place, 0.005)[0]
-    return toward(normal, place[0] - sunk * normal)
+    return frame_toward(normal, place[0] - sunk * normal)
 
 
 def _along(near: Vector) -> Array:
@@ -197,7 +198,7 @@ def _sides(side: float, bound: Skeleton) -> list[Mesh]:
     name = "Left" if side > 0 else "Right"
     center, gaze = np.array(EYE) * [side, 1, 1], GAZE * [side * 1.5, 1, 1]
     bezel = np.array([[0, 0], [25.6, 0], [26.6, 5], [25.2, 8.2], [22.6, 8.6], [0, 7]]) * 1e-3
-    ring = toward(gaze, center - 0.0050 * gaze)
+    ring = frame_toward(gaze, center - 0.0050 * gaze)
     upper = _lid(LID_OPEN + np.pi / 2, 1.075, f"{name}UpperLid", center, bound)
     lower = _lid(-LOWER_LID_OPEN - np.pi / 2, 1.050, f"{name}LowerLid", center, bound)
     bezel_mesh = lathe(bezel, [TRIM, TRIM, TRIM, RUBBER, RUBBER], ring, "head", bound, 28)
@@ -212,7 +213,8 @@ def _lid(elevation: float, size: float, joint: str, center: Array, bound: Skelet
     yaw = LID_YAW * (1 if joint.startswith("Left") else -1)
     ahead = np.cos(elevation)
     pole = np.array([ahead * np.sin(yaw), np.sin(elevation), ahead * np.cos(yaw)])
-    return lathe(rings, [RUBBER, RUBBER, *[PANEL] * 4], toward(pole, center), joint, bound, 24)
+    bands = [RUBBER, RUBBER, *[PANEL] * 4]
+    return lathe(rings, bands, frame_toward(pole, center), joint, bound, 24)
 
 
 def eyes(bound: Skeleton) -> list[Mesh]:
@@ -223,13 +225,13 @@ def eyes(bound: Skeleton) -> list[Mesh]:
         angle = np.radians([180, 120, 90, 70, 66, 48, 24, 0])
         rings = RADIUS * np.stack([np.sin(angle), np.cos(angle)], axis=1)
         bands = [GLASS, GLASS, WHITE, RUBBER, GLASS, PUPIL, PUPIL]
-        pieces.append(lathe(rings, bands, toward(gaze, center), name, bound, 28))
+        pieces.append(lathe(rings, bands, frame_toward(gaze, center), name, bound, 28))
         for across, up, radius in ((-0.30, 0.40, 0.0064), (0.26, -0.30, 0.0030)):
             shine = gaze + np.array([across, up, 0.0])  # on the same side in both: one sun
             wide = radius / RADIUS * np.array([0.0, 1.0, 0.5, 0.0])
             cap = RADIUS * 1.022 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
             cap[0, 1] *= 0.95
-            pieces.append(lathe(cap, [WHITE] * 3, toward(shine, center), "head", bound, 14))
+            pieces.append(lathe(cap, [WHITE] * 3, frame_toward(shine, center), "head", bound, 14))
     return pieces
 
 
@@ -245,6 +247,6 @@ def lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
     size = RADIUS * np.array([0.90, 0.99, 1.018, 1.018, 0.99, 0.90])[:, None]
     rings = size * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     for side, name in ((1.0, "LeftIris"), (-1.0, "RightIris")):
-        place = toward(GAZE * [side, 1, 1], np.array(EYE) * [side, 1, 1])
+        place = frame_toward(GAZE * [side, 1, 1], np.array(EYE) * [side, 1, 1])
         pieces.append(lathe(rings, [color] * 5, place, f"{name}_{mood}", bound, 28))
     return pieces

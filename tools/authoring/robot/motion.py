@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from tools.authoring.modelling.loops import Array, follow, keys, later
-from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance
+from tools.authoring.modelling.curves import Array, keys, later
+from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance, swing_tail
 from tools.authoring.robot.rig import NECK, TAIL
 
 LEVELS = ("head", "legs", "tail")
@@ -14,21 +14,8 @@ BEND = (0.40, 0.33, 0.27)
 
 
 def tail(act: Performance, up: Array, left: Array, tip: float = 1.5, drag: float = 1.0) -> None:
-    """Swing the tail from its root; every joint hangs behind the one before it.
-
-    Parameters
-    ----------
-    up, left : turn of the first joint (frames,) [rad]; up lifts the tail
-    tip : turn of the last joint over that of the first
-    drag : how late the joints are; 1 is the natural tail
-    """
-    for number, joint in enumerate(TAIL):
-        share = 1 + (tip - 1) * number / (len(TAIL) - 1)
-        if number:
-            hertz = 4.6 / (drag * (1 + 0.12 * number))
-            up = follow(up, act.seconds, hertz, 0.6)
-            left = follow(left, act.seconds, hertz, 0.55)
-        act.turn(joint, up=-share * up, left=-share * left)
+    """Swing the tail; see `swing_tail`."""
+    swing_tail(act, TAIL, up, left, tip, 4.6, drag, (0.6, 0.55))
 
 
 def neck(act: Performance, up: Array, left: Array | float = 0.0, drag: float = 0.014) -> None:

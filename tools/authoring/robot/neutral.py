@@ -1,6 +1,6 @@
 """The robot waits: it looks about, blinks, shifts its weight, and now and then sways its tail."""
 
-from tools.authoring.modelling.loops import follow, keys, wave
+from tools.authoring.modelling.curves import follow, keys, wave
 from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance
 from tools.authoring.robot.motion import blink, degrees, look, neck, tail
 from tools.authoring.robot.rig import lids, light, mouth

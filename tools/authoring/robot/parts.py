@@ -7,7 +7,8 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.sculpt import bound_mesh, lathe
+from tools.authoring.modelling.lathe import frame_toward, lathe
+from tools.authoring.modelling.meshes import bound_mesh
 from tools.authoring.modelling.shapes import Array, Shape, Solid, Vector, rgb
 from tools.authoring.modelling.surface import normals_of, project
 
@@ -57,18 +58,6 @@ class Outside(Solid):
         return Outside(self.shape.mirrored())
 
 
-def toward(axis: Sequence[float] | Array, place: Sequence[float] | Array) -> Array:
-    """Return the (4, 4) frame at a place whose +z is the axis and whose +y is as high as can be."""
-    z = np.asarray(axis, float) / np.linalg.norm(axis)
-    hint = np.array([0.0, 1.0, 0.0]) if abs(z[1]) < 0.95 else np.array([0.0, 0.0, -1.0])
-    x = np.cross(hint, z)
-    x /= np.linalg.norm(x)
-    frame = np.eye(4)
-    frame[:3, :3] = np.stack([x, np.cross(z, x), z], axis=1)
-    frame[:3, 3] = place
-    return frame
-
-
 def cup(
     a: Sequence[float] | Array,
     b: Sequence[float] | Array,
@@ -91,7 +80,7 @@ def cup(
     profile += [[high, length - bevel], [high - bevel, length], [0, length]]
     if dome:
         profile[4:] = [[high, length], [0.78 * high, length + 0.7 * high], [0, length + high]]
-    place = toward(end - start, start)
+    place = frame_toward(end - start, start)
     return lathe(np.array(profile), [color] * 6, place, joint, bound, segments)
 
 

@@ -9,7 +9,7 @@ from characters.model.character import Character
 from characters.model.mesh import Material, Mesh, Morph
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.sculpt import join
+from tools.authoring.modelling.meshes import join
 from tools.authoring.vleo.clips import clip
 from tools.authoring.vleo.effects import effects
 from tools.authoring.vleo.expressions import EXPRESSIONS

@@ -7,8 +7,8 @@ import numpy as np
 
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.loops import Array, follow, phases
-from tools.authoring.modelling.quadruped import RATE, Performance, poses
+from tools.authoring.modelling.curves import Array, phases
+from tools.authoring.modelling.quadruped import Performance, poses, swing_tail
 from tools.authoring.modelling.quadruped import clip as looped
 from tools.authoring.vleo.expressions import EXPRESSIONS
 from tools.authoring.vleo.rig import FEET, HIDDEN, TAIL
@@ -20,21 +20,8 @@ def clip(name: str, performance: Performance, bound: Skeleton) -> Clip:
 
 
 def tail(act: Performance, up: Array, left: Array, tip: float = 1.6, drag: float = 1.0) -> None:
-    """Swing the tail from its root; every joint hangs behind the one before it.
-
-    Parameters
-    ----------
-    up, left : turn of the first joint (frames,) [rad]; up lifts the tail
-    tip : turn of the last joint over that of the first
-    drag : how late the joints are; 1 is the natural tail
-    """
-    seconds = act.frames / RATE
-    for number, joint in enumerate(TAIL):
-        share = 1 + (tip - 1) * number / (len(TAIL) - 1)
-        if number:
-            hertz = 4.2 / (drag * (1 + 0.12 * number))
-            up, left = follow(up, seconds, hertz, 0.55), follow(left, seconds, hertz, 0.55)
-        act.turn(joint, up=-share * up, left=-share * left)
+    """Swing the tail; see `swing_tail`."""
+    swing_tail(act, TAIL, up, left, tip, 4.2, drag, (0.55, 0.55))
 
 
 def breathe(act: Performance, cycles: int, depth: float = 0.035) -> None:

@@ -4,9 +4,10 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.sculpt import Paint, Part, join, lathe, sculpt
+from tools.authoring.modelling.lathe import frame_toward, lathe
+from tools.authoring.modelling.meshes import join
+from tools.authoring.modelling.sculpt import Paint, Part, sculpt
 from tools.authoring.modelling.shapes import Cone, Ellipsoid, Union, Vector, rgb
-from tools.authoring.vleo.pieces import facing
 from tools.authoring.vleo.rig import BURSTS, HEARTS, MOUTH
 
 RED, ROSE = rgb("#ff1f4b"), rgb("#ff5c8a")
@@ -35,14 +36,14 @@ def _burst(joint: str, bound: Skeleton) -> Mesh:
     corners = np.count_nonzero(ways, axis=1)
     angle = np.linspace(np.pi, 0, 7)
     ball = 0.0150 * np.stack([np.sin(angle), np.cos(angle)], axis=1)
-    place = facing(np.array([0.0, 0.0, 1.0]), np.array(MOUTH))
+    place = frame_toward(np.array([0.0, 0.0, 1.0]), np.array(MOUTH))
     rays = [lathe(ball, [YELLOW] * 6, place, joint, bound, 10)]
     for way in ways[corners != 2]:  # a cube's six faces and eight corners
         if not way.any():
             continue
         size = 1.0 if np.count_nonzero(way) == 1 else 0.8
         rings = size * np.array([[0, 0], [9.5, 10], [5, 20], [0, 35]]) / 1000
-        place = facing(way, np.array(MOUTH))
+        place = frame_toward(way, np.array(MOUTH))
         rays.append(lathe(rings, [FLAME, FLAME, EMBER], place, joint, bound, 5))
     return join("", rays)
 

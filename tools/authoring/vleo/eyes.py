@@ -6,18 +6,17 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.morphs import morphed
-from tools.authoring.modelling.rings import ringed, with_normals
-from tools.authoring.modelling.sculpt import lathe
+from tools.authoring.modelling.curves import smoothstep
+from tools.authoring.modelling.lathe import frame_toward, lathe, loft
+from tools.authoring.modelling.meshes import blend_normals, morphed
 from tools.authoring.modelling.shapes import Array, rgb
 from tools.authoring.modelling.surface import normals_of
 from tools.authoring.vleo.body import BACK_TEAL, LASH
 from tools.authoring.vleo.expressions import EXPRESSIONS, NEUTRAL, Face
 from tools.authoring.vleo.head import EYE_AXES, OPENING, SIGHT, head
 from tools.authoring.vleo.head import EYE_RADIUS as RADIUS
-from tools.authoring.vleo.pieces import facing
 from tools.authoring.vleo.rig import EYE
-from tools.authoring.vleo.skin import eased, painted
+from tools.authoring.vleo.skin import painted
 
 WHITE, RIM = rgb("#fdfdf8"), rgb("#2e150c")
 IRIS, PUPIL, BROW = rgb("#8a4a22"), rgb("#140d10"), rgb("#14706f")
@@ -47,14 +46,14 @@ def _ball(side: float, bound: Skeleton) -> list[Mesh]:
     angle = np.radians([180, 110, 75, 54, 41.5, 40, 37, 31, 28, 14, 0])
     rings = RADIUS * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     bands = [WHITE] * 4 + [RIM] * 2 + [IRIS] * 2 + [PUPIL] * 2
-    pieces = [lathe(rings, bands, facing(sight, center), joint, bound, 26)]
-    frame = facing(sight, center)[:3, :3]
+    pieces = [lathe(rings, bands, frame_toward(sight, center), joint, bound, 26)]
+    frame = frame_toward(sight, center)[:3, :3]
     for across, up, radius in ((-0.24, 0.30, 0.0052), (0.20, -0.27, 0.0024)):
         toward = frame @ [across, up, 1.0]  # on the same side in both: one sun
         wide = radius / RADIUS * np.array([0.0, 1.0, 0.55, 0.0])
         rings = RADIUS * 1.024 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
         rings[:2, 1] *= 0.96
-        pieces.append(lathe(rings, [WHITE] * 3, facing(toward, center), joint, bound, 16))
+        pieces.append(lathe(rings, [WHITE] * 3, frame_toward(toward, center), joint, bound, 16))
     return pieces
 
 
@@ -67,23 +66,23 @@ def _lids(face: Face, side: float, bound: Skeleton) -> Mesh:
     edge, outer = _edge(face, side), _outer()
     away = outer - edge
     lash = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * (0.03 + 0.065 * up)[:, None]
-    loft = LOFT[0] + (LOFT[1] - LOFT[0]) * up
-    rows = [_over(edge, 0.99 + 0 * loft), _over(edge, 1 + 0.94 * loft), _over(lash, 1 + loft)]
+    lift = LOFT[0] + (LOFT[1] - LOFT[0]) * up
+    rows = [_over(edge, 0.99 + 0 * lift), _over(edge, 1 + 0.94 * lift), _over(lash, 1 + lift)]
     skin = _skin_radius(outer)
     for s in (0.16, 0.36, 0.6, 0.82, 1.0):
-        flat, sunk = lash + (outer - lash) * s, eased((s - 0.15) / 0.85)
-        covered = eased((np.linalg.norm(flat / OPENING[:2], axis=1) - 1.05) / 0.15)
-        over = np.maximum(1 + loft + (skin - 1 - loft) * sunk, _skin_radius(flat) * covered)
+        flat, sunk = lash + (outer - lash) * s, smoothstep((s - 0.15) / 0.85)
+        covered = smoothstep((np.linalg.norm(flat / OPENING[:2], axis=1) - 1.05) / 0.15)
+        over = np.maximum(1 + lift + (skin - 1 - lift) * sunk, _skin_radius(flat) * covered)
         rows.append(_over(flat, over))
     rows.insert(2, rows[2])  # a crisp border between lash and skin
     under = _over(outer, skin - 0.2)
     start, end = (np.tile(EYE + depth * RADIUS * SIGHT, (COLUMNS, 1)) for depth in (0.0, 0.3))
     rings = np.stack([start, under, *rows[::-1], end]) * [side, 1.0, 1.0]
     rings = rings if side > 0 else rings[:, ::-1]
-    mesh = ringed(rings, _lid_colors(rings), "head", bound)
+    mesh = loft(rings, _lid_colors(rings), "head", bound)
     fixed = normals_of(head().distance, mesh.positions.astype(float), 0.006)
     share = np.repeat([0, 0, 1.0, 1.0, 0.85, 0.6, 0.3, *[0.0] * (len(rings) - 7)], COLUMNS)
-    return with_normals(mesh, fixed, share)
+    return blend_normals(mesh, fixed, share)
 
 
 def _edge(face: Face, side: float) -> Array:
@@ -146,7 +145,7 @@ def _brow(face: Face, side: float, bound: Skeleton) -> Mesh:
     height = np.radians(63.0) - np.radians(9.0) * along**2 + face.brow + face.brow_inner * inner
     across = np.radians(-4.0) + np.radians(25.0) * along + 0.25 * np.minimum(face.brow, 0)
     line = np.stack([across, height], axis=-1)
-    radius = 1 + LOFT[1] + (_skin_radius(line) - 1 - LOFT[1]) * eased((height - 0.75) / 0.55)
+    radius = 1 + LOFT[1] + (_skin_radius(line) - 1 - LOFT[1]) * smoothstep((height - 0.75) / 0.55)
     radius = np.maximum(radius, _skin_radius(line)) + 0.05
     thick = 0.0030 * np.sqrt(np.clip(1 - (along / 1.02) ** 2, 0, 1)) * (1 - 0.15 * along)
     turn = np.linspace(0, 2 * np.pi, 8, endpoint=False)
@@ -159,4 +158,4 @@ def _brow(face: Face, side: float, bound: Skeleton) -> Mesh:
     ends = [np.tile(middle[i], (len(turn), 1))[None] for i in (0, -1)]
     rings = np.concatenate([ends[0], rings, ends[1]]) * [side, 1.0, 1.0]
     rings = rings[:, ::-1] if side < 0 else rings
-    return ringed(rings, np.tile(BROW, (*rings.shape[:2], 1)), "head", bound)
+    return loft(rings, np.tile(BROW, (*rings.shape[:2], 1)), "head", bound)

@@ -6,7 +6,7 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.morphs import difference
+from tools.authoring.modelling.meshes import morph_between
 from tools.authoring.vleo.expressions import EXPRESSIONS, Face, cheeks, dropped
 from tools.authoring.vleo.eyes import eyes
 from tools.authoring.vleo.mouth import mouth
@@ -23,7 +23,7 @@ def with_expressions(mesh: Mesh, bound: Skeleton) -> Mesh:
     head = [bound.index(joint) for joint in ("head", "jaw")]
     share = (mesh.weights * np.isin(mesh.joints, head)).sum(axis=1)
     made = ((name, _carried(mesh, expression, share)) for name, expression in EXPRESSIONS.items())
-    morphs = [morph for name, other in made if (morph := difference(name, mesh, other))]
+    morphs = [morph for name, other in made if (morph := morph_between(name, mesh, other))]
     return replace(mesh, morphs=tuple(morphs))
 
 

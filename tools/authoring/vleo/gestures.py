@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.loops import Array, follow, keys, later
+from tools.authoring.modelling.curves import Array, follow, keys, later
 from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance
 from tools.authoring.vleo.clips import clip, tail
 

@@ -1,6 +1,6 @@
 """Vleo waits: it breathes, sways, blinks, looks around, and wonders about something."""
 
-from tools.authoring.modelling.loops import follow, keys, wave
+from tools.authoring.modelling.curves import follow, keys, wave
 from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance
 from tools.authoring.vleo.clips import breathe, tail
 

@@ -6,7 +6,7 @@ The three intensities share every accent, so that they blend at equal phase.
 import numpy as np
 
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.loops import Array, follow, keys, later, wave
+from tools.authoring.modelling.curves import Array, follow, keys, later, wave
 from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance
 from tools.authoring.vleo.clips import Flight, breathe, fly, tail
 from tools.authoring.vleo.rig import FEET, HEARTS

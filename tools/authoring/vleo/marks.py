@@ -4,10 +4,10 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.sculpt import lathe
+from tools.authoring.modelling.lathe import frame_toward, lathe
 from tools.authoring.vleo.body import CLAW, LASH, ORANGE, PINK, SPOT, spine_line
-from tools.authoring.vleo.pieces import carried, facing, patches
-from tools.authoring.vleo.skin import Body
+from tools.authoring.vleo.pieces import attached, patches
+from tools.authoring.vleo.skin import SkinSurface
 
 SPOTS = (  # half a back: side, height, forward, radius [mm]; those at 0 have no twin
     (0, 300, 100, 11), (23, 292, 88, 8), (17, 280, 62, 9), (0, 262, 55, 8),
@@ -22,12 +22,12 @@ PLATE = np.array([0.62, 1.22, 1.15])
 """How thick, long and high they are, of what a cone would be."""
 
 
-def marks(body: Body, bound: Skeleton) -> list[Mesh]:
+def marks(body: SkinSurface, bound: Skeleton) -> list[Mesh]:
     """Return all markings, bound to the skeleton."""
-    return [*_round(body), *_spines(body, bound), *_claws(1.0, bound), *_claws(-1.0, bound)]
+    return [*_round(body, bound), *_spines(body, bound), *_claws(1.0, bound), *_claws(-1.0, bound)]
 
 
-def _round(body: Body) -> list[Mesh]:
+def _round(body: SkinSurface, bound: Skeleton) -> list[Mesh]:
     """Return the round patches of colour: cheeks, nostrils and the spots on the back."""
     cheek = (62.0, 233.0, 133.0, 9.5)
     nostril = (13.0, 242.0, 193.0, 3.3)
@@ -39,10 +39,10 @@ def _round(body: Body) -> list[Mesh]:
         if x or side > 0
     ]
     places = np.array([row for row, _ in both]) / 1000
-    return patches(places[:, :3], places[:, 3], [color for _, color in both], body)
+    return patches(places[:, :3], places[:, 3], [color for _, color in both], body, bound)
 
 
-def _spines(body: Body, bound: Skeleton) -> list[Mesh]:
+def _spines(body: SkinSurface, bound: Skeleton) -> list[Mesh]:
     """Return a row of soft orange plates from the neck to the tail."""
     line = spine_line(200)
     along = np.gradient(line[:, :3], axis=0)
@@ -56,11 +56,11 @@ def _spines(body: Body, bound: Skeleton) -> list[Mesh]:
             [[0, -0.5], [1, -0.45], [0.95, 0.30], [0.66, 0.92], [0.28, 1.32], [0, 1.44]]
         )
         lean = up - 0.35 * along[i]
-        place = facing(lean / np.linalg.norm(lean), line[i, :3] + up * (line[i, 3] - 0.001))
+        place = frame_toward(lean / np.linalg.norm(lean), line[i, :3] + up * (line[i, 3] - 0.001))
         place[:3, :3] = place[:3, :3] @ np.diag(PLATE)
         cone = lathe(profile, [ORANGE] * 5, place, "hips", bound, 10)
         base = np.tile(line[i, :3] + up * line[i, 3], (len(cone.positions), 1))
-        spines.append(carried(cone, base, body))
+        spines.append(attached(cone, base, body))
     return spines
 
 
@@ -72,7 +72,7 @@ def _claws(side: float, bound: Skeleton) -> list[Mesh]:
         for across, ahead in ((-0.0150, 0.0205), (0.0, 0.0268), (0.0150, 0.0205)):
             angle = np.radians([180, 120, 75, 40, 0])
             rings = 0.0066 * np.stack([np.sin(angle), np.cos(angle)], axis=1)
-            place = facing(
+            place = frame_toward(
                 np.array([side * across * 20, -0.1, 1.0]),
                 np.array([side * (x + across), 0.0072, z + ahead]),
             )

@@ -4,8 +4,8 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.morphs import morphed
-from tools.authoring.modelling.rings import ringed, with_normals
+from tools.authoring.modelling.lathe import loft
+from tools.authoring.modelling.meshes import blend_normals, morphed
 from tools.authoring.modelling.shapes import Array, rgb
 from tools.authoring.modelling.surface import normals_of
 from tools.authoring.vleo.body import MAROON, ROSE
@@ -54,10 +54,10 @@ def _mouth(face: Face, bound: Skeleton) -> Mesh:
     outside = [behind, under, *skin[::-1], skin[0], *lips]
     rings = np.stack([*outside, lips[1], *inside])
     shares = [0 * full, held[-1], *held[::-1], held[0], *[_lip_share()] * 3, *inside_held]
-    mesh = ringed(rings, _colors(rings), _bones(np.stack(shares), bound), bound)
+    mesh = loft(rings, _colors(rings), _bones(np.stack(shares), bound), bound)
     fixed = normals_of(head().distance, mesh.positions.astype(float), 0.006)
     far = [0, 0, *_SHARES[::-1], *[0.0] * (len(rings) - 2 - len(_SHARES))]
-    return with_normals(mesh, fixed, np.repeat(np.array(far) ** 1.5, COLUMNS))
+    return blend_normals(mesh, fixed, np.repeat(np.array(far) ** 1.5, COLUMNS))
 
 
 def _lip_lines(face: Face) -> tuple[Array, Array]:
@@ -132,7 +132,7 @@ def _tongue(face: Face, bound: Skeleton) -> Mesh:
     flat = points.reshape(-1, 3)
     moved = dropped(flat, 1.0 - 0.25 * np.clip((0.165 - flat[:, 2]) / 0.025, 0, 1), face)
     color = np.tile(ROSE, (*x.shape, 1))
-    return ringed(moved.reshape(points.shape), color, "jaw", bound)
+    return loft(moved.reshape(points.shape), color, "jaw", bound)
 
 
 def _bones(jaw: Array, bound: Skeleton) -> Array:

@@ -6,7 +6,7 @@ The three intensities share every accent, so that they blend at equal phase.
 import numpy as np
 
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.loops import Array, keys, later, wave
+from tools.authoring.modelling.curves import Array, keys, later, wave
 from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance
 from tools.authoring.vleo.clips import Flight, fly, tail
 from tools.authoring.vleo.rig import BURSTS

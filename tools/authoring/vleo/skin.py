@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.skeleton.pose import Skeleton
+from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.sculpt import skin_weights
 from tools.authoring.modelling.shapes import Array, Ellipsoid, Vector
 from tools.authoring.modelling.surface import normals_of, polygonise
@@ -22,7 +23,7 @@ MOUTH_BOX = ((-0.044, 0.044), (0.192, 0.246), (0.134, 0.300))
 
 
 @dataclass(frozen=True)
-class Body:
+class SkinSurface:
     """The skin as a mesh, in arrays."""
 
     points: Array
@@ -41,7 +42,7 @@ class Body:
     """Linear RGB, (n, 3)."""
 
 
-def body(bound: Skeleton) -> Body:
+def body(bound: Skeleton) -> SkinSurface:
     """Return the skin with its weights and colours."""
     points, triangles = _surface()
     solids = list(skin().solids())
@@ -53,7 +54,7 @@ def body(bound: Skeleton) -> Body:
     # The light knows nothing of rims that are hidden under lids and lips.
     outside = (whole().distance(points) > -0.0012) | (eye < 1.5 * EYE_RADIUS)
     normals[outside] = normals_of(whole().distance, points[outside], 0.003)
-    return Body(points, normals, triangles, weights, painted(points, normals))
+    return SkinSurface(points, normals, triangles, weights, painted(points, normals))
 
 
 def _surface() -> tuple[Array, NDArray[np.int64]]:
@@ -63,10 +64,10 @@ def _surface() -> tuple[Array, NDArray[np.int64]]:
     for axis, (low, high) in spans.items():
         line = np.linspace(low, high, 2000)
         near_low, near_high = MOUTH_BOX[axis]
-        small = eased((line - near_low) / 0.02 + 1) * eased((near_high - line) / 0.02 + 1)
+        small = smoothstep((line - near_low) / 0.02 + 1) * smoothstep((near_high - line) / 0.02 + 1)
         edge = TRUNK_CELL[axis] + (FACE_CELL[axis] - TRUNK_CELL[axis]) * small
         if axis == FORWARD:
-            edge = edge * (1 - 0.42 * eased((TAIL_END - line) / 0.03))
+            edge = edge * (1 - 0.42 * smoothstep((TAIL_END - line) / 0.03))
         lines.append((line, np.concatenate([[0.0], np.cumsum(np.diff(line) / edge[1:])])))
 
     def unstretched(cells: Array) -> Array:
@@ -82,7 +83,7 @@ def _surface() -> tuple[Array, NDArray[np.int64]]:
 
 def _with_firm_feet(points: Array, weights: Array, bound: Skeleton) -> Array:
     """Return the weights with soles that belong to their feet alone, so that they do not slide."""
-    sole = eased((0.034 - points[:, 1]) / 0.020)[:, None]
+    sole = smoothstep((0.034 - points[:, 1]) / 0.020)[:, None]
     own = np.zeros_like(weights)
     front, left = points[:, 2] > 0.0, points[:, 0] > 0
     for which, is_front in (("Front", True), ("Hind", False)):
@@ -98,7 +99,7 @@ def jaw_share(points: Array) -> Array:
     below = lip_line(side) - points[:, 1]
     soft = 0.0022 + 0.016 * np.clip((np.abs(side) - 0.68) / 0.45, 0, 1)
     ahead = (points[:, 2] - 0.096 + 0.35 * (points[:, 1] - 0.2235)) / 0.036
-    return eased(0.5 + 0.5 * below / soft) * eased(ahead)
+    return smoothstep(0.5 + 0.5 * below / soft) * smoothstep(ahead)
 
 
 def _with_face(points: Array, weights: Array, bound: Skeleton) -> Array:
@@ -113,18 +114,20 @@ def _with_face(points: Array, weights: Array, bound: Skeleton) -> Array:
 def painted(points: Array, normals: Array) -> Array:
     """Return the colours of the skin, (n, 3): teal, darker above, cream below, and a red mouth."""
     colors = np.tile(TEAL, (len(points), 1))
-    colors = _coat(colors, BACK_TEAL, 0.7 * eased((normals[:, 1] - 0.1) / 0.8))
+    colors = _coat(colors, BACK_TEAL, 0.7 * smoothstep((normals[:, 1] - 0.1) / 0.8))
     legs = whole().solids()
     leg = np.min([s.distance(points) for s in legs if s.bones[0][-3:] in ("Leg", "oot")], axis=0)
-    under = eased((_underside(points) - 0.26) / 0.30) * eased((0.208 - points[:, 1]) / 0.012)
-    under = under * eased((points[:, 2] + 0.215) / 0.08)  # the tip of the tail is teal all round
-    colors = _coat(colors, CREAM, under * eased((leg + 0.001) / 0.014))
+    under = smoothstep((_underside(points) - 0.26) / 0.30) * smoothstep(
+        (0.208 - points[:, 1]) / 0.012
+    )
+    under = under * smoothstep((points[:, 2] + 0.215) / 0.08)  # not on the tip of the tail
+    colors = _coat(colors, CREAM, under * smoothstep((leg + 0.001) / 0.014))
     chin = Ellipsoid((0.0, 0.200, 0.150), (0.052, 0.030, 0.046)).distance(points)
-    lower = eased((lip_line(around(points)) - 0.0035 - points[:, 1]) / 0.005)
-    lower = lower * eased((0.85 - np.abs(around(points))) / 0.35)  # not about its corners
-    colors = _coat(colors, CREAM, lower * eased(0.5 - chin / 0.012))
+    lower = smoothstep((lip_line(around(points)) - 0.0035 - points[:, 1]) / 0.005)
+    lower = lower * smoothstep((0.85 - np.abs(around(points))) / 0.35)  # not about its corners
+    colors = _coat(colors, CREAM, lower * smoothstep(0.5 - chin / 0.012))
     inside = -np.maximum(whole().distance(points) + 0.0007, Hollow().distance(points) - 0.0020)
-    return _coat(colors, MAROON, eased(0.5 + inside / 0.0010))
+    return _coat(colors, MAROON, smoothstep(0.5 + inside / 0.0010))
 
 
 def _underside(points: Array) -> Array:
@@ -140,9 +143,3 @@ def _underside(points: Array) -> Array:
 
 def _coat(colors: Array, color: Vector, cover: Array) -> Array:
     return colors + (np.array(color) - colors) * cover[:, None]
-
-
-def eased(u: Array | float) -> Array:
-    """Return a smooth step of u from 0 to 1."""
-    u = np.clip(np.asarray(u, float), 0.0, 1.0)
-    return np.asarray(u * u * (3 - 2 * u))

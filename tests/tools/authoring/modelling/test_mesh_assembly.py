@@ -6,11 +6,9 @@ import pytest
 from characters.model.character import skin
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.morphs import morphed
-from tools.authoring.modelling.reflect import reflected
+from tools.authoring.modelling.lathe import loft
+from tools.authoring.modelling.meshes import join, mirrored_mesh, morphed
 from tools.authoring.modelling.rig import build_skeleton
-from tools.authoring.modelling.rings import ringed
-from tools.authoring.modelling.sculpt import join
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +23,7 @@ def drum(skeleton: Skeleton, height: float) -> Mesh:
     circle = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)
     up = np.array([0.0, 0.0, height])
     rings = np.stack([0 * circle, circle, circle + up, 0 * circle + up])
-    return ringed(rings, np.ones((4, 8, 3)), "LeftEye", skeleton)
+    return loft(rings, np.ones((4, 8, 3)), "LeftEye", skeleton)
 
 
 def test_a_morph_is_what_an_expression_moves(skeleton: Skeleton) -> None:
@@ -48,7 +46,7 @@ def test_joined_meshes_move_together_by_the_name_of_a_morph(skeleton: Skeleton) 
 
 
 def test_a_reflected_mesh_faces_outward_and_hangs_on_the_other_side(skeleton: Skeleton) -> None:
-    mesh = reflected(drum(skeleton, 1.0), skeleton)
+    mesh = mirrored_mesh(drum(skeleton, 1.0), skeleton)
     corners = mesh.positions[mesh.triangles]
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     assert ((flat * mesh.normals[mesh.triangles].mean(axis=1)).sum(axis=1) > 0).all()

@@ -8,12 +8,13 @@ from hypothesis import strategies as st
 from characters.model.mesh import Mesh
 from characters.skeleton import rotations
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.cord import cord
 from tools.authoring.modelling.gait import Foot, Path, Steps, foot_motion
 from tools.authoring.modelling.ik import bend
+from tools.authoring.modelling.lathe import lathe
 from tools.authoring.modelling.rig import Puppet, build_skeleton, mirrored
-from tools.authoring.modelling.sculpt import Part, lathe, sculpt
+from tools.authoring.modelling.sculpt import Part, sculpt
 from tools.authoring.modelling.shapes import Cone, Cut, Ellipsoid, HalfSpace, Shape, Union, rgb
+from tools.authoring.modelling.tube import tube
 
 LEGS = build_skeleton(
     {
@@ -85,7 +86,7 @@ def test_turned_and_swept_pieces_are_closed_and_face_outward() -> None:
     rings = np.array([[0, -0.03], [0.02, -0.02], [0.03, 0.0], [0.0, 0.03]])
     place = np.column_stack([np.diag([1.0, 0.5, 2.0]), [0.1, 1.0, 0.2]])
     turned = lathe(rings, [(1, 0, 0), (1, 0, 0), (0, 0, 1)], place, "hips", LEGS)
-    swept = cord([(0, 1, 0), (0.1, 1.1, 0), (0.1, 1.2, 0.1)], 0.02, (1, 1, 1), "hips", LEGS, 8, 12)
+    swept = tube([(0, 1, 0), (0.1, 1.1, 0), (0.1, 1.2, 0.1)], 0.02, (1, 1, 1), "hips", LEGS, 8, 12)
     for mesh in (turned, swept):
         assert is_closed(mesh)
         assert volume(mesh) > 0

@@ -7,7 +7,6 @@ from characters.model.character import Character, skin
 from characters.motion.blend import mix
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose
-from tools.authoring.modelling.loops import follow, keys, later, wave
 from tools.authoring.vleo.character import build_vleo
 from tools.authoring.vleo.head import EYE_RADIUS, SIGHT
 from tools.authoring.vleo.rig import BURSTS, EYE, FEET, HEARTS
@@ -313,18 +312,3 @@ def test_skin_does_not_collapse_where_it_bends(vleo: Character, joint: str) -> N
         apart = points - points.mean(axis=0)
         widths.append(np.sqrt(np.linalg.eigvalsh(apart.T @ apart / len(apart))[1:]))
     assert (widths[1] > 0.7 * widths[0]).all()
-
-
-def test_keys_are_met_and_never_overshot() -> None:
-    curve = keys(100, (0.1, 2.0), (0.4, -1.0), (0.7, 0.5))
-    assert curve[[10, 40, 70]] == pytest.approx([2.0, -1.0, 0.5])
-    assert curve.max() == pytest.approx(2.0)
-    assert curve.min() == pytest.approx(-1.0)
-
-
-def test_a_spring_follows_late_and_loops() -> None:
-    curve = wave(240, 2)
-    behind = follow(curve, seconds=8.0, hertz=1.0, damping=0.5)
-    assert int(np.argmax(behind[:120])) > int(np.argmax(curve[:120]))
-    assert np.allclose(behind[:120], behind[120:])
-    assert np.allclose(later(curve, 0.25), np.roll(curve, 60))

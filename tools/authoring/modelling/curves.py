@@ -9,6 +9,17 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 
+def smoothstep(u: Array | float) -> Array:
+    """Return the smooth step of u from 0 to 1."""
+    u = np.clip(np.asarray(u, float), 0.0, 1.0)
+    return np.asarray(u * u * (3 - 2 * u))
+
+
+def soft_limited(values: Array, limit: float) -> Array:
+    """Return values that approach ±limit instead of exceeding it."""
+    return np.asarray(limit * np.tanh(values / limit))
+
+
 def phases(frames: int) -> Array:
     """Return the phase of each frame, (frames,), 0 ≤ phase < 1."""
     return np.arange(frames) / frames

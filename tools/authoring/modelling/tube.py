@@ -7,12 +7,12 @@ from numpy.typing import ArrayLike
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.rings import averaged_normals
-from tools.authoring.modelling.sculpt import bands, bound_mesh
+from tools.authoring.modelling.lathe import bands
+from tools.authoring.modelling.meshes import averaged_normals, bound_mesh
 from tools.authoring.modelling.shapes import Array, Vector
 
 
-def cord(
+def tube(
     line: ArrayLike,
     radii: float | Sequence[float],
     color: Vector,
