@@ -39,10 +39,7 @@ def publisher(
 ) -> PlayerPublisher | None:
     """Connect a player if the options ask for one; `closing` closes it.
 
-    Raises
-    ------
-    RobotError, AppError
-        If an option is wrong or missing, or the broker refuses.
+    Raises RobotError or AppError if an option is wrong or missing, or the broker refuses.
     """
     if url is None and name is None:
         return None

@@ -129,12 +129,7 @@ def run(
 class EventPrinter:
     """Prints messages, changes of presence, and problems of connections, one per line.
 
-    Parameters
-    ----------
-    console
-        Where to print.
-    every
-        Whether to print every message.
+    With `every` it prints every message, otherwise only changes of presence.
     """
 
     def __init__(self, console: Console, *, every: bool) -> None:
@@ -179,10 +174,7 @@ class EventPrinter:
 def named(given: Iterable[str], option: str, example: str) -> dict[str, str]:
     """Return the values of options of the form NAME=VALUE, by name.
 
-    Raises
-    ------
-    AppError
-        If an option has another form, or a name is used twice.
+    Raises AppError if an option has another form, or a name is used twice.
     """
     values: dict[str, str] = {}
     for text in given:

@@ -34,19 +34,8 @@ class Attention:
     """Chooses a point to look at, frame by frame.
 
     With "auto" it watches a cube that moves, and the hand while it lifts the cube. When the cube
-    is still it looks at the player, with a glance at the cube now and then.
-
-    Parameters
-    ----------
-    look
-        One of `LOOKS`.
-    edge
-        Edge of the cube [m].
-
-    Raises
-    ------
-    AppError
-        There is no such look.
+    is still it looks at the player, with a glance at the cube now and then. `edge` is that of the
+    cube [m]. Raises AppError if `look` is not one of `LOOKS`.
     """
 
     def __init__(self, look: str, edge: float) -> None:
@@ -64,15 +53,7 @@ class Attention:
     def update(
         self, state: CubeState, controls: CubeControls, command: CharacterCommand
     ) -> Array | None:
-        """Return the point to look at, (3,) in the table frame [m]; None for none.
-
-        Parameters
-        ----------
-        state, controls
-            Where the cube is, and what the hand does with it.
-        command
-            What the character is asked to do.
-        """
+        """Return the point to look at, (3,) in the table frame [m]; None for none."""
         table = controls.camera_from_table
         if self._look == "none" or table is None:
             return None

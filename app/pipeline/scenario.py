@@ -58,13 +58,7 @@ SPEED_MAPS = ("corrected", "legacy")
 
 @dataclass(frozen=True)
 class ScenarioSettings:
-    """What the user may choose for a scenario.
-
-    Raises
-    ------
-    AppError
-        There is no speed map of that name, or `turns` is out of range.
-    """
+    """What the user may choose for a scenario; raises AppError if a setting is out of its range."""
 
     speed_map: str = "corrected"
     """One of `SPEED_MAPS`."""
@@ -85,15 +79,7 @@ class ScenarioSettings:
 
 
 class Scenario(Protocol):
-    """A way to play. `update` advances its state once a frame; it reads no clock.
-
-    Parameters
-    ----------
-    cube
-        The cube in the player's hand.
-    settings
-        What the user chose.
-    """
+    """A way to play. `update` advances its state once a frame; it reads no clock."""
 
     name: str
     """Its name on the command line."""
@@ -115,17 +101,7 @@ class Scenario(Protocol):
     def update(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
     ) -> Outcome:
-        """Decide on one frame.
-
-        Parameters
-        ----------
-        controls
-            What the hand does with the cube in this frame.
-        character
-            The character after the previous frame; None in the first.
-        inputs
-            The other inputs of the frame.
-        """
+        """Decide on one frame; `character` is as after the previous frame, None in the first."""
         ...
 
 

@@ -52,17 +52,7 @@ class BridgeOptions:
 class RecordedPlayer:
     """Publishes the actions and emotions of a recorded session, in its own time.
 
-    Parameters
-    ----------
-    publisher
-        The player that publishes them.
-    path
-        The session.
-
-    Raises
-    ------
-    AppError
-        If the file is not a session.
+    Raises AppError if the file is not a session.
     """
 
     def __init__(self, publisher: PlayerPublisher, path: Path) -> None:

@@ -68,14 +68,7 @@ class Network(Closeable):
         return Member(self.site, role, check_name(name, role))
 
     def join(self, endpoint: E, name: str) -> BusClient[E]:
-        """Connect an endpoint, with an MQTT client id that is made from a name.
-
-        Raises
-        ------
-        RobotError
-            If the broker can be reached and refuses. If it cannot be reached, the bus tries
-            again until `close`.
-        """
+        """Connect an endpoint, with an MQTT client id made from a name; see `BusClient.open`."""
         client = BusClient(endpoint, self._bus(name), time.monotonic).open()
         self._closing.callback(client.close)
         return client

@@ -169,10 +169,7 @@ def _open_screen(
 def intrinsics_for(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:
     """Return intrinsics for pictures of `size`; guess them where `intrinsics` is None.
 
-    Raises
-    ------
-    AppError
-        The calibration was made at another aspect ratio.
+    Raises AppError if the calibration was made at another aspect ratio.
     """
     if intrinsics is None:
         return Intrinsics.guess(size)

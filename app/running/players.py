@@ -18,16 +18,9 @@ UNPUBLISHED_ACTIONS = frozenset({"idle", "move"})
 class PlayerPublisher:
     """Publishes the actions and emotions of a character. Never blocks on the network.
 
-    Parameters
-    ----------
-    network
-        The network; its owner closes it, and the player with it.
-    name
-        The player's name.
-    max_age
-        Age at which an action is too late for a robot that was away [s].
-    on_problem
-        Called with one line when the connection breaks, within `publish`.
+    The owner of the network closes it, and the player with it. Actions older than `max_age` [s]
+    are too late for a robot that was away. `on_problem` is called with one line when the connection
+    breaks, within `publish`.
     """
 
     def __init__(

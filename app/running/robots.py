@@ -139,11 +139,6 @@ class WireRecorder:
 
     The link's thread calls it. The offset between the two times is known from the first frame on;
     bytes from before it, such as the handshake, wait until then.
-
-    Parameters
-    ----------
-    recorder
-        Records them.
     """
 
     def __init__(self, recorder: Recorder) -> None:

@@ -34,10 +34,8 @@ CAMERA_BACK = "camera back"
 def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
     """Run a session to its end, until the player closes the window, or until Ctrl-C.
 
-    Raises
-    ------
-    TrackingError, RobotError, AppError
-        The source, the robot or the disk failed; what was recorded until then is complete.
+    Raises TrackingError, RobotError or AppError if the source, the robot or the disk failed; what
+    was recorded until then is complete.
     """
     summary = Summary(session.playground.scenario.name)
     with _end_on_interrupt(summary):
@@ -120,15 +118,7 @@ class _FrameLoop:
 
 
 class _CameraGaps:
-    """Notes when the camera was lost and when it came back.
-
-    Parameters
-    ----------
-    summary
-        Collects the gaps of the session.
-    recorder
-        Records their begin and end as events, or None.
-    """
+    """Notes when the camera was lost and when it came back, in the summary and the recording."""
 
     def __init__(self, summary: Summary, recorder: Recorder | None) -> None:
         self._summary, self._recorder = summary, recorder

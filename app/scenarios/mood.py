@@ -9,11 +9,6 @@ class MoodController:
     """Turns the events of a session into the one emotion that character and robots show.
 
     A cube that is not visible causes no events: the mood stays or fades, as the personality says.
-
-    Parameters
-    ----------
-    personality
-        How events change the mood.
     """
 
     def __init__(self, personality: Personality) -> None:
@@ -31,16 +26,8 @@ class MoodController:
     ) -> EmotionTarget:
         """Advance by one frame and return the emotion to show.
 
-        Parameters
-        ----------
-        controls
-            What the hand does: shaking and lifting the cube are events.
-        action
-            What the character does; "idle" for nothing that changes the mood.
-        weight
-            Intensity of the action, −1…1.
-        speed
-            AvatAR's Speed of the character, 0…5.
+        The action is "idle" for nothing that changes the mood; `weight` is its intensity, −1…1, and
+        `speed` AvatAR's Speed of the character, 0…5.
         """
         if controls.shaken:
             self._feelings.apply_event("shaken")

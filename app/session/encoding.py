@@ -36,10 +36,7 @@ def encode(message: object) -> bytes:
 def decode(kind: type[T], document: bytes) -> T:
     """Return the dataclass of type `kind` that `encode` wrote.
 
-    Raises
-    ------
-    ValueError
-        The document is not JSON, or not of that type.
+    Raises ValueError if the document is not JSON, or not of that type.
     """
     try:
         value = _typed(kind, _upgraded(kind, json.loads(document)))

@@ -43,19 +43,9 @@ class SessionInfo:
 
 
 def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
-    """Read what a session says of itself.
+    """Read what a session says of itself; with `salvage` also of one that was cut off.
 
-    Parameters
-    ----------
-    path
-        The session.
-    salvage
-        Whether to accept a session that was cut off.
-
-    Raises
-    ------
-    AppError
-        The file cannot be read, is no session, or was cut off.
+    Raises AppError if the file cannot be read, is no session, or was cut off.
     """
     _check_magic(path)
     if salvage:

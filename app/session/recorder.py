@@ -44,19 +44,9 @@ class Recorder:
     """Records one session to one .mcap file.
 
     Open it before the first frame, `write` every step, and `close` it at the end; a second `close`
-    does nothing. If the program is killed, all but the last half second can be read.
-
-    Parameters
-    ----------
-    path
-        Where to write.
-    metadata
-        What a replay needs: the scenario, its options, the cube …
-
-    Raises
-    ------
-    AppError
-        The file cannot be written.
+    does nothing. If the program is killed, all but the last half second can be read. `metadata` is
+    what a replay needs: the scenario, its options, the cube … Raises AppError if the file cannot be
+    written.
     """
 
     def __init__(self, path: Path, metadata: dict[str, str]) -> None:

@@ -30,10 +30,7 @@ FIELD_OF_TOPIC = {
 def read_replay_inputs(source: str, start: str) -> Iterator[ReplayInputs]:
     """Yield the recorded messages up to the stage `start`, for each frame.
 
-    Raises
-    ------
-    AppError
-        There is no such stage, or the source is no session.
+    Raises AppError if there is no such stage, or the source is no session.
     """
     if start not in STARTS:
         raise AppError(f"a replay cannot start from '{start}': choose one of {', '.join(STARTS)}")

@@ -33,15 +33,7 @@ class Channel(Protocol):
 
 
 class PortChannel:
-    """A port in real time.
-
-    Parameters
-    ----------
-    port
-        An open port; the caller closes it.
-    clock
-        The time [s].
-    """
+    """An open port in real time; the caller closes it. `clock` gives the time [s]."""
 
     def __init__(self, port: Port, clock: Clock) -> None:
         self._port = port
@@ -76,15 +68,7 @@ class PortChannel:
 
 
 class SimulatedChannel:
-    """A simulated robot in virtual time.
-
-    Parameters
-    ----------
-    robot
-        The simulated robot.
-    start
-        The initial time [s].
-    """
+    """A simulated robot in virtual time, which begins at `start` [s]."""
 
     def __init__(self, robot: Simulated, start: float = 1000.0) -> None:
         self._robot = robot

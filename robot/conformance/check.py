@@ -34,17 +34,10 @@ class Check:
 
 
 class CheckGroup:
-    """The checks of one subject, in the order of their definition.
+    """The checks of one subject and section of PROTOCOL.md, in the order of their definition.
 
     The decorators `must` and `should` turn a function into a check: its name is the check's name,
-    its docstring the requirement.
-
-    Parameters
-    ----------
-    title
-        Subject of the checks.
-    section
-        Their section of PROTOCOL.md; 0 if they belong to several.
+    its docstring the requirement. The section is 0 if the checks belong to several.
     """
 
     def __init__(self, title: str, section: int) -> None:

@@ -2,15 +2,7 @@
 
 
 class CheckFailed(Exception):  # noqa: N818 # as unittest's failureException: a result, not a fault
-    """The robot does not meet a requirement.
-
-    Parameters
-    ----------
-    expected
-        What it should have done.
-    received
-        What it did.
-    """
+    """The robot does not meet a requirement: what it should have done, and what it did."""
 
     def __init__(self, expected: str, received: str) -> None:
         super().__init__(f"expected {expected}; received {received}")

@@ -46,12 +46,7 @@ Kind = TypeVar("Kind")
 class Probe:
     """A host for one robot, under the control of the checks.
 
-    Parameters
-    ----------
-    channel
-        The channel to the robot.
-    host
-        Number of the first host; each check acts as another host.
+    `host` is the number of the first host; each check acts as another one.
     """
 
     def __init__(self, channel: Channel, host: int) -> None:
@@ -167,10 +162,7 @@ class Probe:
     ) -> Kind:
         """Return the next message of a kind in our session with the given field values.
 
-        Raises
-        ------
-        CheckFailed
-            If there is none within a time [s].
+        Raises CheckFailed if there is none within a time [s].
         """
 
         def wanted(received: ReceivedFrame) -> bool:
@@ -283,16 +275,8 @@ class Probe:
     ) -> list[m.State]:
         """Send BEATs until a STATE meets a condition, and return all STATEs.
 
-        Parameters
-        ----------
-        condition
-            The condition.
-        within
-            Longest time until then [s].
-        expected
-            The same in words, and after what; CheckFailed adds the time.
-        shown
-            Fields of the last STATE that CheckFailed reports.
+        Raises CheckFailed if none does within a time [s]. `expected` is the condition in words, and
+        after what; `shown` are the fields of the last STATE that the error reports.
         """
         states = self.keep_alive(within, condition)
         if not condition(states[-1]):

@@ -101,13 +101,7 @@ def all_checks() -> list[Check]:
 
 
 def select_checks(words: Iterable[str]) -> list[Check]:
-    """Return the checks whose names contain any of the words.
-
-    Raises
-    ------
-    RobotError
-        If no name contains one of the words.
-    """
+    """Return the checks whose names contain any of the words; RobotError if one is in no name."""
     selected: set[str] = set()
     for word in words:
         plain = word.lower().replace("-", " ").replace("_", " ").strip()

@@ -47,12 +47,7 @@ class PlayerArbiter:
     """The table of the players that one robot follows; selects the active one.
 
     A player becomes active by an action. If there is no active player, the one who is online and
-    whose emotion changed last becomes active. A player who is gone stays active for `hold`.
-
-    Parameters
-    ----------
-    hold
-        How long a player who is gone stays active [s].
+    whose emotion changed last becomes active. A player who is gone stays active for `hold` [s].
     """
 
     def __init__(self, hold: float = HOLD_S) -> None:

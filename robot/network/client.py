@@ -25,18 +25,10 @@ E = TypeVar("E", bound=Endpoint)
 
 
 class BusClient(Closeable, Generic[E]):
-    """Runs an endpoint on a bus. Close it, or use it in a `with` statement.
+    """Runs an endpoint on a bus of its own. Close it, or use it in a `with` statement.
 
-    Hold `lock` while accessing the endpoint from elsewhere, for a short time only.
-
-    Parameters
-    ----------
-    endpoint
-        The endpoint.
-    bus
-        Its own connection; the client opens and closes it.
-    clock
-        The time [s].
+    Hold `lock` while accessing the endpoint from elsewhere, for a short time only. The clock gives
+    the time [s].
     """
 
     def __init__(self, endpoint: E, bus: Bus, clock: Clock) -> None:
@@ -65,13 +57,9 @@ class BusClient(Closeable, Generic[E]):
         bus.on_change(self._wake.set)
 
     def open(self) -> Self:
-        """Connect and start.
+        """Connect and start; raises RobotError if the broker can be reached and refuses.
 
-        Raises
-        ------
-        RobotError
-            If the broker can be reached and refuses; nothing is left open then. If it cannot be
-            reached, the bus tries again until `close`.
+        Nothing is left open then. If it cannot be reached, the bus tries again until `close`.
         """
         try:
             self.bus.open()

@@ -18,16 +18,11 @@ SETTLING_TIME_S = 1.0
 
 
 class SessionEpoch:
-    """The epoch of a member's program: a number that is greater for a later start.
+    """The epoch of a member's program: a number ≥ 1 that is greater for a later start.
 
     The number comes from the time of day. Where that went back, the program learns of the earlier
     epoch from retained messages, and takes a greater number. A program that meets a greater number
     after that has been replaced, and stops publishing.
-
-    Parameters
-    ----------
-    number
-        Its number, ≥ 1.
     """
 
     def __init__(self, number: int) -> None:
@@ -97,14 +92,7 @@ class Endpoint:
 class MemberEndpoint(Endpoint):
     """Base of players and robots' nodes: session epoch, heartbeat, last will.
 
-    Parameters
-    ----------
-    member
-        The member.
-    session
-        Number of its epoch, ≥ 1, greater than all earlier ones; see `SessionEpoch`.
-    follows
-        The players that it follows.
+    `session` is the number of its epoch, see `SessionEpoch`; `follows` are the players it follows.
     """
 
     def __init__(self, member: Member, session: int, follows: tuple[Pattern, ...] = ()) -> None:

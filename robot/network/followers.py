@@ -28,13 +28,7 @@ class Follower:
 
 
 class Followers:
-    """The table of the robots that follow one player.
-
-    Parameters
-    ----------
-    player
-        The player.
-    """
+    """The table of the robots that follow one player."""
 
     def __init__(self, player: Member) -> None:
         self.robots: dict[Member, Follower] = {}

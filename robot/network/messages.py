@@ -133,10 +133,8 @@ def encode(message: Struct) -> bytes:
 def decode(kind: type[M], payload: bytes) -> M:
     """Return the message in a payload. Unknown fields are ignored: a later version added them.
 
-    Raises
-    ------
-    MalformedError
-        If the payload is too long, is not a JSON object, lacks a field, or has an invalid one.
+    Raises MalformedError if the payload is too long, is not a JSON object, lacks a field, or has
+    an invalid one.
     """
     if len(payload) > MAX_PAYLOAD_BYTES:
         raise MalformedError(f"{len(payload)} bytes; a message has at most {MAX_PAYLOAD_BYTES}")

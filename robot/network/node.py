@@ -37,18 +37,8 @@ class RobotControl(Protocol):
 class RobotNode(MemberEndpoint):
     """The node of a robot, without clock, thread or bus.
 
-    Parameters
-    ----------
-    member
-        The robot as a member of the network.
-    robot
-        The robot; the caller closes it.
-    session
-        Number of the node's epoch, ≥ 1, greater than all earlier ones; see `SessionEpoch`.
-    follows
-        The players whose actions and emotions it takes.
-    hold
-        How long the emotion of a player who is gone is kept [s].
+    The caller closes `robot`. `session` is the number of the node's epoch, see `SessionEpoch`;
+    `hold` is how long the emotion of a player who is gone is kept [s].
     """
 
     def __init__(

@@ -65,14 +65,8 @@ class PlayerCounts:
 class Player(MemberEndpoint):
     """A player, without clock, thread or bus.
 
-    Parameters
-    ----------
-    member
-        The player.
-    session
-        Number of its epoch, ≥ 1, greater than all earlier ones; see `SessionEpoch`.
-    max_age
-        Age at which an action expires [s]; `math.inf` for never.
+    `session` is the number of its epoch, see `SessionEpoch`; actions expire at the age of `max_age`
+    [s], `math.inf` for never.
     """
 
     def __init__(self, member: Member, session: int, max_age: float = MAX_AGE_S) -> None:
@@ -98,10 +92,7 @@ class Player(MemberEndpoint):
     def act(self, name: str, weight: float, now: float) -> None:
         """Publish an action, for the robots that follow to do once.
 
-        Raises
-        ------
-        ValueError
-            If the name cannot be sent, or the weight is not from −1 to 1.
+        Raises ValueError if the name cannot be sent, or the weight is not from −1 to 1.
         """
         if not (name and m.is_text(name)):
             raise ValueError(f"{name!r} cannot be an action: 1 to {MAX_TEXT_BYTES} printable bytes")

@@ -36,15 +36,7 @@ class RosterEntry:
 
 
 class Roster(Endpoint):
-    """An observer of all members, which publishes nothing.
-
-    Parameters
-    ----------
-    site
-        The site to observe, or `ANY`.
-    on_message
-        Called with every message.
-    """
+    """An observer of all members of a site, or of all sites, which publishes nothing."""
 
     def __init__(self, site: str = ANY, on_message: OnMessage | None = None) -> None:
         place = "+" if site == ANY else site

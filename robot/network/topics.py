@@ -66,17 +66,9 @@ class Pattern:
 
     @classmethod
     def parse(cls, text: str, site: str) -> "Pattern":
-        """Parse "ann", "*", "south/ann", "south/*" or "*/*".
+        """Parse "ann", "*", "south/ann", "south/*" or "*/*"; raises RobotError for another form.
 
-        Parameters
-        ----------
-        text
-            A name, preceded by its site if that is not `site`.
-
-        Raises
-        ------
-        RobotError
-            If it has another form.
+        Without a site in the text it is `site`.
         """
         place, slash, name = text.rpartition("/")
         found = cls(place if slash else site, name)

@@ -25,18 +25,9 @@ _NEUTRAL, _HAPPY, _ANGRY = [_NAMES.index(name) for name in ("neutral", "happy", 
 
 
 class DinoBody:
-    """A dinosaur of servos and a buzzer.
+    """A dinosaur of servos, and a buzzer if it has one.
 
-    Parameters
-    ----------
-    joints
-        Its servos.
-    board
-        The board.
-    buzzer
-        Whether there is a buzzer.
-    rest_after
-        Time without a session after which it rests and its servos lose power [ms].
+    After `rest_after` ms without a session it rests, and its servos lose power.
     """
 
     def __init__(

@@ -110,13 +110,7 @@ class FrameDecoder:
 
 
 class SendBuffer:
-    """Frames to be sent. When it is full, new frames are dropped, as a line may lose them.
-
-    Parameters
-    ----------
-    size
-        Capacity [bytes].
-    """
+    """Frames to be sent. When it is full, new frames are dropped, as a line may lose them."""
 
     def __init__(self, size: int = 512) -> None:
         self.data = bytearray(size)

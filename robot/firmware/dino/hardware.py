@@ -24,13 +24,7 @@ MIN_SILENCE_MS = 100
 
 
 class Hardware(RobotBoard):
-    """The board with the microcontroller.
-
-    Parameters
-    ----------
-    table
-        The pins.
-    """
+    """The board with the microcontroller; the table names its pins."""
 
     def __init__(self, table: ServoTable) -> None:
         self._last = time.ticks_ms()

@@ -15,15 +15,7 @@ _MICRORAD = 17453  # per degree
 
 
 class ServoJoints:
-    """The servos of the robot, and their expected angles: hobby servos cannot be measured.
-
-    Parameters
-    ----------
-    servos
-        The checked servos.
-    board
-        Generates the pulses.
-    """
+    """The servos of the robot, and their expected angles: hobby servos cannot be measured."""
 
     def __init__(self, servos: list[Servo], board: RobotBoard) -> None:
         count = len(servos)

@@ -15,15 +15,7 @@ PERIOD_US = 20000
 
 
 class PCA9685:
-    """A servo driver on an I2C bus; initialised at the first pulse, and after a failure.
-
-    Parameters
-    ----------
-    bus
-        The I2C bus.
-    address
-        Address of the chip; 0x40 by default.
-    """
+    """A servo driver on an I2C bus; initialised at the first pulse, and after a failure."""
 
     def __init__(self, bus: machine.I2C, address: int = 0x40) -> None:
         self._bus = bus

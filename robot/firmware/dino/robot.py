@@ -17,14 +17,7 @@ ERROR_PAUSE_MS = 300
 class Firmware:
     """The firmware's state between a start, or an error, and the next.
 
-    Parameters
-    ----------
-    board
-        The board.
-    table
-        The configuration.
-    joints
-        The servos; their expected angles survive an error.
+    The expected angles of the servos survive an error, so `joints` comes from outside.
     """
 
     def __init__(self, board: RobotBoard, table: ServoTable, joints: ServoJoints) -> None:

@@ -11,19 +11,7 @@ FIRMWARE = "dino 1"
 
 
 class HostSession:
-    """The robot's side of the protocol: one session, its commands and its failsafe.
-
-    Parameters
-    ----------
-    body
-        The body that the commands control.
-    send_buffer
-        Takes the frames to be sent.
-    name
-        Name of the robot.
-    board
-        Measures the battery.
-    """
+    """The robot's side of the protocol: one session, its commands and its failsafe."""
 
     def __init__(
         self, body: DinoBody, send_buffer: SendBuffer, name: str, board: RobotBoard

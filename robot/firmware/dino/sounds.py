@@ -15,15 +15,7 @@ SOUNDS = (
 
 
 class SoundPlayer:
-    """Plays one sound at a time.
-
-    Parameters
-    ----------
-    board
-        The board.
-    buzzer
-        Whether it has a buzzer.
-    """
+    """Plays one sound at a time, if the board has a buzzer."""
 
     def __init__(self, board: RobotBoard, buzzer: bool) -> None:
         self._board = board

@@ -59,13 +59,7 @@ class Servo:
 
 
 class ServoTable:
-    """The configuration in `servos`.
-
-    Parameters
-    ----------
-    module
-        `servos`, or another module with the same constants.
-    """
+    """The configuration in `servos`, or in another module with the same constants."""
 
     def __init__(self, module: object) -> None:
         self.name: str = getattr(module, "NAME")

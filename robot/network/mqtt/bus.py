@@ -59,14 +59,7 @@ class MqttBus(Bus):
 
     The broker keeps no session between connections. Messages without confirmation are sent again
     after a reconnection, before everything that the member publishes then; so a topic always ends
-    with the latest message.
-
-    Parameters
-    ----------
-    address
-        The broker.
-    client_id
-        A different one for every member and session.
+    with the latest message. Every member and session needs another `client_id`.
     """
 
     def __init__(self, address: Address, client_id: str) -> None:
@@ -95,10 +88,7 @@ class MqttBus(Bus):
     def open(self) -> None:
         """Connect, and wait for the broker's answer, at most `OPEN_TIMEOUT_S`.
 
-        Raises
-        ------
-        RobotError
-            If the broker can be reached and refuses: user, password, certificate.
+        Raises RobotError if the broker refuses: user, password, certificate.
         """
         client, will = self._client, self._will
         if will is not None:
