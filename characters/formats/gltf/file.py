@@ -99,15 +99,12 @@ class GltfFile:
         Normalised integers become numbers of 0…1 or −1…1.
         """
         values = self._accessor(index, width)
-        if values.dtype.kind == "f":
-            numbers = values.astype(np.float64)
-            if not np.isfinite(numbers).all():
-                row = int(np.flatnonzero(~np.isfinite(numbers).all(axis=1))[0])
-                raise DamagedFileError(f"accessor {index} holds {numbers[row]} in row {row}")
-        else:
-            numbers = values.astype(np.float64)
-            if self.document["accessors"][index].get("normalized"):
-                numbers = np.maximum(numbers / np.iinfo(values.dtype.name).max, -1.0)
+        numbers = values.astype(np.float64)
+        if not np.isfinite(numbers).all():
+            row = int(np.flatnonzero(~np.isfinite(numbers).all(axis=1))[0])
+            raise DamagedFileError(f"accessor {index} holds {numbers[row]} in row {row}")
+        if values.dtype.kind != "f" and self.document["accessors"][index].get("normalized"):
+            numbers = np.maximum(numbers / np.iinfo(values.dtype.name).max, -1.0)
         return numbers[:, 0] if width == 1 else numbers
 
     def integers(self, index: int, width: int) -> NDArray[np.int64]:
@@ -178,11 +175,7 @@ class GltfFile:
             raise DamagedFileError(
                 f"needs {needed} bytes in steps of {stride}, buffer view {view} has {len(data)}"
             )
-        if stride == size:
-            return np.frombuffer(data, dtype, count * width, offset).reshape(count, width)
-        raw = np.frombuffer(data, np.uint8, offset=offset)
-        windows = np.lib.stride_tricks.as_strided(raw, (count, size), (stride, 1), writeable=False)
-        return np.ascontiguousarray(windows).view(dtype).reshape(count, width)
+        return np.ndarray((count, width), dtype, data, offset, (stride, dtype.itemsize))
 
     def _with_sparse(self, values: NDArray[np.generic], sparse: Json) -> NDArray[np.generic]:
         count, (indices, replacing) = sparse["count"], (sparse["indices"], sparse["values"])
@@ -193,13 +186,9 @@ class GltfFile:
         numbers = rows[:, 0].astype(np.int64)
         if ((numbers < 0) | (numbers >= len(values))).any():
             raise DamagedFileError(f"replaces a row beyond its {len(values)}")
-        changed = values.copy()
+        changed, offset = values.copy(), replacing.get("byteOffset", 0)
         changed[numbers] = self._strided(
-            replacing["bufferView"],
-            replacing.get("byteOffset", 0),
-            values.dtype,
-            count,
-            values.shape[1],
+            replacing["bufferView"], offset, values.dtype, count, values.shape[1]
         )
         return changed
 
@@ -213,15 +202,7 @@ def _component(holder: Json) -> "np.dtype[np.generic]":
 
 
 def open_gltf(path: Path) -> GltfFile:
-    """Read a .glb or .gltf file with its buffers.
-
-    Raises
-    ------
-    CharacterError
-        If it is absent, truncated, not glTF 2.0, or requires an extension that is not supported.
-    DamagedFileError
-        If its JSON or its buffers are invalid.
-    """
+    """Read a .glb or .gltf file with its buffers; refuse extensions that are not supported."""
     data = read_file(path)
     text, blob = _unpacked(path, data)
     try:

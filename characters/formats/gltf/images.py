@@ -26,25 +26,19 @@ class ImageDecoder:
         self._decoded: dict[tuple[int, str], Image] = {}
 
     def texture(self, index: int, mode: Literal["RGB", "RGBA"]) -> Image | None:
-        """Return the image of a texture, or None if it has none.
-
-        Raises
-        ------
-        DamagedFileError
-            If it is not PNG or JPEG, is truncated or too large.
-        """
+        """Return the image of a texture, or None if it has none."""
         source = self._file.document["textures"][index].get("source")
         if source is None:
             return None
         if (source, mode) not in self._decoded:
             image = self._file.document["images"][source]
+            name = label("image", source, image)
             if "uri" in image:
                 data: bytes | memoryview = self._file.resource(image["uri"])
             elif "bufferView" in image:
                 data = self._file.view(image["bufferView"])
             else:
-                raise DamagedFileError(f"{label('image', source, image)} has no data")
-            name = label("image", source, image)
+                raise DamagedFileError(f"{name} has no data")
             self._decoded[source, mode] = self._decode(data, name, mode)
         return self._decoded[source, mode]
 

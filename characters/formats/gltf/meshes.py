@@ -37,21 +37,22 @@ def read_meshes(file: GltfFile, tree: NodeTree, table: MorphTable) -> list[tuple
         mesh = file.document["meshes"][node["mesh"]]
         name = mesh.get("name") or node.get("name") or "mesh"
         targets, shared = table.of(number), dict[int, Array]()
+        where = label("mesh", node["mesh"], mesh)
         for primitive in mesh["primitives"]:
             if primitive.get("mode", _TRIANGLES) not in (_TRIANGLES, _STRIP, _FAN):
                 continue  # points and lines
-            with error_context(label("mesh", node["mesh"], mesh)):
+            with error_context(where):
                 mapped = MappedMaterial(Material())
                 if "material" in primitive:
                     mapped = materials[primitive["material"]]
                 geometry = _geometry(file, primitive, mapped)
                 if not len(geometry.triangles):
                     continue
-                skin = _skin(file, primitive, number, tree, len(geometry.positions), rest)
-                morphs = read_morphs(file, primitive, targets, len(geometry.positions), shared)
+                vertices = len(geometry.positions)
+                skin = _skin(file, primitive, number, tree, vertices, where)
+                morphs = read_morphs(file, primitive, targets, vertices, shared)
                 used = _without_unused_vertices(geometry, skin, morphs)
-                mesh_at_rest = _in_character_frame(name, *used, mapped.material, rest)
-                meshes.append((number, mesh_at_rest))
+                meshes.append((number, _in_character_frame(name, *used, mapped.material, rest)))
     return meshes
 
 
@@ -66,15 +67,14 @@ class _Geometry(NamedTuple):
 
 
 def _skin(
-    file: GltfFile, primitive: Json, number: int, tree: NodeTree, vertices: int, rest: Array
+    file: GltfFile, primitive: Json, number: int, tree: NodeTree, vertices: int, where: str
 ) -> VertexSkin:
     node = file.document["nodes"][number]
-    if "skin" not in node:
-        file.budget.spend(16 * len(rest), "its bind matrices")
-        return rigid_skin(tree.joint_of_node[number], vertices, rest)
-    mesh = label("mesh", node["mesh"], file.document["meshes"][node["mesh"]])
-    where = f"{file.path}: {mesh}"
-    return read_skin(file, primitive["attributes"], node["skin"], tree, vertices, where)
+    if "skin" in node:
+        where = f"{file.path}: {where}"
+        return read_skin(file, primitive["attributes"], node["skin"], tree, vertices, where)
+    file.budget.spend(16 * len(tree.skeleton), "its bind matrices")
+    return rigid_skin(tree.joint_of_node[number], vertices, len(tree.skeleton))
 
 
 def _geometry(file: GltfFile, primitive: Json, mapped: MappedMaterial) -> _Geometry:
@@ -106,9 +106,7 @@ def _triangles(indices: NDArray[np.int64], mode: int) -> NDArray[np.int64]:
     """Return (triangles, 3) from a list, a strip or a fan."""
     count = max(len(indices) - 2, 0)
     if mode == _STRIP:
-        windows = np.stack(
-            [indices[:count], indices[1 : count + 1], indices[2 : count + 2]], axis=1
-        )
+        windows = np.stack([indices[n : n + count] for n in range(3)], axis=1)
         windows[1::2] = windows[1::2, [1, 0, 2]]
         return windows
     if mode == _FAN:

@@ -30,18 +30,12 @@ class NodeTree:
     """Numbers of the nodes with a mesh that the skeleton moves."""
 
 
-def read_node_tree(file: GltfFile, extra_joints: Iterable[int] = ()) -> NodeTree:
+def read_node_tree(file: GltfFile, extra_joints: Iterable[int]) -> NodeTree:
     """Return the skeleton of a document.
 
     Ancestors of joints are joints too: exporters put the change of axes and units there, and
-    sometimes animate it. Nodes with rigid meshes below a joint are joints as well.
-
-    Parameters
-    ----------
-    file
-        The opened file.
-    extra_joints
-        Numbers of nodes that are joints without being listed by a skin.
+    sometimes animate it. Nodes with rigid meshes below a joint are joints as well. Nodes with the
+    numbers `extra_joints` are joints without being listed by a skin.
     """
     nodes = file.all("nodes")
     parents = _parents(nodes)
@@ -52,9 +46,8 @@ def read_node_tree(file: GltfFile, extra_joints: Iterable[int] = ()) -> NodeTree
     for number in _top_down(nodes, parents):
         if number in wanted or parents[number] in below:
             below.add(number)
-    for number in below:
-        if "mesh" in nodes[number] and "skin" not in nodes[number]:
-            _add_with_ancestors(wanted, number, parents)
+            if "mesh" in nodes[number] and "skin" not in nodes[number]:
+                _add_with_ancestors(wanted, number, parents)
     order = _parents_first(wanted, nodes, parents)
     if len(order) > _MAX_JOINTS:
         raise DamagedFileError(f"has {len(order)} joints, more than {_MAX_JOINTS}")
@@ -96,7 +89,6 @@ def _top_down(nodes: list[Json], parents: list[int]) -> list[int]:
 
 
 def _add_with_ancestors(wanted: set[int], node: int, parents: list[int]) -> None:
-    """Add a node and its ancestors."""
     while node != -1 and node not in wanted:
         wanted.add(node)
         node = parents[node]
@@ -164,15 +156,7 @@ def _local_transform(node: Json, where: str) -> tuple[Array, Array, Array]:
 
 
 def unit_quaternions(quaternions: Array, where: str) -> Array:
-    """Return normalised quaternions (n, 4); warn of other lengths, refuse length zero.
-
-    Parameters
-    ----------
-    quaternions
-        As in the file.
-    where
-        File and place, for the warning.
-    """
+    """Return normalised quaternions (n, 4); warn of other lengths, refuse length zero."""
     lengths: Array = np.linalg.norm(quaternions, axis=1, keepdims=True)
     if (lengths < 1e-6).any():
         raise DamagedFileError(

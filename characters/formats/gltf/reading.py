@@ -20,13 +20,7 @@ from characters.skeleton.pose import Array, Skeleton
 
 
 def load_character(path: Path) -> Character:
-    """Read a character: a skinned one, or one of animated rigid parts.
-
-    Raises
-    ------
-    CharacterError
-        If the file is absent, invalid, not glTF 2.0, or nothing in it can move.
-    """
+    """Read a character: a skinned one, or one of animated rigid parts."""
     with _open(path) as file:
         tree, humanoid = _read_joints(file)
         table = read_morph_table(file, tree)
@@ -47,13 +41,7 @@ def load_character(path: Path) -> Character:
 
 
 def load_motion(path: Path, options: MotionOptions) -> Performance:
-    """Read one clip of a file and its skeleton; the file need not have a mesh.
-
-    Raises
-    ------
-    CharacterError
-        If the file is absent, invalid, not glTF 2.0, or does not have exactly that clip.
-    """
+    """Read one clip of a file and its skeleton; the file need not have a mesh."""
     with _open(path) as file:
         tree, _ = _read_joints(file)
         table = read_morph_table(file, tree)

@@ -50,13 +50,11 @@ def read_skin(
     return VertexSkin(to_skeleton[joints], weights, inverse_bind)
 
 
-def rigid_skin(joint: int, vertices: int, rest: Array) -> VertexSkin:
+def rigid_skin(joint: int, vertices: int, joints: int) -> VertexSkin:
     """Return the skin of a rigid mesh of one joint; its vertices are in that joint's frame."""
-    inverse_bind = np.tile(np.eye(4), (len(rest), 1, 1))
     weights = np.tile([1.0, 0.0, 0.0, 0.0], (vertices, 1))
-    joints = np.zeros((vertices, 4), np.int64)
-    joints[:, 0] = joint
-    return VertexSkin(joints, weights, inverse_bind)
+    numbers = np.tile([joint, 0, 0, 0], (vertices, 1))
+    return VertexSkin(numbers, weights, np.tile(np.eye(4), (joints, 1, 1)))
 
 
 def _strongest_four(

@@ -5,7 +5,7 @@ are read from their glTF part; spring bones, constraints and first-person settin
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,18 +43,12 @@ class VrmHumanoid:
     bones: Mapping[str, int]
     """Node of each bone, by its name in VRM 1.0."""
 
-    expressions: Mapping[str, tuple[Bind, ...]] = field(default_factory=dict)
+    expressions: Mapping[str, tuple[Bind, ...]]
     """Morph targets of each expression."""
 
 
 def read_humanoid(file: GltfFile) -> VrmHumanoid | None:
-    """Return the VRM part of a file, or None without one.
-
-    Raises
-    ------
-    DamagedFileError
-        If its version is unknown, or it is invalid.
-    """
+    """Return the VRM part of a file, or None without one."""
     extensions = file.document.get("extensions", {})
     if "VRMC_vrm" in extensions:
         with error_context("VRMC_vrm"):
@@ -82,12 +76,7 @@ def mixed_expressions(
 ) -> tuple[tuple[Mesh, ...], tuple[str, ...]]:
     """Return meshes with the expressions as morphs, and the names of these.
 
-    Parameters
-    ----------
-    parts
-        Each mesh with all of its morph targets, and its node.
-    humanoid
-        The expressions.
+    `parts` are each mesh with all of its morph targets, and its node.
     """
     meshes = tuple(
         replace(mesh, morphs=tuple(_expression_morphs(mesh.morphs, node, humanoid.expressions)))
@@ -132,10 +121,8 @@ def _humanoid_1(extension: Json) -> VrmHumanoid:
     version = extension.get("specVersion", "")
     if not version.startswith("1."):
         raise DamagedFileError(f"is version {version!r:.20}; export it as VRM 1.0")
-    bones = {
-        name: bone["node"]
-        for name, bone in extension.get("humanoid", {}).get("humanBones", {}).items()
-    }
+    named = extension.get("humanoid", {}).get("humanBones", {})
+    bones = {name: bone["node"] for name, bone in named.items()}
     stated = extension.get("expressions", {})
     expressions = {
         name: tuple(
@@ -149,10 +136,8 @@ def _humanoid_1(extension: Json) -> VrmHumanoid:
 
 
 def _humanoid_0(file: GltfFile, extension: Json) -> VrmHumanoid:
-    bones = {
-        _bone_1(bone["bone"]): bone["node"]
-        for bone in extension.get("humanoid", {}).get("humanBones", ())
-    }
+    named = extension.get("humanoid", {}).get("humanBones", ())
+    bones = {_bone_1(bone["bone"]): bone["node"] for bone in named}
     nodes_of_mesh: dict[int, list[int]] = {}
     for number, node in enumerate(file.all("nodes")):
         if "mesh" in node:

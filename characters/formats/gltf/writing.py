@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.formats.gltf.buffer import ARRAY_BUFFER, ELEMENT_BUFFER, GlbBuilder
-from characters.formats.gltf.checks import check_character
 from characters.formats.gltf.document import Json
 from characters.formats.gltf.materials import MaterialWriter
 from characters.model.character import Character
@@ -19,14 +18,8 @@ MIN_CHANGE = 1e-7  # [m or part of a quaternion]: smaller changes are not writte
 
 
 def save(character: Character, path: Path) -> None:
-    """Write a .glb; the same character gives the same bytes.
-
-    Raises
-    ------
-    CharacterError
-        If its arrays do not fit together or the file cannot be written.
-    """
-    check_character(character)
+    """Write a .glb; the same character gives the same bytes."""
+    _check_character(character)
     data = _CharacterWriter(character).glb()
     unfinished = path.with_name(path.name + ".part")
     try:
@@ -63,10 +56,7 @@ class _CharacterWriter:
             "nodes": [*roots, *range(joints, joints + len(character.meshes))],
         }
         # glTF has no place for the order of morphs over all meshes and for body parts.
-        extras = {
-            "morphs": list(character.morphs),
-            "semantics": dict(sorted(character.semantics.items())),
-        }
+        extras = {"morphs": list(character.morphs), "semantics": dict(character.semantics)}
         if any(extras.values()):
             scene["extras"] = {key: value for key, value in extras.items() if value}
         self._builder.add("scenes", scene)
@@ -207,3 +197,66 @@ def _quantised(weights: NDArray[np.float32]) -> Array:
     rows = np.arange(len(levels))
     levels[rows, levels.argmax(1)] += 65535 - levels.sum(1)
     return levels
+
+
+def _check_character(character: Character) -> None:
+    """Refuse a character whose arrays do not fit together."""
+    joints, morphs = len(character.skeleton), len(character.morphs)
+    for clip in character.clips.values():
+        if clip.poses.rotations.shape[1] != joints:
+            raise CharacterError(
+                f"clip {clip.name!r} moves {clip.poses.rotations.shape[1]} joints, "
+                f"the skeleton has {joints}"
+            )
+        if clip.poses.morphs is not None and clip.poses.morphs.shape != (len(clip), morphs):
+            raise CharacterError(
+                f"clip {clip.name!r} has morphs of shape {clip.poses.morphs.shape}, "
+                f"not {(len(clip), morphs)}"
+            )
+    for mesh in character.meshes:
+        _check_mesh(mesh, joints)
+    _check_morphs(character)
+
+
+def _check_mesh(mesh: Mesh, joints: int) -> None:
+    count = len(mesh.positions)
+    fits = (
+        mesh.normals.shape == (count, 3)
+        and mesh.joints.shape == mesh.weights.shape == (count, 4)
+        and mesh.inverse_bind.shape == (joints, 4, 4)
+        and (not mesh.triangles.size or int(mesh.triangles.max()) < count)
+        and (not mesh.joints.size or int(mesh.joints.max()) < joints)
+    )
+    if not fits:
+        raise CharacterError(f"mesh {mesh.name!r}: its arrays do not fit together")
+    if count and np.abs(mesh.weights.sum(1) - 1).max() > 1e-3:
+        raise CharacterError(f"mesh {mesh.name!r}: its skin weights do not sum to one")
+    for morph in mesh.morphs:
+        shape = (len(morph.vertices), 3)
+        ascends = bool((np.diff(morph.vertices.astype(np.int64)) > 0).all())
+        inside = not len(morph.vertices) or int(morph.vertices[-1]) < count
+        normals_fit = (
+            morph.normal_displacements is None or morph.normal_displacements.shape == shape
+        )
+        if not (ascends and inside and normals_fit and morph.displacements.shape == shape):
+            raise CharacterError(
+                f"mesh {mesh.name!r}: the arrays of its morph {morph.name!r} do not fit together"
+            )
+
+
+def _check_morphs(character: Character) -> None:
+    """Refuse names that reading the file would not give back."""
+    for mesh in character.meshes:
+        names = [morph.name for morph in mesh.morphs]
+        if len(set(names)) < len(names) or not set(names) <= set(character.morphs):
+            raise CharacterError(
+                f"mesh {mesh.name!r}: each of its morphs needs a name of its own out of "
+                f"Character.morphs, which are {', '.join(character.morphs) or 'none'}"
+            )
+    used = {morph.name for mesh in character.meshes for morph in mesh.morphs}
+    unused = [name for name in character.morphs if name not in used]
+    if unused or len(set(character.morphs)) < len(character.morphs):
+        raise CharacterError(
+            f"Character.morphs {', '.join(unused or character.morphs)}: each must be named once, "
+            "and be a morph of some mesh"
+        )
