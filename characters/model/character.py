@@ -125,15 +125,14 @@ def _known_suffixes() -> str:
 def _with_sidecar(character: Character, path: Path) -> Character:
     """Return a character with what its sidecar file adds."""
     sidecar_path = path.with_suffix(".toml")
-    sidecar = read_sidecar(sidecar_path, character.clips)
-    for part, joint in sidecar.semantics.items():
+    stated, plan = read_sidecar(sidecar_path, character.clips)
+    for part, joint in stated.items():
         if joint and joint not in character.skeleton.names:
             raise CharacterError(
                 f"{sidecar_path}: joints.{part}: no joint {joint!r}; there are "
                 f"{', '.join(character.skeleton.names)}"
             )
-    semantics = {**character.semantics, **sidecar.semantics}
-    return replace(character, semantics=semantics, plan=sidecar.plan)
+    return replace(character, semantics={**character.semantics, **stated}, plan=plan)
 
 
 def skin(

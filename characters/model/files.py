@@ -11,14 +11,9 @@ MAX_FILE_BYTES = 1 << 30
 
 
 def read_file(path: Path, max_bytes: int = MAX_FILE_BYTES) -> bytes:
-    """Return the content of a file.
+    """Return the content of a file, or refuse it in one line.
 
     Pipes and devices are refused: opening or reading them may never return.
-
-    Raises
-    ------
-    CharacterError
-        If it cannot be read, or has more than `max_bytes` bytes.
     """
     try:
         status = os.stat(path)

@@ -41,14 +41,8 @@ class Inspection:
 def inspect(character: Character, notes: Sequence[str] = (), body: bool = True) -> Inspection:
     """Return statistics and problems of a character.
 
-    Parameters
-    ----------
-    character
-        The character.
-    notes
-        Repairs and guesses while it was read; the problems begin with them.
-    body
-        Whether to look for problems of the meshes; those of a stick figure have none.
+    The problems begin with `notes` on repairs and guesses while it was read. The meshes of a stick
+    figure have no problems: `body` is false.
     """
     feet = foot_joints(character)
     clips = tuple(clip_stats(character, clip, feet) for clip in character.clips.values())

@@ -4,7 +4,6 @@ import difflib
 import os
 import tomllib
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,31 +16,10 @@ from characters.skeleton.anatomy import PARTS
 _MAX_BYTES = 1_000_000  # larger files are not written by hand
 
 
-@dataclass(frozen=True)
-class Sidecar:
-    """The content of a sidecar file."""
+def read_sidecar(path: Path, clips: Collection[str]) -> tuple[Mapping[str, str], Plan | None]:
+    """Return joint by body part, as in `Character.semantics`, and how motions are combined.
 
-    semantics: Mapping[str, str]
-    """Joint by part of the body, as in `Character.semantics`."""
-
-    plan: Plan | None
-    """How its motions are combined, or None if it does not say."""
-
-
-def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
-    """Read a sidecar file; one that does not exist is empty.
-
-    Parameters
-    ----------
-    path
-        The .toml file.
-    clips
-        Names of the character's clips.
-
-    Raises
-    ------
-    CharacterError
-        If it cannot be read, is not TOML, or its content is invalid.
+    A file that does not exist is empty. `clips` are the names of the character's clips.
     """
     document = _document(path)
     for key in document:
@@ -57,7 +35,7 @@ def read_sidecar(path: Path, clips: Collection[str]) -> Sidecar:
             near = difflib.get_close_matches(part, PARTS, 1)
             hint = f"; did you mean {near[0]!r}?" if near else ""
             raise CharacterError(f"{path}: joints.{part}: not a body part{hint}")
-    return Sidecar(joints, read_plan(document, str(path), clips))
+    return joints, read_plan(document, str(path), clips)
 
 
 def _document(path: Path) -> dict[str, Any]:

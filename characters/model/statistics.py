@@ -10,6 +10,7 @@ from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts, spans
 from characters.motion.ground import find_ground, joint_trajectories
 from characters.skeleton.feet import find_feet
+from characters.skeleton.masks import subtree
 
 _MIN_SPEED = 0.15  # body heights per second; slower bodies stand
 
@@ -91,14 +92,7 @@ def foot_joints(character: Character) -> dict[str, tuple[int, ...]]:
     skeleton, anatomy = character.skeleton, character.anatomy
     if not anatomy.feet:
         return {skeleton.names[foot[0]]: foot for foot in find_feet(skeleton)}
-    feet = {}
-    for ankle in anatomy.feet:
-        joints = [ankle]
-        for joint in range(ankle + 1, len(skeleton)):
-            if skeleton.parents[joint] in joints:
-                joints.append(joint)
-        feet[anatomy.parts[ankle]] = tuple(joints)
-    return feet
+    return {anatomy.parts[ankle]: tuple(subtree(skeleton, ankle)) for ankle in anatomy.feet}
 
 
 def clip_stats(character: Character, clip: Clip, feet: Mapping[str, Sequence[int]]) -> ClipStats:

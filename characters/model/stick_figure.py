@@ -48,17 +48,7 @@ class _Capsule(NamedTuple):
 
 
 def stick_figure(name: str, skeleton: Skeleton, clips: Iterable[Clip] = ()) -> Character:
-    """Return a character with a body of capsules.
-
-    Parameters
-    ----------
-    name
-        Name of the character.
-    skeleton
-        Its joints; a root joint on the ground is not drawn.
-    clips
-        Its clips.
-    """
+    """Return a character with a body of capsules; a root joint on the ground is not drawn."""
     rest = skeleton.rest.globals(skeleton).astype(np.float64)
     anatomy = Anatomy.guess(skeleton)
     capsules = [*_bones(skeleton, anatomy, rest), *_head(anatomy, rest)]
@@ -166,13 +156,10 @@ def _mesh(capsules: Sequence[_Capsule], rest: Array) -> Mesh:
 
 def _triangles(rings: int, count: int) -> NDArray[np.uint32]:
     """Return the triangles between the rings of capsules, counter-clockwise from outside."""
-    ring, side = (grid.ravel() for grid in np.mgrid[: rings - 1, :_CAPSULE_SIDES])
     sides = _CAPSULE_SIDES
+    ring, side = (grid.ravel() for grid in np.mgrid[: rings - 1, :sides])
     here, there = ring * sides + side, ring * sides + (side + 1) % sides
-    quads = np.stack(
-        [here, there, there + sides, here, there + sides, here + sides],
-        axis=1,
-    )
+    quads = np.stack([here, there, there + sides, here, there + sides, here + sides], axis=1)
     numbers = quads.reshape(1, -1, 3) + (np.arange(count) * rings * sides)[:, None, None]
     return numbers.reshape(-1, 3).astype(np.uint32)
 

@@ -89,21 +89,10 @@ def hold_feet_in_contact(
     ground: GroundMotion,
     ends: Array | None = None,
 ) -> Pose:
-    """Return poses whose standing feet do not move over the ground.
+    """Return poses (frames, joints, …) whose standing feet do not move over the ground.
 
-    Parameters
-    ----------
-    pose
-        (frames, joints, …), of the whole clip.
-    rig, legs
-        The skeleton, and its legs in the order of the contacts.
-    contacts
-        When the feet stand.
-    ground
-        The motion of the ground, and the repetition of the clip.
-    ends
-        Positions of the legs' ends without contact, (frames, legs, 3) [m] in the common axes;
-        left out, those of the poses.
+    `ends` are positions of the legs' ends without contact, (frames, legs, 3) [m] in the common
+    axes; left out, those of the poses.
     """
     placements = pose.globals(rig.skeleton)
     turns = rotations.multiply(rig.common_from_skeleton, global_rotations(placements))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.motion.clip import Clip
+from characters.motion.motion import RootDelta
 from characters.retargeting.rig import LegJoints, Rig
 from characters.retargeting.transfer import clip_in_common_axes
 from characters.skeleton import rotations
@@ -75,14 +76,8 @@ def find_ground_motion(
 ) -> GroundMotion:
     """Return the ground motion of a clip, its lengths multiplied by a ratio.
 
-    Parameters
-    ----------
-    clip, rig, legs
-        The motion.
-    contacts
-        When the end of each leg stands, (frames, legs): standing feet show the ground's motion.
-    ratio
-        Size of the target relative to the rig.
+    `contacts` say when the end of each leg stands, (frames, legs): standing feet show the ground's
+    motion.
     """
     clip = clip_in_common_axes(clip, rig)
     times = np.arange(len(clip)) / clip.rate
@@ -90,12 +85,12 @@ def find_ground_motion(
     frame_poses = arc(ratio * velocity, 0.0, times)
     if not clip.loop or len(clip) < 2:
         return GroundMotion(frame_poses, None, clip.rate)
-    cycle = frame_poses[-1]
+    cycle = RootDelta(*frame_poses[-1])
     if clip.root_motion:
-        first, last = (clip.track[frame] * [ratio, ratio, 1.0] for frame in (0, -1))
+        first, last = (RootDelta(*clip.track[frame] * [ratio, ratio, 1.0]) for frame in (0, -1))
         # A treadmill moves under the position of the root.
-        cycle = _after(cycle, _after(last, _inverse(first)))
-    return GroundMotion(frame_poses, cycle, clip.rate)
+        cycle = cycle.then(last.then(first.inverse()))
+    return GroundMotion(frame_poses, np.array([cycle.x, cycle.z, cycle.yaw]), clip.rate)
 
 
 def _treadmill_velocity(
@@ -140,9 +135,3 @@ def _inverse(planar_poses: Array) -> Array:
     x, z = planar_poses[..., 0], planar_poses[..., 1]
     back = [-cosine * x + sine * z, -sine * x - cosine * z, -planar_poses[..., 2]]
     return np.stack(back, axis=-1)
-
-
-def _after(second: Array, first: Array) -> Array:
-    """Return the composition of two planar poses (3,): the first, then the second."""
-    point = transform(second, np.array([first[0], 0.0, first[1]]))
-    return np.array([point[0], point[2], first[2] + second[2]])

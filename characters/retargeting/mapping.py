@@ -44,13 +44,7 @@ class JointMapping:
 
 
 def map_joints(source: Rig, target: Rig) -> JointMapping:
-    """Return how the joints of a target follow those of a source.
-
-    Raises
-    ------
-    CharacterError
-        If the rigs are of different kinds, or one has no hips.
-    """
+    """Return how the joints of a target follow those of a source; refuse rigs of two kinds."""
     _require_same_kind(source, target)
     links: Links = {joint: (driver, driver, 0.0) for joint, driver in _pairs(source, target)}
     links |= _chain_links(source, target)
@@ -139,8 +133,8 @@ def _trunk(rig: Rig) -> list[int]:
     """Return the joints from the hips to the head, or as far up as there are any."""
     present = [j for part in _TRUNK if (j := rig.part(part)) is not None]
     chain = rig.chain_to(max(present, key=lambda joint: len(rig.chain_to(joint))))
-    hips = rig.part("hips")
-    return chain[chain.index(hips) :] if hips in chain else [j for j in (hips,) if j is not None]
+    hips = rig.anatomy.joints["hips"]
+    return chain[chain.index(hips) :] if hips in chain else [hips]
 
 
 def _top_of_spine(rig: Rig) -> int | None:

@@ -51,7 +51,7 @@ def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording
     if is_motion_only(file):
         motion = load_motion(file, clip or None, skeleton=skeleton)
         sidecar = Path(file).with_suffix(".toml")
-        joints = read_sidecar(sidecar, (motion.clip.name,)).semantics
+        joints, _ = read_sidecar(sidecar, (motion.clip.name,))
         try:
             anatomy = Anatomy.guess(motion.skeleton, joints)
         except CharacterError as error:

@@ -8,7 +8,7 @@ from characters.retargeting.footskate import find_foot_contacts, hold_feet_in_co
 from characters.retargeting.ground_motion import find_ground_motion
 from characters.retargeting.mapping import map_joints
 from characters.retargeting.rig import Rig, leg_pairs
-from characters.retargeting.root import root_trajectory
+from characters.retargeting.root import has_root_joint, root_trajectory
 from characters.retargeting.transfer import build_poses, hips_trajectory, transferred_rotations
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
@@ -61,8 +61,7 @@ def _retarget(clip: Clip, source: Rig, target: Rig, hold_feet: bool) -> Clip:
     ratio = target.leg_length / source.leg_length
     share = _stride_share(clip, source, target)
     hips = hips_trajectory(clip, source, target) * [share, 1.0, share]
-    hips_joint = target.anatomy.joints["hips"]
-    rooted = target.skeleton.has_root_motion and hips_joint != 0
+    rooted = has_root_joint(target.skeleton, target.anatomy)
     root = root_trajectory(clip, source, ratio * share) if rooted else None
     pose = build_poses(target, transferred_rotations(clip, source, target, mapping), hips, root)
     if hold_feet:

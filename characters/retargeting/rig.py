@@ -98,18 +98,13 @@ class Rig:
 
     def _leg(self, side: str) -> LegJoints | None:
         upper, lower, foot = (self.part(side + p) for p in ("UpperLeg", "LowerLeg", "Foot"))
-        if upper is None or lower is None or foot is None:
-            return None
-        if upper not in self.chain_to(lower):
+        if upper is None or lower is None or foot is None or upper not in self.chain_to(lower):
             return None
         return LegJoints(upper, lower, foot, self.part(side + "Toes"), lower in self.chain_to(foot))
 
     def chain_to(self, joint: int) -> list[int]:
         """Return the ancestors of a joint from the root down, and the joint itself."""
-        chain = [joint]
-        while self.skeleton.parents[chain[-1]] >= 0:
-            chain.append(self.skeleton.parents[chain[-1]])
-        return chain[::-1]
+        return self.skeleton.with_ancestors([joint])
 
     def direction(self, start: str, end: str) -> Array | None:
         """Return the unit vector (3,) from one body part to another at rest, or None."""

@@ -53,7 +53,10 @@ def _nearest_mapped_ancestors(rig: Rig, joints: NDArray[np.intp]) -> NDArray[np.
 def hips_trajectory(clip: Clip, source: Rig, target: Rig) -> Array:
     """Return the positions of the target's hips, (frames, 3) [m], in the common axes."""
     ratio = target.leg_length / source.leg_length
-    source_height, target_height = _ankle_heights(clip, source, target)
+    source_height = _ankle_height(source, clip)
+    target_height = ratio * source_height
+    if target.rests_on_feet:
+        target_height = _ankle_height(target, clip)
     positions = clip.poses.globals(source.skeleton)[:, source.anatomy.joints["hips"], :3, 3]
     trajectory = rotations.rotate(source.common_from_skeleton, positions) * ratio
     own, others = _hips_height(target), _hips_height(source)
@@ -72,29 +75,15 @@ def _hips_height(rig: Rig) -> float:
     return float(hips - rig.rest_positions[low, 1].mean())
 
 
-def _ankle_heights(clip: Clip, source: Rig, target: Rig) -> tuple[float, float]:
-    """Return the heights of the standing ankles of source and target above the ground [m].
+def _ankle_height(rig: Rig, clip: Clip) -> float:
+    """Return the height of standing ankles above the ground [m].
 
-    They are measured at rest if the rig rests on its feet, else in the clip.
+    It is measured at rest if the rig rests on its feet, else it is the median in the rig's clip.
     """
-    ratio = target.leg_length / source.leg_length
-    source_height = _ankle_height_at_rest(source)
-    if source_height is None:
-        source_height = _ankle_height_in(clip, source)
-    target_height = _ankle_height_at_rest(target)
-    return source_height, ratio * source_height if target_height is None else target_height
-
-
-def _ankle_height_at_rest(rig: Rig) -> float | None:
-    if not rig.rests_on_feet:
-        return None
-    return float(np.mean([rig.rest_positions[leg.foot, 1] for leg in rig.legs[:2]]))
-
-
-def _ankle_height_in(clip: Clip, rig: Rig) -> float:
-    """Return the median height of the standing ankles in a clip [m]."""
-    clip = clip_in_common_axes(clip, rig)
     feet = [leg.foot for leg in rig.legs[:2]]
+    if rig.rests_on_feet:
+        return float(np.mean(rig.rest_positions[feet, 1]))
+    clip = clip_in_common_axes(clip, rig)
     heights = clip.poses.globals(rig.skeleton)[:, feet, 1, 3]
     contacts = find_contacts(clip, rig.skeleton, [[foot] for foot in feet])
     return float(np.median(heights[contacts] if contacts.any() else heights.min(0)))
@@ -116,16 +105,8 @@ def clip_in_common_axes(clip: Clip, rig: Rig) -> Clip:
 def build_poses(rig: Rig, turns: Array, hips: Array, root: Array | None) -> Pose:
     """Return poses from global rotations and hips positions in the common axes.
 
-    Parameters
-    ----------
-    rig
-        The target.
-    turns
-        Global rotations, (frames, joints, 4).
-    hips
-        Positions of the hips, (frames, 3) [m].
-    root
-        Root trajectory, (frames, 3): x, z [m] and yaw [rad]; None without root motion.
+    `turns` are (frames, joints, 4), `hips` (frames, 3) [m], and the root trajectory (frames, 3) is
+    x, z [m] and yaw [rad], or None without root motion.
     """
     skeleton, frames = rig.skeleton, len(turns)
     skeleton_from_common = rotations.conjugate(rig.common_from_skeleton)

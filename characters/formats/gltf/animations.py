@@ -108,12 +108,11 @@ def _poses(
     tracks: list[KeyframeTrack], times: Array, skeleton: Skeleton, morphs: MorphTable
 ) -> Pose:
     rest = skeleton.rest
-    rest_scales = np.ones((len(skeleton), 3)) if rest.scales is None else rest.scales
     weights = np.zeros(len(morphs.names)) if morphs.rest is None else morphs.rest
     values = {
         "translation": np.tile(rest.translations, (len(times), 1, 1)),
         "rotation": np.tile(rest.rotations, (len(times), 1, 1)),
-        "scale": np.tile(rest_scales, (len(times), 1, 1)),
+        "scale": np.tile(rest.scales_or_ones, (len(times), 1, 1)),
         "weights": np.tile(weights, (len(times), 1)),
     }
     for track in tracks:

@@ -159,8 +159,7 @@ class _CharacterWriter:
             ("rotation", poses.rotations, rest.rotations),
         ]
         if poses.scales is not None:
-            rest_scales = np.ones_like(rest.translations) if rest.scales is None else rest.scales
-            kinds.append(("scale", poses.scales, rest_scales))
+            kinds.append(("scale", poses.scales, rest.scales_or_ones))
         return [
             (joint, path, values[:, joint])
             for path, values, resting in kinds

@@ -36,21 +36,9 @@ class LoopCut:
 
 
 def find_cycle(clip: Clip, rig: Rig, contacts: NDArray[np.bool_]) -> LoopCut:
-    """Return the cycle that closes best, with one landing of each foot.
+    """Return the cycle that closes best, with one landing of each foot, or refuse the clip.
 
-    Parameters
-    ----------
-    clip
-        With root motion, on the rig.
-    rig
-        Its joints are compared.
-    contacts
-        When the left and the right foot stand, (frames, 2).
-
-    Raises
-    ------
-    CharacterError
-        If the clip has no part in which each foot lands just once.
+    `contacts` say when the left and the right foot stand, (frames, 2).
     """
     features = _features(clip, rig)
     landings = np.cumsum(contacts[1:] & ~contacts[:-1], axis=0)

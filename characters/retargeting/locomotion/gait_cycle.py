@@ -1,14 +1,17 @@
-"""One cycle of a gait on an arc, which can be bent to any other arc."""
+"""One cycle of a gait on an arc over the ground, which can be bent to any other arc.
 
-from collections.abc import Sequence
+A point has the coordinates length along the arc, height and distance to the left of it. Bending the
+arc bends the footprints with it: standing feet keep standing, and outer feet take longer steps.
+"""
+
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from characters.motion.clip import Clip
+from characters.motion.motion import RootDelta
 from characters.retargeting.footskate import FootContacts, hold_feet_in_contact
-from characters.retargeting.ground_motion import GroundMotion
-from characters.retargeting.locomotion.arc_path import ArcPath
+from characters.retargeting.ground_motion import GroundMotion, arc, transform
 from characters.retargeting.rig import LegJoints, Rig, global_rotations
 from characters.retargeting.root import moved_to_trajectory
 from characters.retargeting.transfer import ankle_positions
@@ -18,6 +21,60 @@ from characters.skeleton.pose import Array, Pose
 _GRAVITY = 9.81 / 0.92  # [leg lengths/s²], for legs of 0.92 m
 _LEAN_SHARE, _MAX_LEAN = 0.6, 0.22  # of the angle that balances a curve; [rad]
 _LOOK_AHEAD_S, _MAX_LOOK_YAW = 0.25, 0.4  # of the head in a curve; [rad]
+_MIN_CURVATURE = 1e-6  # [1/m]; less is straight
+
+
+@dataclass(frozen=True)
+class ArcPath:
+    """An arc from the origin along +z at constant speed."""
+
+    speed: float
+    """Along the arc [m/s]."""
+
+    yaw_rate: float
+    """About +y, to the left [rad/s]."""
+
+    @staticmethod
+    def of(delta: RootDelta, duration: float) -> "ArcPath":
+        """Return the path of a root delta in a time [s], if it starts along the arc.
+
+        >>> path = ArcPath.of(RootDelta(2.0, 2.0, np.pi / 2), 1.0)
+        >>> round(path.speed, 6), round(path.yaw_rate, 6)
+        (3.141593, 1.570796)
+        """
+        stretch = 1.0 / float(np.sinc(delta.yaw / 2 / np.pi))
+        return ArcPath(delta.length * stretch / duration, delta.yaw / duration)
+
+    @property
+    def curvature(self) -> float:
+        """Inverse of the radius, positive to the left [1/m]."""
+        return self.yaw_rate / max(self.speed, 1e-9)
+
+    def at(self, times: Array) -> Array:
+        """Return x, z [m] and yaw [rad] at times [s], (n, 3)."""
+        return arc(np.array([0.0, self.speed]), self.yaw_rate, times)
+
+    def to_arc(self, points: Array, times: Array) -> Array:
+        """Return points (n, 3) in coordinates along the arc, (n, 3) [m].
+
+        Of the possible lengths along the arc, the ones nearest to the path at `times` are taken.
+        """
+        curvature = self.curvature
+        if abs(curvature) < _MIN_CURVATURE:
+            return points[:, [2, 1, 0]]
+        side = np.sign(curvature)
+        across, ahead = points[:, 0] - 1 / curvature, points[:, 2]
+        angle = np.arctan2(side * ahead, -side * across)
+        expected = self.yaw_rate * times
+        angle = expected + np.remainder(angle - expected + np.pi, 2 * np.pi) - np.pi
+        left = 1 / curvature - side * np.hypot(across, ahead)
+        return np.stack([angle / curvature, points[:, 1], left], axis=-1)
+
+    def from_arc(self, coordinates: Array) -> Array:
+        """Return the points (n, 3) of coordinates along the arc."""
+        path = arc(np.array([0.0, 1.0]), self.curvature, coordinates[:, 0])
+        left, height = coordinates[:, 2], coordinates[:, 1]
+        return transform(path, np.stack([left, height, np.zeros(len(coordinates))], axis=-1))
 
 
 @dataclass(frozen=True)
@@ -107,7 +164,7 @@ class GaitCycle:
         look_yaw = np.clip(look_yaw, -_MAX_LOOK_YAW, _MAX_LOOK_YAW)
         translations, turns = pose.translations.copy(), pose.rotations.copy()
         lean = rotations.about("z", old - new)
-        children = _children_of_root(self.rig)
+        children = [j for j, parent in enumerate(self.rig.skeleton.parents) if parent == 0]
         translations[:, children] = rotations.rotate(lean, translations[:, children])
         turns[:, children] = rotations.multiply(lean, turns[:, children])
         pose = replace(pose, translations=translations, rotations=turns)
@@ -124,10 +181,6 @@ def _with_exact_end(pose: Pose) -> Pose:
     translations[-1, 1:] = translations[0, 1:]
     turns[-1, 1:] = rotations.align(turns[0, 1:], turns[-1, 1:])
     return replace(pose, translations=translations, rotations=turns)
-
-
-def _children_of_root(rig: Rig) -> Sequence[int]:
-    return [joint for joint, parent in enumerate(rig.skeleton.parents) if parent == 0]
 
 
 def _turned(pose: Pose, rig: Rig, joint: int, turn: Array) -> Pose:

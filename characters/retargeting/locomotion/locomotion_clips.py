@@ -18,14 +18,13 @@ from characters.model.mirroring import mirror_of
 from characters.motion.clip import Clip
 from characters.motion.mirror import Mirror
 from characters.retargeting.footskate import FootContacts
-from characters.retargeting.locomotion.arc_path import ArcPath
 from characters.retargeting.locomotion.cycle import (
     LoopCut,
     close_loop,
     find_pause,
     resample_loop,
 )
-from characters.retargeting.locomotion.gait_cycle import GaitCycle
+from characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
 from characters.retargeting.locomotion.recorded_gait import (
     MAX_RATE_HZ,
     extract_gait,

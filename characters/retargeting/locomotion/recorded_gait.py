@@ -11,9 +11,8 @@ from characters.motion.clip import Clip
 from characters.motion.motion import RootDelta
 from characters.retargeting.footskate import FootContacts, find_foot_contacts
 from characters.retargeting.ground_motion import find_ground_motion
-from characters.retargeting.locomotion.arc_path import ArcPath
 from characters.retargeting.locomotion.cycle import LoopCut, close_loop, find_cycle, resample_loop
-from characters.retargeting.locomotion.gait_cycle import GaitCycle
+from characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
 from characters.retargeting.recording import Recording
 from characters.retargeting.retarget import retarget
 from characters.retargeting.rig import Rig, leg_pairs
@@ -34,12 +33,7 @@ _MIN_SPEED = 0.1  # leg lengths a second
 def extract_gait(recording: Recording, character: Character, walker: Character) -> GaitCycle:
     """Return the best cycle of a recording on a character, on an arc at constant speed.
 
-    Parameters
-    ----------
-    recording
-        The source.
-    character, walker
-        The target without and with a root joint.
+    `character` and `walker` are the target without and with a root joint.
     """
     rig = Rig(walker.skeleton, walker.anatomy)
     clip, contacts = on_character(recording, character, walker)

@@ -46,4 +46,4 @@ def test_a_file_above_the_size_limit_is_refused(tmp_path: Path) -> None:
 def test_a_sidecar_file_with_a_byte_order_mark_is_read(tmp_path: Path) -> None:
     path = tmp_path / "x.toml"
     path.write_text('[joints]\nhead = "Kopf"\n', encoding="utf-8-sig")
-    assert read_sidecar(path, ()).semantics == {"head": "Kopf"}
+    assert read_sidecar(path, ()) == ({"head": "Kopf"}, None)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from characters import Animator, Character, CharacterCommand, CharacterError, LocomotionIntent, Pose
 from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS
 from characters.retargeting import Recording, load_recording, make_locomotion
-from characters.retargeting.locomotion.arc_path import ArcPath
+from characters.retargeting.locomotion.gait_cycle import ArcPath
 from characters.retargeting.root import clip_with_root, with_root_joint
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
