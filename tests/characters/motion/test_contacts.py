@@ -14,8 +14,7 @@ from characters.motion.ground import find_ground, joint_trajectories
 from characters.skeleton.feet import find_feet
 from tools.authoring.human.limbs import FOOT
 from tools.authoring.human.motion import GAITS
-from tools.authoring.modelling.gait import Path as Arc
-from tools.authoring.modelling.gait import foot_motion
+from tools.authoring.modelling.gait import GroundArc, foot_motion
 
 DATA = Path(__file__).parents[4] / "shared" / "data"
 
@@ -27,7 +26,7 @@ def human():
 
 def truth(gait):
     """When the authored feet are down, (frames, 2)."""
-    arc = Arc(gait.speed, float(np.radians(gait.yaw_rate)))
+    arc = GroundArc(gait.speed, float(np.radians(gait.yaw_rate)))
     phase = np.arange(gait.frames + 1) / gait.frames
     return np.stack([foot_motion(arc, gait.steps, FOOT, s, phase).down for s in (1, -1)], axis=1)
 

@@ -17,31 +17,31 @@ from tools.authoring.human.face import EXPRESSIONS
 from tools.authoring.human.limbs import (
     FOOT,
     SIDES,
-    Reach,
-    bent_elbow,
-    curl,
+    HandTarget,
+    curl_fingers,
+    elbow_rotation,
     hang_arm,
-    reach,
-    turned,
+    reach_target,
+    rotation_deg,
 )
-from tools.authoring.human.loose import drag
-from tools.authoring.modelling.curves import follow, soft_limited
-from tools.authoring.modelling.rig import Puppet
+from tools.authoring.human.secondary_motion import add_secondary_motion
+from tools.authoring.modelling.curves import soft_limited, spring_follow
+from tools.authoring.modelling.rig import PosedRig
 from tools.authoring.modelling.shapes import Array
 
-RATE = 30.0
-TOE_OUT = 0.14
-UPWARD = -9.0
+FRAME_RATE_HZ = 30.0
+TOE_OUT_RAD = 0.14
+GAZE_PITCH_DEG = -9.0
 """Pitch of the level gaze [degrees]: who looks on does so from above the table."""
 
-STANCE = 0.118
+FOOT_OFFSET_M = 0.118
 """From the middle to a foot [m]."""
 
 Curve = Array | float
 
 
 @dataclass(frozen=True)
-class Score:
+class ActingCurves:
     """What happens, as curves over the frames of a clip, or numbers that stay."""
 
     weight: Curve = 0.0
@@ -92,109 +92,113 @@ class Score:
     fist: tuple[Curve, Curve] = (18.0, 18.0)
     """How far the fingers are bent [degrees]."""
 
-    hands: Mapping[str, Reach] = field(default_factory=dict)
+    hands: Mapping[str, HandTarget] = field(default_factory=dict)
     """Where a hand goes instead, by "Left" or "Right"."""
 
     mood: Mapping[str, Curve] = field(default_factory=dict)
     """What the face says: morphs."""
 
 
-def perform(name: str, skeleton: Skeleton, seconds: float, score: Score, loop: bool) -> Clip:
+def clip_from_acting(
+    name: str, skeleton: Skeleton, seconds: float, score: ActingCurves, loop: bool
+) -> Clip:
     """Return the clip of a score, whose curves end as they begin, (frames + 1,) each."""
-    frames = round(seconds * RATE)
-    puppet = Puppet(skeleton, frames + 1)
+    frames = round(seconds * FRAME_RATE_HZ)
+    rig = PosedRig(skeleton, frames + 1)
     still = np.zeros(frames + 1)
-    _stand(puppet, score, still)
-    _hold_trunk(puppet, score, still, seconds)
-    _hold_arms(puppet, score, still, seconds)
-    drag(puppet, seconds)
-    return Clip(name, RATE, posed(puppet, score.mood), loop=loop, root_motion=True)
+    _stand(rig, score, still)
+    _hold_trunk(rig, score, still, seconds)
+    _hold_arms(rig, score, still, seconds)
+    add_secondary_motion(rig, seconds)
+    return Clip(name, FRAME_RATE_HZ, pose_with_face(rig, score.mood), loop=loop, root_motion=True)
 
 
-def posed(puppet: Puppet, mood: Mapping[str, Curve]) -> Pose:
+def pose_with_face(rig: PosedRig, mood: Mapping[str, Curve]) -> Pose:
     """Return the poses of a puppet with its face."""
-    pose = puppet.pose
+    pose = rig.pose
     morphs = np.zeros((len(pose.rotations), len(EXPRESSIONS)))
     for name, curve in mood.items():
         morphs[:, list(EXPRESSIONS).index(name)] = np.clip(curve, 0.0, 1.0)
     return Pose(pose.translations, pose.rotations, None, morphs)
 
 
-def _stand(puppet: Puppet, score: Score, still: Array) -> None:
+def _stand(rig: PosedRig, score: ActingCurves, still: Array) -> None:
     """Carry the pelvis over the standing leg, the other hip dropped, and place both feet."""
     weight, air, pitch = score.weight + still, score.air + still, np.radians(score.heels + still)
     drop = -0.016 + 0.006 * np.abs(weight) + 0.002 * score.breath - score.crouch + air
     ahead = -0.008 - 0.12 * np.maximum(score.crouch + still, 0.0)
-    puppet.shift("hips", np.stack([0.042 * weight, drop, ahead], axis=-1))
+    rig.shift("hips", np.stack([0.042 * weight, drop, ahead], axis=-1))
     pitched = 90 * np.maximum(score.crouch + still, 0.0) + 0.35 * (score.lean + still)
-    puppet.turn("hips", turned(1 + pitched, -4 * weight, 3.6 * weight))
+    rig.turn("hips", rotation_deg(1 + pitched, -4 * weight, 3.6 * weight))
     flat = air <= 0.0
     for name, sign in SIDES:
-        facing = rotations.about("y", sign * TOE_OUT + still)
+        facing = rotations.about("y", sign * TOE_OUT_RAD + still)
         heel = FOOT.ankle - FOOT.ball[0], -FOOT.ball[1]
         up = FOOT.ball[0] + np.cos(pitch) * heel[0] - np.sin(pitch) * heel[1]
         back = FOOT.ball[1] + np.sin(pitch) * heel[0] + np.cos(pitch) * heel[1]
-        ankle = np.stack([sign * STANCE + still, up + air, -0.012 + 0.014 * sign + still], axis=-1)
+        ankle = np.stack(
+            [sign * FOOT_OFFSET_M + still, up + air, -0.012 + 0.014 * sign + still], axis=-1
+        )
         ankle += rotations.rotate(facing, back[:, None] * [0.0, 0.0, 1.0])
         foot = rotations.multiply(facing, rotations.about("x", pitch))
-        puppet.place_foot(name, ankle, foot, np.where(flat, pitch, 0.5 * pitch))
+        rig.place_foot(name, ankle, foot, np.where(flat, pitch, 0.5 * pitch))
 
 
-def _hold_trunk(puppet: Puppet, score: Score, still: Array, seconds: float) -> None:
+def _hold_trunk(rig: PosedRig, score: ActingCurves, still: Array, seconds: float) -> None:
     """Balance over the pelvis; the chest follows the head a little, and the head the eyes."""
     weight, breath = score.weight + still, score.breath + still
-    look, nod = (_eased(curve + still, seconds, 2.2, 0.75) for curve in score.look)
-    follows = _eased(look, seconds, 1.3, 0.8)
+    look, nod = (_spring_loop(curve + still, seconds, 2.2, 0.75) for curve in score.look)
+    follows = _spring_loop(look, seconds, 1.3, 0.8)
     lean, side = 0.65 * (score.lean + still), score.side + still
     twist = score.twist + still
-    puppet.turn(
+    rig.turn(
         "spine1",
-        turned(0.3 * lean - 0.6 * breath, 1.5 * weight + 0.05 * follows + 0.3 * twist,
+        rotation_deg(0.3 * lean - 0.6 * breath, 1.5 * weight + 0.05 * follows + 0.3 * twist,
                0.35 * side - 2.4 * weight),
     )  # fmt: skip
-    puppet.turn(
+    rig.turn(
         "spine2",
-        turned(1.0 + 0.35 * lean - 0.9 * breath, 1.5 * weight + 0.07 * follows + 0.35 * twist,
+        rotation_deg(1.0 + 0.35 * lean - 0.9 * breath, 1.5 * weight + 0.07 * follows + 0.35 * twist,
                0.35 * side - 2.4 * weight),
     )  # fmt: skip
-    puppet.turn(
+    rig.turn(
         "chest",
-        turned(1.5 + 0.35 * lean - 1.3 * breath, 0.08 * follows + 0.35 * twist,
+        rotation_deg(1.5 + 0.35 * lean - 1.3 * breath, 0.08 * follows + 0.35 * twist,
                0.3 * side - 0.8 * weight),
     )  # fmt: skip
-    tilt = _eased(score.tilt + still, seconds, 2.0, 0.6) + 2.2 * weight - 0.10 * look
+    tilt = _spring_loop(score.tilt + still, seconds, 2.0, 0.6) + 2.2 * weight - 0.10 * look
     own = [curve + still for curve in score.head]
-    gaze = turned(UPWARD + nod + own[1] + 0.5 * breath, look + own[0], tilt)
-    above = rotations.multiply(rotations.conjugate(puppet.facing("chest")), gaze)
-    puppet.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.4))
-    puppet.face("head", gaze)
+    gaze = rotation_deg(GAZE_PITCH_DEG + nod + own[1] + 0.5 * breath, look + own[0], tilt)
+    above = rotations.multiply(rotations.conjugate(rig.facing("chest")), gaze)
+    rig.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.4))
+    rig.face("head", gaze)
     across = soft_limited(score.look[0] - look - 0.8 * own[0], 17)
     down = soft_limited(score.look[1] - nod - 0.8 * own[1], 13)
     for side_name, _ in SIDES:
-        puppet.turn(f"{side_name}Eye", turned(down, across))
+        rig.turn(f"{side_name}Eye", rotation_deg(down, across))
 
 
-def _hold_arms(puppet: Puppet, score: Score, still: Array, seconds: float) -> None:
+def _hold_arms(rig: PosedRig, score: ActingCurves, still: Array, seconds: float) -> None:
     """Let the arms hang, swaying after the trunk, and bring the hands where they go."""
-    late = _eased(score.weight + still, seconds, 0.9, 0.6)
-    lift = _eased(score.breath + still, seconds, 1.2, 0.9)
+    late = _spring_loop(score.weight + still, seconds, 0.9, 0.6)
+    lift = _spring_loop(score.breath + still, seconds, 1.2, 0.9)
     for number, (side, sign) in enumerate(SIDES):
         spread, bend = (curve[number] + still for curve in (score.spread, score.bend))
         swing = score.swing[number] + still
         raised = score.shrug + 1.6 * score.breath + 1.0
-        puppet.turn(f"{side}Shoulder", turned(0 * still, 0, sign * raised))
+        rig.turn(f"{side}Shoulder", rotation_deg(0 * still, 0, sign * raised))
         lower = 24 - spread + 2.2 * sign * late - 1.2 * lift
-        hang_arm(puppet, side, sign, swing - 2 * lift, lower)
+        hang_arm(rig, side, sign, swing - 2 * lift, lower)
         bend = bend + 2.5 * lift
-        puppet.turn(f"{side}ForeArm", bent_elbow(puppet, side, sign, bend, 12 + 0.3 * (bend - 19)))
-        flop = _eased(swing, seconds, 2.0, 0.5) - swing  # the hand comes after the arm
-        puppet.turn(f"{side}Hand", turned(-4 - 0.5 * flop, 0, -sign * (3 + 1.5 * lift)))
+        rig.turn(f"{side}ForeArm", elbow_rotation(rig, side, sign, bend, 12 + 0.3 * (bend - 19)))
+        flop = _spring_loop(swing, seconds, 2.0, 0.5) - swing  # the hand comes after the arm
+        rig.turn(f"{side}Hand", rotation_deg(-4 - 0.5 * flop, 0, -sign * (3 + 1.5 * lift)))
         if side in score.hands:
-            reach(puppet, side, sign, score.hands[side])
-        curl(puppet, side, score.fist[number] + still, 0.45 * (score.fist[number] + still))
+            reach_target(rig, side, sign, score.hands[side])
+        curl_fingers(rig, side, score.fist[number] + still, 0.45 * (score.fist[number] + still))
 
 
-def _eased(curve: Array, seconds: float, hertz: float, damping: float) -> Array:
+def _spring_loop(curve: Array, seconds: float, hertz: float, damping: float) -> Array:
     """Return how a spring follows a curve whose last value is its first."""
-    eased = follow(curve[:-1], seconds, hertz, damping)
+    eased = spring_follow(curve[:-1], seconds, hertz, damping)
     return np.append(eased, eased[0])

@@ -8,14 +8,14 @@ import numpy as np
 
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
-from tools.authoring.human.acting import RATE, Score, perform
+from tools.authoring.human.acting import FRAME_RATE_HZ, ActingCurves, clip_from_acting
 from tools.authoring.human.idle import idle_weight
-from tools.authoring.human.limbs import Reach
+from tools.authoring.human.limbs import HandTarget
 from tools.authoring.modelling.curves import keys
 from tools.authoring.modelling.shapes import Array
 
-GRAVITY = 9.81
-REST = float(idle_weight(np.zeros(1))[0])
+GRAVITY_M_S2 = 9.81
+IDLE_START_WEIGHT = float(idle_weight(np.zeros(1))[0])
 """Where the weight is when it begins to wait."""
 
 
@@ -27,7 +27,9 @@ def actions(skeleton: Skeleton) -> dict[str, Clip]:
 
 def curve(seconds: float, *poses: tuple[float, float]) -> Array:
     """Return a smooth curve through times [s] and values; the last frame is as the first."""
-    values = keys(round(seconds * RATE), *((time / seconds, value) for time, value in poses))
+    values = keys(
+        round(seconds * FRAME_RATE_HZ), *((time / seconds, value) for time, value in poses)
+    )
     return np.append(values, values[0])
 
 
@@ -47,15 +49,16 @@ def wave(skeleton: Skeleton) -> Clip:
     )  # fmt: skip
     raised = np.clip(up, 0.0, 1.0)
     still, one = 0 * to, 1 + 0 * to
-    hand = Reach(
+    hand = HandTarget(
         wrist=np.stack([0.405 + 0.05 * to, 1.375 - 0.012 * to * to, 0.12 * one], axis=-1),
         fingers=np.stack([0.10 + 0.42 * late, one, 0.08 + still], axis=-1),
         thumb=np.stack([-one, 0.2 * one, 0.25 * one], axis=-1),
         elbow=np.array([0.55, -0.75, -0.35]),
         share=up,
     )
-    score = Score(
-        weight=REST + curve(seconds, (0, 0), (0.25, -0.1), (0.7, 1.4), (1.9, 1.35), (2.45, 0)),
+    score = ActingCurves(
+        weight=IDLE_START_WEIGHT
+        + curve(seconds, (0, 0), (0.25, -0.1), (0.7, 1.4), (1.9, 1.35), (2.45, 0)),
         crouch=curve(seconds, (0, 0), (0.24, 0.022), (0.6, -0.006), (0.9, 0), (2.2, 0.006)),
         side=curve(seconds, (0, 0), (0.25, 3), (0.72, -5), (1.9, -4), (2.5, 0)) + 0.8 * to,
         twist=curve(seconds, (0, 0), (0.25, -6), (0.7, 7), (1.9, 5), (2.45, 0)),
@@ -70,7 +73,7 @@ def wave(skeleton: Skeleton) -> Clip:
             "surprised": curve(seconds, (0, 0), (0.3, 0), (0.5, 0.25), (0.85, 0), (2.5, 0)),
         },
     )
-    return perform("wave", skeleton, seconds, score, loop=False)
+    return clip_from_acting("wave", skeleton, seconds, score, loop=False)
 
 
 def cheer(skeleton: Skeleton) -> Clip:
@@ -87,15 +90,16 @@ def cheer(skeleton: Skeleton) -> Clip:
         seconds, (0.4, 0), (0.62, 1), (0.92, -1), (1.14, 1), (1.4, -0.3), (1.6, 0.2), (2.3, 0)
     )
     still, one = 0 * up, 1 + 0 * up
-    fists = Reach(
+    fists = HandTarget(
         wrist=np.stack([0.345 - 0.01 * pump, 1.515 + 0.03 * pump, 0.06 + 0.02 * pump], axis=-1),
         fingers=np.stack([0.12 * one, one, -0.1 + 0.2 * pump], axis=-1),
         thumb=np.stack([-0.5 * one, 0 * one, 0.8 * one], axis=-1),
         elbow=np.array([0.8, -0.3, -0.3]),
         share=up,
     )
-    score = Score(
-        weight=REST + curve(seconds, (0, 0), (0.3, -REST), (1.8, -REST), (2.39, 0)),
+    score = ActingCurves(
+        weight=IDLE_START_WEIGHT
+        + curve(seconds, (0, 0), (0.3, -IDLE_START_WEIGHT), (1.8, -IDLE_START_WEIGHT), (2.39, 0)),
         crouch=crouch,
         air=air,
         heels=heels,
@@ -121,7 +125,7 @@ def cheer(skeleton: Skeleton) -> Clip:
             ),
         },
     )
-    return perform("cheer", skeleton, seconds, score, loop=False)
+    return clip_from_acting("cheer", skeleton, seconds, score, loop=False)
 
 
 def jump(skeleton: Skeleton) -> Clip:
@@ -134,8 +138,9 @@ def jump(skeleton: Skeleton) -> Clip:
     )  # fmt: skip
     spread = curve(seconds, (0, 0), (0.34, 4), (0.7, 30), (1.06, 22), (1.3, 6), (1.7, 0))
     bend = curve(seconds, (0, 19), (0.34, 26), (0.62, 10), (1.05, 40), (1.3, 26), (1.8, 19))
-    score = Score(
-        weight=REST + curve(seconds, (0, 0), (0.3, -REST), (1.3, -REST), (1.85, 0)),
+    score = ActingCurves(
+        weight=IDLE_START_WEIGHT
+        + curve(seconds, (0, 0), (0.3, -IDLE_START_WEIGHT), (1.3, -IDLE_START_WEIGHT), (1.85, 0)),
         crouch=crouch,
         air=air,
         heels=heels,
@@ -159,7 +164,7 @@ def jump(skeleton: Skeleton) -> Clip:
             "angry": curve(seconds, (0, 0), (0.32, 0.35), (0.55, 0), (1.8, 0)),  # effort
         },
     )
-    return perform("jump", skeleton, seconds, score, loop=False)
+    return clip_from_acting("jump", skeleton, seconds, score, loop=False)
 
 
 def nod(skeleton: Skeleton) -> Clip:
@@ -169,8 +174,8 @@ def nod(skeleton: Skeleton) -> Clip:
         seconds,
         (0, 0), (0.18, -9), (0.44, 22), (0.66, -5), (0.90, 15), (1.12, -3), (1.32, 1), (1.55, 0),
     )  # fmt: skip
-    score = Score(
-        weight=REST,
+    score = ActingCurves(
+        weight=IDLE_START_WEIGHT,
         crouch=curve(
             seconds, (0, 0), (0.18, -0.004), (0.46, 0.012), (0.7, 0), (0.92, 0.007), (1.3, 0)
         ),
@@ -184,7 +189,7 @@ def nod(skeleton: Skeleton) -> Clip:
             ),
         },
     )
-    return perform("nod", skeleton, seconds, score, loop=False)
+    return clip_from_acting("nod", skeleton, seconds, score, loop=False)
 
 
 def shake(skeleton: Skeleton) -> Clip:
@@ -197,8 +202,8 @@ def shake(skeleton: Skeleton) -> Clip:
     late = curve(
         seconds, (0.1, 0), (0.26, -2), (0.52, 5), (0.80, -5), (1.06, 4), (1.3, -2), (1.55, 0)
     )
-    score = Score(
-        weight=REST + 0.05 * late,
+    score = ActingCurves(
+        weight=IDLE_START_WEIGHT + 0.05 * late,
         lean=curve(seconds, (0, 0), (0.4, -2.5), (1.3, -2), (1.8, 0)),
         twist=late,
         head=(aside, curve(seconds, (0, 0), (0.3, 7), (1.2, 6), (1.7, 0))),
@@ -210,7 +215,7 @@ def shake(skeleton: Skeleton) -> Clip:
             "happy": curve(seconds, (0, 0.06), (0.25, 0), (1.5, 0), (1.89, 0.06)),
         },
     )
-    return perform("shake", skeleton, seconds, score, loop=False)
+    return clip_from_acting("shake", skeleton, seconds, score, loop=False)
 
 
 def _hops(
@@ -221,12 +226,12 @@ def _hops(
     In the air it falls freely. Before, it winds up; before leaving it stretches over its toes;
     after, it takes the landing with its knees.
     """
-    time = np.arange(round(seconds * RATE) + 1) / RATE
+    time = np.arange(round(seconds * FRAME_RATE_HZ) + 1) / FRAME_RATE_HZ
     air = 0 * time
     crouched, lifted = [(0.0, 0.0)], [(0.0, 0.0)]
     for number, (start, duration) in enumerate(flights):
         since = np.clip(time - start, 0.0, duration)
-        air += GRAVITY / 2 * since * (duration - since)
+        air += GRAVITY_M_S2 / 2 * since * (duration - since)
         deep = squat if number == 0 else 0.6 * squat
         if number == 0:
             crouched += [(start - 0.18, deep)]

@@ -8,41 +8,41 @@ from numpy.typing import NDArray
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, Face, carried
-from tools.authoring.human.rig import JOINTS
+from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, HumanExpression, skin_displacement
+from tools.authoring.human.rig import JOINT_POSITIONS
 from tools.authoring.human.skull import EYE_WHITE, MAROON, SKIN, complexion, face_normals, on_face
 from tools.authoring.modelling.lathe import lathe, loft
 from tools.authoring.modelling.meshes import blend_normals, morphed
 from tools.authoring.modelling.sculpt import coated
-from tools.authoring.modelling.shapes import Array, rgb
+from tools.authoring.modelling.shapes import Array, linear_rgb
 
-INK = rgb("#1b1020")
-BROWN, AMBER = rgb("#5d2c0e"), rgb("#b5702a")
-FOLD = rgb("#d98f68")
+INK = linear_rgb("#1b1020")
+BROWN, AMBER = linear_rgb("#5d2c0e"), linear_rgb("#b5702a")
+FOLD = linear_rgb("#d98f68")
 
-CURVATURE = 0.138
+EYE_FRONT_RADIUS_M = 0.138
 """Radius of the front of an eyeball, which turns about a point nearer than its centre: so it can
 be large and flat without the iris running away [m]."""
 
-SIGHT = np.array([0.37, 0.055, 1.0]) / np.linalg.norm([0.37, 0.055, 1.0])
+REST_GAZE = np.array([0.37, 0.055, 1.0]) / np.linalg.norm([0.37, 0.055, 1.0])
 """From the middle of that sphere to the middle of the left iris."""
 
-MIDDLE = np.array([0.087, 1.437])
+LID_CENTRE_M = np.array([0.087, 1.437])
 """x and y of the middle between the left lids [m]."""
 
-OPENING = (0.056, 0.064, 0.052)
+LID_OPENING_M = (0.056, 0.064, 0.052)
 """Of the lids: half its width, and how far it reaches up and down [m]."""
 
-SAG = 0.034
+CLOSED_LID_SAG_M = 0.034
 """How far the line of the closed eye hangs below its corners [m]."""
 
-COLUMNS = 36
+POINTS_PER_RING = 36
 """Points around an eye."""
 
-LOFT = (0.0040, 0.0095)
+LID_HEIGHT_M = (0.0040, 0.0095)
 """How far lower and upper lids are above the ball: they move on straight lines over it [m]."""
 
-_FRONT = 0.122  # from the joint to the front of the ball [m]
+_JOINT_TO_FRONT_M = 0.122  # from the joint to the front of the ball [m]
 
 
 def eyeballs(skeleton: Skeleton) -> list[Mesh]:
@@ -61,16 +61,22 @@ def eyelids(skeleton: Skeleton) -> list[Mesh]:
 def _centre(sign: float) -> Array:
     """Return the middle of the sphere that is the front of an eyeball, (3,) [m]."""
     flip = np.array([sign, 1.0, 1.0])
-    return np.asarray((np.array(JOINTS["LeftEye"][1]) + (_FRONT - CURVATURE) * SIGHT) * flip)
+    return np.asarray(
+        (
+            np.array(JOINT_POSITIONS["LeftEye"][1])
+            + (_JOINT_TO_FRONT_M - EYE_FRONT_RADIUS_M) * REST_GAZE
+        )
+        * flip
+    )
 
 
 def _eyeball(sign: float, skeleton: Skeleton) -> list[Mesh]:
     joint = "LeftEye" if sign > 0 else "RightEye"
-    sight = SIGHT * [sign, 1.0, 1.0]
+    sight = REST_GAZE * [sign, 1.0, 1.0]
     place = np.column_stack([_axes(sight), _centre(sign)])
     tilt = np.array([0.92, 0.72, 0.5, 0.325, 0.305, 0.282, 0.21, 0.158, 0.15, 0.07, 0.0])
     ball = np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
-    rings = CURVATURE * np.vstack([[0.0, 0.5], ball])
+    rings = EYE_FRONT_RADIUS_M * np.vstack([[0.0, 0.5], ball])
     bands = [EYE_WHITE] * 4 + [INK] * 2 + [BROWN] * 2 + [INK] * 3
     whole = lathe(rings, bands, place, joint, skeleton, 26)
     whole = replace(whole, colors=_lit_from_below(whole, _centre(sign)[1]))
@@ -91,11 +97,11 @@ def _light(
     sign: float, at: tuple[float, float], wide: float, joint: str, skeleton: Skeleton
 ) -> Mesh:
     """Return a highlight, so far across and up from the iris's middle and so wide [rad]."""
-    axes = _axes(SIGHT * [sign, 1.0, 1.0])
+    axes = _axes(REST_GAZE * [sign, 1.0, 1.0])
     toward = axes @ [at[0], at[1], 1.0]
     place = np.column_stack([_axes(toward / np.linalg.norm(toward)), _centre(sign)])
     tilt = wide * np.array([0.0, 1.0, 0.55, 0.0])
-    rings = CURVATURE * 1.003 * np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
+    rings = EYE_FRONT_RADIUS_M * 1.003 * np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
     rings[:2, 1] -= 0.004
     return lathe(rings, [(1.0, 1.0, 1.0)] * 3, place, joint, skeleton, 12)
 
@@ -107,62 +113,64 @@ def _axes(toward: Array) -> Array:
     return np.column_stack([left, np.cross(toward, left), toward])
 
 
-def _lids(face: Face, sign: float, skeleton: Skeleton) -> Mesh:
+def _lids(face: HumanExpression, sign: float, skeleton: Skeleton) -> Mesh:
     """Return the ring of skin around an eye, from behind the face to inside the ball."""
-    angle = np.linspace(0, 2 * np.pi, COLUMNS, endpoint=False)
+    angle = np.linspace(0, 2 * np.pi, POINTS_PER_RING, endpoint=False)
     rings = _lid_rings(angle, face, sign)
     up = np.sin(angle) >= 0
     if sign < 0:  # built for the left eye, and mirrored
         rings, up = rings[:, ::-1] * [-1.0, 1.0, 1.0], up[::-1]
     mesh = loft(rings, _lid_colors(rings, up), "head", skeleton)
-    of_the_face = np.repeat(np.array([0, 0, 1.0, 0.75, 0.3, *[0] * 6]), COLUMNS)
+    of_the_face = np.repeat(np.array([0, 0, 1.0, 0.75, 0.3, *[0] * 6]), POINTS_PER_RING)
     return blend_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
 
 
-def _lid_rings(angle: Array, face: Face, sign: float) -> Array:
+def _lid_rings(angle: Array, face: HumanExpression, sign: float) -> Array:
     """Return pole, rim under the skin, skin, lashes twice, edge, edge in the ball, pole."""
     height = np.sin(angle)
     edge = _edge(angle, face, sign)
-    reach = np.where(height >= 0, OPENING[1] + 0.038, OPENING[2] + 0.022)
-    outer = MIDDLE + np.stack([(OPENING[0] + 0.028) * np.cos(angle), reach * height], axis=-1)
+    reach = np.where(height >= 0, LID_OPENING_M[1] + 0.038, LID_OPENING_M[2] + 0.022)
+    outer = LID_CENTRE_M + np.stack(
+        [(LID_OPENING_M[0] + 0.028) * np.cos(angle), reach * height], axis=-1
+    )
     away = outer - edge
     thick = np.where(height >= 0, 0.0085 + 0.003 * np.cos(angle), 0.0025)  # more at the temple
     lash = edge + away * (thick / np.linalg.norm(away, axis=1))[:, None]
-    lift = LOFT[0] + (LOFT[1] - LOFT[0]) * np.clip(height, 0, 1) ** 0.7
+    lift = LID_HEIGHT_M[0] + (LID_HEIGHT_M[1] - LID_HEIGHT_M[0]) * np.clip(height, 0, 1) ** 0.7
     flat = [*(lash + (outer - lash) * s for s in (1.0, 0.8, 0.55, 0.28)), lash, lash, edge, edge]
     lofts = [lift, lift, lift, lift + 0.001, lift + 0.0025, lift + 0.0025, lift, 0 * lift - 0.004]
-    share = np.repeat([1.0, 0.9, 0.55, 0.22, 0.0, 0.0, 0.0, 0.0], COLUMNS)
+    share = np.repeat([1.0, 0.9, 0.55, 0.22, 0.0, 0.0, 0.0, 0.0], POINTS_PER_RING)
     rows = _on_eye(np.concatenate(flat), np.concatenate(lofts), share, face)
-    rows = rows.reshape(len(flat), COLUMNS, 3)
-    behind, inside = (np.tile([*MIDDLE, z], (COLUMNS, 1)) for z in (0.10, 0.14))
+    rows = rows.reshape(len(flat), POINTS_PER_RING, 3)
+    behind, inside = (np.tile([*LID_CENTRE_M, z], (POINTS_PER_RING, 1)) for z in (0.10, 0.14))
     return np.stack([behind, rows[0] - [0.0, 0.0, 0.006], *rows, inside])
 
 
-def _edge(angle: Array, face: Face, sign: float) -> Array:
+def _edge(angle: Array, face: HumanExpression, sign: float) -> Array:
     """Return the rim of the lids, x and y, (columns, 2) [m]."""
     x, height = np.cos(angle), np.sin(angle)
     open_ = 1.0 - face.shut[0 if sign > 0 else 1]
     bow = np.abs(height) ** 0.86  # a little boxier than an ellipse
-    closed = -SAG * (1 - x * x) ** 0.8
+    closed = -CLOSED_LID_SAG_M * (1 - x * x) ** 0.8
     upper = np.clip(face.upper - face.upper_tilt * x * 0.5, 0.0, 1.4) * open_
     upper -= 0.06 * (1 - open_)  # a little over the lower lid
     lower = face.lower * open_
-    wide = np.where(height >= 0, OPENING[1] * bow, -OPENING[2] * bow)
+    wide = np.where(height >= 0, LID_OPENING_M[1] * bow, -LID_OPENING_M[2] * bow)
     y = closed + (wide - closed) * np.where(height >= 0, upper, lower)
-    return MIDDLE + np.stack([OPENING[0] * x, y], axis=-1)
+    return LID_CENTRE_M + np.stack([LID_OPENING_M[0] * x, y], axis=-1)
 
 
-def _on_eye(flat: Array, lift: Array, share: Array, face: Face) -> Array:
+def _on_eye(flat: Array, lift: Array, share: Array, face: HumanExpression) -> Array:
     """Return points over the eyeball, (n, 3), of which `share` lies on the face instead."""
     centre = _centre(1.0)
     apart = flat - centre[:2]
     skin = on_face(flat[:, 0], flat[:, 1])
     # The rim dips under the face, so that one surface runs into the other without a step.
     skin += np.where(share < 1, 0.001, -0.0015)[:, None] * face_normals(skin)
-    height = centre[2] + np.sqrt((CURVATURE + lift) ** 2 - np.sum(apart**2, axis=1))
+    height = centre[2] + np.sqrt((EYE_FRONT_RADIUS_M + lift) ** 2 - np.sum(apart**2, axis=1))
     height = np.where(lift > 0, np.maximum(height, skin[:, 2] + 0.002), height)
     ball = np.column_stack([flat, height])
-    skin += carried(skin, face)
+    skin += skin_displacement(skin, face)
     return np.asarray(ball + (skin - ball) * share[:, None])
 
 

@@ -12,7 +12,7 @@ from tools.authoring.modelling.shapes import Array
 
 
 @dataclass(frozen=True)
-class Face:
+class HumanExpression:
     """The numbers of one expression; lengths in metres, forward and upward positive."""
 
     shut: tuple[float, float] = (0.0, 0.0)
@@ -70,54 +70,54 @@ class Face:
     """How far the cheeks are raised."""
 
 
-NEUTRAL = Face()
+NEUTRAL = HumanExpression()
 
 EXPRESSIONS = {
-    "blink": Face(shut=(1.0, 1.0)),
-    "blinkLeft": Face(shut=(1.0, 0.0)),
-    "blinkRight": Face(shut=(0.0, 1.0)),
-    "happy": Face(
+    "blink": HumanExpression(shut=(1.0, 1.0)),
+    "blinkLeft": HumanExpression(shut=(1.0, 0.0)),
+    "blinkRight": HumanExpression(shut=(0.0, 1.0)),
+    "happy": HumanExpression(
         upper=0.78, lower=-0.55, brow=0.012, brow_inner=0.006, brow_arch=0.008,
         width=0.090, smile=0.052, rise=0.006, drop=0.040, square=0.8, teeth=0.016, jaw=0.014,
         cheeks=0.014,
     ),
-    "angry": Face(
+    "angry": HumanExpression(
         upper=0.66, upper_tilt=-0.62, lower=0.45, brow=-0.014, brow_inner=-0.036, knit=0.016,
         width=0.062, smile=-0.032, rise=0.010, drop=0.013, square=0.5, teeth=0.022,
     ),
-    "sad": Face(
+    "sad": HumanExpression(
         upper=0.62, upper_tilt=0.36, lower=0.8, brow=-0.002, brow_inner=0.034, brow_arch=-0.01,
         knit=0.008, width=0.052, smile=-0.040, drop=0.003, pout=0.006,
     ),
-    "surprised": Face(
+    "surprised": HumanExpression(
         upper=1.13, lower=1.08, brow=0.024, brow_inner=0.006, brow_arch=0.008,
         width=0.034, smile=0.0, rise=0.022, drop=0.050, jaw=0.026, pout=0.005,
     ),
-    "relaxed": Face(
+    "relaxed": HumanExpression(
         upper=0.10, lower=0.30, brow=0.003, brow_inner=0.012, width=0.074, smile=0.046,
         cheeks=0.010,
     ),
-    "aa": Face(width=0.060, smile=0.010, rise=0.012, drop=0.052, jaw=0.028, teeth=0.013),
-    "ih": Face(
+    "aa": HumanExpression(width=0.060, smile=0.010, rise=0.012, drop=0.052, jaw=0.028, teeth=0.013),
+    "ih": HumanExpression(
         width=0.070, smile=0.018, rise=0.010, drop=0.020, square=0.6, teeth=0.016, jaw=0.006,
     ),
-    "ou": Face(width=0.027, smile=0.0, rise=0.014, drop=0.018, pout=0.022, jaw=0.006),
-    "ee": Face(
+    "ou": HumanExpression(width=0.027, smile=0.0, rise=0.014, drop=0.018, pout=0.022, jaw=0.006),
+    "ee": HumanExpression(
         width=0.088, smile=0.028, rise=0.009, drop=0.022, square=0.5, teeth=0.026, jaw=0.004,
     ),
-    "oh": Face(width=0.042, smile=0.002, rise=0.024, drop=0.042, pout=0.014, jaw=0.020),
+    "oh": HumanExpression(width=0.042, smile=0.002, rise=0.024, drop=0.042, pout=0.014, jaw=0.020),
 }  # fmt: skip
 """By VRM's names."""
 
-MOUTH = np.array([0.0, 1.327])
+MOUTH_CENTRE_M = np.array([0.0, 1.327])
 """x and y of the middle of the closed mouth [m]."""
 
 
-def carried(points: Array, face: Face) -> Array:
+def skin_displacement(points: Array, face: HumanExpression) -> Array:
     """Return how far jaw and cheeks carry points of the skin, (n, 3) [m]."""
     x, y, z = points.T
     front = smoothstep(z / 0.11)
-    chin = smoothstep((MOUTH[1] + 0.004 - y) / 0.04) * front
+    chin = smoothstep((MOUTH_CENTRE_M[1] + 0.004 - y) / 0.04) * front
     apart = ((np.abs(x) - 0.115) / 0.05) ** 2 + ((y - 1.362) / 0.04) ** 2
     cheek = np.exp(-apart) * front
     jaw = chin[:, None] * [0.0, -face.jaw, -0.25 * face.jaw]

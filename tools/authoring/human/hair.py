@@ -2,25 +2,32 @@
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.sculpt import Part
-from tools.authoring.modelling.shapes import Cone, Cut, Ellipsoid, Union, Vector, rgb
+from tools.authoring.modelling.sculpt import BodyPart
+from tools.authoring.modelling.shapes import (
+    Difference,
+    Ellipsoid,
+    RoundCone,
+    Union,
+    Vector,
+    linear_rgb,
+)
 from tools.authoring.modelling.tube import tube
 
-HAIR = rgb("#7c391d")
+HAIR = linear_rgb("#7c391d")
 
-COWLICK: tuple[list[Vector], ...] = (
+COWLICK_LINES_M: tuple[list[Vector], ...] = (
     [(0.0, 1.63, -0.035), (0.0, 1.70, -0.052), (-0.035, 1.748, -0.068), (-0.082, 1.766, -0.074)],
     [(0.046, 1.63, 0.0), (0.063, 1.695, 0.0), (0.07, 1.74, 0.023), (0.05, 1.768, 0.063)],
 )
 """Lines of the two locks on the crown [m]."""
 
 
-def hair() -> list[Part]:
+def hair_parts() -> list[BodyPart]:
     """Return what is carved of it."""
     cap = Ellipsoid((0, 1.513, -0.031), (0.231, 0.214, 0.221), bones=("head",), color=HAIR)
     nape = Ellipsoid((0, 1.389, -0.106), (0.168, 0.130, 0.124), bones=("head",), color=HAIR)
     brow_line = Ellipsoid((0, 1.392, 0.211), (0.214, 0.214, 0.248))
-    whole = Cut(Union((cap, nape), 0.062), brow_line, 0.025)
+    whole = Difference(Union((cap, nape), 0.062), brow_line, 0.025)
     fringe = [
         _lock((-0.062, 1.686, 0.097), (0.106, 1.622, 0.186), 0.062, 0.025),
         _lock((0.0, 1.680, 0.109), (0.186, 1.585, 0.118), 0.060, 0.022),
@@ -34,15 +41,15 @@ def hair() -> list[Part]:
         _lock((0.192, 1.476, 0.020), (0.214, 1.372, 0.052), 0.042, 0.018),
         _lock((-0.192, 1.476, 0.020), (-0.214, 1.372, 0.052), 0.042, 0.018),
     ]
-    return [Part(Union((whole, *fringe, *tufts), 0.025), 0.026)]
+    return [BodyPart(Union((whole, *fringe, *tufts), 0.025), 0.026)]
 
 
 def cowlick(skeleton: Skeleton) -> list[Mesh]:
     """Return the pointed locks on the crown."""
     radii = [0.082, 0.055, 0.030, 0.003]
     joints = ["head", "Cowlick", "Cowlick", "Cowlick"]
-    return [tube(line, radii, HAIR, joints, skeleton, 9, 9) for line in COWLICK]
+    return [tube(line, radii, HAIR, joints, skeleton, 9, 9) for line in COWLICK_LINES_M]
 
 
-def _lock(a: Vector, b: Vector, ra: float, rb: float) -> Cone:
-    return Cone(a, b, ra, rb, bones=("head",), color=HAIR)
+def _lock(a: Vector, b: Vector, ra: float, rb: float) -> RoundCone:
+    return RoundCone(a, b, ra, rb, bones=("head",), color=HAIR)

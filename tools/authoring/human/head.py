@@ -8,34 +8,36 @@ import numpy as np
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
 from tools.authoring.human.eyes import eyelids
-from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, Face, carried
-from tools.authoring.human.hair import HAIR, cowlick, hair
+from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, HumanExpression, skin_displacement
+from tools.authoring.human.hair import HAIR, cowlick, hair_parts
 from tools.authoring.human.mouth import mouth
 from tools.authoring.human.skull import SKIN, complexion, face_normals, head_shape, lining, on_face
 from tools.authoring.modelling.meshes import averaged_normals, morphed
-from tools.authoring.modelling.sculpt import Part, sculpt
-from tools.authoring.modelling.shapes import Array, Cone
+from tools.authoring.modelling.sculpt import BodyPart, sculpt
+from tools.authoring.modelling.shapes import Array, RoundCone
 from tools.authoring.modelling.tube import tube
 
-BROW = ((0.032, 1.541), (0.060, 1.550), (0.094, 1.547), (0.136, 1.524))
+BROW_LINE_M = ((0.032, 1.541), (0.060, 1.550), (0.094, 1.547), (0.136, 1.524))
 """x and y of the left brow from its inner to its outer end [m]."""
 
-BROW_RADII = (0.0105, 0.0145, 0.013, 0.006)
+BROW_RADII_M = (0.0105, 0.0145, 0.013, 0.006)
 
 
 def head_pieces(skeleton: Skeleton) -> list[Mesh]:
     """Return the whole head but for the eyeballs, with all that its face can express."""
     skull = sculpt(
-        "", [Part(head_shape(), 0.024, (*complexion(), *lining()), soft_skin=0.0)], skeleton
+        "", [BodyPart(head_shape(), 0.024, (*complexion(), *lining()), soft_skin=0.0)], skeleton
     )
     rest = skull.positions.astype(float)
 
-    def moved(face: Face) -> Mesh:
-        shifted = rest + carried(rest, face)
+    def moved(face: HumanExpression) -> Mesh:
+        shifted = rest + skin_displacement(rest, face)
         return replace(skull, positions=shifted.astype(np.float32))
 
-    neck = Cone((0, 1.15, -0.014), (0, 1.29, 0.0), 0.062, 0.066, bones=("neck", "head"), color=SKIN)
-    locks = sculpt("", hair(), skeleton)
+    neck = RoundCone(
+        (0, 1.15, -0.014), (0, 1.29, 0.0), 0.062, 0.066, bones=("neck", "head"), color=SKIN
+    )
+    locks = sculpt("", hair_parts(), skeleton)
     # The field's slope jumps where locks meet; the mesh's own normals do not glint there.
     even = averaged_normals(locks.positions.astype(float), locks.triangles.astype(np.int64))
     brows = [
@@ -44,7 +46,7 @@ def head_pieces(skeleton: Skeleton) -> list[Mesh]:
     ]
     return [
         morphed(moved, NEUTRAL, EXPRESSIONS),
-        sculpt("", [Part(neck, 0.04, soft_skin=0.02)], skeleton),
+        sculpt("", [BodyPart(neck, 0.04, soft_skin=0.02)], skeleton),
         replace(locks, normals=even.astype(np.float32)),
         *cowlick(skeleton),
         *eyelids(skeleton),
@@ -53,13 +55,13 @@ def head_pieces(skeleton: Skeleton) -> list[Mesh]:
     ]
 
 
-def _brow(face: Face, sign: float, skeleton: Skeleton) -> Mesh:
+def _brow(face: HumanExpression, sign: float, skeleton: Skeleton) -> Mesh:
     """Return one brow, a tube on the forehead."""
-    x, y = np.array(BROW).T
+    x, y = np.array(BROW_LINE_M).T
     inner = np.array([1.0, 0.55, 0.15, 0.0])
     arch = np.array([0.0, 0.7, 1.0, 0.0])
     flat_x = x - face.knit * (0.4 + 0.6 * inner)
     flat_y = y + face.brow + face.brow_inner * inner + face.brow_arch * arch
     line: Array = on_face(flat_x, flat_y)
     line += 0.004 * face_normals(line)
-    return tube(line * [sign, 1.0, 1.0], BROW_RADII, HAIR, "head", skeleton, 7, 10)
+    return tube(line * [sign, 1.0, 1.0], BROW_RADII_M, HAIR, "head", skeleton, 7, 10)

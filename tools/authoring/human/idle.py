@@ -4,45 +4,47 @@ import numpy as np
 
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
-from tools.authoring.human.acting import RATE, Score, perform
-from tools.authoring.human.limbs import Reach
+from tools.authoring.human.acting import FRAME_RATE_HZ, ActingCurves, clip_from_acting
+from tools.authoring.human.limbs import HandTarget
 from tools.authoring.modelling.shapes import Array
 
-DURATION = 9.0
-BREATHS = 3
-STRAP = np.array([0.212, 1.0, 0.138])
+DURATION_S = 9.0
+BREATHS_PER_LOOP = 3
+STRAP_GRIP_M = np.array([0.212, 1.0, 0.138])
 """Where the left wrist is when the hand holds its strap, in the rest pose [m]."""
 
 
 def idle(skeleton: Skeleton) -> Clip:
     """Return a loop of nine seconds on planted feet; blinks come at run time."""
-    time = np.arange(round(DURATION * RATE) + 1) / RATE
-    turn = 2 * np.pi * time / DURATION
-    left, right = glance(time, 2.1, 3.6, 0.3), glance(time, 5.6, 7.0, 0.26)
-    up, strapped = glance(time, 5.75, 6.9, 0.4), glance(time, 4.6, 7.3, 0.75)
+    time = np.arange(round(DURATION_S * FRAME_RATE_HZ) + 1) / FRAME_RATE_HZ
+    turn = 2 * np.pi * time / DURATION_S
+    left, right = eased_pulse(time, 2.1, 3.6, 0.3), eased_pulse(time, 5.6, 7.0, 0.26)
+    up, strapped = eased_pulse(time, 5.75, 6.9, 0.4), eased_pulse(time, 4.6, 7.3, 0.75)
     slow = [sign * np.sin(2 * turn) for sign in (1.0, -1.0)]
-    grip = Reach(
-        STRAP,
+    grip = HandTarget(
+        STRAP_GRIP_M,
         fingers=np.array([-0.85, 0.5, -0.2]),
         thumb=np.array([0.4, 0.85, 0.0]),
         elbow=np.array([0.9, -0.6, -0.25]),
         share=strapped,
     )
-    score = Score(
+    score = ActingCurves(
         weight=idle_weight(turn),
         look=(26 * left - 21 * right + 2.5 * np.sin(turn + 0.7), 4 * left - 8 * up),
         tilt=4 * left - 3 * right,
-        breath=np.sin(BREATHS * turn),
+        breath=np.sin(BREATHS_PER_LOOP * turn),
         swing=(3 + 2 * slow[0], 3 + 2 * slow[1]),
         bend=(19 + 4 * slow[0], 19 + 4 * slow[1]),
         fist=(18 + 5 * slow[0] + 34 * strapped, 18 + 5 * slow[1] + 34 * strapped),
         hands={"Left": grip, "Right": grip},
         mood={
-            "happy": 0.06 + 0.20 * glance(time, 2.5, 4.2, 0.5) + 0.26 * glance(time, 6.0, 8.0, 0.6),
+            "happy": 0.06
+            + 0.20 * eased_pulse(time, 2.5, 4.2, 0.5)
+            + 0.26 * eased_pulse(time, 6.0, 8.0, 0.6),
             "surprised": 0.10 * up,
         },
     )
-    return perform("idle", skeleton, DURATION, score, loop=True)
+    return clip_from_acting("idle", skeleton, DURATION_S, score, loop=True)
 
 
 def idle_weight(turn: Array) -> Array:
@@ -50,7 +52,7 @@ def idle_weight(turn: Array) -> Array:
     return np.asarray(np.tanh(2.2 * np.sin(turn - 0.5)) / np.tanh(2.2))
 
 
-def glance(time: Array, begin: float, end: float, ramp: float) -> Array:
+def eased_pulse(time: Array, begin: float, end: float, ramp: float) -> Array:
     """Return 0, then 1 between two times [s], with soft borders and a touch of overshoot."""
     rise, fall = (np.clip((time - t) / ramp, 0.0, 1.0) for t in (begin, end))
     held = _soft(rise) - _soft(fall)

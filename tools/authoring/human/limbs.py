@@ -6,16 +6,16 @@ import numpy as np
 
 from characters.skeleton import rotations
 from tools.authoring.human.rig import FINGERS, along_forearm
-from tools.authoring.modelling.gait import Foot
-from tools.authoring.modelling.ik import aim
-from tools.authoring.modelling.rig import Puppet
+from tools.authoring.modelling.gait import FootDimensions
+from tools.authoring.modelling.ik import aim_rotation
+from tools.authoring.modelling.rig import PosedRig
 from tools.authoring.modelling.shapes import Array
 
-FOOT = Foot(ankle=0.095, heel=-0.07, ball=(0.03, 0.115), toes=0.09)
+FOOT = FootDimensions(ankle=0.095, heel=-0.07, ball=(0.03, 0.115), toes=0.09)
 SIDES = (("Left", 1.0), ("Right", -1.0))
 
 
-class Reach(NamedTuple):
+class HandTarget(NamedTuple):
     """Where a hand goes, told of the left one in the chest's axes at rest; curves over frames."""
 
     wrist: Array
@@ -34,21 +34,21 @@ class Reach(NamedTuple):
     """How much of this is done, (frames,), 0…1."""
 
 
-def turned(x: Array | float = 0, y: Array | float = 0, z: Array | float = 0) -> Array:
+def rotation_deg(x: Array | float = 0, y: Array | float = 0, z: Array | float = 0) -> Array:
     """Return the rotation about y, then x, then z of the body, in degrees."""
     x, y, z = np.broadcast_arrays(x, y, z)
     return rotations.from_euler("yxz", np.radians(np.stack([y, x, z], axis=-1)))
 
 
-def hang_arm(puppet: Puppet, side: str, sign: float, swing: Array, lower: Array | float) -> None:
+def hang_arm(rig: PosedRig, side: str, sign: float, swing: Array, lower: Array | float) -> None:
     """Lower an arm from the A-pose towards the body and swing it forward [degrees]."""
-    lowered = turned(z=-sign * np.asarray(lower) + 0 * swing)
-    puppet.turn(f"{side}Arm", rotations.multiply(turned(x=-swing), lowered))
+    lowered = rotation_deg(z=-sign * np.asarray(lower) + 0 * swing)
+    rig.turn(f"{side}Arm", rotations.multiply(rotation_deg(x=-swing), lowered))
 
 
-def bent_elbow(puppet: Puppet, side: str, sign: float, bend: Array, inward: Array) -> Array:
+def elbow_rotation(rig: PosedRig, side: str, sign: float, bend: Array, inward: Array) -> Array:
     """Return the bend of an elbow about the axis across the upper arm [degrees]."""
-    upper = puppet.rest(f"{side}ForeArm") - puppet.rest(f"{side}Arm")
+    upper = rig.rest(f"{side}ForeArm") - rig.rest(f"{side}Arm")
     hinge = np.cross(upper, [0.0, 0.0, 1.0])  # bends the forearm forward
     hinge /= np.linalg.norm(hinge)
     flex = rotations.about(hinge, np.radians(bend))
@@ -56,7 +56,7 @@ def bent_elbow(puppet: Puppet, side: str, sign: float, bend: Array, inward: Arra
     return rotations.multiply(twist, flex)
 
 
-def curl(puppet: Puppet, side: str, bend: Array | float, thumb: Array | float = 0.0) -> None:
+def curl_fingers(rig: PosedRig, side: str, bend: Array | float, thumb: Array | float = 0.0) -> None:
     """Bend the fingers towards the palm, and the thumb over it [degrees]."""
     away, front, inward = along_forearm()
     flip = np.array([1.0, -1.0, -1.0]) if side == "Right" else np.ones(3)
@@ -65,25 +65,25 @@ def curl(puppet: Puppet, side: str, bend: Array | float, thumb: Array | float = 
     for finger in FINGERS:
         axis, angle = (over, thumb) if finger == "Thumb" else (across, bend)
         turn = rotations.about(axis, np.radians(angle) * np.ones(1))
-        puppet.turn(f"{side}Hand{finger}1", turn)
-        puppet.turn(f"{side}Hand{finger}2", turn)
+        rig.turn(f"{side}Hand{finger}1", turn)
+        rig.turn(f"{side}Hand{finger}2", turn)
 
 
-def reach(puppet: Puppet, side: str, sign: float, to: Reach) -> None:
+def reach_target(rig: PosedRig, side: str, sign: float, to: HandTarget) -> None:
     """Bring a hand from where it is to where it is to go, on an arc away from the body."""
     flip = np.array([sign, 1.0, 1.0])
-    hand, elbow = puppet.places(f"{side}Hand"), puppet.places(f"{side}ForeArm")
-    chest, turn = puppet.places("chest"), puppet.facing("chest")
-    goal = chest + rotations.rotate(turn, to.wrist * flip - puppet.rest("chest"))
+    hand, elbow = rig.places(f"{side}Hand"), rig.places(f"{side}ForeArm")
+    chest, turn = rig.places("chest"), rig.facing("chest")
+    goal = chest + rotations.rotate(turn, to.wrist * flip - rig.rest("chest"))
     share = np.asarray(to.share)[:, None]
     inside = np.clip(share, 0.0, 1.0)
     bulge = 4 * inside * (1 - inside) * flip * [0.07, 0.0, 0.05]
-    hanging = elbow - 0.5 * (puppet.places(f"{side}Arm") + hand)
+    hanging = elbow - 0.5 * (rig.places(f"{side}Arm") + hand)
     hanging /= np.linalg.norm(hanging, axis=1, keepdims=True)
     out = rotations.rotate(turn, to.elbow * flip)
     fingers, thumb = (rotations.rotate(turn, v * flip) for v in (to.fingers, to.thumb))
-    rest = puppet.rest(f"{side}Hand") - puppet.rest(f"{side}ForeArm")
-    grip = aim(rest, [0.0, 0.0, 1.0], fingers, thumb)
-    facing = rotations.slerp(puppet.facing(f"{side}Hand"), grip, inside[:, 0])
+    rest = rig.rest(f"{side}Hand") - rig.rest(f"{side}ForeArm")
+    grip = aim_rotation(rest, [0.0, 0.0, 1.0], fingers, thumb)
+    facing = rotations.slerp(rig.facing(f"{side}Hand"), grip, inside[:, 0])
     pole = hanging + (out - hanging) * inside
-    puppet.place_hand(side, hand + (goal - hand) * share + bulge, facing, pole)
+    rig.place_hand(side, hand + (goal - hand) * share + bulge, facing, pole)

@@ -12,18 +12,25 @@ import numpy as np
 from characters.motion.clip import Clip
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose, Skeleton
-from tools.authoring.human.acting import UPWARD, posed
-from tools.authoring.human.limbs import FOOT, SIDES, bent_elbow, curl, hang_arm, turned
-from tools.authoring.human.loose import drag
-from tools.authoring.modelling.gait import FootMotion, Path, Steps, foot_motion
-from tools.authoring.modelling.rig import Puppet, mirrored
+from tools.authoring.human.acting import GAZE_PITCH_DEG, pose_with_face
+from tools.authoring.human.limbs import (
+    FOOT,
+    SIDES,
+    curl_fingers,
+    elbow_rotation,
+    hang_arm,
+    rotation_deg,
+)
+from tools.authoring.human.secondary_motion import add_secondary_motion
+from tools.authoring.modelling.gait import Footfalls, FootMotion, GroundArc, foot_motion
+from tools.authoring.modelling.rig import PosedRig, mirrored
 from tools.authoring.modelling.shapes import Array
 
-RATE = 60.0
+FRAME_RATE_HZ = 60.0
 
 
 @dataclass(frozen=True)
-class Style:
+class GaitStyle:
     """How the body goes along with the feet; amplitudes in degrees where not said otherwise."""
 
     bob: float
@@ -72,12 +79,12 @@ class Style:
     """What the face says: morphs."""
 
 
-WALK = Style(0.028, 0.06, 0.024, 9, 5, 4, 15, 30, 4, 24, 16, 0.994, 2.0, 18, {"happy": 0.12})
-RUN = Style(0.032, 0.15, 0.012, 12, 5, 13, 26, 44, 12, 86, 18, 0.985, 3.6, 58, {"happy": 0.4})
+WALK = GaitStyle(0.028, 0.06, 0.024, 9, 5, 4, 15, 30, 4, 24, 16, 0.994, 2.0, 18, {"happy": 0.12})
+RUN = GaitStyle(0.032, 0.15, 0.012, 12, 5, 13, 26, 44, 12, 86, 18, 0.985, 3.6, 58, {"happy": 0.4})
 
 
 @dataclass(frozen=True)
-class Gait:
+class HumanGait:
     """One way to go."""
 
     speed: float
@@ -89,27 +96,27 @@ class Gait:
     frames: int
     """Of a cycle; even, so that half of it is a step."""
 
-    steps: Steps
+    steps: Footfalls
     """The feet."""
 
-    style: Style
+    style: GaitStyle
     """The rest of the body."""
 
 
-def _walk(speed: float, yaw_rate: float, frames: int, width: float, ahead: float) -> Gait:
-    cycle = frames / RATE
+def _walk(speed: float, yaw_rate: float, frames: int, width: float, ahead: float) -> HumanGait:
+    cycle = frames / FRAME_RATE_HZ
     longest = 1.395  # the double step of a straight walk [m]
     part = speed * cycle / longest
     # Walking is an inverted pendulum: it rises with the square of the step (Alexander 1976).
     style = replace(WALK, bob=WALK.bob * part**2, pelvis_yaw=WALK.pelvis_yaw * part)
     strike, off = 0.36 * part, 0.35 + 0.7 * part
-    steps = Steps(cycle, 0.6, width, ahead, strike, off, 0.035, rise_from=0.45)
-    return Gait(speed, yaw_rate, frames, steps, style)
+    steps = Footfalls(cycle, 0.6, width, ahead, strike, off, 0.035, rise_from=0.45)
+    return HumanGait(speed, yaw_rate, frames, steps, style)
 
 
-def _run(speed: float, yaw_rate: float, frames: int, ahead: float) -> Gait:
-    steps = Steps(frames / RATE, 0.29, 0.06, ahead, 0.1, 0.85, 0.17, 0.06, 0.35, 0.55)
-    return Gait(speed, yaw_rate, frames, steps, RUN)
+def _run(speed: float, yaw_rate: float, frames: int, ahead: float) -> HumanGait:
+    steps = Footfalls(frames / FRAME_RATE_HZ, 0.29, 0.06, ahead, 0.1, 0.85, 0.17, 0.06, 0.35, 0.55)
+    return HumanGait(speed, yaw_rate, frames, steps, RUN)
 
 
 GAITS = {
@@ -124,25 +131,25 @@ GAITS = {
 """Speeds fall a little as turns get tighter, and feet go wider apart."""
 
 
-def stride(skeleton: Skeleton, name: str, gait: Gait) -> Clip:
+def gait_clip(skeleton: Skeleton, name: str, gait: HumanGait) -> Clip:
     """Return one cycle of a gait along an arc, as a loop with root motion."""
-    path = Path(gait.speed, float(np.radians(gait.yaw_rate)))
+    path = GroundArc(gait.speed, float(np.radians(gait.yaw_rate)))
     steps, style = gait.steps, gait.style
     phase = np.arange(gait.frames + 1) / gait.frames
     feet = {s: foot_motion(path, steps, FOOT, sign, phase) for s, sign in SIDES}
-    puppet = Puppet(skeleton, gait.frames + 1)
+    rig = PosedRig(skeleton, gait.frames + 1)
     bank = np.arctan(path.speed * path.yaw_rate / 9.81)
-    _carry_pelvis(puppet, style, phase, bank)
-    _fit_height(puppet, feet, style.reach)
-    _carry_trunk(puppet, style, phase, path.yaw_rate)
-    _swing_arms(puppet, style, phase)
+    _carry_pelvis(rig, style, phase, bank)
+    _fit_height(rig, feet, style.reach)
+    _carry_trunk(rig, style, phase, path.yaw_rate)
+    _swing_arms(rig, style, phase)
     for side, foot in feet.items():
-        puppet.place_foot(side, foot.ankle, foot.facing, foot.toe)
+        rig.place_foot(side, foot.ankle, foot.facing, foot.toe)
     where, yaw = path.at(phase * steps.cycle)
-    drag(puppet, steps.cycle, path.speed * path.yaw_rate)
-    puppet.shift("root", np.stack([where[:, 0], 0 * yaw, where[:, 1]], axis=-1))
-    puppet.turn("root", rotations.about("y", yaw))
-    return Clip(name, RATE, posed(puppet, style.mood), loop=True, root_motion=True)
+    add_secondary_motion(rig, steps.cycle, path.speed * path.yaw_rate)
+    rig.shift("root", np.stack([where[:, 0], 0 * yaw, where[:, 1]], axis=-1))
+    rig.turn("root", rotations.about("y", yaw))
+    return Clip(name, FRAME_RATE_HZ, pose_with_face(rig, style.mood), loop=True, root_motion=True)
 
 
 def _wave(phase: Array, peak: float, times: int = 1) -> Array:
@@ -150,30 +157,30 @@ def _wave(phase: Array, peak: float, times: int = 1) -> Array:
     return np.asarray(np.cos(2 * np.pi * times * (phase - peak)))
 
 
-def _carry_pelvis(puppet: Puppet, style: Style, phase: Array, bank: float) -> None:
-    height = float(puppet.rest("hips")[1])
+def _carry_pelvis(rig: PosedRig, style: GaitStyle, phase: Array, bank: float) -> None:
+    height = float(rig.rest("hips")[1])
     sway = style.sway * _wave(phase, 0.28) + 0.55 * height * np.tan(0.5 * bank)
     bob = -style.bob * _wave(phase, style.lowest, 2)
     surge = 0.3 * style.bob * _wave(phase, style.lowest + 0.3, 2)
-    puppet.shift("hips", np.stack([sway, bob, surge], axis=-1))
+    rig.shift("hips", np.stack([sway, bob, surge], axis=-1))
     pitch = 0.45 * style.lean + 1.2 * _wave(phase, 0.1, 2)
     roll = style.pelvis_list * _wave(phase, 0.2) - np.degrees(0.3 * bank)
-    puppet.turn("hips", turned(pitch, -style.pelvis_yaw * _wave(phase, 0.02), roll))
+    rig.turn("hips", rotation_deg(pitch, -style.pelvis_yaw * _wave(phase, 0.02), roll))
 
 
-def _fit_height(puppet: Puppet, feet: dict[str, FootMotion], reach: float) -> None:
+def _fit_height(rig: PosedRig, feet: dict[str, FootMotion], reach: float) -> None:
     """Carry the pelvis as high as the legs allow without straightening a knee."""
     low, high = -0.3, 0.1
     for _ in range(30):
         middle = (low + high) / 2
-        puppet.shift("hips", [0.0, middle, 0.0])
-        longest = max(puppet.leg_extension(s, foot.ankle).max() for s, foot in feet.items())
-        puppet.shift("hips", [0.0, -middle, 0.0])
+        rig.shift("hips", [0.0, middle, 0.0])
+        longest = max(rig.leg_extension(s, foot.ankle).max() for s, foot in feet.items())
+        rig.shift("hips", [0.0, -middle, 0.0])
         low, high = (middle, high) if longest < reach else (low, middle)
-    puppet.shift("hips", [0.0, low, 0.0])
+    rig.shift("hips", [0.0, low, 0.0])
 
 
-def _carry_trunk(puppet: Puppet, style: Style, phase: Array, yaw_rate: float) -> None:
+def _carry_trunk(rig: PosedRig, style: GaitStyle, phase: Array, yaw_rate: float) -> None:
     """Turn the shoulders against the pelvis and keep the head level, looking where it goes."""
     into = np.degrees(yaw_rate)
     for number, name in enumerate(("spine1", "spine2", "chest")):
@@ -181,31 +188,35 @@ def _carry_trunk(puppet: Puppet, style: Style, phase: Array, yaw_rate: float) ->
         yaw = (style.pelvis_yaw + style.chest_yaw) / 3 * _wave(phase, 0.02 + lag) + 0.03 * into
         roll = -style.pelvis_list * 0.55 * _wave(phase, 0.2 + lag)
         pitch = 0.22 * style.lean + 0.8 * _wave(phase, 0.12 + lag, 2)
-        puppet.turn(name, turned(pitch, yaw, roll))
+        rig.turn(name, rotation_deg(pitch, yaw, roll))
     # The head is heavy: it dips after each landing, and tilts and turns a little late.
     dip, tilt = style.head * _wave(phase, 0.17, 2), 0.7 * style.head * _wave(phase, 0.32)
-    gaze = turned(UPWARD + dip, 0.12 * into + 2 * _wave(phase, 0.12), tilt - 0.04 * into)
-    above = rotations.multiply(rotations.conjugate(puppet.facing("chest")), gaze)
-    puppet.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.45))
-    puppet.face("head", gaze)
+    gaze = rotation_deg(
+        GAZE_PITCH_DEG + dip, 0.12 * into + 2 * _wave(phase, 0.12), tilt - 0.04 * into
+    )
+    above = rotations.multiply(rotations.conjugate(rig.facing("chest")), gaze)
+    rig.turn("neck", rotations.slerp(rotations.IDENTITY, above, 0.45))
+    rig.face("head", gaze)
 
 
-def _swing_arms(puppet: Puppet, style: Style, phase: Array) -> None:
+def _swing_arms(rig: PosedRig, style: GaitStyle, phase: Array) -> None:
     """Swing the arms against the legs; elbows and hands drag behind the shoulders."""
     for side, sign in SIDES:
         front = 0.52 if sign > 0 else 0.02  # phase at which this arm is in front
         swing = style.arm_swing * _wave(phase, front) - style.arm_back
-        puppet.turn(
+        rig.turn(
             f"{side}Shoulder",
-            turned(0, -sign * 5 * _wave(phase, front - 0.03), sign * 1.5 * _wave(phase, 0.2, 2)),
+            rotation_deg(
+                0, -sign * 5 * _wave(phase, front - 0.03), sign * 1.5 * _wave(phase, 0.2, 2)
+            ),
         )
-        hang_arm(puppet, side, sign, swing, 20 - 3 * _wave(phase, front))
+        hang_arm(rig, side, sign, swing, 20 - 3 * _wave(phase, front))
         bend = style.elbow + style.elbow_swing * _wave(phase, front + 0.07)
         inward = 0.06 * bend + 3 * _wave(phase, front)
-        puppet.turn(f"{side}ForeArm", bent_elbow(puppet, side, sign, bend, inward))
+        rig.turn(f"{side}ForeArm", elbow_rotation(rig, side, sign, bend, inward))
         late = _wave(phase, front + 0.17)
-        puppet.turn(f"{side}Hand", turned(14 * late - 6, 0, sign * -4))
-        curl(puppet, side, style.fist, 0.4 * style.fist)
+        rig.turn(f"{side}Hand", rotation_deg(14 * late - 6, 0, sign * -4))
+        curl_fingers(rig, side, style.fist, 0.4 * style.fist)
 
 
 def mirrored_half_cycle(clip: Clip, skeleton: Skeleton, name: str) -> Clip:
@@ -228,7 +239,7 @@ def locomotion(skeleton: Skeleton) -> dict[str, Clip]:
     clips = {}
     for name, gait in GAITS.items():
         straight = gait.yaw_rate == 0
-        clip = stride(skeleton, name if straight else name.replace("Turn", "Left"), gait)
+        clip = gait_clip(skeleton, name if straight else name.replace("Turn", "Left"), gait)
         clips[clip.name] = clip
         if not straight:
             right = mirrored_half_cycle(clip, skeleton, name.replace("Turn", "Right"))

@@ -5,25 +5,31 @@ from numpy.typing import NDArray
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.human.face import EXPRESSIONS, MOUTH, NEUTRAL, Face, carried
+from tools.authoring.human.face import (
+    EXPRESSIONS,
+    MOUTH_CENTRE_M,
+    NEUTRAL,
+    HumanExpression,
+    skin_displacement,
+)
 from tools.authoring.human.skull import MAROON, SKIN, complexion, face_normals, on_face
 from tools.authoring.modelling.lathe import loft
 from tools.authoring.modelling.meshes import blend_normals, morphed
 from tools.authoring.modelling.sculpt import coated
-from tools.authoring.modelling.shapes import Array, rgb
+from tools.authoring.modelling.shapes import Array, linear_rgb
 
-LIP = rgb("#a8443c")
-LINE = rgb("#64201f")
-TONGUE = rgb("#d9636a")
-TEETH = rgb("#fbf7ee")
+LIP = linear_rgb("#a8443c")
+LIP_LINE = linear_rgb("#64201f")
+TONGUE = linear_rgb("#d9636a")
+TEETH = linear_rgb("#fbf7ee")
 
-COLUMNS = 40
+POINTS_PER_RING = 40
 """Points around the mouth."""
 
-REACH = (0.112, 0.038, 0.054)
+MOUTH_SKIN_EXTENT_M = (0.112, 0.038, 0.054)
 """Of the skin around the mouth: half its width, and how far it reaches up and down [m]."""
 
-_LIPS = 0.0085  # how broad they are [m]
+_LIP_WIDTH_M = 0.0085  # how broad they are [m]
 
 
 def mouth(skeleton: Skeleton) -> Mesh:
@@ -31,26 +37,28 @@ def mouth(skeleton: Skeleton) -> Mesh:
     return morphed(lambda face: _mouth(face, skeleton), NEUTRAL, EXPRESSIONS)
 
 
-def _mouth(face: Face, skeleton: Skeleton) -> Mesh:
+def _mouth(face: HumanExpression, skeleton: Skeleton) -> Mesh:
     """Return a bag in the face: from a pole in the head over the skin and the lips to its end."""
-    angle = np.linspace(0, 2 * np.pi, COLUMNS, endpoint=False)
+    angle = np.linspace(0, 2 * np.pi, POINTS_PER_RING, endpoint=False)
     edge, lips, *skin = _skin_rings(angle, face)
     under = skin[-1] - [0.0, 0.0, 0.006]
-    behind = np.tile([0.0, MOUTH[1], 0.05], (COLUMNS, 1))
+    behind = np.tile([0.0, MOUTH_CENTRE_M[1], 0.05], (POINTS_PER_RING, 1))
     rings = np.stack([behind, under, *skin[::-1], lips, lips, edge, *_cavity(edge, angle, face)])
     mesh = loft(rings, _colors(rings, np.sin(angle) >= 0), "head", skeleton)
-    of_the_face = np.repeat([0, 0, 1.0, 0.9, 0.5, 0.15, *[0] * (len(rings) - 6)], COLUMNS)
+    of_the_face = np.repeat([0, 0, 1.0, 0.9, 0.5, 0.15, *[0] * (len(rings) - 6)], POINTS_PER_RING)
     return blend_normals(mesh, face_normals(mesh.positions.astype(float)), of_the_face)
 
 
-def _skin_rings(angle: Array, face: Face) -> list[Array]:
+def _skin_rings(angle: Array, face: HumanExpression) -> list[Array]:
     """Return the edge of the lips, their border, and the skin around out to the rim."""
     height = np.sin(angle)
     line, edge = _lip_lines(angle, face)
-    reach = np.where(height >= 0, REACH[1], REACH[2])
-    outer = MOUTH + np.stack([REACH[0] * np.cos(angle), reach * height], axis=-1)
+    reach = np.where(height >= 0, MOUTH_SKIN_EXTENT_M[1], MOUTH_SKIN_EXTENT_M[2])
+    outer = MOUTH_CENTRE_M + np.stack(
+        [MOUTH_SKIN_EXTENT_M[0] * np.cos(angle), reach * height], axis=-1
+    )
     away = outer - edge
-    lips = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * _LIPS
+    lips = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * _LIP_WIDTH_M
     full = np.abs(height) ** 0.5
     rings = [
         _on_skin(edge, line, 0.002 + 0.002 * full + face.pout, face, 0.0),
@@ -63,26 +71,28 @@ def _skin_rings(angle: Array, face: Face) -> list[Array]:
     return rings
 
 
-def _lip_lines(angle: Array, face: Face) -> tuple[Array, Array]:
+def _lip_lines(angle: Array, face: HumanExpression) -> tuple[Array, Array]:
     """Return where the lips meet when closed, and where their edges are, (columns, 2) each."""
     x, height = np.cos(angle), np.sin(angle)
-    line = MOUTH[1] + face.smile * (x * x - 0.4)
+    line = MOUTH_CENTRE_M[1] + face.smile * (x * x - 0.4)
     bow = np.abs(height) ** face.square
     y = line + np.where(height >= 0, face.rise, -face.drop) * bow
-    across = MOUTH[0] + face.width * x
+    across = MOUTH_CENTRE_M[0] + face.width * x
     return np.stack([across, line], axis=-1), np.stack([across, y], axis=-1)
 
 
-def _on_skin(flat: Array, rest: Array, lift: Array, face: Face, share: float) -> Array:
+def _on_skin(flat: Array, rest: Array, lift: Array, face: HumanExpression, share: float) -> Array:
     """Return points of the skin, whose depth is that of where they rest; `share` of the jaw."""
     points = on_face(flat[:, 0], rest[:, 1])
     normals = face_normals(points)
-    points += lift[:, None] * (normals + [0.0, 0.0, 1.0]) / 2 + share * carried(points, face)
+    points += lift[:, None] * (normals + [0.0, 0.0, 1.0]) / 2 + share * skin_displacement(
+        points, face
+    )
     points[:, 1] += flat[:, 1] - rest[:, 1]
     return points
 
 
-def _cavity(edge: Array, angle: Array, face: Face) -> list[Array]:
+def _cavity(edge: Array, angle: Array, face: HumanExpression) -> list[Array]:
     """Return the rings behind the lips: teeth or tongue, the throat, and the end."""
     up = np.sin(angle) >= 0
     bow = np.abs(np.sin(angle)) ** 0.8
@@ -109,6 +119,6 @@ def _colors(rings: Array, up: NDArray[np.bool_]) -> Array:
     colors[tongue] = np.where(above, MAROON, TONGUE)
     colors[teeth] = np.where(above, TEETH, TONGUE)
     colors[gum] = np.where(above, TEETH, MAROON)
-    colors[[rim, edge]] = LINE
+    colors[[rim, edge]] = LIP_LINE
     colors[lip] = LIP
     return np.asarray(colors)

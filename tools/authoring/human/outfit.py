@@ -10,35 +10,35 @@ import numpy as np
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
 from tools.authoring.human.hands import hand
-from tools.authoring.human.rig import JOINTS
-from tools.authoring.human.shoes import CREAM, shoe
+from tools.authoring.human.rig import JOINT_POSITIONS
+from tools.authoring.human.shoes import CREAM, shoe_parts
 from tools.authoring.modelling.lathe import lathe
 from tools.authoring.modelling.meshes import mirrored_mesh
-from tools.authoring.modelling.sculpt import Part, sculpt
+from tools.authoring.modelling.sculpt import BodyPart, sculpt
 from tools.authoring.modelling.shapes import (
     Array,
-    Cone,
-    Cut,
+    Difference,
     Ellipsoid,
     HalfSpace,
+    RoundCone,
     Shape,
     Union,
     Vector,
-    chain,
-    rgb,
+    cone_chain,
+    linear_rgb,
 )
 from tools.authoring.modelling.surface import project
 from tools.authoring.modelling.tube import tube
 
-TEAL = rgb("#12b3b3")
-DEEP_TEAL = rgb("#0c8a93")
-MUSTARD = rgb("#fbb832")
-LEATHER = rgb("#b86a24")
-INDIGO = rgb("#3e4a8c")
-PALE_INDIGO = rgb("#8590d4")
+TEAL = linear_rgb("#12b3b3")
+DEEP_TEAL = linear_rgb("#0c8a93")
+MUSTARD = linear_rgb("#fbb832")
+LEATHER = linear_rgb("#b86a24")
+INDIGO = linear_rgb("#3e4a8c")
+PALE_INDIGO = linear_rgb("#8590d4")
 
 
-def outfit(skeleton: Skeleton) -> list[Mesh]:
+def outfit_meshes(skeleton: Skeleton) -> list[Mesh]:
     """Return what is carved, of both sides."""
     sided = sculpt("", [hand(), *_leg_parts()], skeleton)
     return [sculpt("", _torso_parts(), skeleton), sided, mirrored_mesh(sided, skeleton)]
@@ -49,10 +49,10 @@ def cords(skeleton: Skeleton) -> list[Mesh]:
     meshes = []
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         flip = [sign, 1.0, 1.0]
-        string = np.array(STRING) * flip
+        string = np.array(STRING_LINE_M) * flip
         swings = ["chest", *[f"{side}String"] * 3]
-        meshes.append(tube(string, STRING_RADII, CREAM, swings, skeleton, 6, 8))
-        strap = _on_hoodie(np.array(STRAP)) * flip
+        meshes.append(tube(string, STRING_RADII_M, CREAM, swings, skeleton, 6, 8))
+        strap = _on_hoodie(np.array(STRAP_LINE_M)) * flip
         over = ["chest", f"{side}Shoulder", "chest", "chest", "spine2", "spine2", "spine2"]
         meshes.append(tube(strap, 0.019, LEATHER, over, skeleton, 6, 15))
     return meshes
@@ -64,7 +64,7 @@ def ribbing(skeleton: Skeleton) -> list[Mesh]:
     meshes = [_ring(hem, DEEP_TEAL, "hips", skeleton, 22)]
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         elbow, wrist, knee, ankle = (
-            np.array(JOINTS[f"Left{name}"][1]) * [sign, 1.0, 1.0]
+            np.array(JOINT_POSITIONS[f"Left{name}"][1]) * [sign, 1.0, 1.0]
             for name in ("ForeArm", "Hand", "Leg", "Foot")
         )
         cuff = _across(elbow, wrist, 0.004, 0.062, 0.030)
@@ -91,15 +91,15 @@ def _across(start: Array, end: Array, beyond: float, radius: float, half: float)
     return np.column_stack([turn, end + beyond * axis])
 
 
-STRING: list[Vector] = [
+STRING_LINE_M: list[Vector] = [
     (0.036, 1.145, 0.112),
     (0.040, 1.10, 0.130),
     (0.042, 1.055, 0.132),
     (0.043, 1.035, 0.132),
 ]
-STRING_RADII = [0.008, 0.008, 0.008, 0.0135]
+STRING_RADII_M = [0.008, 0.008, 0.008, 0.0135]
 
-STRAP: list[Vector] = [
+STRAP_LINE_M: list[Vector] = [
     (0.1, 1.15, -0.13),
     (0.13, 1.21, -0.05),
     (0.133, 1.18, 0.045),
@@ -114,15 +114,15 @@ def _both(shape: Shape) -> Union:
     return Union((shape, shape.mirrored()))
 
 
-def _torso_parts() -> list[Part]:
+def _torso_parts() -> list[BodyPart]:
     hoodie = _hoodie()
     pocket = Ellipsoid(
         (0, 0.93, 0.1), (0.085, 0.05, 0.04), power=3.5, bones=("spine1", "hips"), color=DEEP_TEAL
     )
     return [
-        Part(hoodie, 0.0385, soft_skin=0.045),
-        Part(pocket, 0.027, soft_skin=0.03),
-        Part(_hood(), 0.031, soft_skin=0.02),
+        BodyPart(hoodie, 0.0385, soft_skin=0.045),
+        BodyPart(pocket, 0.027, soft_skin=0.03),
+        BodyPart(_hood(), 0.031, soft_skin=0.02),
         *_backpack(),
     ]
 
@@ -131,11 +131,11 @@ def _torso_parts() -> list[Part]:
 def _hoodie() -> Shape:
     """Return trunk and sleeves."""
     spine = ("hips", "spine1", "spine2", "chest")
-    trunk = Cone(
+    trunk = RoundCone(
         (0, 0.9, 0), (0, 1.075, -0.005), 0.165, 0.146, (1, 1, 0.78), bones=spine, color=TEAL
     )
     hem_line = HalfSpace((0, 0.825, 0), (0, 1, 0))
-    yoke = Cone(
+    yoke = RoundCone(
         (0.06, 1.128, -0.01),
         (0.148, 1.134, -0.012),
         0.075,
@@ -143,14 +143,14 @@ def _hoodie() -> Shape:
         bones=("LeftShoulder",),
         color=TEAL,
     )
-    sleeve = chain(
-        [JOINTS[f"Left{n}"][1] for n in ("Arm", "ForeArm", "Hand")],
+    sleeve = cone_chain(
+        [JOINT_POSITIONS[f"Left{n}"][1] for n in ("Arm", "ForeArm", "Hand")],
         (0.072, 0.063, 0.050),
         ("LeftArm", "LeftForeArm"),
         TEAL,
         0.02,
     )
-    return Union((Cut(trunk, hem_line, 0.02), _both(yoke), _both(sleeve)), 0.05)
+    return Union((Difference(trunk, hem_line, 0.02), _both(yoke), _both(sleeve)), 0.05)
 
 
 def _on_hoodie(line: Array) -> Array:
@@ -163,7 +163,7 @@ def _hood() -> Shape:
     back = Ellipsoid(
         (0, 1.195, -0.092), (0.13, 0.07, 0.062), (0.35, 0, 0), bones=("Hood",), color=TEAL
     )
-    collar = chain(
+    collar = cone_chain(
         [(0.0, 1.205, -0.105), (0.09, 1.208, -0.06), (0.1, 1.196, 0.015), (0.032, 1.145, 0.102)],
         (0.045, 0.04, 0.034, 0.026),
         ("chest",) * 3,
@@ -173,7 +173,7 @@ def _hood() -> Shape:
     return Union((back, _both(collar)), 0.02)
 
 
-def _backpack() -> list[Part]:
+def _backpack() -> list[BodyPart]:
     bones = ("Backpack",)
     bag = Ellipsoid((0, 1.015, -0.195), (0.126, 0.15, 0.08), power=3.2, bones=bones, color=MUSTARD)
     flap = Ellipsoid(
@@ -186,20 +186,22 @@ def _backpack() -> list[Part]:
         (0, 1.035, -0.296), (0.022, 0.029, 0.016), power=3.0, bones=bones, color=CREAM
     )
     return [
-        Part(bag, 0.036, soft_skin=0.0),
-        Part(flap, 0.030, soft_skin=0.0),
-        Part(purse, 0.024, soft_skin=0.0),
-        Part(buckle, 0.012, soft_skin=0.0),
+        BodyPart(bag, 0.036, soft_skin=0.0),
+        BodyPart(flap, 0.030, soft_skin=0.0),
+        BodyPart(purse, 0.024, soft_skin=0.0),
+        BodyPart(buckle, 0.012, soft_skin=0.0),
     ]
 
 
-def _leg_parts() -> list[Part]:
+def _leg_parts() -> list[BodyPart]:
     bones = ("hips",)
     seat = Ellipsoid((0.04, 0.81, -0.005), (0.1, 0.085, 0.108), bones=bones, color=INDIGO)
-    hip, knee, ankle = (np.array(JOINTS[f"Left{n}"][1]) for n in ("UpLeg", "Leg", "Foot"))
+    hip, knee, ankle = (np.array(JOINT_POSITIONS[f"Left{n}"][1]) for n in ("UpLeg", "Leg", "Foot"))
     shin_end = ankle + 0.07 * (knee - ankle) / np.linalg.norm(knee - ankle)
-    leg = chain([hip, knee, shin_end], (0.086, 0.07, 0.07), ("LeftUpLeg", "LeftLeg"), INDIGO, 0.03)
+    leg = cone_chain(
+        [hip, knee, shin_end], (0.086, 0.07, 0.07), ("LeftUpLeg", "LeftLeg"), INDIGO, 0.03
+    )
     return [
-        Part(Union((seat, leg), 0.03), 0.0385, soft_skin=0.045),
-        *shoe(),
+        BodyPart(Union((seat, leg), 0.03), 0.0385, soft_skin=0.045),
+        *shoe_parts(),
     ]

@@ -63,10 +63,10 @@ def _fingers() -> dict[str, tuple[str, Vector]]:
     return joints
 
 
-JOINTS = _BODY | _fingers()
+JOINT_POSITIONS = _BODY | _fingers()
 """Parent and place of each joint [m]; the right side is the mirror image."""
 
 
 def build_human_skeleton() -> Skeleton:
     """Return the skeleton in its relaxed A-pose, facing +z."""
-    return build_skeleton(JOINTS)
+    return build_skeleton(JOINT_POSITIONS)

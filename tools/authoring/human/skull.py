@@ -4,19 +4,19 @@ from functools import cache
 
 import numpy as np
 
-from tools.authoring.modelling.sculpt import Paint
-from tools.authoring.modelling.shapes import Array, Cut, Ellipsoid, Shape, Union, rgb
+from tools.authoring.modelling.sculpt import PaintCoat
+from tools.authoring.modelling.shapes import Array, Difference, Ellipsoid, Shape, Union, linear_rgb
 from tools.authoring.modelling.surface import normals_of
 
-SKIN = rgb("#f4b98c")
-BLUSH = rgb("#ea7560")
-MAROON = rgb("#5a1420")
-EYE_WHITE = rgb("#f6f4f2")
+SKIN = linear_rgb("#f4b98c")
+BLUSH = linear_rgb("#ea7560")
+MAROON = linear_rgb("#5a1420")
+EYE_WHITE = linear_rgb("#f6f4f2")
 
-SOCKET = Ellipsoid((0.085, 1.452, 0.185), (0.060, 0.077, 0.046), (0.0, 0.35, 0.0))
+EYE_HOLLOW = Ellipsoid((0.085, 1.452, 0.185), (0.060, 0.077, 0.046), (0.0, 0.35, 0.0))
 """Where the left eye sits."""
 
-HOLLOW = Ellipsoid((0, 1.304, 0.18), (0.07, 0.036, 0.06))
+MOUTH_HOLLOW = Ellipsoid((0, 1.304, 0.18), (0.07, 0.036, 0.06))
 """Where the mouth sits."""
 
 _BONES = ("head",)
@@ -35,19 +35,19 @@ def head_shape() -> Shape:
     nose = Ellipsoid((0, 1.391, 0.206), (0.024, 0.0195, 0.023), bones=_BONES, color=SKIN)
     ear = Ellipsoid((0.209, 1.41, -0.012), (0.030, 0.052, 0.040), bones=_BONES, color=SKIN)
     whole = Union((Union((bare_skull(), nose), 0.022), ear, ear.mirrored()), 0.017)
-    return Cut(whole, Union((SOCKET, SOCKET.mirrored(), HOLLOW)), 0.008)
+    return Difference(whole, Union((EYE_HOLLOW, EYE_HOLLOW.mirrored(), MOUTH_HOLLOW)), 0.008)
 
 
-def complexion() -> tuple[Paint, ...]:
+def complexion() -> tuple[PaintCoat, ...]:
     """Return the red of the cheeks."""
     blush = Ellipsoid((0.125, 1.362, 0.15), (0.045, 0.03, 0.062))
-    return (Paint(Union((blush, blush.mirrored())), BLUSH, 0.035, 0.55),)
+    return (PaintCoat(Union((blush, blush.mirrored())), BLUSH, 0.035, 0.55),)
 
 
-def lining() -> tuple[Paint, ...]:
+def lining() -> tuple[PaintCoat, ...]:
     """Return the colours of the hollows behind the eyes and the lips, should they be seen."""
-    eyes = Union((SOCKET, SOCKET.mirrored()))
-    return (Paint(eyes, EYE_WHITE, 0.008), Paint(HOLLOW, MAROON, 0.008))
+    eyes = Union((EYE_HOLLOW, EYE_HOLLOW.mirrored()))
+    return (PaintCoat(eyes, EYE_WHITE, 0.008), PaintCoat(MOUTH_HOLLOW, MAROON, 0.008))
 
 
 def on_face(x: Array, y: Array) -> Array:

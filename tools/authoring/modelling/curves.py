@@ -20,7 +20,7 @@ def soft_limited(values: Array, limit: float) -> Array:
     return np.asarray(limit * np.tanh(values / limit))
 
 
-def phases(frames: int) -> Array:
+def loop_phases(frames: int) -> Array:
     """Return the phase of each frame, (frames,), 0 ≤ phase < 1."""
     return np.arange(frames) / frames
 
@@ -44,7 +44,7 @@ def keys(frames: int, *poses: tuple[float, float]) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         harmonic = (before + after) / (before / rise[:-1] + after / rise[1:])
     slope = np.concatenate([[0.0], np.where(rise[:-1] * rise[1:] > 0, harmonic, 0.0), [0.0]])
-    phase = phases(frames)
+    phase = loop_phases(frames)
     i = np.searchsorted(times, phase, side="right") - 1
     h = gap[i]
     u = (phase - times[i]) / h
@@ -60,10 +60,10 @@ def keys(frames: int, *poses: tuple[float, float]) -> Array:
 
 def wave(frames: int, cycles: int, at: float = 0.0) -> Array:
     """Return a sine of so many cycles a loop that passes zero upward at phase `at`, (frames,)."""
-    return np.asarray(np.sin(2 * np.pi * cycles * (phases(frames) - at)))
+    return np.asarray(np.sin(2 * np.pi * cycles * (loop_phases(frames) - at)))
 
 
-def follow(curve: Array, seconds: float, hertz: float, damping: float = 0.5) -> Array:
+def spring_follow(curve: Array, seconds: float, hertz: float, damping: float = 0.5) -> Array:
     """Return how a damped spring hangs behind a curve: late, and past it at every stop.
 
     The steady response to the repeating curve, in closed form over its Fourier series, so the
@@ -83,10 +83,10 @@ def follow(curve: Array, seconds: float, hertz: float, damping: float = 0.5) -> 
     return np.asarray(np.fft.irfft(spectrum * response.reshape(shape), len(curve), axis=0))
 
 
-def later(curve: Array, phase: float) -> Array:
+def delayed(curve: Array, phase: float) -> Array:
     """Return the curve so much of a cycle later, (frames, …)."""
     frames = len(curve)
-    at = phases(frames) - phase
+    at = loop_phases(frames) - phase
     low = np.floor(at * frames).astype(int)
     u = (at * frames - low).reshape((-1,) + (1,) * (curve.ndim - 1))
     return np.asarray(curve[low % frames] * (1 - u) + curve[(low + 1) % frames] * u)

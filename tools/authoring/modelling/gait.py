@@ -17,7 +17,7 @@ from tools.authoring.modelling.shapes import Array
 
 
 @dataclass(frozen=True)
-class Path:
+class GroundArc:
     """An arc over the ground, from the origin along +z."""
 
     speed: float
@@ -38,7 +38,7 @@ class Path:
 
 
 @dataclass(frozen=True)
-class Steps:
+class Footfalls:
     """How the feet meet the ground."""
 
     cycle: float
@@ -73,7 +73,7 @@ class Steps:
 
 
 @dataclass(frozen=True)
-class Foot:
+class FootDimensions:
     """Measures of a foot, seen from the ground under its ankle when it stands flat."""
 
     ankle: float
@@ -110,7 +110,9 @@ class FootMotion:
     """Whether it is planted, (frames,)."""
 
 
-def foot_motion(path: Path, steps: Steps, foot: Foot, side: float, phase: Array) -> FootMotion:
+def foot_motion(
+    path: GroundArc, steps: Footfalls, foot: FootDimensions, side: float, phase: Array
+) -> FootMotion:
     """Return how a foot moves over the cycle.
 
     Parameters
@@ -152,7 +154,7 @@ def foot_motion(path: Path, steps: Steps, foot: Foot, side: float, phase: Array)
 
 
 def _planted(
-    path: Path, steps: Steps, foot: Foot, side: float, since: Array
+    path: GroundArc, steps: Footfalls, foot: FootDimensions, side: float, since: Array
 ) -> tuple[Array, Array, Array, Array]:
     """Return ankle, yaw, pitch and toe bend of a standing foot, seen from the moving root."""
     duration = steps.stance * steps.cycle

@@ -7,7 +7,7 @@ from characters.skeleton import rotations
 from tools.authoring.modelling.shapes import Array
 
 
-def bend(start: Array, end: Array, pole: Array, upper: float, lower: float) -> Array:
+def hinge_position(start: Array, end: Array, pole: Array, upper: float, lower: float) -> Array:
     """Return where the hinge is, (…, 3), by the law of cosines.
 
     Parameters
@@ -31,7 +31,7 @@ def bend(start: Array, end: Array, pole: Array, upper: float, lower: float) -> A
     return np.asarray(start + along * line + out * across)
 
 
-def aim(rest_bone: ArrayLike, rest_hinge: ArrayLike, bone: Array, hinge: Array) -> Array:
+def aim_rotation(rest_bone: ArrayLike, rest_hinge: ArrayLike, bone: Array, hinge: Array) -> Array:
     """Return the rotation (…, 4) that takes a bone and its hinge axis from rest to a pose.
 
     Only the part of a hinge axis across its bone counts.

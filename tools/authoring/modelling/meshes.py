@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from characters.model.mesh import Material, Mesh, Morph
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.shapes import Array, other_side
+from tools.authoring.modelling.shapes import Array, mirrored_name
 
 Expression = TypeVar("Expression")
 
@@ -116,7 +116,7 @@ def mirrored_mesh(mesh: Mesh, skeleton: Skeleton) -> Mesh:
 
     Morph targets are not mirrored.
     """
-    other = np.array([skeleton.names.index(other_side(name)) for name in skeleton.names])
+    other = np.array([skeleton.names.index(mirrored_name(name)) for name in skeleton.names])
     flip = np.array([-1.0, 1.0, 1.0], np.float32)
     return replace(
         mesh,

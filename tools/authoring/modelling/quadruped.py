@@ -8,19 +8,19 @@ import numpy as np
 from characters.motion.clip import Clip
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose, Skeleton
-from tools.authoring.modelling.curves import follow
-from tools.authoring.modelling.ik import aim, bend
+from tools.authoring.modelling.curves import spring_follow
+from tools.authoring.modelling.ik import aim_rotation, hinge_position
 from tools.authoring.modelling.shapes import Array
 
 DEGREE = np.pi / 180
-RATE = 30.0
+FRAME_RATE_HZ = 30.0
 """Frames a second [Hz]."""
-NEARLY_STRAIGHT = 0.985
+MAX_LEG_EXTENSION = 0.985
 """Reach of a leg over the length of its bones from which on it stretches instead."""
 
 
 @dataclass
-class Performance:
+class AnimationTracks:
     """What an animator says: how joints turn and move, and where the feet are."""
 
     frames: int
@@ -44,7 +44,7 @@ class Performance:
     @property
     def seconds(self) -> float:
         """Duration of the loop [s]."""
-        return self.frames / RATE
+        return self.frames / FRAME_RATE_HZ
 
     def turn(
         self, joint: str, up: Array | float = 0, left: Array | float = 0, tilt: Array | float = 0
@@ -77,7 +77,7 @@ class Performance:
         return np.stack([np.broadcast_to(value, self.frames) for value in values], axis=-1)
 
 
-def poses(performance: Performance, bound: Skeleton, feet: Sequence[str]) -> Pose:
+def solve_poses(anim: AnimationTracks, bound: Skeleton, feet: Sequence[str]) -> Pose:
     """Return the poses of a performance, (frames, joints, …); the legs follow from the feet.
 
     Parameters
@@ -86,23 +86,23 @@ def poses(performance: Performance, bound: Skeleton, feet: Sequence[str]) -> Pos
     bound : the skeleton at rest, its joints unturned but for those of the face
     feet : the last joint of every leg, which has two bones more above it
     """
-    frames, rest = performance.frames, bound.rest
+    frames, rest = anim.frames, bound.rest
     translations = np.tile(rest.translations, (frames, 1, 1))
     turns = np.zeros((frames, len(bound), 3))
     still = np.ones((len(bound), 3)) if rest.scales is None else rest.scales
     scales = np.tile(still, (frames, 1, 1))
-    for name, move in performance.moves.items():
+    for name, move in anim.moves.items():
         translations[:, bound.index(name)] += move
-    for name, turn in performance.turns.items():
+    for name, turn in anim.turns.items():
         turns[:, bound.index(name)] = turn
-    for name, scale in performance.scales.items():
+    for name, scale in anim.scales.items():
         scales[:, bound.index(name)] = np.reshape(scale, (frames, -1))
     # Yaw, then pitch, then roll; nose up is a negative turn about x.
     turned = rotations.from_euler("yxz", turns[..., [1, 0, 2]] * np.array([1.0, -1.0, 1.0]))
     local = rotations.multiply(rest.rotations, turned)
     body = Pose(translations, local).globals(bound)
     for foot in feet:
-        steps = performance.feet.get(foot, np.zeros((frames, 4)))
+        steps = anim.feet.get(foot, np.zeros((frames, 4)))
         stretch = _place_leg(bound.index(foot), steps, body, local, bound)
         knee = bound.parents[bound.index(foot)]
         translations[:, [knee, bound.index(foot)]] *= stretch[:, None]
@@ -123,13 +123,13 @@ def _place_leg(ankle: int, offset: Array, body: Array, local: Array, bound: Skel
     thigh, shin = rest[knee] - rest[hip], rest[ankle] - rest[knee]
     upper, lower = float(np.linalg.norm(thigh)), float(np.linalg.norm(shin))
     reach = np.linalg.norm(target - start, axis=1, keepdims=True)
-    stretch = np.maximum(1.0, reach / (NEARLY_STRAIGHT * (upper + lower)))
+    stretch = np.maximum(1.0, reach / (MAX_LEG_EXTENSION * (upper + lower)))
     straight = (thigh + shin) / np.linalg.norm(thigh + shin)
     pole = rotations.rotate(parent, thigh - straight * float(straight @ thigh))
-    bent = stretch * bend(start / stretch, target / stretch, pole, upper, lower)
+    bent = stretch * hinge_position(start / stretch, target / stretch, pole, upper, lower)
     hinge, rest_hinge = np.cross(target - start, pole), np.cross(thigh + shin, thigh)
-    thigh_turn = aim(thigh, rest_hinge, bent - start, hinge)
-    shin_turn = aim(shin, rest_hinge, target - bent, hinge)
+    thigh_turn = aim_rotation(thigh, rest_hinge, bent - start, hinge)
+    shin_turn = aim_rotation(shin, rest_hinge, target - bent, hinge)
     sole = rotations.about("x", -offset[:, 3])
     local[:, hip] = rotations.multiply(rotations.conjugate(parent), thigh_turn)
     local[:, knee] = rotations.multiply(rotations.conjugate(thigh_turn), shin_turn)
@@ -137,9 +137,9 @@ def _place_leg(ankle: int, offset: Array, body: Array, local: Array, bound: Skel
     return np.asarray(stretch)
 
 
-def clip(
+def loop_clip(
     name: str,
-    performance: Performance,
+    anim: AnimationTracks,
     bound: Skeleton,
     feet: Sequence[str],
     morphs: Sequence[str] = (),
@@ -150,18 +150,18 @@ def clip(
     ----------
     morphs : names of the character's morphs, if the clip is to set them
     """
-    pose = poses(performance, bound, feet)
-    again = np.append(np.arange(performance.frames), 0)
+    pose = solve_poses(anim, bound, feet)
+    again = np.append(np.arange(anim.frames), 0)
     scales = None if pose.scales is None else pose.scales[again]
     turns = rotations.continuous(pose.rotations[again])
-    off = np.zeros(performance.frames)
-    shown = [performance.morphs.get(morph, off)[again] for morph in morphs]
+    off = np.zeros(anim.frames)
+    shown = [anim.morphs.get(morph, off)[again] for morph in morphs]
     face = np.stack(shown, axis=1) if morphs else None
-    return Clip(name, RATE, Pose(pose.translations[again], turns, scales, face))
+    return Clip(name, FRAME_RATE_HZ, Pose(pose.translations[again], turns, scales, face))
 
 
 def swing_tail(
-    act: Performance,
+    anim: AnimationTracks,
     joints: Sequence[str],
     up: Array,
     left: Array,
@@ -185,6 +185,6 @@ def swing_tail(
         share = 1 + (tip - 1) * number / (len(joints) - 1)
         if number:
             natural = hertz / (drag * (1 + 0.12 * number))
-            up = follow(up, act.seconds, natural, damping[0])
-            left = follow(left, act.seconds, natural, damping[1])
-        act.turn(joint, up=-share * up, left=-share * left)
+            up = spring_follow(up, anim.seconds, natural, damping[0])
+            left = spring_follow(left, anim.seconds, natural, damping[1])
+        anim.turn(joint, up=-share * up, left=-share * left)

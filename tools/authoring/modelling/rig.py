@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose, Skeleton
-from tools.authoring.modelling.ik import aim, bend
-from tools.authoring.modelling.shapes import Array, Vector, other_side
+from tools.authoring.modelling.ik import aim_rotation, hinge_position
+from tools.authoring.modelling.shapes import Array, Vector, mirrored_name
 
 
 def build_skeleton(joints: Mapping[str, tuple[str, Vector]]) -> Skeleton:
@@ -26,8 +26,8 @@ def build_skeleton(joints: Mapping[str, tuple[str, Vector]]) -> Skeleton:
     """
     places = dict(joints)
     for name, (parent, (x, y, z)) in joints.items():
-        if name != other_side(name):
-            places[other_side(name)] = (other_side(parent), (-x, y, z))
+        if name != mirrored_name(name):
+            places[mirrored_name(name)] = (mirrored_name(parent), (-x, y, z))
     names = tuple(places)
     parents = tuple(names.index(parent) if parent else -1 for parent, _ in places.values())
     world = np.array([place for _, place in places.values()])
@@ -35,19 +35,19 @@ def build_skeleton(joints: Mapping[str, tuple[str, Vector]]) -> Skeleton:
     return Skeleton(names, parents, Pose(local, np.tile(rotations.IDENTITY, (len(names), 1))))
 
 
-def joint_places(skeleton: Skeleton) -> dict[str, Array]:
+def rest_positions(skeleton: Skeleton) -> dict[str, Array]:
     """Return where each joint rests in the character frame, (3,) each [m]."""
     places = skeleton.rest.globals(skeleton)[:, :3, 3]
     return dict(zip(skeleton.names, places, strict=True))
 
 
-class Puppet:
+class PosedRig:
     """A skeleton in `frames` poses at once, moved joint by joint in the frame of its root."""
 
     def __init__(self, skeleton: Skeleton, frames: int) -> None:
         """Start in the rest pose."""
         self.skeleton = skeleton
-        self._rest = joint_places(skeleton)
+        self._rest = rest_positions(skeleton)
         self._translations = np.tile(skeleton.rest.translations, (frames, 1, 1))
         self._rotations = np.tile(skeleton.rest.rotations, (frames, 1, 1))
 
@@ -128,10 +128,10 @@ class Puppet:
         upper, lower = second - first, third - second
         start = self.places(names[0])
         lengths = float(np.linalg.norm(upper)), float(np.linalg.norm(lower))
-        middle = bend(start, end, pole, *lengths)
+        middle = hinge_position(start, end, pole, *lengths)
         rest_hinge, hinge = np.cross(rest_pole, third - first), np.cross(pole, end - start)
-        self.face(names[0], aim(upper, rest_hinge, middle - start, hinge))
-        self.face(names[1], aim(lower, rest_hinge, end - middle, hinge))
+        self.face(names[0], aim_rotation(upper, rest_hinge, middle - start, hinge))
+        self.face(names[1], aim_rotation(lower, rest_hinge, end - middle, hinge))
 
     def leg_extension(self, side: str, ankle: Array) -> Array:
         """Return the distance from hip to ankle over the length of the leg, (frames,)."""
@@ -143,7 +143,7 @@ class Puppet:
 
 def mirrored(pose: Pose, skeleton: Skeleton) -> Pose:
     """Return poses (…, joints, …) reflected in the plane x = 0: left becomes right."""
-    swap = [skeleton.names.index(other_side(name)) for name in skeleton.names]
+    swap = [skeleton.names.index(mirrored_name(name)) for name in skeleton.names]
     translations = pose.translations[..., swap, :] * [-1.0, 1.0, 1.0]
     return Pose(translations, pose.rotations[..., swap, :] * [1.0, -1.0, -1.0, 1.0])
 

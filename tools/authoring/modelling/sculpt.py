@@ -15,7 +15,7 @@ from tools.authoring.modelling.surface import neighbour_mean, normals_of, polygo
 
 
 @dataclass(frozen=True)
-class Paint:
+class PaintCoat:
     """A coat of colour on everything inside a volume: a belly, a cheek, a stripe."""
 
     shape: Shape
@@ -32,7 +32,7 @@ class Paint:
 
 
 @dataclass(frozen=True)
-class Part:
+class BodyPart:
     """One piece with one skin: a jacket, a head, a body."""
 
     shape: Shape
@@ -41,7 +41,7 @@ class Part:
     cell: float
     """Edge of a triangle, about [m]."""
 
-    paints: tuple[Paint, ...] = ()
+    paints: tuple[PaintCoat, ...] = ()
     """Coats over the colours of the solids, in order."""
 
     soft_skin: float = 0.03
@@ -52,7 +52,7 @@ class Part:
 
 
 def sculpt(
-    name: str, parts: Sequence[Part], skeleton: Skeleton, material: Material | None = None
+    name: str, parts: Sequence[BodyPart], skeleton: Skeleton, material: Material | None = None
 ) -> Mesh:
     """Return one mesh of all parts, bound to the rest pose of the skeleton.
 
@@ -62,7 +62,7 @@ def sculpt(
     return join(name, [_sculpt_part(part, skeleton) for part in parts], material)
 
 
-def _sculpt_part(part: Part, skeleton: Skeleton) -> Mesh:
+def _sculpt_part(part: BodyPart, skeleton: Skeleton) -> Mesh:
     field = part.shape.distance
     low, high = _bounds(part.shape, skeleton, part.cell)
     points, triangles = polygonise(field, low, high, part.cell)
@@ -126,7 +126,7 @@ def _bone_distance(points: Array, bone: int, joints: Array, skeleton: Skeleton) 
     return np.asarray(best)
 
 
-def _painted(points: Array, solids: Sequence[Solid], distances: Array, part: Part) -> Array:
+def _painted(points: Array, solids: Sequence[Solid], distances: Array, part: BodyPart) -> Array:
     """Return the linear RGB of every vertex, (n, 3)."""
     far = distances - distances.min(axis=1, keepdims=True)
     share = np.exp(-far / max(part.soft_color, 1e-6))
@@ -134,7 +134,7 @@ def _painted(points: Array, solids: Sequence[Solid], distances: Array, part: Par
     return np.asarray(share @ np.array([solid.color for solid in solids]))
 
 
-def coated(points: Array, colors: Array, paints: Sequence[Paint]) -> Array:
+def coated(points: Array, colors: Array, paints: Sequence[PaintCoat]) -> Array:
     """Return linear RGB (n, 3) of points (n, 3) under coats of paint."""
     for paint in paints:
         depth = 0.5 - paint.shape.distance(points) / max(paint.soft, 1e-6)

@@ -18,7 +18,7 @@ Vector = tuple[float, float, float]
 WHITE = (1.0, 1.0, 1.0)
 
 
-def rgb(code: str) -> Vector:
+def linear_rgb(code: str) -> Vector:
     """Return the linear RGB of an sRGB code such as ``"#ff8800"`` (IEC 61966-2-1).
 
     >>> rgb("#ffffff")
@@ -30,7 +30,7 @@ def rgb(code: str) -> Vector:
     return r, g, b
 
 
-def other_side(name: str) -> str:
+def mirrored_name(name: str) -> str:
     """Return the name of a joint's mirror image.
 
     >>> other_side("LeftArm"), other_side("RightFoot"), other_side("hips")
@@ -77,11 +77,11 @@ class Solid:
         yield self
 
     def _other_bones(self) -> tuple[str, ...]:
-        return tuple(other_side(bone) for bone in self.bones)
+        return tuple(mirrored_name(bone) for bone in self.bones)
 
 
 @dataclass(frozen=True)
-class Cone(Solid):
+class RoundCone(Solid):
     """A round cone: two spheres and everything between them; a capsule if the radii agree."""
 
     a: Vector
@@ -122,7 +122,7 @@ class Cone(Solid):
         result = np.where(np.sign(z) * a2 * z2 > k, end_b, np.where(at_a, end_a, side))
         return _scaled(result, squash)
 
-    def mirrored(self) -> "Cone":
+    def mirrored(self) -> "RoundCone":
         """Return its image in the plane x = 0."""
         return replace(self, a=_flip(self.a), b=_flip(self.b), bones=self._other_bones())
 
@@ -209,7 +209,7 @@ class Union:
 
 
 @dataclass(frozen=True)
-class Cut:
+class Difference:
     """A shape without what lies inside another."""
 
     body: Shape
@@ -230,12 +230,12 @@ class Cut:
         """Yield the volumes of the body."""
         yield from self.body.solids()
 
-    def mirrored(self) -> "Cut":
+    def mirrored(self) -> "Difference":
         """Return its image in the plane x = 0."""
         return replace(self, body=self.body.mirrored(), tool=self.tool.mirrored())
 
 
-def chain(
+def cone_chain(
     points: ArrayLike,
     radii: tuple[float, ...],
     bones: tuple[str, ...],
@@ -253,7 +253,9 @@ def chain(
     """
     line = np.asarray(points, float).tolist()
     cones = [
-        Cone((a[0], a[1], a[2]), (b[0], b[1], b[2]), ra, rb, squash, bones=(bone,), color=color)
+        RoundCone(
+            (a[0], a[1], a[2]), (b[0], b[1], b[2]), ra, rb, squash, bones=(bone,), color=color
+        )
         for a, b, ra, rb, bone in zip(line, line[1:], radii, radii[1:], bones, strict=False)
     ]
     return Union(tuple(cones), blend)

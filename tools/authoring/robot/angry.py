@@ -1,15 +1,15 @@
 """The robot is angry: it glares and snaps, stomps, and at its worst rears up and whips its tail."""
 
-from tools.authoring.modelling.curves import keys, later, wave
-from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance
-from tools.authoring.robot.motion import degrees, face_ahead, neck, raised, tail
-from tools.authoring.robot.rig import lids, light, mouth
+from tools.authoring.modelling.curves import delayed, keys, wave
+from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, AnimationTracks
+from tools.authoring.robot.motion import face_ahead, keys_deg, neck, stomp_curve, tail
+from tools.authoring.robot.rig import set_lamps, set_lids, set_mouth
 
-SECONDS = 2.0
+DURATION_S = 2.0
 """Duration of one fit, from glower to glower [s]."""
 
 
-def angry(level: int) -> Performance:
+def angry(level: int) -> AnimationTracks:
     """Glower from below, draw back, snap, and shake the head.
 
     Parameters
@@ -17,32 +17,32 @@ def angry(level: int) -> Performance:
     level : 0 with the head alone, 1 with the legs too, 2 with all of it; the three share every
         accent, so that they blend at equal phase
     """
-    act = Performance(round(SECONDS * RATE))
-    n = act.frames
-    light(act, "angry")
-    _glower(act, level)
+    anim = AnimationTracks(round(DURATION_S * FRAME_RATE_HZ))
+    n = anim.frames
+    set_lamps(anim, "angry")
+    _glower(anim, level)
     if level >= 1:
-        _stalk(act, rear=level == 2)
+        _stalk(anim, rear=level == 2)
     if level == 2:
-        _whip(act)
+        _whip(anim)
     else:
-        stiff = degrees(n, (0.0, -4), (0.20, 2 + 6 * level), (0.31, -9), (0.50, -5))
-        tail(act, stiff, (2 + 5 * level) * DEGREE * wave(n, 4), 1.2, 0.6)
+        stiff = keys_deg(n, (0.0, -4), (0.20, 2 + 6 * level), (0.31, -9), (0.50, -5))
+        tail(anim, stiff, (2 + 5 * level) * DEGREE * wave(n, 4), 1.2, 0.6)
     # The chin is drawn in for the snap and thrown out with it.
-    face_ahead(act, degrees(n, (0.0, -8), (0.20, -14), (0.30, 6), (0.40, -4), (0.74, -8)))
-    return act
+    face_ahead(anim, keys_deg(n, (0.0, -8), (0.20, -14), (0.30, 6), (0.40, -4), (0.74, -8)))
+    return anim
 
 
-def _glower(act: Performance, level: int) -> None:
+def _glower(anim: AnimationTracks, level: int) -> None:
     """Keep the head low with the eyes on the other one; snap, then shake it with bared jaw."""
-    n = act.frames
+    n = anim.frames
     big = (1.0, 0.95, 0.9)[level]  # the lunge of the body does the rest
-    bend = degrees(n, (0.0, -26), (0.20, -6 * big), (0.30, -40 * big), (0.38, -33), (0.74, -30))
-    neck(act, bend)
+    bend = keys_deg(n, (0.0, -26), (0.20, -6 * big), (0.30, -40 * big), (0.38, -33), (0.74, -30))
+    neck(anim, bend)
     raging = keys(n, (0.34, 0), (0.42, 1), (0.66, 1), (0.78, 0), (0.97, 0))
     shake = raging * wave(n, 6, 0.34)
-    neck(act, 0 * shake, 9 * DEGREE * later(shake, 0.01))
-    act.turn("head", left=12 * DEGREE * shake, tilt=5 * DEGREE * raging * wave(n, 6, 0.37))
+    neck(anim, 0 * shake, 9 * DEGREE * delayed(shake, 0.01))
+    anim.turn("head", left=12 * DEGREE * shake, tilt=5 * DEGREE * raging * wave(n, 6, 0.37))
     snap = keys(
         n,
         (0.0, 0.0),
@@ -53,14 +53,14 @@ def _glower(act: Performance, level: int) -> None:
         (0.66, 0.26),
         (0.80, 0.0),
     )
-    mouth(act, (0.75, 0.85, 1.0)[level] * snap, -1.0)
-    lids(act, 0.0, 0.30, keys(n, (0.0, 0.95), (0.22, 1.12), (0.36, 1.0), (0.80, 0.95)))
+    set_mouth(anim, (0.75, 0.85, 1.0)[level] * snap, -1.0)
+    set_lids(anim, 0.0, 0.30, keys(n, (0.0, 0.95), (0.22, 1.12), (0.36, 1.0), (0.80, 0.95)))
 
 
-def _stalk(act: Performance, rear: bool) -> None:
+def _stalk(anim: AnimationTracks, rear: bool) -> None:
     """Crouch, draw back, at full intensity rear up, lunge, and stomp by turns."""
-    n = act.frames
-    act.move(
+    n = anim.frames
+    anim.move(
         "hips",
         y=keys(
             n,
@@ -83,26 +83,26 @@ def _stalk(act: Performance, rear: bool) -> None:
             (0.92, -0.002),
         ),
     )
-    pitch = degrees(n, (0.0, -6), (0.20, 3 + 14 * rear), (0.30, -10), (0.42, -6), (0.76, -6))
-    act.turn("hips", up=pitch)
-    act.turn("chest", up=0.3 * later(pitch, 0.01))
+    pitch = keys_deg(n, (0.0, -6), (0.20, 3 + 14 * rear), (0.30, -10), (0.42, -6), (0.76, -6))
+    anim.turn("hips", up=pitch)
+    anim.turn("chest", up=0.3 * delayed(pitch, 0.01))
     first = (0.06, 0.20, 0.30)
     both = [first, (0.60, 0.645, 0.70)] if rear else [(0.60, 0.645, 0.70)]
     lean = 0.0 * pitch
     for side, sign, times in (("Left", 1.0, both), ("Right", -1.0, [first, (0.42, 0.47, 0.52)])):
-        up = sum((raised(n, *each) for each in times), start=0.0 * pitch)
+        up = sum((stomp_curve(n, *each) for each in times), start=0.0 * pitch)
         high = 0.034 + 0.014 * rear
-        act.step(f"{side}FrontFoot", y=high * up, z=0.016 * up, toes=0.25 * up)
+        anim.step(f"{side}FrontFoot", y=high * up, z=0.016 * up, toes=0.25 * up)
         lean = lean + sign * up
-    act.move("hips", x=-0.005 * lean)
-    act.turn("hips", tilt=2.5 * DEGREE * lean)
+    anim.move("hips", x=-0.005 * lean)
+    anim.turn("hips", tilt=2.5 * DEGREE * lean)
 
 
-def _whip(act: Performance) -> None:
+def _whip(anim: AnimationTracks) -> None:
     """Raise the tail like a scorpion, slam it down with the snap, and lash from side to side."""
-    n = act.frames
-    up = degrees(n, (0.0, 14), (0.20, 36), (0.30, -8), (0.42, 30), (0.74, 26), (0.88, 14))
-    left = degrees(
+    n = anim.frames
+    up = keys_deg(n, (0.0, 14), (0.20, 36), (0.30, -8), (0.42, 30), (0.74, 26), (0.88, 14))
+    left = keys_deg(
         n,
         (0.0, 0),
         (0.10, -6),
@@ -113,4 +113,4 @@ def _whip(act: Performance) -> None:
         (0.75, -24),
         (0.87, 9),
     )
-    tail(act, up, left, 1.1, 0.5)
+    tail(anim, up, left, 1.1, 0.5)

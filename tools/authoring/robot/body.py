@@ -7,25 +7,35 @@ import numpy as np
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.lathe import frame_toward, lathe
-from tools.authoring.modelling.rig import joint_places
-from tools.authoring.modelling.sculpt import Part, sculpt
-from tools.authoring.modelling.shapes import Array, Cut, Ellipsoid, HalfSpace, Vector
+from tools.authoring.modelling.rig import rest_positions
+from tools.authoring.modelling.sculpt import BodyPart, sculpt
+from tools.authoring.modelling.shapes import Array, Difference, Ellipsoid, HalfSpace, Vector
 from tools.authoring.modelling.surface import normals_of, project
 from tools.authoring.modelling.tube import tube
-from tools.authoring.robot.parts import PANEL, RUBBER, SHELL, TRIM, cup, hub, lens, panel, socket
-from tools.authoring.robot.rig import FEET, NECK, TAIL, TAIL_TIP
+from tools.authoring.robot.parts import (
+    PANEL,
+    RUBBER,
+    SHELL,
+    TRIM,
+    cup,
+    lens,
+    panel,
+    servo_cap,
+    socket,
+)
+from tools.authoring.robot.rig import FEET, NECK, TAIL, TAIL_TIP_M
 
-FRONT = Ellipsoid(
+FRONT_SHELL = Ellipsoid(
     (0.0, 0.122, 0.020), (0.0560, 0.0520, 0.0600), power=2.25, bones=("chest",), color=SHELL
 )
-REAR = Ellipsoid(
+REAR_SHELL = Ellipsoid(
     (0.0, 0.117, -0.050), (0.0620, 0.0560, 0.0630), power=2.25, bones=("hips",), color=SHELL
 )
-WAIST = -0.014, 0.0045
+WAIST_GAP_M = -0.014, 0.0045
 """Where the two shells meet, and half the gap between them [m]."""
-CHEST_LAMP = 0.0175
+CHEST_LAMP_RADIUS_M = 0.0175
 """Radius of the lamp on the chest [m]."""
-CELL = 0.0118
+CELL_M = 0.0118
 """Edge of a triangle of the trunk [m]."""
 
 
@@ -36,12 +46,12 @@ def body(bound: Skeleton) -> list[Mesh]:
 
 def _trunk(bound: Skeleton) -> list[Mesh]:
     """Return the two shells with a plate on the back and on the flanks of each."""
-    middle, gap = WAIST
-    front = Cut(FRONT, HalfSpace((0.0, 0.0, middle + gap), (0.0, 0.0, 1.0)), 0.006)
-    rear = Cut(REAR, HalfSpace((0.0, 0.0, middle - gap), (0.0, 0.0, -1.0)), 0.006)
-    shells = sculpt("", [Part(each, CELL, soft_skin=0.0) for each in (front, rear)], bound)
+    middle, gap = WAIST_GAP_M
+    front = Difference(FRONT_SHELL, HalfSpace((0.0, 0.0, middle + gap), (0.0, 0.0, 1.0)), 0.006)
+    rear = Difference(REAR_SHELL, HalfSpace((0.0, 0.0, middle - gap), (0.0, 0.0, -1.0)), 0.006)
+    shells = sculpt("", [BodyPart(each, CELL_M, soft_skin=0.0) for each in (front, rear)], bound)
     plates = []
-    for solid, forward, long in ((FRONT, 0.020, 0.023), (REAR, -0.053, 0.027)):
+    for solid, forward, long in ((FRONT_SHELL, 0.020, 0.023), (REAR_SHELL, -0.053, 0.027)):
         back = _on(solid, (0.0, 0.2, forward), (0.0, 0.0, 1.0))
         plates.append(panel(solid, back, (0.028, long), PANEL, solid.bones[0], bound))
     return [shells, *plates]
@@ -61,13 +71,13 @@ def _on(solid: Ellipsoid, near: Vector, along: Vector) -> Array:
 
 def _cores(bound: Skeleton) -> list[Mesh]:
     """Return the dark rubber that is seen between shells, cups and head."""
-    at = joint_places(bound)
+    at = rest_positions(bound)
     waist = [[0.0, 0.118, -0.046], [0.0, 0.119, -0.030], [0.0, 0.119, -0.014]]
     waist += [[0.0, 0.120, 0.004], [0.0, 0.121, 0.022]]
     spine = ("hips", "hips", "spine1", "chest", "chest")
     neck = [at["neck1"] - [0, 0.018, 0.016], *(at[name] for name in NECK), at["head"]]
     neck += [at["head"] + [0, 0.015, 0.012]]
-    tail = [at["tail1"] + [0, 0.006, 0.03], *(at[name] for name in TAIL), np.array(TAIL_TIP)]
+    tail = [at["tail1"] + [0, 0.006, 0.03], *(at[name] for name in TAIL), np.array(TAIL_TIP_M)]
     return [
         tube(waist, [0.044, 0.0505, 0.0515, 0.0500, 0.042], RUBBER, spine, bound, 18),
         tube(neck, 0.0245, RUBBER, ("chest", *NECK, "head", "head"), bound, 10),
@@ -84,7 +94,7 @@ def _cores(bound: Skeleton) -> list[Mesh]:
 
 def _neck(bound: Skeleton) -> list[Mesh]:
     """Return three cups, wider at the foot of the neck."""
-    at = joint_places(bound)
+    at = rest_positions(bound)
     ends = [*(at[name] for name in NECK), at["head"]]
     radii = ((0.0340, 0.0315), (0.0312, 0.0298), (0.0298, 0.0292))
     cups = []
@@ -95,8 +105,8 @@ def _neck(bound: Skeleton) -> list[Mesh]:
 
 def _tail(bound: Skeleton) -> list[Mesh]:
     """Return five cups, ever thinner, by turns light and blue, and the socket of the last lamp."""
-    at = joint_places(bound)
-    ends = [*(at[name] for name in TAIL), np.array(TAIL_TIP)]
+    at = rest_positions(bound)
+    ends = [*(at[name] for name in TAIL), np.array(TAIL_TIP_M)]
     radii = (0.0375, 0.0315, 0.0258, 0.0205, 0.0158, 0.0122)
     cups = []
     for number, ((a, b), name) in enumerate(zip(pairwise(ends), TAIL, strict=True)):
@@ -109,7 +119,7 @@ def _tail(bound: Skeleton) -> list[Mesh]:
 
 def _legs(bound: Skeleton) -> list[Mesh]:
     """Return the four legs: two cups, a dark knee, a foot with toes, and the cap of a servo."""
-    at, pieces = joint_places(bound), []
+    at, pieces = rest_positions(bound), []
     for foot in FEET:
         side, which = (1.0 if foot.startswith("Left") else -1.0), foot[:-4]
         hip, knee = f"{which}UpperLeg", f"{which}LowerLeg"
@@ -121,7 +131,7 @@ def _legs(bound: Skeleton) -> list[Mesh]:
             cup(low, top, (wide - 0.004, wide), SHELL, hip, bound, dome=True),
             _ball(at[knee], wide - 0.0065, knee, bound),
             cup(at[foot] + [0, 0.004, 0], shin, (wide - 0.0030, wide - 0.0050), PANEL, knee, bound),
-            hub(servo, 0.0150, hip, bound),
+            servo_cap(servo, 0.0150, hip, bound),
             *_foot(at[foot] * [1, 0, 1] + [0, 0, 0.008], wide, foot, bound),
         ]
     return pieces
@@ -152,28 +162,28 @@ def _foot(place: Array, wide: float, joint: str, bound: Skeleton) -> list[Mesh]:
 def sockets(bound: Skeleton) -> list[Mesh]:
     """Return the lamps of chest and tail as they are when they are off."""
     return [
-        socket(_chest_lamp(), CHEST_LAMP, "chest", bound),
+        socket(_chest_lamp(), CHEST_LAMP_RADIUS_M, "chest", bound),
         socket(_tail_lamp(), 0.0140, TAIL[-1], bound),
     ]
 
 
-def lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
+def lit_lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
     """Return the lamps of chest and tail as they are when they are on."""
     angle = np.radians([180, 140, 100, 60, 30, 0])
     bulb = 0.0168 * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     place = _tail_lamp()
     place[:3, 3] += 0.0075 * place[:3, 2]
     return [
-        lens(_chest_lamp(), CHEST_LAMP, color, f"chest_{mood}", bound),
+        lens(_chest_lamp(), CHEST_LAMP_RADIUS_M, color, f"chest_{mood}", bound),
         lathe(bulb, [color] * 5, place, f"tail_{mood}", bound, 14),
     ]
 
 
 def _chest_lamp() -> Array:
     near = np.array([[0.0, 0.107, 0.085]])
-    place = project(FRONT.distance, near, 0.05, 8)
-    return frame_toward(normals_of(FRONT.distance, place, 0.004)[0], place[0])
+    place = project(FRONT_SHELL.distance, near, 0.05, 8)
+    return frame_toward(normals_of(FRONT_SHELL.distance, place, 0.004)[0], place[0])
 
 
 def _tail_lamp() -> Array:
-    return frame_toward([0.0, 0.42, -1.0], np.array(TAIL_TIP))
+    return frame_toward([0.0, 0.42, -1.0], np.array(TAIL_TIP_M))

@@ -8,48 +8,48 @@ import numpy as np
 from characters.model.character import skin
 from characters.model.mesh import Mesh, Morph
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.quadruped import Performance, poses
-from tools.authoring.robot.rig import lids, mouth
+from tools.authoring.modelling.quadruped import AnimationTracks, solve_poses
+from tools.authoring.robot.rig import set_lids, set_mouth
 
-STILL = 2e-6
+MIN_DISPLACEMENT_M = 2e-6
 """A vertex that is moved less is not in a morph [m]."""
 
 
-def _surprised(face: Performance) -> None:
-    lids(face, -0.16)
-    mouth(face, 0.62, -0.35, 0.8)
+def _surprised(face: AnimationTracks) -> None:
+    set_lids(face, -0.16)
+    set_mouth(face, 0.62, -0.35, 0.8)
 
 
-def _relaxed(face: Performance) -> None:
-    lids(face, 0.45, 0.2)
-    mouth(face, 0.0, 0.45)
+def _relaxed(face: AnimationTracks) -> None:
+    set_lids(face, 0.45, 0.2)
+    set_mouth(face, 0.0, 0.45)
 
 
-def _happy(face: Performance) -> None:
-    lids(face, 0.0, 1.0)
-    mouth(face, 0.45, 1.0)
+def _happy(face: AnimationTracks) -> None:
+    set_lids(face, 0.0, 1.0)
+    set_mouth(face, 0.45, 1.0)
 
 
-def _angry(face: Performance) -> None:
-    lids(face, 0.0, 0.3, 1.0)
-    mouth(face, 0.12, -1.0)
+def _angry(face: AnimationTracks) -> None:
+    set_lids(face, 0.0, 0.3, 1.0)
+    set_mouth(face, 0.12, -1.0)
 
 
-def _sad(face: Performance) -> None:
-    lids(face, 0.0, 0.15, -0.75)
-    mouth(face, 0.0, -0.9)
+def _sad(face: AnimationTracks) -> None:
+    set_lids(face, 0.0, 0.15, -0.75)
+    set_mouth(face, 0.0, -0.9)
 
 
-EXPRESSIONS: dict[str, Callable[[Performance], None]] = {
-    "blink": lambda face: lids(face, 1.0),
-    "blinkLeft": lambda face: lids(face, 1.0, sides=("Left",)),
-    "blinkRight": lambda face: lids(face, 1.0, sides=("Right",)),
+EXPRESSIONS: dict[str, Callable[[AnimationTracks], None]] = {
+    "blink": lambda face: set_lids(face, 1.0),
+    "blinkLeft": lambda face: set_lids(face, 1.0, sides=("Left",)),
+    "blinkRight": lambda face: set_lids(face, 1.0, sides=("Right",)),
     "happy": _happy,
     "angry": _angry,
     "sad": _sad,
     "surprised": _surprised,
     "relaxed": _relaxed,
-    "aa": lambda face: mouth(face, 1.0),
+    "aa": lambda face: set_mouth(face, 1.0),
 }
 """What the face does, by VRM's name of the expression."""
 
@@ -61,14 +61,14 @@ def with_expressions(mesh: Mesh, bound: Skeleton) -> Mesh:
 
 
 def _morph(name: str, mesh: Mesh, bound: Skeleton) -> Morph:
-    face = Performance(1)
+    face = AnimationTracks(1)
     EXPRESSIONS[name](face)
-    globals_ = poses(face, bound, ()).globals(bound)[0]
+    globals_ = solve_poses(face, bound, ()).globals(bound)[0]
     moved = skin(mesh, globals_) - mesh.positions
     # A normal is turned like the tip of a short needle that stands on its vertex.
     needle = replace(mesh, positions=mesh.positions + mesh.normals)
     turned = skin(needle, globals_) - needle.positions - moved
-    vertices = np.flatnonzero(np.abs(moved).max(axis=1) > STILL)
+    vertices = np.flatnonzero(np.abs(moved).max(axis=1) > MIN_DISPLACEMENT_M)
     return Morph(
         name,
         vertices.astype(np.uint32),
@@ -77,7 +77,7 @@ def _morph(name: str, mesh: Mesh, bound: Skeleton) -> Morph:
     )
 
 
-def names(meshes: Sequence[Mesh]) -> tuple[str, ...]:
+def expression_names(meshes: Sequence[Mesh]) -> tuple[str, ...]:
     """Return the expressions that some mesh has a morph for."""
     there = {morph.name for mesh in meshes for morph in mesh.morphs}
     return tuple(name for name in EXPRESSIONS if name in there)

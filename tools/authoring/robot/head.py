@@ -8,18 +8,18 @@ from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.lathe import frame_toward, lathe
 from tools.authoring.modelling.meshes import bound_mesh
-from tools.authoring.modelling.rig import joint_places
-from tools.authoring.modelling.sculpt import Part, sculpt
+from tools.authoring.modelling.rig import rest_positions
+from tools.authoring.modelling.sculpt import BodyPart, sculpt
 from tools.authoring.modelling.shapes import (
     WHITE,
     Array,
-    Cut,
+    Difference,
     Ellipsoid,
     Shape,
     Solid,
     Union,
     Vector,
-    rgb,
+    linear_rgb,
 )
 from tools.authoring.modelling.surface import normals_of, project
 from tools.authoring.robot.parts import (
@@ -30,12 +30,12 @@ from tools.authoring.robot.parts import (
     RUBBER,
     SHELL,
     TRIM,
-    Outside,
+    Complement,
     lens,
     panel,
     socket,
 )
-from tools.authoring.robot.rig import EYE, LID_YAW
+from tools.authoring.robot.rig import EYE_CENTRE_M, LID_YAW_RAD
 
 SKULL = Ellipsoid(
     (0.0, 0.2470, 0.1460), (0.0600, 0.0480, 0.0570), power=2.3, bones=("head",), color=SHELL
@@ -43,19 +43,19 @@ SKULL = Ellipsoid(
 SNOUT = Ellipsoid(
     (0.0, 0.2235, 0.1940), (0.0430, 0.0270, 0.0390), power=2.5, bones=("head",), color=SHELL
 )
-LAMP = 0.0195
+TEMPLE_LAMP_RADIUS_M = 0.0195
 """Radius of the lamps at the temples [m]."""
 HEAD = Union((SKULL, SNOUT), 0.030)
-PUPIL, CELL = rgb("#0b0e16"), 0.0088
-GAZE = np.array([0.16, 0.12, 1.0]) / np.linalg.norm([0.16, 0.12, 1.0])
-RADIUS = 0.0222
+PUPIL, CELL_M = linear_rgb("#0b0e16"), 0.0088
+REST_GAZE = np.array([0.16, 0.12, 1.0]) / np.linalg.norm([0.16, 0.12, 1.0])
+EYE_RADIUS_M = 0.0222
 """Of an eye [m]."""
-LID_OPEN, LOWER_LID_OPEN = 1.22, 1.20
+UPPER_LID_OPEN_RAD, LOWER_LID_OPEN_RAD = 1.22, 1.20
 """Elevation of the rim of an open lid above and below straight ahead [rad]."""
 
 
 @dataclass(frozen=True)
-class BelowLips(Solid):
+class JawRegion(Solid):
     """The room of the jaw: under the line of the lips, and ahead of its hinge."""
 
     gap: float = 0.0
@@ -65,7 +65,7 @@ class BelowLips(Solid):
         """Return the signed distance, about, (n,) [m]."""
         return np.maximum(points[:, 1] - lip_height(points[:, 2]) + self.gap, 0.150 - points[:, 2])
 
-    def mirrored(self) -> "BelowLips":
+    def mirrored(self) -> "JawRegion":
         """Return itself."""
         return self
 
@@ -77,19 +77,19 @@ def lip_height(forward: Array) -> Array:
 
 def head(bound: Skeleton) -> list[Mesh]:
     """Return the head without the lamps that are on and without its glossy eyes."""
-    upper = Cut(HEAD, BelowLips(-0.0006), 0.003)
+    upper = Difference(HEAD, JawRegion(-0.0006), 0.003)
     # The jaw is the part of the head that the upper half leaves, held by its own joint.
-    lower = Cut(_held(HEAD, "jaw"), Outside(BelowLips(0.0006)), 0.003)
+    lower = Difference(_held(HEAD, "jaw"), Complement(JawRegion(0.0006)), 0.003)
     return [
-        sculpt("", [Part(upper, CELL, soft_skin=0.0)], bound),
-        sculpt("", [Part(lower, CELL, soft_skin=0.0)], bound),
+        sculpt("", [BodyPart(upper, CELL_M, soft_skin=0.0)], bound),
+        sculpt("", [BodyPart(lower, CELL_M, soft_skin=0.0)], bound),
         _tongue(bound),
         panel(HEAD, _along((0.0, 0.320, 0.150)), (0.021, 0.050), PANEL, "head", bound),
         _lip(bound),
         _lining("jaw", 0.0004, bound),
         _lining("head", -0.0004, bound),
         *_nostrils(bound),
-        *(piece for side in (1.0, -1.0) for piece in _sides(side, bound)),
+        *(piece for side in (1.0, -1.0) for piece in _paired_parts(side, bound)),
     ]
 
 
@@ -137,7 +137,7 @@ def _lining(joint: str, proud: float, bound: Skeleton) -> Mesh:
 
 def _tongue(bound: Skeleton) -> Mesh:
     profile = np.array([[0, -0.6], [0.86, -0.5], [1, 0], [0.86, 0.6], [0.5, 0.92], [0, 1]])
-    place = frame_toward((0.0, 1.0, 0.10), joint_places(bound)["tongue"])
+    place = frame_toward((0.0, 1.0, 0.10), rest_positions(bound)["tongue"])
     place[:3, :3] = place[:3, :3] @ np.diag([0.0185, 0.0225, 0.0044])
     return lathe(profile, [ROSE] * 5, place, "tongue", bound, 18)
 
@@ -193,24 +193,24 @@ def _nostrils(bound: Skeleton) -> list[Mesh]:
     return [lathe(rings, [RUBBER] * 4, place, "head", bound, 12) for place in places]
 
 
-def _sides(side: float, bound: Skeleton) -> list[Mesh]:
+def _paired_parts(side: float, bound: Skeleton) -> list[Mesh]:
     """Return what is twice: the bezel of an eye, its lids, and the dark lamp at the temple."""
     name = "Left" if side > 0 else "Right"
-    center, gaze = np.array(EYE) * [side, 1, 1], GAZE * [side * 1.5, 1, 1]
+    center, gaze = np.array(EYE_CENTRE_M) * [side, 1, 1], REST_GAZE * [side * 1.5, 1, 1]
     bezel = np.array([[0, 0], [25.6, 0], [26.6, 5], [25.2, 8.2], [22.6, 8.6], [0, 7]]) * 1e-3
     ring = frame_toward(gaze, center - 0.0050 * gaze)
-    upper = _lid(LID_OPEN + np.pi / 2, 1.075, f"{name}UpperLid", center, bound)
-    lower = _lid(-LOWER_LID_OPEN - np.pi / 2, 1.050, f"{name}LowerLid", center, bound)
+    upper = _lid(UPPER_LID_OPEN_RAD + np.pi / 2, 1.075, f"{name}UpperLid", center, bound)
+    lower = _lid(-LOWER_LID_OPEN_RAD - np.pi / 2, 1.050, f"{name}LowerLid", center, bound)
     bezel_mesh = lathe(bezel, [TRIM, TRIM, TRIM, RUBBER, RUBBER], ring, "head", bound, 28)
-    return [bezel_mesh, upper, lower, socket(temple(side), LAMP, "head", bound)]
+    return [bezel_mesh, upper, lower, socket(temple(side), TEMPLE_LAMP_RADIUS_M, "head", bound)]
 
 
 def _lid(elevation: float, size: float, joint: str, center: Array, bound: Skeleton) -> Mesh:
     """Return half a shell around an eye with a dark rim; `elevation` is that of its pole."""
     angle = np.radians([90, 79, 60, 40, 20, 0])
     dome = np.stack([np.sin(angle), np.cos(angle)], axis=1)
-    rings = RADIUS * size * np.vstack([[0.0, 0.0], dome])
-    yaw = LID_YAW * (1 if joint.startswith("Left") else -1)
+    rings = EYE_RADIUS_M * size * np.vstack([[0.0, 0.0], dome])
+    yaw = LID_YAW_RAD * (1 if joint.startswith("Left") else -1)
     ahead = np.cos(elevation)
     pole = np.array([ahead * np.sin(yaw), np.sin(elevation), ahead * np.cos(yaw)])
     bands = [RUBBER, RUBBER, *[PANEL] * 4]
@@ -221,15 +221,15 @@ def eyes(bound: Skeleton) -> list[Mesh]:
     """Return the two eyeballs: black glass with a ring of light, and two highlights on each."""
     pieces = []
     for side, name in ((1.0, "LeftEye"), (-1.0, "RightEye")):
-        center, gaze = np.array(EYE) * [side, 1, 1], GAZE * [side, 1, 1]
+        center, gaze = np.array(EYE_CENTRE_M) * [side, 1, 1], REST_GAZE * [side, 1, 1]
         angle = np.radians([180, 120, 90, 70, 66, 48, 24, 0])
-        rings = RADIUS * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+        rings = EYE_RADIUS_M * np.stack([np.sin(angle), np.cos(angle)], axis=1)
         bands = [GLASS, GLASS, WHITE, RUBBER, GLASS, PUPIL, PUPIL]
         pieces.append(lathe(rings, bands, frame_toward(gaze, center), name, bound, 28))
         for across, up, radius in ((-0.30, 0.40, 0.0064), (0.26, -0.30, 0.0030)):
             shine = gaze + np.array([across, up, 0.0])  # on the same side in both: one sun
-            wide = radius / RADIUS * np.array([0.0, 1.0, 0.5, 0.0])
-            cap = RADIUS * 1.022 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
+            wide = radius / EYE_RADIUS_M * np.array([0.0, 1.0, 0.5, 0.0])
+            cap = EYE_RADIUS_M * 1.022 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
             cap[0, 1] *= 0.95
             pieces.append(lathe(cap, [WHITE] * 3, frame_toward(shine, center), "head", bound, 14))
     return pieces
@@ -240,13 +240,16 @@ def temple(side: float) -> Array:
     return _on_head((side * 0.08, 0.2330, 0.1420), 0.001)
 
 
-def lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
+def lit_lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
     """Return the lamps at the temples and the rings of the eyes as they are when they are on."""
-    pieces = [lens(temple(side), LAMP, color, f"head_{mood}", bound) for side in (1.0, -1.0)]
+    pieces = [
+        lens(temple(side), TEMPLE_LAMP_RADIUS_M, color, f"head_{mood}", bound)
+        for side in (1.0, -1.0)
+    ]
     angle = np.radians([180, 66, 60, 53, 48, 0])
-    size = RADIUS * np.array([0.90, 0.99, 1.018, 1.018, 0.99, 0.90])[:, None]
+    size = EYE_RADIUS_M * np.array([0.90, 0.99, 1.018, 1.018, 0.99, 0.90])[:, None]
     rings = size * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     for side, name in ((1.0, "LeftIris"), (-1.0, "RightIris")):
-        place = frame_toward(GAZE * [side, 1, 1], np.array(EYE) * [side, 1, 1])
+        place = frame_toward(REST_GAZE * [side, 1, 1], np.array(EYE_CENTRE_M) * [side, 1, 1])
         pieces.append(lathe(rings, [color] * 5, place, f"{name}_{mood}", bound, 28))
     return pieces

@@ -1,12 +1,12 @@
 """The robot waits: it looks about, blinks, shifts its weight, and now and then sways its tail."""
 
-from tools.authoring.modelling.curves import follow, keys, wave
-from tools.authoring.modelling.quadruped import DEGREE, RATE, Performance
-from tools.authoring.robot.motion import blink, degrees, look, neck, tail
-from tools.authoring.robot.rig import lids, light, mouth
+from tools.authoring.modelling.curves import keys, spring_follow, wave
+from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, AnimationTracks
+from tools.authoring.robot.motion import blink, keys_deg, neck, tail, turn_eyes
+from tools.authoring.robot.rig import set_lamps, set_lids, set_mouth
 
 
-def neutral(level: int, seconds: float = 4.8) -> Performance:
+def neutral(level: int, seconds: float = 4.8) -> AnimationTracks:
     """Look about, blink, and wait.
 
     Parameters
@@ -14,28 +14,28 @@ def neutral(level: int, seconds: float = 4.8) -> Performance:
     level : 0 with the head alone, 1 with the legs too, 2 with all of it
     seconds : duration of the loop [s]
     """
-    act = Performance(round(seconds * RATE))
-    n = act.frames
-    light(act, "neutral")
+    anim = AnimationTracks(round(seconds * FRAME_RATE_HZ))
+    n = anim.frames
+    set_lamps(anim, "neutral")
     # Where it looks: the eyes first, the head after them, the neck last.
     wide = (0.75, 1.0, 1.35)[level]
-    aside = wide * degrees(
+    aside = wide * keys_deg(
         n, (0.03, 0), (0.10, 17), (0.36, 15), (0.45, -15), (0.72, -17), (0.82, 0)
     )
-    turned = follow(aside, seconds, 1.1, 0.75)
-    nod = degrees(n, (0.0, 0), (0.14, 4), (0.34, -3), (0.52, 4), (0.74, 2), (0.9, -1))
-    neck(act, 0.6 * follow(nod, seconds, 1.0, 0.7) + 2 * DEGREE, 0.9 * turned)
-    act.turn("head", up=nod, left=0.55 * follow(aside, seconds, 1.6, 0.7))
-    act.turn("head", tilt=degrees(n, (0.12, 0), (0.22, 7), (0.38, 7), (0.50, 0), (0.9, 0)))
-    look(act, 0.8 * (aside - turned))
-    lids(act, blink(n, 0.43), 0.12)
-    mouth(act, keys(n, (0.1, 0.0), (0.2, 0.05), (0.4, 0.0)), 0.22)
+    turned = spring_follow(aside, seconds, 1.1, 0.75)
+    nod = keys_deg(n, (0.0, 0), (0.14, 4), (0.34, -3), (0.52, 4), (0.74, 2), (0.9, -1))
+    neck(anim, 0.6 * spring_follow(nod, seconds, 1.0, 0.7) + 2 * DEGREE, 0.9 * turned)
+    anim.turn("head", up=nod, left=0.55 * spring_follow(aside, seconds, 1.6, 0.7))
+    anim.turn("head", tilt=keys_deg(n, (0.12, 0), (0.22, 7), (0.38, 7), (0.50, 0), (0.9, 0)))
+    turn_eyes(anim, 0.8 * (aside - turned))
+    set_lids(anim, blink(n, 0.43), 0.12)
+    set_mouth(anim, keys(n, (0.1, 0.0), (0.2, 0.05), (0.4, 0.0)), 0.22)
     if level >= 1:
         shift = keys(n, (0.05, 1), (0.38, 1), (0.55, -1), (0.88, -1)) * 0.0055
-        act.move("hips", x=shift, y=-0.002 + 0.0018 * wave(n, 4))
-        act.turn("hips", tilt=-4 * shift, left=5 * shift, up=1.2 * DEGREE * wave(n, 1, 0.1))
-        act.turn("chest", left=4 * shift)
+        anim.move("hips", x=shift, y=-0.002 + 0.0018 * wave(n, 4))
+        anim.turn("hips", tilt=-4 * shift, left=5 * shift, up=1.2 * DEGREE * wave(n, 1, 0.1))
+        anim.turn("chest", left=4 * shift)
     swing = (2.5, 5.0, 13.0)[level] * DEGREE
     lift = (1.0, 3.0, 9.0)[level] * DEGREE
-    tail(act, lift + 0.3 * lift * wave(n, 4, 0.1), swing * wave(n, 2), 1.3)
-    return act
+    tail(anim, lift + 0.3 * lift * wave(n, 4, 0.1), swing * wave(n, 2), 1.3)
+    return anim

@@ -9,37 +9,18 @@ from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.lathe import frame_toward, lathe
 from tools.authoring.modelling.meshes import bound_mesh
-from tools.authoring.modelling.shapes import Array, Shape, Solid, Vector, rgb
+from tools.authoring.modelling.shapes import Array, Shape, Solid, Vector, linear_rgb
 from tools.authoring.modelling.surface import normals_of, project
 
-SHELL, PANEL, TRIM = rgb("#f3efe6"), rgb("#6d84c4"), rgb("#4a5f9e")
-RUBBER, GLASS, STEEL = rgb("#272d3d"), rgb("#3d4454"), rgb("#aab2c2")
-MAROON, ROSE = rgb("#5d1830"), rgb("#ef7d8e")
-_PLATE = 22
+SHELL, PANEL, TRIM = linear_rgb("#f3efe6"), linear_rgb("#6d84c4"), linear_rgb("#4a5f9e")
+RUBBER, GLASS, STEEL = linear_rgb("#272d3d"), linear_rgb("#3d4454"), linear_rgb("#aab2c2")
+MAROON, ROSE = linear_rgb("#5d1830"), linear_rgb("#ef7d8e")
+_PANEL_CORNERS = 22
 """Corners of a plate."""
 
 
 @dataclass(frozen=True)
-class Grown(Solid):
-    """A shape that is thicker all round, or thinner: the panel on a shell, the wall of a mouth."""
-
-    shape: Shape
-    """What grows."""
-
-    by: float
-    """How much [m]; negative to shrink."""
-
-    def distance(self, points: Array) -> Array:
-        """Return the signed distance, (n,) [m]."""
-        return self.shape.distance(points) - self.by
-
-    def mirrored(self) -> "Grown":
-        """Return its image in the plane x = 0."""
-        return Grown(self.shape.mirrored(), self.by, bones=self._other_bones(), color=self.color)
-
-
-@dataclass(frozen=True)
-class Outside(Solid):
+class Complement(Solid):
     """Everything that a shape is not; cutting it away keeps what is inside the shape."""
 
     shape: Shape
@@ -53,9 +34,9 @@ class Outside(Solid):
         """Yield nothing: it is a tool."""
         return iter(())
 
-    def mirrored(self) -> "Outside":
+    def mirrored(self) -> "Complement":
         """Return its image in the plane x = 0."""
-        return Outside(self.shape.mirrored())
+        return Complement(self.shape.mirrored())
 
 
 def cup(
@@ -105,7 +86,7 @@ def panel(
     bound : the skeleton
     lift : how far it stands proud [m]
     """
-    angle = np.linspace(0, 2 * np.pi, _PLATE, endpoint=False)
+    angle = np.linspace(0, 2 * np.pi, _PANEL_CORNERS, endpoint=False)
     round_ = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     square = round_ / np.sum(np.abs(round_) ** 3.4, axis=1, keepdims=True) ** (1 / 3.4)
     rings = np.array([[0.0, 1], [0.33, 1], [0.66, 1], [0.95, 1], [1.0, 0.6], [1.02, -1.2]])
@@ -113,22 +94,26 @@ def panel(
     near = place[:3, 3] + flat @ place[:3, :2].T
     points = project(shape.distance, near, 0.05, 10)
     normals = normals_of(shape.distance, points, 0.004)
-    out = points + lift * np.repeat(rings[:, 1], _PLATE)[:, None] * normals
-    edge = np.repeat([0.0, 0.0, 0.0, 0.5, 1.6, 1.6], _PLATE)[:, None]
+    out = points + lift * np.repeat(rings[:, 1], _PANEL_CORNERS)[:, None] * normals
+    edge = np.repeat([0.0, 0.0, 0.0, 0.5, 1.6, 1.6], _PANEL_CORNERS)[:, None]
     leaning = normals + edge * np.tile(square @ place[:3, :2].T, (len(rings), 1))
     leaning /= np.linalg.norm(leaning, axis=1, keepdims=True)
     bones = np.zeros((len(out), len(bound)))
     bones[:, bound.index(joint)] = 1.0
     paint = np.tile(np.array(color), (len(out), 1))
-    paint[-2 * _PLATE :] = RUBBER  # the seam
-    i = np.arange(_PLATE)
-    j = (i + 1) % _PLATE
-    quads = np.stack([i, i + _PLATE, j + _PLATE, i, j + _PLATE, j], axis=1).reshape(-1, 3)
-    triangles = np.concatenate([quads + _PLATE * ring for ring in range(len(rings) - 1)])
+    paint[-2 * _PANEL_CORNERS :] = RUBBER  # the seam
+    i = np.arange(_PANEL_CORNERS)
+    j = (i + 1) % _PANEL_CORNERS
+    quads = np.stack(
+        [i, i + _PANEL_CORNERS, j + _PANEL_CORNERS, i, j + _PANEL_CORNERS, j], axis=1
+    ).reshape(-1, 3)
+    triangles = np.concatenate([quads + _PANEL_CORNERS * ring for ring in range(len(rings) - 1)])
     return bound_mesh(out, leaning, triangles, bones, paint, bound)
 
 
-def hub(place: Array, radius: float, joint: str, bound: Skeleton, face: Vector = STEEL) -> Mesh:
+def servo_cap(
+    place: Array, radius: float, joint: str, bound: Skeleton, face: Vector = STEEL
+) -> Mesh:
     """Return the cap of a servo: a dark ring about a plate with a screw in it, facing +z."""
     profile = np.array([[0, -8], [10, -8], [10, 2.2], [7.6, 2.6], [7.6, 2.2], [2.4, 2.2], [0, 1.2]])
     scaled = profile * [radius / 10, 1.0] * [1.0, 1e-3]

@@ -7,7 +7,7 @@ import numpy as np
 from characters.model.mesh import Mesh
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose, Skeleton
-from tools.authoring.modelling.quadruped import Performance
+from tools.authoring.modelling.quadruped import AnimationTracks
 from tools.authoring.modelling.rig import build_skeleton
 from tools.authoring.modelling.shapes import Array, Vector
 
@@ -15,25 +15,29 @@ FEET = ("LeftFrontFoot", "RightFrontFoot", "LeftHindFoot", "RightHindFoot")
 NECK = ("neck1", "neck2", "neck3")
 TAIL = ("tail1", "tail2", "tail3", "tail4", "tail5")
 MOODS = ("happy", "neutral", "angry")
-LIT = ("head", "chest", "tail", "LeftIris", "RightIris")
-LAMPS = tuple(f"{place}_{mood}" for place in LIT for mood in MOODS)
+LAMP_PLACES = ("head", "chest", "tail", "LeftIris", "RightIris")
+LAMPS = tuple(f"{place}_{mood}" for place in LAMP_PLACES for mood in MOODS)
 """Joints of the lamps: one colour at one place each, scaled to nothing where it is off."""
-OFF = 0.02
+LAMP_OFF_SCALE = 0.02
 """Scale of a lamp that is off: it has withdrawn into the casing."""
-HEAD_SIZE = 1.13
+HEAD_SCALE = 1.13
 """Scale of the head, which is sculpted in size one: a baby's."""
-LID_YAW = 0.34
+LID_YAW_RAD = 0.34
 """How far to the side the eyes look at rest [rad]."""
-SHUT, LOWER_SHUT = 1.36, 1.20
+UPPER_LID_TRAVEL_RAD, LOWER_LID_TRAVEL_RAD = 1.36, 1.20
 """How far an upper and a lower lid roll to meet [rad]."""
 
-EYE: Vector = (0.0330, 0.2595, 0.1835)
+EYE_CENTRE_M: Vector = (0.0330, 0.2595, 0.1835)
 """Centre of the left eye [m]."""
-TAIL_TIP: Vector = (0.0, 0.122, -0.262)
-_POD: Vector = (0.0, 0.2370, 0.1420)  # the lamps at the temples shrink to a place between them
-_CHEST_LAMP: Vector = (0.0, 0.118, 0.030)
+TAIL_TIP_M: Vector = (0.0, 0.122, -0.262)
+_TEMPLE_LAMPS_M: Vector = (
+    0.0,
+    0.2370,
+    0.1420,
+)  # the lamps at the temples shrink to a place between them
+_CHEST_LAMP_M: Vector = (0.0, 0.118, 0.030)
 
-_JOINTS: dict[str, tuple[str, Vector]] = {
+_JOINT_POSITIONS: dict[str, tuple[str, Vector]] = {
     "root": ("", (0.0, 0.0, 0.0)),
     "hips": ("root", (0.0, 0.118, -0.050)),
     "spine1": ("hips", (0.0, 0.120, -0.014)),
@@ -50,9 +54,9 @@ _JOINTS: dict[str, tuple[str, Vector]] = {
     "tail3": ("tail2", (0.0, 0.101, -0.166)),
     "tail4": ("tail3", (0.0, 0.102, -0.199)),
     "tail5": ("tail4", (0.0, 0.109, -0.231)),
-    "LeftEye": ("head", EYE),
-    "LeftUpperLid": ("head", EYE),
-    "LeftLowerLid": ("head", EYE),
+    "LeftEye": ("head", EYE_CENTRE_M),
+    "LeftUpperLid": ("head", EYE_CENTRE_M),
+    "LeftLowerLid": ("head", EYE_CENTRE_M),
     "LeftMouthCorner": ("head", (0.0400, 0.2130, 0.1840)),
     "LeftFrontUpperLeg": ("chest", (0.047, 0.102, 0.044)),
     "LeftFrontLowerLeg": ("LeftFrontUpperLeg", (0.052, 0.060, 0.034)),
@@ -61,55 +65,59 @@ _JOINTS: dict[str, tuple[str, Vector]] = {
     "LeftHindLowerLeg": ("LeftHindUpperLeg", (0.055, 0.062, -0.038)),
     "LeftHindFoot": ("LeftHindLowerLeg", (0.057, 0.022, -0.060)),
 }
-_PLACES = {
-    "head": ("head", _POD),
-    "chest": ("chest", _CHEST_LAMP),
-    "tail": ("tail5", TAIL_TIP),
-    "LeftIris": ("LeftEye", EYE),
+_LAMP_JOINTS = {
+    "head": ("head", _TEMPLE_LAMPS_M),
+    "chest": ("chest", _CHEST_LAMP_M),
+    "tail": ("tail5", TAIL_TIP_M),
+    "LeftIris": ("LeftEye", EYE_CENTRE_M),
 }
 
 
-def skeleton(head_size: float = HEAD_SIZE) -> Skeleton:
+def skeleton(head_size: float = HEAD_SCALE) -> Skeleton:
     """Return the skeleton in its bind pose: axes as the character's but for lids, scales one."""
     lamps = {
-        f"{place}_{mood}": (parent, at) for place, (parent, at) in _PLACES.items() for mood in MOODS
+        f"{place}_{mood}": (parent, at)
+        for place, (parent, at) in _LAMP_JOINTS.items()
+        for mood in MOODS
     }
-    bound = build_skeleton(_JOINTS | lamps)
+    bound = build_skeleton(_JOINT_POSITIONS | lamps)
     places, still = bound.rest.translations.copy(), bound.rest.rotations.copy()
     for name, side in (("Left", 1.0), ("Right", -1.0)):
         for lid in ("UpperLid", "LowerLid"):  # they roll about the axis of an eye that looks aside
-            still[bound.index(name + lid)] = rotations.about("y", side * LID_YAW)
+            still[bound.index(name + lid)] = rotations.about("y", side * LID_YAW_RAD)
     head = bound.index("head")
     in_head = [parent in (head, bound.index("jaw")) for parent in bound.parents]
     places[in_head] *= head_size
     return replace(bound, rest=Pose(places, still))
 
 
-def grown(mesh: Mesh, bound: Skeleton) -> Mesh:
+def scaled_with_head(mesh: Mesh, bound: Skeleton) -> Mesh:
     """Return a piece of the head that was made for a head of size one, bound to a skeleton."""
     neck = bound.rest.globals(bound)[bound.index("head"), :3, 3]
-    positions = neck + HEAD_SIZE * (mesh.positions - neck)
+    positions = neck + HEAD_SCALE * (mesh.positions - neck)
     inverse_bind = np.asarray(np.linalg.inv(bound.rest.globals(bound)), np.float64)
     return replace(mesh, positions=positions.astype(np.float32), inverse_bind=inverse_bind)
 
 
-def resting(bound: Skeleton) -> Skeleton:
+def shipped_skeleton(bound: Skeleton) -> Skeleton:
     """Return the skeleton as it is shipped: with its neutral lamps on."""
     scales = np.ones((len(bound), 3))
     for lamp in LAMPS:
-        scales[bound.index(lamp)] = 1.0 if lamp.endswith("_neutral") else OFF
+        scales[bound.index(lamp)] = 1.0 if lamp.endswith("_neutral") else LAMP_OFF_SCALE
     rest = Pose(bound.rest.translations, bound.rest.rotations, scales)
     return Skeleton(bound.names, bound.parents, rest)
 
 
-def light(act: Performance, mood: str) -> None:
+def set_lamps(anim: AnimationTracks, mood: str) -> None:
     """Light the lamps in the colour of a mood."""
     for lamp in LAMPS:
-        act.scales[lamp] = np.full(act.frames, 1.0 if lamp.endswith(f"_{mood}") else OFF)
+        anim.scales[lamp] = np.full(
+            anim.frames, 1.0 if lamp.endswith(f"_{mood}") else LAMP_OFF_SCALE
+        )
 
 
-def lids(
-    act: Performance,
+def set_lids(
+    anim: AnimationTracks,
     shut: Array | float = 0.0,
     smile: Array | float = 0.0,
     anger: Array | float = 0.0,
@@ -125,11 +133,11 @@ def lids(
     for side in sides:
         sign = 1.0 if side == "Left" else -1.0
         level = -0.20 * np.asarray(shut)  # shut lids are level although the eyes look aside
-        _roll(act, f"{side}UpperLid", -SHUT * upper, sign * (0.44 * cross + level))
-        _roll(act, f"{side}LowerLid", LOWER_SHUT * lower, sign * (level - 0.15 * cross))
+        _roll(anim, f"{side}UpperLid", -UPPER_LID_TRAVEL_RAD * upper, sign * (0.44 * cross + level))
+        _roll(anim, f"{side}LowerLid", LOWER_LID_TRAVEL_RAD * lower, sign * (level - 0.15 * cross))
 
 
-def _roll(act: Performance, lid: str, up: Array, tilt: Array) -> None:
+def _roll(anim: AnimationTracks, lid: str, up: Array, tilt: Array) -> None:
     """Roll a lid, then tilt it about where the eye looks: the other way round it would not slant.
 
     The three turns that a performance takes, worked out of the product of these two.
@@ -138,22 +146,22 @@ def _roll(act: Performance, lid: str, up: Array, tilt: Array) -> None:
     steep = np.arcsin(np.clip(np.cos(tilt) * np.sin(roll), -1.0, 1.0))
     aside = np.arctan2(np.sin(tilt) * np.sin(roll), np.cos(roll))
     lean = np.arctan2(np.sin(tilt), np.cos(tilt) * np.cos(roll))
-    act.turn(lid, up=-steep, left=aside, tilt=lean)
+    anim.turn(lid, up=-steep, left=aside, tilt=lean)
 
 
-def mouth(
-    act: Performance,
+def set_mouth(
+    anim: AnimationTracks,
     open_: Array | float = 0.0,
     grin: Array | float = 0.0,
     round_: Array | float = 0.0,
 ) -> None:
     """Drop the jaw (0…1), raise (1) or drop (−1) the corners of the mouth, draw them in (0…1)."""
     up, down = np.maximum(grin, 0.0), np.maximum(-np.asarray(grin), 0.0)
-    act.turn("jaw", up=-0.52 * np.asarray(open_))
-    act.move("tongue", y=-0.0058 * down)  # a mouth that snarls hides its tongue
-    act.move("lips", y=0.0072 * down - 0.0032 * up, z=0.0014 * down)
+    anim.turn("jaw", up=-0.52 * np.asarray(open_))
+    anim.move("tongue", y=-0.0058 * down)  # a mouth that snarls hides its tongue
+    anim.move("lips", y=0.0072 * down - 0.0032 * up, z=0.0014 * down)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
-        act.move(
+        anim.move(
             f"{side}MouthCorner",
             x=sign * (0.0036 * up - 0.0040 * down - 0.007 * np.asarray(round_)),
             y=0.0165 * up - 0.0058 * down,

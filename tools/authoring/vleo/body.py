@@ -8,26 +8,31 @@ import numpy as np
 
 from tools.authoring.modelling.shapes import (
     Array,
-    Cone,
-    Cut,
+    Difference,
     Ellipsoid,
     HalfSpace,
+    RoundCone,
     Shape,
     Solid,
     Union,
     Vector,
-    chain,
-    rgb,
+    cone_chain,
+    linear_rgb,
 )
-from tools.authoring.vleo.head import Hollow, Mirrored, Socket, head
+from tools.authoring.vleo.head import EyeSocket, MouthCavity, SymmetricShape, head_shape
 from tools.authoring.vleo.rig import BACK, NECK, TAIL
 
-TEAL, BACK_TEAL, SPOT = rgb("#3fc4a4"), rgb("#27a893"), rgb("#14706f")
-LASH = rgb("#0d3f42")
-CREAM, CLAW, ORANGE, PINK = rgb("#f5efc6"), rgb("#fff3d6"), rgb("#ffad45"), rgb("#ff8a94")
-MAROON, ROSE = rgb("#7a1428"), rgb("#f2667c")
+TEAL, BACK_TEAL, SPOT = linear_rgb("#3fc4a4"), linear_rgb("#27a893"), linear_rgb("#14706f")
+LASH = linear_rgb("#0d3f42")
+CREAM, CLAW, ORANGE, PINK = (
+    linear_rgb("#f5efc6"),
+    linear_rgb("#fff3d6"),
+    linear_rgb("#ffad45"),
+    linear_rgb("#ff8a94"),
+)
+MAROON, ROSE = linear_rgb("#7a1428"), linear_rgb("#f2667c")
 
-SPINE = np.array(  # height, forward and radius from the tip of the tail to the nape [m]
+SPINE_PROFILE_M = np.array(  # height, forward and radius from the tip of the tail to the nape [m]
     [
         [0.124, -0.262, 0.0082],
         [0.101, -0.244, 0.0112],
@@ -48,7 +53,7 @@ SPINE = np.array(  # height, forward and radius from the tip of the tail to the 
 
 
 @dataclass(frozen=True)
-class Near(Solid):
+class BoundedShape(Solid):
     """A shape that is looked at closely only near the box that holds it: many times faster."""
 
     shape: Shape
@@ -75,7 +80,7 @@ class Near(Solid):
         """Yield what is in the box."""
         yield from self.shape.solids()
 
-    def mirrored(self) -> "Near":
+    def mirrored(self) -> "BoundedShape":
         """Return its image in the plane x = 0."""
         low, high = (-self.high[0], *self.low[1:]), (-self.low[0], *self.high[1:])
         return replace(self, shape=self.shape.mirrored(), low=low, high=high)
@@ -83,8 +88,10 @@ class Near(Solid):
 
 def spine_line(count: int) -> Array:
     """Return evenly spaced points of the spine, (count, 4): x, y, z and radius [m]."""
-    knots = np.linspace(0.0, 1.0, len(SPINE))
-    fine = np.stack([_spline(knots, column, np.linspace(0, 1, 400)) for column in SPINE.T], axis=1)
+    knots = np.linspace(0.0, 1.0, len(SPINE_PROFILE_M))
+    fine = np.stack(
+        [_spline(knots, column, np.linspace(0, 1, 400)) for column in SPINE_PROFILE_M.T], axis=1
+    )
     steps = np.linalg.norm(np.diff(fine[:, :2], axis=0), axis=1)
     length = np.concatenate([[0.0], np.cumsum(steps)])
     even = np.linspace(0.0, length[-1], count)
@@ -109,31 +116,31 @@ def _spline(knots: Array, values: Array, at: Array) -> Array:
 
 
 @cache
-def whole() -> Shape:
+def body_shape() -> Shape:
     """Return the body with its mouth shut: trunk, neck, tail, legs and head."""
     line = spine_line(25)
     bones = (*TAIL, *BACK, *NECK)
-    trunk = chain(line[:, :3], tuple(line[:, 3]), ("",) * 24, TEAL)
-    cones = [replace(cone, bones=bones) for cone in trunk.shapes if isinstance(cone, Cone)]
-    pieces = tuple(_near(cones[first : first + 4]) for first in range(0, len(cones), 4))
+    trunk = cone_chain(line[:, :3], tuple(line[:, 3]), ("",) * 24, TEAL)
+    cones = [replace(cone, bones=bones) for cone in trunk.shapes if isinstance(cone, RoundCone)]
+    pieces = tuple(_bounded_cones(cones[first : first + 4]) for first in range(0, len(cones), 4))
     paunch = Ellipsoid((0.0, 0.094, -0.012), (0.058, 0.048, 0.066), bones=("belly",))
     body = Union((Union(pieces), paunch), 0.02)
     ground = HalfSpace((0, 0.0005, 0), (0, 1, 0))
-    legs = Near(
-        Cut(Union((_leg("Front"), _leg("Hind"))), ground, 0.006),
+    legs = BoundedShape(
+        Difference(Union((_leg("Front"), _leg("Hind"))), ground, 0.006),
         (0.0, 0.0, -0.09),
         (0.08, 0.13, 0.10),
     )
-    face = Near(head(), (-0.065, 0.19, 0.05), (0.065, 0.31, 0.195))
-    return Union((body, Mirrored(legs), face), 0.024)
+    face = BoundedShape(head_shape(), (-0.065, 0.19, 0.05), (0.065, 0.31, 0.195))
+    return Union((body, SymmetricShape(legs), face), 0.024)
 
 
-def _near(cones: list[Cone]) -> Near:
+def _bounded_cones(cones: list[RoundCone]) -> BoundedShape:
     """Return cones in the box that holds them."""
     ends = np.array([[cone.a, cone.b] for cone in cones]).reshape(-1, 3)
     reach = max(max(cone.ra, cone.rb) for cone in cones)
     low, high = (ends.min(axis=0) - reach).tolist(), (ends.max(axis=0) + reach).tolist()
-    return Near(Union(tuple(cones)), (low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    return BoundedShape(Union(tuple(cones)), (low[0], low[1], low[2]), (high[0], high[1], high[2]))
 
 
 def _leg(which: str) -> Shape:
@@ -151,12 +158,14 @@ def _leg(which: str) -> Shape:
             (36.0, 24.5, 19.5),
         )
         sole = (0.045, 0.012, -0.048)
-    pillar = chain(np.array(line), tuple(r / 1000 for r in radii), bones, TEAL)
+    pillar = cone_chain(np.array(line), tuple(r / 1000 for r in radii), bones, TEAL)
     foot = Ellipsoid(sole, (0.0275, 0.0170, 0.0305), bones=(f"Left{which}Foot",))
     return Union((pillar, foot), 0.009)
 
 
 @cache
-def skin() -> Shape:
+def skin_shape() -> Shape:
     """Return the body with room where eyes and mouth are put in."""
-    return Cut(Cut(whole(), Hollow(), 0.002), Mirrored(Socket()), 0.001)
+    return Difference(
+        Difference(body_shape(), MouthCavity(), 0.002), SymmetricShape(EyeSocket()), 0.001
+    )

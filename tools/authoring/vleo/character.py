@@ -17,9 +17,9 @@ from tools.authoring.vleo.face import face, with_expressions
 from tools.authoring.vleo.gestures import gestures
 from tools.authoring.vleo.idle import idle
 from tools.authoring.vleo.kiss import kiss
-from tools.authoring.vleo.marks import marks
+from tools.authoring.vleo.marks import markings
 from tools.authoring.vleo.pieces import skin_mesh
-from tools.authoring.vleo.rig import resting, skeleton
+from tools.authoring.vleo.rig import shipped_skeleton, skeleton
 from tools.authoring.vleo.shout import shout
 from tools.authoring.vleo.skin import body
 
@@ -30,7 +30,7 @@ LEVELS = ("head", "legs", "tail")
 def build_vleo() -> Character:
     """Return Vleo, 0.45 m from nose to tail, as it is shipped."""
     bound = skeleton()
-    rest = resting(bound)
+    rest = shipped_skeleton(bound)
     return Character("vleo", rest, clips(rest), (mesh(bound),), morphs=tuple(EXPRESSIONS))
 
 
@@ -47,7 +47,7 @@ def clips(bound: Skeleton) -> dict[str, Clip]:
 def mesh(bound: Skeleton) -> Mesh:
     """Return Vleo's one mesh, bound to the skeleton's pose."""
     skin = body(bound)
-    outside = [with_expressions(m, bound) for m in (skin_mesh(skin, bound), *marks(skin, bound))]
+    outside = [with_expressions(m, bound) for m in (skin_mesh(skin, bound), *markings(skin, bound))]
     pieces = [*outside, *face(bound), *effects(bound)]
     return _welded(join("Vleo", pieces, Material(roughness=0.55)))
 

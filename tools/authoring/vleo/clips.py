@@ -7,33 +7,34 @@ import numpy as np
 
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.curves import Array, phases
-from tools.authoring.modelling.quadruped import Performance, poses, swing_tail
-from tools.authoring.modelling.quadruped import clip as looped
+from tools.authoring.modelling.curves import Array, loop_phases
+from tools.authoring.modelling.quadruped import AnimationTracks, loop_clip, solve_poses, swing_tail
 from tools.authoring.vleo.expressions import EXPRESSIONS
-from tools.authoring.vleo.rig import FEET, HIDDEN, TAIL
+from tools.authoring.vleo.rig import FEET, HIDDEN_SCALE, TAIL
 
 
-def clip(name: str, performance: Performance, bound: Skeleton) -> Clip:
+def clip(name: str, anim: AnimationTracks, bound: Skeleton) -> Clip:
     """Return a performance as a loop: its last frame is its first."""
-    return looped(name, performance, bound, FEET, tuple(EXPRESSIONS))
+    return loop_clip(name, anim, bound, FEET, tuple(EXPRESSIONS))
 
 
-def tail(act: Performance, up: Array, left: Array, tip: float = 1.6, drag: float = 1.0) -> None:
+def tail(
+    anim: AnimationTracks, up: Array, left: Array, tip: float = 1.6, drag: float = 1.0
+) -> None:
     """Swing the tail; see `swing_tail`."""
-    swing_tail(act, TAIL, up, left, tip, 4.2, drag, (0.55, 0.55))
+    swing_tail(anim, TAIL, up, left, tip, 4.2, drag, (0.55, 0.55))
 
 
-def breathe(act: Performance, cycles: int, depth: float = 0.035) -> None:
+def breathe(anim: AnimationTracks, cycles: int, depth: float = 0.035) -> None:
     """Let the belly fill and the chest rise a little."""
-    breath = 0.5 - 0.5 * np.cos(2 * np.pi * cycles * phases(act.frames))
-    act.scales["belly"] = 1 + depth * breath[:, None] * np.array([1.0, 1.0, 0.5])
-    act.turn("chest", up=0.25 * depth * breath)
-    act.turn("neck1", up=-0.3 * depth * breath)
+    breath = 0.5 - 0.5 * np.cos(2 * np.pi * cycles * loop_phases(anim.frames))
+    anim.scales["belly"] = 1 + depth * breath[:, None] * np.array([1.0, 1.0, 0.5])
+    anim.turn("chest", up=0.25 * depth * breath)
+    anim.turn("neck1", up=-0.3 * depth * breath)
 
 
 @dataclass(frozen=True)
-class Flight:
+class EffectFlight:
     """The way of one heart or one burst."""
 
     start: float
@@ -58,25 +59,27 @@ class Flight:
     """How far it turns about the upright [rad]."""
 
 
-def fly(
-    act: Performance, joints: Sequence[str], flights: Sequence[Flight], bound: Skeleton
+def animate_effects(
+    anim: AnimationTracks, joints: Sequence[str], flights: Sequence[EffectFlight], bound: Skeleton
 ) -> None:
     """Send effects out of the mouth as it is when each leaves."""
-    pose = poses(act, bound, FEET)
+    pose = solve_poses(anim, bound, FEET)
     mouth = pose.globals(bound)[:, bound.index("lips"), :3, 3]
     home = bound.rest.translations
     for joint, flight in zip(joints, flights, strict=True):
-        leaves = mouth[round(flight.start * act.frames) % act.frames]
-        age = ((phases(act.frames) - flight.start) % 1.0) / flight.life
+        leaves = mouth[round(flight.start * anim.frames) % anim.frames]
+        age = ((loop_phases(anim.frames) - flight.start) % 1.0) / flight.life
         alive = age < 1
         age = np.minimum(age, 1.0)
         out = 1 - (1 - age) ** 3
         sideways = flight.swirl * np.sin(2 * np.pi * age)
         rise = np.stack([out, age**1.3, out], axis=1) * np.array(flight.way)
         offset = leaves - home[bound.index(joint)] + rise + sideways[:, None] * np.array([1, 0, 0])
-        act.moves[joint] = np.where(alive[:, None], offset, leaves - home[bound.index(joint)])
-        act.scales[joint] = np.where(alive, np.maximum(flight.size * _pop(age), HIDDEN), HIDDEN)
-        act.turn(
+        anim.moves[joint] = np.where(alive[:, None], offset, leaves - home[bound.index(joint)])
+        anim.scales[joint] = np.where(
+            alive, np.maximum(flight.size * _pop(age), HIDDEN_SCALE), HIDDEN_SCALE
+        )
+        anim.turn(
             joint,
             left=(flight.facing + flight.spin * (age - 0.5)) * alive,
             tilt=0.3 * np.sin(6 * age) * alive,

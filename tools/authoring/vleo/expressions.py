@@ -12,7 +12,7 @@ from tools.authoring.modelling.shapes import Array
 
 
 @dataclass(frozen=True)
-class Face:
+class VleoExpression:
     """The numbers of one expression; lengths in metres, forward and upward positive."""
 
     shut: tuple[float, float] = (0.0, 0.0)
@@ -61,52 +61,54 @@ class Face:
     """How far the cheeks are raised."""
 
 
-NEUTRAL = Face()
+NEUTRAL = VleoExpression()
 
 EXPRESSIONS = {
-    "blink": Face(shut=(1.0, 1.0)),
-    "blinkLeft": Face(shut=(1.0, 0.0)),
-    "blinkRight": Face(shut=(0.0, 1.0)),
-    "happy": Face(
+    "blink": VleoExpression(shut=(1.0, 1.0)),
+    "blinkLeft": VleoExpression(shut=(1.0, 0.0)),
+    "blinkRight": VleoExpression(shut=(0.0, 1.0)),
+    "happy": VleoExpression(
         upper=0.94, lower=0.10, brow=0.10, width=0.86, smile=0.0170, drop=0.0075, jaw=0.16,
         cheeks=0.0040,
     ),
-    "angry": Face(
+    "angry": VleoExpression(
         upper=0.70, upper_tilt=-0.80, lower=0.62, brow=-0.13, brow_inner=-0.30,
         width=0.60, smile=-0.0062, rise=0.0005, drop=0.0012, lips=0.0024,
     ),
-    "sad": Face(
+    "sad": VleoExpression(
         upper=0.74, upper_tilt=0.46, lower=0.88, brow=-0.02, brow_inner=0.36,
         width=0.50, smile=-0.0070, drop=0.0010, pout=0.0015, lips=0.0028,
     ),
-    "surprised": Face(
+    "surprised": VleoExpression(
         upper=1.20, lower=1.12, brow=0.30, width=0.36, smile=0.0, rise=0.0080, drop=0.0070,
         jaw=0.26, pout=0.0020,
     ),
-    "relaxed": Face(upper=0.42, lower=0.72, brow=0.05, width=0.74, smile=0.0130, drop=0.0016),
-    "aa": Face(width=0.74, smile=0.0085, rise=0.0030, drop=0.0060, square=0.7, jaw=0.72),
-    "ih": Face(width=0.72, smile=0.0090, rise=0.0012, drop=0.0050, square=0.6, jaw=0.10),
-    "ou": Face(
+    "relaxed": VleoExpression(
+        upper=0.42, lower=0.72, brow=0.05, width=0.74, smile=0.0130, drop=0.0016,
+    ),
+    "aa": VleoExpression(width=0.74, smile=0.0085, rise=0.0030, drop=0.0060, square=0.7, jaw=0.72),
+    "ih": VleoExpression(width=0.72, smile=0.0090, rise=0.0012, drop=0.0050, square=0.6, jaw=0.10),
+    "ou": VleoExpression(
         width=0.125, smile=-0.0005, rise=0.0054, drop=0.0060, lips=0.0074, pout=0.0190,
     ),
-    "ee": Face(width=0.92, smile=0.0125, rise=0.0016, drop=0.0056, square=0.5, jaw=0.04),
-    "oh": Face(
+    "ee": VleoExpression(width=0.92, smile=0.0125, rise=0.0016, drop=0.0056, square=0.5, jaw=0.04),
+    "oh": VleoExpression(
         width=0.31, smile=0.0, rise=0.0085, drop=0.0085, lips=0.0036, pout=0.0065, jaw=0.26,
     ),
 }  # fmt: skip
 """By VRM's names."""
 
-HINGE = np.array([0.0, 0.2235, 0.124])
+JAW_HINGE_M = np.array([0.0, 0.2235, 0.124])
 """About which the jaw turns [m]."""
 
 
-def dropped(points: Array, share: Array, face: Face) -> Array:
+def rotate_with_jaw(points: Array, share: Array, face: VleoExpression) -> Array:
     """Return points (n, 3) that go with the jaw, each by a share (n,) of its turn."""
-    turned = rotations.rotate(rotations.about("x", face.jaw), points - HINGE) + HINGE
+    turned = rotations.rotate(rotations.about("x", face.jaw), points - JAW_HINGE_M) + JAW_HINGE_M
     return np.asarray(points + (turned - points) * share[:, None])
 
 
-def cheeks(points: Array, face: Face) -> Array:
+def cheek_displacement(points: Array, face: VleoExpression) -> Array:
     """Return how far raised cheeks carry points of the skin, (n, 3) [m]."""
     apart = (np.abs(points) - [0.047, 0.232, 0.140]) / [0.016, 0.015, 0.020]
     near = np.exp(-np.sum(apart * apart, axis=1))[:, None]

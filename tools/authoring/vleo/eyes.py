@@ -9,24 +9,24 @@ from characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.lathe import frame_toward, lathe, loft
 from tools.authoring.modelling.meshes import blend_normals, morphed
-from tools.authoring.modelling.shapes import Array, rgb
+from tools.authoring.modelling.shapes import Array, linear_rgb
 from tools.authoring.modelling.surface import normals_of
 from tools.authoring.vleo.body import BACK_TEAL, LASH
-from tools.authoring.vleo.expressions import EXPRESSIONS, NEUTRAL, Face
-from tools.authoring.vleo.head import EYE_AXES, OPENING, SIGHT, head
-from tools.authoring.vleo.head import EYE_RADIUS as RADIUS
-from tools.authoring.vleo.rig import EYE
-from tools.authoring.vleo.skin import painted
+from tools.authoring.vleo.expressions import EXPRESSIONS, NEUTRAL, VleoExpression
+from tools.authoring.vleo.head import EYE_AXES, LID_OPENING_RAD, REST_GAZE, head_shape
+from tools.authoring.vleo.head import EYE_RADIUS_M as EYE_RADIUS_M
+from tools.authoring.vleo.rig import EYE_CENTRE_M
+from tools.authoring.vleo.skin import skin_colors
 
-WHITE, RIM = rgb("#fdfdf8"), rgb("#2e150c")
-IRIS, PUPIL, BROW = rgb("#8a4a22"), rgb("#140d10"), rgb("#14706f")
-CLOSED, SAG = np.radians(-6.0), np.radians(8.5)
+WHITE, RIM = linear_rgb("#fdfdf8"), linear_rgb("#2e150c")
+IRIS, PUPIL, BROW = linear_rgb("#8a4a22"), linear_rgb("#140d10"), linear_rgb("#14706f")
+CLOSED_LID_RAD, CLOSED_LID_SAG_RAD = np.radians(-6.0), np.radians(8.5)
 """Where the corners of the closed eye are, and how far its middle hangs below them [rad]."""
-LOFT = (0.075, 0.130)
+LID_HEIGHT_RADII = (0.075, 0.130)
 """How far lower and upper lids are above the ball, in radii: they move along chords of it."""
-COLUMNS = 32
+POINTS_PER_RING = 32
 """Points around an eye."""
-_ANGLE = np.linspace(0, 2 * np.pi, COLUMNS, endpoint=False)
+_ANGLE = np.linspace(0, 2 * np.pi, POINTS_PER_RING, endpoint=False)
 
 
 def eyes(bound: Skeleton) -> list[Mesh]:
@@ -42,22 +42,22 @@ def eyes(bound: Skeleton) -> list[Mesh]:
 def _ball(side: float, bound: Skeleton) -> list[Mesh]:
     """Return an eyeball and its highlights."""
     joint = "LeftEye" if side > 0 else "RightEye"
-    center, sight = EYE * [side, 1, 1], SIGHT * [side, 1, 1]
+    center, sight = EYE_CENTRE_M * [side, 1, 1], REST_GAZE * [side, 1, 1]
     angle = np.radians([180, 110, 75, 54, 41.5, 40, 37, 31, 28, 14, 0])
-    rings = RADIUS * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    rings = EYE_RADIUS_M * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     bands = [WHITE] * 4 + [RIM] * 2 + [IRIS] * 2 + [PUPIL] * 2
     pieces = [lathe(rings, bands, frame_toward(sight, center), joint, bound, 26)]
     frame = frame_toward(sight, center)[:3, :3]
     for across, up, radius in ((-0.24, 0.30, 0.0052), (0.20, -0.27, 0.0024)):
         toward = frame @ [across, up, 1.0]  # on the same side in both: one sun
-        wide = radius / RADIUS * np.array([0.0, 1.0, 0.55, 0.0])
-        rings = RADIUS * 1.024 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
+        wide = radius / EYE_RADIUS_M * np.array([0.0, 1.0, 0.55, 0.0])
+        rings = EYE_RADIUS_M * 1.024 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
         rings[:2, 1] *= 0.96
         pieces.append(lathe(rings, [WHITE] * 3, frame_toward(toward, center), joint, bound, 16))
     return pieces
 
 
-def _lids(face: Face, side: float, bound: Skeleton) -> Mesh:
+def _lids(face: VleoExpression, side: float, bound: Skeleton) -> Mesh:
     """Return the ring of skin around an eye, from inside the head to inside the ball.
 
     It is built for the left eye and mirrored.
@@ -66,36 +66,43 @@ def _lids(face: Face, side: float, bound: Skeleton) -> Mesh:
     edge, outer = _edge(face, side), _outer()
     away = outer - edge
     lash = edge + away / np.linalg.norm(away, axis=1, keepdims=True) * (0.03 + 0.065 * up)[:, None]
-    lift = LOFT[0] + (LOFT[1] - LOFT[0]) * up
-    rows = [_over(edge, 0.99 + 0 * lift), _over(edge, 1 + 0.94 * lift), _over(lash, 1 + lift)]
+    lift = LID_HEIGHT_RADII[0] + (LID_HEIGHT_RADII[1] - LID_HEIGHT_RADII[0]) * up
+    rows = [
+        _on_eye_sphere(edge, 0.99 + 0 * lift),
+        _on_eye_sphere(edge, 1 + 0.94 * lift),
+        _on_eye_sphere(lash, 1 + lift),
+    ]
     skin = _skin_radius(outer)
     for s in (0.16, 0.36, 0.6, 0.82, 1.0):
         flat, sunk = lash + (outer - lash) * s, smoothstep((s - 0.15) / 0.85)
-        covered = smoothstep((np.linalg.norm(flat / OPENING[:2], axis=1) - 1.05) / 0.15)
+        covered = smoothstep((np.linalg.norm(flat / LID_OPENING_RAD[:2], axis=1) - 1.05) / 0.15)
         over = np.maximum(1 + lift + (skin - 1 - lift) * sunk, _skin_radius(flat) * covered)
-        rows.append(_over(flat, over))
+        rows.append(_on_eye_sphere(flat, over))
     rows.insert(2, rows[2])  # a crisp border between lash and skin
-    under = _over(outer, skin - 0.2)
-    start, end = (np.tile(EYE + depth * RADIUS * SIGHT, (COLUMNS, 1)) for depth in (0.0, 0.3))
+    under = _on_eye_sphere(outer, skin - 0.2)
+    start, end = (
+        np.tile(EYE_CENTRE_M + depth * EYE_RADIUS_M * REST_GAZE, (POINTS_PER_RING, 1))
+        for depth in (0.0, 0.3)
+    )
     rings = np.stack([start, under, *rows[::-1], end]) * [side, 1.0, 1.0]
     rings = rings if side > 0 else rings[:, ::-1]
     mesh = loft(rings, _lid_colors(rings), "head", bound)
-    fixed = normals_of(head().distance, mesh.positions.astype(float), 0.006)
-    share = np.repeat([0, 0, 1.0, 1.0, 0.85, 0.6, 0.3, *[0.0] * (len(rings) - 7)], COLUMNS)
+    fixed = normals_of(head_shape().distance, mesh.positions.astype(float), 0.006)
+    share = np.repeat([0, 0, 1.0, 1.0, 0.85, 0.6, 0.3, *[0.0] * (len(rings) - 7)], POINTS_PER_RING)
     return blend_normals(mesh, fixed, share)
 
 
-def _edge(face: Face, side: float) -> Array:
+def _edge(face: VleoExpression, side: float) -> Array:
     """Return the rim of the lids, to the left and up from the middle of the ball [rad]."""
     x, height = np.cos(_ANGLE), np.sin(_ANGLE)
     open_ = 1.0 - face.shut[0 if side > 0 else 1]
     bow = np.abs(height) ** 0.9
-    closed = CLOSED * np.abs(height) ** 0.5 - SAG * (1 - x * x)
+    closed = CLOSED_LID_RAD * np.abs(height) ** 0.5 - CLOSED_LID_SAG_RAD * (1 - x * x)
     upper = np.clip(face.upper - face.upper_tilt * x * 0.5, 0.0, 1.35) * open_
     lower = face.lower * open_
-    wide = np.where(height >= 0, OPENING[1] * bow, -OPENING[2] * bow)
+    wide = np.where(height >= 0, LID_OPENING_RAD[1] * bow, -LID_OPENING_RAD[2] * bow)
     y = closed + (wide - closed) * np.where(height >= 0, upper, lower)
-    return np.stack([OPENING[0] * x, y], axis=-1)
+    return np.stack([LID_OPENING_RAD[0] * x, y], axis=-1)
 
 
 def _outer() -> Array:
@@ -105,51 +112,55 @@ def _outer() -> Array:
     return np.stack([np.radians(72.0) * np.cos(_ANGLE), reach * height], axis=-1)
 
 
-def _ways(angles: Array) -> Array:
+def _directions_from_eye(angles: Array) -> Array:
     """Return directions from the middle of the left ball, (n, 3)."""
     far = np.linalg.norm(angles, axis=1, keepdims=True)
     aside = angles * np.sinc(far / np.pi)
     return np.asarray(np.column_stack([aside, np.cos(far)]) @ EYE_AXES.T)
 
 
-def _over(angles: Array, radii: Array) -> Array:
+def _on_eye_sphere(angles: Array, radii: Array) -> Array:
     """Return points about the middle of the left ball; radii in those of the ball."""
-    return EYE + RADIUS * np.reshape(radii, (-1, 1)) * _ways(angles)
+    return EYE_CENTRE_M + EYE_RADIUS_M * np.reshape(radii, (-1, 1)) * _directions_from_eye(angles)
 
 
 def _skin_radius(angles: Array) -> Array:
     """Return how far the skin is from the middle of the ball, in its radii; at most a little."""
-    ways = _ways(angles)
+    ways = _directions_from_eye(angles)
     low, high = np.zeros(len(angles)), np.full(len(angles), 1.22)
     for _ in range(14):
         middle = 0.5 * (low + high)
-        inside = head().distance(EYE + RADIUS * middle[:, None] * ways) < 0
+        inside = head_shape().distance(EYE_CENTRE_M + EYE_RADIUS_M * middle[:, None] * ways) < 0
         low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-    return np.asarray(low + 0.4e-3 / RADIUS)
+    return np.asarray(low + 0.4e-3 / EYE_RADIUS_M)
 
 
 def _lid_colors(rings: Array) -> Array:
     """Return the colour of each point of the lids: dark lashes at the rim of the upper one."""
     flat = rings.reshape(-1, 3)
-    normals = normals_of(head().distance, flat, 0.006)
-    colors = np.asarray(painted(flat, normals)).reshape(rings.shape).copy()
+    normals = normals_of(head_shape().distance, flat, 0.006)
+    colors = np.asarray(skin_colors(flat, normals)).reshape(rings.shape).copy()
     above = np.sin(_ANGLE if rings[-3, 0, 0] > 0 else _ANGLE[::-1]) > -0.05
     colors[-4:] = np.where(above[:, None], LASH, BACK_TEAL)
     return colors
 
 
-def _brow(face: Face, side: float, bound: Skeleton) -> Mesh:
+def _brow(face: VleoExpression, side: float, bound: Skeleton) -> Mesh:
     """Return a brow, a soft dark ridge over the eye."""
     along = np.linspace(-1.0, 1.0, 11)  # from the inner end to the outer
     inner = np.clip(-along, -0.4, 1.0)
     height = np.radians(63.0) - np.radians(9.0) * along**2 + face.brow + face.brow_inner * inner
     across = np.radians(-4.0) + np.radians(25.0) * along + 0.25 * np.minimum(face.brow, 0)
     line = np.stack([across, height], axis=-1)
-    radius = 1 + LOFT[1] + (_skin_radius(line) - 1 - LOFT[1]) * smoothstep((height - 0.75) / 0.55)
+    radius = (
+        1
+        + LID_HEIGHT_RADII[1]
+        + (_skin_radius(line) - 1 - LID_HEIGHT_RADII[1]) * smoothstep((height - 0.75) / 0.55)
+    )
     radius = np.maximum(radius, _skin_radius(line)) + 0.05
     thick = 0.0030 * np.sqrt(np.clip(1 - (along / 1.02) ** 2, 0, 1)) * (1 - 0.15 * along)
     turn = np.linspace(0, 2 * np.pi, 8, endpoint=False)
-    middle, out = _over(line, radius), _ways(line)
+    middle, out = _on_eye_sphere(line, radius), _directions_from_eye(line)
     way = np.gradient(middle, axis=0)
     over = np.cross(out, way)
     over /= np.linalg.norm(over, axis=1, keepdims=True)

@@ -7,7 +7,12 @@ import numpy as np
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.meshes import morph_between
-from tools.authoring.vleo.expressions import EXPRESSIONS, Face, cheeks, dropped
+from tools.authoring.vleo.expressions import (
+    EXPRESSIONS,
+    VleoExpression,
+    cheek_displacement,
+    rotate_with_jaw,
+)
 from tools.authoring.vleo.eyes import eyes
 from tools.authoring.vleo.mouth import mouth
 from tools.authoring.vleo.skin import jaw_share
@@ -27,12 +32,12 @@ def with_expressions(mesh: Mesh, bound: Skeleton) -> Mesh:
     return replace(mesh, morphs=tuple(morphs))
 
 
-def _carried(mesh: Mesh, expression: Face, share: np.ndarray) -> Mesh:
+def _carried(mesh: Mesh, expression: VleoExpression, share: np.ndarray) -> Mesh:
     """Return the piece as jaw and cheeks carry it, each vertex by its share of them."""
     points = mesh.positions.astype(float)
-    raised = points + cheeks(points, expression) * share[:, None]
-    moved = dropped(raised, share * jaw_share(points), expression)
-    needles = dropped(raised + mesh.normals, share * jaw_share(points), expression)
+    raised = points + cheek_displacement(points, expression) * share[:, None]
+    moved = rotate_with_jaw(raised, share * jaw_share(points), expression)
+    needles = rotate_with_jaw(raised + mesh.normals, share * jaw_share(points), expression)
     return replace(
         mesh,
         positions=moved.astype(np.float32),

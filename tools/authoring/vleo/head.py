@@ -7,21 +7,21 @@ from functools import cache
 import numpy as np
 
 from tools.authoring.modelling.shapes import Array, Ellipsoid, Shape, Solid, Union
-from tools.authoring.vleo.rig import EYE
+from tools.authoring.vleo.rig import EYE_CENTRE_M
 
-EYE_RADIUS = 0.0255
+EYE_RADIUS_M = 0.0255
 """Of an eyeball [m]."""
-SIGHT = np.array([0.28, 0.09, 1.0]) / np.linalg.norm([0.28, 0.09, 1.0])
+REST_GAZE = np.array([0.28, 0.09, 1.0]) / np.linalg.norm([0.28, 0.09, 1.0])
 """Where the left eye looks at rest."""
-_LEFT = np.cross([0.0, 1.0, 0.0], SIGHT) / np.linalg.norm(np.cross([0.0, 1.0, 0.0], SIGHT))
-EYE_AXES = np.stack([_LEFT, np.cross(SIGHT, _LEFT), SIGHT], axis=1)
+_LEFT = np.cross([0.0, 1.0, 0.0], REST_GAZE) / np.linalg.norm(np.cross([0.0, 1.0, 0.0], REST_GAZE))
+EYE_AXES = np.stack([_LEFT, np.cross(REST_GAZE, _LEFT), REST_GAZE], axis=1)
 """Of the left eye: to its left, up and along its sight, as columns."""
-OPENING = np.radians([46.0, 42.0, 38.0])
+LID_OPENING_RAD = np.radians([46.0, 42.0, 38.0])
 """Of the lids, seen from the middle of the ball: half the width, up and down [rad]."""
 
 
 @dataclass(frozen=True)
-class Mirrored(Solid):
+class SymmetricShape(Solid):
     """A shape of the left half together with its image on the right, for the price of one."""
 
     left: Shape
@@ -36,18 +36,18 @@ class Mirrored(Solid):
         yield from self.left.solids()
         yield from self.left.mirrored().solids()
 
-    def mirrored(self) -> "Mirrored":
+    def mirrored(self) -> "SymmetricShape":
         """Return itself."""
         return self
 
 
 @dataclass(frozen=True)
-class Hollow(Solid):
+class MouthCavity(Solid):
     """The room behind the mouth; its rim lies hidden under the skin about the lips."""
 
     def distance(self, points: Array) -> Array:
         """Return the signed distance, about, (n,) [m]."""
-        side = around(points)
+        side = azimuth(points)
         height = points[:, 1] - lip_line(side)
         ahead = 1 - np.clip(np.abs(side) / 0.55, 0, 1) ** 2
         room = np.where(height > 0, 0.0042 + 0.0034 * ahead, 0.0086)
@@ -55,24 +55,24 @@ class Hollow(Solid):
         slot = np.maximum(np.abs(height) - up, 0.132 - points[:, 2])
         return np.asarray(slot)
 
-    def mirrored(self) -> "Hollow":
+    def mirrored(self) -> "MouthCavity":
         """Return itself."""
         return self
 
 
 @dataclass(frozen=True)
-class Socket(Solid):
+class EyeSocket(Solid):
     """What the left eyeball takes the place of: a cone from its middle, but for what is deep."""
 
     def distance(self, points: Array) -> Array:
         """Return the signed distance, about, (n,) [m]."""
-        off = points - EYE
+        off = points - EYE_CENTRE_M
         away = np.maximum(np.linalg.norm(off, axis=1), 1e-6)
-        wide = np.linalg.norm(eye_angles(off) / (1.16 * OPENING[:2]), axis=1)
-        shell = np.maximum(0.94 * EYE_RADIUS - away, away - 1.15 * EYE_RADIUS)
+        wide = np.linalg.norm(eye_angles(off) / (1.16 * LID_OPENING_RAD[:2]), axis=1)
+        shell = np.maximum(0.94 * EYE_RADIUS_M - away, away - 1.15 * EYE_RADIUS_M)
         return np.asarray(np.maximum((wide - 1) * 0.8 * away, shell))
 
-    def mirrored(self) -> "Socket":
+    def mirrored(self) -> "EyeSocket":
         """Return itself: it is never drawn."""
         return self
 
@@ -85,13 +85,13 @@ def eye_angles(off: Array) -> Array:
     return np.stack([x / flat * angle, y / flat * angle], axis=-1)
 
 
-MIDDLE = 0.118
+HEAD_AXIS_Z_M = 0.118
 """How far forward the upright through the head is from which its front is seen [m]."""
 
 
-def around(points: Array) -> Array:
+def azimuth(points: Array) -> Array:
     """Return how far to the left of straight ahead points (n, 3) of the head are, (n,) [rad]."""
-    return np.asarray(np.arctan2(points[:, 0], points[:, 2] - MIDDLE))
+    return np.asarray(np.arctan2(points[:, 0], points[:, 2] - HEAD_AXIS_Z_M))
 
 
 def lip_line(side: Array, smile: float = 0.0105, width: float = 0.70) -> Array:
@@ -107,12 +107,18 @@ def lip_line(side: Array, smile: float = 0.0105, width: float = 0.70) -> Array:
 
 
 @cache
-def head() -> Shape:
+def head_shape() -> Shape:
     """Return the head: a big skull, a soft snout, cheeks and two nostrils."""
     skull = Ellipsoid((0.0, 0.2530, 0.110), (0.0600, 0.0535, 0.0545), bones=("head",))
     snout = Ellipsoid((0.0, 0.2225, 0.149), (0.0400, 0.0275, 0.0395), bones=("head",))
     cheek = Ellipsoid((0.030, 0.2190, 0.138), (0.0225, 0.0215, 0.0225), bones=("head",))
     nostril = Ellipsoid((0.0125, 0.2385, 0.1800), (0.0075, 0.0065, 0.0075), bones=("head",))
-    mound = Ellipsoid((EYE[0], EYE[1], EYE[2]), (1.01 * EYE_RADIUS,) * 3, bones=("head",))
-    front = Union((Union((skull, snout), 0.018), Mirrored(cheek), Mirrored(nostril)), 0.014)
-    return Union((front, Mirrored(mound)), 0.012)
+    mound = Ellipsoid(
+        (EYE_CENTRE_M[0], EYE_CENTRE_M[1], EYE_CENTRE_M[2]),
+        (1.01 * EYE_RADIUS_M,) * 3,
+        bones=("head",),
+    )
+    front = Union(
+        (Union((skull, snout), 0.018), SymmetricShape(cheek), SymmetricShape(nostril)), 0.014
+    )
+    return Union((front, SymmetricShape(mound)), 0.012)

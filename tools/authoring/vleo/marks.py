@@ -9,20 +9,20 @@ from tools.authoring.vleo.body import CLAW, LASH, ORANGE, PINK, SPOT, spine_line
 from tools.authoring.vleo.pieces import attached, patches
 from tools.authoring.vleo.skin import SkinSurface
 
-SPOTS = (  # half a back: side, height, forward, radius [mm]; those at 0 have no twin
+SPOTS_MM = (  # half a back: side, height, forward, radius [mm]; those at 0 have no twin
     (0, 300, 100, 11), (23, 292, 88, 8), (17, 280, 62, 9), (0, 262, 55, 8),
     (30, 200, 78, 7), (21, 176, 62, 8), (33, 150, 40, 9),
     (35, 166, 14, 10), (52, 132, 22, 7), (47, 148, -14, 11), (26, 172, -8, 7),
     (33, 158, -38, 9), (53, 118, -32, 8), (40, 128, -62, 9), (22, 138, -72, 7),
     (26, 112, -94, 7), (17, 104, -124, 6), (13, 96, -156, 5), (10, 96, -188, 4),
 )  # fmt: skip
-SPINES = 13
+PLATE_COUNT = 13
 """How many plates there are along the back."""
-PLATE = np.array([0.62, 1.22, 1.15])
+PLATE_SCALE = np.array([0.62, 1.22, 1.15])
 """How thick, long and high they are, of what a cone would be."""
 
 
-def marks(body: SkinSurface, bound: Skeleton) -> list[Mesh]:
+def markings(body: SkinSurface, bound: Skeleton) -> list[Mesh]:
     """Return all markings, bound to the skeleton."""
     return [*_round(body, bound), *_spines(body, bound), *_claws(1.0, bound), *_claws(-1.0, bound)]
 
@@ -31,7 +31,7 @@ def _round(body: SkinSurface, bound: Skeleton) -> list[Mesh]:
     """Return the round patches of colour: cheeks, nostrils and the spots on the back."""
     cheek = (62.0, 233.0, 133.0, 9.5)
     nostril = (13.0, 242.0, 193.0, 3.3)
-    rows = [(cheek, PINK), (nostril, LASH), *((spot, SPOT) for spot in SPOTS)]
+    rows = [(cheek, PINK), (nostril, LASH), *((spot, SPOT) for spot in SPOTS_MM)]
     both = [
         ((side * x, *rest), color)
         for (x, *rest), color in rows
@@ -48,7 +48,7 @@ def _spines(body: SkinSurface, bound: Skeleton) -> list[Mesh]:
     along = np.gradient(line[:, :3], axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     spines = []
-    for share in np.linspace(0.06, 0.90, SPINES):
+    for share in np.linspace(0.06, 0.90, PLATE_COUNT):
         i = round(share * 199)
         up = np.array([0.0, along[i, 2], -along[i, 1]])
         size = 0.0045 + 0.0085 * np.sin(np.pi * share) ** 0.8
@@ -57,7 +57,7 @@ def _spines(body: SkinSurface, bound: Skeleton) -> list[Mesh]:
         )
         lean = up - 0.35 * along[i]
         place = frame_toward(lean / np.linalg.norm(lean), line[i, :3] + up * (line[i, 3] - 0.001))
-        place[:3, :3] = place[:3, :3] @ np.diag(PLATE)
+        place[:3, :3] = place[:3, :3] @ np.diag(PLATE_SCALE)
         cone = lathe(profile, [ORANGE] * 5, place, "hips", bound, 10)
         base = np.tile(line[i, :3] + up * line[i, 3], (len(cone.positions), 1))
         spines.append(attached(cone, base, body))

@@ -6,21 +6,28 @@ from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.lathe import loft
 from tools.authoring.modelling.meshes import blend_normals, morphed
-from tools.authoring.modelling.shapes import Array, rgb
+from tools.authoring.modelling.shapes import Array, linear_rgb
 from tools.authoring.modelling.surface import normals_of
 from tools.authoring.vleo.body import MAROON, ROSE
-from tools.authoring.vleo.expressions import EXPRESSIONS, HINGE, NEUTRAL, Face, cheeks, dropped
-from tools.authoring.vleo.head import MIDDLE, head, lip_line
-from tools.authoring.vleo.skin import jaw_share, painted
+from tools.authoring.vleo.expressions import (
+    EXPRESSIONS,
+    JAW_HINGE_M,
+    NEUTRAL,
+    VleoExpression,
+    cheek_displacement,
+    rotate_with_jaw,
+)
+from tools.authoring.vleo.head import HEAD_AXIS_Z_M, head_shape, lip_line
+from tools.authoring.vleo.skin import jaw_share, skin_colors
 
-LIP = rgb("#ff7d8c")
-COLUMNS = 40
+LIP = linear_rgb("#ff7d8c")
+POINTS_PER_RING = 40
 """Points around the mouth."""
-REACH = (1.10, 0.0140, 0.0155)
+MOUTH_SKIN_EXTENT = (1.10, 0.0140, 0.0155)
 """Of the skin about the mouth: half its width [rad], and how far it reaches up and down [m]."""
-_SHARES = (0.0, 0.16, 0.40, 0.70, 1.0)
+_SKIN_RING_SHARES = (0.0, 0.16, 0.40, 0.70, 1.0)
 """From the lips to where the skin about them ends."""
-_ANGLE = np.linspace(0, 2 * np.pi, COLUMNS, endpoint=False)
+_ANGLE = np.linspace(0, 2 * np.pi, POINTS_PER_RING, endpoint=False)
 
 
 def mouth(bound: Skeleton) -> list[Mesh]:
@@ -31,36 +38,41 @@ def mouth(bound: Skeleton) -> list[Mesh]:
     ]
 
 
-def _mouth(face: Face, bound: Skeleton) -> Mesh:
+def _mouth(face: VleoExpression, bound: Skeleton) -> Mesh:
     """Return a bag in the face: from a pole in the head over the skin and the lips to its end."""
     line, edge = _lip_lines(face)
-    outer = np.stack([REACH[0] * np.cos(_ANGLE), _outer_height()], axis=-1)
+    outer = np.stack([MOUTH_SKIN_EXTENT[0] * np.cos(_ANGLE), _outer_height()], axis=-1)
     away = (outer - edge) * [0.060, 1.0]
     step = face.lips / np.linalg.norm(away, axis=1, keepdims=True) * (outer - edge)
     full = np.abs(np.sin(_ANGLE)) ** 0.6
     skin, held = [], []
-    for s in _SHARES:
+    for s in _SKIN_RING_SHARES:
         flat, rest = (start + (outer - start) * s for start in (edge + step, line + step))
         lift = 0.0007 + (0.0006 + 0.45 * face.lips + face.pout) * (1 - s) ** 2.5
         skin.append(_on_skin(flat, rest, lift + 0 * full))
         held.append(_lip_share() * (1 - s) + s * jaw_share(skin[-1]))
     crest = _on_skin(edge + 0.5 * step, line + 0.5 * step, 0.0008 + 0.95 * face.lips + face.pout)
     rim = _on_skin(edge, line, 0.3 * face.lips + face.pout + 0 * full)
-    skin = [dropped(p + cheeks(p, face), h, face) for p, h in zip(skin, held, strict=True)]
-    lips = [dropped(p + cheeks(p, face), _lip_share(), face) for p in (crest, rim)]
+    skin = [
+        rotate_with_jaw(p + cheek_displacement(p, face), h, face)
+        for p, h in zip(skin, held, strict=True)
+    ]
+    lips = [
+        rotate_with_jaw(p + cheek_displacement(p, face), _lip_share(), face) for p in (crest, rim)
+    ]
     inside, inside_held = _cavity(lips[1])
     under = skin[-1] - 0.006 * _outward(skin[-1])
-    behind = np.tile([0.0, 0.2200, 0.150], (COLUMNS, 1))
+    behind = np.tile([0.0, 0.2200, 0.150], (POINTS_PER_RING, 1))
     outside = [behind, under, *skin[::-1], skin[0], *lips]
     rings = np.stack([*outside, lips[1], *inside])
     shares = [0 * full, held[-1], *held[::-1], held[0], *[_lip_share()] * 3, *inside_held]
     mesh = loft(rings, _colors(rings), _bones(np.stack(shares), bound), bound)
-    fixed = normals_of(head().distance, mesh.positions.astype(float), 0.006)
-    far = [0, 0, *_SHARES[::-1], *[0.0] * (len(rings) - 2 - len(_SHARES))]
-    return blend_normals(mesh, fixed, np.repeat(np.array(far) ** 1.5, COLUMNS))
+    fixed = normals_of(head_shape().distance, mesh.positions.astype(float), 0.006)
+    far = [0, 0, *_SKIN_RING_SHARES[::-1], *[0.0] * (len(rings) - 2 - len(_SKIN_RING_SHARES))]
+    return blend_normals(mesh, fixed, np.repeat(np.array(far) ** 1.5, POINTS_PER_RING))
 
 
-def _lip_lines(face: Face) -> tuple[Array, Array]:
+def _lip_lines(face: VleoExpression) -> tuple[Array, Array]:
     """Return where the lips meet when closed, and where their edges are: side [rad], height [m]."""
     side, height = face.width * np.cos(_ANGLE), np.sin(_ANGLE)
     line = lip_line(side, face.smile, face.width)
@@ -72,8 +84,8 @@ def _lip_lines(face: Face) -> tuple[Array, Array]:
 def _outer_height() -> Array:
     """Return the height of the end of the skin about the mouth, (columns,) [m]."""
     height = np.sin(_ANGLE)
-    reach = np.where(height >= 0, REACH[1], REACH[2])
-    return np.asarray(lip_line(REACH[0] * np.cos(_ANGLE)) + reach * height)
+    reach = np.where(height >= 0, MOUTH_SKIN_EXTENT[1], MOUTH_SKIN_EXTENT[2])
+    return np.asarray(lip_line(MOUTH_SKIN_EXTENT[0] * np.cos(_ANGLE)) + reach * height)
 
 
 def _lip_share() -> Array:
@@ -92,18 +104,18 @@ def _on_skin(flat: Array, rest: Array, lift: Array | float) -> Array:
 def on_snout(side: Array, height: Array) -> Array:
     """Return the points on the front of the head so far to the side [rad] and up [m], (n, 3)."""
     way = np.stack([np.sin(side), 0 * side, np.cos(side)], axis=-1)
-    start = np.stack([0 * side, height, np.full(len(side), MIDDLE)], axis=-1)
+    start = np.stack([0 * side, height, np.full(len(side), HEAD_AXIS_Z_M)], axis=-1)
     low, high = np.zeros(len(side)), np.full(len(side), 0.10)
     for _ in range(15):
         middle = 0.5 * (low + high)
-        inside = head().distance(start + way * middle[:, None]) < 0
+        inside = head_shape().distance(start + way * middle[:, None]) < 0
         low, high = np.where(inside, middle, low), np.where(inside, high, middle)
     return np.asarray(start + way * low[:, None])
 
 
 def _outward(points: Array) -> Array:
     """Return the direction level and away from the middle of the head, (n, 3)."""
-    away = (points - [0.0, 0.0, MIDDLE]) * [1.0, 0.0, 1.0]
+    away = (points - [0.0, 0.0, HEAD_AXIS_Z_M]) * [1.0, 0.0, 1.0]
     return np.asarray(away / np.linalg.norm(away, axis=1, keepdims=True))
 
 
@@ -112,15 +124,15 @@ def _cavity(edge: Array) -> tuple[list[Array], list[Array]]:
     low = np.clip(-np.sin(_ANGLE), 0, 1)[:, None] ** 0.5
     high = np.clip(np.sin(_ANGLE), 0, 1)[:, None] ** 0.5
     deep = np.array([0.0, 1.0, 0.0]) * (0.003 * high - 0.0055 * low)
-    gum = edge + (HINGE - edge) * 0.09
-    inner = edge + (HINGE - edge) * 0.22 + deep
-    throat = edge + (HINGE - edge) * 0.72 + 0.8 * deep
-    end = np.tile(HINGE, (COLUMNS, 1))
+    gum = edge + (JAW_HINGE_M - edge) * 0.09
+    inner = edge + (JAW_HINGE_M - edge) * 0.22 + deep
+    throat = edge + (JAW_HINGE_M - edge) * 0.72 + 0.8 * deep
+    end = np.tile(JAW_HINGE_M, (POINTS_PER_RING, 1))
     lip = _lip_share()
     return [gum, inner, throat, end], [lip, lip, 0.5 * lip, 0 * lip]
 
 
-def _tongue(face: Face, bound: Skeleton) -> Mesh:
+def _tongue(face: VleoExpression, bound: Skeleton) -> Mesh:
     """Return the tongue, which lies on the jaw; a deep line runs along it."""
     turn = np.linspace(0, 2 * np.pi, 16, endpoint=False)
     polar = np.linspace(0, np.pi, 9)[:, None]
@@ -130,7 +142,7 @@ def _tongue(face: Face, bound: Skeleton) -> Mesh:
     groove = np.clip(ball[..., 1], 0, 1) * np.exp(-((points[..., 0] / 0.004) ** 2))
     points[..., 1] -= 0.0014 * groove
     flat = points.reshape(-1, 3)
-    moved = dropped(flat, 1.0 - 0.25 * np.clip((0.165 - flat[:, 2]) / 0.025, 0, 1), face)
+    moved = rotate_with_jaw(flat, 1.0 - 0.25 * np.clip((0.165 - flat[:, 2]) / 0.025, 0, 1), face)
     color = np.tile(ROSE, (*x.shape, 1))
     return loft(moved.reshape(points.shape), color, "jaw", bound)
 
@@ -145,9 +157,9 @@ def _bones(jaw: Array, bound: Skeleton) -> Array:
 def _colors(rings: Array) -> Array:
     """Return the colour of each point: skin, lips, and the dark inside."""
     flat = rings.reshape(-1, 3)
-    rest = np.asarray(painted(flat, normals_of(head().distance, flat, 0.003)))
+    rest = np.asarray(skin_colors(flat, normals_of(head_shape().distance, flat, 0.003)))
     colors = rest.reshape(rings.shape).copy()
-    first = 2 + len(_SHARES)
+    first = 2 + len(_SKIN_RING_SHARES)
     colors[first : first + 3] = LIP
     colors[first + 3 :] = MAROON
     return colors

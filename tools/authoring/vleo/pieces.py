@@ -11,7 +11,7 @@ from tools.authoring.modelling.lathe import frame_toward
 from tools.authoring.modelling.meshes import bound_mesh, strongest_joints
 from tools.authoring.modelling.shapes import Array, Vector
 from tools.authoring.modelling.surface import normals_of, project
-from tools.authoring.vleo.body import whole
+from tools.authoring.vleo.body import body_shape
 from tools.authoring.vleo.skin import SkinSurface
 
 
@@ -24,7 +24,7 @@ def patches(
     near: Array, radii: Array, colors: list[Vector], skin: SkinSurface, bound: Skeleton
 ) -> list[Mesh]:
     """Return round patches near points (n, 3), just above the skin."""
-    field = whole().distance
+    field = body_shape().distance
     centers = project(field, near, 0.05, 8)
     normals = normals_of(field, centers, 0.006)
     frames = np.stack([frame_toward(n, c) for n, c in zip(normals, centers, strict=True)])

@@ -12,10 +12,10 @@ BURSTS = ("burst1", "burst2", "burst3")
 NECK = ("neck1", "neck2", "neck3")
 TAIL = ("tail1", "tail2", "tail3", "tail4", "tail5")
 BACK = ("hips", "spine1", "spine2", "chest")
-HIDDEN = 1e-3
+HIDDEN_SCALE = 1e-3
 """Scale of a joint whose mesh is not to be seen; not zero, so that its matrix can be inverted."""
 
-_JOINTS: dict[str, tuple[str, Vector]] = {
+_JOINT_POSITIONS: dict[str, tuple[str, Vector]] = {
     "root": ("", (0.0, 0.0, 0.0)),
     "hips": ("root", (0.0, 0.112, -0.045)),
     "spine1": ("hips", (0.0, 0.115, -0.012)),
@@ -41,22 +41,22 @@ _JOINTS: dict[str, tuple[str, Vector]] = {
     "LeftHindLowerLeg": ("LeftHindUpperLeg", (0.043, 0.058, -0.026)),
     "LeftHindFoot": ("LeftHindLowerLeg", (0.045, 0.020, -0.052)),
 }
-EYE = np.array(_JOINTS["LeftEye"][1])
+EYE_CENTRE_M = np.array(_JOINT_POSITIONS["LeftEye"][1])
 """The middle of the left eyeball, character frame [m]."""
-MOUTH = (0.0, 0.222, 0.200)
+MOUTH_M = (0.0, 0.222, 0.200)
 """Where kisses and shouts leave, character frame [m]."""
 
 
 def skeleton() -> Skeleton:
     """Return the skeleton in its bind pose: axes as the character's, scales one."""
-    effects: dict[str, tuple[str, Vector]] = dict.fromkeys(HEARTS + BURSTS, ("root", MOUTH))
-    return build_skeleton(_JOINTS | effects)
+    effects: dict[str, tuple[str, Vector]] = dict.fromkeys(HEARTS + BURSTS, ("root", MOUTH_M))
+    return build_skeleton(_JOINT_POSITIONS | effects)
 
 
-def resting(bound: Skeleton) -> Skeleton:
+def shipped_skeleton(bound: Skeleton) -> Skeleton:
     """Return the skeleton as it is shipped: effects too small to be seen."""
     scales = np.ones((len(bound), 3))
     for name in (*HEARTS, *BURSTS):
-        scales[bound.index(name)] = HIDDEN
+        scales[bound.index(name)] = HIDDEN_SCALE
     rest = Pose(bound.rest.translations, bound.rest.rotations, scales)
     return Skeleton(bound.names, bound.parents, rest)

@@ -10,15 +10,23 @@ from tools.authoring.modelling.curves import smoothstep
 from tools.authoring.modelling.sculpt import skin_weights
 from tools.authoring.modelling.shapes import Array, Ellipsoid, Vector
 from tools.authoring.modelling.surface import normals_of, polygonise
-from tools.authoring.vleo.body import BACK_TEAL, CREAM, MAROON, TEAL, skin, spine_line, whole
-from tools.authoring.vleo.head import EYE_RADIUS, Hollow, around, lip_line
-from tools.authoring.vleo.rig import EYE
+from tools.authoring.vleo.body import (
+    BACK_TEAL,
+    CREAM,
+    MAROON,
+    TEAL,
+    body_shape,
+    skin_shape,
+    spine_line,
+)
+from tools.authoring.vleo.head import EYE_RADIUS_M, MouthCavity, azimuth, lip_line
+from tools.authoring.vleo.rig import EYE_CENTRE_M
 
-TRUNK_CELL, FACE_CELL = (0.0084, 0.0101, 0.0100), (0.0056, 0.0044, 0.0047)
+TRUNK_CELL_M, FACE_CELL_M = (0.0084, 0.0101, 0.0100), (0.0056, 0.0044, 0.0047)
 """Edges of a grid cell far from the mouth and about it, along x, y, z [m]."""
-FORWARD, TAIL_END = 2, -0.19
+FORWARD_AXIS, THIN_TAIL_Z_M = 2, -0.19
 """The axis along which the tail points back, and where it is so thin that cells are short [m]."""
-MOUTH_BOX = ((-0.044, 0.044), (0.192, 0.246), (0.134, 0.300))
+FINE_BOX_M = ((-0.044, 0.044), (0.192, 0.246), (0.134, 0.300))
 """Where the cells are small, along x, y, z [m]."""
 
 
@@ -45,16 +53,16 @@ class SkinSurface:
 def body(bound: Skeleton) -> SkinSurface:
     """Return the skin with its weights and colours."""
     points, triangles = _surface()
-    solids = list(skin().solids())
+    solids = list(skin_shape().solids())
     distances = np.stack([solid.distance(points) for solid in solids], axis=1)
     weights = skin_weights(points, triangles, solids, distances, bound, 0.022)
     weights = _with_face(points, _with_firm_feet(points, weights, bound), bound)
-    normals = normals_of(skin().distance, points, 0.003)
-    eye = np.linalg.norm(np.abs(points) * [1, 0, 0] + points * [0, 1, 1] - EYE, axis=1)
+    normals = normals_of(skin_shape().distance, points, 0.003)
+    eye = np.linalg.norm(np.abs(points) * [1, 0, 0] + points * [0, 1, 1] - EYE_CENTRE_M, axis=1)
     # The light knows nothing of rims that are hidden under lids and lips.
-    outside = (whole().distance(points) > -0.0012) | (eye < 1.5 * EYE_RADIUS)
-    normals[outside] = normals_of(whole().distance, points[outside], 0.003)
-    return SkinSurface(points, normals, triangles, weights, painted(points, normals))
+    outside = (body_shape().distance(points) > -0.0012) | (eye < 1.5 * EYE_RADIUS_M)
+    normals[outside] = normals_of(body_shape().distance, points[outside], 0.003)
+    return SkinSurface(points, normals, triangles, weights, skin_colors(points, normals))
 
 
 def _surface() -> tuple[Array, NDArray[np.int64]]:
@@ -63,11 +71,11 @@ def _surface() -> tuple[Array, NDArray[np.int64]]:
     lines = []
     for axis, (low, high) in spans.items():
         line = np.linspace(low, high, 2000)
-        near_low, near_high = MOUTH_BOX[axis]
+        near_low, near_high = FINE_BOX_M[axis]
         small = smoothstep((line - near_low) / 0.02 + 1) * smoothstep((near_high - line) / 0.02 + 1)
-        edge = TRUNK_CELL[axis] + (FACE_CELL[axis] - TRUNK_CELL[axis]) * small
-        if axis == FORWARD:
-            edge = edge * (1 - 0.42 * smoothstep((TAIL_END - line) / 0.03))
+        edge = TRUNK_CELL_M[axis] + (FACE_CELL_M[axis] - TRUNK_CELL_M[axis]) * small
+        if axis == FORWARD_AXIS:
+            edge = edge * (1 - 0.42 * smoothstep((THIN_TAIL_Z_M - line) / 0.03))
         lines.append((line, np.concatenate([[0.0], np.cumsum(np.diff(line) / edge[1:])])))
 
     def unstretched(cells: Array) -> Array:
@@ -76,7 +84,7 @@ def _surface() -> tuple[Array, NDArray[np.int64]]:
 
     end = np.array([counted[-1] for _, counted in lines])
     points, triangles = polygonise(
-        lambda cells: skin().distance(unstretched(cells)), np.zeros(3), end, 1.0
+        lambda cells: skin_shape().distance(unstretched(cells)), np.zeros(3), end, 1.0
     )
     return unstretched(points), triangles
 
@@ -95,7 +103,7 @@ def _with_firm_feet(points: Array, weights: Array, bound: Skeleton) -> Array:
 
 def jaw_share(points: Array) -> Array:
     """Return how much of the head's hold on points (n, 3) is the jaw's, (n,), 0…1."""
-    side = around(points)
+    side = azimuth(points)
     below = lip_line(side) - points[:, 1]
     soft = 0.0022 + 0.016 * np.clip((np.abs(side) - 0.68) / 0.45, 0, 1)
     ahead = (points[:, 2] - 0.096 + 0.35 * (points[:, 1] - 0.2235)) / 0.036
@@ -111,11 +119,11 @@ def _with_face(points: Array, weights: Array, bound: Skeleton) -> Array:
     return weights
 
 
-def painted(points: Array, normals: Array) -> Array:
+def skin_colors(points: Array, normals: Array) -> Array:
     """Return the colours of the skin, (n, 3): teal, darker above, cream below, and a red mouth."""
     colors = np.tile(TEAL, (len(points), 1))
     colors = _coat(colors, BACK_TEAL, 0.7 * smoothstep((normals[:, 1] - 0.1) / 0.8))
-    legs = whole().solids()
+    legs = body_shape().solids()
     leg = np.min([s.distance(points) for s in legs if s.bones[0][-3:] in ("Leg", "oot")], axis=0)
     under = smoothstep((_underside(points) - 0.26) / 0.30) * smoothstep(
         (0.208 - points[:, 1]) / 0.012
@@ -123,10 +131,12 @@ def painted(points: Array, normals: Array) -> Array:
     under = under * smoothstep((points[:, 2] + 0.215) / 0.08)  # not on the tip of the tail
     colors = _coat(colors, CREAM, under * smoothstep((leg + 0.001) / 0.014))
     chin = Ellipsoid((0.0, 0.200, 0.150), (0.052, 0.030, 0.046)).distance(points)
-    lower = smoothstep((lip_line(around(points)) - 0.0035 - points[:, 1]) / 0.005)
-    lower = lower * smoothstep((0.85 - np.abs(around(points))) / 0.35)  # not about its corners
+    lower = smoothstep((lip_line(azimuth(points)) - 0.0035 - points[:, 1]) / 0.005)
+    lower = lower * smoothstep((0.85 - np.abs(azimuth(points))) / 0.35)  # not about its corners
     colors = _coat(colors, CREAM, lower * smoothstep(0.5 - chin / 0.012))
-    inside = -np.maximum(whole().distance(points) + 0.0007, Hollow().distance(points) - 0.0020)
+    inside = -np.maximum(
+        body_shape().distance(points) + 0.0007, MouthCavity().distance(points) - 0.0020
+    )
     return _coat(colors, MAROON, smoothstep(0.5 + inside / 0.0010))
 
 

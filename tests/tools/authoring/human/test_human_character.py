@@ -9,8 +9,8 @@ from characters.motion.clip import Clip
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
 from tools.authoring.human.character import build_human
-from tools.authoring.human.limbs import FOOT, turned
-from tools.authoring.human.rig import JOINTS
+from tools.authoring.human.limbs import FOOT, rotation_deg
+from tools.authoring.human.rig import JOINT_POSITIONS
 
 WALKS = [f"Walk{side}{size}" for side in ("Left", "Right") for size in ("Short", "Medium", "Wide")]
 RUNS = [f"Run{side}{size}" for side in ("Left", "Right") for size in ("Medium", "Wide")]
@@ -205,7 +205,7 @@ def test_closed_lids_hide_the_eyes_wherever_they_look(
 ) -> None:
     skeleton = human.skeleton
     turns = skeleton.rest.rotations.copy()
-    turns[[skeleton.index("LeftEye"), skeleton.index("RightEye")]] = turned(pitch, yaw)
+    turns[[skeleton.index("LeftEye"), skeleton.index("RightEye")]] = rotation_deg(pitch, yaw)
     looking = Pose(skeleton.rest.translations, turns).globals(skeleton)
     face, balls = human.meshes
     ball = skin(balls, looking)
@@ -215,13 +215,15 @@ def test_closed_lids_hide_the_eyes_wherever_they_look(
     assert (_front(closed[near & (closed[..., 2].min(axis=1) > 0.105)], ball) > ball[:, 2]).all()
 
 
-ELBOW = np.cross(np.subtract(JOINTS["LeftForeArm"][1], JOINTS["LeftArm"][1]), [0.0, 0.0, 1.0])
+ELBOW = np.cross(
+    np.subtract(JOINT_POSITIONS["LeftForeArm"][1], JOINT_POSITIONS["LeftArm"][1]), [0.0, 0.0, 1.0]
+)
 ELBOW /= np.linalg.norm(ELBOW)
 BENDS = {
     "LeftForeArm": (rotations.about(ELBOW, np.radians(120.0)), 0.0),
-    "LeftLeg": (turned(x=120.0), 0.0),
-    "LeftArm": (turned(z=90.0), 0.03),
-    "LeftUpLeg": (turned(x=-90.0), 0.03),
+    "LeftLeg": (rotation_deg(x=120.0), 0.0),
+    "LeftArm": (rotation_deg(z=90.0), 0.03),
+    "LeftUpLeg": (rotation_deg(x=-90.0), 0.03),
 }
 
 

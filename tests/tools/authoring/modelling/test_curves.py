@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tools.authoring.modelling.curves import follow, keys, later, wave
+from tools.authoring.modelling.curves import delayed, keys, spring_follow, wave
 
 
 def test_keys_are_met_and_never_overshot() -> None:
@@ -15,7 +15,7 @@ def test_keys_are_met_and_never_overshot() -> None:
 
 def test_a_spring_follows_late_and_loops() -> None:
     curve = wave(240, 2)
-    behind = follow(curve, seconds=8.0, hertz=1.0, damping=0.5)
+    behind = spring_follow(curve, seconds=8.0, hertz=1.0, damping=0.5)
     assert int(np.argmax(behind[:120])) > int(np.argmax(curve[:120]))
     assert np.allclose(behind[:120], behind[120:])
-    assert np.allclose(later(curve, 0.25), np.roll(curve, 60))
+    assert np.allclose(delayed(curve, 0.25), np.roll(curve, 60))

@@ -8,12 +8,20 @@ from hypothesis import strategies as st
 from characters.model.mesh import Mesh
 from characters.skeleton import rotations
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.gait import Foot, Path, Steps, foot_motion
-from tools.authoring.modelling.ik import bend
+from tools.authoring.modelling.gait import FootDimensions, Footfalls, GroundArc, foot_motion
+from tools.authoring.modelling.ik import hinge_position
 from tools.authoring.modelling.lathe import lathe
-from tools.authoring.modelling.rig import Puppet, build_skeleton, mirrored
-from tools.authoring.modelling.sculpt import Part, sculpt
-from tools.authoring.modelling.shapes import Cone, Cut, Ellipsoid, HalfSpace, Shape, Union, rgb
+from tools.authoring.modelling.rig import PosedRig, build_skeleton, mirrored
+from tools.authoring.modelling.sculpt import BodyPart, sculpt
+from tools.authoring.modelling.shapes import (
+    Difference,
+    Ellipsoid,
+    HalfSpace,
+    RoundCone,
+    Shape,
+    Union,
+    linear_rgb,
+)
 from tools.authoring.modelling.tube import tube
 
 LEGS = build_skeleton(
@@ -31,8 +39,10 @@ LEGS = build_skeleton(
 def half_of_the_trousers(side: float) -> Union:
     name = "Left" if side > 0 else "Right"
     x = 0.06 * side
-    upper = Cone((x, 0.85, 0), (x, 0.45, 0), 0.045, 0.04, bones=(f"{name}UpLeg",))
-    return Union((upper, Cone((x, 0.45, 0), (x, 0.1, 0), 0.04, 0.04, bones=(f"{name}Leg",))), 0.02)
+    upper = RoundCone((x, 0.85, 0), (x, 0.45, 0), 0.045, 0.04, bones=(f"{name}UpLeg",))
+    return Union(
+        (upper, RoundCone((x, 0.45, 0), (x, 0.1, 0), 0.04, 0.04, bones=(f"{name}Leg",))), 0.02
+    )
 
 
 def is_closed(mesh: Mesh) -> bool:
@@ -50,8 +60,8 @@ def volume(mesh: Mesh) -> float:
 
 
 def test_a_sculpted_ball_is_round_closed_and_faces_outward() -> None:
-    ball = Ellipsoid((0.1, 1.0, 0.0), (0.2, 0.2, 0.2), bones=("hips",), color=rgb("#ff0000"))
-    mesh = sculpt("ball", [Part(ball, 0.02)], LEGS)
+    ball = Ellipsoid((0.1, 1.0, 0.0), (0.2, 0.2, 0.2), bones=("hips",), color=linear_rgb("#ff0000"))
+    mesh = sculpt("ball", [BodyPart(ball, 0.02)], LEGS)
     outward = mesh.positions - np.array([0.1, 1.0, 0.0])
     assert np.allclose(np.linalg.norm(outward, axis=1), 0.2, atol=1e-5)
     assert np.allclose(mesh.normals, outward / 0.2, atol=1e-3)
@@ -63,7 +73,7 @@ def test_a_sculpted_ball_is_round_closed_and_faces_outward() -> None:
 
 def test_a_cut_leaves_the_flat_face() -> None:
     ball = Ellipsoid((0, 1, 0), (0.2, 0.2, 0.2), bones=("hips",))
-    mesh = sculpt("half", [Part(Cut(ball, HalfSpace((0, 1, 0), (0, 1, 0))), 0.02)], LEGS)
+    mesh = sculpt("half", [BodyPart(Difference(ball, HalfSpace((0, 1, 0), (0, 1, 0))), 0.02)], LEGS)
     assert mesh.positions[:, 1].min() == pytest.approx(1.0, abs=2e-3)
     assert volume(mesh) == pytest.approx(2 / 3 * np.pi * 0.2**3, rel=0.03)
 
@@ -71,7 +81,7 @@ def test_a_cut_leaves_the_flat_face() -> None:
 def test_skin_weights_never_cross_from_one_leg_to_the_other() -> None:
     seat = Ellipsoid((0, 0.9, 0), (0.12, 0.08, 0.08), bones=("hips",))
     trousers = Union((seat, half_of_the_trousers(1), half_of_the_trousers(-1)))
-    mesh = sculpt("trousers", [Part(trousers, 0.015, soft_skin=0.04)], LEGS)
+    mesh = sculpt("trousers", [BodyPart(trousers, 0.015, soft_skin=0.04)], LEGS)
     names = np.array(LEGS.names)[mesh.joints]
     held_by_left = np.char.startswith(names, "Left") & (mesh.weights > 0)
     held_by_right = np.char.startswith(names, "Right") & (mesh.weights > 0)
@@ -98,7 +108,7 @@ def test_turned_and_swept_pieces_are_closed_and_face_outward() -> None:
 @pytest.mark.parametrize(
     "shape",
     [
-        Cone((0.1, 0.2, 0.3), (0.4, 0.1, 0.2), 0.1, 0.05, (1.0, 1.0, 0.7)),
+        RoundCone((0.1, 0.2, 0.3), (0.4, 0.1, 0.2), 0.1, 0.05, (1.0, 1.0, 0.7)),
         Ellipsoid((0.1, 0.2, 0.3), (0.1, 0.2, 0.3), (0.3, 0.5, 0.7), 3.0),
         HalfSpace((0.1, 0.2, 0.3), (0.3, 0.5, 0.7)),
     ],
@@ -119,20 +129,20 @@ def test_a_bent_limb_keeps_its_bones_long(
     direction /= np.linalg.norm(direction)
     shortest = abs(upper - lower) + 0.01
     end = start + direction * (shortest + reach * (upper + lower - shortest))
-    middle = bend(start, end, pole, upper, lower)
+    middle = hinge_position(start, end, pole, upper, lower)
     assert np.linalg.norm(middle - start) == pytest.approx(upper, abs=1e-6)
     assert np.linalg.norm(end - middle) == pytest.approx(lower, abs=1e-6)
     assert (middle - start) @ (pole - direction * (pole @ direction)) > -1e-9
 
 
 def test_a_placed_foot_is_where_it_was_asked_to_be() -> None:
-    puppet = Puppet(LEGS, 2)
+    rig = PosedRig(LEGS, 2)
     ankle = np.array([[0.1, 0.15, 0.2], [0.0, 0.1, -0.15]])
     facing = rotations.from_euler("yx", np.array([[0.3, -0.2], [-0.1, 0.4]]))
-    puppet.place_foot("Left", ankle, facing, np.zeros(2))
-    assert np.allclose(puppet.places("LeftFoot"), ankle, atol=1e-9)
-    assert np.allclose(rotations.align(puppet.facing("LeftFoot"), facing), facing, atol=1e-9)
-    image = mirrored(puppet.pose, LEGS).globals(LEGS)[:, LEGS.names.index("RightFoot"), :3, 3]
+    rig.place_foot("Left", ankle, facing, np.zeros(2))
+    assert np.allclose(rig.places("LeftFoot"), ankle, atol=1e-9)
+    assert np.allclose(rotations.align(rig.facing("LeftFoot"), facing), facing, atol=1e-9)
+    image = mirrored(rig.pose, LEGS).globals(LEGS)[:, LEGS.names.index("RightFoot"), :3, 3]
     assert np.allclose(image, ankle * [-1, 1, 1], atol=1e-9)
 
 
@@ -142,9 +152,9 @@ def test_a_placed_foot_is_where_it_was_asked_to_be() -> None:
 def test_a_planted_foot_pivots_about_a_point_of_the_ground(
     speed: float, yaw_rate: float, stance: float, side: float
 ) -> None:
-    path, phase = Path(speed, yaw_rate), np.linspace(0, 1, 121)
-    foot = Foot(ankle=0.095, heel=-0.07, ball=(0.03, 0.115), toes=0.09)
-    steps = Steps(1.0, stance, 0.1, 0.0, 0.3, 0.8, 0.03)
+    path, phase = GroundArc(speed, yaw_rate), np.linspace(0, 1, 121)
+    foot = FootDimensions(ankle=0.095, heel=-0.07, ball=(0.03, 0.115), toes=0.09)
+    steps = Footfalls(1.0, stance, 0.1, 0.0, 0.3, 0.8, 0.03)
     motion = foot_motion(path, steps, foot, side, phase)
     root, yaw = path.at(phase)
     turned = rotations.about("y", yaw)

@@ -8,8 +8,8 @@ from characters.motion.blend import mix
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose
 from tools.authoring.vleo.character import build_vleo
-from tools.authoring.vleo.head import EYE_RADIUS, SIGHT
-from tools.authoring.vleo.rig import BURSTS, EYE, FEET, HEARTS
+from tools.authoring.vleo.head import EYE_RADIUS_M, REST_GAZE
+from tools.authoring.vleo.rig import BURSTS, EYE_CENTRE_M, FEET, HEARTS
 
 KISSES = ("kiss_head", "kiss_legs", "kiss_tail")
 SHOUTS = ("shout_head", "shout_legs", "shout_tail")
@@ -247,8 +247,10 @@ def test_closed_lids_hide_the_eyes_wherever_they_look(
 ) -> None:
     points, triangles = faced(vleo, eyes, blink=1.0), vleo.meshes[0].triangles
     ball = held_by(vleo, "LeftEye")[triangles].all(axis=1)
-    near = np.abs(points[triangles[:, 0]] - EYE).max(axis=1) < 0.06
-    ways = SIGHT + np.array([[a, b, 0.0] for a in np.arange(-6, 7) for b in np.arange(-6, 7)]) / 9
+    near = np.abs(points[triangles[:, 0]] - EYE_CENTRE_M).max(axis=1) < 0.06
+    ways = (
+        REST_GAZE + np.array([[a, b, 0.0] for a in np.arange(-6, 7) for b in np.arange(-6, 7)]) / 9
+    )
     for way in ways / np.linalg.norm(ways, axis=1, keepdims=True):
         lid, eye = (_farthest(points[triangles[near & which]], way) for which in (~ball, ball))
         assert lid > eye
@@ -256,7 +258,7 @@ def test_closed_lids_hide_the_eyes_wherever_they_look(
 
 def _farthest(corners: np.ndarray, way: np.ndarray) -> float:
     """Return how far from the middle of the eye a ray leaves triangles (n, 3, 3) last [m]."""
-    a, b, c = (corners[:, i] - EYE for i in range(3))
+    a, b, c = (corners[:, i] - EYE_CENTRE_M for i in range(3))
     with np.errstate(divide="ignore", invalid="ignore"):  # Möller and Trumbore (1997)
         across = np.cross(way, c - a)
         scale = 1 / np.sum((b - a) * across, axis=1)
@@ -269,12 +271,12 @@ def _farthest(corners: np.ndarray, way: np.ndarray) -> float:
 @pytest.mark.parametrize("on", [0.25, 0.5, 0.75, 1.0])
 def test_lids_slide_over_the_eyes_and_never_through_them(vleo: Character, on: float) -> None:
     lid = ~held_by(vleo, "LeftEye") & held_by(vleo, "head")
-    ahead = (faced(vleo) - EYE) @ SIGHT
-    away = np.linalg.norm(faced(vleo) - EYE, axis=1)
-    lid &= (away > 1.02 * EYE_RADIUS) & (away < 1.3 * EYE_RADIUS) & (ahead > 0.4 * EYE_RADIUS)
+    ahead = (faced(vleo) - EYE_CENTRE_M) @ REST_GAZE
+    away = np.linalg.norm(faced(vleo) - EYE_CENTRE_M, axis=1)
+    lid &= (away > 1.02 * EYE_RADIUS_M) & (away < 1.3 * EYE_RADIUS_M) & (ahead > 0.4 * EYE_RADIUS_M)
     assert lid.sum() > 50
-    over = np.linalg.norm(faced(vleo, blink=on)[lid] - EYE, axis=1)
-    assert over.min() > 1.005 * EYE_RADIUS
+    over = np.linalg.norm(faced(vleo, blink=on)[lid] - EYE_CENTRE_M, axis=1)
+    assert over.min() > 1.005 * EYE_RADIUS_M
 
 
 BENDS = {

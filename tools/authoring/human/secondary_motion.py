@@ -1,0 +1,84 @@
+"""What hangs loosely on the bundled explorer and follows late: backpack, hood, strings, cowlick.
+
+Each is a damped spring on an accelerated mount, whose response over a repeating motion has a
+closed form (`loops.follow`); so loops stay loops.
+"""
+
+import numpy as np
+
+from characters.skeleton import rotations
+from tools.authoring.human.limbs import SIDES, rotation_deg
+from tools.authoring.modelling.curves import soft_limited, spring_follow
+from tools.authoring.modelling.rig import PosedRig
+from tools.authoring.modelling.shapes import Array
+
+GRAVITY_M_S2 = 9.81
+
+
+def add_secondary_motion(rig: PosedRig, seconds: float, aside: float = 0.0) -> None:
+    """Let all that is loose follow a body whose last frame is its first.
+
+    Parameters
+    ----------
+    seconds : duration of the motion
+    aside : acceleration of the way itself, to the left: that of a turn [m/s²]
+    """
+    back = _felt_acceleration(rig, "chest", (0.0, 1.03, -0.2), seconds, aside)
+    _swing_backpack(rig, back, seconds)
+    flop = soft_limited(-0.9 * spring_follow(back[:, 1] - 0.5 * back[:, 2], seconds, 2.6, 0.35), 14)
+    rig.turn("Hood", rotation_deg(x=_close_loop(-_soft_positive(flop, 4.0))))
+    front = _felt_acceleration(rig, "chest", (0.0, 1.09, 0.13), seconds, aside)
+    _swing_strings(rig, front, seconds)
+    crown = _felt_acceleration(rig, "head", (0.0, 1.74, -0.04), seconds, aside)
+    pitch = soft_limited(
+        -spring_follow(crown[:, 2] - 0.4 * crown[:, 1], seconds, 3.2, 0.22) * 0.55, 24
+    )
+    roll = soft_limited(spring_follow(crown[:, 0], seconds, 3.2, 0.22) * 0.55, 20)
+    rig.turn("Cowlick", rotation_deg(x=_close_loop(pitch), z=_close_loop(roll)))
+
+
+def _swing_backpack(rig: PosedRig, pull: Array, seconds: float) -> None:
+    """Let it bounce on the back and swing off it; it cannot swing far into it."""
+    bounce = soft_limited(-spring_follow(pull[:, 1], seconds, 3.4, 0.3) * 0.0009, 0.018)
+    away = soft_limited(spring_follow(1.2 * pull[:, 2] - 0.5 * pull[:, 1], seconds, 2.8, 0.3), 9)
+    sway = soft_limited(spring_follow(pull[:, 0], seconds, 2.4, 0.3) * -0.6, 6)
+    rig.shift("Backpack", _close_loop(bounce)[:, None] * [0.0, 1.0, 0.0])
+    rig.turn(
+        "Backpack", rotation_deg(x=_close_loop(_soft_positive(away, 2.0)), z=_close_loop(sway))
+    )
+
+
+def _swing_strings(rig: PosedRig, pull: Array, seconds: float) -> None:
+    """Swing the strings off the chest; they cannot swing into it."""
+    for number, (side, _) in enumerate(SIDES):
+        hertz = 2.1 + 0.3 * number  # no two strings are of one length
+        off = -spring_follow(4.0 * pull[:, 2] + 1.2 * pull[:, 1], seconds, hertz, 0.2)
+        aside = soft_limited(spring_follow(pull[:, 0], seconds, hertz, 0.2) * -1.4, 18)
+        off = _soft_positive(soft_limited(off, 40), 4.0)
+        rig.turn(f"{side}String", rotation_deg(x=-_close_loop(off), z=_close_loop(aside)))
+
+
+def _soft_positive(angle: Array, soft: float) -> Array:
+    """Return an angle that is hardly ever negative, with a rounded kink [degrees]."""
+    return np.asarray((angle + np.hypot(angle, soft)) / 2 - soft / 2)
+
+
+def _felt_acceleration(
+    rig: PosedRig, joint: str, point: tuple[float, float, float], seconds: float, aside: float
+) -> Array:
+    """Return the acceleration of a point of a joint in the joint's axes, (frames − 1, 3) [m/s²].
+
+    And, as if it were one, the part of gravity that the joint's lean lets loose.
+    """
+    facing = rig.facing(joint)
+    place = rig.places(joint) + rotations.rotate(facing, point - rig.rest(joint))
+    place, facing = place[:-1], facing[:-1]
+    step = seconds / len(place)
+    change = np.roll(place, -1, axis=0) - 2 * place + np.roll(place, 1, axis=0)
+    felt = change / step**2 + [aside, GRAVITY_M_S2, 0.0]
+    felt = rotations.rotate(rotations.conjugate(facing), felt)
+    return np.asarray(felt - [0.0, GRAVITY_M_S2, 0.0])
+
+
+def _close_loop(curve: Array) -> Array:
+    return np.append(curve, curve[0])
