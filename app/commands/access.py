@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from app.errors import AppError
-from app.running.network import Access, Network
+from app.running.network import Network
 from app.running.players import PlayerPublisher
 from robot.network import Credentials
 
@@ -49,7 +49,7 @@ def publisher(
             if name is None
             else "--player needs --mqtt URL, the broker"
         )
-    network = closing.enter_context(Network(Access(url, site, credentials)))
+    network = closing.enter_context(Network(url, site, credentials))
     return PlayerPublisher(network, name, on_problem=report_problem)
 
 

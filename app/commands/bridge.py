@@ -13,8 +13,8 @@ from rich.live import Live
 
 from app.commands.access import Broker, Ca, PasswordFile, Site
 from app.errors import AppError
-from app.running.bridge import Bridge, BridgeOptions
-from app.running.network import SITE, Access, Network
+from app.running.bridge import Bridge
+from app.running.network import SITE, Network
 from app.ui.roster import line, table
 from robot.network import Credentials, Member
 from robot.network.arbiter import HOLD_S
@@ -81,22 +81,30 @@ def bridge(
 
     Example: [cyan]cubeling bridge --mqtt mqtt://museum.local --robot rex=/dev/ttyACM0[/]
     """
-    options = BridgeOptions(
-        named(robot or (), "--robot", "rex=sim"),
-        {name: Path(path) for name, path in named(play or (), "--play", "ann=a.mcap").items()},
-        tuple(follow or (ANY,)),
-        hold,
-        max_age,
-    )
-    if mqtt is None and not (options.robots and options.sessions):
+    robots = named(robot or (), "--robot", "rex=sim")
+    sessions = {
+        name: Path(path) for name, path in named(play or (), "--play", "ann=a.mcap").items()
+    }
+    if mqtt is None and not (robots and sessions):
         raise AppError(
             "without --mqtt there are no other members: give both --robot and --play, "
             "or the broker with --mqtt URL"
         )
-    access = Access(mqtt, site, Credentials(user, password_file, ca, cert, key))
+    credentials = Credentials(user, password_file, ca, cert, key)
     console = Console()
     printer = EventPrinter(console, every=watch)
-    with Network(access) as network, Bridge(options, network, printer.message) as running:
+    with (
+        Network(mqtt, site, credentials) as network,
+        Bridge(
+            network,
+            robots,
+            sessions,
+            follow=follow or (ANY,),
+            hold=hold,
+            max_age=max_age,
+            on_message=printer.message,
+        ) as running,
+    ):
         where = "within this program" if network.address is None else f"over {network.address}"
         console.print(f"[dim]Site {site}, {where}.      Ctrl-C ends it[/]")
         with suppress(KeyboardInterrupt):

@@ -1,8 +1,7 @@
 """The bridge: robots that follow players on other computers, and recorded sessions as players."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -27,26 +26,6 @@ PUBLISHED_TOPICS: dict[str, type[Any]] = {
     "/robot/emotion": EmotionTarget,
 }
 """Topics of a recorded session that are published, and their types."""
-
-
-@dataclass(frozen=True)
-class BridgeOptions:
-    """Options of a bridge."""
-
-    robots: dict[str, str]
-    """URLs of the robots to drive, by name."""
-
-    sessions: dict[str, Path]
-    """Recorded sessions to publish, by the name of the player."""
-
-    follow: tuple[str, ...] = (ANY,)
-    """Players that the robots follow; see `Pattern.parse`."""
-
-    hold: float = HOLD_S
-    """How long a robot keeps the emotion of a player who is gone [s]."""
-
-    max_age: float = MAX_AGE_S
-    """Age at which an action is too late for a robot that was away [s]."""
 
 
 class RecordedPlayer:
@@ -91,10 +70,18 @@ class Bridge(Closeable):
 
     Parameters
     ----------
-    options
-        Robots, sessions and how to follow.
     network
         The network; the bridge closes it.
+    robots
+        URLs of the robots to drive, by name.
+    sessions
+        Recorded sessions to publish, by the name of the player.
+    follow
+        Players that the robots follow; see `Pattern.parse`.
+    hold
+        How long a robot keeps the emotion of a player who is gone [s].
+    max_age
+        Age at which an action is too late for a robot that was away [s].
     on_message
         Called with every message of the site, on a thread of the network.
 
@@ -105,14 +92,22 @@ class Bridge(Closeable):
     """
 
     def __init__(
-        self, options: BridgeOptions, network: Network, on_message: OnMessage | None = None
+        self,
+        network: Network,
+        robots: dict[str, str],
+        sessions: dict[str, Path],
+        *,
+        follow: Iterable[str] = (ANY,),
+        hold: float = HOLD_S,
+        max_age: float = MAX_AGE_S,
+        on_message: OnMessage | None = None,
     ) -> None:
-        follows = tuple(Pattern.parse(one, network.site) for one in options.follow)
+        follows = tuple(Pattern.parse(one, network.site) for one in follow)
         if len(follows) > MAX_ENTRIES:
             raise AppError(f"a robot follows at most {MAX_ENTRIES}; use * for all of a site")
-        for name in options.robots:
+        for name in robots:
             network.member("robot", name)  # raises RobotError if it is not a valid name
-        for name in options.sessions:
+        for name in sessions:
             network.member("player", name)
         self.network = network
         """The network."""
@@ -125,10 +120,14 @@ class Bridge(Closeable):
                 Roster(on_message=on_message), f"{network.site}:roster"
             )
             """All members of the network."""
-            for name, url in options.robots.items():
-                self._drive(name, url, follows, options.hold)
-            for name, path in options.sessions.items():
-                publisher = PlayerPublisher(network, name, options.max_age)
+            for name, url in robots.items():
+                member = network.member("robot", name)
+                url = "sim:cubeling" if url == "sim" else url
+                robot = self._closing.enter_context(connect(url))
+                node = RobotNode(member, robot, network.session, follows, hold)
+                self.clients[f"robot {name}"] = network.join(node, f"{member.site}:robot:{name}")
+            for name, path in sessions.items():
+                publisher = PlayerPublisher(network, name, max_age)
                 self.clients[f"player {name}"] = publisher.client
                 self._recorded.append(RecordedPlayer(publisher, path))
         except BaseException:
@@ -144,10 +143,3 @@ class Bridge(Closeable):
         """Disconnect all members, then the robots. A second call does nothing."""
         self.network.close()
         self._closing.close()
-
-    def _drive(self, name: str, url: str, follows: tuple[Pattern, ...], hold: float) -> None:
-        network = self.network
-        member = network.member("robot", name)
-        robot = self._closing.enter_context(connect("sim:cubeling" if url == "sim" else url))
-        node = RobotNode(member, robot, network.session, follows, hold)
-        self.clients[f"robot {name}"] = network.join(node, f"{member.site}:robot:{name}")

@@ -81,8 +81,7 @@ class Probe:
         """The time [s]."""
         return self._channel.now()
 
-    # --- Numbers -------------------------------------------------------------------------------
-    # None has a zero byte, so a frame of them is one run of COBS, and any byte may be damaged.
+    # No number has a zero byte, so a frame of them is one run of COBS, and any byte may be damaged.
 
     def next_session(self) -> int:
         """Return the number of a session that was never open."""
@@ -105,8 +104,6 @@ class Probe:
         self._beat = _without_zeros(self._beat + 1, 2)
         return self._beat
 
-    # --- Sending -------------------------------------------------------------------------------
-
     def write(self, data: bytes, *, keep: bool = False) -> None:
         """Send raw bytes; frames received before are dropped, unless `keep` is set."""
         if not keep:
@@ -126,8 +123,6 @@ class Probe:
         """Return the frame of a body with arbitrary bytes after its header, edges included."""
         session = self.session if session is None else session
         return encode_frame(HEADER.pack(number, session) + fields)
-
-    # --- Receiving -----------------------------------------------------------------------------
 
     def receive(self, seconds: float) -> list[ReceivedFrame]:
         """Return all frames in the queue, and all that arrive within a time [s]."""
@@ -190,8 +185,6 @@ class Probe:
             self.log.add(received)
             self._queue.append(received)
 
-    # --- Sessions ------------------------------------------------------------------------------
-
     def hello(self, within: float = REPLY_WITHIN_S, offer: int = timing.VERSION) -> m.Welcome:
         """Send HELLO in the current session, and return its WELCOME."""
         self.send(m.Hello(offer, self.host))
@@ -235,8 +228,6 @@ class Probe:
         self.next_session()
         with contextlib.suppress(CheckFailed):  # the robot does not read its input
             self.send(m.Hello(1, self.host), m.Express(1, 0.0, 0.0), m.Bye(), version=1)
-
-    # --- Commands and states -------------------------------------------------------------------
 
     def beat(self, after: str = "it") -> m.State:
         """Send BEAT and return the STATE that answers it."""

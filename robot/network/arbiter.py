@@ -93,20 +93,14 @@ class PlayerArbiter:
 
     def _next(self) -> Member | None:
         """Return the player who is online and changed the emotion last."""
-        candidates = [
-            member for member, one in self.players.items() if one.online and one.emotion is not None
-        ]
-        return max(
-            candidates, key=lambda member: self.players[member].emotion_changed, default=None
-        )
+        players = self.players
+        online = [member for member, one in players.items() if one.online and one.emotion]
+        return max(online, key=lambda member: players[member].emotion_changed, default=None)
 
     def _remove_one(self) -> bool:
         """Remove the player who is gone longest, to make room; return whether there was one."""
-        gone = [
-            member
-            for member, one in self.players.items()
-            if not one.online and member != self.active
-        ]
+        players, active = self.players, self.active
+        gone = [member for member, one in players.items() if not one.online and member != active]
         if gone:
-            del self.players[min(gone, key=lambda member: self.players[member].last_seen)]
+            del players[min(gone, key=lambda member: players[member].last_seen)]
         return bool(gone)

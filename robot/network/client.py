@@ -38,10 +38,7 @@ class BusClient(Closeable, Generic[E]):
         """Its connection."""
         self.lock = threading.Lock()
         """Guards the endpoint."""
-        self.dropped = 0
-        """Messages dropped because too many were waiting."""
-        self.failure: Exception | None = None
-        """The exception that ended the thread, if any."""
+        self._failure: Exception | None = None
         self._clock = clock
         self._incoming: deque[tuple[str, bytes]] = deque()
         self._retained: dict[str, Message] = {}
@@ -78,8 +75,8 @@ class BusClient(Closeable, Generic[E]):
     @property
     def problem(self) -> str:
         """What is wrong, in one line; "" if nothing is."""
-        if self.failure is not None:
-            return f"internal error: {self.failure!r}"
+        if self._failure is not None:
+            return f"internal error: {self._failure!r}"
         return self.endpoint.problem or self.bus.problem
 
     def wake(self) -> None:
@@ -120,13 +117,11 @@ class BusClient(Closeable, Generic[E]):
                 self._wake.clear()
                 self.step()
         except Exception as error:
-            self.failure = error  # `problem` reports it
+            self._failure = error  # `problem` reports it
 
     def _on_message(self, topic: str, payload: bytes) -> None:
         if len(self._incoming) < MAX_INCOMING:
             self._incoming.append((topic, payload))
-        else:
-            self.dropped += 1
         self._wake.set()
 
     def _queue(self, messages: list[Message]) -> None:
@@ -136,8 +131,6 @@ class BusClient(Closeable, Generic[E]):
                 self._retained[message.topic] = message
             elif len(self._outgoing) < MAX_OUTGOING:
                 self._outgoing.append(message)
-            else:
-                self.dropped += 1
 
     def _publish(self) -> None:
         """Publish as many messages as the bus takes."""

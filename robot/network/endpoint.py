@@ -1,11 +1,18 @@
 """Endpoints of the bus: a player, a robot's node or an observer, without clock, thread or bus."""
 
 import math
-from typing import Literal
+from typing import Any, Literal
 
 from robot.network.bus import Message
-from robot.network.messages import MAX_INTEGER, StatusMessage, encode
-from robot.network.topics import Member, Pattern
+from robot.network.messages import (
+    MAX_INTEGER,
+    MESSAGE_TYPES,
+    MalformedError,
+    StatusMessage,
+    decode,
+    encode,
+)
+from robot.network.topics import Member, Pattern, member_of
 
 HEARTBEAT_EVERY_S = 2.0
 """Time between two heartbeats of a member [s]."""
@@ -61,6 +68,9 @@ class Endpoint:
     topic_filters: tuple[str, ...] = ()
     """Its subscriptions, in the order in which it needs the retained messages."""
 
+    malformed = 0
+    """Messages that were not valid, and were ignored."""
+
     @property
     def will(self) -> Message | None:
         """The message that the broker publishes when the connection breaks."""
@@ -75,7 +85,23 @@ class Endpoint:
         """Publish everything again: the broker may have lost it."""
 
     def receive(self, topic: str, payload: bytes, now: float) -> None:
-        """Process a message; never raises, whatever the message is."""
+        """Decode a message and pass it to `process`; never raises, whatever the message is."""
+        found = member_of(topic)
+        if found is None:
+            return
+        member, kind = found
+        message_type = MESSAGE_TYPES.get((member.role, kind))
+        if message_type is None:
+            return  # of a later version
+        try:
+            message = decode(message_type, payload)
+        except MalformedError:
+            self.malformed += 1
+            return
+        self.process(member, kind, message, now)
+
+    def process(self, member: Member, kind: str, message: Any, now: float) -> None:
+        """Process a member's message of a kind."""
 
     def tick(self, now: float) -> None:
         """Do what is due at time `now` [s]."""

@@ -1,7 +1,7 @@
 """A robot's node: takes the actions and emotions of players, and publishes the robot's state."""
 
 import math
-from typing import Protocol
+from typing import Any, Protocol
 
 from affect import NEUTRAL, Emotion
 from robot.contract.catalogue import Catalogue
@@ -11,9 +11,9 @@ from robot.network import messages as m
 from robot.network.arbiter import HOLD_S, FollowedPlayer, PlayerArbiter
 from robot.network.bus import Message
 from robot.network.endpoint import MemberEndpoint
-from robot.network.messages import MalformedError, decode, encode
+from robot.network.messages import encode
 from robot.network.state_publisher import StatePublisher
-from robot.network.topics import Member, Pattern, member_of
+from robot.network.topics import Member, Pattern
 
 
 class RobotControl(Protocol):
@@ -52,8 +52,6 @@ class RobotNode(MemberEndpoint):
         super().__init__(member, session, follows)
         self.arbiter = PlayerArbiter(hold)
         """The players."""
-        self.malformed = 0
-        """Messages that were not valid, and were ignored."""
         self.counts = {"played": 0, "unknown": 0, "missed": 0}
         """Counters of the actions taken; see `messages.StateMessage`."""
         self._ack_topic = member.topic("taken")
@@ -69,32 +67,23 @@ class RobotNode(MemberEndpoint):
         self._acks = 0
         self._ack_due = False
 
-    # --- The endpoint --------------------------------------------------------------------------
-
     def connected(self, now: float) -> None:
         """Publish everything again."""
         self._epoch.connected(now)
         self._state_publisher.reset()
         self._announce()
 
-    def receive(self, topic: str, payload: bytes, now: float) -> None:
-        """Process a message."""
-        found = member_of(topic)
-        if found is None:
-            return
-        member, kind = found
-        try:
-            if topic == self._ack_topic:
-                self._take_over(decode(m.AckMessage, payload), now)
-            elif member == self.member:
-                if self._epoch.meet_status(decode(m.StatusMessage, payload), now):
-                    self._announce()
-            elif self._epoch.replaced:
-                return  # the other program controls the robot
-            elif member.role == "player" and any(one.matches(member) for one in self._follows):
-                self._receive_player(member, kind, payload, now)
-        except MalformedError:
-            self.malformed += 1
+    def process(self, member: Member, kind: str, message: Any, now: float) -> None:
+        """Process a message of a player, or of an earlier epoch of this robot's node."""
+        if member == self.member:
+            if kind == "taken":
+                self._take_over(message, now)
+            elif kind == "status" and self._epoch.meet_status(message, now):
+                self._announce()
+        elif self._epoch.replaced:
+            return  # the other program controls the robot
+        elif member.role == "player" and any(one.matches(member) for one in self._follows):
+            self._process_player(member, kind, message, now)
 
     def tick(self, now: float) -> None:
         """Show the emotion of the active player."""
@@ -119,30 +108,22 @@ class RobotNode(MemberEndpoint):
             out.append(Message(self.member.topic("state"), encode(state), retain=True))
         return out
 
-    # --- Players -------------------------------------------------------------------------------
-
-    def _receive_player(self, member: Member, kind: str, payload: bytes, now: float) -> None:
-        if kind == "status":
-            status = decode(m.StatusMessage, payload)
-            player = self.arbiter.player(member, status.session, now)
-            if player is None:
-                return
-            if status.status != "online":
-                self.arbiter.set_offline(player, now)
-            elif status.number > player.heartbeat:
-                player.heartbeat = status.number
-                self.arbiter.set_online(player, now)
-        elif kind == "emotion":
-            emotion = decode(m.EmotionMessage, payload)
-            player = self.arbiter.player(member, emotion.session, now)
-            if player is not None and _is_later(emotion, player.emotion):
-                player.emotion, player.emotion_changed = emotion, now
+    def _process_player(self, member: Member, kind: str, message: Any, now: float) -> None:
+        player = self.arbiter.player(member, message.session, now)
+        if player is None:
+            return
+        if kind == "emotion":
+            known = player.emotion
+            if known is None or (message.session, message.number) > (known.session, known.number):
+                player.emotion, player.emotion_changed = message, now
         elif kind == "action":
-            action = decode(m.ActionMessage, payload)
-            player = self.arbiter.player(member, action.session, now)
-            if player is not None:
-                self.arbiter.set_online(player, now)
-                self._take(member, player, action)
+            self.arbiter.set_online(player, now)
+            self._take(member, player, message)
+        elif message.status != "online":
+            self.arbiter.set_offline(player, now)
+        elif message.number > player.heartbeat:
+            player.heartbeat = message.number
+            self.arbiter.set_online(player, now)
 
     def _take(self, member: Member, player: FollowedPlayer, action: m.ActionMessage) -> None:
         """Take an action if it is the next one; acknowledge it, also if it was taken before.
@@ -183,8 +164,6 @@ class RobotNode(MemberEndpoint):
             self._expressed = emotion
             self._robot.express(emotion)
 
-    # --- Epochs and acknowledgements -----------------------------------------------------------
-
     def _take_over(self, ack: m.AckMessage, now: float) -> None:
         """Take over the acknowledgements of an earlier epoch, so that no action is done twice."""
         if ack.session == self._epoch.number:
@@ -212,9 +191,3 @@ class RobotNode(MemberEndpoint):
         }
         content = m.AckMessage(self._epoch.number, self._acks, players)
         return Message(self._ack_topic, encode(content), retain=True)
-
-
-def _is_later(emotion: m.EmotionMessage, known: m.EmotionMessage | None) -> bool:
-    if known is None:
-        return True
-    return (emotion.session, emotion.number) > (known.session, known.number)

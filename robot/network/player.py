@@ -8,6 +8,7 @@ The emotion is a state: only the latest counts.
 import math
 from collections import deque
 from dataclasses import dataclass, replace
+from typing import Any
 
 from msgspec import structs
 
@@ -16,8 +17,8 @@ from robot.network import messages as m
 from robot.network.bus import Message
 from robot.network.endpoint import MemberEndpoint
 from robot.network.followers import Followers
-from robot.network.messages import MAX_TEXT_BYTES, MalformedError, decode, encode
-from robot.network.topics import ROOT, Member, member_of
+from robot.network.messages import MAX_TEXT_BYTES, encode
+from robot.network.topics import ROOT, Member
 
 MAX_AGE_S = 10.0
 """Age at which an action expires [s]: a kiss that comes so late answers nothing."""
@@ -58,9 +59,6 @@ class PlayerCounts:
     expired: int = 0
     """Actions dropped because they became too old."""
 
-    malformed: int = 0
-    """Messages that were not valid, and were ignored."""
-
 
 class Player(MemberEndpoint):
     """A player, without clock, thread or bus.
@@ -86,8 +84,6 @@ class Player(MemberEndpoint):
         self._emotion: m.EmotionMessage | None = None
         self._emotion_due = False
         self._last_emotion = self._last_resend = self._last_progress = -math.inf
-
-    # --- Input from the character --------------------------------------------------------------
 
     def act(self, name: str, weight: float, now: float) -> None:
         """Publish an action, for the robots that follow to do once.
@@ -126,8 +122,6 @@ class Player(MemberEndpoint):
         """Number of actions that not every robot has taken."""
         return len(self._pending)
 
-    # --- The endpoint --------------------------------------------------------------------------
-
     def connected(self, now: float) -> None:
         """Publish everything again."""
         self._epoch.connected(now)
@@ -135,22 +129,15 @@ class Player(MemberEndpoint):
         self._emotion_due = self._emotion is not None
         self._resend(now)
 
-    def receive(self, topic: str, payload: bytes, now: float) -> None:
-        """Process a message."""
-        found = member_of(topic)
-        if found is None:
-            return
-        member, kind = found
-        try:
-            if member == self.member:
-                if self._epoch.meet_status(decode(m.StatusMessage, payload), now):
-                    self._restart_epoch()
-            elif kind == "status":
-                self.followers.receive_status(member, decode(m.StatusMessage, payload), now)
-            elif kind == "taken":
-                self._acknowledge(member, decode(m.AckMessage, payload), now)
-        except MalformedError:
-            self.counts.malformed += 1
+    def process(self, member: Member, kind: str, message: Any, now: float) -> None:
+        """Process a message of a robot, or of another epoch of this player."""
+        if kind == "taken":
+            self._acknowledge(member, message, now)
+        elif kind == "status" and member == self.member:
+            if self._epoch.meet_status(message, now):
+                self._restart_epoch()
+        elif kind == "status":
+            self.followers.receive_status(member, message, now)
 
     def tick(self, now: float) -> None:
         """Drop the actions that all robots took or that expired; resend if a robot is behind."""
@@ -178,8 +165,6 @@ class Player(MemberEndpoint):
             topic = self.member.topic("emotion")
             out.append(Message(topic, encode(self._emotion), retain=True))
         return out
-
-    # --- Details -------------------------------------------------------------------------------
 
     def _acknowledge(self, robot: Member, ack: m.AckMessage, now: float) -> None:
         """Note the last action that a robot took."""

@@ -4,10 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from robot.network import messages as m
 from robot.network.endpoint import LOST_AFTER_S, Endpoint
-from robot.network.messages import MalformedError, decode
-from robot.network.topics import ANY, ROOT, Member, member_of
+from robot.network.topics import ANY, ROOT, Member
 
 MAX_MEMBERS = 256
 """Most members in the roster."""
@@ -43,24 +41,10 @@ class Roster(Endpoint):
         self.topic_filters = (f"{ROOT}/{place}/+/+/+",)
         self.members: dict[Member, RosterEntry] = {}
         """The known members."""
-        self.malformed = 0
-        """Messages that were not valid."""
         self._on_message = on_message
 
-    def receive(self, topic: str, payload: bytes, now: float) -> None:
-        """Process a message."""
-        found = member_of(topic)
-        if found is None:
-            return
-        member, kind = found
-        message_type = m.MESSAGE_TYPES.get((member.role, kind))
-        if message_type is None:
-            return  # of a later version
-        try:
-            message = decode(message_type, payload)
-        except MalformedError:
-            self.malformed += 1
-            return
+    def process(self, member: Member, kind: str, message: Any, now: float) -> None:
+        """Note a member's message."""
         if member not in self.members and len(self.members) >= MAX_MEMBERS:
             return
         entry = self.members.setdefault(member, RosterEntry(now))

@@ -63,8 +63,6 @@ class DinoBody:
             for motion in MOTIONS
         ]
 
-    # --- Commands ------------------------------------------------------------------------------
-
     def express(self, valence: int, arousal: int, mood: int) -> None:
         """Set the emotion; the mood is an index, or `NOTHING` for the body's own choice."""
         self._target = (valence, arousal)
@@ -94,8 +92,6 @@ class DinoBody:
         self.sounds.end()
         self._start(self.mood)
 
-    # --- State ---------------------------------------------------------------------------------
-
     @property
     def motion(self) -> int:
         """The motion that is played, an index, or `NOTHING`."""
@@ -105,8 +101,6 @@ class DinoBody:
     def sound(self) -> int:
         """The sound that is played, an index, or `NOTHING`."""
         return NOTHING if self.sounds.sound < 0 else self.sounds.sound
-
-    # --- Time ----------------------------------------------------------------------------------
 
     def advance(self, now: int, attended: bool) -> None:
         """Advance to `now` [ms]; `attended`: whether there is a session."""

@@ -16,8 +16,8 @@ import recordings
 from affect import Emotion
 from app.errors import AppError
 from app.pipeline.scenario import EmotionTarget
-from app.running.bridge import Bridge, BridgeOptions, RecordedPlayer
-from app.running.network import Access, Network
+from app.running.bridge import Bridge, RecordedPlayer
+from app.running.network import Network
 from app.running.players import PlayerPublisher
 from app.ui.roster import table
 from characters import ActionIntent, CharacterCommand, LocomotionIntent
@@ -50,7 +50,7 @@ def command(action: str, **changes: Any) -> CharacterCommand:
 
 
 def test_an_action_is_published_when_it_begins_and_only_if_visible():
-    with Network(Access()) as network:
+    with Network() as network:
         line = PlayerPublisher(network, "ann")
         for what in (
             command("idle"), command("kiss", weight=0.5), command("kiss"), command("move"),
@@ -61,8 +61,8 @@ def test_an_action_is_published_when_it_begins_and_only_if_visible():
 
 
 def test_a_recorded_session_drives_robots_without_a_broker():
-    options = BridgeOptions({"rex": "sim", "max": "sim:cubeling?seed=2"}, {"ann": COMPANION})
-    with Network(Access()) as network, Bridge(options, network) as bridge:
+    robots = {"rex": "sim", "max": "sim:cubeling?seed=2"}
+    with Network() as network, Bridge(network, robots, {"ann": COMPANION}) as bridge:
         roster = bridge.roster.endpoint
         assert bridge.advance(0.0)
         soon(lambda: len(roster.members) == 3)
@@ -82,7 +82,7 @@ def test_a_recorded_session_drives_robots_without_a_broker():
 
 
 def test_a_recorded_session_plays_in_its_own_time():
-    with Network(Access()) as network:
+    with Network() as network:
         line = PlayerPublisher(network, "ann")
         player = RecordedPlayer(line, COMPANION)
         made = []
@@ -126,8 +126,8 @@ def test_the_help_has_an_example(cubeling):
 def test_an_invalid_session_is_refused_and_leaves_nothing_open(tmp_path):
     text = tmp_path / "text.mcap"
     text.write_text("no session")
-    with Network(Access()) as network, pytest.raises(AppError, match="not a session"):
-        Bridge(BridgeOptions({"rex": "sim"}, {"ann": text}), network)
+    with Network() as network, pytest.raises(AppError, match="not a session"):
+        Bridge(network, {"rex": "sim"}, {"ann": text})
 
 
 def test_an_absent_broker_is_reported_in_one_line(cubeling):
@@ -165,7 +165,7 @@ def test_a_bridge_that_is_killed_is_lost_by_its_last_will(broker):
             cwd=Path(__file__).parents[3],
         )
 
-    with Network(Access(broker.url)) as network:
+    with Network(broker.url) as network:
         roster = network.join(Roster(), "onlooker").endpoint
         rex = Member("home", "robot", "rex")
 
@@ -182,7 +182,7 @@ def test_a_bridge_that_is_killed_is_lost_by_its_last_will(broker):
 @needs_mosquitto
 def test_a_lost_broker_is_reported_once(broker):
     said: list[str] = []
-    with Network(Access(broker.url)) as network:
+    with Network(broker.url) as network:
         line = PlayerPublisher(network, "ann", on_problem=said.append)
         calm = EmotionTarget(Emotion(0.0, 0.0, "neutral"), 0.0)
         line.publish(command("idle"), calm)
@@ -203,7 +203,7 @@ def test_a_lost_broker_is_reported_once(broker):
 
 @needs_mosquitto
 def test_a_hanging_broker_does_not_delay_the_picture(broker):
-    with Network(Access(broker.url)) as network:
+    with Network(broker.url) as network:
         line = PlayerPublisher(network, "ann")
         soon(lambda: line.state == "connected")
         os.kill(broker.pid, signal.SIGSTOP)
