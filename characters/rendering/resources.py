@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.light import Light
 from characters.rendering.occlusion import CubeOutlines, VisibleCube
-from characters.rendering.programs import ShaderPrograms
 from characters.rendering.projection import Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene
 from characters.rendering.target import RenderTarget, RenderTargets
@@ -75,9 +74,6 @@ class FrameResources:
 
     context: moderngl.Context
     """Where everything is drawn."""
-
-    programs: ShaderPrograms
-    """The shaders."""
 
     targets: RenderTargets
     """Framebuffers to draw in."""

@@ -1,6 +1,6 @@
 """The picture: characters on the table in the camera's frame."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import moderngl
 import numpy as np
@@ -17,18 +17,18 @@ from characters.rendering.passes.floor_paths import FloorPathPass
 from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.passes.resolve import ResolvePass
 from characters.rendering.passes.shadows import ShadowPass
-from characters.rendering.programs import ShaderPrograms, set_uniforms
-from characters.rendering.projection import Rectangle, is_invertible, is_pinhole
-from characters.rendering.resources import FrameResources, Region
+from characters.rendering.programs import ShaderPrograms
+from characters.rendering.projection import is_invertible, is_pinhole
+from characters.rendering.resources import FrameResources
 from characters.rendering.scene import FloorPath, Scene, SceneCharacter, View
-from characters.rendering.target import SUPERSAMPLING, RenderTargets, UploadTexture
+from characters.rendering.target import SUPERSAMPLING, RenderTargets
 from characters.rendering.undistortion import Undistorter
 
 Image = NDArray[np.uint8]
 
 
 class Stage:
-    """Draws characters into the camera's picture, off screen or into a window.
+    """Draws characters into the camera's picture.
 
     A picture is an ordered list of passes over one `FrameResources`. Only the regions in which a
     pass draws go through the graphics card, so that software rendering keeps up with a camera. The
@@ -67,23 +67,11 @@ class Stage:
         self._light = LightEstimator()
         self._targets = RenderTargets(context)
         self._characters = CharacterCache(context, self.programs)
-        self._window_texture = UploadTexture(context)
-        self._window_program = self.programs.load("copy", "copy")
-        self._window_quad = context.vertex_array(self._window_program, [])
 
     def draw(
         self, view: View, characters: Sequence[SceneCharacter], floor: Sequence[FloorPath] = ()
     ) -> Image:
         """Return the picture, (height, width, 3) uint8 BGR.
-
-        Parameters
-        ----------
-        view
-            The camera's frame and what is known about the scene in it.
-        characters
-            The characters on the table.
-        floor
-            What is painted on the table.
 
         Raises
         ------
@@ -91,41 +79,19 @@ class Stage:
             The frame is not an image, or a character has nothing to draw.
         """
         picture, frame = self._frame(Scene(view, characters, floor))
-        drawn = [
-            (region.area, region.target.read(region.area.width, region.area.height))
-            for region in self._drawn_regions(frame)
-        ]
-        for area, pixels in drawn:
+        if frame is None:
+            return picture
+        areas = [area for each in self.passes for area in each.prepare(frame)]
+        drawn = []
+        for region in frame.regions(areas):
+            self._context.front_face = "cw"  # the first row of a region is its top row
+            for each in self.passes:
+                each.draw(frame, region)
+            self._context.front_face = "ccw"  # as code outside of the stage expects it
+            drawn.append((region.area, region.target.read(region.area.width, region.area.height)))
+        for area, pixels in drawn:  # where areas overlap, the last one is right
             picture[area.slices] = pixels
         return picture
-
-    def draw_to(
-        self,
-        framebuffer: moderngl.Framebuffer,
-        view: View,
-        characters: Sequence[SceneCharacter],
-        floor: Sequence[FloorPath] = (),
-        viewport: tuple[int, int, int, int] | None = None,
-    ) -> None:
-        """Draw the same picture into a window.
-
-        Parameters
-        ----------
-        framebuffer
-            The window's; it stays bound.
-        view, characters, floor
-            As for `draw`.
-        viewport
-            Where in the framebuffer, (x, y, width, height) [px] from its lower left corner; all of
-            it if None. The caller chooses the picture's aspect ratio.
-        """
-        viewport = viewport or (0, 0, *framebuffer.size)
-        picture, frame = self._frame(Scene(view, characters, floor))
-        whole = Rectangle(0, 0, *self.size)
-        self._show(self._window_texture.upload(picture), whole, framebuffer, viewport)
-        for region in self._drawn_regions(frame):
-            self._show(region.target.picture_texture, region.area, framebuffer, viewport)
-        framebuffer.use()
 
     def release(self) -> None:
         """Release everything but the context; a second call does nothing."""
@@ -135,8 +101,6 @@ class Stage:
             render_pass.release()
         self._characters.release()
         self._targets.release()
-        self._window_texture.release()
-        self._window_quad.release()
         self.programs.release()
 
     def _frame(self, scene: Scene) -> tuple[Image, FrameResources | None]:
@@ -150,7 +114,6 @@ class Stage:
         self._targets.at_least(1, 1).use_picture((0, 0, 1, 1))
         return picture, FrameResources(
             context=self._context,
-            programs=self.programs,
             targets=self._targets,
             scene=scene,
             picture=picture,
@@ -160,33 +123,3 @@ class Stage:
             cubes=visible_cubes(view.occluders, matrix, self.size),
             characters=self._characters.skin(scene.characters),
         )
-
-    def _drawn_regions(self, frame: FrameResources | None) -> Iterator[Region]:
-        """Run the passes, and yield each region when it is drawn; a later one is on top."""
-        if frame is None:
-            return
-        areas = [area for each in self.passes for area in each.prepare(frame)]
-        for region in frame.regions(areas):
-            self._context.front_face = "cw"  # the first row of a region is its top row
-            for each in self.passes:
-                each.draw(frame, region)
-            self._context.front_face = "ccw"  # as code outside of the stage expects it
-            yield region
-
-    def _show(
-        self,
-        texture: moderngl.Texture,
-        area: Rectangle,
-        framebuffer: moderngl.Framebuffer,
-        viewport: tuple[int, int, int, int],
-    ) -> None:
-        """Copy an area of the picture into a window."""
-        width, height = self.size
-        place = (area.x / width, area.y / height, area.width / width, area.height / height)
-        filled = (area.width / texture.width, area.height / texture.height)
-        framebuffer.use()
-        framebuffer.viewport = viewport
-        self._context.enable_only(moderngl.NOTHING)
-        set_uniforms(self._window_program, place=place, filled=filled)
-        texture.use(0)
-        self._window_quad.render(moderngl.TRIANGLE_STRIP, vertices=4)

@@ -112,46 +112,12 @@ class RenderTargets:
             self._kept.popitem()[1].release()
 
 
-class UploadTexture:
-    """A texture for pictures of any size, created again when one is larger.
-
-    Parameters
-    ----------
-    context
-        Where it is created.
-    """
-
-    def __init__(self, context: moderngl.Context) -> None:
-        self._context = context
-        self._texture: moderngl.Texture | None = None
-
-    def upload(self, picture: Image) -> moderngl.Texture:
-        """Write a picture (height, width, 3) to the first texels, first row first."""
-        height, width = picture.shape[:2]
-        texture = self._texture
-        if texture is None or texture.width < width or texture.height < height:
-            old = (0, 0) if texture is None else texture.size
-            self.release()
-            texture = _texture(self._context, (max(old[0], width), max(old[1], height)), 3)
-            self._texture = texture
-        texture.write(np.ascontiguousarray(picture), viewport=(0, 0, width, height), alignment=1)
-        return texture
-
-    def release(self) -> None:
-        """Release the texture; a second call does nothing."""
-        if self._texture is not None:
-            self._texture.release()
-            self._texture = None
-
-
 def bgra_from_bgr(picture: Image) -> Image:
     """Return a contiguous copy of a picture (height, width, 3) with a fourth, opaque channel."""
     return np.asarray(cv2.cvtColor(picture, cv2.COLOR_BGR2BGRA), np.uint8)
 
 
-def _texture(
-    context: moderngl.Context, size: tuple[int, int], components: int = 4
-) -> moderngl.Texture:
-    texture = context.texture(size, components)
+def _texture(context: moderngl.Context, size: tuple[int, int]) -> moderngl.Texture:
+    texture = context.texture(size, 4)
     texture.repeat_x = texture.repeat_y = False
     return texture

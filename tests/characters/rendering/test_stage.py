@@ -110,23 +110,6 @@ def test_the_same_scenes_give_the_same_bytes(ctx, view, pawn):
     assert np.array_equal(pictures[0], pictures[1])
 
 
-def test_a_window_shows_the_same_picture(ctx, view, pawn, cube):
-    view = replace(view, occluders=(cube,), distortion=np.array([0.08, -0.05, 0, 0, 0]))
-    actors, floor = [pawn.posed(bend=0.3, at=(-0.04, 0.0))], [LOOP]
-    one, other = Stage(ctx, (320, 180)), Stage(ctx, (320, 180))
-    picture = one.draw(view, actors, floor)
-    window = ctx.framebuffer([ctx.renderbuffer((340, 190), 4)])
-    window.clear()
-    other.draw_to(window, view, actors, floor, viewport=(10, 5, 320, 180))
-    shown = np.frombuffer(window.read((10, 5, 320, 180), alignment=1), np.uint8)
-    shown = shown.reshape(180, 320, 3)[::-1, :, ::-1].astype(int)
-    border = np.frombuffer(window.read((0, 0, 10, 190), alignment=1), np.uint8)
-    for owned in (one, other, window):
-        owned.release()
-    assert np.abs(shown - picture).max() <= 1
-    assert not border.any()
-
-
 def test_a_character_that_is_not_visible_is_not_drawn(stage, view, pawn):
     actor = pawn.posed()
     hidden = SceneCharacter(pawn, replace(actor.posed, visible=False))
