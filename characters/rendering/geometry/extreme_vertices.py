@@ -17,7 +17,8 @@ def _directions(side: int) -> NDArray[np.float32]:
 
 DIRECTIONS, FINE_DIRECTIONS = _directions(3), _directions(5)
 """Directions in which extreme vertices are searched: for most joints, and for those that move a
-large part of the character. A sphere exceeds its extreme vertices by 10 % or 5 % of its radius."""
+large part of the character. A sphere exceeds its extreme vertices by up to 11 or 5 % of its radius.
+"""
 
 MIN_LARGE_PART = 0.3
 """Share of the character's size from which on a joint's vertices are a large part."""

@@ -118,6 +118,10 @@ def test_the_extreme_vertices_bound_all_vertices(pawn, bend, turn):
 @settings(max_examples=25, deadline=None)
 @given(st.integers(0, 10_000))
 def test_the_extreme_vertices_of_a_sphere_bound_it_from_any_side(pawn, seed):
+    """No direction is further than 17.7° from all 98, so a smooth sphere keeps cos 17.7° = 0.953.
+
+    The nearest of 4000 random points lies another 1° or 2° beside: 0.950 is the least of all seeds.
+    """
     rng = np.random.default_rng(seed)
     around = rng.standard_normal((4000, 3))
     around /= np.linalg.norm(around, axis=1, keepdims=True)
