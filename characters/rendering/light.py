@@ -93,14 +93,9 @@ class LightEstimator:
         self._ground: Array | None = None
 
     def update(self, picture: NDArray[np.uint8], paper: Array | None = None) -> Light:
-        """Take one picture into account and return the light.
+        """Take a picture (height, width, 3) BGR into account and return the light.
 
-        Parameters
-        ----------
-        picture
-            (height, width, 3) BGR.
-        paper
-            Linear RGB of white paper in the picture, (3,), if some was found.
+        `paper` is the linear RGB of white paper in the picture, (3,), if some was found.
         """
         step = max(1, picture.shape[1] // 64)
         linear = LINEAR_FROM_SRGB[
@@ -130,14 +125,7 @@ class LightEstimator:
 def paper_color(picture: NDArray[np.uint8], matrix: Array, view: View) -> Array | None:
     """Return the linear RGB (3,) of the paper of the brightest visible cube face, or None.
 
-    Parameters
-    ----------
-    picture
-        Undistorted, (height, width, 3) BGR.
-    matrix
-        Its pinhole matrix, (3, 3) [px].
-    view
-        Its occluders are the cubes.
+    `picture` is undistorted, (height, width, 3) BGR; `matrix` its pinhole matrix, (3, 3) [px].
     """
     papers = [paper for box in view.occluders for paper in _face_papers(picture, matrix, box)]
     return max(papers, key=lambda paper: float(paper @ LUMA), default=None)

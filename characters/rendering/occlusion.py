@@ -40,17 +40,6 @@ NO_SIDE = 1e6
 
 
 @dataclass(frozen=True)
-class VisibleCube:
-    """A real cube that is in the picture."""
-
-    box: Box
-    """Its pose and size."""
-
-    area: Rectangle
-    """Where it is in the picture."""
-
-
-@dataclass(frozen=True)
 class CubeOutlines:
     """Outlines of cubes in a region of the picture. They hide the part of the table inside."""
 
@@ -82,14 +71,14 @@ class CubeOutlines:
 
 def visible_cubes(
     boxes: Sequence[Box], matrix: Array, size: tuple[int, int]
-) -> tuple[VisibleCube, ...]:
-    """Return the boxes that are in a picture of a `size` (width, height) [px]."""
+) -> tuple[tuple[Box, Rectangle], ...]:
+    """Return the boxes in a picture of a `size` (width, height) [px], and where they are in it."""
     visible = []
     for box in boxes:
         if is_invertible(box.camera_from_box) and np.isfinite(box.edge) and box.edge > 0.0:
             area = bounding_rectangle(box.edge * UNIT_CUBE, matrix, box.camera_from_box, size)
             if area is not None:
-                visible.append(VisibleCube(box, area))
+                visible.append((box, area))
     return tuple(visible)
 
 

@@ -14,13 +14,7 @@ SHADERS = files("characters.rendering") / "shaders"
 
 
 class ShaderPrograms:
-    """Builds programs from the files in `shaders/`, each when it is first asked for.
-
-    Parameters
-    ----------
-    context
-        Where they are built.
-    """
+    """Builds programs from the files in `shaders/`, each when it is first asked for."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context

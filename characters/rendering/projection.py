@@ -11,8 +11,8 @@ Array = NDArray[np.float64]
 NEAR_M, FAR_M = 0.02, 20.0
 """Depths of the near and far planes [m]: from a hand at the lens to the end of a room."""
 
-RELATIVE_MARGIN = 0.02
-"""Margin around projected points, as a share of their extent: few points stand for many."""
+MARGIN_PX, RELATIVE_MARGIN = 3, 0.02
+"""Margin around projected points: pixels, and a share of their extent, as few stand for many."""
 
 COST_PER_REGION_PX = 12_000
 """Pixels that software rendering draws in the time that one more region costs."""
@@ -47,15 +47,6 @@ class Rectangle:
         """Number of pixels."""
         return self.width * self.height
 
-    @property
-    def viewport(self) -> tuple[int, int, int, int]:
-        """Left column, top row, width and height, as OpenGL takes a viewport."""
-        return self.x, self.y, self.width, self.height
-
-    def relative_to(self, other: "Rectangle") -> "Rectangle":
-        """Return this rectangle in coordinates whose origin is another's top left corner."""
-        return Rectangle(self.x - other.x, self.y - other.y, self.width, self.height)
-
     def contains(self, other: "Rectangle") -> bool:
         """Return whether another rectangle lies completely inside."""
         return self.union(other) == self
@@ -88,19 +79,8 @@ def clip_from_camera(matrix: Array, area: Rectangle) -> Array:
     """Return the projection that draws one area of a picture into a viewport of the same size.
 
     OpenCV puts the centre of the top left pixel at (0, 0), OpenGL the corner of a viewport, hence
-    the offsets of 0.5. Row 0 of the viewport is the top row, so the result needs no flip.
-
-    Parameters
-    ----------
-    matrix
-        Pinhole matrix of the whole picture, (3, 3) [px].
-    area
-        The area to draw.
-
-    Returns
-    -------
-    NDArray
-        (4, 4), for points in the camera frame (x right, y down, z forward).
+    the offsets of 0.5. Row 0 of the viewport is the top row, so the result needs no flip. `matrix`
+    (3, 3) [px] is that of the whole picture. The result (4, 4) takes points in the camera frame.
 
     >>> k = np.array([[100., 0, 31.5], [0, 100, 23.5], [0, 0, 1]])
     >>> clip = clip_from_camera(k, Rectangle(0, 0, 64, 48)) @ [0, 0, 1, 1]
@@ -126,36 +106,22 @@ def project(points: Array, matrix: Array) -> Array:
 
 
 def bounding_rectangle(
-    points: Array, matrix: Array, camera_from_table: Array, size: tuple[int, int], margin: int = 3
+    points: Array, matrix: Array, camera_from_points: Array, size: tuple[int, int]
 ) -> Rectangle | None:
-    """Return the area of a picture that contains all of some points, with a margin.
+    """Return the area of a picture of a `size` (width, height) [px] around points (n, 3) [m].
 
-    Parameters
-    ----------
-    points
-        In the table frame, (n, 3) [m].
-    matrix, camera_from_table
-        The camera: (3, 3) [px] and (4, 4) [m].
-    size
-        Of the picture, (width, height) [px].
-    margin
-        Pixels to add on each side, besides `RELATIVE_MARGIN`.
-
-    Returns
-    -------
-    Rectangle or None
-        The whole picture if some points are behind the camera; None if no point is in the picture.
+    It has a margin of `MARGIN_PX` and `RELATIVE_MARGIN`. It is the whole picture if some points are
+    behind the camera, and None if no point is in the picture.
     """
-    in_camera = points @ camera_from_table[:3, :3].T + camera_from_table[:3, 3]
+    in_camera = points @ camera_from_points[:3, :3].T + camera_from_points[:3, 3]
     behind = in_camera[:, 2] < NEAR_M
     if not len(points) or behind.all():
         return None
-    width, height = size
     if behind.any():
-        return Rectangle(0, 0, width, height)
+        return Rectangle(0, 0, *size)
     pixels = project(in_camera, matrix)
     low, high = pixels.min(axis=0), pixels.max(axis=0)
-    rim = margin + RELATIVE_MARGIN * (high - low)
+    rim = MARGIN_PX + RELATIVE_MARGIN * (high - low)
     low = np.clip(np.floor(low - rim), 0, size).astype(int)
     high = np.clip(np.ceil(high + rim) + 1, 0, size).astype(int)
     if (high <= low).any():

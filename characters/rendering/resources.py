@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.light import Light
-from characters.rendering.occlusion import CubeOutlines, VisibleCube
+from characters.rendering.occlusion import CubeOutlines
+from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene
 from characters.rendering.target import RenderTarget, RenderTargets
@@ -67,6 +68,16 @@ class Region:
         """Draw on the picture of this region from now on."""
         self.target.use_picture((0, 0, self.area.width, self.area.height))
 
+    def set_table_uniforms(self, program: moderngl.Program) -> None:
+        """Set the uniforms of a program that paints on the table, except where cubes hide it."""
+        set_uniforms(
+            program,
+            clip_from_table=self.clip_from_table,
+            cube_count=self.outlines.count,
+            longest=self.outlines.longest,
+            outlines=self.outlines.sides,
+        )
+
 
 @dataclass(frozen=True)
 class FrameResources:
@@ -93,8 +104,8 @@ class FrameResources:
     light: Light
     """What lights the scene."""
 
-    cubes: tuple[VisibleCube, ...]
-    """Real cubes in the picture."""
+    cubes: tuple[tuple[Box, Rectangle], ...]
+    """Real cubes in the picture, and where they are in it."""
 
     characters: tuple[CharacterInstance, ...]
     """The visible characters, skinned on the graphics card."""
@@ -111,8 +122,7 @@ class FrameResources:
 
     def area_of(self, points: Array) -> Rectangle | None:
         """Return the area of the picture around points (n, 3) of the table frame, or None."""
-        whole = self.whole
-        size = whole.width, whole.height
+        size = self.picture.shape[1], self.picture.shape[0]
         return bounding_rectangle(points, self.camera_matrix, self.camera_from_table, size)
 
     @cached_property
@@ -141,14 +151,12 @@ class FrameResources:
             yield self._region(area, None if drawn_later else characters)
 
     def _region(self, area: Rectangle, characters: Rectangle | None) -> Region:
-        boxes = self._cubes_in(area)
-        clip = clip_from_camera(self.camera_matrix, area)
         inner = None if characters is None else area.intersection(characters)
         return Region(
             area,
             self.targets.at_least(area.width, area.height),
-            clip @ self.camera_from_table,
-            CubeOutlines.of(boxes, self.camera_matrix, area),
+            clip_from_camera(self.camera_matrix, area) @ self.camera_from_table,
+            CubeOutlines.of(self._cubes_in(area), self.camera_matrix, area),
             None if inner is None else self._character_layer(inner),
         )
 
@@ -161,4 +169,4 @@ class FrameResources:
         )
 
     def _cubes_in(self, area: Rectangle) -> tuple[Box, ...]:
-        return tuple(cube.box for cube in self.cubes if cube.area.intersection(area))
+        return tuple(box for box, place in self.cubes if place.intersection(area))

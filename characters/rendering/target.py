@@ -29,12 +29,7 @@ MAX_TARGETS = 12
 class RenderTarget:
     """Two layers that a region is drawn in: the camera's picture, and the characters above it.
 
-    Parameters
-    ----------
-    context
-        Where it is created.
-    size
-        (width, height) [px].
+    `size` is (width, height) [px].
     """
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
@@ -71,19 +66,12 @@ class RenderTarget:
         """Release the buffers; a second call does nothing."""
         for framebuffer in (self._characters, self._picture):
             framebuffer.release()
-        self._depth.release()
-        for texture in (self.characters_texture, self.picture_texture):
-            texture.release()
+        for attachment in (self._depth, self.characters_texture, self.picture_texture):
+            attachment.release()
 
 
 class RenderTargets:
-    """Keeps targets of a few sizes; the least recently used is released first.
-
-    Parameters
-    ----------
-    context
-        Where they are created.
-    """
+    """Keeps targets of a few sizes; the least recently used is released first."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context

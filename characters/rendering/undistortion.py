@@ -20,12 +20,7 @@ class Undistorter:
 
     The maps of `cv2.remap` are computed once for each camera. The frame is remapped with four
     channels, the last unused: OpenCV has a fast path for four that is twice as fast as the one for
-    three, both conversions included.
-
-    Parameters
-    ----------
-    size
-        Of the picture, (width, height) [px].
+    three, both conversions included. `size` is that of the picture, (width, height) [px].
     """
 
     def __init__(self, size: tuple[int, int]) -> None:

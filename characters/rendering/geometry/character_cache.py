@@ -34,13 +34,7 @@ class CharacterInstance:
 
 
 class CharacterCache:
-    """Skins characters, and keeps the buffers of the most recently drawn.
-
-    Parameters
-    ----------
-    context, programs
-        Where to draw.
-    """
+    """Skins characters, and keeps the buffers of the most recently drawn."""
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._context = context

@@ -27,12 +27,7 @@ MIN_LARGE_PART = 0.3
 def extreme_vertices(positions: NDArray[np.float32], owner: NDArray[np.uint32]) -> NDArray[np.intp]:
     """Return the indices of the vertices that are the furthest of their owner in some direction.
 
-    Parameters
-    ----------
-    positions
-        (vertices, 3).
-    owner
-        Of each vertex, such as a joint, (vertices,).
+    `positions` are (vertices, 3); `owner` (vertices,) is that of each vertex, such as a joint.
     """
     order = np.argsort(owner, kind="stable")
     borders = np.flatnonzero(np.diff(owner[order])) + 1

@@ -40,14 +40,8 @@ class _DenseMorph:
 class MorphMixer:
     """Mixes the morphs of a character.
 
-    Parameters
-    ----------
-    neutral
-        Position and normal of every vertex that a morph moves, (moved, 6).
-    morphs
-        Of these vertices.
-    names
-        Of the character's morphs, in the order of the weights.
+    `neutral` has the position and normal of every vertex that a morph moves, (moved, 6); `names`
+    are those of the character's morphs, in the order of the weights.
     """
 
     def __init__(
@@ -62,15 +56,8 @@ class MorphMixer:
     def mix(self, weights: Array | None) -> NDArray[np.float32] | None:
         """Return position and normal of the vertices that morphs move, (moved, 6).
 
-        Parameters
-        ----------
-        weights
-            Of each morph, (morphs,), finite; None for all zero.
-
-        Returns
-        -------
-        NDArray or None
-            None if nothing has changed since the last call. Normals are not of unit length.
+        The weights are finite, (morphs,); None for all zero. The result is None if nothing has
+        changed since the last call. Normals are not of unit length.
 
         Raises
         ------
@@ -102,12 +89,7 @@ class MorphMixer:
 def merge_morphs(meshes: Sequence[Mesh], starts: Sequence[int]) -> tuple[Morph, ...]:
     """Return the morphs of concatenated meshes; morphs of the same name become one.
 
-    Parameters
-    ----------
-    meshes
-        Meshes that are drawn together.
-    starts
-        Index of the first vertex of each mesh among all vertices.
+    `starts` has the index of the first vertex of each mesh among all vertices.
     """
     found: dict[str, list[tuple[Morph, int]]] = {}
     for mesh, start in zip(meshes, starts, strict=True):

@@ -23,13 +23,6 @@ class SkinnedCharacter:
     Vertices are skinned once a picture by transform feedback into `skinned`, in the table frame,
     where the passes for shadow and colour read them. The joint matrices go through a texture with
     one row for each joint, so their number is not limited.
-
-    Parameters
-    ----------
-    context, programs
-        Where to draw.
-    character
-        Its meshes and skeleton.
     """
 
     def __init__(
@@ -46,8 +39,8 @@ class SkinnedCharacter:
         )
         self._extreme_positions = vertices.positions[self._extreme]
         self._shapes = context.buffer(vertices.shape_records)
-        joints = context.buffer(vertices.joint_records)
-        colors = context.buffer(vertices.color_records)
+        joints = context.buffer(np.hstack([vertices.joints.view(np.float32), vertices.weights]))
+        colors = context.buffer(np.hstack([vertices.colors, vertices.uvs]))
         indices = context.buffer(vertices.indices)
         simplified, self.caster_runs = vertices.simplified(SHADOW_CELLS)
         caster_indices = context.buffer(simplified)
@@ -78,46 +71,26 @@ class SkinnedCharacter:
     ) -> Array | None:
         """Skin the vertices, and return points in the table frame that enclose them, (n, 3).
 
-        Parameters
-        ----------
-        character_from_joint
-            Of every joint of the skeleton, (joints, 4, 4).
-        table_from_character
-            Its place on the table, (4, 4).
-        morphs
-            Weights of the character's morphs, (morphs,), or None for all zero.
-
-        Returns
-        -------
-        NDArray or None
-            None if the pose is not finite; then there is nothing to draw.
+        The joints are (joints, 4, 4), the weights of the morphs (morphs,), None for all zero. The
+        result is None if the pose is not finite; then there is nothing to draw.
         """
         palette = self._vertices.palette(table_from_character @ character_from_joint)
         if not np.isfinite(palette).all():
             return None
         if morphs is not None and not np.isfinite(morphs).all():
             return None
-        self._morph(morphs)
+        mixed = self._morphs.mix(morphs)
+        if mixed is not None:
+            self._shapes.write(mixed)
+            moved = self._extreme < len(mixed)
+            self._extreme_positions[moved] = mixed[self._extreme[moved], :3]
         self._palette.write(np.ascontiguousarray(palette[:, :3], "f4"))
         self._palette.use(0)
         count = len(self._vertices.positions)
         self._skinning.transform(self.skinned, moderngl.POINTS, vertices=count)
         return self._vertices.skinned(palette, self._extreme, self._extreme_positions)
 
-    def _morph(self, weights: Array | None) -> None:
-        """Upload the vertices that morphs move, if the weights have changed."""
-        mixed = self._morphs.mix(weights)
-        if mixed is None:
-            return
-        self._shapes.write(mixed)
-        moved = self._extreme < len(mixed)
-        self._extreme_positions[moved] = mixed[self._extreme[moved], :3]
-
     def release(self) -> None:
         """Release the buffers; a second call does nothing."""
-        for array in (self._skinning, self.caster):
-            array.release()
-        self._palette.release()
-        self._surfaces.release()
-        for buffer in self._buffers:
-            buffer.release()
+        for each in (self._skinning, self.caster, self._palette, self._surfaces, *self._buffers):
+            each.release()

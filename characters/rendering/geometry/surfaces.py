@@ -44,16 +44,8 @@ class Surface:
 class SurfaceBuffers:
     """Creates and owns what the surfaces of one character are drawn with.
 
-    Parameters
-    ----------
-    context, programs
-        Where to draw.
-    skinned
-        Position and normal of each vertex in the table frame, 3 + 3 float32.
-    colors
-        Linear RGBA and texture coordinates of each vertex, 4 + 2 float32.
-    indices
-        Three for each triangle.
+    `skinned` has the position and normal of each vertex in the table frame, 3 + 3 float32; `colors`
+    linear RGBA and texture coordinates, 4 + 2 float32; `indices` three for each triangle.
     """
 
     def __init__(
@@ -76,10 +68,9 @@ class SurfaceBuffers:
         first = 0
         for material, count in vertices.materials:
             features = surface_features(material)
-            images = material.textures
             textures = tuple(
                 (unit, self._texture(image, srgb=unit == TEXTURE_UNITS["base_texture"]))
-                for unit, image in enumerate(images)
+                for unit, image in enumerate(material.textures)
                 if image is not None
             )
             array = self._array(features)

@@ -71,7 +71,7 @@ class CharacterVertices:
         meshes = sorted(meshes, key=lambda mesh: keys.index(_material_key(mesh.material)))
         starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)]).astype(np.uint32)
         binds, rows = _distinct_binds(meshes)
-        vertices = cls(
+        return cls(
             positions=np.concatenate([mesh.positions for mesh in meshes]).astype(np.float32),
             normals=np.concatenate([mesh.normals for mesh in meshes]).astype(np.float32),
             joints=np.concatenate(
@@ -92,8 +92,7 @@ class CharacterVertices:
             materials=_material_runs(meshes),
             binds=binds,
             morphs=merge_morphs(meshes, starts[:-1].tolist()),
-        )
-        return vertices._moved_first()
+        )._moved_first()
 
     def _moved_first(self) -> Self:
         """Return the same with the vertices that morphs move first, for one upload of them."""
@@ -165,20 +164,9 @@ class CharacterVertices:
     ) -> tuple[NDArray[np.uint32], tuple[tuple[int, int, bool], ...]]:
         """Return fewer triangles of the same vertices, by vertex clustering.
 
-        Vertices of one joint in one grid cell become one (Rossignac and Borrel 1993). A vertex of
-        each cluster represents it, so the result uses the same skinned vertices.
-
-        Parameters
-        ----------
-        cells
-            Of the grid, along the character's largest side.
-
-        Returns
-        -------
-        indices
-            Three for each triangle.
-        runs
-            (first index, count, double-sided): the single-sided and the double-sided triangles.
+        Vertices of one joint in one cell become one (Rossignac and Borrel 1993); the character's
+        largest side has that many `cells`. The result is the indices, three for each triangle, and
+        the runs (first index, count, double-sided) of single-sided and double-sided triangles.
         """
         low, high = self.positions.min(axis=0), self.positions.max(axis=0)
         cell_size = max(float((high - low).max()) / cells, 1e-9)
@@ -204,16 +192,6 @@ class CharacterVertices:
     def shape_records(self) -> NDArray[np.float32]:
         """Position and normal of each vertex, (vertices, 6)."""
         return np.hstack([self.positions, self.normals])
-
-    @property
-    def joint_records(self) -> NDArray[np.float32]:
-        """Joints (as uint32 bits) and weights of each vertex, (vertices, 8)."""
-        return np.hstack([self.joints.view(np.float32), self.weights])
-
-    @property
-    def color_records(self) -> NDArray[np.float32]:
-        """Linear RGBA and texture coordinates of each vertex, (vertices, 6)."""
-        return np.hstack([self.colors, self.uvs])
 
 
 def _or_default(

@@ -10,13 +10,7 @@ from characters.rendering.resources import FrameResources, Region
 
 
 class CubeOcclusionPass(RenderPass):
-    """Clears the character layer and writes the depth of the real cubes, without colour.
-
-    Parameters
-    ----------
-    context, programs
-        Where to draw.
-    """
+    """Clears the character layer and writes the depth of the real cubes, without colour."""
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._program = programs.load("cube", "depth_only")

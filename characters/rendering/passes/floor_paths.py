@@ -28,13 +28,7 @@ CLEARANCE_M = 0.006
 
 
 class FloorPathPass(RenderPass):
-    """Paints the floor paths on the table.
-
-    Parameters
-    ----------
-    context, programs
-        Where to draw.
-    """
+    """Paints the floor paths on the table."""
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._program = programs.load("floor_paths", "floor_paths")
@@ -67,14 +61,8 @@ class FloorPathPass(RenderPass):
         region.use()
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.SRC_ALPHA, moderngl.ONE_MINUS_SRC_ALPHA
-        set_uniforms(
-            self._program,
-            clip_from_table=region.clip_from_table,
-            light=frame.light.white,
-            cube_count=region.outlines.count,
-            longest=region.outlines.longest,
-            outlines=region.outlines.sides,
-        )
+        region.set_table_uniforms(self._program)
+        set_uniforms(self._program, light=frame.light.white)
         self._array.render(moderngl.TRIANGLES, vertices=self._count)
 
 

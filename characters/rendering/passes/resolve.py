@@ -8,13 +8,7 @@ from characters.rendering.resources import FrameResources, Region
 
 
 class ResolvePass(RenderPass):
-    """Blends the character layer over the picture.
-
-    Parameters
-    ----------
-    context, programs
-        Where to draw.
-    """
+    """Blends the character layer over the picture."""
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._program = programs.load("full_screen", "resolve")
@@ -26,10 +20,10 @@ class ResolvePass(RenderPass):
         layer = region.characters
         if layer is None:
             return
-        place = layer.area.relative_to(region.area)
-        region.target.use_picture(place.viewport)
+        corner = layer.area.x - region.area.x, layer.area.y - region.area.y
+        region.target.use_picture((*corner, layer.area.width, layer.area.height))
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.ONE, moderngl.ONE_MINUS_SRC_ALPHA
-        set_uniforms(self._program, corner=(place.x, place.y))
+        set_uniforms(self._program, corner=corner)
         layer.target.characters_texture.use(0)
         self._triangle.render(moderngl.TRIANGLES, vertices=3)

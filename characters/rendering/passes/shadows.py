@@ -42,13 +42,7 @@ BLUR_MARGIN = 0.22
 
 
 class ShadowPass(RenderPass):
-    """Renders a shadow map for each character, and darkens the table with them.
-
-    Parameters
-    ----------
-    context, programs
-        Where to draw.
-    """
+    """Renders a shadow map for each character, and darkens the table with them."""
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._context = context
@@ -83,13 +77,7 @@ class ShadowPass(RenderPass):
         region.use()
         frame.context.enable_only(moderngl.BLEND)
         frame.context.blend_func = moderngl.DST_COLOR, moderngl.ZERO
-        set_uniforms(
-            self._program,
-            clip_from_table=region.clip_from_table,
-            cube_count=region.outlines.count,
-            longest=region.outlines.longest,
-            outlines=region.outlines.sides,
-        )
+        region.set_table_uniforms(self._program)
         for shadow in self._maps[: self._count]:
             set_uniforms(self._program, area=shadow.area, extent=shadow.extent)
             shadow.texture.use(0)
@@ -103,13 +91,7 @@ class ShadowPass(RenderPass):
 
 
 class ShadowMap:
-    """The light that one character takes from the table, by colour channel.
-
-    Parameters
-    ----------
-    context, programs
-        Where to draw.
-    """
+    """The light that one character takes from the table, by colour channel."""
 
     def __init__(self, context: moderngl.Context, programs: ShaderPrograms) -> None:
         self._context = context
@@ -130,19 +112,9 @@ class ShadowMap:
         """Lowest x and z, highest x and z that the shadow can reach [m]."""
 
     def render(self, character: CharacterInstance, key_share: Array) -> Array:
-        """Render the map of a character.
+        """Render the map of a character, and return the corners (4, 3) that its shadow can reach.
 
-        Parameters
-        ----------
-        character
-            Its skinned vertices are read.
-        key_share
-            Share of the key light in the light on the table, (3,).
-
-        Returns
-        -------
-        NDArray
-            Corners of the rectangle on the table that the shadow can reach, (4, 3).
+        `key_share` (3,) is the share of the key light in the light on the table.
         """
         height = character.height
         self.extent = _extent(character.enclosing, height)
