@@ -48,9 +48,8 @@ class PortChannel:
         try:
             self._port.write(data)
         except serial.SerialTimeoutException:
-            raise CheckFailed(
-                "a robot that reads its input", "it took no bytes for 200 ms"
-            ) from None
+            expected = "a robot that reads its input"
+            raise CheckFailed(expected, "it took no bytes for 200 ms") from None
         except OSError as error:
             raise _port_lost(error) from error
 
@@ -68,11 +67,11 @@ class PortChannel:
 
 
 class SimulatedChannel:
-    """A simulated robot in virtual time, which begins at `start` [s]."""
+    """A simulated robot in virtual time."""
 
-    def __init__(self, robot: Simulated, start: float = 1000.0) -> None:
+    def __init__(self, robot: Simulated) -> None:
         self._robot = robot
-        self._now = start
+        self._now = 1000.0
 
     def now(self) -> float:
         """Return the time [s]."""

@@ -153,17 +153,23 @@ class Probe:
             self._read(end)
 
     def expect(
-        self, kind: type[Kind], after: str, within: float = REPLY_WITHIN_S, **content: Any
+        self,
+        kind: type[Kind],
+        after: str,
+        within: float = REPLY_WITHIN_S,
+        session: int | None = None,
+        **content: Any,
     ) -> Kind:
-        """Return the next message of a kind in our session with the given field values.
+        """Return the next message of a kind in a session, by default ours, with some field values.
 
         Raises CheckFailed if there is none within a time [s].
         """
+        session = self.session if session is None else session
 
         def wanted(received: ReceivedFrame) -> bool:
             return (
                 type(received.message) is kind
-                and received.session == self.session
+                and received.session == session
                 and all(getattr(received.message, key) == value for key, value in content.items())
             )
 
@@ -171,7 +177,7 @@ class Probe:
         if found is None:
             words = ", ".join(f"{key}={value}" for key, value in content.items())
             name = spec_of(kind).name + (f"({words})" if words else "")
-            expected = f"{name} in session {self.session} within {1000 * within:.0f} ms"
+            expected = f"{name} in session {session} within {1000 * within:.0f} ms"
             raise CheckFailed(f"{expected} after {after}", describe_frames(before))
         answer: Kind = found.message
         return answer

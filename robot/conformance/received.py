@@ -104,8 +104,6 @@ class FrameLog:
     def __init__(self) -> None:
         self.bytes = 0
         """Bytes received."""
-        self.frames = 0
-        """Valid frames received."""
         self.states: list[tuple[float, m.State]] = []
         """Timestamp [s] and content of the STATEs of our sessions."""
         self.violations: dict[str, list[ReceivedFrame]] = {}
@@ -122,7 +120,6 @@ class FrameLog:
             if self._welcomed:
                 self._add_violation("frame", received)
             return
-        self.frames += 1
         if isinstance(received.message, m.Welcome):
             self._session, self._welcomed = received.session, True
         elif self._welcomed and not isinstance(received.message, m.Gone):

@@ -3,26 +3,10 @@
 import sys
 
 from robot.firmware.dino import servos
-from robot.firmware.dino.pty_board import PtyBoard
-from robot.firmware.dino.robot import run
+from robot.firmware.dino.pty_board import run_on_pty
 from robot.firmware.dino.table import ServoTable
 
-
-def main() -> None:
-    """Run the firmware on a pseudo-terminal until Ctrl-C."""
+if __name__ == "__main__":
     table = ServoTable(servos)
     table.check(sys.platform)
-    try:
-        board = PtyBoard()
-    except (ImportError, AttributeError):
-        sys.exit("this system has no pseudo-terminals: use a board, or sim:cubeling")
-    sys.stdout.write(f"{board.url}\n")
-    sys.stdout.flush()
-    try:
-        run(board, table)
-    except KeyboardInterrupt:
-        board.release()
-
-
-if __name__ == "__main__":
-    main()
+    run_on_pty(table)

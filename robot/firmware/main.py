@@ -3,20 +3,17 @@
 import sys
 
 from dino import servos
-from dino.robot import run
 from dino.table import ServoTable
 
 table = ServoTable(servos)
 table.check(sys.platform)
 if sys.implementation.name == "micropython":
     from dino.hardware import Hardware, developer_pin_held
+    from dino.robot import run
 
     if not developer_pin_held(table):
         run(Hardware(table), table)
 else:
-    from dino.pty_board import PtyBoard
+    from dino.pty_board import run_on_pty
 
-    board = PtyBoard()
-    sys.stdout.write(board.url + "\n")
-    sys.stdout.flush()
-    run(board, table)
+    run_on_pty(table)

@@ -41,7 +41,7 @@ def other_session_reported(probe: Probe) -> None:
         probe.receive(2 * timing.GONE_EVERY)
         probe.send(message, session=other)
         after = f"{spec_of(type(message)).name} in another session"
-        expect_gone(probe, other, after)
+        probe.expect(m.Gone, after, session=other)
         probe.expect_taken(0, after)
 
 
@@ -54,7 +54,7 @@ def gone_without_session(probe: Probe) -> None:
     for message in _MESSAGES:
         probe.receive(2 * timing.GONE_EVERY)
         probe.send(message)
-        expect_gone(probe, probe.session, f"{spec_of(type(message)).name} after BYE")
+        probe.expect(m.Gone, f"{spec_of(type(message)).name} after BYE")
 
 
 @OTHER_SESSIONS.must
@@ -93,13 +93,3 @@ def silent_without_session(probe: Probe) -> None:
     if received:
         expected = f"silence for {1000 * LISTENING_TIME_S:.0f} ms after BYE"
         raise CheckFailed(expected, describe_frames(received))
-
-
-def expect_gone(probe: Probe, session: int, after: str) -> None:
-    """Expect a GONE for a session."""
-    found, before = probe.wait_for(
-        lambda one: isinstance(one.message, m.Gone) and one.session == session, REPLY_WITHIN_S
-    )
-    if found is None:
-        expected = f"GONE in session {session} within {1000 * REPLY_WITHIN_S:.0f} ms after {after}"
-        raise CheckFailed(expected, describe_frames(before))

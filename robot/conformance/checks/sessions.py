@@ -1,7 +1,6 @@
 """Checks of section 5: how sessions begin, and what is kept from one to the next."""
 
 from robot.conformance.check import CheckGroup
-from robot.conformance.checks.other_sessions import expect_gone
 from robot.conformance.errors import CheckFailed
 from robot.conformance.probe import EMOTION_WITHIN_S, REPLY_WITHIN_S, TIMING_SLACK_S, Probe
 from robot.conformance.received import ReceivedFrame, describe_frames
@@ -98,7 +97,7 @@ def newest_session_wins(probe: Probe) -> None:
     probe.reopen_session()
     probe.beat("a second session")
     probe.send(m.Beat(7), session=before)
-    expect_gone(probe, before, "BEAT in the session before")
+    probe.expect(m.Gone, "BEAT in the session before", session=before)
     probe.beat("that")
 
 

@@ -135,11 +135,14 @@ class DinoBody:
             self.arousal += d_arousal
         before = self.mood
         self.mood = self._next_mood() if self._named_mood == NOTHING else self._named_mood
-        if self.mood != before:
-            if not self._play_once:
-                self._start(self.mood)
-            if not self.stopped:
-                self._play_sound_of(self.mood)
+        if self.mood == before:
+            return
+        if not self._play_once:
+            self._start(self.mood)
+        if not self.stopped and self.sounds.names():
+            for index, sound in enumerate(SOUNDS):
+                if sound[0] == MOTIONS[self.mood][2]:
+                    self.sounds.play(index)
 
     def _next_mood(self) -> int:
         """Return the mood of the emotion, with hysteresis; happy and angry only follow neutral."""
@@ -150,11 +153,6 @@ class DinoBody:
         if self.valence > HAPPY_ABOVE:
             return _HAPPY
         return _ANGRY if self.valence < ANGRY_BELOW else _NEUTRAL
-
-    def _play_sound_of(self, mood: int) -> None:
-        for index, sound in enumerate(SOUNDS):
-            if sound[0] == MOTIONS[mood][2] and self.sounds.names():
-                self.sounds.play(index)
 
     def _move(self, elapsed: int, hold: bool) -> None:
         """Move every joint towards its angle in the motion; to neutral if `hold` is set."""

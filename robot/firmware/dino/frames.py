@@ -86,8 +86,6 @@ class FrameDecoder:
     def __init__(self) -> None:
         self.body = bytearray(MAX_BODY + 1)
         """The body of the last frame, until the next one."""
-        self.errors = 0
-        """Number of invalid frames."""
         self._frame = bytearray(MAX_FRAME + 1)
         self._count = 0
 
@@ -103,10 +101,7 @@ class FrameDecoder:
         self._count = 0
         if not count:
             return 0
-        size = decode(self._frame, count, self.body)
-        if not size:
-            self.errors += 1
-        return size
+        return decode(self._frame, count, self.body)
 
 
 class SendBuffer:

@@ -25,8 +25,6 @@ class ServoJoints:
         """Expected angle of each joint now."""
         self.powered = [False] * count
         """Whether each servo gets pulses."""
-        self.broken = False
-        """Whether the last pulse failed."""
         self._pulses = [0] * count
         self._next_power_on = 0
 
@@ -62,7 +60,6 @@ class ServoJoints:
         index = self.powered.index(False)
         self._pulses[index] = 0
         done = self._pulse(index)
-        self.broken = not done
         self.powered[index] = done
         self._next_power_on = now + (POWER_ON_EVERY_MS if done else RETRY_EVERY_MS)
 
@@ -73,7 +70,7 @@ class ServoJoints:
             try:
                 self._board.pulse(servo.pin, 0)
             except OSError:
-                self.broken = True
+                continue  # a generator that fails gives no pulses either
 
     def move(self, targets: list[int], elapsed: int) -> None:
         """Move every joint towards its target, within its limits and its speed in `elapsed` ms."""
@@ -90,7 +87,8 @@ class ServoJoints:
                     -max_step if way < -max_step else max_step if way > max_step else way
                 )
                 if not self._pulse(index):
-                    self._mark_broken()
+                    # The pulse generator failed, and every servo is off.
+                    self.powered[:] = [False] * len(self.powered)
                     return
 
     def _pulse(self, index: int) -> bool:
@@ -105,9 +103,3 @@ class ServoJoints:
                 return False
             self._pulses[index] = pulse
         return True
-
-    def _mark_broken(self) -> None:
-        """Note that the pulse generator failed, and every servo is off."""
-        self.broken = True
-        for index in range(len(self.powered)):
-            self.powered[index] = False

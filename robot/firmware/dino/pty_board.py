@@ -10,6 +10,8 @@ import time
 import traceback
 
 from .board import RobotBoard
+from .robot import run
+from .table import ServoTable
 
 
 class PtyBoard(RobotBoard):
@@ -91,3 +93,17 @@ class PtyBoard(RobotBoard):
 
     def _now(self) -> int:
         return int(1000 * time.monotonic())
+
+
+def run_on_pty(table: ServoTable) -> None:
+    """Run the firmware on a pseudo-terminal until Ctrl-C, and print the name of its port."""
+    try:
+        board = PtyBoard()
+    except (ImportError, AttributeError):
+        sys.exit("this system has no pseudo-terminals: use a board, or sim:cubeling")
+    sys.stdout.write(f"{board.url}\n")
+    sys.stdout.flush()
+    try:
+        run(board, table)
+    except KeyboardInterrupt:
+        board.release()

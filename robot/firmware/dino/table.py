@@ -82,10 +82,12 @@ class ServoTable:
             for value in values:
                 if values.count(value) > 1:
                     raise ValueError(f"SERVOS has {value} twice")
-        if self.driver:
-            _check_channels(pins)
-        else:
+        if not self.driver:
             self._check_pins(pins, platform)
+            return
+        for channel in pins:
+            if not 0 <= channel <= 15:
+                raise ValueError(f"a PCA9685 has channels 0 to 15, not {channel}")
 
     def _check_pins(self, pins: list[int], platform: str) -> None:
         others = [self.buzzer, self.developer_pin]
@@ -101,12 +103,6 @@ class ServoTable:
 def _check_name(what: str, name: str) -> None:
     if not 1 <= len(name.encode()) <= NAME_BYTES:
         raise ValueError(f"{what} must have 1 to {NAME_BYTES} bytes: {name}")
-
-
-def _check_channels(channels: list[int]) -> None:
-    for channel in channels:
-        if not 0 <= channel <= 15:
-            raise ValueError(f"a PCA9685 has channels 0 to 15, not {channel}")
 
 
 def _check_slices(pins: list[int], buzzer: int | None) -> None:
