@@ -5,45 +5,33 @@ Motions and sounds are events: each is sent at most once, in order, and dropped 
 """
 
 from collections import deque
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 from affect import Emotion
 
 Action = TypeVar("Action")
 
 
-class CommandQueue(Generic[Action]):
+class CommandQueue(deque[Action]):
     """Motions and sounds that wait to be sent; at most `limit`."""
 
     def __init__(self, limit: int) -> None:
+        super().__init__()
         self.dropped = 0
         """Actions given up before the robot acknowledged them."""
         self._limit = limit
-        self._waiting: deque[Action] = deque()
-
-    def __len__(self) -> int:
-        return len(self._waiting)
-
-    @property
-    def first(self) -> Action:
-        """The next action; there must be one."""
-        return self._waiting[0]
 
     def add(self, action: Action) -> bool:
         """Append an action; return False if too many wait already."""
-        if len(self._waiting) >= self._limit:
+        if len(self) >= self._limit:
             return False
-        self._waiting.append(action)
+        self.append(action)
         return True
-
-    def pop(self) -> Action:
-        """Remove and return the next action; there must be one."""
-        return self._waiting.popleft()
 
     def drop_all(self) -> None:
         """Drop and count every action that waits."""
-        self.dropped += len(self._waiting)
-        self._waiting.clear()
+        self.dropped += len(self)
+        self.clear()
 
 
 class DesiredState:

@@ -175,7 +175,7 @@ class CommandScheduler:
         if self._unsent and self.state.commanded is None:
             return self._send_state(now)
         if self.actions:
-            item, index = self.actions.pop()
+            item, index = self.actions.popleft()
             return self._send(m.Play(self._next_number(), item, index), None, now)
         return self._send_state(now) if self._unsent else None
 

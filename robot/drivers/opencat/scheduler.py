@@ -143,9 +143,9 @@ class SkillScheduler:
             self._skill_from = now + self._settings.dwell
 
     def _next_action(self, now: float) -> BoardCommand | None:
-        if self.actions.first in self._behaviour.sounds:
-            return self._play_melody(self.actions.pop())
-        return self._play_skill(self.actions.pop()) if now >= self._skill_from else None
+        if self.actions[0] in self._behaviour.sounds:
+            return self._play_melody(self.actions.popleft())
+        return self._play_skill(self.actions.popleft()) if now >= self._skill_from else None
 
     def _next_gesture(self, now: float) -> BoardCommand | None:
         mood = self.desired.shown_mood

@@ -131,7 +131,7 @@ class StepScheduler:
         if now < self._action_ends:
             return None
         if self.actions:
-            return self.actions.pop()
+            return self.actions.popleft()
         repeat_due = self._repeat_at is not None and now >= self._repeat_at
         if repeat_due and self._current == self._requested:
             self._body_refused = False

@@ -227,7 +227,7 @@ class ReachyDriver:
         if self._playing is not None and self._motion_time >= self._playing.period:
             self._playing, self._motion_time = None, 0.0
         if self._playing is None and self._actions:
-            self._playing, self._motion_time = self._actions.pop(), 0.0
+            self._playing, self._motion_time = self._actions.popleft(), 0.0
         if self._still and self._playing is None:
             return np.zeros(len(motions.JOINTS))
         return (self._playing or self._mood).angles(self._motion_time, motions.JOINTS)
