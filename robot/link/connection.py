@@ -11,10 +11,8 @@ from robot.contract.driver import DRIVERS, Driver
 from robot.contract.port import Clock
 from robot.contract.telemetry import Telemetry
 from robot.errors import RobotError
-from robot.link.exchange import ByteHook, PortExchange
-from robot.link.io_thread import IoThread
-from robot.link.spacing import spaced
-from robot.link.transport import opener
+from robot.link.exchange import ByteHook, IoThread, PortExchange
+from robot.link.transport import opener, spaced
 from robot.protocol import messages as m
 
 CATALOGUE_TIMEOUT_S = 10.0

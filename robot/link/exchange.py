@@ -1,6 +1,6 @@
-"""Moves bytes between a port and a driver, within a rate limit.
+"""Moves bytes between a port and a driver, within a rate limit, in a thread of its own.
 
-`robot.link.io_thread` does so in real time, `robot.simulators.stepped` in virtual time.
+`robot.simulators.stepped` does so in virtual time.
 """
 
 import contextlib
@@ -34,6 +34,12 @@ FLOOD_PAUSE_S = 0.020
 """Pause after the limit was exceeded [s]. It is less than half a beat, so that beats stay in time;
 and a flood that fills the system's buffers, some 64 kB, is read within two seconds."""
 
+JOIN_TIMEOUT_S = 1.0
+"""Longest wait for the thread to end [s]."""
+
+PSEUDO_TERMINALS = ("/dev/pts/", "/dev/ttys")
+"""Ports that are not opened again: once one is gone, the same name may be a person's shell."""
+
 
 class TokenBucket:
     """Limits received bytes to `MAX_BYTES_PER_S` and `MAX_BURST_BYTES`."""
@@ -55,16 +61,8 @@ class TokenBucket:
 class PortExchange:
     """Moves bytes between a port and a driver, one transfer at a time.
 
-    Parameters
-    ----------
-    open_port
-        Opens the port, now and after an unplugging; this object closes it.
-    driver
-        The host side of the protocol. Others use it only while they hold `lock`.
-    clock
-        The time [s].
-    on_bytes
-        Receives every byte of both directions.
+    It closes the port that `open_port` opens. Others use the driver only while they hold `lock`;
+    `on_bytes` receives every byte of both directions.
     """
 
     def __init__(
@@ -166,3 +164,61 @@ class PortExchange:
             port.close()
         if self.failure is None:  # otherwise the hook itself may have failed
             self._report("tx", farewell, self._clock())
+
+
+class IoThread(PortExchange):
+    """Moves bytes in its own thread, the only one that waits for the port, and reopens the port."""
+
+    def __init__(
+        self, url: str, open_port: Opener, driver: Driver, clock: Clock, on_bytes: ByteHook | None
+    ) -> None:
+        super().__init__(open_port, driver, clock, on_bytes)
+        self._url = url
+        self._woken = False
+        self._thread = threading.Thread(target=self._run, name=f"robot {url}", daemon=True)
+        self._thread.start()
+
+    def wake(self) -> None:
+        """Cancel the read in progress where the port can; elsewhere it ends very soon by itself."""
+        with self.lock:  # so that the port is not closed meanwhile
+            cancel = getattr(self._port, "cancel_read", None)
+            if cancel is not None and not self._woken:
+                self._woken = True
+                with contextlib.suppress(OSError):  # the next read reports it
+                    cancel()
+
+    def close(self) -> None:
+        """End the session and the thread, and close the port."""
+        self.closing.set()
+        self.wake()
+        if threading.current_thread() is not self._thread:
+            self._thread.join(JOIN_TIMEOUT_S)
+
+    def _run(self) -> None:
+        try:
+            while not self.closing.is_set():
+                if self._port is None:
+                    self._wait_for_port()
+                elif self._transfer(self._port, self._read):
+                    self.closing.wait(FLOOD_PAUSE_S)
+        except Exception as error:
+            self.failure = error  # `Robot.check` raises it
+        finally:
+            self._shut_down()
+
+    def _wait_for_port(self) -> None:
+        if self._url.startswith(PSEUDO_TERMINALS):
+            self.closing.wait()
+        elif not self._reopen():
+            self.closing.wait(REOPEN_INTERVAL_S)
+
+    def _read(self, port: Port) -> bytes:
+        """Wait briefly for a byte, then read everything that has arrived."""
+        data = port.read(1)
+        while data and len(data) < MAX_READ_BYTES:
+            waiting = port.in_waiting
+            if not waiting:
+                break
+            data += port.read(min(waiting, MAX_READ_BYTES - len(data)))
+        self._woken = False
+        return data

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import robot
 from robot.contract import port
-from robot.link import connection, exchange, io_thread, transport
+from robot.link import connection, exchange, transport
 from robot.protocol import timing
 
 README = Path(robot.__file__).with_name("README.md").read_text("utf-8")
@@ -16,11 +16,8 @@ def test_the_waits_of_the_readme_are_those_of_the_code():
     rows = ROW.findall(README)
     assert len(rows) >= 9
     for milliseconds, name in rows:
-        home = next(
-            one
-            for one in (timing, connection, port, transport, exchange, io_thread)
-            if hasattr(one, name)
-        )
+        modules = (timing, connection, port, transport, exchange)
+        home = next(module for module in modules if hasattr(module, name))
         assert getattr(home, name) * 1000 == int(milliseconds), name
 
 

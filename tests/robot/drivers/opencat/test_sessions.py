@@ -17,7 +17,7 @@ from robot.drivers.opencat import tokens
 from robot.drivers.opencat.host import OpenCatHost
 from robot.drivers.opencat.settings import load_settings
 from robot.errors import RobotError
-from robot.link.spacing import SpacedPort
+from robot.link.transport import SpacedPort
 from robot.protocol import messages as m
 from robot.simulators.opencat.quirks import BoardQuirks
 from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
