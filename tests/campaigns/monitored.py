@@ -9,7 +9,7 @@ from robot.drivers.cubeling.host import HostLink
 from robot.drivers.cubeling.scheduler import Command, CommandScheduler, RoundTrip
 from robot.protocol import messages as m
 from robot.protocol.wire import FrameReader
-from robot.simulators.cubeling.device import BodyState, DeviceLink
+from robot.simulators.cubeling.device import DeviceLink
 from tests.campaigns.monitor import InvariantMonitor, InvariantViolationError
 
 NEUTRAL = Emotion(0.0, 0.0)
@@ -106,8 +106,10 @@ class LightBody:
         self.target = NEUTRAL
         self.monitor.goes_neutral()
 
-    def state(self) -> BodyState:
-        return BodyState(self.target, 0, 1.0, (0.0,))
+    def state(self) -> m.State:
+        valence, arousal = self.target.valence, self.target.arousal
+        nothing, joints = m.NOTHING, (0.0,) * m.JOINTS_MAX
+        return m.State(0, 0, 0, valence, arousal, 1.0, 0, nothing, nothing, joints)
 
 
 class MonitoredLink(DeviceLink):

@@ -6,10 +6,9 @@ import numpy as np
 
 from affect import Emotion
 from affect.hysteresis import LABELS, next_label
-from robot.contract.motions import SineMotion
+from robot.contract.motions import Array, SineMotion
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
-from robot.simulators.cubeling.device import BodyState
 
 STEP_S = 0.020
 """Step of the simulation [s], as of hobby servos; the result does not depend on how often `advance`
@@ -153,21 +152,22 @@ class DinosaurBody:
         way = wanted - self._angles
         self._angles = self._angles + np.minimum(np.maximum(way, -_MAX_STEP_RAD), _MAX_STEP_RAD)
 
-    def state(self) -> BodyState:
+    def state(self) -> m.State:
         """Return the state; the angles are measured, with noise."""
         noise = self._random.normal(0.0, ANGLE_NOISE_RAD, self._angles.shape)
         measured = np.clip(self._angles + noise, dinosaur.LOW, dinosaur.HIGH)
-        motion = m.NOTHING if self._still else dinosaur.MOTIONS.index(self._motion)
-        sounds = self.catalogue.sounds
-        return BodyState(
-            emotion=self.emotion,
-            mood=LABELS.index(self._label),
+        emotion = self.emotion
+        return m.State(
+            beat=0,
+            taken=0,
+            flags=m.CHARGING * self._battery.charging | m.STILL * self._still,
+            valence=emotion.valence,
+            arousal=emotion.arousal,
             battery=self._battery.level,
-            joints=tuple(measured.tolist()),
-            motion=motion,
-            sound=sounds.index(self._sound) if self._sound else m.NOTHING,
-            charging=self._battery.charging,
-            still=self._still,
+            mood=LABELS.index(self._label),
+            motion=m.NOTHING if self._still else dinosaur.MOTIONS.index(self._motion),
+            sound=self.catalogue.sounds.index(self._sound) if self._sound else m.NOTHING,
+            joints=(*measured.tolist(), *[0.0] * (m.JOINTS_MAX - measured.size)),
         )
 
     @property
@@ -188,7 +188,7 @@ class DinosaurBody:
         return Emotion(valence, arousal)
 
     @property
-    def angles(self) -> dinosaur.Array:
+    def angles(self) -> Array:
         """The true joint angles, (joints,) [rad]."""
         return self._angles.copy()
 

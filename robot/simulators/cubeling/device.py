@@ -3,7 +3,7 @@
 The owner calls `receive` and `tick` with the time.
 """
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any, Protocol
 
 from affect import Emotion
@@ -13,41 +13,6 @@ from robot.protocol import timing
 from robot.protocol.fields import MessageError
 from robot.protocol.schema import pack, unpack
 from robot.protocol.wire import FrameReader, crc16, encode_frame
-
-
-@dataclass(frozen=True)
-class BodyState:
-    """State of a body; the fields are those of the message STATE."""
-
-    emotion: Emotion
-    """The emotion that it shows."""
-
-    mood: int
-    """Index of its mood."""
-
-    battery: float
-    """From 0, empty, to 1, full."""
-
-    joints: tuple[float, ...]
-    """Angles [rad]."""
-
-    motion: int = m.NOTHING
-    """Index of the motion that is playing."""
-
-    sound: int = m.NOTHING
-    """Index of the sound that is playing."""
-
-    charging: bool = False
-    """Whether the battery is being charged."""
-
-    still: bool = False
-    """Whether it holds its neutral pose after STOP."""
-
-    limp: bool = False
-    """Whether its motors have no power."""
-
-    reckoned: bool = False
-    """Whether the joint angles are calculated, not measured."""
 
 
 class Body(Protocol):
@@ -68,8 +33,8 @@ class Body(Protocol):
     def neutral(self) -> None:
         """End motion and sound and return to the neutral emotion: the host is gone."""
 
-    def state(self) -> BodyState:
-        """Return the current state."""
+    def state(self) -> m.State:
+        """Return the current state; the link sets `beat` and `taken`."""
 
 
 class DeviceLink:
@@ -202,29 +167,10 @@ class DeviceLink:
     def _send_state(self, now: float) -> None:
         self._state_sent = now
         state = self.body.state()
-        joints = state.joints + (0.0,) * (m.JOINTS_MAX - len(state.joints))
-        flags = (
-            m.CHARGING * state.charging
-            | m.STILL * state.still
-            | m.LIMP * state.limp
-            | m.RECKONED * state.reckoned
-        )
+        flags = state.flags
         if self._version < 2:
             flags &= m.CHARGING | m.STILL  # version 1 has no others
-        self._send(
-            m.State(
-                beat=self._beat,
-                taken=self.last_command,
-                flags=flags,
-                valence=state.emotion.valence,
-                arousal=state.emotion.arousal,
-                battery=state.battery,
-                mood=state.mood,
-                motion=state.motion,
-                sound=state.sound,
-                joints=joints,
-            )
-        )
+        self._send(replace(state, beat=self._beat, taken=self.last_command, flags=flags))
 
     def _refuse(self, session: int, now: float) -> None:
         if now - self._gone_sent >= timing.GONE_EVERY:

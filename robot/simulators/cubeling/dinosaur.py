@@ -4,13 +4,10 @@ Joints, limits and speeds are those of `robot.drivers.pleo.joints`; the motions 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from robot.contract.catalogue import Catalogue
 from robot.contract.motions import JointSine, SineMotion
 from robot.drivers.pleo.joints import JOINTS as PLEO
-
-Array = NDArray[np.float64]
 
 _LIMITS = tuple(joint.limits for joint in PLEO)
 

@@ -145,7 +145,8 @@ class Left(Stating):
 
         def leaving() -> None:
             state = self.body.state()
-            self.left, self.motion = True, state.motion >= FIRST_ACTION and not state.still
+            self.left = True
+            self.motion = state.motion >= FIRST_ACTION and not state.flags & m.STILL
             neutral()
 
         def feeling(emotion: Emotion, mood: int = m.NOTHING) -> None:
