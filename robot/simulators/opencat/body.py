@@ -9,9 +9,6 @@ from dataclasses import dataclass
 SERVO_SPEED_DEG_PER_S = 180.0
 """Speed of a joint in a posture [°/s]; a board interpolates well below the speed of its servos."""
 
-JOINTS = 16
-"""Number of joints on a board; a robot has fewer."""
-
 
 @dataclass(frozen=True)
 class Skill:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from robot.simulators.opencat.body import JOINTS, REST, SKILLS, OpenCatBody
+from robot.drivers.opencat.tokens import JOINTS
+from robot.simulators.opencat.body import REST, SKILLS, OpenCatBody
 from robot.simulators.opencat.quirks import BoardQuirks
 
 FORBIDDEN_TOKENS = frozenset("acsS!gGnwWKTXzpRxMLIfFoqtlvVzhuPrBCmU;:")

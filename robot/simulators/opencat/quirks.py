@@ -1,7 +1,6 @@
 """The quirks of a simulated board, and its messages at the start."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -40,20 +39,10 @@ CALIBRATION_QUESTION = "- Reset the joints' calibration offsets? (Y/n): "
 """The question of a new board; it waits for a byte, and "Y" erases the calibration."""
 
 
-class StartupText(NamedTuple):
-    """A text that a board sends while it starts."""
-
-    delay: float
-    """Time since the text before it [s]."""
-
-    text: str
-    """The text with its line end."""
-
-
 def startup(
     random: np.random.Generator, model: str, version: str, new_board: bool
-) -> list[StartupText]:
-    """Return the texts of a board that starts, in order.
+) -> list[tuple[float, str]]:
+    """Return the texts of a board that starts, each with the time since the one before [s].
 
     Like a real board's, they begin with bytes at another baud rate and a "k" that is no echo, and
     end with the rest that the board commands itself.
@@ -78,4 +67,4 @@ def startup(
         "d",
     ]
     pauses = random.uniform(0.01, 0.35, len(lines)).tolist()
-    return [StartupText(pause, line + "\r\n") for pause, line in zip(pauses, lines, strict=True)]
+    return [(pause, line + "\r\n") for pause, line in zip(pauses, lines, strict=True)]

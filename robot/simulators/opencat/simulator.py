@@ -11,12 +11,7 @@ import numpy as np
 
 from robot.simulators.opencat.body import SKILLS
 from robot.simulators.opencat.interpreter import Interpreter, Job
-from robot.simulators.opencat.quirks import (
-    CALIBRATION_QUESTION,
-    BoardQuirks,
-    StartupText,
-    startup,
-)
+from robot.simulators.opencat.quirks import CALIBRATION_QUESTION, BoardQuirks, startup
 
 LINE_TIMEOUT_S = 0.010
 """Pause after which a line without an end is read [s]."""
@@ -79,7 +74,7 @@ class OpenCatSimulator:
         self._forget()
 
     def _forget(self) -> None:
-        self._startup: deque[StartupText] = deque()
+        self._startup: deque[tuple[float, str]] = deque()
         self._startup_at = 0.0
         self._asking = False
         self._input = bytearray()
@@ -154,14 +149,14 @@ class OpenCatSimulator:
         self.body.power_off(now)
         asks = self._new_board and self.starts == 1
         self._startup.extend(startup(self._random, self._model, self._version, asks))
-        self._startup_at = now + self._startup[0].delay
+        self._startup_at = now + self._startup[0][0]
 
     def _send_startup(self, now: float) -> None:
-        startup_text = self._startup.popleft()
-        self._out += startup_text.text.encode("latin-1")
-        self._asking = CALIBRATION_QUESTION in startup_text.text
+        _, text = self._startup.popleft()
+        self._out += text.encode("latin-1")
+        self._asking = CALIBRATION_QUESTION in text
         if self._startup:
-            self._startup_at = now + self._startup[0].delay
+            self._startup_at = now + self._startup[0][0]
         else:
             self._low_at = now + self.quirks.battery_lasts
             self._noise_at = now + self._pause()

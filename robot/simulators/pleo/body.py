@@ -73,7 +73,8 @@ class PleoBody:
         self.motion: str | None = None
         """The file of the motion that is playing, or None."""
         self._motion_ends = 0.0
-        self._mood = "neutral"
+        self.mood = "neutral"
+        """The mood that it shows: the last one after which a motion was named."""
         self._sound: str | None = None
         self._sound_ends = 0.0
         self._moves = [_JointMove() for _ in JOINTS]
@@ -96,11 +97,6 @@ class PleoBody:
         """The file of the sound that is playing, or None."""
         return self._sound if self.now < self._sound_ends else None
 
-    @property
-    def mood(self) -> str:
-        """The mood that it shows: the last one after which a motion was named."""
-        return self._mood
-
     def advance(self, now: float) -> None:
         """Advance to time `now` [s]."""
         self.now = max(self.now, now)
@@ -116,7 +112,7 @@ class PleoBody:
 
     def neutral(self) -> None:
         """Move every joint to zero and end the motion."""
-        self.motion, self._mood = None, "neutral"
+        self.motion, self.mood = None, "neutral"
         for number in range(len(JOINTS)):
             self.move(number, 0)
 
@@ -125,14 +121,13 @@ class PleoBody:
         self.played.append(Played(self.now, "motion", name))
         random = np.random.default_rng(crc32(name.encode()))
         self.motion = name
-        self._motion_ends = (
-            self.now + random.uniform(*MOTION_LENGTH_RANGE_S) * 100 / self.motion_speed
-        )
+        length = random.uniform(*MOTION_LENGTH_RANGE_S)
+        self._motion_ends = self.now + length * 100 / self.motion_speed
         for number, joint in enumerate(JOINTS):
             self.move(number, random.uniform(joint.low, joint.high))
         word = name.partition(":")[2].partition(".")[0].casefold()
         if word in PLACES:
-            self._mood = word
+            self.mood = word
 
     def play_sound(self, name: str) -> None:
         """Start a sound; it ends any other."""

@@ -2,7 +2,6 @@
 
 import heapq
 from collections import deque
-from typing import NamedTuple
 
 import numpy as np
 
@@ -45,16 +44,6 @@ MAX_UNREAD_BYTES = 65536
 """Most bytes that wait for the host; further ones are lost."""
 
 
-class Violation(NamedTuple):
-    """A text received while the console was busy."""
-
-    time: float
-    """Its time by the simulator's clock [s]."""
-
-    text: str
-    """The text."""
-
-
 class PleoSimulator:
     """A simulated Pleo with the protocol "pleo"; a `Simulated`.
 
@@ -87,8 +76,8 @@ class PleoSimulator:
         self.echo = bool(self._random.random() < 0.5)
         """Whether it echoes its input."""
         self._boot_text = BOOT_TEXTS[int(self._random.integers(len(BOOT_TEXTS)))]
-        self.violations: deque[Violation] = deque(maxlen=1000)
-        """The texts received before the prompt, except empty lines."""
+        self.violations: deque[tuple[float, str]] = deque(maxlen=1000)
+        """The texts received before the prompt, each with its time [s]; empty lines are allowed."""
         self.executed: deque[str] = deque(maxlen=1000)
         """The lines that it has executed, except empty ones."""
         self._last: float | None = None  # the caller's time
@@ -158,7 +147,7 @@ class PleoSimulator:
             return
         if self.busy:
             if text.strip():
-                self.violations.append(Violation(self._now, text[:MAX_LINE_CHARS]))
+                self.violations.append((self._now, text[:MAX_LINE_CHARS]))
             text = "".join(char for char in text if self._random.random() < 0.5)
         self.input_line = (self.input_line + text)[:MAX_LINE_CHARS]
         if not self.busy:
