@@ -13,7 +13,7 @@ from rich.text import Text
 from app.commands.robot_conform import conform
 from app.commands.robot_try import try_
 from robot import RobotError, SimulatedPort, serial_ports
-from robot.simulators.base import Simulated
+from robot.simulators import Simulated
 from robot.simulators.memory import simulator_of
 
 app = typer.Typer(

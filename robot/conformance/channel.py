@@ -7,7 +7,7 @@ import serial
 from robot.conformance.errors import CheckFailed
 from robot.contract.port import Clock, Port
 from robot.errors import RobotError
-from robot.simulators.base import Simulated
+from robot.simulators import Simulated
 
 MAX_READ_BYTES = 4096
 """Most bytes of one read, so that a robot that never pauses does not block the suite."""

@@ -78,14 +78,10 @@ class FaultyChannel:
         drop, flip, dup, split, corruption, noise, lateness = (
             np.random.default_rng((*seed, kind)) for kind in range(7)
         )
-        self._drop, self._flip = (
-            BernoulliFault(drop, faults.drop),
-            BernoulliFault(flip, faults.flip),
-        )
-        self._dup, self._split = (
-            BernoulliFault(dup, faults.dup),
-            BernoulliFault(split, faults.split),
-        )
+        self._drop = BernoulliFault(drop, faults.drop)
+        self._flip = BernoulliFault(flip, faults.flip)
+        self._dup = BernoulliFault(dup, faults.dup)
+        self._split = BernoulliFault(split, faults.split)
         self._corruption, self._noise, self._lateness = corruption, noise, lateness
         self._delay, self._jitter = faults.delay, faults.jitter
         self._babble = faults.babble

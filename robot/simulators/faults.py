@@ -30,6 +30,9 @@ LENGTH_RANGE_S: Final = (0.001, 3600.0)
 INTERVAL_RANGE_S: Final = (0.1, 86400.0)
 """Shortest and longest mean time between two events [s]."""
 
+Option = tuple[Callable[[str], dict[str, object]], str]
+"""Reads the text of an option into fields of `Faults`, or raises ValueError; the allowed values."""
+
 
 class Outage(NamedTuple):
     """A stall or an unplugging that recurs at random times (a Poisson process)."""
@@ -79,16 +82,6 @@ class Faults:
     """Mean time between two reboots [s]."""
 
 
-class Option(NamedTuple):
-    """One option of a simulator's URL."""
-
-    read: Callable[[str], dict[str, object]]
-    """Converts its text to fields of `Faults`; raises ValueError if it is not allowed."""
-
-    allowed: str
-    """The allowed values, for messages."""
-
-
 def faults_of(url: str, options: Mapping[str, str]) -> Faults:
     """Return the faults in the options of a simulator's URL.
 
@@ -99,14 +92,14 @@ def faults_of(url: str, options: Mapping[str, str]) -> Faults:
     """
     fields: dict[str, object] = {}
     for name, text in options.items():
-        option = OPTIONS.get(name)
-        if option is None:
+        if name not in OPTIONS:
             known = ", ".join(["seed", *OPTIONS])
             raise RobotError(f"{url!r}: {name!r} is no option of a simulator; there are {known}")
+        read, allowed = OPTIONS[name]
         try:
-            fields |= option.read(text)
+            fields |= read(text)
         except ValueError:
-            raise RobotError(f"{url!r}: {name} must be {option.allowed}, not {text!r}") from None
+            raise RobotError(f"{url!r}: {name} must be {allowed}, not {text!r}") from None
     return Faults(**fields)  # type: ignore[arg-type] # the readers below return its fields
 
 
@@ -128,7 +121,7 @@ def _seconds(text: str, low: float, high: float) -> float:
 
 
 def _probability(name: str) -> Option:
-    return Option(lambda text: {name: _number(text, 0.0, 1.0)}, "a probability from 0 to 1")
+    return lambda text: {name: _number(text, 0.0, 1.0)}, "a probability from 0 to 1"
 
 
 def _read_delay(text: str) -> dict[str, object]:
@@ -154,14 +147,14 @@ OPTIONS: Final[dict[str, Option]] = {
     "flip": _probability("flip"),
     "dup": _probability("dup"),
     "split": _probability("split"),
-    "babble": Option(
+    "babble": (
         lambda text: {"babble": _number(text, 0.0, MAX_NOISE_BYTES_PER_S)},
         "bytes a second from 0 to 1000000, as in 200",
     ),
-    "delay": Option(_read_delay, "a time up to 10s, as in 20ms, or 20ms~5ms with jitter within it"),
-    "stall": Option(_read_stall, "how long, 1ms to 3600s, as in 1s, or 1s/10s with how often"),
-    "unplug": Option(_read_unplug, "how often, 100ms to 86400s, as in 30s, or 30s/2s for how long"),
-    "reboot": Option(
+    "delay": (_read_delay, "a time up to 10s, as in 20ms, or 20ms~5ms with jitter within it"),
+    "stall": (_read_stall, "how long, 1ms to 3600s, as in 1s, or 1s/10s with how often"),
+    "unplug": (_read_unplug, "how often, 100ms to 86400s, as in 30s, or 30s/2s for how long"),
+    "reboot": (
         lambda text: {"reboot": _seconds(text, *INTERVAL_RANGE_S)},
         "how often, 100ms to 86400s, as in 60s",
     ),

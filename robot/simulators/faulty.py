@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from robot.simulators.base import Simulated
+from robot.simulators import Simulated
 from robot.simulators.channel import FaultyChannel
 from robot.simulators.faults import Faults
 
@@ -25,17 +25,6 @@ class FaultyRobot:
     """A simulated robot with faults; it is itself a `Simulated`.
 
     All draws come from the seed: the same bytes at the same times get the same answers.
-
-    Parameters
-    ----------
-    robot
-        The robot without faults.
-    faults
-        The faults.
-    seed
-        Seed of all draws.
-    poll_interval
-        Longest time between two steps of the robot [s].
     """
 
     def __init__(
@@ -57,9 +46,9 @@ class FaultyRobot:
         self.stalled_until = -NEVER
         """End of the current or the last stall [s]."""
         self._faults = faults
+        self._poll_interval = poll_interval
         self._mean_intervals = [spell and spell.every for spell in (faults.stall, faults.unplug)]
         self._mean_intervals.append(faults.reboot)
-        self._poll_interval = poll_interval
         self._random = [np.random.default_rng((seed, 2, kind)) for kind in range(3)]
         self._now: float | None = None
         self._inbox = b""

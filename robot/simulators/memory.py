@@ -8,48 +8,27 @@ import serial
 
 from robot.contract.port import READ_TIMEOUT_S, Clock, Opener
 from robot.errors import RobotError
-from robot.simulators import SIMULATORS
-from robot.simulators.base import Simulated
+from robot.simulators import SIMULATORS, Simulated
 from robot.simulators.faults import Faults, faults_of
 from robot.simulators.faulty import FaultyRobot
 
 
-class SimulatedWire:
-    """A simulated robot and its line, which outlive every unplugging.
-
-    Parameters
-    ----------
-    url
-        "sim:NAME", with options: "sim:cubeling?seed=7&drop=0.05"; see `simulator_of`.
-    clock
-        The time of both.
-
-    Raises
-    ------
-    RobotError
-        If the URL names no robot, or an option is wrong.
-    """
-
-    def __init__(self, url: str, clock: Clock) -> None:
-        self.robot = simulator_of(url)
-        """The simulated robot."""
-        self._url = url
-        self._clock = clock
-
-    def open(self) -> "MemoryPort":
-        """Open the port; raises RobotError while the plug is out."""
-        robot = self.robot
-        if isinstance(robot, FaultyRobot):
-            robot.advance(self._clock())
-            if not robot.plugged_in:
-                raise RobotError(f"cannot open the port {self._url}: its plug is out")
-            robot.bytes_to_send()  # a port that was not open has lost what arrived
-        return MemoryPort(robot, self._clock)
-
-
 def open_simulated(url: str, clock: Clock) -> Opener:
-    """Return a function that opens a simulated robot, now and after every unplugging."""
-    return SimulatedWire(url, clock).open
+    """Return a function that opens a simulated robot, now and after every unplugging.
+
+    The robot and its line outlive every unplugging; for the URL see `simulator_of`.
+    """
+    robot = simulator_of(url)
+
+    def open_port() -> MemoryPort:
+        if isinstance(robot, FaultyRobot):
+            robot.advance(clock())
+            if not robot.plugged_in:
+                raise RobotError(f"cannot open the port {url}: its plug is out")
+            robot.bytes_to_send()  # a port that was not open has lost what arrived
+        return MemoryPort(robot, clock)
+
+    return open_port
 
 
 def simulator_of(url: str) -> Simulated:

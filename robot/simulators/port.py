@@ -13,7 +13,7 @@ from typing import Literal
 from robot.contract.closeable import Closeable
 from robot.contract.port import Clock
 from robot.errors import RobotError
-from robot.simulators.base import Simulated
+from robot.simulators import Simulated
 from robot.simulators.cubeling.simulator import Simulator
 
 POLL_TIMEOUT_S = 0.010

@@ -28,8 +28,7 @@ from robot.protocol.wire import (
     decode_frame,
     encode_frame,
 )
-from robot.simulators import SIMULATORS
-from robot.simulators.base import Simulated
+from robot.simulators import SIMULATORS, Simulated
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.memory import simulator_of
 

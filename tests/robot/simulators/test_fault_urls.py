@@ -44,7 +44,7 @@ def test_a_wrong_value_is_refused_in_one_line_that_says_what_is_allowed(query):
         simulator_of(f"sim:cubeling?{query}")
     text = str(refused.value)
     assert "\n" not in text
-    assert f"{name} must be {OPTIONS[name].allowed}" in text
+    assert f"{name} must be {OPTIONS[name][1]}" in text
 
 
 def test_an_unknown_option_is_refused_with_those_there_are():

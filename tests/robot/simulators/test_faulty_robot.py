@@ -12,7 +12,7 @@ from robot.simulators import SIMULATORS
 from robot.simulators.cubeling.simulator import Simulator
 from robot.simulators.faults import Faults, Outage
 from robot.simulators.faulty import MAX_INBOX_BYTES, FaultyRobot
-from robot.simulators.memory import SimulatedWire, simulator_of
+from robot.simulators.memory import open_simulated, simulator_of
 from robot.simulators.port import SimulatedPort
 
 HAPPY = Emotion(0.8, 0.5)
@@ -108,8 +108,8 @@ def test_no_fault_occurs_during_a_sleep_of_the_computer():
 
 def test_a_pulled_plug_ends_the_port_until_it_is_back():
     clock = Clock()
-    wire = SimulatedWire("sim:cubeling?unplug=5s/500ms&seed=2", clock)
-    port, ended = wire.open(), None
+    open_port = open_simulated("sim:cubeling?unplug=5s/500ms&seed=2", clock)
+    port, ended = open_port(), None
     for _ in range(3000):
         clock.now += 0.01
         try:
@@ -119,16 +119,16 @@ def test_a_pulled_plug_ends_the_port_until_it_is_back():
             break
     assert ended is not None
     with pytest.raises(RobotError, match="its plug is out"):
-        wire.open()
+        open_port()
     clock.now = ended + 0.6
-    port = wire.open()
+    port = open_port()
     assert port.in_waiting == 0
 
 
 def test_a_plug_that_was_out_between_two_calls_has_ended_the_port_too():
     clock = Clock()
-    wire = SimulatedWire("sim:cubeling?unplug=100ms/1ms&seed=1", clock)
-    port = wire.open()
+    open_port = open_simulated("sim:cubeling?unplug=100ms/1ms&seed=1", clock)
+    port = open_port()
     clock.now += 5.0
     with pytest.raises(serial.SerialException, match="the plug was pulled"):
         port.read(1)
