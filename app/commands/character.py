@@ -33,11 +33,6 @@ MIN_FOLDED_JOINTS = 4
 """Branches of at least so many unrecognised joints are shown as one line."""
 
 
-@app.callback()
-def group() -> None:
-    """Look at characters and motions."""
-
-
 @app.command("inspect")
 def inspect_command(
     character: Annotated[

@@ -1,5 +1,6 @@
 """`cubeling character locomotion`."""
 
+import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -115,11 +116,8 @@ def _write_sidecar(console: Console, character: Character, target: Path) -> None
     if sidecar.exists():
         console.print(rf"[yellow]![/] {name} exists already: check its \[joints] table.")
         return
-    lines = [f"{part} = {_quoted(joint)}" for part, joint in character.semantics.items()]
-    sidecar.write_text("[joints]\n" + "\n".join(lines) + "\n", encoding="utf-8")
+    # TOML quotes texts as JSON does.
+    joints = {part: json.dumps(j, ensure_ascii=False) for part, j in character.semantics.items()}
+    lines = [f"{part} = {joint}\n" for part, joint in joints.items()]
+    sidecar.write_text("[joints]\n" + "".join(lines), encoding="utf-8")
     console.print(f"[bold]{name}[/] states which joint is which body part.")
-
-
-def _quoted(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{escaped}"'

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from characters.model.character import Character
-from characters.model.mesh import Mesh
 from characters.model.statistics import CharacterStats, ClipStats, clip_stats, foot_joints
 
 MANY_JOINTS, MANY_TRIANGLES, LARGE_TEXTURE_PX = 256, 100_000, 4096
@@ -73,7 +72,8 @@ def _problems_of_meshes(character: Character, stats: CharacterStats) -> Iterator
             f"At rest it is {distance:.2g} m away from x = z = 0, its reference point: "
             "move it there."
         )
-    error = max((_weight_error(mesh) for mesh in character.meshes), default=0.0)
+    sums = [mesh.weights.sum(axis=1) for mesh in character.meshes]
+    error = float(np.abs(np.concatenate([*sums, [1.0]]) - 1.0).max())
     if error > 1e-3:
         yield f"Skin weights do not sum to one: the error is {error:.2g}; normalise them."
     if stats.triangles > MANY_TRIANGLES:
@@ -81,21 +81,12 @@ def _problems_of_meshes(character: Character, stats: CharacterStats) -> Iterator
             f"{stats.triangles:,} triangles are slow to draw without a graphics card; "
             f"{MANY_TRIANGLES:,} are enough."
         )
-    largest = max((_texture_side(mesh) for mesh in character.meshes), default=0)
+    textures = [image for mesh in character.meshes for image in mesh.material.textures]
+    largest = max((max(image.shape[:2]) for image in textures if image is not None), default=0)
     if largest > LARGE_TEXTURE_PX:
         yield f"A texture has {largest} pixels along a side: {LARGE_TEXTURE_PX} are enough."
     if stats.joints > MANY_JOINTS:
         yield f"{stats.joints} joints are slow to pose: {MANY_JOINTS} are enough."
-
-
-def _weight_error(mesh: Mesh) -> float:
-    sums = mesh.weights.sum(axis=1)
-    return float(np.abs(sums - 1.0).max()) if len(sums) else 0.0
-
-
-def _texture_side(mesh: Mesh) -> int:
-    images = mesh.material.textures
-    return max((max(image.shape[:2]) for image in images if image is not None), default=0)
 
 
 def _problems_of_joints(character: Character, feet: dict[str, tuple[int, ...]]) -> Iterator[str]:

@@ -29,22 +29,13 @@ _NOSE_RADIUS = 0.28  # head radii
 
 
 class _Capsule(NamedTuple):
-    """A capsule in the rest pose."""
+    """A capsule in the rest pose that one joint moves."""
 
-    start: Array
-    """Centre of the first hemisphere, (3,) [m]."""
-
-    end: Array
-    """Centre of the second one, (3,) [m]."""
-
-    radii: tuple[float, float]
-    """Radii at start and end [m]."""
-
+    start: Array  # centre of the first hemisphere, (3,) [m]
+    end: Array  # centre of the second one, (3,) [m]
+    radii: tuple[float, float]  # at start and end [m]
     joint: int
-    """The joint that moves it."""
-
-    color: Array
-    """Linear RGB, (3,)."""
+    color: Array  # linear RGB, (3,)
 
 
 def stick_figure(name: str, skeleton: Skeleton, clips: Iterable[Clip] = ()) -> Character:

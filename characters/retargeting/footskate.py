@@ -141,26 +141,13 @@ def _foot_vectors(rig: Rig, leg: LegJoints, turns: Array) -> tuple[Array, Array]
 class _FootPath:
     """The path of one foot over the ground."""
 
-    goal: Array
-    """Position of its end without corrections, (frames, 3) [m]."""
-
-    heel_to_end: Array
-    """From the heel to the end, (frames, 3) [m]."""
-
-    heel: NDArray[np.bool_]
-    """Whether it stands on its heel alone, (frames,)."""
-
-    ball: NDArray[np.bool_]
-    """Whether it stands on its end, (frames,)."""
-
-    floor: float | None
-    """Height of the end while it stands [m]; None to keep that of the goal."""
-
-    max_correction: float
-    """A contact that needs a larger correction is dropped [m]."""
-
-    rate: float
-    """Frame rate [Hz]."""
+    goal: Array  # position of its end without corrections, (frames, 3) [m]
+    heel_to_end: Array  # from the heel to the end, (frames, 3) [m]
+    heel: NDArray[np.bool_]  # whether it stands on its heel alone, (frames,)
+    ball: NDArray[np.bool_]  # whether it stands on its end, (frames,)
+    floor: float | None  # height of the end while it stands [m]; None to keep that of the goal
+    max_correction: float  # a contact that needs a larger correction is dropped [m]
+    rate: float  # [Hz]
 
     def held(self) -> Array:
         """Return the positions of its end, (frames, 3) [m], constant during contacts."""

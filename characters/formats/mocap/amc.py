@@ -93,14 +93,9 @@ def _header(file: TextFile, angle_unit: float) -> tuple[float, float, int]:
 class _Frame:
     """The words of one frame."""
 
-    line: int
-    """The line of its number, from 1."""
-
-    number: int
-    """As in the file."""
-
-    rows: dict[str, tuple[int, list[str]]]
-    """Line and numbers by bone."""
+    line: int  # that of its number, from 1
+    number: int  # as in the file
+    rows: dict[str, tuple[int, list[str]]]  # line and numbers by bone
 
 
 def _values(file: TextFile, start: int, body: AcclaimSkeleton) -> tuple[Array, tuple[str, ...]]:

@@ -4,6 +4,7 @@ A recording is cut where pose and velocity repeat after one step of each foot. T
 difference is spread over the whole cycle.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,18 +41,11 @@ def find_cycle(clip: Clip, rig: Rig, contacts: NDArray[np.bool_]) -> LoopCut:
 
     `contacts` say when the left and the right foot stand, (frames, 2).
     """
-    features = _features(clip, rig)
-    landings = np.cumsum(contacts[1:] & ~contacts[:-1], axis=0)
-    landings = np.concatenate([np.zeros((1, 2), int), landings])
+    landed = np.cumsum(contacts[1:] & ~contacts[:-1], axis=0)
+    landings = np.concatenate([np.zeros((1, 2), int), landed])
     shortest, longest = (round(seconds * clip.rate) for seconds in _CYCLE_DURATION_S)
-    stride = max(1, (len(clip) - shortest) // _MAX_STARTS)
     best: LoopCut | None = None
-    for start in range(0, len(clip) - shortest, stride):
-        ends = np.arange(start + shortest, min(start + longest, len(clip) - 1) + 1)
-        ends = ends[(landings[ends] - landings[start] == 1).all(-1)]
-        if not len(ends):
-            continue
-        seams = _seams(features, start, ends)
+    for start, ends, seams in _seams(clip, rig, shortest, longest, landings):
         nearest = int(seams.argmin())
         if best is None or seams[nearest] < best.seam:
             best = LoopCut(start, int(ends[nearest]), float(seams[nearest]))
@@ -66,16 +60,10 @@ def find_cycle(clip: Clip, rig: Rig, contacts: NDArray[np.bool_]) -> LoopCut:
 
 def find_pause(clip: Clip, rig: Rig) -> LoopCut:
     """Return the part of a clip that closes best and is long enough to idle."""
-    features = _features(clip, rig)
-    shortest = min(round(_PAUSE_DURATION_S[0] * clip.rate), (len(clip) - 1) // 2)
-    longest = round(_PAUSE_DURATION_S[1] * clip.rate)
-    stride = max(1, (len(clip) - shortest) // _MAX_STARTS)
+    shortest, longest = (round(seconds * clip.rate) for seconds in _PAUSE_DURATION_S)
+    shortest = max(min(shortest, (len(clip) - 1) // 2), 1)
     best, best_cost = LoopCut(0, len(clip) - 1, float("inf")), float("inf")
-    for start in range(0, max(len(clip) - shortest, 1), stride):
-        ends = np.arange(start + max(shortest, 1), min(start + longest, len(clip) - 1) + 1)
-        if not len(ends):
-            continue
-        seams = _seams(features, start, ends)
+    for start, ends, seams in _seams(clip, rig, shortest, longest):
         costs = seams / np.sqrt(ends - start)  # longer loops are better
         nearest = int(costs.argmin())
         if costs[nearest] < best_cost:
@@ -139,6 +127,19 @@ def _features(clip: Clip, rig: Rig) -> Array:
     return np.concatenate([positions, velocities], axis=1)
 
 
-def _seams(features: Array, start: int, ends: NDArray[np.intp]) -> Array:
-    """Return the root mean square differences between a frame and others, (ends,)."""
-    return np.asarray(np.sqrt(np.square(features[ends] - features[start]).mean((-1, -2))))
+def _seams(
+    clip: Clip, rig: Rig, shortest: int, longest: int, landings: NDArray[np.int_] | None = None
+) -> Iterator[tuple[int, NDArray[np.intp], Array]]:
+    """Yield first frames, the last frames that may go with each, and the seams between them.
+
+    A seam is the root mean square difference. With the counted landings of the feet, (frames, 2),
+    each foot lands once in between.
+    """
+    features = _features(clip, rig)
+    stride = max(1, (len(clip) - shortest) // _MAX_STARTS)
+    for start in range(0, len(clip) - shortest, stride):
+        ends = np.arange(start + shortest, min(start + longest, len(clip) - 1) + 1)
+        if landings is not None:
+            ends = ends[(landings[ends] - landings[start] == 1).all(-1)]
+        if len(ends):
+            yield start, ends, np.sqrt(np.square(features[ends] - features[start]).mean((-1, -2)))

@@ -130,16 +130,14 @@ class GaitCycle:
             pose = _turned(pose, self.rig, leg.foot, rotations.about("y", yaw))
             coordinates[:, 0] *= share
             ends[:, number] = path.from_arc(coordinates)
-        return replace(self, path=path)._with_held_feet(pose, ends)
+        return replace(self, path=path, clip=replace(self.clip, poses=pose)).with_held_feet(ends)
 
-    def with_held_feet(self) -> "GaitCycle":
-        """Return the gait with feet that do not slide on its own path."""
-        return self._with_held_feet(self.clip.poses)
-
-    def _with_held_feet(self, pose: Pose, ends: Array | None = None) -> "GaitCycle":
+    def with_held_feet(self, ends: Array | None = None) -> "GaitCycle":
+        """Return the gait with feet that do not slide; see `hold_feet_in_contact`."""
         times = np.arange(len(self.clip)) / self.clip.rate
         cycle = self.path.at(times[-1:])[0]
         ground = GroundMotion(np.zeros((len(times), 3)), cycle, self.clip.rate)
+        pose = self.clip.poses
         held = hold_feet_in_contact(pose, self.rig, self.legs, self.contacts, ground, ends)
         return replace(self, clip=replace(self.clip, poses=_with_exact_end(held)))
 

@@ -18,18 +18,9 @@ from characters.model.mirroring import mirror_of
 from characters.motion.clip import Clip
 from characters.motion.mirror import Mirror
 from characters.retargeting.footskate import FootContacts
-from characters.retargeting.locomotion.cycle import (
-    LoopCut,
-    close_loop,
-    find_pause,
-    resample_loop,
-)
+from characters.retargeting.locomotion.cycle import LoopCut, close_loop, find_pause, resample_loop
 from characters.retargeting.locomotion.gait_cycle import ArcPath, GaitCycle
-from characters.retargeting.locomotion.recorded_gait import (
-    MAX_RATE_HZ,
-    extract_gait,
-    on_character,
-)
+from characters.retargeting.locomotion.recorded_gait import MAX_RATE_HZ, extract_gait, on_character
 from characters.retargeting.recording import Recording
 from characters.retargeting.rig import Rig
 from characters.retargeting.root import moved_to_trajectory, with_root_joint

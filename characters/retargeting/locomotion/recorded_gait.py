@@ -52,10 +52,14 @@ def extract_gait(recording: Recording, character: Character, walker: Character) 
         )
     # The root looks along the arc: half of the turn is before the middle of its chord.
     yaw = math.atan2(delta.x, delta.z) - delta.yaw / 2
-    loop = close_loop(_with_turned_root(clip, rig, yaw), cut)
+    children = np.flatnonzero(np.array(rig.skeleton.parents) == 0)
+    poses = with_root_trajectory(clip.poses, children, clip.track + [0.0, 0.0, yaw])
+    loop = close_loop(replace(clip, poses=poses), cut)
     # The last frame of the cycle is the first again.
     contacts = contacts.at(np.array([*range(cut.start, cut.end), cut.start]))
-    order = (np.arange(len(loop)) + _first_left_landing(contacts)) % (len(loop) - 1)
+    down = contacts.any[:-1, 0]
+    landing = int(np.argmax(down & ~np.roll(down, 1)))  # of the left foot; 0 if it never lands
+    order = (np.arange(len(loop)) + landing) % (len(loop) - 1)
     loop, contacts = replace(loop, poses=loop.poses[order]), contacts.at(order)
     if clip.rate > MAX_RATE_HZ:
         fine = len(loop)
@@ -82,12 +86,10 @@ def on_character(
         raise CharacterError(f"{recording.origin}: {error}") from None
     if not _are_same(recording.skeleton, character.skeleton):
         args = (recording.skeleton, recording.anatomy, walker.skeleton, walker.anatomy)
-        clip = retarget(recording.clip, *args)
-    elif has_root_joint(character.skeleton, character.anatomy):
-        clip = replace(recording.clip, root_motion=True)
-    else:
-        clip = clip_with_root(recording.clip, character.skeleton, character.anatomy)
-    return clip, contacts
+        return retarget(recording.clip, *args), contacts
+    if has_root_joint(character.skeleton, character.anatomy):
+        return replace(recording.clip, root_motion=True), contacts
+    return clip_with_root(recording.clip, character.skeleton, character.anatomy), contacts
 
 
 def _are_same(one: Skeleton, other: Skeleton) -> bool:
@@ -113,16 +115,3 @@ def _without_treadmill(clip: Clip, rig: Rig, contacts: FootContacts) -> Clip:
     ]
     trajectory = np.array([[delta.x, delta.z, delta.yaw] for delta in deltas])
     return replace(clip, poses=moved_to_trajectory(clip.in_place, trajectory))
-
-
-def _with_turned_root(clip: Clip, rig: Rig, yaw: float) -> Clip:
-    """Return a clip whose root is turned by an angle [rad]; the body stays in the world."""
-    children = np.flatnonzero(np.array(rig.skeleton.parents) == 0)
-    trajectory = clip.track + [0.0, 0.0, yaw]
-    return replace(clip, poses=with_root_trajectory(clip.poses, children, trajectory))
-
-
-def _first_left_landing(contacts: FootContacts) -> int:
-    """Return the frame of a loop at which the left foot lands, 0 if it never does."""
-    down = contacts.any[:-1, 0]
-    return int(np.argmax(down & ~np.roll(down, 1)))
