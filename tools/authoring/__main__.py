@@ -18,7 +18,7 @@ ASSETS = Path(__file__).parents[2] / "characters" / "assets"
 
 
 def main(arguments: list[str]) -> int:
-    """Write what is named, or everything; return an exit code."""
+    """Write the named characters, or all, and return the exit code."""
     wanted = arguments or ["all"]
     names = list(BUILDERS) if wanted == ["all"] else wanted
     unknown = [name for name in names if name not in BUILDERS]

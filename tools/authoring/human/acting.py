@@ -1,8 +1,7 @@
-"""How the bundled explorer acts on the spot: a score of curves, played by the whole body.
+"""Full-body clips in place of the bundled explorer, from a few acting curves.
 
-What an animator decides, where the weight is, where the eyes go, how far an arm is up, is a curve
-each. What follows from it, the counterpoise of the trunk, the late head, hands and backpack, is
-worked out here, so that every clip moves by the same body.
+The animator sets curves for weight, gaze and arms. The counterbalance of the trunk and the
+follow-through of head, hands and backpack are derived from them, alike in every clip.
 """
 
 from collections.abc import Mapping
@@ -32,77 +31,77 @@ from tools.authoring.modelling.shapes import Array
 FRAME_RATE_HZ = 30.0
 TOE_OUT_RAD = 0.14
 GAZE_PITCH_DEG = -9.0
-"""Pitch of the level gaze [degrees]: who looks on does so from above the table."""
+"""Pitch of the level gaze [degrees]: the viewer looks from above the table."""
 
 FOOT_OFFSET_M = 0.118
-"""From the middle to a foot [m]."""
+"""Distance of a foot from the middle [m]."""
 
 Curve = Array | float
 
 
 @dataclass(frozen=True)
 class ActingCurves:
-    """What happens, as curves over the frames of a clip, or numbers that stay."""
+    """The acting of a clip: curves over its frames, or constant numbers."""
 
     weight: Curve = 0.0
-    """Where the weight is, −1 on the right leg … 1 on the left."""
+    """Weight shift, −1 on the right leg … 1 on the left."""
 
     crouch: Curve = 0.0
-    """How far the pelvis is down [m]."""
+    """Lowering of the pelvis [m]."""
 
     air: Curve = 0.0
-    """How high the feet are above the ground [m]."""
+    """Height of the feet above the ground [m]."""
 
     heels: Curve = 0.0
-    """How far both heels are up over the balls of the feet [degrees]."""
+    """Lift of both heels over the balls of the feet [degrees]."""
 
     lean: Curve = 0.0
-    """Of the trunk, forward [degrees]."""
+    """Lean of the trunk, forward [degrees]."""
 
     twist: Curve = 0.0
-    """Of the shoulders, to the left [degrees]."""
+    """Twist of the shoulders, to the left [degrees]."""
 
     side: Curve = 0.0
-    """Of the trunk, to the right [degrees]."""
+    """Side bend of the trunk, to the right [degrees]."""
 
     look: tuple[Curve, Curve] = (0.0, 0.0)
-    """Where it looks: to the left and down [degrees]; the eyes lead, the head comes after."""
+    """Gaze to the left and down [degrees]; the eyes lead, the head follows."""
 
     head: tuple[Curve, Curve] = (0.0, 0.0)
-    """Turn of the head to the left and down, against which the eyes hold their aim [degrees]."""
+    """Turn of the head to the left and down, which the eyes compensate [degrees]."""
 
     tilt: Curve = 0.0
-    """Of the head, to the right [degrees]."""
+    """Tilt of the head, to the right [degrees]."""
 
     breath: Curve = 0.0
-    """Slow swell of chest and shoulders, −1…1."""
+    """Breathing of chest and shoulders, −1…1."""
 
     shrug: Curve = 0.0
-    """How far both shoulders are raised [degrees]."""
+    """Raise of both shoulders [degrees]."""
 
     swing: tuple[Curve, Curve] = (3.0, 3.0)
-    """Of the left and the right upper arm, forward [degrees]."""
+    """Swing of the left and the right upper arm, forward [degrees]."""
 
     spread: tuple[Curve, Curve] = (0.0, 0.0)
-    """Of the arms, away from the body [degrees]."""
+    """Spread of the arms, away from the body [degrees]."""
 
     bend: tuple[Curve, Curve] = (19.0, 19.0)
-    """Of the elbows [degrees]."""
+    """Bend of the elbows [degrees]."""
 
     fist: tuple[Curve, Curve] = (18.0, 18.0)
-    """How far the fingers are bent [degrees]."""
+    """Bend of the fingers [degrees]."""
 
     hands: Mapping[str, HandTarget] = field(default_factory=dict)
-    """Where a hand goes instead, by "Left" or "Right"."""
+    """Targets of hands that do not hang, by "Left" or "Right"."""
 
     mood: Mapping[str, Curve] = field(default_factory=dict)
-    """What the face says: morphs."""
+    """Weights of the face's morph targets by name."""
 
 
 def clip_from_acting(
     name: str, skeleton: Skeleton, seconds: float, score: ActingCurves, loop: bool
 ) -> Clip:
-    """Return the clip of a score, whose curves end as they begin, (frames + 1,) each."""
+    """Return the clip of acting curves, (frames + 1,) each, whose ends are equal."""
     frames = round(seconds * FRAME_RATE_HZ)
     rig = PosedRig(skeleton, frames + 1)
     still = np.zeros(frames + 1)
@@ -114,7 +113,7 @@ def clip_from_acting(
 
 
 def pose_with_face(rig: PosedRig, mood: Mapping[str, Curve]) -> Pose:
-    """Return the poses of a puppet with its face."""
+    """Return the poses of a rig with the weights of its face."""
     pose = rig.pose
     morphs = np.zeros((len(pose.rotations), len(EXPRESSIONS)))
     for name, curve in mood.items():
@@ -123,7 +122,7 @@ def pose_with_face(rig: PosedRig, mood: Mapping[str, Curve]) -> Pose:
 
 
 def _stand(rig: PosedRig, score: ActingCurves, still: Array) -> None:
-    """Carry the pelvis over the standing leg, the other hip dropped, and place both feet."""
+    """Place the pelvis over the standing leg with the other hip dropped, and both feet."""
     weight, air, pitch = score.weight + still, score.air + still, np.radians(score.heels + still)
     drop = -0.016 + 0.006 * np.abs(weight) + 0.002 * score.breath - score.crouch + air
     ahead = -0.008 - 0.12 * np.maximum(score.crouch + still, 0.0)
@@ -145,7 +144,7 @@ def _stand(rig: PosedRig, score: ActingCurves, still: Array) -> None:
 
 
 def _hold_trunk(rig: PosedRig, score: ActingCurves, still: Array, seconds: float) -> None:
-    """Balance over the pelvis; the chest follows the head a little, and the head the eyes."""
+    """Balance the trunk over the pelvis; the head follows the eyes, and the chest the head."""
     weight, breath = score.weight + still, score.breath + still
     look, nod = (_spring_loop(curve + still, seconds, 2.2, 0.75) for curve in score.look)
     follows = _spring_loop(look, seconds, 1.3, 0.8)
@@ -179,7 +178,7 @@ def _hold_trunk(rig: PosedRig, score: ActingCurves, still: Array, seconds: float
 
 
 def _hold_arms(rig: PosedRig, score: ActingCurves, still: Array, seconds: float) -> None:
-    """Let the arms hang, swaying after the trunk, and bring the hands where they go."""
+    """Let the arms hang and sway after the trunk, and bring hands to their targets."""
     late = _spring_loop(score.weight + still, seconds, 0.9, 0.6)
     lift = _spring_loop(score.breath + still, seconds, 1.2, 0.9)
     for number, (side, sign) in enumerate(SIDES):
@@ -191,7 +190,7 @@ def _hold_arms(rig: PosedRig, score: ActingCurves, still: Array, seconds: float)
         hang_arm(rig, side, sign, swing - 2 * lift, lower)
         bend = bend + 2.5 * lift
         rig.turn(f"{side}ForeArm", elbow_rotation(rig, side, sign, bend, 12 + 0.3 * (bend - 19)))
-        flop = _spring_loop(swing, seconds, 2.0, 0.5) - swing  # the hand comes after the arm
+        flop = _spring_loop(swing, seconds, 2.0, 0.5) - swing  # the hand follows the arm
         rig.turn(f"{side}Hand", rotation_deg(-4 - 0.5 * flop, 0, -sign * (3 + 1.5 * lift)))
         if side in score.hands:
             reach_target(rig, side, sign, score.hands[side])
@@ -199,6 +198,6 @@ def _hold_arms(rig: PosedRig, score: ActingCurves, still: Array, seconds: float)
 
 
 def _spring_loop(curve: Array, seconds: float, hertz: float, damping: float) -> Array:
-    """Return how a spring follows a curve whose last value is its first."""
+    """Return how a spring follows a loop whose last value equals its first."""
     eased = spring_follow(curve[:-1], seconds, hertz, damping)
     return np.append(eased, eased[0])

@@ -1,7 +1,6 @@
-"""What the bundled explorer does once when asked: it waves, cheers, jumps, nods, shakes its head.
+"""Actions of the bundled explorer that play once: wave, cheer, jump, nod and shake of the head.
 
-Every action winds up against its direction first and settles past its end. All begin and end as
-it stands when idle.
+Every action has an anticipation and an overshoot, and begins and ends in the idle pose.
 """
 
 import numpy as np
@@ -16,17 +15,17 @@ from tools.authoring.modelling.shapes import Array
 
 GRAVITY_M_S2 = 9.81
 IDLE_START_WEIGHT = float(idle_weight(np.zeros(1))[0])
-"""Where the weight is when it begins to wait."""
+"""Weight shift at the start of idle."""
 
 
 def actions(skeleton: Skeleton) -> dict[str, Clip]:
-    """Return all of them by name."""
+    """Return all actions by name."""
     clips = (wave(skeleton), cheer(skeleton), jump(skeleton), nod(skeleton), shake(skeleton))
     return {clip.name: clip for clip in clips}
 
 
 def curve(seconds: float, *poses: tuple[float, float]) -> Array:
-    """Return a smooth curve through times [s] and values; the last frame is as the first."""
+    """Return a smooth looping curve through keys (time [s], value), (frames + 1,)."""
     values = keys(
         round(seconds * FRAME_RATE_HZ), *((time / seconds, value) for time, value in poses)
     )
@@ -34,7 +33,7 @@ def curve(seconds: float, *poses: tuple[float, float]) -> Array:
 
 
 def wave(skeleton: Skeleton) -> Clip:
-    """Return a greeting with the right hand, high up, three times to and fro."""
+    """Return a wave of the raised right hand, three times to and fro."""
     seconds = 2.6
     up = curve(seconds, (0.0, 0), (0.22, -0.10), (0.62, 1.07), (0.78, 1), (1.95, 1), (2.38, -0.03))
     to = curve(
@@ -77,7 +76,7 @@ def wave(skeleton: Skeleton) -> Clip:
 
 
 def cheer(skeleton: Skeleton) -> Clip:
-    """Return joy: down, then both fists in the air and two hops on the spot."""
+    """Return a cheer: crouch, then both fists in the air and two hops in place."""
     seconds = 2.4
     hops = ((0.50, 0.36), (0.98, 0.30))
     air, crouch, heels = _hops(seconds, hops, squat=0.10)
@@ -129,7 +128,7 @@ def cheer(skeleton: Skeleton) -> Clip:
 
 
 def jump(skeleton: Skeleton) -> Clip:
-    """Return a jump on the spot, arms thrown up, landing deep in the knees."""
+    """Return a jump in place with raised arms that lands with bent knees."""
     seconds = 1.9
     air, crouch, heels = _hops(seconds, ((0.52, 0.46),), squat=0.17)
     arms = curve(
@@ -168,7 +167,7 @@ def jump(skeleton: Skeleton) -> Clip:
 
 
 def nod(skeleton: Skeleton) -> Clip:
-    """Return a yes: a breath up, then two nods, the second one smaller."""
+    """Return a yes: the head rises, then nods twice, less the second time."""
     seconds = 1.6
     down = curve(
         seconds,
@@ -193,7 +192,7 @@ def nod(skeleton: Skeleton) -> Clip:
 
 
 def shake(skeleton: Skeleton) -> Clip:
-    """Return a no: the head turned to and fro, the shoulders after it."""
+    """Return a no: the head turns to and fro, and the shoulders follow."""
     seconds = 1.9
     aside = curve(
         seconds,
@@ -223,8 +222,8 @@ def _hops(
 ) -> tuple[Array, Array, Array]:
     """Return height of the feet, crouch and lift of the heels for flights (start, duration) [s].
 
-    In the air it falls freely. Before, it winds up; before leaving it stretches over its toes;
-    after, it takes the landing with its knees.
+    The flight is a free fall. It is prepared by a squat and a stretch over the toes, and the knees
+    absorb the landing.
     """
     time = np.arange(round(seconds * FRAME_RATE_HZ) + 1) / FRAME_RATE_HZ
     air = 0 * time

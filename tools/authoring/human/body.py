@@ -1,7 +1,6 @@
-"""The bundled explorer's body: a young person in a hoodie, with a backpack.
+"""The bundled explorer's meshes: a young person in a hoodie, with a backpack.
 
-Toy proportions, three and a half heads high, so that head, hands and shoes read at a hand's height
-on the table.
+Toy proportions, three and a half heads high, keep head, hands and shoes legible at small size.
 """
 
 from characters.model.mesh import Material, Mesh
@@ -14,7 +13,7 @@ from tools.authoring.modelling.meshes import join
 
 
 def build_human_meshes(skeleton: Skeleton) -> tuple[Mesh, ...]:
-    """Return the body, matt, and the eyes, glossy."""
+    """Return the matt body and the glossy eyes."""
     pieces = [
         *outfit_meshes(skeleton),
         *head_pieces(skeleton),

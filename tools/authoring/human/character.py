@@ -1,4 +1,4 @@
-"""The bundled human: an explorer with a backpack, and all that it knows how to do."""
+"""The bundled human: an explorer with a backpack, and its clips."""
 
 from characters.model.character import Character
 from tools.authoring.human.actions import actions
@@ -10,7 +10,7 @@ from tools.authoring.human.rig import build_human_skeleton
 
 
 def build_human() -> Character:
-    """Return the character; the same one every time."""
+    """Return the character; the result is always the same."""
     skeleton = build_human_skeleton()
     clips = {"idle": idle(skeleton), **locomotion(skeleton), **actions(skeleton)}
     return Character(

@@ -1,4 +1,4 @@
-"""The bundled explorer's eyes: balls that turn, and lids that close over them."""
+"""The bundled explorer's eyeballs and eyelids."""
 
 from dataclasses import replace
 from functools import partial
@@ -21,26 +21,26 @@ BROWN, AMBER = linear_rgb("#5d2c0e"), linear_rgb("#b5702a")
 FOLD = linear_rgb("#d98f68")
 
 EYE_FRONT_RADIUS_M = 0.138
-"""Radius of the front of an eyeball, which turns about a point nearer than its centre: so it can
-be large and flat without the iris running away [m]."""
+"""Radius of the front of an eyeball [m]. It rotates about a point in front of the sphere's centre,
+so a large, flat eye does not move its iris too far."""
 
 REST_GAZE = np.array([0.37, 0.055, 1.0]) / np.linalg.norm([0.37, 0.055, 1.0])
-"""From the middle of that sphere to the middle of the left iris."""
+"""Direction from the centre of that sphere to the centre of the left iris."""
 
 LID_CENTRE_M = np.array([0.087, 1.437])
-"""x and y of the middle between the left lids [m]."""
+"""x and y of the centre between the left lids [m]."""
 
 LID_OPENING_M = (0.056, 0.064, 0.052)
-"""Of the lids: half its width, and how far it reaches up and down [m]."""
+"""Half width, upward and downward extent of the lid opening [m]."""
 
 CLOSED_LID_SAG_M = 0.034
-"""How far the line of the closed eye hangs below its corners [m]."""
+"""How far the line of the closed eye sags below its corners [m]."""
 
 POINTS_PER_RING = 36
 """Points around an eye."""
 
 LID_HEIGHT_M = (0.0040, 0.0095)
-"""How far lower and upper lids are above the ball: they move on straight lines over it [m]."""
+"""Height of lower and upper lids over the eyeball [m]; morph targets move them linearly."""
 
 _JOINT_TO_FRONT_M = 0.122  # from the joint to the front of the ball [m]
 
@@ -51,7 +51,7 @@ def eyeballs(skeleton: Skeleton) -> list[Mesh]:
 
 
 def eyelids(skeleton: Skeleton) -> list[Mesh]:
-    """Return the lids of both eyes with all that they can express."""
+    """Return the lids of both eyes with their morph targets."""
     return [
         morphed(partial(_lids, sign=sign, skeleton=skeleton), NEUTRAL, EXPRESSIONS)
         for sign in (1.0, -1.0)
@@ -59,7 +59,7 @@ def eyelids(skeleton: Skeleton) -> list[Mesh]:
 
 
 def _centre(sign: float) -> Array:
-    """Return the middle of the sphere that is the front of an eyeball, (3,) [m]."""
+    """Return the centre of the sphere of an eyeball's front, (3,) [m]."""
     flip = np.array([sign, 1.0, 1.0])
     return np.asarray(
         (
@@ -80,12 +80,12 @@ def _eyeball(sign: float, skeleton: Skeleton) -> list[Mesh]:
     bands = [EYE_WHITE] * 4 + [INK] * 2 + [BROWN] * 2 + [INK] * 3
     whole = lathe(rings, bands, place, joint, skeleton, 26)
     whole = replace(whole, colors=_lit_from_below(whole, _centre(sign)[1]))
-    lights = [((-0.10, 0.13), 0.112), ((0.11, -0.13), 0.05)]  # on one side: there is one sun
+    lights = [((-0.10, 0.13), 0.112), ((0.11, -0.13), 0.05)]  # on the same side in both eyes
     return [whole, *(_light(sign, at, wide, joint, skeleton) for at, wide in lights)]
 
 
 def _lit_from_below(ball: Mesh, middle: float) -> NDArray[np.float32]:
-    """Return the colours of an eyeball with its iris lighter towards the bottom, (n, 4)."""
+    """Return the colours of an eyeball with an iris that is lighter at the bottom, (n, 4)."""
     colors = np.array(ball.colors)
     iris = np.abs(colors[:, :3] - BROWN).max(axis=1) < 1e-4
     below = np.clip(0.5 - (ball.positions[iris, 1] - middle - 0.007) / 0.06, 0.0, 1.0)
@@ -96,7 +96,7 @@ def _lit_from_below(ball: Mesh, middle: float) -> NDArray[np.float32]:
 def _light(
     sign: float, at: tuple[float, float], wide: float, joint: str, skeleton: Skeleton
 ) -> Mesh:
-    """Return a highlight, so far across and up from the iris's middle and so wide [rad]."""
+    """Return a highlight, `at` (across, up) from the centre of the iris and `wide` [rad]."""
     axes = _axes(REST_GAZE * [sign, 1.0, 1.0])
     toward = axes @ [at[0], at[1], 1.0]
     place = np.column_stack([_axes(toward / np.linalg.norm(toward)), _centre(sign)])
@@ -114,7 +114,7 @@ def _axes(toward: Array) -> Array:
 
 
 def _lids(face: HumanExpression, sign: float, skeleton: Skeleton) -> Mesh:
-    """Return the ring of skin around an eye, from behind the face to inside the ball."""
+    """Return the ring of skin around an eye, from behind the face into the eyeball."""
     angle = np.linspace(0, 2 * np.pi, POINTS_PER_RING, endpoint=False)
     rings = _lid_rings(angle, face, sign)
     up = np.sin(angle) >= 0
@@ -147,7 +147,7 @@ def _lid_rings(angle: Array, face: HumanExpression, sign: float) -> Array:
 
 
 def _edge(angle: Array, face: HumanExpression, sign: float) -> Array:
-    """Return the rim of the lids, x and y, (columns, 2) [m]."""
+    """Return the rim of the lids, x and y, (points, 2) [m]."""
     x, height = np.cos(angle), np.sin(angle)
     open_ = 1.0 - face.shut[0 if sign > 0 else 1]
     bow = np.abs(height) ** 0.86  # a little boxier than an ellipse
@@ -161,11 +161,11 @@ def _edge(angle: Array, face: HumanExpression, sign: float) -> Array:
 
 
 def _on_eye(flat: Array, lift: Array, share: Array, face: HumanExpression) -> Array:
-    """Return points over the eyeball, (n, 3), of which `share` lies on the face instead."""
+    """Return points over the eyeball, (n, 3), blended by `share` onto the face."""
     centre = _centre(1.0)
     apart = flat - centre[:2]
     skin = on_face(flat[:, 0], flat[:, 1])
-    # The rim dips under the face, so that one surface runs into the other without a step.
+    # The rim dips under the face, so that no step is visible between the two surfaces.
     skin += np.where(share < 1, 0.001, -0.0015)[:, None] * face_normals(skin)
     height = centre[2] + np.sqrt((EYE_FRONT_RADIUS_M + lift) ** 2 - np.sum(apart**2, axis=1))
     height = np.where(lift > 0, np.maximum(height, skin[:, 2] + 0.002), height)
@@ -175,7 +175,7 @@ def _on_eye(flat: Array, lift: Array, share: Array, face: HumanExpression) -> Ar
 
 
 def _lid_colors(rings: Array, up: NDArray[np.bool_]) -> Array:
-    """Return the colour of each point of the lids: lashes above, a fold below."""
+    """Return the colours of the lids: lashes above, a fold below."""
     colors = np.tile(SKIN, (*rings.shape[:2], 1))
     flat = colors.reshape(-1, 3)
     colors = coated(rings.reshape(-1, 3), flat, complexion()).reshape(colors.shape)

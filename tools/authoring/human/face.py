@@ -1,6 +1,6 @@
-"""What the bundled explorer's face can do: one set of numbers an expression.
+"""The bundled explorer's expressions, each a set of parameters of its face.
 
-Exaggerated on purpose: on a table the whole face is forty pixels high.
+They are exaggerated because on the table the whole face is only forty pixels high.
 """
 
 from dataclasses import dataclass
@@ -13,31 +13,31 @@ from tools.authoring.modelling.shapes import Array
 
 @dataclass(frozen=True)
 class HumanExpression:
-    """The numbers of one expression; lengths in metres, forward and upward positive."""
+    """The parameters of one expression; lengths in metres, forward and upward positive."""
 
     shut: tuple[float, float] = (0.0, 0.0)
-    """How far the left and the right eye is closed, 0…1."""
+    """Closure of the left and the right eye, 0…1."""
 
     upper: float = 0.9
-    """How far the upper lids are up: 0 on the line of the closed eye."""
+    """Height of the upper lids; 0 is the line of the closed eye."""
 
     upper_tilt: float = 0.0
-    """How much further up they are at the inner corner than at the outer."""
+    """Additional height at the inner corner over that at the outer."""
 
     lower: float = 1.0
-    """How far the lower lids are down; negative where they are pushed up over that line."""
+    """Lowering of the lower lids; negative where they are raised above that line."""
 
     brow: float = 0.0
     """Height of the brows."""
 
     brow_inner: float = 0.0
-    """Height of their inner ends beyond that."""
+    """Additional height of their inner ends."""
 
     brow_arch: float = 0.0
-    """Height of their middles beyond that."""
+    """Additional height of their middles."""
 
     knit: float = 0.0
-    """How far the brows are drawn together."""
+    """Distance by which the brows are drawn together."""
 
     width: float = 0.066
     """Half the width of the mouth."""
@@ -46,28 +46,28 @@ class HumanExpression:
     """Height of the corners of the mouth above its middle."""
 
     rise: float = 0.0003
-    """How far the upper lip is up from the line of the closed mouth."""
+    """Height of the upper lip above the line of the closed mouth."""
 
     drop: float = 0.0003
-    """How far the lower lip is down."""
+    """Lowering of the lower lip."""
 
     square: float = 1.0
-    """Power of the sine that shapes the opening: 1 round, 0.5 rather a box."""
+    """Exponent of the sine that shapes the opening: 1 round, 0.5 boxy."""
 
     pout: float = 0.0
-    """How far the lips are pushed forward."""
+    """Protrusion of the lips."""
 
     teeth: float = 0.0
-    """How much of the upper teeth is seen below the lip."""
+    """Visible height of the upper teeth below the lip."""
 
     tongue: float = 0.4
-    """How far up in the open mouth the tongue lies, 0…1."""
+    """Height of the tongue in the open mouth, 0…1."""
 
     jaw: float = 0.0
-    """How far the chin goes down."""
+    """Lowering of the chin."""
 
     cheeks: float = 0.0
-    """How far the cheeks are raised."""
+    """Raise of the cheeks."""
 
 
 NEUTRAL = HumanExpression()
@@ -107,14 +107,14 @@ EXPRESSIONS = {
     ),
     "oh": HumanExpression(width=0.042, smile=0.002, rise=0.024, drop=0.042, pout=0.014, jaw=0.020),
 }  # fmt: skip
-"""By VRM's names."""
+"""Expressions by VRM's names."""
 
 MOUTH_CENTRE_M = np.array([0.0, 1.327])
-"""x and y of the middle of the closed mouth [m]."""
+"""x and y of the centre of the closed mouth [m]."""
 
 
 def skin_displacement(points: Array, face: HumanExpression) -> Array:
-    """Return how far jaw and cheeks carry points of the skin, (n, 3) [m]."""
+    """Return how far jaw and cheeks displace points of the skin, (n, 3) [m]."""
     x, y, z = points.T
     front = smoothstep(z / 0.11)
     chin = smoothstep((MOUTH_CENTRE_M[1] + 0.004 - y) / 0.04) * front

@@ -19,11 +19,11 @@ COWLICK_LINES_M: tuple[list[Vector], ...] = (
     [(0.0, 1.63, -0.035), (0.0, 1.70, -0.052), (-0.035, 1.748, -0.068), (-0.082, 1.766, -0.074)],
     [(0.046, 1.63, 0.0), (0.063, 1.695, 0.0), (0.07, 1.74, 0.023), (0.05, 1.768, 0.063)],
 )
-"""Lines of the two locks on the crown [m]."""
+"""Centre lines of the two locks on the crown [m]."""
 
 
 def hair_parts() -> list[BodyPart]:
-    """Return what is carved of it."""
+    """Return its sculpted parts."""
     cap = Ellipsoid((0, 1.513, -0.031), (0.231, 0.214, 0.221), bones=("head",), color=HAIR)
     nape = Ellipsoid((0, 1.389, -0.106), (0.168, 0.130, 0.124), bones=("head",), color=HAIR)
     brow_line = Ellipsoid((0, 1.392, 0.211), (0.214, 0.214, 0.248))

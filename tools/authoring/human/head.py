@@ -24,7 +24,7 @@ BROW_RADII_M = (0.0105, 0.0145, 0.013, 0.006)
 
 
 def head_pieces(skeleton: Skeleton) -> list[Mesh]:
-    """Return the whole head but for the eyeballs, with all that its face can express."""
+    """Return the head without the eyeballs, with the morph targets of its face."""
     skull = sculpt(
         "", [BodyPart(head_shape(), 0.024, (*complexion(), *lining()), soft_skin=0.0)], skeleton
     )
@@ -38,7 +38,7 @@ def head_pieces(skeleton: Skeleton) -> list[Mesh]:
         (0, 1.15, -0.014), (0, 1.29, 0.0), 0.062, 0.066, bones=("neck", "head"), color=SKIN
     )
     locks = sculpt("", hair_parts(), skeleton)
-    # The field's slope jumps where locks meet; the mesh's own normals do not glint there.
+    # The gradient jumps where locks meet, which would glint; the mesh's own normals do not.
     even = averaged_normals(locks.positions.astype(float), locks.triangles.astype(np.int64))
     brows = [
         morphed(partial(_brow, sign=sign, skeleton=skeleton), NEUTRAL, EXPRESSIONS)

@@ -1,4 +1,4 @@
-"""How the bundled explorer waits: shifting its weight, looking about, hands to the straps."""
+"""The bundled explorer's idle clip: weight shifts, glances, hands to the straps."""
 
 import numpy as np
 
@@ -11,11 +11,11 @@ from tools.authoring.modelling.shapes import Array
 DURATION_S = 9.0
 BREATHS_PER_LOOP = 3
 STRAP_GRIP_M = np.array([0.212, 1.0, 0.138])
-"""Where the left wrist is when the hand holds its strap, in the rest pose [m]."""
+"""Position of the left wrist when the hand holds its strap, in the rest pose [m]."""
 
 
 def idle(skeleton: Skeleton) -> Clip:
-    """Return a loop of nine seconds on planted feet; blinks come at run time."""
+    """Return a loop of nine seconds on planted feet; blinks are added at run time."""
     time = np.arange(round(DURATION_S * FRAME_RATE_HZ) + 1) / FRAME_RATE_HZ
     turn = 2 * np.pi * time / DURATION_S
     left, right = eased_pulse(time, 2.1, 3.6, 0.3), eased_pulse(time, 5.6, 7.0, 0.26)
@@ -48,12 +48,12 @@ def idle(skeleton: Skeleton) -> Clip:
 
 
 def idle_weight(turn: Array) -> Array:
-    """Return where the weight is, −1 right … 1 left, at angles of the loop: held, then shifted."""
+    """Return the weight shift at angles of the loop [rad], −1 right … 1 left."""
     return np.asarray(np.tanh(2.2 * np.sin(turn - 0.5)) / np.tanh(2.2))
 
 
 def eased_pulse(time: Array, begin: float, end: float, ramp: float) -> Array:
-    """Return 0, then 1 between two times [s], with soft borders and a touch of overshoot."""
+    """Return a pulse of height 1 between two times [s], with eased ramps and some overshoot."""
     rise, fall = (np.clip((time - t) / ramp, 0.0, 1.0) for t in (begin, end))
     held = _soft(rise) - _soft(fall)
     settle = np.exp(-3.5 * np.clip(time - begin - ramp, 0.0, None))

@@ -1,4 +1,4 @@
-"""How the bundled explorer's limbs turn, told in degrees of the body's own movements."""
+"""Rotations of the bundled explorer's limbs, in degrees of anatomical movements."""
 
 from typing import NamedTuple
 
@@ -16,22 +16,22 @@ SIDES = (("Left", 1.0), ("Right", -1.0))
 
 
 class HandTarget(NamedTuple):
-    """Where a hand goes, told of the left one in the chest's axes at rest; curves over frames."""
+    """Target of a hand, as curves in the rest axes of the chest; mirrored for the right hand."""
 
     wrist: Array
     """(frames, 3) or (3,) in the rest pose [m]."""
 
     fingers: Array
-    """Where they point, (frames, 3) or (3,)."""
+    """Direction of the fingers, (frames, 3) or (3,)."""
 
     thumb: Array
-    """Where it points, (frames, 3) or (3,)."""
+    """Direction of the thumb, (frames, 3) or (3,)."""
 
     elbow: Array
-    """Where it points, (frames, 3) or (3,)."""
+    """Direction of the elbow, (frames, 3) or (3,)."""
 
     share: Array
-    """How much of this is done, (frames,), 0…1."""
+    """Weight of the target, (frames,), 0…1."""
 
 
 def rotation_deg(x: Array | float = 0, y: Array | float = 0, z: Array | float = 0) -> Array:
@@ -70,7 +70,7 @@ def curl_fingers(rig: PosedRig, side: str, bend: Array | float, thumb: Array | f
 
 
 def reach_target(rig: PosedRig, side: str, sign: float, to: HandTarget) -> None:
-    """Bring a hand from where it is to where it is to go, on an arc away from the body."""
+    """Move a hand to its target, on an arc away from the body."""
     flip = np.array([sign, 1.0, 1.0])
     hand, elbow = rig.places(f"{side}Hand"), rig.places(f"{side}ForeArm")
     chest, turn = rig.places("chest"), rig.facing("chest")

@@ -1,4 +1,4 @@
-"""How the bundled explorer walks, runs and waits.
+"""The bundled explorer's gaits.
 
 Amplitudes and phases after the descriptions in Perry & Burnfield, "Gait Analysis" (2010), and
 Williams, "The Animator's Survival Kit" (2001), freely exaggerated. Phase 0 is the left heel strike.
@@ -31,52 +31,52 @@ FRAME_RATE_HZ = 60.0
 
 @dataclass(frozen=True)
 class GaitStyle:
-    """How the body goes along with the feet; amplitudes in degrees where not said otherwise."""
+    """Movement of the body in a gait; amplitudes in degrees where no unit is given."""
 
     bob: float
-    """Rise and fall of the pelvis, half of it [m]."""
+    """Amplitude of the rise and fall of the pelvis [m]."""
 
     lowest: float
-    """Phase at which it is lowest, of a step from 0 to 0.5."""
+    """Phase of its lowest point, in a step from 0 to 0.5."""
 
     sway: float
-    """Sideways to the standing leg [m]."""
+    """Sideways shift to the standing leg [m]."""
 
     pelvis_yaw: float
-    """The hip of the forward leg goes forward."""
+    """Yaw of the pelvis with the forward leg."""
 
     pelvis_list: float
-    """The hip of the swinging leg drops."""
+    """Drop of the hip of the swinging leg."""
 
     lean: float
-    """Of the trunk, forward."""
+    """Lean of the trunk, forward."""
 
     chest_yaw: float
-    """Of the shoulders against the pelvis."""
+    """Yaw of the shoulders against the pelvis."""
 
     arm_swing: float
-    """Of the upper arms, to either side."""
+    """Amplitude of the swing of the upper arms."""
 
     arm_back: float
-    """Middle of that swing, backward."""
+    """Centre of that swing, backward."""
 
     elbow: float
     """Bend of the elbows in the middle of the swing."""
 
     elbow_swing: float
-    """How much more they bend in front, and less behind."""
+    """Additional bend in front, and reduction behind."""
 
     reach: float
-    """Greatest length of a leg, as a part of a straight one."""
+    """Greatest leg extension over the length of a straight leg."""
 
     head: float
-    """How far the head nods and tilts after the chest."""
+    """Amplitude of the head's nod and tilt."""
 
     fist: float
-    """How far the fingers are bent."""
+    """Bend of the fingers."""
 
     mood: Mapping[str, float]
-    """What the face says: morphs."""
+    """Weights of the face's morph targets by name."""
 
 
 WALK = GaitStyle(0.028, 0.06, 0.024, 9, 5, 4, 15, 30, 4, 24, 16, 0.994, 2.0, 18, {"happy": 0.12})
@@ -85,7 +85,7 @@ RUN = GaitStyle(0.032, 0.15, 0.012, 12, 5, 13, 26, 44, 12, 86, 18, 0.985, 3.6, 5
 
 @dataclass(frozen=True)
 class HumanGait:
-    """One way to go."""
+    """The parameters of one gait."""
 
     speed: float
     """[m/s]."""
@@ -94,7 +94,7 @@ class HumanGait:
     """To the left [degrees a second]."""
 
     frames: int
-    """Of a cycle; even, so that half of it is a step."""
+    """Frames of a cycle; even, so that half of it is a step."""
 
     steps: Footfalls
     """The feet."""
@@ -128,7 +128,7 @@ GAITS = {
     "RunTurnWide": _run(3.2, 67.5, 42, -0.1),
     "RunTurnMedium": _run(2.8, 135.0, 40, -0.09),
 }
-"""Speeds fall a little as turns get tighter, and feet go wider apart."""
+"""Gaits by name. In tighter turns the speed is lower and the feet are wider apart."""
 
 
 def gait_clip(skeleton: Skeleton, name: str, gait: HumanGait) -> Clip:
@@ -169,7 +169,7 @@ def _carry_pelvis(rig: PosedRig, style: GaitStyle, phase: Array, bank: float) ->
 
 
 def _fit_height(rig: PosedRig, feet: dict[str, FootMotion], reach: float) -> None:
-    """Carry the pelvis as high as the legs allow without straightening a knee."""
+    """Raise the pelvis as high as the greatest leg extension allows, by bisection."""
     low, high = -0.3, 0.1
     for _ in range(30):
         middle = (low + high) / 2
@@ -181,15 +181,15 @@ def _fit_height(rig: PosedRig, feet: dict[str, FootMotion], reach: float) -> Non
 
 
 def _carry_trunk(rig: PosedRig, style: GaitStyle, phase: Array, yaw_rate: float) -> None:
-    """Turn the shoulders against the pelvis and keep the head level, looking where it goes."""
+    """Turn the shoulders against the pelvis and keep the head level, facing the path."""
     into = np.degrees(yaw_rate)
     for number, name in enumerate(("spine1", "spine2", "chest")):
-        lag = 0.02 * (number + 1)  # each joint follows the one below a little later
+        lag = 0.02 * (number + 1)  # overlapping action: each joint follows the one below
         yaw = (style.pelvis_yaw + style.chest_yaw) / 3 * _wave(phase, 0.02 + lag) + 0.03 * into
         roll = -style.pelvis_list * 0.55 * _wave(phase, 0.2 + lag)
         pitch = 0.22 * style.lean + 0.8 * _wave(phase, 0.12 + lag, 2)
         rig.turn(name, rotation_deg(pitch, yaw, roll))
-    # The head is heavy: it dips after each landing, and tilts and turns a little late.
+    # The head dips after each landing, and tilts and turns with a delay.
     dip, tilt = style.head * _wave(phase, 0.17, 2), 0.7 * style.head * _wave(phase, 0.32)
     gaze = rotation_deg(
         GAZE_PITCH_DEG + dip, 0.12 * into + 2 * _wave(phase, 0.12), tilt - 0.04 * into
@@ -200,7 +200,7 @@ def _carry_trunk(rig: PosedRig, style: GaitStyle, phase: Array, yaw_rate: float)
 
 
 def _swing_arms(rig: PosedRig, style: GaitStyle, phase: Array) -> None:
-    """Swing the arms against the legs; elbows and hands drag behind the shoulders."""
+    """Swing the arms against the legs; elbows and hands follow through."""
     for side, sign in SIDES:
         front = 0.52 if sign > 0 else 0.02  # phase at which this arm is in front
         swing = style.arm_swing * _wave(phase, front) - style.arm_back
@@ -220,7 +220,7 @@ def _swing_arms(rig: PosedRig, style: GaitStyle, phase: Array) -> None:
 
 
 def mirrored_half_cycle(clip: Clip, skeleton: Skeleton, name: str) -> Clip:
-    """Return the mirror image of a gait, started half a cycle later: with the left foot again."""
+    """Return the mirror image of a gait, shifted by half a cycle to start with the left foot."""
     image = mirrored(clip.in_place, skeleton)
     half = (len(clip) - 1) // 2
     order = (np.arange(len(clip)) + half) % (len(clip) - 1)

@@ -1,4 +1,4 @@
-"""The bundled explorer's mouth: lips, teeth, tongue and what is dark behind them."""
+"""The bundled explorer's mouth: lips, teeth, tongue and cavity."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,18 +27,18 @@ POINTS_PER_RING = 40
 """Points around the mouth."""
 
 MOUTH_SKIN_EXTENT_M = (0.112, 0.038, 0.054)
-"""Of the skin around the mouth: half its width, and how far it reaches up and down [m]."""
+"""Half width, upward and downward extent of the skin around the mouth [m]."""
 
 _LIP_WIDTH_M = 0.0085  # how broad they are [m]
 
 
 def mouth(skeleton: Skeleton) -> Mesh:
-    """Return the mouth with all that it can express and say."""
+    """Return the mouth with the morph targets of expressions and visemes."""
     return morphed(lambda face: _mouth(face, skeleton), NEUTRAL, EXPRESSIONS)
 
 
 def _mouth(face: HumanExpression, skeleton: Skeleton) -> Mesh:
-    """Return a bag in the face: from a pole in the head over the skin and the lips to its end."""
+    """Return a closed surface from a pole in the head over skin and lips to the throat."""
     angle = np.linspace(0, 2 * np.pi, POINTS_PER_RING, endpoint=False)
     edge, lips, *skin = _skin_rings(angle, face)
     under = skin[-1] - [0.0, 0.0, 0.006]
@@ -64,7 +64,7 @@ def _skin_rings(angle: Array, face: HumanExpression) -> list[Array]:
         _on_skin(edge, line, 0.002 + 0.002 * full + face.pout, face, 0.0),
         _on_skin(lips, line, 0.0015 + 0.005 * full + face.pout, face, 0.0),
     ]
-    for s in (0.25, 0.5, 0.75, 1.0):  # the rim dips under the face: no step is seen
+    for s in (0.25, 0.5, 0.75, 1.0):  # the rim dips under the face, so that no step is visible
         flat, rest = lips + (outer - lips) * s, line + (outer - line) * s
         lift = (0.0015 if s < 1 else -0.0015) + face.pout * (1 - s) ** 2 + 0 * full
         rings.append(_on_skin(flat, rest, lift, face, s))
@@ -72,7 +72,7 @@ def _skin_rings(angle: Array, face: HumanExpression) -> list[Array]:
 
 
 def _lip_lines(angle: Array, face: HumanExpression) -> tuple[Array, Array]:
-    """Return where the lips meet when closed, and where their edges are, (columns, 2) each."""
+    """Return the line where closed lips meet, and their edges, (points, 2) each."""
     x, height = np.cos(angle), np.sin(angle)
     line = MOUTH_CENTRE_M[1] + face.smile * (x * x - 0.4)
     bow = np.abs(height) ** face.square
@@ -82,7 +82,7 @@ def _lip_lines(angle: Array, face: HumanExpression) -> tuple[Array, Array]:
 
 
 def _on_skin(flat: Array, rest: Array, lift: Array, face: HumanExpression, share: float) -> Array:
-    """Return points of the skin, whose depth is that of where they rest; `share` of the jaw."""
+    """Return points of the skin at their rest depth, moved by `share` of the jaw's movement."""
     points = on_face(flat[:, 0], rest[:, 1])
     normals = face_normals(points)
     points += lift[:, None] * (normals + [0.0, 0.0, 1.0]) / 2 + share * skin_displacement(

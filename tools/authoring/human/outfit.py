@@ -1,6 +1,6 @@
 """The bundled explorer's outfit: hoodie, trousers, shoes, a backpack, and the hands.
 
-Colours that stand out from wood and paper alike, the brightest at the hands' and feet's ends.
+Its colours contrast with wood and paper, most of all at hands and feet.
 """
 
 from functools import cache
@@ -39,7 +39,7 @@ PALE_INDIGO = linear_rgb("#8590d4")
 
 
 def outfit_meshes(skeleton: Skeleton) -> list[Mesh]:
-    """Return what is carved, of both sides."""
+    """Return its sculpted parts, of both sides."""
     sided = sculpt("", [hand(), *_leg_parts()], skeleton)
     return [sculpt("", _torso_parts(), skeleton), sided, mirrored_mesh(sided, skeleton)]
 
@@ -59,7 +59,7 @@ def cords(skeleton: Skeleton) -> list[Mesh]:
 
 
 def ribbing(skeleton: Skeleton) -> list[Mesh]:
-    """Return what is turned on the lathe: the hem, the cuffs and the turned-up trousers."""
+    """Return the solids of revolution: hem, cuffs and turned-up trousers."""
     hem = np.array([[0.178, 0, 0, 0], [0, 0, 0.036, 0.835], [0, -0.138, 0, 0]])
     meshes = [_ring(hem, DEEP_TEAL, "hips", skeleton, 22)]
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
@@ -83,7 +83,7 @@ def _ring(place: Array, color: Vector, joint: str, skeleton: Skeleton, segments:
 
 
 def _across(start: Array, end: Array, beyond: float, radius: float, half: float) -> Array:
-    """Return the place of a ring about a limb, so far beyond its end, (3, 4)."""
+    """Return the frame of a ring around a limb, at a distance beyond its end, (3, 4)."""
     axis = (end - start) / np.linalg.norm(end - start)
     side = np.cross(axis, [0.0, 0.0, 1.0])
     side /= np.linalg.norm(side)

@@ -40,7 +40,7 @@ and towards the body [m]."""
 
 
 def along_forearm() -> Array:
-    """Return the axes in which `FINGERS` are told, as rows, (3, 3): away, to the front, inward."""
+    """Return the axes of `FINGERS` as rows, (3, 3): along the forearm, to the front, inward."""
     elbow, wrist = (np.array(_BODY[f"Left{name}"][1]) for name in ("ForeArm", "Hand"))
     along = (wrist - elbow) / np.linalg.norm(wrist - elbow)
     front = np.array([0.0, 0.0, 1.0]) - along[2] * along
@@ -49,7 +49,7 @@ def along_forearm() -> Array:
 
 
 def in_hand(points: tuple[Vector, ...]) -> list[Vector]:
-    """Return points told like `FINGERS` in the character frame [m]."""
+    """Return points in the axes of `FINGERS` in the character frame [m]."""
     placed = np.array(_BODY["LeftHand"][1]) + np.array(points) @ along_forearm()
     return [(x, y, z) for x, y, z in placed.tolist()]
 
@@ -64,7 +64,7 @@ def _fingers() -> dict[str, tuple[str, Vector]]:
 
 
 JOINT_POSITIONS = _BODY | _fingers()
-"""Parent and place of each joint [m]; the right side is the mirror image."""
+"""Parent and position of each joint [m]; the right side is the mirror image."""
 
 
 def build_human_skeleton() -> Skeleton:

@@ -1,7 +1,7 @@
-"""What hangs loosely on the bundled explorer and follows late: backpack, hood, strings, cowlick.
+"""Secondary motion of the bundled explorer: backpack, hood, strings and cowlick.
 
-Each is a damped spring on an accelerated mount, whose response over a repeating motion has a
-closed form (`loops.follow`); so loops stay loops.
+Each is a damped spring on an accelerated mount. Its response to a repeating motion has a closed
+form (`spring_follow`), so loops stay loops.
 """
 
 import numpy as np
@@ -16,12 +16,12 @@ GRAVITY_M_S2 = 9.81
 
 
 def add_secondary_motion(rig: PosedRig, seconds: float, aside: float = 0.0) -> None:
-    """Let all that is loose follow a body whose last frame is its first.
+    """Add the secondary motion of a body whose last frame equals its first.
 
     Parameters
     ----------
     seconds : duration of the motion
-    aside : acceleration of the way itself, to the left: that of a turn [m/s²]
+    aside : centripetal acceleration of the path, to the left [m/s²]
     """
     back = _felt_acceleration(rig, "chest", (0.0, 1.03, -0.2), seconds, aside)
     _swing_backpack(rig, back, seconds)
@@ -38,7 +38,7 @@ def add_secondary_motion(rig: PosedRig, seconds: float, aside: float = 0.0) -> N
 
 
 def _swing_backpack(rig: PosedRig, pull: Array, seconds: float) -> None:
-    """Let it bounce on the back and swing off it; it cannot swing far into it."""
+    """Let the backpack bounce and swing away from the back, but hardly into it."""
     bounce = soft_limited(-spring_follow(pull[:, 1], seconds, 3.4, 0.3) * 0.0009, 0.018)
     away = soft_limited(spring_follow(1.2 * pull[:, 2] - 0.5 * pull[:, 1], seconds, 2.8, 0.3), 9)
     sway = soft_limited(spring_follow(pull[:, 0], seconds, 2.4, 0.3) * -0.6, 6)
@@ -49,9 +49,9 @@ def _swing_backpack(rig: PosedRig, pull: Array, seconds: float) -> None:
 
 
 def _swing_strings(rig: PosedRig, pull: Array, seconds: float) -> None:
-    """Swing the strings off the chest; they cannot swing into it."""
+    """Swing the strings away from the chest, but not into it."""
     for number, (side, _) in enumerate(SIDES):
-        hertz = 2.1 + 0.3 * number  # no two strings are of one length
+        hertz = 2.1 + 0.3 * number  # strings of different lengths
         off = -spring_follow(4.0 * pull[:, 2] + 1.2 * pull[:, 1], seconds, hertz, 0.2)
         aside = soft_limited(spring_follow(pull[:, 0], seconds, hertz, 0.2) * -1.4, 18)
         off = _soft_positive(soft_limited(off, 40), 4.0)
@@ -59,16 +59,16 @@ def _swing_strings(rig: PosedRig, pull: Array, seconds: float) -> None:
 
 
 def _soft_positive(angle: Array, soft: float) -> Array:
-    """Return an angle that is hardly ever negative, with a rounded kink [degrees]."""
+    """Return an angle that is hardly negative, with a rounded kink [degrees]."""
     return np.asarray((angle + np.hypot(angle, soft)) / 2 - soft / 2)
 
 
 def _felt_acceleration(
     rig: PosedRig, joint: str, point: tuple[float, float, float], seconds: float, aside: float
 ) -> Array:
-    """Return the acceleration of a point of a joint in the joint's axes, (frames − 1, 3) [m/s²].
+    """Return the acceleration of a point in the axes of its joint, (frames − 1, 3) [m/s²].
 
-    And, as if it were one, the part of gravity that the joint's lean lets loose.
+    It includes the change of gravity in these axes as the joint leans.
     """
     facing = rig.facing(joint)
     place = rig.places(joint) + rotations.rotate(facing, point - rig.rest(joint))

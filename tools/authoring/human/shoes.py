@@ -27,10 +27,10 @@ CORAL = linear_rgb("#f75c43")
 RUBBER = linear_rgb("#e9d9bd")
 
 SOLE_CENTRE_M = (0.117, 0.053)
-"""x and z of the middle of the left sole [m]."""
+"""x and z of the centre of the left sole [m]."""
 
 SOLE_HALF_SIZE_M = (0.064, 0.155)
-"""Half its width and length [m]."""
+"""Half width and half length of a sole [m]."""
 
 SOLE_PROFILE = (
     (0.80, 0.004),
@@ -40,15 +40,15 @@ SOLE_PROFILE = (
     (0.985, 0.034),
     (0.90, 0.042),
 )
-"""Size of its outline and height at each ring from below [m]."""
+"""Scale of the outline and height [m] of each ring, from below."""
 
 TOE_BLEND_M = (0.060, 0.104)
-"""From where to where along z the toes take over from the foot [m]."""
+"""Range along z over which skin weights change from the foot to the toes [m]."""
 
 
 @cache
 def _upper() -> Shape:
-    bones = ("LeftToe", "LeftFoot")  # in this order: what lies ahead of the ball is the toe's
+    bones = ("LeftToe", "LeftFoot")  # in this order: vertices ahead of the ball belong to the toe
     heel = Ellipsoid(
         (0.113, 0.068, -0.022), (0.051, 0.062, 0.069), power=2.4, bones=bones, color=CORAL
     )

@@ -14,24 +14,24 @@ MAROON = linear_rgb("#5a1420")
 EYE_WHITE = linear_rgb("#f6f4f2")
 
 EYE_HOLLOW = Ellipsoid((0.085, 1.452, 0.185), (0.060, 0.077, 0.046), (0.0, 0.35, 0.0))
-"""Where the left eye sits."""
+"""The volume cut out for the left eye."""
 
 MOUTH_HOLLOW = Ellipsoid((0, 1.304, 0.18), (0.07, 0.036, 0.06))
-"""Where the mouth sits."""
+"""The volume cut out for the mouth."""
 
 _BONES = ("head",)
 
 
 @cache
 def bare_skull() -> Shape:
-    """Return the face without nose, ears and hollows: what lids and lips lie on."""
+    """Return the face without nose, ears and hollows, on which lids and lips lie."""
     skull = Ellipsoid((0, 1.482, -0.006), (0.207, 0.199, 0.197), bones=_BONES, color=SKIN)
     jowls = Ellipsoid((0, 1.366, 0.037), (0.178, 0.122, 0.152), bones=_BONES, color=SKIN)
     return Union((skull, jowls), 0.09)
 
 
 def head_shape() -> Shape:
-    """Return the head with nose and ears, hollow where eyes and mouth sit."""
+    """Return the head with nose and ears, and hollows for eyes and mouth."""
     nose = Ellipsoid((0, 1.391, 0.206), (0.024, 0.0195, 0.023), bones=_BONES, color=SKIN)
     ear = Ellipsoid((0.209, 1.41, -0.012), (0.030, 0.052, 0.040), bones=_BONES, color=SKIN)
     whole = Union((Union((bare_skull(), nose), 0.022), ear, ear.mirrored()), 0.017)
@@ -45,7 +45,7 @@ def complexion() -> tuple[PaintCoat, ...]:
 
 
 def lining() -> tuple[PaintCoat, ...]:
-    """Return the colours of the hollows behind the eyes and the lips, should they be seen."""
+    """Return the colours of the hollows behind the eyes and the lips."""
     eyes = Union((EYE_HOLLOW, EYE_HOLLOW.mirrored()))
     return (PaintCoat(eyes, EYE_WHITE, 0.008), PaintCoat(MOUTH_HOLLOW, MAROON, 0.008))
 
@@ -59,7 +59,7 @@ def on_face(x: Array, y: Array) -> Array:
         middle = (low + high) / 2
         inside = bare_skull().distance(np.column_stack([flat, middle])) < 0
         low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-    # The surface is all but straight over the millimetre that is left.
+    # Over the remaining millimetre the distance is nearly linear.
     inner, outer = (bare_skull().distance(np.column_stack([flat, z])) for z in (low, high))
     share = np.clip(-inner / np.maximum(outer - inner, 1e-9), 0.0, 1.0)
     low = low + (high - low) * share

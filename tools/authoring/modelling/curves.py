@@ -1,6 +1,6 @@
-"""Curves over one cycle of a loop: keys an animator sets, and springs that drag behind them.
+"""Looping animation curves: key poses, and springs that follow them.
 
-All curves are sampled at ``frames`` even steps of a phase that runs from 0 to 1 and repeats.
+All curves are sampled at ``frames`` even steps of a phase in 0…1.
 """
 
 import numpy as np
@@ -28,8 +28,8 @@ def loop_phases(frames: int) -> Array:
 def keys(frames: int, *poses: tuple[float, float]) -> Array:
     """Return a smooth periodic curve through keys (phase, value), (frames,).
 
-    Monotone between any two keys, flat at every peak, so that it slows in and out of poses and
-    overshoots only where the animator says so (Fritsch and Carlson 1980, harmonic slopes).
+    It is monotone between keys and flat at every extremum: slow in, slow out, and no overshoot
+    without a key (Fritsch and Carlson 1980, harmonic slopes).
 
     >>> keys(4, (0.0, 0.0), (0.5, 1.0)).round(3).tolist()
     [0.0, 0.5, 1.0, 0.5]
@@ -59,21 +59,21 @@ def keys(frames: int, *poses: tuple[float, float]) -> Array:
 
 
 def wave(frames: int, cycles: int, at: float = 0.0) -> Array:
-    """Return a sine of so many cycles a loop that passes zero upward at phase `at`, (frames,)."""
+    """Return a sine of `cycles` per loop that crosses zero upward at phase `at`, (frames,)."""
     return np.asarray(np.sin(2 * np.pi * cycles * (loop_phases(frames) - at)))
 
 
 def spring_follow(curve: Array, seconds: float, hertz: float, damping: float = 0.5) -> Array:
-    """Return how a damped spring hangs behind a curve: late, and past it at every stop.
+    """Return how a damped spring follows a curve: delayed and with overshoot.
 
-    The steady response to the repeating curve, in closed form over its Fourier series, so the
-    result loops exactly.
+    It is the steady response to the repeating curve, in closed form over its Fourier series, so
+    the result loops exactly.
 
     Parameters
     ----------
     curve : (frames, …)
     seconds : duration of the loop
-    hertz : natural frequency of the spring [Hz]; the lower, the later
+    hertz : natural frequency of the spring [Hz]; lower means more delay
     damping : 1 for no overshoot
     """
     spectrum = np.fft.rfft(curve, axis=0)
@@ -84,7 +84,7 @@ def spring_follow(curve: Array, seconds: float, hertz: float, damping: float = 0
 
 
 def delayed(curve: Array, phase: float) -> Array:
-    """Return the curve so much of a cycle later, (frames, …)."""
+    """Return the curve delayed by a phase, (frames, …)."""
     frames = len(curve)
     at = loop_phases(frames) - phase
     low = np.floor(at * frames).astype(int)

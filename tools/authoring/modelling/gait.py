@@ -1,9 +1,8 @@
-"""Feet that stay where they are put: the part of a gait that touches the ground.
+"""Foot trajectories of a gait, without foot sliding.
 
-A foot is planted in the world for its whole stance: it strikes with the heel, lies flat, and rolls
-off over the ball, whose joint does not move. In between it swings on a smooth curve through the
-frame of the root, which itself runs along an arc of constant speed and yaw rate. So nothing slides,
-and in a turn the outer foot takes the longer steps by itself.
+A foot is fixed in the world for its whole stance: heel strike, flat, then roll-off over the ball.
+In the swing it follows a smooth curve in the frame of the root, which moves along an arc of
+constant speed and yaw rate. So in a turn the outer foot takes longer steps.
 """
 
 from dataclasses import dataclass
@@ -33,48 +32,48 @@ class GroundArc:
         return np.stack([chord * np.sin(yaw / 2), chord * np.cos(yaw / 2)], axis=-1), yaw
 
     def seen(self, at: Array, seer: Array) -> tuple[Array, Array]:
-        """Return where the root is at times `at`, seen from the root at times `seer`."""
+        """Return the root at times `at`, relative to the root at times `seer`."""
         return self.at(at - seer)
 
 
 @dataclass(frozen=True)
 class Footfalls:
-    """How the feet meet the ground."""
+    """Timing and shape of the steps."""
 
     cycle: float
     """Duration of two steps [s]."""
 
     stance: float
-    """Part of the cycle that a foot is down; below 0.5 there is a flight."""
+    """Share of the cycle in stance; below 0.5 there is a flight phase."""
 
     width: float
-    """From the path to a foot [m]."""
+    """Distance of a foot from the path [m]."""
 
     ahead: float
-    """Where a foot is in the middle of its stance, before the root [m]."""
+    """Distance of a foot ahead of the root at mid-stance [m]."""
 
     heel_strike: float
-    """Pitch of the foot when it lands, toes up [rad]."""
+    """Pitch of the foot at landing, toes up [rad]."""
 
     toe_off: float
-    """Pitch of the foot when it leaves, heel up [rad]."""
+    """Pitch of the foot at toe-off, heel up [rad]."""
 
     lift: float
-    """How high the swing rises above a straight curve [m]."""
+    """Height of the swing above a straight curve [m]."""
 
     toe_out: float = 0.1
-    """How far the feet point outward [rad]."""
+    """Outward angle of the feet [rad]."""
 
     rise_from: float = 0.5
-    """Part of the stance at which the heel starts to rise."""
+    """Share of the stance after which the heel rises."""
 
     retract: float = 0.5
-    """How much of its speed over the ground a landing foot has already lost, 0…1."""
+    """Retraction: share of its speed that a foot loses before landing, 0…1."""
 
 
 @dataclass(frozen=True)
 class FootDimensions:
-    """Measures of a foot, seen from the ground under its ankle when it stands flat."""
+    """Dimensions of a flat foot, from the ground under its ankle."""
 
     ankle: float
     """Height of the ankle [m]."""
@@ -89,7 +88,7 @@ class FootDimensions:
     """Length of the toes ahead of their joint [m]."""
 
     def ball_height(self, ankle: Array, pitch: Array) -> Array:
-        """Return how high the joint of the toes is with the ankle so high and so pitched [m]."""
+        """Return the height of the joint of the toes for a height and pitch of the ankle [m]."""
         return ankle + np.cos(pitch) * (self.ball[0] - self.ankle) - np.sin(pitch) * self.ball[1]
 
 
@@ -107,13 +106,13 @@ class FootMotion:
     """Bend of the toes, positive upwards, (frames,) [rad]."""
 
     down: NDArray[np.bool_]
-    """Whether it is planted, (frames,)."""
+    """Whether the foot is planted, (frames,)."""
 
 
 def foot_motion(
     path: GroundArc, steps: Footfalls, foot: FootDimensions, side: float, phase: Array
 ) -> FootMotion:
-    """Return how a foot moves over the cycle.
+    """Return the motion of a foot over the cycle.
 
     Parameters
     ----------
@@ -124,7 +123,7 @@ def foot_motion(
     own = np.where(np.isclose(own, 1.0), 0.0, own)
     stance_time = steps.stance * steps.cycle
     swing_time = steps.cycle - stance_time
-    since = own * steps.cycle  # the heel struck so long ago
+    since = own * steps.cycle  # time since heel strike
     ankle, yaw, pitch, toe = _planted(path, steps, foot, side, np.minimum(since, stance_time))
     u = np.clip((since - stance_time) / swing_time, 0.0, 1.0)
     off, strike = np.array([stance_time]), np.array([0.0])
@@ -142,7 +141,9 @@ def foot_motion(
     ease = smoothstep(u)
     swing_yaw = ends[0][1] + (ends[1][1] - ends[0][1]) * ease
     room = foot.ball_height(swing[:, 1], swing_pitch) - foot.ball[0]
-    peel = swing_pitch - np.arcsin(np.clip(room / foot.toes, -1.0, 1.0))  # the tip stays above 0
+    peel = swing_pitch - np.arcsin(
+        np.clip(room / foot.toes, -1.0, 1.0)
+    )  # keeps the tip above ground
     swing_toe = np.maximum(ends[0][3] * np.clip(1 - 3 * u, 0, 1) ** 2, peel)
     up = u > 0
     ankle = np.where(up[:, None], swing, ankle)
@@ -156,7 +157,7 @@ def foot_motion(
 def _planted(
     path: GroundArc, steps: Footfalls, foot: FootDimensions, side: float, since: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Return ankle, yaw, pitch and toe bend of a standing foot, seen from the moving root."""
+    """Return ankle, yaw, pitch and toe bend of a planted foot, relative to the moving root."""
     duration = steps.stance * steps.cycle
     place, yaw = path.seen(np.full_like(since, duration / 2), since)
     toe_out = side * steps.toe_out
@@ -178,7 +179,7 @@ def _planted(
 def _about_pivot(
     y: float, z: float, pivot_y: float, pivot_z: float, pitch: Array
 ) -> tuple[Array, Array]:
-    """Return y and z turned about the x axis through a pivot."""
+    """Return y and z rotated about the x axis through a pivot."""
     c, s = np.cos(pitch), np.sin(pitch)
     dy, dz = y - pivot_y, z - pivot_z
     return pivot_y + c * dy - s * dz, pivot_z + s * dy + c * dz

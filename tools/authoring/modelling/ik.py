@@ -8,12 +8,12 @@ from tools.authoring.modelling.shapes import Array
 
 
 def hinge_position(start: Array, end: Array, pole: Array, upper: float, lower: float) -> Array:
-    """Return where the hinge is, (…, 3), by the law of cosines.
+    """Return the position of the hinge, (…, 3), by the law of cosines.
 
     Parameters
     ----------
-    start, end : ends of the limb, (…, 3) [m]; an end out of reach is pointed at
-    pole : direction to which the hinge bends, (…, 3)
+    start, end : ends of the limb, (…, 3) [m]; towards an end out of reach it is straight
+    pole : direction towards which the hinge bends, (…, 3)
     upper, lower : lengths of the two bones [m]
 
     >>> hip, ankle, forward = np.array([[0, 2.0, 0], [0, 0, 0], [0, 0, 1]])
@@ -34,7 +34,7 @@ def hinge_position(start: Array, end: Array, pole: Array, upper: float, lower: f
 def aim_rotation(rest_bone: ArrayLike, rest_hinge: ArrayLike, bone: Array, hinge: Array) -> Array:
     """Return the rotation (…, 4) that takes a bone and its hinge axis from rest to a pose.
 
-    Only the part of a hinge axis across its bone counts.
+    Only the component of a hinge axis perpendicular to its bone counts.
     """
     rest, posed = _frame(np.asarray(rest_bone), np.asarray(rest_hinge)), _frame(bone, hinge)
     return rotations.from_matrix(posed @ np.swapaxes(rest, -1, -2))

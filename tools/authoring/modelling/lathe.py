@@ -20,12 +20,12 @@ def lathe(
     skeleton: Skeleton,
     segments: int = 24,
 ) -> Mesh:
-    """Return a rigid solid of revolution with crisp rings of colour: an eye, a button, a tooth.
+    """Return a rigid solid of revolution with crisp bands of colour, such as an eye or a button.
 
     Parameters
     ----------
     rings : (n, 2), radius and height from the first pole to the last [m]; both radii are zero
-    colors : n − 1 linear RGB, one a band between two rings
+    colors : n − 1 linear RGB, one for each band between two rings
     place : (3, 4) or (4, 4), character frame from the lathe's, whose axis is +z; the last ring
         is at the top
     joint : the joint that moves it
@@ -34,7 +34,7 @@ def lathe(
     circle = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)
     axis = np.array([0.0, 0.0, 1.0])
     border = [below != above for below, above in pairwise(colors)]
-    copies = np.array([1, *(1 + np.array(border, dtype=int)), 1])  # two rims where colours meet
+    copies = np.array([1, *(1 + np.array(border, dtype=int)), 1])  # two rings where colours meet
     profile = np.repeat(np.column_stack([rings, _ring_normals(np.asarray(rings))]), copies, axis=0)
     points = profile[:, :1, None] * circle + profile[:, 1:2, None] * axis
     normals = profile[:, 2:3, None] * circle + profile[:, 3:, None] * axis
@@ -57,7 +57,7 @@ def lathe(
 
 
 def _ring_normals(rings: Array) -> Array:
-    """Return the normals of a profile at its rings, averaged over the bands beside them."""
+    """Return the normals of a profile at its rings, averaged over the adjacent bands."""
     across = np.diff(rings, axis=0)
     slope = np.stack([across[:, 1], -across[:, 0]], axis=1)
     slope /= np.linalg.norm(slope, axis=1, keepdims=True)
@@ -66,15 +66,15 @@ def _ring_normals(rings: Array) -> Array:
 
 
 def loft(rings: Array, colors: Array, joint: "str | Array", skeleton: Skeleton) -> Mesh:
-    """Return a closed surface.
+    """Return a closed surface through rings of points.
 
     Parameters
     ----------
     rings : (rings, points, 3), from one pole to the other; all points of the first and of the last
-        ring are one [m]. Two rings at one place make a crisp border of colour. Going along the
-        points, the next ring lies to the left, seen from outside.
+        ring are equal [m]. Two equal rings make a crisp border of colour. Seen from outside, the
+        next ring lies to the left of the direction of the points.
     colors : linear RGB of each point, (rings, points, 3)
-    joint : what moves it, or the weight of every joint on every point, (rings, points, joints)
+    joint : the joint that moves it, or skin weights, (rings, points, joints)
     """
     segments = rings.shape[1]
     points = np.asarray(rings, float).reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""From what an animator says of a quadruped to its poses: joints turn, feet stay planted."""
+"""Animation of quadrupeds: tracks of joints, and leg IK for planted feet."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -16,18 +16,18 @@ DEGREE = np.pi / 180
 FRAME_RATE_HZ = 30.0
 """Frames a second [Hz]."""
 MAX_LEG_EXTENSION = 0.985
-"""Reach of a leg over the length of its bones from which on it stretches instead."""
+"""Leg extension over the length of its bones beyond which the leg stretches."""
 
 
 @dataclass
 class AnimationTracks:
-    """What an animator says: how joints turn and move, and where the feet are."""
+    """Animation tracks of a loop: rotations and offsets of joints, and positions of feet."""
 
     frames: int
     """Number of frames of the loop."""
 
     turns: dict[str, Array] = field(default_factory=dict)
-    """Joint to (frames, 3): nose up, to its left, tilted to its right [rad]."""
+    """Joint to rotations (frames, 3): nose up, to its left, tilted to its right [rad]."""
 
     moves: dict[str, Array] = field(default_factory=dict)
     """Joint to its offset from rest, (frames, 3) [m]."""
@@ -36,10 +36,10 @@ class AnimationTracks:
     """Joint to its scale, (frames,) or (frames, 3); others keep that of the rest pose."""
 
     morphs: dict[str, Array] = field(default_factory=dict)
-    """Morph to how far it is on, (frames,); others are off."""
+    """Morph target to weights, (frames,); others are 0."""
 
     feet: dict[str, Array] = field(default_factory=dict)
-    """Foot to (frames, 4): offset from rest x, y, z [m] and toes up [rad]; else it is planted."""
+    """Foot to (frames, 4): offset from rest x, y, z [m] and toes up [rad]; others are planted."""
 
     @property
     def seconds(self) -> float:
@@ -49,7 +49,7 @@ class AnimationTracks:
     def turn(
         self, joint: str, up: Array | float = 0, left: Array | float = 0, tilt: Array | float = 0
     ) -> None:
-        """Add a turn to a joint; each argument is (frames,) or a number [rad]."""
+        """Add a rotation to a joint; each argument is (frames,) or a number [rad]."""
         self.turns[joint] = self.turns.get(joint, 0.0) + self._columns(up, left, tilt)
 
     def move(
@@ -59,7 +59,7 @@ class AnimationTracks:
         self.moves[joint] = self.moves.get(joint, 0.0) + self._columns(x, y, z)
 
     def show(self, morph: str, on: Array | float) -> None:
-        """Turn a morph further on; `on` is (frames,) or a number."""
+        """Add to the weight of a morph target; `on` is (frames,) or a number."""
         self.morphs[morph] = self.morphs.get(morph, 0.0) + self._columns(on)[:, 0]
 
     def step(
@@ -70,7 +70,7 @@ class AnimationTracks:
         z: Array | float = 0,
         toes: Array | float = 0,
     ) -> None:
-        """Add an offset to a foot on or above the ground [m] and a turn of its toes [rad]."""
+        """Add an offset of a foot [m] and a rotation of its toes [rad]."""
         self.feet[foot] = self.feet.get(foot, 0.0) + self._columns(x, y, z, toes)
 
     def _columns(self, *values: Array | float) -> Array:
@@ -78,13 +78,13 @@ class AnimationTracks:
 
 
 def solve_poses(anim: AnimationTracks, bound: Skeleton, feet: Sequence[str]) -> Pose:
-    """Return the poses of a performance, (frames, joints, …); the legs follow from the feet.
+    """Return the poses of the tracks, (frames, joints, …), with the legs solved by IK.
 
     Parameters
     ----------
-    performance : what the animator says
-    bound : the skeleton at rest, its joints unturned but for those of the face
-    feet : the last joint of every leg, which has two bones more above it
+    tracks : the animation
+    bound : the skeleton at rest; only joints of the face are rotated
+    feet : the last joint of every leg, below two bones
     """
     frames, rest = anim.frames, bound.rest
     translations = np.tile(rest.translations, (frames, 1, 1))
@@ -110,9 +110,9 @@ def solve_poses(anim: AnimationTracks, bound: Skeleton, feet: Sequence[str]) -> 
 
 
 def _place_leg(ankle: int, offset: Array, body: Array, local: Array, bound: Skeleton) -> Array:
-    """Turn the three joints of a leg so that its foot is where it should.
+    """Rotate the three joints of a leg so that its foot reaches its target.
 
-    Returns how much longer than at rest its bones must be, (frames, 1): a leg gives a little
+    Returns the stretch of its bones over their rest length, (frames, 1): a leg stretches a little
     before its foot leaves the ground.
     """
     knee = bound.parents[ankle]
@@ -144,11 +144,11 @@ def loop_clip(
     feet: Sequence[str],
     morphs: Sequence[str] = (),
 ) -> Clip:
-    """Return a performance as a loop: its last frame is its first.
+    """Return the looping clip of the tracks: its last frame equals its first.
 
     Parameters
     ----------
-    morphs : names of the character's morphs, if the clip is to set them
+    morphs : names of the morph targets that the clip sets
     """
     pose = solve_poses(anim, bound, feet)
     again = np.append(np.arange(anim.frames), 0)

@@ -1,8 +1,7 @@
-"""Skeletons whose joints all rest unturned, and puppets of them that move many frames at once.
+"""Skeletons with an unrotated rest pose, and posed rigs of all frames at once.
 
-In the rest pose every joint's axes are those of the character frame, so a rotation of a joint reads
-as what it does to the body: about +x nods forward, about +y turns to the left, about +z leans to
-the right.
+In the rest pose every joint has the axes of the character frame, so a joint rotation about +x nods
+forward, about +y turns to the left, and about +z leans to the right.
 """
 
 from collections.abc import Mapping
@@ -17,7 +16,7 @@ from tools.authoring.modelling.shapes import Array, Vector, mirrored_name
 
 
 def build_skeleton(joints: Mapping[str, tuple[str, Vector]]) -> Skeleton:
-    """Return a skeleton from each joint's parent and place; every "Left" joint gets its twin.
+    """Return a skeleton from each joint's parent and position; "Left" joints are mirrored.
 
     Parameters
     ----------
@@ -36,13 +35,13 @@ def build_skeleton(joints: Mapping[str, tuple[str, Vector]]) -> Skeleton:
 
 
 def rest_positions(skeleton: Skeleton) -> dict[str, Array]:
-    """Return where each joint rests in the character frame, (3,) each [m]."""
+    """Return the rest position of each joint in the character frame, (3,) each [m]."""
     places = skeleton.rest.globals(skeleton)[:, :3, 3]
     return dict(zip(skeleton.names, places, strict=True))
 
 
 class PosedRig:
-    """A skeleton in `frames` poses at once, moved joint by joint in the frame of its root."""
+    """A skeleton in `frames` poses, edited joint by joint in the frame of its root."""
 
     def __init__(self, skeleton: Skeleton, frames: int) -> None:
         """Start in the rest pose."""
@@ -57,7 +56,7 @@ class PosedRig:
         return Pose(self._translations, self._rotations)
 
     def rest(self, name: str) -> Array:
-        """Return where a joint rests, (3,) [m]."""
+        """Return the rest position of a joint, (3,) [m]."""
         return self._rest[name]
 
     def shift(self, name: str, offset: ArrayLike) -> None:
@@ -65,17 +64,17 @@ class PosedRig:
         self._translations[:, self.skeleton.names.index(name)] += np.asarray(offset, float)
 
     def turn(self, name: str, rotation: ArrayLike) -> None:
-        """Turn a joint further, in its own axes, by quaternions (frames, 4) or (4,)."""
+        """Rotate a joint in its own axes by quaternions (frames, 4) or (4,)."""
         joint = self.skeleton.names.index(name)
         self._rotations[:, joint] = rotations.multiply(self._rotations[:, joint], rotation)
 
     def places(self, name: str) -> Array:
-        """Return where a joint is, (frames, 3) [m]."""
+        """Return the positions of a joint, (frames, 3) [m]."""
         joint = self.skeleton.names.index(name)
         return np.asarray(self.pose.globals(self.skeleton)[:, joint, :3, 3])
 
     def facing(self, name: str) -> Array:
-        """Return how a joint is turned in the character frame, (frames, 4)."""
+        """Return the rotation of a joint in the character frame, (frames, 4)."""
         joint, result = self.skeleton.names.index(name), None
         while joint >= 0:
             own = self._rotations[:, joint]
@@ -84,14 +83,14 @@ class PosedRig:
         return np.asarray(result)
 
     def face(self, name: str, facing: Array) -> None:
-        """Turn a joint so that it has this rotation in the character frame, (frames, 4)."""
+        """Set the rotation of a joint in the character frame, (frames, 4)."""
         joint = self.skeleton.names.index(name)
         parent = self.skeleton.names[self.skeleton.parents[joint]]
         above = rotations.conjugate(self.facing(parent))
         self._rotations[:, joint] = rotations.multiply(above, facing)
 
     def place_foot(self, side: str, ankle: Array, facing: Array, toe: Array) -> None:
-        """Bend a leg so that its ankle is here and its foot faces so.
+        """Bend a leg so that its foot has a position and rotation.
 
         Parameters
         ----------
@@ -107,7 +106,7 @@ class PosedRig:
         self.turn(f"{side}Toe", rotations.about("x", -toe))
 
     def place_hand(self, side: str, wrist: Array, facing: Array, elbow: Array) -> None:
-        """Bend an arm so that its wrist is here and its hand faces so.
+        """Bend an arm so that its hand has a position and rotation.
 
         Parameters
         ----------
@@ -123,7 +122,7 @@ class PosedRig:
     def _bend_limb(
         self, names: tuple[str, str, str], end: Array, pole: Array, rest_pole: Array
     ) -> None:
-        """Turn two bones so that the third joint is at `end` and the second one towards `pole`."""
+        """Rotate two bones so that the third joint is at `end`, bending towards `pole`."""
         first, second, third = (self.rest(name) for name in names)
         upper, lower = second - first, third - second
         start = self.places(names[0])

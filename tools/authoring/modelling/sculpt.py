@@ -1,4 +1,4 @@
-"""From coloured volumes on a skeleton to skinned, painted meshes."""
+"""Sculpting: from coloured volumes on a skeleton to skinned, painted meshes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ from tools.authoring.modelling.surface import neighbour_mean, normals_of, polygo
 
 @dataclass(frozen=True)
 class PaintCoat:
-    """A coat of colour on everything inside a volume: a belly, a cheek, a stripe."""
+    """A coat of colour on all vertices inside a volume, such as a cheek or a stripe."""
 
     shape: Shape
-    """Where."""
+    """The painted volume."""
 
     color: Vector
     """Linear RGB."""
@@ -33,19 +33,19 @@ class PaintCoat:
 
 @dataclass(frozen=True)
 class BodyPart:
-    """One piece with one skin: a jacket, a head, a body."""
+    """One closed surface, such as a jacket or a head."""
 
     shape: Shape
-    """Its volume; its solids carry the bones and colours."""
+    """Its volume, whose solids have bones and colours."""
 
     cell: float
-    """Edge of a triangle, about [m]."""
+    """Approximate edge of a triangle [m]."""
 
     paints: tuple[PaintCoat, ...] = ()
     """Coats over the colours of the solids, in order."""
 
     soft_skin: float = 0.03
-    """Distance over which one bone hands over to the next along the surface [m]; 0 for rigid."""
+    """Distance on the surface over which skin weights blend [m]; 0 for rigid."""
 
     soft_color: float = 0.0
     """Width of the border between the colours of two solids [m]."""
@@ -56,8 +56,8 @@ def sculpt(
 ) -> Mesh:
     """Return one mesh of all parts, bound to the rest pose of the skeleton.
 
-    Each part is a closed surface of its own, so where two parts meet the border is as crisp as
-    the picture, whatever the size of the triangles.
+    Each part is a closed surface of its own, so the border between two parts is crisp whatever
+    the size of the triangles.
     """
     return join(name, [_sculpt_part(part, skeleton) for part in parts], material)
 
@@ -75,7 +75,7 @@ def _sculpt_part(part: BodyPart, skeleton: Skeleton) -> Mesh:
 
 
 def _bounds(shape: Shape, skeleton: Skeleton, cell: float) -> tuple[Array, Array]:
-    """Return a tight box: the coarse grid's inside points, one coarse cell wider."""
+    """Return a tight box: the inside points of a coarse grid, plus one coarse cell."""
     joints = skeleton.rest.globals(skeleton)[:, :3, 3]
     low, high = joints.min(axis=0) - 0.6, joints.max(axis=0) + 0.6
     coarse = max(2.5 * cell, 0.02)
@@ -95,9 +95,9 @@ def skin_weights(
 ) -> Array:
     """Return the weight of every joint on every vertex, (n, joints); rows sum to one.
 
-    Every vertex starts with the bone of its nearest solid; the borders are then softened by
-    diffusion along the edges of the mesh. So weights travel over the skin only: never from one
-    leg to the other through the air, nor from an arm to the flank.
+    Every vertex starts with the bone of its nearest solid. The borders are then softened by
+    diffusion along the edges of the mesh, so weights spread over the surface only, never through
+    the air from one leg to the other.
     """
     joints = skeleton.rest.globals(skeleton)[:, :3, 3]
     owner = np.argmin(distances + 1e-6 * np.arange(len(solids)), axis=1)  # no ties
@@ -106,7 +106,7 @@ def skin_weights(
         mine = np.flatnonzero(owner == number)
         bones = np.array([skeleton.names.index(bone) for bone in solid.bones])
         reach = np.stack([_bone_distance(points[mine], b, joints, skeleton) for b in bones])
-        reach += 1e-6 * np.arange(len(bones))[:, None]  # where two end in one joint: the first
+        reach += 1e-6 * np.arange(len(bones))[:, None]  # the first of two equal ones
         weights[mine, bones[np.argmin(reach, axis=0)]] = 1.0
     edges = points[triangles] - points[np.roll(triangles, 1, axis=1)]
     edge = float(np.mean(np.linalg.norm(edges, axis=-1)))
@@ -135,7 +135,7 @@ def _painted(points: Array, solids: Sequence[Solid], distances: Array, part: Bod
 
 
 def coated(points: Array, colors: Array, paints: Sequence[PaintCoat]) -> Array:
-    """Return linear RGB (n, 3) of points (n, 3) under coats of paint."""
+    """Return the linear RGB, (n, 3), of points (n, 3) after coats of paint."""
     for paint in paints:
         depth = 0.5 - paint.shape.distance(points) / max(paint.soft, 1e-6)
         cover = paint.strength * smoothstep(depth)[:, None]

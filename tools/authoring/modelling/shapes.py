@@ -1,7 +1,7 @@
-"""Rounded volumes as signed distance functions: the clay that bodies are sculpted from.
+"""Rounded volumes as signed distance functions, with bones and colours.
 
-Distances are negative inside. They are exact for cones, spheres and half-spaces and close to the
-surface elsewhere, which suffices: the polygoniser projects every vertex onto the zero set.
+Distances are negative inside. They are exact for cones, spheres and half-spaces, and elsewhere
+only near the surface: the polygoniser projects every vertex onto the zero set.
 """
 
 from collections.abc import Iterator
@@ -46,24 +46,24 @@ def _flip(point: Vector) -> Vector:
 
 
 class Shape(Protocol):
-    """Anything with an inside and an outside."""
+    """A volume given by a signed distance function."""
 
     def distance(self, points: Array) -> Array:
         """Return the signed distance of points (n, 3) to the surface, (n,) [m]."""
 
     def solids(self) -> "Iterator[Solid]":
-        """Yield the coloured volumes that it is made of."""
+        """Yield its coloured volumes."""
 
     def mirrored(self) -> "Shape":
-        """Return its image in the plane x = 0, its bones those of the other side."""
+        """Return its mirror image in the plane x = 0, with the bones of the other side."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Solid:
-    """What every single volume has beside its shape."""
+    """Bones and colour of a single volume."""
 
     bones: tuple[str, ...] = ()
-    """Joints that move it; where there are several, the nearest bone moves a vertex."""
+    """Joints that move it; each vertex belongs to the nearest."""
 
     color: Vector = WHITE
     """Linear RGB."""
@@ -82,7 +82,7 @@ class Solid:
 
 @dataclass(frozen=True)
 class RoundCone(Solid):
-    """A round cone: two spheres and everything between them; a capsule if the radii agree."""
+    """A round cone: the convex hull of two spheres; a capsule if the radii are equal."""
 
     a: Vector
     """Centre of one sphere [m]."""
@@ -123,16 +123,16 @@ class RoundCone(Solid):
         return _scaled(result, squash)
 
     def mirrored(self) -> "RoundCone":
-        """Return its image in the plane x = 0."""
+        """Return its mirror image."""
         return replace(self, a=_flip(self.a), b=_flip(self.b), bones=self._other_bones())
 
 
 @dataclass(frozen=True)
 class Ellipsoid(Solid):
-    """An ellipsoid, or a box as round as `power` says."""
+    """A superellipsoid: an ellipsoid, or a rounded box."""
 
     center: Vector
-    """Its middle [m]."""
+    """Its centre [m]."""
 
     radii: Vector
     """Half its extent along its own axes [m]."""
@@ -141,7 +141,7 @@ class Ellipsoid(Solid):
     """Rotation about x, then y, then z of the character frame [rad]."""
 
     power: float = 2.0
-    """2 ellipsoid; 3 to 6 ever boxier (a superellipsoid)."""
+    """Exponent: 2 ellipsoid, 3…6 increasingly boxy."""
 
     def distance(self, points: Array) -> Array:
         """Return the distance to first order: the implicit value over its slope, (n,) [m]."""
@@ -154,7 +154,7 @@ class Ellipsoid(Solid):
         return np.where(level > 1e-6, near, -min(self.radii))
 
     def mirrored(self) -> "Ellipsoid":
-        """Return its image in the plane x = 0."""
+        """Return its mirror image."""
         x, y, z = self.turn
         bones = self._other_bones()
         return replace(self, center=_flip(self.center), turn=(x, -y, -z), bones=bones)
@@ -176,17 +176,17 @@ class HalfSpace(Solid):
         return np.asarray((points - self.point) @ normal)
 
     def mirrored(self) -> "HalfSpace":
-        """Return its image in the plane x = 0."""
+        """Return its mirror image."""
         bones = self._other_bones()
         return replace(self, point=_flip(self.point), normal=_flip(self.normal), bones=bones)
 
 
 @dataclass(frozen=True)
 class Union:
-    """Several shapes grown together."""
+    """The smooth union of several shapes."""
 
     shapes: tuple[Shape, ...]
-    """What is joined, in this order."""
+    """The shapes, in the order of joining."""
 
     blend: float = 0.0
     """Radius of the fillets between them [m]."""
@@ -204,19 +204,19 @@ class Union:
             yield from shape.solids()
 
     def mirrored(self) -> "Union":
-        """Return its image in the plane x = 0."""
+        """Return its mirror image."""
         return replace(self, shapes=tuple(shape.mirrored() for shape in self.shapes))
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A shape without what lies inside another."""
+    """The smooth difference of two shapes."""
 
     body: Shape
-    """What remains."""
+    """The shape to cut from."""
 
     tool: Shape
-    """What is taken away; its bones and colours play no part."""
+    """The volume to subtract; its bones and colours are ignored."""
 
     blend: float = 0.0
     """Radius of the rounded edge [m]."""
@@ -231,7 +231,7 @@ class Difference:
         yield from self.body.solids()
 
     def mirrored(self) -> "Difference":
-        """Return its image in the plane x = 0."""
+        """Return its mirror image."""
         return replace(self, body=self.body.mirrored(), tool=self.tool.mirrored())
 
 
@@ -262,7 +262,7 @@ def cone_chain(
 
 
 def smooth_minimum(a: Array, b: Array, blend: float) -> Array:
-    """Return min(a, b) with its kink rounded over `blend` (Quilez, quadratic polynomial)."""
+    """Return the smooth minimum with radius `blend` (Quilez, quadratic polynomial)."""
     if blend <= 0:
         return np.minimum(a, b)
     h = np.maximum(blend - np.abs(a - b), 0.0) / blend
@@ -283,7 +283,7 @@ def euler(turn: Vector) -> Array:
 
 @cache
 def _axes(turn: Vector) -> Array:
-    """Return what `euler` does, computed once: a shape is asked for distances again and again."""
+    """Return `euler`, cached for repeated distance queries."""
     matrix = euler(turn)
     matrix.setflags(write=False)
     return matrix

@@ -14,15 +14,15 @@ def polygonise(
 ) -> tuple[Array, NDArray[np.int64]]:
     """Return vertices (n, 3) and counter-clockwise triangles (m, 3) of the zero set.
 
-    Surface nets (Gibson 1998) give the topology; vertices then drift along the surface to the
-    middle of their neighbours and are projected back, which makes the triangles even.
+    Surface nets (Gibson 1998) give the topology. Vertices then move along the surface to the mean
+    of their neighbours and are projected back, which makes the triangles even.
 
     Parameters
     ----------
     field : signed distance of points (n, 3), negative inside
     low, high : corners of a box that holds the whole surface, (3,) [m]
     cell : edge of a grid cell [m], about the edge of a triangle
-    relax : rounds of evening out
+    relax : rounds of relaxation
     """
     size = np.ceil((high - low) / cell).astype(int) + 3
     axes = [low[i] + cell * (np.arange(size[i]) - 1.0) for i in range(3)]
@@ -72,7 +72,7 @@ def neighbour_mean(values: Array, faces: NDArray[np.int64]) -> Array:
 
 
 def _surface_nets(values: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Return one vertex a mixed cell, in grid units, and one quad a crossed edge."""
+    """Return a vertex for each mixed cell, in grid units, and a quad for each crossed edge."""
     cells = tuple(n - 1 for n in values.shape)
     total, count = np.zeros((int(np.prod(cells)), 3)), np.zeros(int(np.prod(cells)))
     quads = []
@@ -101,10 +101,10 @@ def _tangential(field: Field, points: Array, move: Array, cell: float) -> Array:
 
 
 def _split(points: Array, quads: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the quads cut along their shorter diagonals."""
+    """Return the triangles of quads split along their shorter diagonals."""
     p = points[quads]
     ac, bd = (np.linalg.norm(p[:, i] - p[:, i + 2], axis=1) for i in (0, 1))
-    first = ac < bd + 1e-6  # equal ones alike on every machine
+    first = ac < bd + 1e-6  # the same for equal diagonals on every machine
     a, b, c, d = quads.T
     along_ac = np.stack([a, b, c, a, c, d], axis=1)
     along_bd = np.stack([a, b, d, b, c, d], axis=1)

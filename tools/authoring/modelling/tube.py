@@ -1,4 +1,4 @@
-"""Cords: thin smooth tubes along a line, where a carved surface would waste triangles."""
+"""Thin smooth tubes along a line, with fewer triangles than a sculpted surface."""
 
 from collections.abc import Sequence
 
@@ -21,7 +21,7 @@ def tube(
     sides: int = 6,
     rings: int = 0,
 ) -> Mesh:
-    """Return a closed tube with round ends.
+    """Return a closed tube with rounded ends.
 
     Parameters
     ----------
@@ -68,8 +68,8 @@ def _through(points: Array, along: Array) -> Array:
 
 
 def _rounded(points: Array, radius: Array, weights: Array) -> tuple[Array, Array, Array]:
-    """Return the line with a ring and a pole more at either end."""
-    for _ in range(2):  # the far end first, then the other way round
+    """Return the line with an additional ring and pole at either end."""
+    for _ in range(2):  # the far end, then the near end
         end = points[-1] - points[-2]
         end *= radius[-1] / np.linalg.norm(end)
         points = np.vstack([points, points[-1] + 0.6 * end, points[-1] + 0.9 * end])[::-1]
@@ -79,7 +79,7 @@ def _rounded(points: Array, radius: Array, weights: Array) -> tuple[Array, Array
 
 
 def _circles(points: Array, sides: int) -> Array:
-    """Return unit circles across the line, (points, sides, 3), turning no more than it does."""
+    """Return unit circles across the line, (points, sides, 3), without twist."""
     tangent = np.gradient(points, axis=0)
     tangent /= np.linalg.norm(tangent, axis=1, keepdims=True)
     across = np.empty_like(points)

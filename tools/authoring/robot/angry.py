@@ -1,4 +1,4 @@
-"""The robot is angry: it glares and snaps, stomps, and at its worst rears up and whips its tail."""
+"""The robot's angry clips: glare, snap and stomp; at full intensity rear up and whip the tail."""
 
 from tools.authoring.modelling.curves import delayed, keys, wave
 from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, AnimationTracks
@@ -6,7 +6,7 @@ from tools.authoring.robot.motion import face_ahead, keys_deg, neck, stomp_curve
 from tools.authoring.robot.rig import set_lamps, set_lids, set_mouth
 
 DURATION_S = 2.0
-"""Duration of one fit, from glower to glower [s]."""
+"""Duration of the loop [s]."""
 
 
 def angry(level: int) -> AnimationTracks:
@@ -14,8 +14,8 @@ def angry(level: int) -> AnimationTracks:
 
     Parameters
     ----------
-    level : 0 with the head alone, 1 with the legs too, 2 with all of it; the three share every
-        accent, so that they blend at equal phase
+    level : 0 head only, 1 head and legs, 2 whole body; all levels have the same accents, so that
+        they blend at equal phase
     """
     anim = AnimationTracks(round(DURATION_S * FRAME_RATE_HZ))
     n = anim.frames
@@ -28,15 +28,15 @@ def angry(level: int) -> AnimationTracks:
     else:
         stiff = keys_deg(n, (0.0, -4), (0.20, 2 + 6 * level), (0.31, -9), (0.50, -5))
         tail(anim, stiff, (2 + 5 * level) * DEGREE * wave(n, 4), 1.2, 0.6)
-    # The chin is drawn in for the snap and thrown out with it.
+    # The chin is drawn in before the snap and thrust out with it.
     face_ahead(anim, keys_deg(n, (0.0, -8), (0.20, -14), (0.30, 6), (0.40, -4), (0.74, -8)))
     return anim
 
 
 def _glower(anim: AnimationTracks, level: int) -> None:
-    """Keep the head low with the eyes on the other one; snap, then shake it with bared jaw."""
+    """Keep the head low and face ahead; snap, then shake the head with an open jaw."""
     n = anim.frames
-    big = (1.0, 0.95, 0.9)[level]  # the lunge of the body does the rest
+    big = (1.0, 0.95, 0.9)[level]  # the body's lunge adds to it
     bend = keys_deg(n, (0.0, -26), (0.20, -6 * big), (0.30, -40 * big), (0.38, -33), (0.74, -30))
     neck(anim, bend)
     raging = keys(n, (0.34, 0), (0.42, 1), (0.66, 1), (0.78, 0), (0.97, 0))
@@ -58,7 +58,7 @@ def _glower(anim: AnimationTracks, level: int) -> None:
 
 
 def _stalk(anim: AnimationTracks, rear: bool) -> None:
-    """Crouch, draw back, at full intensity rear up, lunge, and stomp by turns."""
+    """Crouch, draw back (at full intensity rear up), lunge, and stomp alternately."""
     n = anim.frames
     anim.move(
         "hips",

@@ -1,4 +1,4 @@
-"""The robot's trunk of two shells, its neck and tail of cups, its legs, and its lamps."""
+"""The robot's body: a trunk of two shells, neck, tail and legs of cups, and lamps."""
 
 from itertools import pairwise
 
@@ -32,7 +32,7 @@ REAR_SHELL = Ellipsoid(
     (0.0, 0.117, -0.050), (0.0620, 0.0560, 0.0630), power=2.25, bones=("hips",), color=SHELL
 )
 WAIST_GAP_M = -0.014, 0.0045
-"""Where the two shells meet, and half the gap between them [m]."""
+"""Position of the gap between the two shells along z, and half its width [m]."""
 CHEST_LAMP_RADIUS_M = 0.0175
 """Radius of the lamp on the chest [m]."""
 CELL_M = 0.0118
@@ -40,12 +40,12 @@ CELL_M = 0.0118
 
 
 def body(bound: Skeleton) -> list[Mesh]:
-    """Return all but the head and the lamps that are on, bound to the skeleton."""
+    """Return the body without head and lit lamps, bound to the skeleton."""
     return [*_trunk(bound), *_cores(bound), *_neck(bound), *_tail(bound), *_legs(bound)]
 
 
 def _trunk(bound: Skeleton) -> list[Mesh]:
-    """Return the two shells with a plate on the back and on the flanks of each."""
+    """Return the two shells with a plate on the back of each."""
     middle, gap = WAIST_GAP_M
     front = Difference(FRONT_SHELL, HalfSpace((0.0, 0.0, middle + gap), (0.0, 0.0, 1.0)), 0.006)
     rear = Difference(REAR_SHELL, HalfSpace((0.0, 0.0, middle - gap), (0.0, 0.0, -1.0)), 0.006)
@@ -58,7 +58,7 @@ def _trunk(bound: Skeleton) -> list[Mesh]:
 
 
 def _on(solid: Ellipsoid, near: Vector, along: Vector) -> Array:
-    """Return the frame on a shell next to a place, its +z away from it, its +y along."""
+    """Return the frame on a shell near a point, with +z outward and +y along a direction."""
     place = project(solid.distance, np.array([near]), 0.05, 10)
     normal = normals_of(solid.distance, place, 0.004)[0]
     right = np.cross(along, normal)
@@ -70,7 +70,7 @@ def _on(solid: Ellipsoid, near: Vector, along: Vector) -> Array:
 
 
 def _cores(bound: Skeleton) -> list[Mesh]:
-    """Return the dark rubber that is seen between shells, cups and head."""
+    """Return the dark rubber visible between shells, cups and head."""
     at = rest_positions(bound)
     waist = [[0.0, 0.118, -0.046], [0.0, 0.119, -0.030], [0.0, 0.119, -0.014]]
     waist += [[0.0, 0.120, 0.004], [0.0, 0.121, 0.022]]
@@ -104,7 +104,7 @@ def _neck(bound: Skeleton) -> list[Mesh]:
 
 
 def _tail(bound: Skeleton) -> list[Mesh]:
-    """Return five cups, ever thinner, by turns light and blue, and the socket of the last lamp."""
+    """Return five cups, increasingly thin and alternately light and blue."""
     at = rest_positions(bound)
     ends = [*(at[name] for name in TAIL), np.array(TAIL_TIP_M)]
     radii = (0.0375, 0.0315, 0.0258, 0.0205, 0.0158, 0.0122)
@@ -160,7 +160,7 @@ def _foot(place: Array, wide: float, joint: str, bound: Skeleton) -> list[Mesh]:
 
 
 def sockets(bound: Skeleton) -> list[Mesh]:
-    """Return the lamps of chest and tail as they are when they are off."""
+    """Return the unlit lamps of chest and tail."""
     return [
         socket(_chest_lamp(), CHEST_LAMP_RADIUS_M, "chest", bound),
         socket(_tail_lamp(), 0.0140, TAIL[-1], bound),
@@ -168,7 +168,7 @@ def sockets(bound: Skeleton) -> list[Mesh]:
 
 
 def lit_lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
-    """Return the lamps of chest and tail as they are when they are on."""
+    """Return the lit lamps of chest and tail."""
     angle = np.radians([180, 140, 100, 60, 30, 0])
     bulb = 0.0168 * np.stack([np.sin(angle), np.cos(angle)], axis=1)
     place = _tail_lamp()

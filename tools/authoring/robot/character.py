@@ -1,4 +1,4 @@
-"""The robot's likeness: a small four-legged machine with lamps in the colour of its mood."""
+"""The virtual robot: a small four-legged machine with lamps in the colour of its mood."""
 
 from characters.model.character import Character
 from characters.model.mesh import Material, Mesh
@@ -20,17 +20,17 @@ from tools.authoring.robot.rig import FEET, MOODS, scaled_with_head, shipped_ske
 
 IDLE_DURATION_S = 6.0
 LAMP_EMISSION = 0.55
-"""Light that the lamps give off, over their colour."""
+"""Emission of the lamps as a factor of their colour."""
 LAMP_COLORS: dict[str, Vector] = {
     "happy": linear_rgb("#35d06c"),
     "neutral": linear_rgb("#ffb52e"),
     "angry": linear_rgb("#ff3a2a"),
 }
-"""Linear RGB of the lamps: the colours that the screen gives the moods, brighter."""
+"""Linear RGB of the lamps: the screen's colours of the moods, brighter."""
 
 
 def build_robot() -> Character:
-    """Return the robot as it is shipped."""
+    """Return the bundled robot."""
     bound = skeleton()
     shipped = shipped_skeleton(bound)
     made = meshes(bound)

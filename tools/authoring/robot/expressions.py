@@ -1,4 +1,4 @@
-"""The robot's expressions as morphs, worked out from its lids, jaw and lips in bind pose."""
+"""The robot's expressions as morph targets, from its lids, jaw and lips in bind pose."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -12,7 +12,7 @@ from tools.authoring.modelling.quadruped import AnimationTracks, solve_poses
 from tools.authoring.robot.rig import set_lids, set_mouth
 
 MIN_DISPLACEMENT_M = 2e-6
-"""A vertex that is moved less is not in a morph [m]."""
+"""Vertices that move less are not part of a morph target [m]."""
 
 
 def _surprised(face: AnimationTracks) -> None:
@@ -51,11 +51,11 @@ EXPRESSIONS: dict[str, Callable[[AnimationTracks], None]] = {
     "relaxed": _relaxed,
     "aa": lambda face: set_mouth(face, 1.0),
 }
-"""What the face does, by VRM's name of the expression."""
+"""Poses of the face, by VRM's name of the expression."""
 
 
 def with_expressions(mesh: Mesh, bound: Skeleton) -> Mesh:
-    """Return a mesh that is bound to the skeleton's pose with a morph for every expression."""
+    """Return a bound mesh with a morph target for every expression."""
     morphs = [_morph(name, mesh, bound) for name in EXPRESSIONS]
     return replace(mesh, morphs=tuple(morph for morph in morphs if len(morph.vertices)))
 
@@ -65,7 +65,7 @@ def _morph(name: str, mesh: Mesh, bound: Skeleton) -> Morph:
     EXPRESSIONS[name](face)
     globals_ = solve_poses(face, bound, ()).globals(bound)[0]
     moved = skin(mesh, globals_) - mesh.positions
-    # A normal is turned like the tip of a short needle that stands on its vertex.
+    # A normal rotates like the vector between its vertex and a point above it.
     needle = replace(mesh, positions=mesh.positions + mesh.normals)
     turned = skin(needle, globals_) - needle.positions - moved
     vertices = np.flatnonzero(np.abs(moved).max(axis=1) > MIN_DISPLACEMENT_M)
@@ -78,6 +78,6 @@ def _morph(name: str, mesh: Mesh, bound: Skeleton) -> Morph:
 
 
 def expression_names(meshes: Sequence[Mesh]) -> tuple[str, ...]:
-    """Return the expressions that some mesh has a morph for."""
+    """Return the expressions for which a mesh has a morph target."""
     there = {morph.name for mesh in meshes for morph in mesh.morphs}
     return tuple(name for name in EXPRESSIONS if name in there)

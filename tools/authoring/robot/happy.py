@@ -1,4 +1,4 @@
-"""The robot is happy: it beams and nods, dances on its feet, and hops while its tail wags."""
+"""The robot's happy clips: beam and nod, dance, and hop with a wagging tail."""
 
 import numpy as np
 
@@ -12,12 +12,12 @@ DURATION_S = 2.0
 
 
 def happy(level: int) -> AnimationTracks:
-    """Beam, with the head high and to one side and then to the other.
+    """Beam, with the raised head tilted from side to side.
 
     Parameters
     ----------
-    level : 0 with the head alone, 1 with the legs too, 2 with all of it; the three share every
-        accent, so that they blend at equal phase
+    level : 0 head only, 1 head and legs, 2 whole body; all levels have the same accents, so that
+        they blend at equal phase
     """
     anim = AnimationTracks(round(DURATION_S * FRAME_RATE_HZ))
     n = anim.frames
@@ -38,7 +38,7 @@ def _beam(anim: AnimationTracks, level: int) -> None:
     """Hold the head high, nod on the beat, tilt it from side to side, and laugh."""
     n = anim.frames
     side = keys(n, (0.02, 1), (0.38, 1), (0.52, -1), (0.88, -1))
-    # A dip before every toss of the head.
+    # Anticipation: a dip before every toss of the head.
     toss = keys_deg(n, (0.06, -6), (0.20, 15), (0.36, 8), (0.56, -6), (0.70, 15), (0.86, 8))
     neck(anim, toss + 8 * DEGREE, 7 * DEGREE * side)
     anim.turn("head", left=5 * DEGREE * side)
@@ -69,7 +69,7 @@ def _dance(anim: AnimationTracks) -> None:
 
 
 def _hop(anim: AnimationTracks) -> None:
-    """Crouch, leap off all four feet, land softly; rear up and wave a foot on the way."""
+    """Crouch, leap with all four feet rearing up, and land softly."""
     n = anim.frames
     squat = keys(
         n,

@@ -1,4 +1,4 @@
-"""The robot's head: a big skull on a blunt snout, a jaw like a drawer, eyes like lenses."""
+"""The robot's head: skull, snout, jaw, mouth, eyes, lids and lamps."""
 
 from dataclasses import dataclass
 
@@ -56,13 +56,13 @@ UPPER_LID_OPEN_RAD, LOWER_LID_OPEN_RAD = 1.22, 1.20
 
 @dataclass(frozen=True)
 class JawRegion(Solid):
-    """The room of the jaw: under the line of the lips, and ahead of its hinge."""
+    """The volume of the jaw: below the line of the lips and ahead of the hinge."""
 
     gap: float = 0.0
-    """How far under the line it begins [m]."""
+    """Distance below the line at which it begins [m]."""
 
     def distance(self, points: Array) -> Array:
-        """Return the signed distance, about, (n,) [m]."""
+        """Return the approximate signed distance, (n,) [m]."""
         return np.maximum(points[:, 1] - lip_height(points[:, 2]) + self.gap, 0.150 - points[:, 2])
 
     def mirrored(self) -> "JawRegion":
@@ -71,14 +71,14 @@ class JawRegion(Solid):
 
 
 def lip_height(forward: Array) -> Array:
-    """Return the height of the line between the lips, so far forward, (n,) [m]."""
+    """Return the height of the line between the lips at z, (n,) [m]."""
     return np.asarray(0.2105 + 0.10 * np.maximum(0.0, 0.205 - forward))
 
 
 def head(bound: Skeleton) -> list[Mesh]:
-    """Return the head without the lamps that are on and without its glossy eyes."""
+    """Return the head without lit lamps and glossy eyes."""
     upper = Difference(HEAD, JawRegion(-0.0006), 0.003)
-    # The jaw is the part of the head that the upper half leaves, held by its own joint.
+    # The jaw is the lower part of the head, moved by its own joint.
     lower = Difference(_held(HEAD, "jaw"), Complement(JawRegion(0.0006)), 0.003)
     return [
         sculpt("", [BodyPart(upper, CELL_M, soft_skin=0.0)], bound),
@@ -94,7 +94,7 @@ def head(bound: Skeleton) -> list[Mesh]:
 
 
 def _held(shape: Union, bone: str) -> Shape:
-    """Return the same shape held by another joint."""
+    """Return the same shape with another joint."""
     solids = [each for each in shape.shapes if isinstance(each, Ellipsoid)]
     moved = (
         Ellipsoid(s.center, s.radii, s.turn, s.power, bones=(bone,), color=s.color) for s in solids
@@ -103,7 +103,7 @@ def _held(shape: Union, bone: str) -> Shape:
 
 
 def _lip(bound: Skeleton) -> Mesh:
-    """Return the dark line of the mouth: its middle and its two corners pull at it."""
+    """Return the dark line of the mouth, skinned to its middle and its two corners."""
     across = np.linspace(-1.0, 1.0, 33)
     line = _around(across * 1.95)
     corner = np.clip((np.abs(across) - 0.06) / 0.60, 0, 1) ** 1.6
@@ -143,7 +143,7 @@ def _tongue(bound: Skeleton) -> Mesh:
 
 
 def _around(turn: Array) -> Array:
-    """Return where the line of the lips is on the snout, so far around it [rad], (n, 3)."""
+    """Return points of the line of the lips at azimuths around the snout [rad], (n, 3)."""
     way = np.stack([np.sin(turn), 0 * turn, np.cos(turn)], axis=1) * [0.72, 1.0, 1.0]
     near, far = np.full(len(turn), 0.01), np.full(len(turn), 0.09)
     points = np.zeros((len(turn), 3))
@@ -173,14 +173,14 @@ def _tube(line: Array, radius: Array, bones: Array, bound: Skeleton, sides: int 
 
 
 def _on_head(near: Vector | Array, sunk: float = 0.0) -> Array:
-    """Return the frame on the head next to a place, its +z away from it."""
+    """Return the frame on the head near a point, with +z outward."""
     place = project(HEAD.distance, np.asarray([near], float), 0.05, 8)
     normal = normals_of(HEAD.distance, place, 0.005)[0]
     return frame_toward(normal, place[0] - sunk * normal)
 
 
 def _along(near: Vector) -> Array:
-    """Return the frame on the head next to a place, its +z away from it, its +y forward."""
+    """Return the frame on the head near a point, with +z outward and +y forward."""
     frame = _on_head(near)
     frame[:3, 0] = [1.0, 0.0, 0.0]  # it lies on the middle of the head
     frame[:3, 1] = np.cross(frame[:3, 2], frame[:3, 0])
@@ -194,7 +194,7 @@ def _nostrils(bound: Skeleton) -> list[Mesh]:
 
 
 def _paired_parts(side: float, bound: Skeleton) -> list[Mesh]:
-    """Return what is twice: the bezel of an eye, its lids, and the dark lamp at the temple."""
+    """Return the parts of one side: bezel and lids of the eye, and the unlit temple lamp."""
     name = "Left" if side > 0 else "Right"
     center, gaze = np.array(EYE_CENTRE_M) * [side, 1, 1], REST_GAZE * [side * 1.5, 1, 1]
     bezel = np.array([[0, 0], [25.6, 0], [26.6, 5], [25.2, 8.2], [22.6, 8.6], [0, 7]]) * 1e-3
@@ -206,7 +206,7 @@ def _paired_parts(side: float, bound: Skeleton) -> list[Mesh]:
 
 
 def _lid(elevation: float, size: float, joint: str, center: Array, bound: Skeleton) -> Mesh:
-    """Return half a shell around an eye with a dark rim; `elevation` is that of its pole."""
+    """Return a half-shell around an eye with a dark rim; its pole is at `elevation` [rad]."""
     angle = np.radians([90, 79, 60, 40, 20, 0])
     dome = np.stack([np.sin(angle), np.cos(angle)], axis=1)
     rings = EYE_RADIUS_M * size * np.vstack([[0.0, 0.0], dome])
@@ -218,7 +218,7 @@ def _lid(elevation: float, size: float, joint: str, center: Array, bound: Skelet
 
 
 def eyes(bound: Skeleton) -> list[Mesh]:
-    """Return the two eyeballs: black glass with a ring of light, and two highlights on each."""
+    """Return the two eyeballs of black glass, with two highlights on each."""
     pieces = []
     for side, name in ((1.0, "LeftEye"), (-1.0, "RightEye")):
         center, gaze = np.array(EYE_CENTRE_M) * [side, 1, 1], REST_GAZE * [side, 1, 1]
@@ -227,7 +227,7 @@ def eyes(bound: Skeleton) -> list[Mesh]:
         bands = [GLASS, GLASS, WHITE, RUBBER, GLASS, PUPIL, PUPIL]
         pieces.append(lathe(rings, bands, frame_toward(gaze, center), name, bound, 28))
         for across, up, radius in ((-0.30, 0.40, 0.0064), (0.26, -0.30, 0.0030)):
-            shine = gaze + np.array([across, up, 0.0])  # on the same side in both: one sun
+            shine = gaze + np.array([across, up, 0.0])  # on the same side in both eyes
             wide = radius / EYE_RADIUS_M * np.array([0.0, 1.0, 0.5, 0.0])
             cap = EYE_RADIUS_M * 1.022 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
             cap[0, 1] *= 0.95
@@ -236,12 +236,12 @@ def eyes(bound: Skeleton) -> list[Mesh]:
 
 
 def temple(side: float) -> Array:
-    """Return where the lamp at a temple sits, its +z away from the head."""
+    """Return the frame of the lamp at a temple, with +z outward."""
     return _on_head((side * 0.08, 0.2330, 0.1420), 0.001)
 
 
 def lit_lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
-    """Return the lamps at the temples and the rings of the eyes as they are when they are on."""
+    """Return the lit lamps of the temples and of the rings of the eyes."""
     pieces = [
         lens(temple(side), TEMPLE_LAMP_RADIUS_M, color, f"head_{mood}", bound)
         for side in (1.0, -1.0)

@@ -1,4 +1,4 @@
-"""What the robot's clips have in common: a tail that drags behind, blinks, bounces and stomps."""
+"""Movements that the robot's clips share: tail, neck, blinks and stomps."""
 
 import numpy as np
 
@@ -7,10 +7,10 @@ from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, Animation
 from tools.authoring.robot.rig import NECK, TAIL
 
 LEVELS = ("head", "legs", "tail")
-"""What joins in at intensities −1, 0 and 1."""
+"""Names of the intensities −1, 0 and 1, after the part of the body that joins in."""
 BODY = ("hips", "spine1", "chest")
 NECK_BEND_SHARES = (0.40, 0.33, 0.27)
-"""How the joints of the neck share a bend."""
+"""Shares of the neck's joints in a bend."""
 
 
 def tail(
@@ -21,7 +21,7 @@ def tail(
 
 
 def neck(anim: AnimationTracks, up: Array, left: Array | float = 0.0, drag: float = 0.014) -> None:
-    """Bend the neck as a whole [rad]; each joint comes a little after the one below it."""
+    """Bend the neck [rad]; each joint is delayed against the one below it."""
     aside = np.broadcast_to(left, anim.frames)
     for number, (joint, share) in enumerate(zip(NECK, NECK_BEND_SHARES, strict=True)):
         late = drag * number
@@ -29,16 +29,16 @@ def neck(anim: AnimationTracks, up: Array, left: Array | float = 0.0, drag: floa
 
 
 def face_ahead(anim: AnimationTracks, up: Array | float) -> None:
-    """Hold the head so high [rad] from straight ahead, whatever the body under it does.
+    """Set the pitch of the head from straight ahead [rad], compensating body and neck.
 
-    To be called when all else is set: a robot that shows a mood looks at whom it shows it to.
+    Call it after all other movements: the robot faces the viewer to whom it shows a mood.
     """
     below = [anim.turns[joint][:, 0] for joint in (*BODY, *NECK) if joint in anim.turns]
     anim.turn("head", up=up - 0.85 * sum(below, start=np.zeros(anim.frames)))
 
 
 def blink(frames: int, *starts: float, seconds: float = 0.26) -> Array:
-    """Return how shut the eyes are, 0…1, with blinks at phases: quick down, slower up."""
+    """Return the closure of the eyes, 0…1, with blinks at phases: fast down, slower up."""
     length = seconds * FRAME_RATE_HZ / frames
     shut = np.zeros(frames)
     for start in starts:
@@ -48,7 +48,7 @@ def blink(frames: int, *starts: float, seconds: float = 0.26) -> Array:
 
 
 def stomp_curve(frames: int, start: float, top: float, down: float) -> Array:
-    """Return how high a foot is, 0…1: up slowly, a hold, and down hard."""
+    """Return the height of a stomping foot, 0…1: slow up, a hold, and fast down."""
     hold = 0.5 * (top + down) + 0.01
     return keys(frames, (start, 0), (top, 1), (hold, 0.92), (down, 0), (start + 0.985, 0))
 

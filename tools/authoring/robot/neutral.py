@@ -1,4 +1,4 @@
-"""The robot waits: it looks about, blinks, shifts its weight, and now and then sways its tail."""
+"""The robot's neutral clips: look around, blink, shift the weight, and sway the tail."""
 
 from tools.authoring.modelling.curves import keys, spring_follow, wave
 from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, AnimationTracks
@@ -11,13 +11,13 @@ def neutral(level: int, seconds: float = 4.8) -> AnimationTracks:
 
     Parameters
     ----------
-    level : 0 with the head alone, 1 with the legs too, 2 with all of it
+    level : 0 head only, 1 head and legs, 2 whole body
     seconds : duration of the loop [s]
     """
     anim = AnimationTracks(round(seconds * FRAME_RATE_HZ))
     n = anim.frames
     set_lamps(anim, "neutral")
-    # Where it looks: the eyes first, the head after them, the neck last.
+    # Overlapping action of the gaze: eyes first, then head, then neck.
     wide = (0.75, 1.0, 1.35)[level]
     aside = wide * keys_deg(
         n, (0.03, 0), (0.10, 17), (0.36, 15), (0.45, -15), (0.72, -17), (0.82, 0)

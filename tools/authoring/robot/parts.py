@@ -1,4 +1,4 @@
-"""What the robot is put together from: shells, cups, hubs, lenses, and their colours."""
+"""Building blocks of the robot: cups, panels, servo caps and lamps, and their colours."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -21,21 +21,21 @@ _PANEL_CORNERS = 22
 
 @dataclass(frozen=True)
 class Complement(Solid):
-    """Everything that a shape is not; cutting it away keeps what is inside the shape."""
+    """The complement of a shape; subtracting it keeps the inside of the shape."""
 
     shape: Shape
-    """What is left out."""
+    """The shape."""
 
     def distance(self, points: Array) -> Array:
         """Return the signed distance, (n,) [m]."""
         return -self.shape.distance(points)
 
     def solids(self) -> Iterator[Solid]:
-        """Yield nothing: it is a tool."""
+        """Yield nothing: it is only subtracted."""
         return iter(())
 
     def mirrored(self) -> "Complement":
-        """Return its image in the plane x = 0."""
+        """Return its mirror image."""
         return Complement(self.shape.mirrored())
 
 
@@ -49,9 +49,9 @@ def cup(
     segments: int = 16,
     dome: bool = False,
 ) -> Mesh:
-    """Return a rigid piece of a limb from a to b: one link of a chain.
+    """Return a rigid link of a limb from a to b with rounded rims.
 
-    Its rims are rounded; with `dome` it ends at b in half a ball.
+    With `dome` it ends at b in a hemisphere.
     """
     start, end = np.asarray(a, float), np.asarray(b, float)
     length, bevel = float(np.linalg.norm(end - start)), 0.0026
@@ -74,17 +74,17 @@ def panel(
     bound: Skeleton,
     lift: float = 0.0018,
 ) -> Mesh:
-    """Return a raised plate with round corners on a shape, whose seam is crisp at any distance.
+    """Return a raised plate with rounded corners and a crisp seam on a shape.
 
     Parameters
     ----------
-    shape : what it lies on
-    place : (4, 4), its middle, +z away from the shape, +y along it
+    shape : the shape under it
+    place : (4, 4), the frame of its centre, +z outward, +y along the shape
     half : half its extent along x and y [m]
     color : linear RGB
     joint : the joint that moves it
     bound : the skeleton
-    lift : how far it stands proud [m]
+    lift : height above the shape [m]
     """
     angle = np.linspace(0, 2 * np.pi, _PANEL_CORNERS, endpoint=False)
     round_ = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -114,14 +114,14 @@ def panel(
 def servo_cap(
     place: Array, radius: float, joint: str, bound: Skeleton, face: Vector = STEEL
 ) -> Mesh:
-    """Return the cap of a servo: a dark ring about a plate with a screw in it, facing +z."""
+    """Return the cap of a servo, a plate with a screw in a dark ring, facing +z."""
     profile = np.array([[0, -8], [10, -8], [10, 2.2], [7.6, 2.6], [7.6, 2.2], [2.4, 2.2], [0, 1.2]])
     scaled = profile * [radius / 10, 1.0] * [1.0, 1e-3]
     return lathe(scaled, [RUBBER, RUBBER, RUBBER, face, face, RUBBER], place, joint, bound, 16)
 
 
 def socket(place: Array, radius: float, joint: str, bound: Skeleton) -> Mesh:
-    """Return the dark ring and the dull glass of a lamp that is off, facing +z."""
+    """Return the dark ring and the dull glass of an unlit lamp, facing +z."""
     ring = [[0, -6], [12, -6], [12, 1.4], [10.6, 2.6], [9.2, 1.6]]
     glass = [[7.6, 2.0], [4.6, 2.8], [0, 3.2]]
     profile = np.array(ring + glass) * [radius / 12, 1.0] * [1.0, 1e-3]
@@ -129,7 +129,7 @@ def socket(place: Array, radius: float, joint: str, bound: Skeleton) -> Mesh:
 
 
 def lens(place: Array, radius: float, color: Vector, joint: str, bound: Skeleton) -> Mesh:
-    """Return the domed glass of a lamp that is on, with a bright middle, facing +z."""
+    """Return the domed glass of a lit lamp with a bright centre, facing +z."""
     profile = np.array([[0, 0], [9.5, 1.2], [6.6, 4.0], [3.6, 5.0], [0, 5.3]])
     scaled = profile * [radius / 12, 1.0] * [1.0, 1e-3]
     core = tuple(np.clip(0.16 + 0.95 * np.array(color), 0, 1).tolist())

@@ -17,15 +17,15 @@ TAIL = ("tail1", "tail2", "tail3", "tail4", "tail5")
 MOODS = ("happy", "neutral", "angry")
 LAMP_PLACES = ("head", "chest", "tail", "LeftIris", "RightIris")
 LAMPS = tuple(f"{place}_{mood}" for place in LAMP_PLACES for mood in MOODS)
-"""Joints of the lamps: one colour at one place each, scaled to nothing where it is off."""
+"""Joints of the lamps, one for each place and colour; unlit ones are scaled down."""
 LAMP_OFF_SCALE = 0.02
-"""Scale of a lamp that is off: it has withdrawn into the casing."""
+"""Scale of an unlit lamp, which hides it in the casing."""
 HEAD_SCALE = 1.13
-"""Scale of the head, which is sculpted in size one: a baby's."""
+"""Scale of the head, which is sculpted at size one."""
 LID_YAW_RAD = 0.34
-"""How far to the side the eyes look at rest [rad]."""
+"""Outward yaw of the eyes at rest [rad]."""
 UPPER_LID_TRAVEL_RAD, LOWER_LID_TRAVEL_RAD = 1.36, 1.20
-"""How far an upper and a lower lid roll to meet [rad]."""
+"""Rotation of an upper and a lower lid until they meet [rad]."""
 
 EYE_CENTRE_M: Vector = (0.0330, 0.2595, 0.1835)
 """Centre of the left eye [m]."""
@@ -34,7 +34,7 @@ _TEMPLE_LAMPS_M: Vector = (
     0.0,
     0.2370,
     0.1420,
-)  # the lamps at the temples shrink to a place between them
+)  # the temple lamps shrink to a point between them
 _CHEST_LAMP_M: Vector = (0.0, 0.118, 0.030)
 
 _JOINT_POSITIONS: dict[str, tuple[str, Vector]] = {
@@ -74,7 +74,7 @@ _LAMP_JOINTS = {
 
 
 def skeleton(head_size: float = HEAD_SCALE) -> Skeleton:
-    """Return the skeleton in its bind pose: axes as the character's but for lids, scales one."""
+    """Return the skeleton in its bind pose: only lids are rotated, scales are one."""
     lamps = {
         f"{place}_{mood}": (parent, at)
         for place, (parent, at) in _LAMP_JOINTS.items()
@@ -83,7 +83,7 @@ def skeleton(head_size: float = HEAD_SCALE) -> Skeleton:
     bound = build_skeleton(_JOINT_POSITIONS | lamps)
     places, still = bound.rest.translations.copy(), bound.rest.rotations.copy()
     for name, side in (("Left", 1.0), ("Right", -1.0)):
-        for lid in ("UpperLid", "LowerLid"):  # they roll about the axis of an eye that looks aside
+        for lid in ("UpperLid", "LowerLid"):  # they rotate about the axis of an outward-looking eye
             still[bound.index(name + lid)] = rotations.about("y", side * LID_YAW_RAD)
     head = bound.index("head")
     in_head = [parent in (head, bound.index("jaw")) for parent in bound.parents]
@@ -92,7 +92,7 @@ def skeleton(head_size: float = HEAD_SCALE) -> Skeleton:
 
 
 def scaled_with_head(mesh: Mesh, bound: Skeleton) -> Mesh:
-    """Return a piece of the head that was made for a head of size one, bound to a skeleton."""
+    """Return a mesh made for a head of size one, scaled and bound to a skeleton."""
     neck = bound.rest.globals(bound)[bound.index("head"), :3, 3]
     positions = neck + HEAD_SCALE * (mesh.positions - neck)
     inverse_bind = np.asarray(np.linalg.inv(bound.rest.globals(bound)), np.float64)
@@ -100,7 +100,7 @@ def scaled_with_head(mesh: Mesh, bound: Skeleton) -> Mesh:
 
 
 def shipped_skeleton(bound: Skeleton) -> Skeleton:
-    """Return the skeleton as it is shipped: with its neutral lamps on."""
+    """Return the bundled skeleton, with its neutral lamps lit."""
     scales = np.ones((len(bound), 3))
     for lamp in LAMPS:
         scales[bound.index(lamp)] = 1.0 if lamp.endswith("_neutral") else LAMP_OFF_SCALE
@@ -123,24 +123,24 @@ def set_lids(
     anger: Array | float = 0.0,
     sides: tuple[str, ...] = ("Left", "Right"),
 ) -> None:
-    """Close the eyes (0…1), push the lower lids up in a smile (0…1), slant them in anger (0…1).
+    """Close the eyes (0…1), raise the lower lids in a smile (0…1), slant them in anger (−1…1).
 
-    Negative anger slants them the other way, as in sorrow.
+    Negative anger slants them the other way, as in sadness.
     """
     cross = np.asarray(anger)
     upper = np.minimum(1.0, shut + 0.46 * np.abs(cross) * (1 - np.asarray(shut)))
     lower = np.maximum(shut, 0.62 * np.asarray(smile) + 0.22 * np.maximum(cross, 0))
     for side in sides:
         sign = 1.0 if side == "Left" else -1.0
-        level = -0.20 * np.asarray(shut)  # shut lids are level although the eyes look aside
+        level = -0.20 * np.asarray(shut)  # closed lids are level although the eyes look outward
         _roll(anim, f"{side}UpperLid", -UPPER_LID_TRAVEL_RAD * upper, sign * (0.44 * cross + level))
         _roll(anim, f"{side}LowerLid", LOWER_LID_TRAVEL_RAD * lower, sign * (level - 0.15 * cross))
 
 
 def _roll(anim: AnimationTracks, lid: str, up: Array, tilt: Array) -> None:
-    """Roll a lid, then tilt it about where the eye looks: the other way round it would not slant.
+    """Roll a lid, then tilt it about the axis of the gaze.
 
-    The three turns that a performance takes, worked out of the product of these two.
+    The product of the two rotations is converted to the three angles of a track.
     """
     roll = -up
     steep = np.arcsin(np.clip(np.cos(tilt) * np.sin(roll), -1.0, 1.0))
@@ -158,7 +158,7 @@ def set_mouth(
     """Drop the jaw (0…1), raise (1) or drop (−1) the corners of the mouth, draw them in (0…1)."""
     up, down = np.maximum(grin, 0.0), np.maximum(-np.asarray(grin), 0.0)
     anim.turn("jaw", up=-0.52 * np.asarray(open_))
-    anim.move("tongue", y=-0.0058 * down)  # a mouth that snarls hides its tongue
+    anim.move("tongue", y=-0.0058 * down)  # a snarl hides the tongue
     anim.move("lips", y=0.0072 * down - 0.0032 * up, z=0.0014 * down)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
         anim.move(

@@ -1,4 +1,4 @@
-"""The clay of Vleo: its volumes from nose to tail, and its colours."""
+"""Vleo's volumes from nose to tail, and its colours."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -54,22 +54,22 @@ SPINE_PROFILE_M = np.array(  # height, forward and radius from the tip of the ta
 
 @dataclass(frozen=True)
 class BoundedShape(Solid):
-    """A shape that is looked at closely only near the box that holds it: many times faster."""
+    """A shape evaluated only near its bounding box, which is many times as fast."""
 
     shape: Shape
-    """What is in the box."""
+    """The shape in the box."""
 
     low: Vector
-    """Its corner at the least of every coordinate [m]."""
+    """Minimum corner of the box [m]."""
 
     high: Vector
-    """The opposite corner [m]."""
+    """Maximum corner of the box [m]."""
 
     margin: float = 0.03
-    """How near is near; more than any fillet that the shape takes part in [m]."""
+    """Distance from the box up to which the shape is evaluated; more than any fillet [m]."""
 
     def distance(self, points: Array) -> Array:
-        """Return the distance to the shape, or to the box where that is far, (n,) [m]."""
+        """Return the distance to the shape, or to the box where it is far, (n,) [m]."""
         outside = np.maximum(np.maximum(self.low - points, points - self.high), 0.0)
         result: Array = np.sqrt(np.sum(outside * outside, axis=1))
         close = result < self.margin
@@ -77,11 +77,11 @@ class BoundedShape(Solid):
         return result
 
     def solids(self) -> Iterator[Solid]:
-        """Yield what is in the box."""
+        """Yield the solids of the shape."""
         yield from self.shape.solids()
 
     def mirrored(self) -> "BoundedShape":
-        """Return its image in the plane x = 0."""
+        """Return its mirror image."""
         low, high = (-self.high[0], *self.low[1:]), (-self.low[0], *self.high[1:])
         return replace(self, shape=self.shape.mirrored(), low=low, high=high)
 
@@ -117,7 +117,7 @@ def _spline(knots: Array, values: Array, at: Array) -> Array:
 
 @cache
 def body_shape() -> Shape:
-    """Return the body with its mouth shut: trunk, neck, tail, legs and head."""
+    """Return the body with a closed mouth: trunk, neck, tail, legs and head."""
     line = spine_line(25)
     bones = (*TAIL, *BACK, *NECK)
     trunk = cone_chain(line[:, :3], tuple(line[:, 3]), ("",) * 24, TEAL)
@@ -136,7 +136,7 @@ def body_shape() -> Shape:
 
 
 def _bounded_cones(cones: list[RoundCone]) -> BoundedShape:
-    """Return cones in the box that holds them."""
+    """Return cones in their bounding box."""
     ends = np.array([[cone.a, cone.b] for cone in cones]).reshape(-1, 3)
     reach = max(max(cone.ra, cone.rb) for cone in cones)
     low, high = (ends.min(axis=0) - reach).tolist(), (ends.max(axis=0) + reach).tolist()
@@ -144,7 +144,7 @@ def _bounded_cones(cones: list[RoundCone]) -> BoundedShape:
 
 
 def _leg(which: str) -> Shape:
-    """Return a left leg, a stout little pillar on a round foot."""
+    """Return a left leg, a pillar on a round foot."""
     bones = (f"Left{which}UpperLeg", f"Left{which}LowerLeg")
     if which == "Front":
         line, radii = (
@@ -165,7 +165,7 @@ def _leg(which: str) -> Shape:
 
 @cache
 def skin_shape() -> Shape:
-    """Return the body with room where eyes and mouth are put in."""
+    """Return the body with hollows for eyes and mouth."""
     return Difference(
         Difference(body_shape(), MouthCavity(), 0.002), SymmetricShape(EyeSocket()), 0.001
     )

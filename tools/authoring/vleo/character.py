@@ -1,4 +1,4 @@
-"""Vleo, a baby sauropod that throws kisses and shouts: its mesh, skeleton and clips."""
+"""Vleo, a baby sauropod that throws kisses and shouts: mesh, skeleton and clips."""
 
 from dataclasses import replace
 
@@ -24,11 +24,11 @@ from tools.authoring.vleo.shout import shout
 from tools.authoring.vleo.skin import body
 
 LEVELS = ("head", "legs", "tail")
-"""What joins in at intensities −1, 0 and 1."""
+"""Names of the intensities −1, 0 and 1, after the part of the body that joins in."""
 
 
 def build_vleo() -> Character:
-    """Return Vleo, 0.45 m from nose to tail, as it is shipped."""
+    """Return the bundled Vleo, 0.45 m from nose to tail."""
     bound = skeleton()
     rest = shipped_skeleton(bound)
     return Character("vleo", rest, clips(rest), (mesh(bound),), morphs=tuple(EXPRESSIONS))
@@ -53,7 +53,7 @@ def mesh(bound: Skeleton) -> Mesh:
 
 
 def _welded(mesh: Mesh) -> Mesh:
-    """Return the mesh with equal vertices merged and triangles without area left out."""
+    """Return the mesh with equal vertices merged, without degenerate triangles."""
     colors = np.ones((len(mesh.positions), 4)) if mesh.colors is None else mesh.colors
     displacements = np.zeros((len(mesh.morphs), len(mesh.positions), 3))
     for row, morph in zip(displacements, mesh.morphs, strict=True):
@@ -62,7 +62,7 @@ def _welded(mesh: Mesh) -> Mesh:
     columns = (mesh.positions, mesh.normals, mesh.joints, mesh.weights, colors, moved)
     rows = np.hstack([np.asarray(column, np.float64) for column in columns])
     _, first, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-    order = np.sort(first)  # as they came
+    order = np.sort(first)  # of first appearance
     rank = np.searchsorted(order, first)[number.reshape(-1)]
     triangles = rank[mesh.triangles].astype(np.uint32)
     a, b, c = triangles.T
@@ -79,7 +79,7 @@ def _welded(mesh: Mesh) -> Mesh:
 
 
 def _kept(morph: Morph, order: NDArray[np.intp]) -> Morph:
-    """Return a morph of the vertices that remain, in their order."""
+    """Return the morph target of the remaining vertices, in their order."""
     there = np.isin(morph.vertices, order)
     turned = morph.normal_displacements
     return replace(

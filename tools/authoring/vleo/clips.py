@@ -1,4 +1,4 @@
-"""What Vleo's clips have in common: its face, its tail that drags behind, and what flies away."""
+"""Movements that Vleo's clips share: face, tail, breathing and flying effects."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from tools.authoring.vleo.rig import FEET, HIDDEN_SCALE, TAIL
 
 
 def clip(name: str, anim: AnimationTracks, bound: Skeleton) -> Clip:
-    """Return a performance as a loop: its last frame is its first."""
+    """Return the looping clip of the tracks: its last frame equals its first."""
     return loop_clip(name, anim, bound, FEET, tuple(EXPRESSIONS))
 
 
@@ -26,7 +26,7 @@ def tail(
 
 
 def breathe(anim: AnimationTracks, cycles: int, depth: float = 0.035) -> None:
-    """Let the belly fill and the chest rise a little."""
+    """Breathe: expand the belly and raise the chest a little."""
     breath = 0.5 - 0.5 * np.cos(2 * np.pi * cycles * loop_phases(anim.frames))
     anim.scales["belly"] = 1 + depth * breath[:, None] * np.array([1.0, 1.0, 0.5])
     anim.turn("chest", up=0.25 * depth * breath)
@@ -35,34 +35,34 @@ def breathe(anim: AnimationTracks, cycles: int, depth: float = 0.035) -> None:
 
 @dataclass(frozen=True)
 class EffectFlight:
-    """The way of one heart or one burst."""
+    """The flight of one heart or one burst."""
 
     start: float
     """Phase at which it leaves the mouth."""
 
     life: float
-    """Part of the loop that it lives."""
+    """Share of the loop for which it is visible."""
 
     way: tuple[float, float, float]
-    """Where it gets to, from the mouth [m]."""
+    """Its destination, from the mouth [m]."""
 
     size: float
-    """Its scale when fully grown; 0 for one that only goes along, so that blends agree."""
+    """Its full scale; 0 for an invisible one that keeps blends consistent."""
 
     swirl: float = 0.0
-    """How far it swings to the side on its way [m]."""
+    """Amplitude of its sideways swing [m]."""
 
     facing: float = 0.0
-    """Where it faces half way, to the left of ahead [rad]."""
+    """Yaw at mid-flight, to the left [rad]."""
 
     spin: float = 0.0
-    """How far it turns about the upright [rad]."""
+    """Rotation about the vertical axis over the flight [rad]."""
 
 
 def animate_effects(
     anim: AnimationTracks, joints: Sequence[str], flights: Sequence[EffectFlight], bound: Skeleton
 ) -> None:
-    """Send effects out of the mouth as it is when each leaves."""
+    """Let effects fly from the position of the mouth at their start."""
     pose = solve_poses(anim, bound, FEET)
     mouth = pose.globals(bound)[:, bound.index("lips"), :3, 3]
     home = bound.rest.translations
@@ -87,7 +87,7 @@ def animate_effects(
 
 
 def _pop(age: Array) -> Array:
-    """Return the size over a life: quickly past full size, then full, then gone."""
+    """Return the scale over a flight: fast growth with overshoot, full size, then zero."""
     grown = 1.18 * np.sin(np.pi / 2 * np.clip(age / 0.22, 0, 1))
     settle = 0.18 * np.clip((age - 0.22) / 0.2, 0, 1)
     return np.asarray((grown - settle) * np.clip((1 - age) / 0.25, 0, 1) ** 0.5)

@@ -1,4 +1,4 @@
-"""What flies out of Vleo's mouth: hearts with a kiss, sparks with a shout."""
+"""Effects that fly from Vleo's mouth: hearts with a kiss, sparks with a shout."""
 
 import numpy as np
 
@@ -31,7 +31,7 @@ def _heart(joint: str, color: Vector) -> BodyPart:
 
 
 def _burst(joint: str, bound: Skeleton) -> Mesh:
-    """Return a spiky star that looks like one from every side, 60 mm wide."""
+    """Return a spiky star, 60 mm wide, that looks alike from every side."""
     ways = np.array(list(np.ndindex(3, 3, 3))) - 1.0
     corners = np.count_nonzero(ways, axis=1)
     angle = np.linspace(np.pi, 0, 7)

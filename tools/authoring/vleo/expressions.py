@@ -1,6 +1,6 @@
-"""What Vleo's face can do: one set of numbers an expression.
+"""Vleo's expressions, each a set of parameters of its face.
 
-Exaggerated on purpose: on a table the whole head is sixty pixels high.
+They are exaggerated because on the table the whole head is only sixty pixels high.
 """
 
 from dataclasses import dataclass
@@ -13,19 +13,19 @@ from tools.authoring.modelling.shapes import Array
 
 @dataclass(frozen=True)
 class VleoExpression:
-    """The numbers of one expression; lengths in metres, forward and upward positive."""
+    """The parameters of one expression; lengths in metres, forward and upward positive."""
 
     shut: tuple[float, float] = (0.0, 0.0)
-    """How far the left and the right eye is closed, 0…1."""
+    """Closure of the left and the right eye, 0…1."""
 
     upper: float = 0.88
-    """How far the upper lids are up: 0 on the line of the closed eye."""
+    """Height of the upper lids; 0 is the line of the closed eye."""
 
     upper_tilt: float = 0.0
-    """How much further up they are at the inner corner than at the outer."""
+    """Additional height at the inner corner over that at the outer."""
 
     lower: float = 0.96
-    """How far the lower lids are down; negative where they are pushed up over that line."""
+    """Lowering of the lower lids; negative where they are raised above that line."""
 
     brow: float = 0.0
     """Height of the brows, seen from the middle of the eye [rad]."""
@@ -40,25 +40,25 @@ class VleoExpression:
     """Height of the corners of the mouth above its middle."""
 
     rise: float = 0.0004
-    """How far the upper lip is up from the line of the closed mouth."""
+    """Height of the upper lip above the line of the closed mouth."""
 
     drop: float = 0.0042
-    """How far the lower lip is down, beside what the jaw does."""
+    """Lowering of the lower lip, without that by the jaw."""
 
     square: float = 1.0
-    """Power of the sine that shapes the opening: 1 round, 0.5 rather a box."""
+    """Exponent of the sine that shapes the opening: 1 round, 0.5 boxy."""
 
     lips: float = 0.0020
-    """How broad the lips are that are to be seen."""
+    """Visible width of the lips."""
 
     pout: float = 0.0
-    """How far the lips are pushed forward."""
+    """Protrusion of the lips."""
 
     jaw: float = 0.0
-    """How far the jaw drops [rad]."""
+    """Opening of the jaw [rad]."""
 
     cheeks: float = 0.0
-    """How far the cheeks are raised."""
+    """Raise of the cheeks."""
 
 
 NEUTRAL = VleoExpression()
@@ -96,20 +96,20 @@ EXPRESSIONS = {
         width=0.31, smile=0.0, rise=0.0085, drop=0.0085, lips=0.0036, pout=0.0065, jaw=0.26,
     ),
 }  # fmt: skip
-"""By VRM's names."""
+"""Expressions by VRM's names."""
 
 JAW_HINGE_M = np.array([0.0, 0.2235, 0.124])
-"""About which the jaw turns [m]."""
+"""Axis of the jaw [m]."""
 
 
 def rotate_with_jaw(points: Array, share: Array, face: VleoExpression) -> Array:
-    """Return points (n, 3) that go with the jaw, each by a share (n,) of its turn."""
+    """Return points (n, 3) rotated with the jaw, each by a share (n,) of its rotation."""
     turned = rotations.rotate(rotations.about("x", face.jaw), points - JAW_HINGE_M) + JAW_HINGE_M
     return np.asarray(points + (turned - points) * share[:, None])
 
 
 def cheek_displacement(points: Array, face: VleoExpression) -> Array:
-    """Return how far raised cheeks carry points of the skin, (n, 3) [m]."""
+    """Return how far raised cheeks displace points of the skin, (n, 3) [m]."""
     apart = (np.abs(points) - [0.047, 0.232, 0.140]) / [0.016, 0.015, 0.020]
     near = np.exp(-np.sum(apart * apart, axis=1))[:, None]
     outward = np.stack([0.5 * np.sign(points[:, 0]), 1 + 0 * points[:, 0], 0 * points[:, 0]], -1)

@@ -1,4 +1,4 @@
-"""Vleo's eyes: balls that turn, lids that slide over them, and brows."""
+"""Vleo's eyeballs, eyelids and brows."""
 
 from functools import partial
 
@@ -21,16 +21,16 @@ from tools.authoring.vleo.skin import skin_colors
 WHITE, RIM = linear_rgb("#fdfdf8"), linear_rgb("#2e150c")
 IRIS, PUPIL, BROW = linear_rgb("#8a4a22"), linear_rgb("#140d10"), linear_rgb("#14706f")
 CLOSED_LID_RAD, CLOSED_LID_SAG_RAD = np.radians(-6.0), np.radians(8.5)
-"""Where the corners of the closed eye are, and how far its middle hangs below them [rad]."""
+"""Elevation of the corners of the closed eye, and the sag of its middle below them [rad]."""
 LID_HEIGHT_RADII = (0.075, 0.130)
-"""How far lower and upper lids are above the ball, in radii: they move along chords of it."""
+"""Height of lower and upper lids over the eyeball, in radii; they move along chords of it."""
 POINTS_PER_RING = 32
 """Points around an eye."""
 _ANGLE = np.linspace(0, 2 * np.pi, POINTS_PER_RING, endpoint=False)
 
 
 def eyes(bound: Skeleton) -> list[Mesh]:
-    """Return eyeballs, lids and brows with all that they can express."""
+    """Return eyeballs, lids and brows with their morph targets."""
     pieces = []
     for side in (1.0, -1.0):
         pieces += _ball(side, bound)
@@ -49,7 +49,7 @@ def _ball(side: float, bound: Skeleton) -> list[Mesh]:
     pieces = [lathe(rings, bands, frame_toward(sight, center), joint, bound, 26)]
     frame = frame_toward(sight, center)[:3, :3]
     for across, up, radius in ((-0.24, 0.30, 0.0052), (0.20, -0.27, 0.0024)):
-        toward = frame @ [across, up, 1.0]  # on the same side in both: one sun
+        toward = frame @ [across, up, 1.0]  # on the same side in both eyes
         wide = radius / EYE_RADIUS_M * np.array([0.0, 1.0, 0.55, 0.0])
         rings = EYE_RADIUS_M * 1.024 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
         rings[:2, 1] *= 0.96
@@ -58,9 +58,9 @@ def _ball(side: float, bound: Skeleton) -> list[Mesh]:
 
 
 def _lids(face: VleoExpression, side: float, bound: Skeleton) -> Mesh:
-    """Return the ring of skin around an eye, from inside the head to inside the ball.
+    """Return the ring of skin around an eye, from inside the head into the eyeball.
 
-    It is built for the left eye and mirrored.
+    It is built for the left eye and mirrored for the right.
     """
     up = np.clip(np.sin(_ANGLE), 0, 1) ** 0.7
     edge, outer = _edge(face, side), _outer()
@@ -93,7 +93,7 @@ def _lids(face: VleoExpression, side: float, bound: Skeleton) -> Mesh:
 
 
 def _edge(face: VleoExpression, side: float) -> Array:
-    """Return the rim of the lids, to the left and up from the middle of the ball [rad]."""
+    """Return the rim of the lids, to the left and up from the centre of the eyeball [rad]."""
     x, height = np.cos(_ANGLE), np.sin(_ANGLE)
     open_ = 1.0 - face.shut[0 if side > 0 else 1]
     bow = np.abs(height) ** 0.9
@@ -106,26 +106,26 @@ def _edge(face: VleoExpression, side: float) -> Array:
 
 
 def _outer() -> Array:
-    """Return where the lids end in the head, to the left and up [rad]."""
+    """Return the outer border of the lids in the head, to the left and up [rad]."""
     height = np.sin(_ANGLE)
     reach = np.radians(np.where(height >= 0, 76.0, 66.0))
     return np.stack([np.radians(72.0) * np.cos(_ANGLE), reach * height], axis=-1)
 
 
 def _directions_from_eye(angles: Array) -> Array:
-    """Return directions from the middle of the left ball, (n, 3)."""
+    """Return directions from the centre of the left eyeball, (n, 3)."""
     far = np.linalg.norm(angles, axis=1, keepdims=True)
     aside = angles * np.sinc(far / np.pi)
     return np.asarray(np.column_stack([aside, np.cos(far)]) @ EYE_AXES.T)
 
 
 def _on_eye_sphere(angles: Array, radii: Array) -> Array:
-    """Return points about the middle of the left ball; radii in those of the ball."""
+    """Return points around the centre of the left eyeball; radii in units of its radius."""
     return EYE_CENTRE_M + EYE_RADIUS_M * np.reshape(radii, (-1, 1)) * _directions_from_eye(angles)
 
 
 def _skin_radius(angles: Array) -> Array:
-    """Return how far the skin is from the middle of the ball, in its radii; at most a little."""
+    """Return the distance of the skin from the centre of the eyeball, in its radii."""
     ways = _directions_from_eye(angles)
     low, high = np.zeros(len(angles)), np.full(len(angles), 1.22)
     for _ in range(14):
@@ -136,7 +136,7 @@ def _skin_radius(angles: Array) -> Array:
 
 
 def _lid_colors(rings: Array) -> Array:
-    """Return the colour of each point of the lids: dark lashes at the rim of the upper one."""
+    """Return the colours of the lids, with dark lashes at the rim of the upper one."""
     flat = rings.reshape(-1, 3)
     normals = normals_of(head_shape().distance, flat, 0.006)
     colors = np.asarray(skin_colors(flat, normals)).reshape(rings.shape).copy()

@@ -1,4 +1,4 @@
-"""Vleo's face: eyes, lids, brows and mouth, and what of it the skin goes along with."""
+"""Vleo's face: eyes, lids, brows and mouth, and the movement of the skin with them."""
 
 from dataclasses import replace
 
@@ -24,7 +24,7 @@ def face(bound: Skeleton) -> list[Mesh]:
 
 
 def with_expressions(mesh: Mesh, bound: Skeleton) -> Mesh:
-    """Return a piece of the skin, or of what sticks to it, that goes along with the face."""
+    """Return a mesh of the skin, or of parts attached to it, with the face's morph targets."""
     head = [bound.index(joint) for joint in ("head", "jaw")]
     share = (mesh.weights * np.isin(mesh.joints, head)).sum(axis=1)
     made = ((name, _carried(mesh, expression, share)) for name, expression in EXPRESSIONS.items())
@@ -33,7 +33,7 @@ def with_expressions(mesh: Mesh, bound: Skeleton) -> Mesh:
 
 
 def _carried(mesh: Mesh, expression: VleoExpression, share: np.ndarray) -> Mesh:
-    """Return the piece as jaw and cheeks carry it, each vertex by its share of them."""
+    """Return the mesh moved by jaw and cheeks, each vertex by its share."""
     points = mesh.positions.astype(float)
     raised = points + cheek_displacement(points, expression) * share[:, None]
     moved = rotate_with_jaw(raised, share * jaw_share(points), expression)

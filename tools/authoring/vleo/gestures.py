@@ -1,4 +1,4 @@
-"""Vleo says yes and no: short clips that begin and end where it stands."""
+"""Vleo's yes and no: short clips that begin and end in the idle pose."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, Animation
 from tools.authoring.vleo.clips import clip, tail
 
 HEAD_PITCH_DEG = 8.0
-"""How high Vleo holds its head where a gesture begins and ends [degrees]."""
+"""Pitch of the head at the start and end of a gesture [degrees]."""
 
 
 def gestures(bound: Skeleton) -> list[Clip]:
@@ -19,7 +19,7 @@ def gestures(bound: Skeleton) -> list[Clip]:
 
 
 def _nod() -> AnimationTracks:
-    """Breathe in with the nose up, then nod twice, the second time less."""
+    """Raise the head, then nod twice, less the second time."""
     anim = AnimationTracks(round(1.6 * FRAME_RATE_HZ))
     n, seconds = anim.frames, 1.6
     down = keys(
@@ -36,7 +36,7 @@ def _nod() -> AnimationTracks:
 
 
 def _shake() -> AnimationTracks:
-    """Turn the head to and fro, less and less, the tail against it."""
+    """Turn the head to and fro, decreasingly, with the tail in the opposite direction."""
     anim = AnimationTracks(round(1.9 * FRAME_RATE_HZ))
     n, seconds = anim.frames, 1.9
     aside = keys(
@@ -62,7 +62,7 @@ def _shake() -> AnimationTracks:
 
 
 def _neck(anim: AnimationTracks, up: Array, left: Array) -> None:
-    """Bend the neck; each joint comes a little after the one below it."""
+    """Bend the neck; each joint is delayed against the one below it."""
     for number, (joint, share) in enumerate((("neck1", 0.45), ("neck2", 0.35), ("neck3", 0.2))):
         anim.turn(
             joint,

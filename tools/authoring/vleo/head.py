@@ -1,4 +1,4 @@
-"""The clay of Vleo's head, and the room in it where eyes and mouth are put in."""
+"""Vleo's head, and the hollows in it for eyes and mouth."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,23 +12,23 @@ from tools.authoring.vleo.rig import EYE_CENTRE_M
 EYE_RADIUS_M = 0.0255
 """Of an eyeball [m]."""
 REST_GAZE = np.array([0.28, 0.09, 1.0]) / np.linalg.norm([0.28, 0.09, 1.0])
-"""Where the left eye looks at rest."""
+"""Direction of the left eye's gaze at rest."""
 _LEFT = np.cross([0.0, 1.0, 0.0], REST_GAZE) / np.linalg.norm(np.cross([0.0, 1.0, 0.0], REST_GAZE))
 EYE_AXES = np.stack([_LEFT, np.cross(REST_GAZE, _LEFT), REST_GAZE], axis=1)
-"""Of the left eye: to its left, up and along its sight, as columns."""
+"""Axes of the left eye as columns: to its left, up and along its gaze."""
 LID_OPENING_RAD = np.radians([46.0, 42.0, 38.0])
-"""Of the lids, seen from the middle of the ball: half the width, up and down [rad]."""
+"""Half width, upward and downward extent of the lid opening, from the eyeball's centre [rad]."""
 
 
 @dataclass(frozen=True)
 class SymmetricShape(Solid):
-    """A shape of the left half together with its image on the right, for the price of one."""
+    """A shape and its mirror image, at the cost of one evaluation."""
 
     left: Shape
-    """The half at x > 0."""
+    """The shape at x > 0."""
 
     def distance(self, points: Array) -> Array:
-        """Return the signed distance to the nearer of both, (n,) [m]."""
+        """Return the signed distance to the nearer of the two, (n,) [m]."""
         return self.left.distance(np.abs(points) * [1, 0, 0] + points * [0, 1, 1])
 
     def solids(self) -> Iterator[Solid]:
@@ -43,10 +43,10 @@ class SymmetricShape(Solid):
 
 @dataclass(frozen=True)
 class MouthCavity(Solid):
-    """The room behind the mouth; its rim lies hidden under the skin about the lips."""
+    """The cavity behind the mouth; its rim is hidden under the skin around the lips."""
 
     def distance(self, points: Array) -> Array:
-        """Return the signed distance, about, (n,) [m]."""
+        """Return the approximate signed distance, (n,) [m]."""
         side = azimuth(points)
         height = points[:, 1] - lip_line(side)
         ahead = 1 - np.clip(np.abs(side) / 0.55, 0, 1) ** 2
@@ -62,10 +62,10 @@ class MouthCavity(Solid):
 
 @dataclass(frozen=True)
 class EyeSocket(Solid):
-    """What the left eyeball takes the place of: a cone from its middle, but for what is deep."""
+    """The volume that the left eyeball replaces: a cone from its centre, without its depth."""
 
     def distance(self, points: Array) -> Array:
-        """Return the signed distance, about, (n,) [m]."""
+        """Return the approximate signed distance, (n,) [m]."""
         off = points - EYE_CENTRE_M
         away = np.maximum(np.linalg.norm(off, axis=1), 1e-6)
         wide = np.linalg.norm(eye_angles(off) / (1.16 * LID_OPENING_RAD[:2]), axis=1)
@@ -73,12 +73,12 @@ class EyeSocket(Solid):
         return np.asarray(np.maximum((wide - 1) * 0.8 * away, shell))
 
     def mirrored(self) -> "EyeSocket":
-        """Return itself: it is never drawn."""
+        """Return itself: it has no colour."""
         return self
 
 
 def eye_angles(off: Array) -> Array:
-    """Return how far to the left and up of its sight points (n, 3) from the left eye are [rad]."""
+    """Return the angles left and up of the gaze of points (n, 3) from the left eye [rad]."""
     x, y, z = (off @ EYE_AXES).T
     angle = np.arctan2(np.hypot(x, y), z)
     flat = np.maximum(np.hypot(x, y), 1e-9)
@@ -86,21 +86,21 @@ def eye_angles(off: Array) -> Array:
 
 
 HEAD_AXIS_Z_M = 0.118
-"""How far forward the upright through the head is from which its front is seen [m]."""
+"""z of the vertical axis of the azimuths of the head [m]."""
 
 
 def azimuth(points: Array) -> Array:
-    """Return how far to the left of straight ahead points (n, 3) of the head are, (n,) [rad]."""
+    """Return the azimuths of points (n, 3) of the head, left of straight ahead, (n,) [rad]."""
     return np.asarray(np.arctan2(points[:, 0], points[:, 2] - HEAD_AXIS_Z_M))
 
 
 def lip_line(side: Array, smile: float = 0.0105, width: float = 0.70) -> Array:
-    """Return the height between the closed lips, so far to the side [rad], (n,) [m].
+    """Return the height of the line between the closed lips at azimuths [rad], (n,) [m].
 
     Parameters
     ----------
     smile : height of the corners above the middle [m]
-    width : where the corners are [rad]
+    width : azimuth of the corners [rad]
     """
     bent = np.minimum((side / width) ** 2, 1.0) + 0.8 * np.clip(np.abs(side) / width - 1, 0, 1)
     return np.asarray(0.2150 + smile * bent)

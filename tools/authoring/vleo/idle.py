@@ -1,4 +1,4 @@
-"""Vleo waits: it breathes, sways, blinks, looks around, and wonders about something."""
+"""Vleo's idle clip: breathe, sway, look around, and wonder."""
 
 from tools.authoring.modelling.curves import keys, spring_follow, wave
 from tools.authoring.modelling.quadruped import DEGREE, FRAME_RATE_HZ, AnimationTracks
@@ -8,14 +8,14 @@ DURATION_S = 7.0
 
 
 def idle() -> AnimationTracks:
-    """Look around, breathe, sway, blink, and wonder about something."""
+    """Breathe, sway, look around, and wonder."""
     anim = AnimationTracks(round(DURATION_S * FRAME_RATE_HZ))
     n, seconds = anim.frames, DURATION_S
     breathe(anim, 3)
     shift = keys(n, (0.05, 1), (0.36, 1), (0.52, -1), (0.86, -1)) * 0.005
     anim.move("hips", x=shift, y=-0.0015 + 0.0015 * wave(n, 6))
     anim.turn("hips", up=1.5 * DEGREE * wave(n, 1, 0.1), tilt=-5 * shift, left=6 * shift)
-    # Where it looks: the eyes first, the head after them, the neck last.
+    # Overlapping action of the gaze: eyes first, then head, then neck.
     look = keys(n, (0.02, 0), (0.10, 17), (0.26, 14), (0.33, -15), (0.50, -17), (0.56, 0)) * DEGREE
     wonder = keys(n, (0.54, 0), (0.62, 1), (0.82, 1), (0.90, 0))
     nod = keys(n, (0, 0), (0.10, 4), (0.30, -5), (0.46, 3), (0.62, 8), (0.82, 6)) * DEGREE

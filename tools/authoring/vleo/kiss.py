@@ -1,6 +1,6 @@
-"""Vleo throws kisses with its head, its legs too, or all of itself: hearts fly.
+"""Vleo's kisses: with the head, the legs too, or the whole body; hearts fly.
 
-The three intensities share every accent, so that they blend at equal phase.
+The three intensities have the same accents, so that they blend at equal phase.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from tools.authoring.vleo.clips import EffectFlight, animate_effects, breathe, t
 from tools.authoring.vleo.rig import FEET, HEARTS
 
 DURATION_S = 2.4
-"""Duration of one kiss, from draw-back to draw-back [s]."""
+"""Duration of the loop [s]."""
 
 
 def kiss(level: int, bound: Skeleton) -> AnimationTracks:
@@ -20,7 +20,7 @@ def kiss(level: int, bound: Skeleton) -> AnimationTracks:
 
     Parameters
     ----------
-    level : 0 with the head alone, 1 with the legs too, 2 with all of it
+    level : 0 head only, 1 head and legs, 2 whole body
     bound : the skeleton in its bind pose
     """
     anim = AnimationTracks(round(DURATION_S * FRAME_RATE_HZ))
@@ -41,7 +41,7 @@ def kiss(level: int, bound: Skeleton) -> AnimationTracks:
 
 
 def _throw(anim: AnimationTracks, big: float) -> Array:
-    """Draw the head back, thrust it forward with the chin up; return the turn of the neck."""
+    """Draw the head back, thrust it forward with the chin up; return the neck's pitch [rad]."""
     n = anim.frames
     back, thrust = [(0.05, 0), (0.29, 23), (0.345, 26)], [(0.44, -26), (0.51, -19), (0.59, -20)]
     throw = big * DEGREE * keys(n, *back, *thrust, (0.74, 5), (0.84, -2), (0.93, 0))
@@ -57,7 +57,7 @@ def _throw(anim: AnimationTracks, big: float) -> Array:
 
 
 def _pucker(anim: AnimationTracks) -> None:
-    """Shut the eyes, push the lips out for a smack, and open up into a smile."""
+    """Close the eyes, pucker the lips, then smile."""
     n = anim.frames
     anim.show("blink", keys(n, (0.30, 0), (0.355, 1), (0.595, 1), (0.63, 0)))
     lips = [(0.08, 0), (0.25, 0.85), (0.38, 1.0), (0.45, 1.4), (0.50, 1.15), (0.545, 1.2)]
@@ -104,7 +104,7 @@ def _jump(anim: AnimationTracks) -> None:
 
 
 def _wag(anim: AnimationTracks) -> None:
-    """Wag the tail so wildly that it wags the dog."""
+    """Wag the tail so strongly that the body moves with it."""
     n = anim.frames
     lift = keys(n, (0.0, 14), (0.31, 4), (0.47, 20), (0.8, 15)) * DEGREE
     tail(anim, lift, 18 * DEGREE * wave(n, 5), 1.9, 0.8)
@@ -119,7 +119,7 @@ def _hearts(anim: AnimationTracks, level: int, bound: Skeleton) -> None:
     size, spread = (0.80, 1.0, 1.25)[level], (0.75, 1.0, 1.4)[level]
     third = 0.9 * size if level else 0.0
     up, side, ahead = spread * np.array([0.100, 0.072, 0.060])
-    flights = [  # past the face, not over it: it is to be seen
+    flights = [  # past the face, so as not to cover it
         EffectFlight(0.45, 0.46, (1.55 * side, 1.20 * up, 0.9 * ahead), size, 0.010, 0.15, 0.5),
         EffectFlight(
             0.51, 0.42, (-1.35 * side, 0.90 * up, 0.9 * ahead), 0.8 * size, -0.008, -0.2, -0.5

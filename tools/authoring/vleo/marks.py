@@ -1,4 +1,4 @@
-"""Vleo's markings, each with a crisp edge: spots, cheeks, nostrils, spines and claws."""
+"""Vleo's markings with crisp edges: spots, cheeks, nostrils, plates and claws."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from tools.authoring.vleo.body import CLAW, LASH, ORANGE, PINK, SPOT, spine_line
 from tools.authoring.vleo.pieces import attached, patches
 from tools.authoring.vleo.skin import SkinSurface
 
-SPOTS_MM = (  # half a back: side, height, forward, radius [mm]; those at 0 have no twin
+SPOTS_MM = (  # x, y, z, radius [mm]; mirrored unless x is 0
     (0, 300, 100, 11), (23, 292, 88, 8), (17, 280, 62, 9), (0, 262, 55, 8),
     (30, 200, 78, 7), (21, 176, 62, 8), (33, 150, 40, 9),
     (35, 166, 14, 10), (52, 132, 22, 7), (47, 148, -14, 11), (26, 172, -8, 7),
@@ -17,9 +17,9 @@ SPOTS_MM = (  # half a back: side, height, forward, radius [mm]; those at 0 have
     (26, 112, -94, 7), (17, 104, -124, 6), (13, 96, -156, 5), (10, 96, -188, 4),
 )  # fmt: skip
 PLATE_COUNT = 13
-"""How many plates there are along the back."""
+"""Number of plates along the back."""
 PLATE_SCALE = np.array([0.62, 1.22, 1.15])
-"""How thick, long and high they are, of what a cone would be."""
+"""Thickness, length and height of a plate, relative to a cone."""
 
 
 def markings(body: SkinSurface, bound: Skeleton) -> list[Mesh]:

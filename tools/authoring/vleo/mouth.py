@@ -1,4 +1,4 @@
-"""Vleo's mouth: skin about it, lips, what is dark behind them, and a tongue."""
+"""Vleo's mouth: surrounding skin, lips, cavity and tongue."""
 
 import numpy as np
 
@@ -24,14 +24,14 @@ LIP = linear_rgb("#ff7d8c")
 POINTS_PER_RING = 40
 """Points around the mouth."""
 MOUTH_SKIN_EXTENT = (1.10, 0.0140, 0.0155)
-"""Of the skin about the mouth: half its width [rad], and how far it reaches up and down [m]."""
+"""Half width [rad], upward and downward extent [m] of the skin around the mouth."""
 _SKIN_RING_SHARES = (0.0, 0.16, 0.40, 0.70, 1.0)
-"""From the lips to where the skin about them ends."""
+"""Positions of the rings between the lips (0) and the border of the skin around them (1)."""
 _ANGLE = np.linspace(0, 2 * np.pi, POINTS_PER_RING, endpoint=False)
 
 
 def mouth(bound: Skeleton) -> list[Mesh]:
-    """Return the mouth and the tongue in it, with all that they can express and say."""
+    """Return mouth and tongue with the morph targets of expressions and visemes."""
     return [
         morphed(lambda face: _mouth(face, bound), NEUTRAL, EXPRESSIONS),
         morphed(lambda face: _tongue(face, bound), NEUTRAL, EXPRESSIONS),
@@ -39,7 +39,7 @@ def mouth(bound: Skeleton) -> list[Mesh]:
 
 
 def _mouth(face: VleoExpression, bound: Skeleton) -> Mesh:
-    """Return a bag in the face: from a pole in the head over the skin and the lips to its end."""
+    """Return a closed surface from a pole in the head over skin and lips to the throat."""
     line, edge = _lip_lines(face)
     outer = np.stack([MOUTH_SKIN_EXTENT[0] * np.cos(_ANGLE), _outer_height()], axis=-1)
     away = (outer - edge) * [0.060, 1.0]
@@ -73,7 +73,7 @@ def _mouth(face: VleoExpression, bound: Skeleton) -> Mesh:
 
 
 def _lip_lines(face: VleoExpression) -> tuple[Array, Array]:
-    """Return where the lips meet when closed, and where their edges are: side [rad], height [m]."""
+    """Return the line where closed lips meet, and their edges: azimuth [rad], height [m]."""
     side, height = face.width * np.cos(_ANGLE), np.sin(_ANGLE)
     line = lip_line(side, face.smile, face.width)
     bow = np.abs(height) ** face.square
@@ -82,19 +82,19 @@ def _lip_lines(face: VleoExpression) -> tuple[Array, Array]:
 
 
 def _outer_height() -> Array:
-    """Return the height of the end of the skin about the mouth, (columns,) [m]."""
+    """Return the height of the border of the skin around the mouth, (points,) [m]."""
     height = np.sin(_ANGLE)
     reach = np.where(height >= 0, MOUTH_SKIN_EXTENT[1], MOUTH_SKIN_EXTENT[2])
     return np.asarray(lip_line(MOUTH_SKIN_EXTENT[0] * np.cos(_ANGLE)) + reach * height)
 
 
 def _lip_share() -> Array:
-    """Return how much of the turn of the jaw the lips go along with, (columns,), 0…1."""
+    """Return the share of the jaw's rotation that moves the lips, (points,), 0…1."""
     return np.asarray(np.clip(0.5 - 0.6 * np.sin(_ANGLE), 0.0, 1.0))
 
 
 def _on_skin(flat: Array, rest: Array, lift: Array | float) -> Array:
-    """Return points of the skin, whose depth is that of where they rest, lifted off it [m]."""
+    """Return points of the skin at their rest depth, lifted off it [m]."""
     points = on_snout(flat[:, 0], rest[:, 1])
     points += np.reshape(lift, (-1, 1)) * _outward(points)
     points[:, 1] += flat[:, 1] - rest[:, 1]
@@ -102,7 +102,7 @@ def _on_skin(flat: Array, rest: Array, lift: Array | float) -> Array:
 
 
 def on_snout(side: Array, height: Array) -> Array:
-    """Return the points on the front of the head so far to the side [rad] and up [m], (n, 3)."""
+    """Return the points on the front of the head at azimuths [rad] and heights [m], (n, 3)."""
     way = np.stack([np.sin(side), 0 * side, np.cos(side)], axis=-1)
     start = np.stack([0 * side, height, np.full(len(side), HEAD_AXIS_Z_M)], axis=-1)
     low, high = np.zeros(len(side)), np.full(len(side), 0.10)
@@ -114,13 +114,13 @@ def on_snout(side: Array, height: Array) -> Array:
 
 
 def _outward(points: Array) -> Array:
-    """Return the direction level and away from the middle of the head, (n, 3)."""
+    """Return the horizontal direction away from the axis of the head, (n, 3)."""
     away = (points - [0.0, 0.0, HEAD_AXIS_Z_M]) * [1.0, 0.0, 1.0]
     return np.asarray(away / np.linalg.norm(away, axis=1, keepdims=True))
 
 
 def _cavity(edge: Array) -> tuple[list[Array], list[Array]]:
-    """Return the rings behind the lips down to the throat, and how far the jaw holds each."""
+    """Return the rings from the lips to the throat, and the jaw's skin weight on each."""
     low = np.clip(-np.sin(_ANGLE), 0, 1)[:, None] ** 0.5
     high = np.clip(np.sin(_ANGLE), 0, 1)[:, None] ** 0.5
     deep = np.array([0.0, 1.0, 0.0]) * (0.003 * high - 0.0055 * low)
@@ -133,7 +133,7 @@ def _cavity(edge: Array) -> tuple[list[Array], list[Array]]:
 
 
 def _tongue(face: VleoExpression, bound: Skeleton) -> Mesh:
-    """Return the tongue, which lies on the jaw; a deep line runs along it."""
+    """Return the tongue, which lies on the jaw and has a groove."""
     turn = np.linspace(0, 2 * np.pi, 16, endpoint=False)
     polar = np.linspace(0, np.pi, 9)[:, None]
     x, z = np.sin(polar) * np.cos(turn), np.sin(polar) * np.sin(turn)

@@ -1,4 +1,4 @@
-"""Vleo's skeleton: where its joints are, and what of it is hidden at rest."""
+"""Vleo's skeleton, and the effects that are hidden at rest."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ NECK = ("neck1", "neck2", "neck3")
 TAIL = ("tail1", "tail2", "tail3", "tail4", "tail5")
 BACK = ("hips", "spine1", "spine2", "chest")
 HIDDEN_SCALE = 1e-3
-"""Scale of a joint whose mesh is not to be seen; not zero, so that its matrix can be inverted."""
+"""Scale of a hidden joint; not zero, so that its matrix can be inverted."""
 
 _JOINT_POSITIONS: dict[str, tuple[str, Vector]] = {
     "root": ("", (0.0, 0.0, 0.0)),
@@ -42,9 +42,9 @@ _JOINT_POSITIONS: dict[str, tuple[str, Vector]] = {
     "LeftHindFoot": ("LeftHindLowerLeg", (0.045, 0.020, -0.052)),
 }
 EYE_CENTRE_M = np.array(_JOINT_POSITIONS["LeftEye"][1])
-"""The middle of the left eyeball, character frame [m]."""
+"""Centre of the left eyeball, character frame [m]."""
 MOUTH_M = (0.0, 0.222, 0.200)
-"""Where kisses and shouts leave, character frame [m]."""
+"""Origin of kisses and shouts, character frame [m]."""
 
 
 def skeleton() -> Skeleton:
@@ -54,7 +54,7 @@ def skeleton() -> Skeleton:
 
 
 def shipped_skeleton(bound: Skeleton) -> Skeleton:
-    """Return the skeleton as it is shipped: effects too small to be seen."""
+    """Return the bundled skeleton, with hidden effects."""
     scales = np.ones((len(bound), 3))
     for name in (*HEARTS, *BURSTS):
         scales[bound.index(name)] = HIDDEN_SCALE

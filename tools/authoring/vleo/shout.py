@@ -1,6 +1,6 @@
-"""Vleo shouts with its head, its legs too, or all of itself: sparks fly.
+"""Vleo's shouts: with the head, the legs too, or the whole body; sparks fly.
 
-The three intensities share every accent, so that they blend at equal phase.
+The three intensities have the same accents, so that they blend at equal phase.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from tools.authoring.vleo.clips import EffectFlight, animate_effects, tail
 from tools.authoring.vleo.rig import BURSTS
 
 DURATION_S = 2.0
-"""Duration of one shout, from glower to glower [s]."""
+"""Duration of the loop [s]."""
 StompPhases = tuple[float, float, float]
 """Phases at which a foot leaves the ground, is highest, and is back."""
 
@@ -22,14 +22,14 @@ def shout(level: int, bound: Skeleton) -> AnimationTracks:
 
     Parameters
     ----------
-    level : 0 with the head alone, 1 with the legs too, 2 with all of it
+    level : 0 head only, 1 head and legs, 2 whole body
     bound : the skeleton in its bind pose
     """
     anim = AnimationTracks(round(DURATION_S * FRAME_RATE_HZ))
     n = anim.frames
     breath = keys(n, (0.0, 0), (0.22, 1), (0.34, 0.1), (0.66, 0)) * 0.07
     anim.scales["belly"] = np.repeat(1 + breath[:, None], 3, axis=1)
-    _thrust(anim, (1.0, 0.85, 0.75)[level])  # the lunge of the body does the rest
+    _thrust(anim, (1.0, 0.85, 0.75)[level])  # the body's lunge adds to it
     raging = keys(n, (0.27, 0), (0.34, 1), (0.68, 1), (0.79, 0), (0.97, 0))
     _rage(anim, raging)
     if level >= 1:
@@ -45,7 +45,7 @@ def shout(level: int, bound: Skeleton) -> AnimationTracks:
 
 
 def _thrust(anim: AnimationTracks, big: float) -> None:
-    """Draw the neck back, then throw it forward and low with the face turned up."""
+    """Draw the neck back, then thrust it forward and low with the face up."""
     n = anim.frames
     back, out = [(0.0, -10), (0.20, 22)], [(0.30, -40), (0.37, -31), (0.72, -33)]
     thrust = big * DEGREE * keys(n, *back, *out, (0.87, -8))
@@ -68,7 +68,7 @@ def _rage(anim: AnimationTracks, raging: Array) -> None:
 
 
 def _lunge(anim: AnimationTracks, rear: bool) -> None:
-    """Brace, draw back, at full intensity rear up, and lunge; each stomp jolts the body."""
+    """Draw back (at full intensity rear up) and lunge; each stomp jolts the body."""
     n = anim.frames
     brace, lunge = [(0.0, -5), (0.20, 2 + 4 * rear)], [(0.30, -13), (0.36, -7), (0.44, -4)]
     jolts = [(0.485, -12), (0.54, -5), (0.585, -4), (0.625, -11), (0.68, -5), (0.725, -4)]
@@ -82,7 +82,7 @@ def _lunge(anim: AnimationTracks, rear: bool) -> None:
 
 
 def _stomp(anim: AnimationTracks, rear: bool) -> None:
-    """Stomp by turns, at full intensity with both feet first, leaning to the one that stands."""
+    """Stomp alternately, at full intensity with both feet first, leaning to the standing one."""
     first: StompPhases = (0.06, 0.19, 0.30)
     left: list[StompPhases] = [(0.38, 0.435, 0.485), (0.66, 0.715, 0.765)]
     right: list[StompPhases] = [first, (0.53, 0.58, 0.625)]
@@ -99,7 +99,7 @@ def _stomp(anim: AnimationTracks, rear: bool) -> None:
 
 
 def _raised(frames: int, stomp: StompPhases) -> Array:
-    """Return how high a foot is, 0…1: up slowly, hold, slam; the first stomp is the highest."""
+    """Return the height of a foot, 0…1: slow up, hold, slam; the first stomp is the highest."""
     start, top, down = stomp
     high = 1.0 if start < 0.1 else 0.75
     hold = 0.5 * (top + down) + 0.01
@@ -107,7 +107,7 @@ def _raised(frames: int, stomp: StompPhases) -> Array:
 
 
 def _slam_and_whip(anim: AnimationTracks) -> None:
-    """Slam the tail down twice, and whip it from side to side in between and after."""
+    """Slam the tail down twice, and whip it from side to side otherwise."""
     n = anim.frames
     lift, slam = [(0.0, 9), (0.21, 32)], [(0.31, -13), (0.40, 24), (0.53, 22), (0.625, -12)]
     up = keys(n, *lift, *slam, (0.71, 20), (0.80, 16))

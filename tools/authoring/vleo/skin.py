@@ -1,4 +1,4 @@
-"""The skin of Vleo as a mesh: finer where the face is, held by its joints, and painted."""
+"""Vleo's skin as a mesh, finer at the face, with skin weights and colours."""
 
 from dataclasses import dataclass
 
@@ -23,11 +23,11 @@ from tools.authoring.vleo.head import EYE_RADIUS_M, MouthCavity, azimuth, lip_li
 from tools.authoring.vleo.rig import EYE_CENTRE_M
 
 TRUNK_CELL_M, FACE_CELL_M = (0.0084, 0.0101, 0.0100), (0.0056, 0.0044, 0.0047)
-"""Edges of a grid cell far from the mouth and about it, along x, y, z [m]."""
+"""Edges of a grid cell far from and near the mouth, along x, y, z [m]."""
 FORWARD_AXIS, THIN_TAIL_Z_M = 2, -0.19
-"""The axis along which the tail points back, and where it is so thin that cells are short [m]."""
+"""The axis of the tail, and the z [m] behind which the tail is thin and its cells are short."""
 FINE_BOX_M = ((-0.044, 0.044), (0.192, 0.246), (0.134, 0.300))
-"""Where the cells are small, along x, y, z [m]."""
+"""Box with small cells, along x, y, z [m]."""
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class SkinSurface:
     """(m, 3)."""
 
     weights: Array
-    """Of every joint, (n, joints)."""
+    """Skin weights, (n, joints)."""
 
     colors: Array
     """Linear RGB, (n, 3)."""
@@ -59,14 +59,14 @@ def body(bound: Skeleton) -> SkinSurface:
     weights = _with_face(points, _with_firm_feet(points, weights, bound), bound)
     normals = normals_of(skin_shape().distance, points, 0.003)
     eye = np.linalg.norm(np.abs(points) * [1, 0, 0] + points * [0, 1, 1] - EYE_CENTRE_M, axis=1)
-    # The light knows nothing of rims that are hidden under lids and lips.
+    # Rims hidden under lids and lips do not affect the shading.
     outside = (body_shape().distance(points) > -0.0012) | (eye < 1.5 * EYE_RADIUS_M)
     normals[outside] = normals_of(body_shape().distance, points[outside], 0.003)
     return SkinSurface(points, normals, triangles, weights, skin_colors(points, normals))
 
 
 def _surface() -> tuple[Array, NDArray[np.int64]]:
-    """Return the mesh, its grid stretched so that the cells are small on the face."""
+    """Return the mesh, from a grid stretched to have small cells on the face."""
     spans = {0: (-0.09, 0.09), 1: (-0.012, 0.32), 2: (-0.285, 0.215)}
     lines = []
     for axis, (low, high) in spans.items():
@@ -90,7 +90,7 @@ def _surface() -> tuple[Array, NDArray[np.int64]]:
 
 
 def _with_firm_feet(points: Array, weights: Array, bound: Skeleton) -> Array:
-    """Return the weights with soles that belong to their feet alone, so that they do not slide."""
+    """Return the weights with soles that follow only their feet, so that they do not slide."""
     sole = smoothstep((0.034 - points[:, 1]) / 0.020)[:, None]
     own = np.zeros_like(weights)
     front, left = points[:, 2] > 0.0, points[:, 0] > 0
@@ -102,7 +102,7 @@ def _with_firm_feet(points: Array, weights: Array, bound: Skeleton) -> Array:
 
 
 def jaw_share(points: Array) -> Array:
-    """Return how much of the head's hold on points (n, 3) is the jaw's, (n,), 0…1."""
+    """Return the jaw's share of the head's weight on points (n, 3), (n,), 0…1."""
     side = azimuth(points)
     below = lip_line(side) - points[:, 1]
     soft = 0.0022 + 0.016 * np.clip((np.abs(side) - 0.68) / 0.45, 0, 1)
@@ -111,7 +111,7 @@ def jaw_share(points: Array) -> Array:
 
 
 def _with_face(points: Array, weights: Array, bound: Skeleton) -> Array:
-    """Return the weights with the head's share divided between head and jaw."""
+    """Return the weights with the head's part divided between head and jaw."""
     head, jaw = bound.index("head"), bound.index("jaw")
     both, share = weights[:, head] + weights[:, jaw], jaw_share(points)
     weights = weights.copy()
@@ -132,7 +132,7 @@ def skin_colors(points: Array, normals: Array) -> Array:
     colors = _coat(colors, CREAM, under * smoothstep((leg + 0.001) / 0.014))
     chin = Ellipsoid((0.0, 0.200, 0.150), (0.052, 0.030, 0.046)).distance(points)
     lower = smoothstep((lip_line(azimuth(points)) - 0.0035 - points[:, 1]) / 0.005)
-    lower = lower * smoothstep((0.85 - np.abs(azimuth(points))) / 0.35)  # not about its corners
+    lower = lower * smoothstep((0.85 - np.abs(azimuth(points))) / 0.35)  # not around its corners
     colors = _coat(colors, CREAM, lower * smoothstep(0.5 - chin / 0.012))
     inside = -np.maximum(
         body_shape().distance(points) + 0.0007, MouthCavity().distance(points) - 0.0020
@@ -141,7 +141,7 @@ def skin_colors(points: Array, normals: Array) -> Array:
 
 
 def _underside(points: Array) -> Array:
-    """Return the cosine between the direction from the spine and straight under it, (n,)."""
+    """Return the cosine between the direction from the spine and straight down, (n,)."""
     line = spine_line(160)[:, :3]
     along = np.gradient(line, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
