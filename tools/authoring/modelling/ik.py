@@ -17,7 +17,7 @@ def hinge_position(start: Array, end: Array, pole: Array, upper: float, lower: f
     upper, lower : lengths of the two bones [m]
 
     >>> hip, ankle, forward = np.array([[0, 2.0, 0], [0, 0, 0], [0, 0, 1]])
-    >>> bend(hip, ankle, forward, 1.25, 1.25).round(6).tolist()
+    >>> hinge_position(hip, ankle, forward, 1.25, 1.25).round(6).tolist()
     [0.0, 1.0, 0.75]
     """
     line = end - start

@@ -21,7 +21,7 @@ WHITE = (1.0, 1.0, 1.0)
 def linear_rgb(code: str) -> Vector:
     """Return the linear RGB of an sRGB code such as ``"#ff8800"`` (IEC 61966-2-1).
 
-    >>> rgb("#ffffff")
+    >>> linear_rgb("#ffffff")
     (1.0, 1.0, 1.0)
     """
     srgb = np.array([int(code[i : i + 2], 16) for i in (1, 3, 5)]) / 255.0
@@ -33,8 +33,8 @@ def linear_rgb(code: str) -> Vector:
 def mirrored_name(name: str) -> str:
     """Return the name of a joint's mirror image.
 
-    >>> other_side("LeftArm"), other_side("RightFoot"), other_side("hips")
-    ('RightArm', 'LeftFoot', 'hips')
+    >>> [mirrored_name(name) for name in ("LeftArm", "RightFoot", "hips")]
+    ['RightArm', 'LeftFoot', 'hips']
     """
     if name.startswith("Left"):
         return "Right" + name[4:]
@@ -75,6 +75,10 @@ class Solid:
     def solids(self) -> "Iterator[Solid]":
         """Yield itself."""
         yield self
+
+    def mirrored(self) -> "Shape":
+        """Return its mirror image: itself for a symmetric shape."""
+        return self
 
     def _other_bones(self) -> tuple[str, ...]:
         return tuple(mirrored_name(bone) for bone in self.bones)

@@ -65,10 +65,6 @@ class JawRegion(Solid):
         """Return the approximate signed distance, (n,) [m]."""
         return np.maximum(points[:, 1] - lip_height(points[:, 2]) + self.gap, 0.150 - points[:, 2])
 
-    def mirrored(self) -> "JawRegion":
-        """Return itself."""
-        return self
-
 
 def lip_height(forward: Array) -> Array:
     """Return the height of the line between the lips at z, (n,) [m]."""

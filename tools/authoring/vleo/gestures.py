@@ -41,15 +41,9 @@ def _shake() -> AnimationTracks:
     n, seconds = anim.frames, 1.9
     aside = keys(
         n,
-        (0, 0),
-        (0.08, -7),
-        (0.23, 30),
-        (0.38, -28),
-        (0.52, 20),
-        (0.66, -12),
-        (0.78, 4),
+        (0, 0), (0.08, -7), (0.23, 30), (0.38, -28), (0.52, 20), (0.66, -12), (0.78, 4),
         (0.94, 0),
-    )
+    )  # fmt: skip
     turn = aside * DEGREE
     _neck(anim, 0.0 * turn, 0.45 * turn)
     late = delayed(turn, 0.022)

@@ -36,10 +36,6 @@ class SymmetricShape(Solid):
         yield from self.left.solids()
         yield from self.left.mirrored().solids()
 
-    def mirrored(self) -> "SymmetricShape":
-        """Return itself."""
-        return self
-
 
 @dataclass(frozen=True)
 class MouthCavity(Solid):
@@ -55,10 +51,6 @@ class MouthCavity(Solid):
         slot = np.maximum(np.abs(height) - up, 0.132 - points[:, 2])
         return np.asarray(slot)
 
-    def mirrored(self) -> "MouthCavity":
-        """Return itself."""
-        return self
-
 
 @dataclass(frozen=True)
 class EyeSocket(Solid):
@@ -71,10 +63,6 @@ class EyeSocket(Solid):
         wide = np.linalg.norm(eye_angles(off) / (1.16 * LID_OPENING_RAD[:2]), axis=1)
         shell = np.maximum(0.94 * EYE_RADIUS_M - away, away - 1.15 * EYE_RADIUS_M)
         return np.asarray(np.maximum((wide - 1) * 0.8 * away, shell))
-
-    def mirrored(self) -> "EyeSocket":
-        """Return itself: it has no colour."""
-        return self
 
 
 def eye_angles(off: Array) -> Array:
