@@ -176,15 +176,12 @@ class WarningPrinter:
     ) -> None:
         """Print a warning; the signature is that of `warnings.showwarning`."""
         text = str(message)
-        if not self._is_about_a_character(category):
+        errors = sys.modules.get("characters.errors")
+        if errors is None or not issubclass(category, errors.CharacterWarning):
             text = f"{filename}:{lineno}: {category.__name__}: {text}"
         if text not in self._printed:
             print_message(text)
         self._printed.add(text)
-
-    def _is_about_a_character(self, category: type[Warning]) -> bool:
-        errors = sys.modules.get("characters.errors")
-        return errors is not None and issubclass(category, errors.CharacterWarning)
 
 
 def print_message(message: str) -> None:

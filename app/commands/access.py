@@ -1,6 +1,7 @@
 """Options of the commands that use an MQTT broker."""
 
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -34,23 +35,25 @@ Ca = Annotated[
 ]
 
 
+@contextmanager
 def publisher(
-    url: str | None, name: str | None, site: str, credentials: Credentials, closing: ExitStack
-) -> PlayerPublisher | None:
-    """Connect a player if the options ask for one; `closing` closes it.
+    url: str | None, name: str | None, site: str, password_file: Path | None, ca: Path | None
+) -> Iterator[PlayerPublisher | None]:
+    """Connect a player if the options ask for one, and disconnect it at the end.
 
     Raises RobotError or AppError if an option is wrong or missing, or the broker refuses.
     """
     if url is None and name is None:
-        return None
+        yield None
+        return
     if url is None or name is None:
         raise AppError(
             "--mqtt needs --player NAME, the name of the player on the network"
             if name is None
             else "--player needs --mqtt URL, the broker"
         )
-    network = closing.enter_context(Network(url, site, credentials))
-    return PlayerPublisher(network, name, on_problem=report_problem)
+    with Network(url, site, Credentials(None, password_file, ca)) as network:
+        yield PlayerPublisher(network, name, on_problem=report_problem)
 
 
 def report_problem(problem: str) -> None:

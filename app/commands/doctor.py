@@ -90,18 +90,15 @@ def _python() -> Finding:
 
 
 def _opencv() -> Finding:
-    names = [
-        name
-        for name in ("opencv-python", "opencv-contrib-python", "opencv-python-headless")
-        if _installed(name)
-    ]
-    if names:
+    for name in ("opencv-python", "opencv-contrib-python", "opencv-python-headless"):
+        if not list(importlib.metadata.distributions(name=name)):
+            continue
         # They share one folder: the one that was installed last has overwritten the other.
         return Finding(
             "OpenCV",
             "bad",
-            f"{cv2.__version__}, but {names[0]} has overwritten its files",
-            f"pip uninstall -y {names[0]} && "
+            f"{cv2.__version__}, but {name} has overwritten its files",
+            f"pip uninstall -y {name} && "
             "pip install --force-reinstall opencv-contrib-python-headless",
         )
     if int(cv2.__version__.split(".")[0]) < 5:
@@ -205,11 +202,3 @@ def camera_report(uri: str, source: FrameSource) -> str:
     health = source.health
     settings = [f"{setting.name} {setting.detail}" for setting in health.settings]
     return "\n".join([f"{size}, {camera_line(health)}", *settings])
-
-
-def _installed(name: str) -> bool:
-    try:
-        importlib.metadata.version(name)
-    except importlib.metadata.PackageNotFoundError:
-        return False
-    return True

@@ -1,6 +1,5 @@
 """`cubeling play`."""
 
-from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
@@ -12,7 +11,6 @@ from app.running.network import SITE
 from app.scenarios import scenario_cube
 from app.session import SessionOptions
 from app.ui.display import require_display
-from robot.network import Credentials
 
 DEFAULT_CAMERA = "camera:0"
 
@@ -120,6 +118,5 @@ def play(
     scenario_cube(scenario)  # refuses a misspelt scenario before a missing display
     if options.windowed:
         require_display()
-    with ExitStack() as closing:
-        line = publisher(mqtt, player, site, Credentials(None, password_file, ca), closing)
+    with publisher(mqtt, player, site, password_file, ca) as line:
         play_session(options, f"playing {scenario}", player=line)

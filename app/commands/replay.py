@@ -1,6 +1,5 @@
 """`cubeling replay`."""
 
-from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -24,7 +23,6 @@ from app.running.network import SITE
 from app.running.replay_check import check_session
 from app.session import session_info
 from app.ui.display import has_display
-from robot.network import Credentials
 
 
 def replay(
@@ -85,6 +83,5 @@ def replay(
         result = check_session(session, options)
         Console().print(result)
         raise typer.Exit(0 if result.identical else 1)
-    with ExitStack() as closing:
-        line = publisher(mqtt, player, site, Credentials(None, password_file, ca), closing)
+    with publisher(mqtt, player, site, password_file, ca) as line:
         play_session(options, f"replaying {session.name}", player=line)

@@ -67,7 +67,9 @@ def simulate(
     console = Console()
     if seconds is not None and not seconds >= 0:  # also refuses NaN
         raise RobotError(f"a robot can be simulated for 0 seconds or more, not for {seconds:g}")
-    simulator = simulator_of(_with_seed(name, seed))
+    if seed is not None:
+        name += f"{'&' if '?' in name else '?'}seed={seed}"
+    simulator = simulator_of(name)
     with SimulatedPort(simulator) as port:
         protocol = name.removeprefix("sim:").partition("?")[0]
         shown = port.url if protocol == "cubeling" else f"{protocol}:{port.url}"
@@ -107,13 +109,7 @@ def list_() -> None:
     console.print(table)
 
 
-def _with_seed(name: str, seed: int | None) -> str:
-    """Add `--seed` to the robot's name."""
-    return name if seed is None else f"{name}{'&' if '?' in name else '?'}seed={seed}"
-
-
 def _emotion_line(simulator: Simulated) -> Text:
-    """Return the robot's emotion as a line of text."""
     valence, label = simulator.portrait()
     bar = "".join("●" if abs(place - 10 * (valence + 1)) <= 0.5 else "·" for place in range(21))
     return Text.assemble(("angry ", "red"), bar, (" happy", "green"), f"   {label}")

@@ -124,18 +124,7 @@ def make_scenario(
     turns: float = 2.0,
     personality: str | None = None,
 ) -> Scenario:
-    """Make a scenario by name.
-
-    Parameters
-    ----------
-    name
-        One of `SCENARIOS`.
-    cube
-        The cube in the player's hand; None for the scenario's own bundled one.
-    speed_map, turns
-        See `ScenarioSettings`.
-    personality
-        A bundled personality or a .toml file; None for the scenario's own.
+    """Make a scenario by name; without a cube and a personality it has its own bundled ones.
 
     Raises
     ------

@@ -68,27 +68,13 @@ def _messages(path: Path) -> Iterator[tuple[float, CharacterCommand | EmotionTar
 class Bridge(Closeable):
     """Robots and recorded players on a network. Close it, or use it in a `with` statement.
 
-    Parameters
-    ----------
-    network
-        The network; the bridge closes it.
-    robots
-        URLs of the robots to drive, by name.
-    sessions
-        Recorded sessions to publish, by the name of the player.
-    follow
-        Players that the robots follow; see `Pattern.parse`.
-    hold
-        How long a robot keeps the emotion of a player who is gone [s].
-    max_age
-        Age at which an action is too late for a robot that was away [s].
-    on_message
-        Called with every message of the site, on a thread of the network.
+    `robots` has the URLs of the robots to drive, `sessions` the sessions to publish, by name;
+    `follow` names players as `Pattern.parse` takes them. For `hold` [s] a robot keeps the emotion
+    of a player who is gone; actions expire at the age of `max_age` [s]. `on_message` is called
+    with every message of the site, on a thread of the network.
 
-    Raises
-    ------
-    RobotError, AppError
-        If a name, a robot, a session or the broker cannot be used. Nothing is left open then.
+    Raises RobotError or AppError if a name, a robot, a session or the broker cannot be used.
+    Nothing is left open then; otherwise the bridge closes the network.
     """
 
     def __init__(

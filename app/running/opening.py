@@ -76,20 +76,8 @@ def open_session(
     """Open all that a session needs, and close it in reverse order at the end.
 
     Checks that cost nothing come first, so that a misspelt name does not open a camera.
-
-    Parameters
-    ----------
-    options
-        What the user asked for.
-    source, screen
-        Take the place of those that `options` names; the caller closes them.
-    player
-        Publishes the session; the caller closes it.
-
-    Raises
-    ------
-    TrackingError, CharacterError, RobotError, AppError
-        Something that `options` names is missing or cannot be used.
+    A source or a screen takes the place of the one that `options` names; the caller closes them and
+    the player. Raises the error of the room in which something is missing or cannot be used.
     """
     cube = CubeModel.load(options.cube or scenario_cube(options.scenario))
     scenario = make_scenario(

@@ -8,7 +8,6 @@ from app.pipeline.scenario import EmotionTarget
 from app.running.network import Network
 from characters import CharacterCommand
 from robot.network import BusClient, Player
-from robot.network.bus import BusState
 from robot.network.player import MAX_AGE_S
 
 UNPUBLISHED_ACTIONS = frozenset({"idle", "move"})
@@ -39,16 +38,11 @@ class PlayerPublisher:
         self._on_problem = on_problem
         self._reported = False
 
-    @property
-    def state(self) -> BusState:
-        """State of the connection."""
-        return self.client.state
-
     def publish(self, command: CharacterCommand, emotion: EmotionTarget) -> None:
         """Publish a frame's action, if it begins one, and its emotion, if it has changed."""
         self.publish_action(command)
         self.publish_emotion(emotion)
-        broken = self.state in ("away", "refused")
+        broken = self.client.state in ("away", "refused")
         if broken and not self._reported:
             self._on_problem(self.client.problem)
         self._reported = broken

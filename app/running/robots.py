@@ -55,27 +55,16 @@ class RobotLine(Closeable):
         *,
         stepped: bool = False,
     ) -> Self:
-        """Connect.
+        """Connect; raises RobotError if the port does not open or no robot answers.
 
         Parameters
         ----------
         url
             "none"; "sim" for a simulated robot behind a pseudo-terminal of this computer; or any
             URL that `robot.connect` takes: "pleo:/dev/ttyACM0", "sim:opencat".
-        clock
-            The session's time [s].
-        on_bytes
-            Receives everything on the wire.
-        settings
-            A TOML file for the robot's driver, or None.
         stepped
             Whether a simulated robot advances with the frames, for a session that is processed
             faster or slower than real time: its bytes are then the same every time.
-
-        Raises
-        ------
-        RobotError
-            The port does not open or no robot answers.
         """
         if url == "none":
             return cls(clock=clock)

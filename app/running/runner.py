@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 
 from app.errors import AppError
 from app.pipeline.scenario import Inputs
@@ -38,7 +37,7 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
     was recorded until then is complete.
     """
     summary = Summary(session.playground.scenario.name)
-    with _end_on_interrupt(summary):
+    try:
         loop = _FrameLoop(session, summary)
         gaps = _CameraGaps(summary, session.recorder)
         for frame in _frames(session, summary):
@@ -61,6 +60,8 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
             session.robot.check()
         except RobotError as error:
             summary.lost = summary.lost or error
+    except KeyboardInterrupt:
+        summary.interrupted = True
     if isinstance(session.source, LiveFrames):
         summary.camera = session.source.health
     return summary
@@ -148,7 +149,6 @@ def _frames(session: OpenedSession, summary: Summary) -> Iterator[Frame | Health
     While a live source has no frame, yield its health instead, again and again.
     """
     start: float | None = None
-    began = time.monotonic()
     for frame in _readable_frames(session, summary):
         if isinstance(frame, Health):
             yield frame
@@ -188,12 +188,3 @@ def _source_frames(session: OpenedSession) -> Iterator[Frame | Health]:
     timeout = ATTENDED_RECONNECT_TIMEOUT_S if attended else UNATTENDED_RECONNECT_TIMEOUT_S
     while source.health.state != "closed":
         yield source.wait(SCREEN_UPDATE_INTERVAL_S, timeout) or source.health
-
-
-@contextmanager
-def _end_on_interrupt(summary: Summary) -> Iterator[None]:
-    """Make Ctrl-C the end of the session rather than an error."""
-    try:
-        yield
-    except KeyboardInterrupt:
-        summary.interrupted = True

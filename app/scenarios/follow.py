@@ -56,11 +56,10 @@ class Follow:
         speed = self._dial.update(controls.camera_angle, controls.timestamp)
         visible = self._presence.update(controls)
         shake_action = self._react_to_shake(controls, character, inputs)
+        target = _near_side(controls.position, character)
         command = CharacterCommand(
             timestamp=controls.timestamp,
-            locomotion=LocomotionIntent(
-                speed, _near_side(controls.position, character), facing=PLAYER_POSITION
-            ),
+            locomotion=LocomotionIntent(speed, target, facing=PLAYER_POSITION),
             action=_action(shake_action, speed),
             visible=visible,
         )

@@ -50,7 +50,12 @@ def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
     _check_magic(path)
     if salvage:
         return SessionInfo(_options(path), *_readable_frames(path))
-    _check_complete(path)
+    if not _is_complete(path):
+        frames, seconds = _readable_frames(path)
+        raise AppError(
+            f"the session '{path}' was cut off: {frames} frames ({seconds:.1f} s) are whole; "
+            "add --salvage to play those"
+        )
     try:
         with path.open("rb") as file:
             summary = SeekingReader(file).get_summary()
@@ -80,16 +85,6 @@ def _options(path: Path) -> SessionOptions:
     raise AppError(
         f"'{path}' does not say which scenario it holds: it was not recorded by Cubeling"
     )
-
-
-def _check_complete(path: Path) -> None:
-    """Refuse a session that was cut off."""
-    if not _is_complete(path):
-        frames, seconds = _readable_frames(path)
-        raise AppError(
-            f"the session '{path}' was cut off: {frames} frames ({seconds:.1f} s) are whole; "
-            "add --salvage to play those"
-        )
 
 
 def _readable_frames(path: Path) -> tuple[int, float]:

@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
 
 from foxglove_schemas_protobuf.CameraCalibration_pb2 import CameraCalibration
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
@@ -17,6 +17,7 @@ from mcap_protobuf.schema import register_schema
 from app.errors import AppError
 from app.pipeline.step import Step
 from app.session.encoding import MESSAGE_TYPES, encode, schema
+from robot.contract.closeable import Closeable
 from tracking import Frame, Intrinsics
 from tracking.sources.base import nanoseconds_of
 
@@ -40,7 +41,7 @@ JSON_SCHEMAS = {
 """Name and text of the JSON Schema of each topic."""
 
 
-class Recorder:
+class Recorder(Closeable):
     """Records one session to one .mcap file.
 
     Open it before the first frame, `write` every step, and `close` it at the end; a second `close`
@@ -66,12 +67,6 @@ class Recorder:
         self._submit(self._start)
         self._thread.start()
         self._closed = False
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
 
     def camera(self, intrinsics: Intrinsics, timestamp: float) -> None:
         """Record the camera's calibration."""

@@ -9,14 +9,8 @@ from app.pipeline.step import ReplayInputs
 from app.session import messages
 from app.session.encoding import MESSAGE_TYPES, decode
 
-STARTS: dict[str, tuple[str, ...]] = {
-    "camera": (),
-    "state": ("/cube/state",),
-    "controls": ("/cube/state", "/cube/controls"),
-    "command": ("/cube/state", "/cube/controls", "/character/command"),
-    "pose": ("/cube/state", "/cube/controls", "/character/command", "/character/pose"),
-}
-"""For each stage to start from, the channels that are taken as recorded."""
+STARTS = ("camera", "state", "controls", "command", "pose")
+"""The stages that a replay can start from; each takes one channel more as recorded."""
 
 FIELD_OF_TOPIC = {
     "/cube/state": "state",
@@ -24,7 +18,7 @@ FIELD_OF_TOPIC = {
     "/character/command": "command",
     "/character/pose": "posed",
 }
-"""The field of `ReplayInputs` for each channel."""
+"""The field of `ReplayInputs` for each channel, in the order of the stages after the camera."""
 
 
 def read_replay_inputs(source: str, start: str) -> Iterator[ReplayInputs]:
@@ -36,7 +30,7 @@ def read_replay_inputs(source: str, start: str) -> Iterator[ReplayInputs]:
         raise AppError(f"a replay cannot start from '{start}': choose one of {', '.join(STARTS)}")
     if not source.endswith(".mcap"):
         raise AppError(f"'{source}' has no recorded channels to start from '{start}'")
-    return _read(Path(source), STARTS[start])
+    return _read(Path(source), tuple(FIELD_OF_TOPIC)[: STARTS.index(start)])
 
 
 def _read(path: Path, topics: tuple[str, ...]) -> Iterator[ReplayInputs]:

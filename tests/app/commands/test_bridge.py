@@ -187,16 +187,16 @@ def test_a_lost_broker_is_reported_once(broker):
         calm = EmotionTarget(Emotion(0.0, 0.0, "neutral"), 0.0)
         line.publish(command("idle"), calm)
         broker.kill()
-        soon(lambda: line.state == "away")
+        soon(lambda: line.client.state == "away")
         for _ in range(3):
             line.publish(command("kiss"), calm)
         assert len(said) == 1
         assert broker.url in said[0]
         broker.start()
-        soon(lambda: line.state == "connected")
+        soon(lambda: line.client.state == "connected")
         line.publish(command("idle"), calm)
         broker.kill()
-        soon(lambda: line.state == "away")
+        soon(lambda: line.client.state == "away")
         line.publish(command("idle"), calm)
         assert len(said) == 2
 
@@ -205,7 +205,7 @@ def test_a_lost_broker_is_reported_once(broker):
 def test_a_hanging_broker_does_not_delay_the_picture(broker):
     with Network(broker.url) as network:
         line = PlayerPublisher(network, "ann")
-        soon(lambda: line.state == "connected")
+        soon(lambda: line.client.state == "connected")
         os.kill(broker.pid, signal.SIGSTOP)
         took = []
         for frame in range(600):
