@@ -6,7 +6,6 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.marker import marker_loops
 from tracking.cube.model import aruco_dictionary
@@ -14,8 +13,7 @@ from tracking.cube.printing.layout import PAPERS
 from tracking.cube.printing.pdf_page import PdfPage
 from tracking.errors import TrackingError
 from tracking.files import write_whole
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 BLACK = (0, 0, 0)
 

@@ -10,12 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.calibration.model import BLOOM_SIGMA_PX, CalibrationModel
 from tracking.calibration.view import View
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array, Indices
 
 MIN_SIGMA_PX = 0.02
 """Smallest standard deviation that is assumed for a row."""
@@ -133,7 +131,7 @@ class _NormalEquations:
             right -= block.cross.T @ solved[:, -1]
         return normal, right
 
-    def solve(self, damping: float, free: NDArray[np.intp]) -> tuple[Array, list[Array]]:
+    def solve(self, damping: float, free: Indices) -> tuple[Array, list[Array]]:
         """Return the step of the shared unknowns and that of each view."""
         normal, right = self.reduced(damping)
         step = np.zeros(len(right))
@@ -141,7 +139,7 @@ class _NormalEquations:
         by_view = [block.solve(block.right - block.cross @ step, damping) for block in self.blocks]
         return step, by_view
 
-    def covariance(self, free: NDArray[np.intp]) -> Array:
+    def covariance(self, free: Indices) -> Array:
         """Return the covariance of the shared unknowns; zero for those that are not free."""
         normal, _ = self.reduced(0.0)
         covariance = np.zeros_like(normal)

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.calibration import camera_vector
 from tracking.calibration.bundle_adjustment import adjust
@@ -12,8 +11,6 @@ from tracking.calibration.model import CalibrationTarget
 from tracking.calibration.solver import fit_poses, solve
 from tracking.calibration.view import View
 from tracking.geometry.intrinsics import Intrinsics
-
-Array = NDArray[np.float64]
 
 MAX_FOCAL_CHANGE = 0.01
 """Relative change of the focal length that is tolerated, ..."""

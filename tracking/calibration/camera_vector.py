@@ -2,11 +2,9 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from tracking.geometry.arrays import Array, Flags
 from tracking.geometry.intrinsics import Intrinsics
-
-Array = NDArray[np.float64]
 
 PARAMETERS = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
 """Order of the parameters: OpenCV's, as in the Jacobian of `cv2.projectPoints`."""
@@ -52,7 +50,7 @@ def project(camera: Array, points: Array) -> tuple[Array, Array, Array]:
     return np.asarray(pixels, np.float64).reshape(-1, 2), jacobian[..., 3:6], jacobian[..., 6:15]
 
 
-def prior(size: tuple[int, int], focal: float, free: NDArray[np.bool_]) -> tuple[Array, Array]:
+def prior(size: tuple[int, int], focal: float, free: Flags) -> tuple[Array, Array]:
     """Return the prior as linear equations of unit variance: rows (M, 9) and values (M,).
 
     Parameters that are not free have no equation; the solver drops their columns.

@@ -6,7 +6,6 @@ from typing import Literal
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.calibration import camera_vector, initialization
 from tracking.calibration.coverage import ViewCoverage, ViewSample
@@ -16,10 +15,9 @@ from tracking.calibration.view import View
 from tracking.cube.model import CubeModel
 from tracking.errors import TrackingError
 from tracking.geometry import se3
+from tracking.geometry.arrays import Array
 from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
-
-Array = NDArray[np.float64]
 
 MAX_SPEED = 0.09
 """A target that moves faster than this is too blurred to measure [image widths/s]."""

@@ -10,9 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
 
 MIN_TILT_RAD = np.deg2rad(18)
 """Smallest tilt of a plate that counts as tilted."""

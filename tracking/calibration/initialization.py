@@ -4,13 +4,11 @@ from collections.abc import Iterator, Sequence
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.calibration import camera_vector
 from tracking.calibration.view import View
 from tracking.geometry import se3
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 FIELDS_OF_VIEW_RAD = np.deg2rad(np.linspace(30, 100, 15))
 """Horizontal fields of view to try: telephoto to action camera."""

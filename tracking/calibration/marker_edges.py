@@ -10,15 +10,13 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.calibration.view import View
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel, Face
 from tracking.detection.markers import Observation
+from tracking.geometry.arrays import Array, Flags, Indices
 from tracking.geometry.image_region import Patch
-
-Array = NDArray[np.float64]
 
 POINTS_PER_CELL = 2
 """Number of measured points along one cell."""
@@ -99,7 +97,7 @@ class _Layout:
     end_distances: Array
     """Distance to the nearer end of the edge [cells], (N,)."""
 
-    lines: NDArray[np.intp]
+    lines: Indices
     """Index of the edge, (N,)."""
 
 
@@ -126,7 +124,7 @@ class _Warp:
 
 def _measure(
     patch: Patch, layout: _Layout, warp: _Warp, width: float
-) -> tuple[NDArray[np.intp], Array, Array, Array] | None:
+) -> tuple[Indices, Array, Array, Array] | None:
     """Measure across the edges: indices of the good points, pixels, normals, offsets [px]."""
     pixels = warp(layout.points)
     tangents = warp.difference(layout.points, layout.along)
@@ -160,7 +158,7 @@ def _layout(cube: CubeModel, face: Face) -> _Layout:
     return _Layout(points, along, across, rows[:, 6], rows[:, 7].astype(np.intp))
 
 
-def _edge_points(white: NDArray[np.bool_]) -> Array:
+def _edge_points(white: Flags) -> Array:
     """List points on vertical edges [cells]: x y, along (2), across (2), end distance, line."""
     rows: list[tuple[float, ...]] = []
     line = 0
@@ -182,7 +180,7 @@ def _quadratic_terms(points: Array) -> Array:
     return np.stack([np.ones(len(u)), u, v, u * u, u * v, v * v], axis=1)
 
 
-def _fit_bend(points: Array, normals: Array, offset: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _fit_bend(points: Array, normals: Array, offset: Array) -> tuple[Array, Flags]:
     """Fit the change of the map, and the bloom, to the offsets measured across the edges.
 
     Robust least squares with Tukey's biweight.

@@ -5,13 +5,11 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.calibration import camera_vector
 from tracking.calibration.view import View
 from tracking.geometry import se3
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array, Flags, Indices
 
 PLATE_SHIFT_SIGMA_M, PLATE_ROTATION_SIGMA_RAD = 0.0012, np.deg2rad(1.2)
 """Prior standard deviations of a face of a hand-made cube about its nominal pose."""
@@ -30,7 +28,7 @@ class CalibrationTarget:
     size: tuple[int, int]
     """Size of the images [px]."""
 
-    free: NDArray[np.bool_]
+    free: Flags
     """Which of the camera's parameters are free, (9,)."""
 
     centres: Array
@@ -65,7 +63,7 @@ class CalibrationModel:
         return replace(self, poses=self.poses[list(chosen)], blooms=self.blooms[list(chosen)])
 
     @property
-    def free_parameters(self) -> NDArray[np.intp]:
+    def free_parameters(self) -> Indices:
         """Indices of the free ones among the 9 + 6 P parameters of camera and plates."""
         free = np.full(9 + 6 * len(self.plates), self.target.adjust_plates)
         free[:9] = self.target.free

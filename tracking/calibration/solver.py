@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.calibration import camera_vector
 from tracking.calibration.bundle_adjustment import AdjustmentResult, adjust
@@ -13,9 +12,8 @@ from tracking.calibration.model import CalibrationModel, CalibrationTarget
 from tracking.calibration.view import View
 from tracking.cube.model import CubeModel
 from tracking.errors import TrackingError
+from tracking.geometry.arrays import Array
 from tracking.geometry.intrinsics import Intrinsics
-
-Array = NDArray[np.float64]
 
 MIN_VIEWS = 8
 """Minimum number of views of a calibration."""

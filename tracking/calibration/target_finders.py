@@ -5,7 +5,6 @@ from typing import Protocol
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.calibration.board import Board
 from tracking.calibration.marker_edges import MarkerEdgeMeter
@@ -14,10 +13,8 @@ from tracking.calibration.solver import cube_target
 from tracking.calibration.view import View, join_views, view_of_corners
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import MarkerDetector, Observation, markers_of
+from tracking.geometry.arrays import Array, Image
 from tracking.geometry.image_region import Patch
-
-Array = NDArray[np.float64]
-Grey = NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -43,11 +40,11 @@ class TargetFinder(Protocol):
     names: tuple[str, ...]
     """Names of the plates."""
 
-    def find(self, grey: Grey, timestamp: float) -> TargetDetection | None:
+    def find(self, grey: Image, timestamp: float) -> TargetDetection | None:
         """Detect the target in a grey image, (H, W)."""
         ...
 
-    def measure(self, grey: Grey, found: TargetDetection) -> View | None:
+    def measure(self, grey: Image, found: TargetDetection) -> View | None:
         """Measure a detected target precisely; None if it is not clearly visible."""
         ...
 
@@ -65,7 +62,7 @@ class CubeFinder:
         self._detector = MarkerDetector(cube.dictionary)
         self._meter = MarkerEdgeMeter(cube)
 
-    def find(self, grey: Grey, timestamp: float) -> TargetDetection | None:
+    def find(self, grey: Image, timestamp: float) -> TargetDetection | None:
         """Detect the markers; the larger one of two with the same id counts."""
         largest: dict[str, Observation] = {}
         for seen in markers_of(self.cube, self._detector.detect(grey)):
@@ -84,7 +81,7 @@ class CubeFinder:
         )
         return TargetDetection(corners, outlines, plates, tuple(largest.values()))
 
-    def measure(self, grey: Grey, found: TargetDetection) -> View | None:
+    def measure(self, grey: Image, found: TargetDetection) -> View | None:
         """Measure all edges of all detected markers."""
         time, patch = found.corners.timestamp, Patch.crop(grey)
         parts = [self._meter.measure(patch, seen, time) for seen in found.observations]
@@ -105,7 +102,7 @@ class BoardFinder:
         self.board = board
         self._detector = cv2.aruco.CharucoDetector(board.pattern)
 
-    def find(self, grey: Grey, timestamp: float) -> TargetDetection | None:
+    def find(self, grey: Image, timestamp: float) -> TargetDetection | None:
         """Detect the corners; None if they are too few or all on one line."""
         corners, ids = self._detector.detectBoard(grey)[:2]
         # OpenCV returns None if there is no board.
@@ -120,7 +117,7 @@ class BoardFinder:
         view = view_of_corners(timestamp, np.zeros(len(pixels), np.intp), points, pixels)
         return TargetDetection(view, (np.asarray(outline, np.float64).reshape(4, 2),), (0,))
 
-    def measure(self, grey: Grey, found: TargetDetection) -> View | None:
+    def measure(self, grey: Image, found: TargetDetection) -> View | None:
         """Return the corners: two edges cross in each, so blur and gamma cancel out."""
         return found.corners
 

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array, Indices
 
 
 @dataclass(frozen=True)
@@ -20,7 +19,7 @@ class View:
     timestamp: float
     """Time of the frame [s]."""
 
-    plates: NDArray[np.intp]
+    plates: Indices
     """Index of the plate of each point, (N,)."""
 
     points: Array
@@ -36,7 +35,7 @@ class View:
     bloom: Array
     """1 for rows that shift when white areas bloom over black ones (edges), else 0, (N,)."""
 
-    lines: NDArray[np.intp]
+    lines: Indices
     """Index of the straight edge of each row, (N,). Rows of one edge have correlated errors."""
 
     @property
@@ -62,9 +61,7 @@ def join_views(timestamp: float, parts: list[View]) -> View:
     )
 
 
-def view_of_corners(
-    timestamp: float, plates: NDArray[np.intp], points: Array, pixels: Array
-) -> View:
+def view_of_corners(timestamp: float, plates: Indices, points: Array, pixels: Array) -> View:
     """Make a view of M corners; each becomes two rows, one for x and one for y.
 
     Parameters

@@ -8,16 +8,16 @@ from typing import ClassVar, TypeAlias
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.errors import TrackingError
+from tracking.geometry.arrays import Image
 from tracking.sources.camera_controls import (
     EXPOSURE,
     EXPOSURE_UNITS_PER_MS,
     FOCUS,
     ControlLock,
 )
-from tracking.sources.device import Clock, DeviceSetting, Image
+from tracking.sources.device import Clock, DeviceSetting
 from tracking.sources.live import LiveSource
 from tracking.sources.options import UriOptions
 from tracking.sources.video_device import (
@@ -199,7 +199,7 @@ def _locks(capture: VideoCapture, options: CameraOptions) -> tuple[ControlLock, 
     )
 
 
-def _converted(data: NDArray[np.uint8]) -> Image | bytes:
+def _converted(data: Image) -> Image | bytes:
     """Tell JPEG data from pixels by its shape in OpenCV; convert pixels to BGR."""
     if 1 in data.shape[:2] or data.ndim == 1:
         return _trimmed(data.tobytes())

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.sources.device import DeviceSetting, Image
+from tracking.geometry.arrays import Image
+from tracking.sources.device import DeviceSetting
 from tracking.sources.video_device import VideoCapture
 
 SETTLING_IMAGES = 30

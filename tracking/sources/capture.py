@@ -7,13 +7,13 @@ from contextlib import closing
 import numpy as np
 
 from tracking.errors import TrackingError
+from tracking.geometry.arrays import Image
 from tracking.sources.capture_timing import ExposureClock, QueueGauge
 from tracking.sources.device import (
     CapturedImage,
     Clock,
     Device,
     DeviceSetting,
-    Image,
     SourceState,
 )
 

@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 from av.codec.context import Flags
 
-from tracking.sources.device import Image, decode_jpeg
+from tracking.geometry.arrays import Image
+from tracking.sources.device import decode_jpeg
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,11 @@ from typing import Literal, Protocol, TypeAlias
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
+
+from tracking.geometry.arrays import Image
 
 Clock: TypeAlias = Callable[[], float]
 """Returns the time [s]."""
-
-Image: TypeAlias = NDArray[np.uint8]
-"""(H, W, 3) BGR."""
 
 SourceState: TypeAlias = Literal["running", "lost", "frozen", "recovering", "closed"]
 """Running; disconnected or silent; repeating the same image; open again, but no image yet."""

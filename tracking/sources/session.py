@@ -7,10 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from tracking.errors import TrackingError
+from tracking.geometry.arrays import Image
 from tracking.geometry.frame import Frame
 from tracking.sources.base import StoredFrames, Timeline
 from tracking.sources.decoding import EncodedImage, ImageDecodeError, ImageDecoder
-from tracking.sources.device import Clock, Image
+from tracking.sources.device import Clock
 from tracking.sources.mcap_camera import IMAGE_TOPIC, BrokenFileError, CameraChannels
 
 PEEKED_IMAGES = 30

@@ -4,13 +4,10 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from tracking.geometry.arrays import Array, Floats
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.projection import Projection
-
-Array = NDArray[np.float64]
-Rays = NDArray[np.float32]
 
 
 class CameraRays:
@@ -43,7 +40,7 @@ class CameraRays:
         """Transform points of the table frame to the camera frame, (n, 3)."""
         return points @ self.camera_from_table[:3, :3].T + self.camera_from_table[:3, 3]
 
-    def rays(self, region: "PixelRegion", samples: int) -> Rays:
+    def rays(self, region: "PixelRegion", samples: int) -> Floats:
         """Return the direction of each sample in a region, as a point at z = 1.
 
         Directions between pixel centres are interpolated, with an error below 0.001 px.
@@ -101,7 +98,7 @@ class PixelRegion:
         return slice(self.y, self.bottom), slice(self.x, self.right)
 
 
-def averaged(values: NDArray[np.float32], samples: int) -> NDArray[np.float32]:
+def averaged(values: Floats, samples: int) -> Floats:
     """Average blocks of `samples`²: (h · samples, w · samples, n) → (h, w, n)."""
     if samples == 1:
         return values

@@ -5,12 +5,10 @@ from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import FACE_AXES
 from tracking.geometry import se3
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 UP = np.array([0.0, 1.0, 0.0])
 

@@ -6,11 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.synthetic.camera_rays import CameraRays
-
-Array = NDArray[np.float64]
-Image = NDArray[np.float32]
-Canvas = NDArray[np.uint8]
 
 HALF_WIDTH_M = 1.3
 """Half the side of the desk's square texture."""
@@ -28,7 +25,7 @@ WALL_BGR = np.array([168, 186, 196], float)
 """Colour of the wall behind the desk."""
 
 
-def desk_texture(random: np.random.Generator, clutter: bool) -> Image:
+def desk_texture(random: np.random.Generator, clutter: bool) -> Floats:
     """Draw the desk from above, (TEXELS, TEXELS, 3) BGR; rows along z, columns along x."""
     texture = _planks(random)
     if clutter:
@@ -37,7 +34,7 @@ def desk_texture(random: np.random.Generator, clutter: bool) -> Image:
     return texture
 
 
-def render_desk(camera: CameraRays, texture: Image) -> Image:
+def render_desk(camera: CameraRays, texture: Floats) -> Floats:
     """Return the image of the desk and the wall behind it, (H, W, 3)."""
     x, z, _ = _desk_points(camera, 2)
     scale = TEXELS / (2 * HALF_WIDTH_M)
@@ -54,7 +51,7 @@ def render_desk(camera: CameraRays, texture: Image) -> Image:
     return _with_wall(_lit(small, x, z), (z < FAR_EDGE_M) | ~below, x, z)
 
 
-def _desk_points(camera: CameraRays, samples: int) -> tuple[Image, Image, NDArray[np.bool_]]:
+def _desk_points(camera: CameraRays, samples: int) -> tuple[Floats, Floats, Flags]:
     """Return x and z where each sample's ray meets the desk [m], and whether it points down."""
     rays = camera.rays(camera.whole(), samples)
     table_from_camera = np.linalg.inv(camera.camera_from_table)
@@ -66,13 +63,13 @@ def _desk_points(camera: CameraRays, samples: int) -> tuple[Image, Image, NDArra
     return x, z, directions[..., 1] < -1e-3
 
 
-def _lit(desk: Image, x: Image, z: Image) -> Image:
+def _lit(desk: Floats, x: Floats, z: Floats) -> Floats:
     """Light the desk by a lamp at the far left, with a faint gloss."""
     lamp = np.exp(-((x + 0.35) ** 2 + (z + 0.25) ** 2) / 0.5)[..., None]
     return np.asarray(desk * (0.80 + 0.26 * lamp) + 9.0 * lamp**3, np.float32)
 
 
-def _with_wall(image: Image, behind: NDArray[np.bool_], x: Image, z: Image) -> Image:
+def _with_wall(image: Floats, behind: Flags, x: Floats, z: Floats) -> Floats:
     height = np.clip(FAR_EDGE_M - z, 0.0, 2.0)[..., None]
     wall = WALL_BGR * (0.92 - 0.10 * np.tanh(height)) * (1 - 0.06 * np.tanh(np.abs(x))[..., None])
     # The far edge is out of focus, so the wall fades in over some pixels.
@@ -82,7 +79,7 @@ def _with_wall(image: Image, behind: NDArray[np.bool_], x: Image, z: Image) -> I
     return np.asarray((image * (1 - soft) + wall * soft) * shade, np.float32)
 
 
-def _planks(random: np.random.Generator) -> Image:
+def _planks(random: np.random.Generator) -> Floats:
     width = TEXELS // 13
     texture = np.empty((TEXELS, TEXELS, 3), np.float32)
     grain = _grain(random)
@@ -98,7 +95,7 @@ def _planks(random: np.random.Generator) -> Image:
     return texture
 
 
-def _grain(random: np.random.Generator) -> Image:
+def _grain(random: np.random.Generator) -> Floats:
     """Return wood grain along x: fibres and wavy rings; about −2…2."""
     bands = np.zeros((TEXELS, TEXELS), np.float32)
     for along, across, weight in ((6, 160, 0.8), (20, 500, 0.5), (60, 1300, 0.35)):
@@ -128,7 +125,7 @@ def _quad(x: float, z: float, width: float, depth: float, turn: float) -> NDArra
 
 
 def _draw_flat(
-    texture: Image, outline: NDArray[np.int32], color: tuple[float, float, float]
+    texture: Floats, outline: NDArray[np.int32], color: tuple[float, float, float]
 ) -> None:
     """Draw a flat object on the desk, with a soft shadow at its edge."""
     low = np.maximum(outline.min(axis=0) // 16 - 32, 0)
@@ -142,7 +139,7 @@ def _draw_flat(
     texture += (np.array(color, np.float32) - texture) * edge
 
 
-def _draw_paper(texture: Image, random: np.random.Generator) -> None:
+def _draw_paper(texture: Floats, random: np.random.Generator) -> None:
     """Draw a sheet with lines of writing."""
     turn, x, z = 0.22, 0.40, -0.20
     _draw_flat(texture, _quad(x, z, 0.21, 0.297, turn), (206, 214, 218))
@@ -155,7 +152,7 @@ def _draw_paper(texture: Image, random: np.random.Generator) -> None:
         cv2.line(texture, ends[0], ends[1], (150.0, 128.0, 120.0), 2, cv2.LINE_AA, 4)
 
 
-def _draw_notes(texture: Image, random: np.random.Generator) -> None:
+def _draw_notes(texture: Floats, random: np.random.Generator) -> None:
     """Draw three sticky notes."""
     for x, z, turn, color in (
         (-0.40, 0.03, 0.20, (110, 220, 242)),
@@ -165,7 +162,7 @@ def _draw_notes(texture: Image, random: np.random.Generator) -> None:
         _draw_flat(texture, _quad(x, z, 0.076, 0.076, turn), color)
 
 
-def _draw_coaster(texture: Image, random: np.random.Generator) -> None:
+def _draw_coaster(texture: Floats, random: np.random.Generator) -> None:
     """Draw a cork coaster under the mug."""
     circle = [
         _texel(MUG.x + 0.058 * np.cos(a), MUG.z + 0.058 * np.sin(a))
@@ -187,7 +184,7 @@ class Mug:
 MUG = Mug()
 
 
-def draw_objects(image: Image, camera: CameraRays) -> None:
+def draw_objects(image: Floats, camera: CameraRays) -> None:
     """Draw a mug and two pencils into the camera's image, in place."""
     # OpenCV anti-aliases on integer images only.
     canvas = np.clip(np.rint(image), 0, 255).astype(np.uint8)
@@ -204,7 +201,7 @@ def _project(camera: CameraRays, points: Array) -> NDArray[np.int32]:
     return np.round(camera.pixels(camera.from_table(points)) * 16).astype(np.int32)
 
 
-def _draw_mug(image: Canvas, camera: CameraRays) -> None:
+def _draw_mug(image: Image, camera: CameraRays) -> None:
     angles = np.linspace(0, 2 * np.pi, 97)
     circle = np.stack([np.cos(angles), 0 * angles, np.sin(angles)], axis=1)
     foot = np.array([MUG.x, 0.0, MUG.z])
@@ -237,7 +234,7 @@ def _draw_mug(image: Canvas, camera: CameraRays) -> None:
 
 
 def _draw_pencil(
-    image: Canvas,
+    image: Image,
     camera: CameraRays,
     place: tuple[float, float, float],
     color: tuple[float, float, float],
@@ -268,7 +265,7 @@ def _draw_pencil(
     band(0.084, 0.090, 0.1, (50, 50, 50))
 
 
-def _draw_shadow(image: Canvas, camera: CameraRays, outline: Array, length: float) -> None:
+def _draw_shadow(image: Image, camera: CameraRays, outline: Array, length: float) -> None:
     """Darken the desk next to an object: its footprint, swept away from the lamp."""
     swept = np.vstack([outline, outline + (0.5 * length, 0.0, 0.35 * length)])
     hull = cv2.convexHull(_project(camera, swept))
@@ -277,6 +274,6 @@ def _draw_shadow(image: Canvas, camera: CameraRays, outline: Array, length: floa
     _shade(image, 0.42 * cv2.GaussianBlur(dark, (0, 0), 9.0))
 
 
-def _shade(canvas: Canvas, darkness: NDArray[np.float32]) -> None:
+def _shade(canvas: Image, darkness: Floats) -> None:
     """Darken an image in place; `darkness` (H, W) is 0…1."""
     canvas[:] = np.rint(canvas * (1.0 - darkness[..., None]))

@@ -2,18 +2,14 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
+from tracking.geometry.arrays import Array, Floats, Image
 from tracking.synthetic.camera_rays import CameraRays, PixelRegion
 from tracking.synthetic.choreography import SceneState
 from tracking.synthetic.desk import desk_texture, draw_objects, render_desk
 from tracking.synthetic.hand import Hand, draw_hand, hand_at, hand_region
 from tracking.synthetic.options import SyntheticOptions
 from tracking.synthetic.paper_cube import TO_LIGHT, PaperCube
-
-Array = NDArray[np.float64]
-Image = NDArray[np.float32]
-SensorImage = NDArray[np.uint8]
 
 MAX_STEP_PX = 0.6
 """Maximum motion of a corner between two samples of one exposure."""
@@ -49,9 +45,7 @@ class ExposureRenderer:
         size = (camera.size[1] + 128, camera.size[0] + 128, 3)
         self._noise = random.standard_normal(size, dtype=np.float32)
 
-    def draw(
-        self, states: list[SceneState], poses: list[Array], index: int, in_air: bool
-    ) -> SensorImage:
+    def draw(self, states: list[SceneState], poses: list[Array], index: int, in_air: bool) -> Image:
         """Return the image of one exposure, (H, W, 3) uint8 BGR.
 
         Parameters
@@ -83,7 +77,7 @@ class ExposureRenderer:
         image *= self._vignette
         return self._sensor_image(image, index)
 
-    def _add_cube(self, image: Image, poses: list[Array]) -> None:
+    def _add_cube(self, image: Floats, poses: list[Array]) -> None:
         regions = [self._cube.region(pose) for pose in (poses[0], poses[-1])]
         if any(region.empty for region in regions):
             return
@@ -94,7 +88,7 @@ class ExposureRenderer:
         part *= 1.0 - cover
         part += color
 
-    def _add_hand(self, image: Image, hand: Hand, camera_from_cube: Array) -> None:
+    def _add_hand(self, image: Floats, hand: Hand, camera_from_cube: Array) -> None:
         region = hand_region(self._camera, hand)
         if region.empty:
             return
@@ -105,7 +99,7 @@ class ExposureRenderer:
         part = image[region.index]
         part += (color - part) * cover[..., None]
 
-    def _hand_shadow(self, image: Image, hand: Hand) -> None:
+    def _hand_shadow(self, image: Floats, hand: Hand) -> None:
         """Cast the hand's shadow on the desk: wide strokes at low resolution, blurred."""
         coarse = 4
         width, height = (side // coarse for side in self._camera.size)
@@ -129,7 +123,7 @@ class ExposureRenderer:
         shade = cv2.resize(1.0 - 0.34 * soft, self._camera.size)
         image *= shade[..., None]
 
-    def _cube_shadow(self, image: Image, table_from_cube: Array) -> None:
+    def _cube_shadow(self, image: Floats, table_from_cube: Array) -> None:
         half = self._cube.cube.edge / 2
         signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
         corners = half * signs @ table_from_cube[:3, :3].T + table_from_cube[:3, 3]
@@ -142,7 +136,7 @@ class ExposureRenderer:
         self._darken(image, cast, 0.40 / (1.0 + 9.0 * height), soft)
         self._darken(image, foot, 0.42 / (1.0 + 60.0 * height), 2.5 + 120.0 * height)
 
-    def _darken(self, image: Image, points: Array, depth: float, soft: float) -> None:
+    def _darken(self, image: Floats, points: Array, depth: float, soft: float) -> None:
         in_camera = self._camera.from_table(points)
         if (in_camera[:, 2] < 0.05).any():
             return
@@ -155,7 +149,7 @@ class ExposureRenderer:
         cv2.fillConvexPoly(mask, hull, 1.0, cv2.LINE_AA, 4)
         image[region.index] *= (1.0 - depth * cv2.GaussianBlur(mask, (0, 0), soft))[..., None]
 
-    def _passing_shadow(self, image: Image, time: float) -> None:
+    def _passing_shadow(self, image: Floats, time: float) -> None:
         """Move a wide soft shadow, as of a person, along the near edge."""
         width, height = self._camera.size
         small = np.indices((height // 16 + 1, width // 16 + 1), np.float32) * 16
@@ -164,7 +158,7 @@ class ExposureRenderer:
         shade = 1.0 - 0.22 * np.exp(-2.2 * away) * (0.75 + 0.25 * np.sin(0.6 * time))
         image *= cv2.resize(shade.astype(np.float32), (width, height))[..., None]
 
-    def _sensor_image(self, image: Image, index: int) -> SensorImage:
+    def _sensor_image(self, image: Floats, index: int) -> Image:
         options = self._options
         if options.defocus > 0:
             image = np.asarray(cv2.GaussianBlur(image, (0, 0), options.defocus), np.float32)
@@ -192,7 +186,7 @@ def _union(regions: list[PixelRegion]) -> PixelRegion:
     return PixelRegion(x, y, right - x, bottom - y)
 
 
-def _vignette(camera: CameraRays) -> Image:
+def _vignette(camera: CameraRays) -> Floats:
     width, height = camera.size
     x = np.linspace(-1, 1, width, dtype=np.float32)
     y = np.linspace(-height / width, height / width, height, dtype=np.float32)

@@ -3,12 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel, face_corners
 from tracking.geometry import se3
-
-Array = NDArray[np.float64]
+from tracking.geometry.arrays import Array
 
 
 def fold_cube(cube: CubeModel, millimetres: float, seed: int) -> CubeModel:

@@ -4,14 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tracking.geometry.arrays import Array, Floats
 from tracking.synthetic.camera_rays import CameraRays, PixelRegion
 
-Array = NDArray[np.float64]
-Image = NDArray[np.float32]
-
-Shader = Callable[[Image, Image, Image, Image], Image]
+Shader = Callable[[Floats, Floats, Floats, Floats], Floats]
 """From light, slope towards the camera, blush and position along the bone to a BGR colour."""
 
 SKIN_BGR = np.array([128.0, 162.0, 224.0], np.float32)
@@ -125,7 +122,7 @@ def hand_region(camera: CameraRays, hand: Hand) -> PixelRegion:
 
 def draw_hand(
     camera: CameraRays, region: PixelRegion, hand: Hand, to_light: Array
-) -> tuple[Image, Image, Image]:
+) -> tuple[Floats, Floats, Floats]:
     """Render the hand.
 
     Returns
@@ -145,7 +142,7 @@ def draw_hand(
     return color, np.maximum(skin.cover, cloth.cover), depth
 
 
-def _skin_color(light: Image, slope: Image, blush: Image, along: Image) -> Image:
+def _skin_color(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
     """Shade skin: light scatters round it, and its rims are redder, not only darker."""
     rim = np.clip(1.0 - slope, 0.0, 1.0) ** 2
     color = SKIN_BGR * (0.40 + 0.62 * light)[..., None]
@@ -154,7 +151,7 @@ def _skin_color(light: Image, slope: Image, blush: Image, along: Image) -> Image
     return np.asarray(color + 16.0 * (light**6)[..., None], np.float32)
 
 
-def _cloth_color(light: Image, slope: Image, blush: Image, along: Image) -> Image:
+def _cloth_color(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
     """Shade wool: soft folds across the arm, and no gloss."""
     folds = 0.05 * np.sin(34 * along + 3.0 * slope) + 0.035 * np.sin(81 * along - 5.0 * slope)
     shade = 0.42 + 0.60 * light + folds * slope
@@ -203,13 +200,13 @@ class _CapsuleLayer:
         sums[..., 6] += weight
         np.maximum(self.cover[box], cover, out=self.cover[box])
 
-    def depth(self) -> Image:
+    def depth(self) -> Floats:
         """Return the depth of the surface (h, w) [m]; 0 where there is none."""
         return np.asarray(
             self._sums[..., 5] / np.maximum(self._sums[..., 6], MIN_WEIGHT), np.float32
         )
 
-    def shaded(self, color: Shader, to_light: Array) -> Image:
+    def shaded(self, color: Shader, to_light: Array) -> Floats:
         """Return the colour (h, w, 3) BGR; black where there is nothing."""
         shown = np.zeros((*self.cover.shape, 3), np.float32)
         covered = self.cover > 0

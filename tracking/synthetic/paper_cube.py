@@ -2,16 +2,13 @@
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.icons import ICON_COLOURS, ICONS, icon_mask
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import FACE_AXES, CubeModel, Face
+from tracking.geometry.arrays import Array, Floats
 from tracking.synthetic.camera_rays import CameraRays, PixelRegion, averaged
 from tracking.synthetic.folding import face_poses
-
-Array = NDArray[np.float64]
-Image = NDArray[np.float32]
 
 TEXELS = 640
 """Texels along the edge of a face's texture."""
@@ -67,7 +64,7 @@ class PaperCube:
             margin += 0.1 * float(np.ptp(self._camera.pixels(corners), axis=0).max())
         return self._camera.region_around(self._camera.pixels(corners), margin)
 
-    def depth(self, region: PixelRegion, camera_from_cube: Array) -> Image:
+    def depth(self, region: PixelRegion, camera_from_cube: Array) -> Floats:
         """Return the depth of the cube's surface, (h, w) [m]; infinite where there is no cube."""
         rays = self._camera.rays(region, 1)
         enters = np.zeros(rays.shape[:2], np.float32)
@@ -84,7 +81,7 @@ class PaperCube:
 
     def draw(
         self, region: PixelRegion, poses: list[Array], to_light: Array, samples: int
-    ) -> tuple[Image, Image]:
+    ) -> tuple[Floats, Floats]:
         """Render the cube, averaged over an exposure.
 
         Parameters
@@ -109,7 +106,7 @@ class PaperCube:
         sums /= len(poses)
         return sums[..., :3], sums[..., 3:]
 
-    def _sampled(self, rays: Image, pose: Array, to_light: Array, samples: int) -> Image:
+    def _sampled(self, rays: Floats, pose: Array, to_light: Array, samples: int) -> Floats:
         shown = np.zeros((*rays.shape[:2], 4), np.float32)
         for name, (right, up) in FACE_AXES.items():
             axes = pose[:3, :3] @ np.array([right, up, np.cross(right, up)], float).T
@@ -123,7 +120,7 @@ class PaperCube:
             self._face(shown, rays, axes, centre, self._texture(name, centre, samples), to_light)
         return shown
 
-    def _texture(self, name: str, centre: Array, samples: int) -> Image:
+    def _texture(self, name: str, centre: Array, samples: int) -> Floats:
         """Choose the mipmap level of a face with about one texel per sample.
 
         A finer level would be undersampled, and its edges would alias.
@@ -134,7 +131,7 @@ class PaperCube:
         return self._textures[name][level]
 
     def _face(
-        self, shown: Image, rays: Image, axes: Array, centre: Array, face: Image, light: Array
+        self, shown: Floats, rays: Floats, axes: Array, centre: Array, face: Floats, light: Array
     ) -> None:
         """Render one face: texel = homography · ray."""
         plane = np.column_stack([axes[:, 0], -axes[:, 1], centre])
@@ -161,7 +158,7 @@ class PaperCube:
         part[mask, 3] = 1.0
 
 
-def _face_texture(cube: CubeModel, face: Face | None, random: np.random.Generator) -> Image:
+def _face_texture(cube: CubeModel, face: Face | None, random: np.random.Generator) -> Floats:
     """Draw the print of a face, (TEXELS, TEXELS, 3) BGR; None is blank paper."""
     grain = random.standard_normal((TEXELS // 8, TEXELS // 8)).astype(np.float32)
     paper = cv2.resize(grain, (TEXELS, TEXELS), interpolation=cv2.INTER_CUBIC) * 1.2 + WHITE
@@ -177,7 +174,7 @@ def _face_texture(cube: CubeModel, face: Face | None, random: np.random.Generato
     return texture
 
 
-def _mipmaps(texture: Image) -> list[Image]:
+def _mipmaps(texture: Floats) -> list[Floats]:
     levels = [texture]
     for level in range(1, MIPMAP_LEVELS):
         size = (TEXELS >> level, TEXELS >> level)
@@ -186,7 +183,7 @@ def _mipmaps(texture: Image) -> list[Image]:
     return levels
 
 
-def _print_marker(texture: Image, cube: CubeModel, face: Face) -> None:
+def _print_marker(texture: Floats, cube: CubeModel, face: Face) -> None:
     cells = np.rot90(marker_cells(cube.dictionary, face.marker_id), -(face.roll_deg // 90))
     texel = (np.arange(TEXELS) + 0.5) / TEXELS * cube.edge - cube.edge / 2
     place = (texel + cube.marker_size / 2) / cube.marker_size * len(cells)
@@ -196,7 +193,7 @@ def _print_marker(texture: Image, cube: CubeModel, face: Face) -> None:
     texture[black] = BLACK
 
 
-def _print_icon(texture: Image, cube: CubeModel, face: Face) -> None:
+def _print_icon(texture: Floats, cube: CubeModel, face: Face) -> None:
     margin = (cube.edge - cube.marker_size) / 2 / cube.edge * TEXELS
     size = int(0.72 * margin)
     if face.icon not in ICONS or size < 8:

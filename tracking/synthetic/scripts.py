@@ -4,14 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import FACE_AXES
 from tracking.geometry import se3
+from tracking.geometry.arrays import Array
 from tracking.synthetic.choreography import Choreography, SceneState, minimum_jerk
 from tracking.synthetic.options import SyntheticOptions
-
-Array = NDArray[np.float64]
 
 TOP, BOTTOM = (0, 1, 0), (0, -1, 0)
 FRONT, BACK = (0, 0, 1), (0, 0, -1)

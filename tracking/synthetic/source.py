@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel
 from tracking.errors import TrackingError
 from tracking.geometry import se3
+from tracking.geometry.arrays import Array
 from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.sources.base import FrameSource
@@ -20,8 +20,6 @@ from tracking.synthetic.folding import fold_cube
 from tracking.synthetic.options import SyntheticOptions
 from tracking.synthetic.paper_cube import PaperCube
 from tracking.synthetic.scripts import SCRIPTS, Script
-
-Array = NDArray[np.float64]
 
 EYE_M = np.array([0.0, 0.37, 0.53])
 """Position of the camera in the table frame."""
