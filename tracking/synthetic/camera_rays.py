@@ -11,15 +11,7 @@ from tracking.geometry.projection import Projection
 
 
 class CameraRays:
-    """The rays and the projection of a camera; pixel centres are at integers.
-
-    Parameters
-    ----------
-    intrinsics
-        The camera.
-    camera_from_table
-        Pose of the desk, (4, 4); identity if there is none.
-    """
+    """The rays and the projection of a camera; pixel centres are at integers."""
 
     def __init__(self, intrinsics: Intrinsics, camera_from_table: Array | None = None) -> None:
         self.size = intrinsics.size
@@ -41,13 +33,9 @@ class CameraRays:
         return points @ self.camera_from_table[:3, :3].T + self.camera_from_table[:3, 3]
 
     def rays(self, region: "PixelRegion", samples: int) -> Floats:
-        """Return the direction of each sample in a region, as a point at z = 1.
+        """Return the point at z = 1 on each sample's ray, (height · samples, width · samples, 2).
 
         Directions between pixel centres are interpolated, with an error below 0.001 px.
-
-        Returns
-        -------
-        (height · samples, width · samples, 2)
         """
         inside = (np.arange(samples, dtype=np.float32) + 0.5) / samples - 0.5
         x = (np.arange(region.x, region.right, dtype=np.float32)[:, None] + inside).ravel() + 1
@@ -61,11 +49,9 @@ class CameraRays:
 
     def region_around(self, pixels: Array, margin: float) -> "PixelRegion":
         """Return the bounding region of some pixels (n, 2), plus a margin, within the image."""
-        low = np.floor(pixels.min(axis=0) - margin)
-        high = np.ceil(pixels.max(axis=0) + margin) + 1
-        low = np.clip(low, 0, self.size).astype(int)
-        high = np.clip(high, 0, self.size).astype(int)
-        return PixelRegion(*low.tolist(), *np.maximum(high - low, 0).tolist())
+        low = np.clip(np.floor(pixels.min(axis=0) - margin), 0, self.size).astype(int)
+        high = np.clip(np.ceil(pixels.max(axis=0) + margin) + 1, 0, self.size).astype(int)
+        return PixelRegion(*low.tolist(), *(high - low).tolist())
 
 
 @dataclass(frozen=True)
@@ -100,8 +86,6 @@ class PixelRegion:
 
 def averaged(values: Floats, samples: int) -> Floats:
     """Average blocks of `samples`²: (h · samples, w · samples, n) → (h, w, n)."""
-    if samples == 1:
-        return values
     height, width = values.shape[0] // samples, values.shape[1] // samples
     # INTER_AREA with an integer factor is the mean of each block.
     small = cv2.resize(values, (width, height), interpolation=cv2.INTER_AREA)

@@ -1,7 +1,7 @@
 """The motion of a cube in a hand: a sequence of smooth segments with perfect rest in between."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
@@ -9,6 +9,9 @@ import numpy as np
 from tracking.cube.model import FACE_AXES
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array
+
+Move = Callable[[Array, float], None]
+"""Changes the initial pose of a segment, in place, to that at a share 0…1 of its time."""
 
 UP = np.array([0.0, 1.0, 0.0])
 
@@ -50,9 +53,15 @@ class _Segment:
     start: float
     end: float
     held: bool
-    path: Callable[[float], Array]
+    pose: Array
+    move: Move
     turns: float
     turned: float
+
+    def pose_at(self, share: float) -> Array:
+        pose = self.pose.copy()
+        self.move(pose, share)
+        return pose
 
 
 def minimum_jerk(share: float) -> float:
@@ -65,150 +74,108 @@ def minimum_jerk(share: float) -> float:
     return share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
 
 
-@dataclass
 class Choreography:
     """Builds a motion: each method appends a segment and returns the choreography.
 
-    Parameters
-    ----------
-    edge
-        Edge of the cube [m].
+    At first the cube, with the given edge [m], stands at (x, z) with a clockwise heading.
     """
 
-    edge: float
-    pose: Array = field(init=False)
-    """Pose of the cube after the last segment, (4, 4)."""
-
-    length: float = 0.0
-    """End of the last segment [s]."""
-
-    _segments: list[_Segment] = field(default_factory=list)
-    _turns: float = 0.0
-
-    def __post_init__(self) -> None:
-        self.pose = np.eye(4)
-        self.pose[1, 3] = self.edge / 2
-
-    def stand(self, x: float, z: float, heading_deg: float = 0.0) -> Self:
-        """Set the initial position and clockwise heading of the cube."""
-        self.pose = np.eye(4)
-        self.pose[:3, :3] = se3.rotation(-np.deg2rad(heading_deg) * UP)
-        self.pose[:3, 3] = x, self.edge / 2, z
-        return self
+    def __init__(self, edge: float, x: float = 0.0, z: float = 0.0, heading_deg: float = 0.0):
+        self.length = 0.0
+        """End of the last segment [s]."""
+        self._edge = edge
+        turned = se3.rotation(-np.deg2rad(heading_deg) * UP)
+        self._pose = se3.pose(turned, np.array([x, edge / 2, z]))
+        self._segments: list[_Segment] = []
+        self._turns = 0.0
 
     def rest(self, seconds: float) -> Self:
         """Leave the cube untouched; the hand moves away if there is time."""
-        pose = self.pose.copy()
-        return self._append(seconds, lambda share: pose, held=False)
+        return self._append(seconds, lambda pose, share: None, held=False)
 
     def hold(self, seconds: float) -> Self:
         """Hold the cube without moving it."""
-        pose = self.pose.copy()
-        return self._append(seconds, lambda share: pose, held=True)
+        return self._append(seconds, lambda pose, share: None)
 
     def slide(self, x: float, z: float, seconds: float, bend: float = 0.0) -> Self:
         """Slide over the table to (x, z), along an arc that deviates by `bend` [m] from a line."""
-        start, end = self.pose.copy(), self.pose.copy()
-        end[0, 3], end[2, 3] = x, z
-        aside = np.cross(UP, end[:3, 3] - start[:3, 3])
+        way = np.array([x, self._pose[1, 3], z]) - self._pose[:3, 3]
+        aside = np.cross(UP, way)
         aside /= max(float(np.linalg.norm(aside)), 1e-9)
 
-        def path(share: float) -> Array:
+        def move(pose: Array, share: float) -> None:
             progress = minimum_jerk(share)
-            pose = start.copy()
-            pose[:3, 3] += progress * (end[:3, 3] - start[:3, 3])
+            pose[:3, 3] += progress * way
             pose[:3, 3] += 4 * bend * progress * (1 - progress) * aside
-            return pose
 
-        return self._append(seconds, path)
+        return self._append(seconds, move)
 
     def turn(self, degrees: float, seconds: float) -> Self:
         """Turn in place, clockwise as seen from above."""
-        start = self.pose.copy()
 
-        def path(share: float) -> Array:
-            pose = start.copy()
+        def move(pose: Array, share: float) -> None:
             turned = -np.deg2rad(degrees) * minimum_jerk(share) * UP
-            pose[:3, :3] = se3.rotation(turned) @ start[:3, :3]
-            return pose
+            pose[:3, :3] = se3.rotation(turned) @ pose[:3, :3]
 
-        return self._append(seconds, path, turned=degrees / 360)
+        return self._append(seconds, move, turned=degrees / 360)
 
-    def tip(self, normal: tuple[float, float, float], seconds: float = 1.2) -> Self:
+    def tip(self, normal: tuple[float, float, float]) -> Self:
         """Lift, turn the face with this normal (in the cube frame) to the top, and put down."""
         self._turns = 0.0
-        start = self.pose.copy()
-        outward = start[:3, :3] @ np.array(normal)
+        outward = self._pose[:3, :3] @ np.array(normal)
         axis = np.cross(outward, UP)
         size = float(np.linalg.norm(axis))
         angle = float(np.arctan2(size, outward @ UP))
         axis = axis / size if size > 1e-6 else np.array([1.0, 0.0, 0.0])
 
-        def path(share: float) -> Array:
-            pose = start.copy()
-            pose[:3, :3] = (
-                se3.rotation(axis * angle * minimum_jerk(1.25 * share - 0.125)) @ start[:3, :3]
-            )
-            pose[1, 3] += 0.75 * self.edge * np.sin(np.pi * minimum_jerk(share)) ** 2
-            return pose
+        def move(pose: Array, share: float) -> None:
+            turned = axis * angle * minimum_jerk(1.25 * share - 0.125)
+            pose[:3, :3] = se3.rotation(turned) @ pose[:3, :3]
+            pose[1, 3] += 0.75 * self._edge * np.sin(np.pi * minimum_jerk(share)) ** 2
 
-        return self._append(seconds, path)
+        return self._append(1.2, move)
 
     def carry(self, x: float, z: float, height: float, seconds: float) -> Self:
         """Lift the cube, carry it, and put it down at (x, z)."""
         self._turns = 0.0
-        start = self.pose.copy()
+        way = np.array([x, z]) - self._pose[[0, 2], 3]
 
-        def path(share: float) -> Array:
-            pose = start.copy()
-            pose[[0, 2], 3] += minimum_jerk(1.6 * share - 0.3) * (
-                np.array([x, z]) - start[[0, 2], 3]
-            )
+        def move(pose: Array, share: float) -> None:
+            pose[[0, 2], 3] += minimum_jerk(1.6 * share - 0.3) * way
             pose[1, 3] += height * (minimum_jerk(3 * share) - minimum_jerk(3 * share - 2))
-            return pose
 
-        return self._append(seconds, path)
+        return self._append(seconds, move)
 
-    def shake(self, seconds: float, reach: float = 0.05, rate: float = 4.0) -> Self:
-        """Lift the cube and shake it sideways with a frequency of `rate` [Hz]."""
+    def shake(self, seconds: float) -> Self:
+        """Lift the cube and shake it sideways by 5 cm, four times a second."""
         self._turns = 0.0
-        start = self.pose.copy()
 
-        def path(share: float) -> Array:
-            pose = start.copy()
+        def move(pose: Array, share: float) -> None:
             lifted = minimum_jerk(5 * share) - minimum_jerk(5 * share - 4)
             pose[1, 3] += 0.08 * lifted
-            pose[0, 3] += reach * lifted * np.sin(2 * np.pi * rate * seconds * share)
-            return pose
+            pose[0, 3] += 0.05 * lifted * np.sin(2 * np.pi * 4.0 * seconds * share)
 
-        return self._append(seconds, path)
+        return self._append(seconds, move)
 
     def at(self, time: float) -> SceneState:
         """Return cube and hand at a time [s]; before and after all segments they stand still."""
-        if not self._segments:
-            return SceneState(self.pose.copy(), 0.0)
         time = min(max(time, 0.0), self.length)
         segment = next(s for s in self._segments if time <= s.end)
         share = (time - segment.start) / max(segment.end - segment.start, 1e-9)
-        pose = segment.path(share)
+        pose = segment.pose_at(share)
         grip = self._grip(time)
         if segment.held and grip > 0.99:
             pose = _with_tremor(pose, time, segment)
         turns = segment.turns + segment.turned * minimum_jerk(share)
         return SceneState(pose, grip, not segment.held, turns)
 
-    def _append(
-        self,
-        seconds: float,
-        path: Callable[[float], Array],
-        held: bool = True,
-        turned: float = 0.0,
-    ) -> Self:
+    def _append(self, seconds: float, move: Move, held: bool = True, turned: float = 0.0) -> Self:
         end = self.length + seconds
-        self._segments.append(_Segment(self.length, end, held, path, self._turns, turned))
+        segment = _Segment(self.length, end, held, self._pose, move, self._turns, turned)
+        self._segments.append(segment)
         self._turns += turned
         self.length = end
-        self.pose = path(1.0)
+        self._pose = segment.pose_at(1.0)
         return self
 
     def _grip(self, time: float) -> float:

@@ -1,7 +1,5 @@
 """The static background: a wooden desk with a few objects, and a wall behind it."""
 
-from dataclasses import dataclass
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -24,13 +22,17 @@ WOOD_BGR = np.array([[104, 148, 190], [92, 136, 180], [116, 160, 200], [98, 140,
 WALL_BGR = np.array([168, 186, 196], float)
 """Colour of the wall behind the desk."""
 
+MUG_X_M, MUG_Z_M, MUG_RADIUS_M, MUG_HEIGHT_M = -0.36, -0.30, 0.041, 0.095
+"""Place and size of the mug, in the table frame."""
+
 
 def desk_texture(random: np.random.Generator, clutter: bool) -> Floats:
     """Draw the desk from above, (TEXELS, TEXELS, 3) BGR; rows along z, columns along x."""
     texture = _planks(random)
     if clutter:
-        for draw in (_draw_paper, _draw_notes, _draw_coaster):
-            draw(texture, random)
+        _draw_paper(texture, random)
+        _draw_notes(texture)
+        _draw_coaster(texture)
     return texture
 
 
@@ -101,11 +103,8 @@ def _grain(random: np.random.Generator) -> Floats:
     for along, across, weight in ((6, 160, 0.8), (20, 500, 0.5), (60, 1300, 0.35)):
         noise = random.standard_normal((across, along)).astype(np.float32)
         bands += weight * cv2.resize(noise, (TEXELS, TEXELS), interpolation=cv2.INTER_CUBIC)
-    waves = cv2.resize(
-        random.standard_normal((26, 8)).astype(np.float32),
-        (TEXELS, TEXELS),
-        interpolation=cv2.INTER_CUBIC,
-    )
+    noise = random.standard_normal((26, 8)).astype(np.float32)
+    waves = cv2.resize(noise, (TEXELS, TEXELS), interpolation=cv2.INTER_CUBIC)
     rows = np.arange(TEXELS, dtype=np.float32)[:, None]
     rings = np.sin(rows / 9.0 + 3.4 * waves) * 0.55
     return np.asarray(bands + rings, np.float32)
@@ -152,36 +151,18 @@ def _draw_paper(texture: Floats, random: np.random.Generator) -> None:
         cv2.line(texture, ends[0], ends[1], (150.0, 128.0, 120.0), 2, cv2.LINE_AA, 4)
 
 
-def _draw_notes(texture: Floats, random: np.random.Generator) -> None:
+def _draw_notes(texture: Floats) -> None:
     """Draw three sticky notes."""
-    for x, z, turn, color in (
-        (-0.40, 0.03, 0.20, (110, 220, 242)),
-        (-0.37, 0.11, -0.12, (150, 205, 130)),
-        (-0.43, 0.14, 0.45, (170, 160, 240)),
-    ):
-        _draw_flat(texture, _quad(x, z, 0.076, 0.076, turn), color)
+    _draw_flat(texture, _quad(-0.40, 0.03, 0.076, 0.076, 0.20), (110, 220, 242))
+    _draw_flat(texture, _quad(-0.37, 0.11, 0.076, 0.076, -0.12), (150, 205, 130))
+    _draw_flat(texture, _quad(-0.43, 0.14, 0.076, 0.076, 0.45), (170, 160, 240))
 
 
-def _draw_coaster(texture: Floats, random: np.random.Generator) -> None:
+def _draw_coaster(texture: Floats) -> None:
     """Draw a cork coaster under the mug."""
-    circle = [
-        _texel(MUG.x + 0.058 * np.cos(a), MUG.z + 0.058 * np.sin(a))
-        for a in np.linspace(0, 2 * np.pi, 60)
-    ]
-    _draw_flat(texture, np.array(circle, np.int32), (92, 124, 160))
-
-
-@dataclass(frozen=True)
-class Mug:
-    """Position and size of the mug [m]."""
-
-    x: float = -0.36
-    z: float = -0.30
-    radius: float = 0.041
-    height: float = 0.095
-
-
-MUG = Mug()
+    angles = np.linspace(0, 2 * np.pi, 60)
+    points = [(MUG_X_M + 0.058 * np.cos(a), MUG_Z_M + 0.058 * np.sin(a)) for a in angles]
+    _draw_flat(texture, np.array([_texel(*at) for at in points], np.int32), (92, 124, 160))
 
 
 def draw_objects(image: Floats, camera: CameraRays) -> None:
@@ -189,11 +170,8 @@ def draw_objects(image: Floats, camera: CameraRays) -> None:
     # OpenCV anti-aliases on integer images only.
     canvas = np.clip(np.rint(image), 0, 255).astype(np.uint8)
     _draw_mug(canvas, camera)
-    for x, z, turn, color in (
-        (0.17, -0.40, 0.35, (60, 175, 240)),
-        (0.21, -0.385, 0.10, (190, 120, 60)),
-    ):
-        _draw_pencil(canvas, camera, (x, z, turn), color)
+    _draw_pencil(canvas, camera, (0.17, -0.40, 0.35), (60, 175, 240))
+    _draw_pencil(canvas, camera, (0.21, -0.385, 0.10), (190, 120, 60))
     image[:] = canvas
 
 
@@ -204,30 +182,24 @@ def _project(camera: CameraRays, points: Array) -> NDArray[np.int32]:
 def _draw_mug(image: Image, camera: CameraRays) -> None:
     angles = np.linspace(0, 2 * np.pi, 97)
     circle = np.stack([np.cos(angles), 0 * angles, np.sin(angles)], axis=1)
-    foot = np.array([MUG.x, 0.0, MUG.z])
-    rim = foot + (0.0, MUG.height, 0.0)
-    _draw_shadow(image, camera, foot + circle * MUG.radius, 0.07)
-    handle = foot + np.stack(
-        [
-            MUG.radius + 0.024 * np.sin(angles[:49]),
-            0.05 + 0.026 * np.cos(angles[:49]),
-            0 * angles[:49],
-        ],
-        axis=1,
-    )
-    line = _project(camera, handle)
+    foot = np.array([MUG_X_M, 0.0, MUG_Z_M])
+    rim = foot + (0.0, MUG_HEIGHT_M, 0.0)
+    _draw_shadow(image, camera, foot + circle * MUG_RADIUS_M, 0.07)
+    arc = angles[:49]
+    right, up = MUG_RADIUS_M + 0.024 * np.sin(arc), 0.05 + 0.026 * np.cos(arc)
+    line = _project(camera, foot + np.stack([right, up, 0 * arc], axis=1))
     cv2.polylines(image, [line], False, (72.0, 92.0, 205.0), 9, cv2.LINE_AA, 4)
     for start in range(48):  # the mug's side in strips, each with its own shade
-        pair = circle[start : start + 2] * MUG.radius
-        if pair[:, 2].mean() < -0.35 * MUG.radius:
+        pair = circle[start : start + 2] * MUG_RADIUS_M
+        if pair[:, 2].mean() < -0.35 * MUG_RADIUS_M:
             continue
         strip = np.vstack([foot + pair, (rim + pair)[::-1]])
         light = 0.55 + 0.45 * max(0.0, float(-0.75 * circle[start, 0] + 0.5 * circle[start, 2]))
         color = tuple(float(c * light) for c in (88, 108, 236))
         cv2.fillConvexPoly(image, _project(camera, strip), color, cv2.LINE_AA, 4)
-    outer = _project(camera, rim + circle * MUG.radius)
-    inner = _project(camera, rim + circle * MUG.radius * 0.88)
-    coffee = _project(camera, rim + circle * MUG.radius * 0.84 - (0, 0.012, 0))
+    outer = _project(camera, rim + circle * MUG_RADIUS_M)
+    inner = _project(camera, rim + circle * MUG_RADIUS_M * 0.88)
+    coffee = _project(camera, rim + circle * MUG_RADIUS_M * 0.84 - (0, 0.012, 0))
     cv2.fillConvexPoly(image, outer, (120.0, 138.0, 244.0), cv2.LINE_AA, 4)
     cv2.fillConvexPoly(image, inner, (50.0, 62.0, 140.0), cv2.LINE_AA, 4)
     cv2.fillConvexPoly(image, coffee, (28.0, 44.0, 66.0), cv2.LINE_AA, 4)

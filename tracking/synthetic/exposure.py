@@ -19,17 +19,7 @@ MAX_SHUTTER_SAMPLES = 24
 
 
 class ExposureRenderer:
-    """Renders the images of one static camera.
-
-    Parameters
-    ----------
-    camera
-        The camera, with its pose above the desk.
-    cube
-        The cube.
-    options
-        How the camera sees.
-    """
+    """Renders the images of one static camera."""
 
     def __init__(self, camera: CameraRays, cube: PaperCube, options: SyntheticOptions) -> None:
         self._camera = camera
@@ -48,17 +38,9 @@ class ExposureRenderer:
     def draw(self, states: list[SceneState], poses: list[Array], index: int, in_air: bool) -> Image:
         """Return the image of one exposure, (H, W, 3) uint8 BGR.
 
-        Parameters
-        ----------
-        states
-            Cube and hand at times evenly spread over the exposure; the middle one is the frame's
-            ground truth.
-        poses
-            `camera_from_cube` at the same times.
-        index
-            Index of the frame; seeds its noise.
-        in_air
-            Whether the cube is in the air, without a hand and without a shadow on the desk.
+        `states` and `poses` (`camera_from_cube`) are those at times evenly spread over the
+        exposure; the middle one is the ground truth of frame `index`, which seeds the noise. A
+        cube in the air has no hand and no shadow on the desk.
         """
         image = self._desk.copy()
         options = self._options
@@ -105,28 +87,24 @@ class ExposureRenderer:
         width, height = (side // coarse for side in self._camera.size)
         dark = np.zeros((height, width), np.float32)
         away = TO_LIGHT / TO_LIGHT[1]
+        focal = self._camera.intrinsics.matrix[0, 0]
         for bone in hand.skin + hand.sleeve[:1]:
             ends = np.linspace(bone.start, bone.end, 2)
             foot = ends - away * ends[:, 1:2]
             in_camera = self._camera.from_table(foot)
             if (in_camera[:, 2] < 0.05).any():
                 continue
-            span = (
-                2 * bone.radii[0] * self._camera.intrinsics.matrix[0, 0] / in_camera[0, 2] / coarse
-            )
-            (x, y), (u, v) = (
-                np.rint(self._camera.pixels(in_camera) / coarse * 16).astype(int).tolist()
-            )
-            cv2.line(dark, (x, y), (u, v), 1.0, max(1, round(float(span))), cv2.LINE_8, 4)
+            span = 2 * bone.radii[0] * focal / in_camera[0, 2] / coarse
+            pixels = self._camera.pixels(in_camera) / coarse
+            start, end = np.rint(pixels * 16).astype(int).tolist()
+            cv2.line(dark, start, end, 1.0, max(1, round(float(span))), cv2.LINE_8, 4)
         height_of_tip = float(hand.skin[0].start[1])
         soft = cv2.GaussianBlur(dark, (0, 0), 2.0 + 45.0 * max(0.0, height_of_tip))
         shade = cv2.resize(1.0 - 0.34 * soft, self._camera.size)
         image *= shade[..., None]
 
     def _cube_shadow(self, image: Floats, table_from_cube: Array) -> None:
-        half = self._cube.cube.edge / 2
-        signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
-        corners = half * signs @ table_from_cube[:3, :3].T + table_from_cube[:3, 3]
+        corners = self._cube.corners(table_from_cube)
         height = max(0.0, float(corners[:, 1].min()))
         away = -TO_LIGHT[[0, 2]] / TO_LIGHT[1]
         foot = corners * (1.0, 0.0, 1.0)

@@ -54,58 +54,47 @@ class Hand:
 
 
 def hand_at(position: Array, edge: float, grip: float) -> Hand:
-    """Return the hand on the far right of the cube, with fingers on its upper edges.
+    """Return the hand on the far right of a cube [m], with fingers on its upper edges.
 
-    Parameters
-    ----------
-    position
-        Centre of the cube in the table frame, (3,) [m].
-    edge
-        Edge of the cube [m].
-    grip
-        0 away, 1 holding.
+    `position` is the cube's centre in the table frame, (3,); `grip` is 0 away, 1 holding.
     """
     half = edge / 2
     at = position + AWAY_OFFSET_M * (1.0 - grip)
     open_hand = 0.018 * (1.0 - grip)
-    knuckles = _off(at, half + 0.036, half + 0.030, -half - 0.002)
-    wrist = _off(knuckles, 0.080, 0.014, 0.006)
-    elbow = _off(wrist, 0.62, 0.10, 0.07)
+    knuckles = at + (half + 0.036, half + 0.030, -half - 0.002)
+    wrist = knuckles + (0.080, 0.014, 0.006)
+    elbow = wrist + (0.62, 0.10, 0.07)
     skin = [
-        Bone(_off(knuckles, 0.004, -0.004, 0.020), wrist, (0.019, 0.024), blush=(0.25, 0.0)),
-        Bone(_off(knuckles, 0, 0, 0.006), wrist, (0.021, 0.026), blush=(0.25, 0.0)),
-        Bone(_off(knuckles, 0, -0.002, -0.010), wrist, (0.021, 0.025), blush=(0.25, 0.0)),
-        Bone(_off(knuckles, 0.004, -0.008, -0.024), wrist, (0.018, 0.023), blush=(0.25, 0.0)),
-        Bone(wrist, _off(wrist, 0.05, 0.008, 0.006), (0.025, 0.027)),
+        Bone(knuckles + (0.004, -0.004, 0.020), wrist, (0.019, 0.024), blush=(0.25, 0.0)),
+        Bone(knuckles + (0, 0, 0.006), wrist, (0.021, 0.026), blush=(0.25, 0.0)),
+        Bone(knuckles + (0, -0.002, -0.010), wrist, (0.021, 0.025), blush=(0.25, 0.0)),
+        Bone(knuckles + (0.004, -0.008, -0.024), wrist, (0.018, 0.023), blush=(0.25, 0.0)),
+        Bone(wrist, wrist + (0.05, 0.008, 0.006), (0.025, 0.027)),
     ]
     # Fingers reach over the far edge of the top, the thumb is on the right face.
     for along, lift in ((0.62, 0.000), (0.22, 0.004), (-0.18, 0.003), (-0.54, -0.002)):
-        tip = _off(at, along * half, half * 0.62, -half - 0.006 - open_hand)
-        root = _off(knuckles, -0.004, 0.003, 0.022 - 0.032 * (0.62 - along))
-        bend = _off((tip + root) / 2, 0.004, 0.026 + lift + open_hand, -0.008)
-        last = _off(0.42 * bend + 0.58 * tip, -0.002, 0.005, -0.004)
+        tip = at + (along * half, half * 0.62, -half - 0.006 - open_hand)
+        root = knuckles + (-0.004, 0.003, 0.022 - 0.032 * (0.62 - along))
+        bend = (tip + root) / 2 + (0.004, 0.026 + lift + open_hand, -0.008)
+        last = 0.42 * bend + 0.58 * tip + (-0.002, 0.005, -0.004)
         skin += [
             Bone(root, bend, (0.0112, 0.0096), blush=(0.3, 0.35)),
             Bone(bend, last, (0.0096, 0.0086), blush=(0.35, 0.2)),
             Bone(last, tip, (0.0086, 0.0072), blush=(0.2, 0.7)),
         ]
-    thumb = _off(at, half + 0.007 + open_hand, half * 0.42, half * 0.15)
-    middle = _off(thumb, 0.026, 0.016, 0.004)
+    thumb = at + (half + 0.007 + open_hand, half * 0.42, half * 0.15)
+    middle = thumb + (0.026, 0.016, 0.004)
     skin += [
-        Bone(_off(wrist, -0.026, -0.008, 0.016), middle, (0.019, 0.0125), blush=(0.0, 0.3)),
+        Bone(wrist + (-0.026, -0.008, 0.016), middle, (0.019, 0.0125), blush=(0.0, 0.3)),
         Bone(middle, thumb, (0.0125, 0.0088), blush=(0.3, 0.7)),
     ]
-    cuff = _off(wrist, 0.012, 0.002, 0.001)
-    hem = _off(wrist, 0.036, 0.0058, 0.0041)
+    cuff = wrist + (0.012, 0.002, 0.001)
+    hem = wrist + (0.036, 0.0058, 0.0041)
     sleeve = (
         Bone(hem, elbow, (0.034, 0.054), cut=True),
         Bone(cuff, hem, (0.0335, 0.0345), cut=True),
     )
     return Hand(tuple(skin), sleeve)
-
-
-def _off(point: Array, x: float, y: float, z: float) -> Array:
-    return np.asarray(point + np.array([x, y, z]))
 
 
 def hand_region(camera: CameraRays, hand: Hand) -> PixelRegion:
@@ -123,18 +112,9 @@ def hand_region(camera: CameraRays, hand: Hand) -> PixelRegion:
 def draw_hand(
     camera: CameraRays, region: PixelRegion, hand: Hand, to_light: Array
 ) -> tuple[Floats, Floats, Floats]:
-    """Render the hand.
-
-    Returns
-    -------
-    Colour (h, w, 3) BGR; coverage (h, w), 0…1; and depth (h, w) [m].
-    """
-    skin = _CapsuleLayer(camera, region)
-    for part in hand.skin:
-        skin.add(part)
-    cloth = _CapsuleLayer(camera, region)
-    for part in hand.sleeve:
-        cloth.add(part)
+    """Return colour (h, w, 3) BGR, coverage (h, w) 0…1, and depth (h, w) [m] of the hand."""
+    skin = _CapsuleLayer(camera, region, hand.skin)
+    cloth = _CapsuleLayer(camera, region, hand.sleeve)
     over = cloth.cover[..., None]
     color = skin.shaded(_skin_color, to_light) * (1 - over)
     color += cloth.shaded(_cloth_color, to_light) * over
@@ -161,15 +141,17 @@ def _cloth_color(light: Floats, slope: Floats, blush: Floats, along: Floats) -> 
 class _CapsuleLayer:
     """Capsules that blend into each other: where they meet, their normals are mixed by depth."""
 
-    def __init__(self, camera: CameraRays, region: PixelRegion) -> None:
+    def __init__(self, camera: CameraRays, region: PixelRegion, parts: tuple[Bone, ...]) -> None:
         self._camera, self._region = camera, region
         self._rays = camera.rays(region, 1)
         self._focal = float(camera.intrinsics.matrix[0, 0])
         self.cover = np.zeros((region.height, region.width), np.float32)
         # Weighted sums: normal x, y, slope; blush; position along the bone; depth; weight.
         self._sums = np.zeros((*self.cover.shape, 7), np.float32)
+        for part in parts:
+            self._add(part)
 
-    def add(self, part: Bone) -> None:
+    def _add(self, part: Bone) -> None:
         """Render one capsule as a cone of discs that face the camera."""
         ends = self._camera.from_table(np.array([part.start, part.end]))
         flat = (ends[:, :2] / ends[:, 2:]).astype(np.float32)
@@ -202,9 +184,8 @@ class _CapsuleLayer:
 
     def depth(self) -> Floats:
         """Return the depth of the surface (h, w) [m]; 0 where there is none."""
-        return np.asarray(
-            self._sums[..., 5] / np.maximum(self._sums[..., 6], MIN_WEIGHT), np.float32
-        )
+        weight = np.maximum(self._sums[..., 6], MIN_WEIGHT)
+        return np.asarray(self._sums[..., 5] / weight, np.float32)
 
     def shaded(self, color: Shader, to_light: Array) -> Floats:
         """Return the colour (h, w, 3) BGR; black where there is nothing."""

@@ -27,17 +27,7 @@ AMBIENT_SHARE = 0.60
 
 
 class PaperCube:
-    """Renders one cube.
-
-    Parameters
-    ----------
-    cube
-        The cube.
-    camera
-        The camera.
-    seed
-        Seed of the paper's grain.
-    """
+    """Renders one cube; `seed` is that of the paper's grain."""
 
     def __init__(self, cube: CubeModel, camera: CameraRays, seed: int) -> None:
         self.cube = cube
@@ -55,14 +45,15 @@ class PaperCube:
         signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
         return half * signs @ camera_from_cube[:3, :3].T + camera_from_cube[:3, 3]
 
-    def region(self, camera_from_cube: Array, margin: float = 4.0) -> PixelRegion:
+    def region(self, camera_from_cube: Array) -> PixelRegion:
         """Return the region of the image that the cube covers."""
         corners = self.corners(camera_from_cube)
         if (corners[:, 2] < 0.02).any():
             return PixelRegion(0, 0, 0, 0)
+        pixels, margin = self._camera.pixels(corners), 4.0
         if self._fold_poses:  # a face may stand out by some millimetres
-            margin += 0.1 * float(np.ptp(self._camera.pixels(corners), axis=0).max())
-        return self._camera.region_around(self._camera.pixels(corners), margin)
+            margin += 0.1 * float(np.ptp(pixels, axis=0).max())
+        return self._camera.region_around(pixels, margin)
 
     def depth(self, region: PixelRegion, camera_from_cube: Array) -> Floats:
         """Return the depth of the cube's surface, (h, w) [m]; infinite where there is no cube."""
@@ -82,18 +73,10 @@ class PaperCube:
     def draw(
         self, region: PixelRegion, poses: list[Array], to_light: Array, samples: int
     ) -> tuple[Floats, Floats]:
-        """Render the cube, averaged over an exposure.
+        """Render a region of the image with `samples`² rays per pixel.
 
-        Parameters
-        ----------
-        region
-            Region of the image.
-        poses
-            `camera_from_cube` at times spread evenly over the exposure.
-        to_light
-            Direction towards the lamp in the camera frame, (3,).
-        samples
-            Number of samples along a pixel's side.
+        `poses` are `camera_from_cube` at times spread evenly over the exposure, `to_light` is the
+        direction towards the lamp in the camera frame.
 
         Returns
         -------

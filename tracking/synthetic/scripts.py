@@ -38,7 +38,7 @@ class Script:
 
 def follow(edge: float, options: SyntheticOptions) -> Script:
     """Turn to walk, lead the character round, turn to run, lead it round, and rest."""
-    c = Choreography(edge).stand(0.0, 0.0)
+    c = Choreography(edge)
     c.rest(2.2).turn(90, 1.6).hold(0.3).slide(0.21, 0.09, 2.3, -0.02).hold(0.8)
     c.slide(-0.02, 0.18, 2.2, -0.03).hold(0.7).turn(85, 1.2).slide(-0.24, 0.08, 1.3, -0.04)
     c.hold(0.5).slide(-0.17, -0.14, 1.3, -0.05).hold(0.3).slide(0.20, -0.13, 1.5, -0.04).hold(0.7)
@@ -48,7 +48,7 @@ def follow(edge: float, options: SyntheticOptions) -> Script:
 
 def sketch(edge: float, options: SyntheticOptions) -> Script:
     """Mark eight points round the desk, put the cube aside, and turn it through all gaits."""
-    c = Choreography(edge).stand(-0.20, 0.02).rest(1.4)
+    c = Choreography(edge, -0.20, 0.02).rest(1.4)
     ring = np.deg2rad(np.arange(45, 360, 45))
     for angle in ring:
         c.slide(-0.20 * np.cos(angle), 0.02 - 0.15 * np.sin(angle), 0.95, 0.012).hold(0.6)
@@ -60,7 +60,7 @@ def sketch(edge: float, options: SyntheticOptions) -> Script:
 
 def companion(edge: float, options: SyntheticOptions) -> Script:
     """Kiss until the robot is happy, shout until it is angry, kiss again, and rest."""
-    c = Choreography(edge).stand(0.06, 0.02).rest(2.4)
+    c = Choreography(edge, 0.06, 0.02).rest(2.4)
     c.tip(FRONT).rest(2.0).turn(180, 1.5).turn(180, 1.5).rest(4.2)
     c.tip(RIGHT).rest(1.6).turn(180, 1.5).turn(180, 1.5).rest(9.6)
     c.tip(FRONT).rest(0.8).turn(180, 1.3).turn(180, 1.3).rest(4.4)
@@ -71,23 +71,22 @@ def static(edge: float, options: SyntheticOptions) -> Script:
     """Rest in a random position and heading."""
     random = np.random.default_rng(options.seed)
     x, z, heading = random.uniform(-0.15, 0.15), random.uniform(-0.12, 0.15), random.uniform(0, 360)
-    return _script("locomotion", Choreography(edge).stand(x, z, heading).rest(2.0))
+    return _script("locomotion", Choreography(edge, x, z, heading).rest(2.0))
 
 
 def turn(edge: float, options: SyntheticOptions) -> Script:
     """Turn once clockwise, and back."""
-    c = Choreography(edge).stand(0.0, 0.0).rest(1.0)
-    for _ in range(4):
-        c.turn(90, 1.2)
-    c.rest(0.6)
-    for _ in range(4):
-        c.turn(-90, 1.2)
-    return _script("locomotion", c.rest(1.0))
+    c = Choreography(edge).rest(1.0)
+    for degrees, pause in ((90, 0.6), (-90, 1.0)):
+        for _ in range(4):
+            c.turn(degrees, 1.2)
+        c.rest(pause)
+    return _script("locomotion", c)
 
 
 def turns(edge: float, options: SyntheticOptions) -> Script:
     """Tip to a kiss, then turn two up, four down, two up: the whole range of the knob."""
-    c = Choreography(edge).stand(0.0, 0.0).rest(1.2).tip(FRONT).rest(0.8)
+    c = Choreography(edge).rest(1.2).tip(FRONT).rest(0.8)
     for count in (2, -4, 2):
         for _ in range(2 * abs(count)):
             c.turn(180 * np.sign(count), 1.0)
@@ -97,7 +96,7 @@ def turns(edge: float, options: SyntheticOptions) -> Script:
 
 def tip(edge: float, options: SyntheticOptions) -> Script:
     """Rest on every face in turn."""
-    c = Choreography(edge).stand(0.0, 0.0).rest(1.4)
+    c = Choreography(edge).rest(1.4)
     for face in (FRONT, RIGHT, BACK, BOTTOM, LEFT, TOP):
         c.tip(face).rest(1.2)
     return _script("companion", c)
@@ -105,16 +104,15 @@ def tip(edge: float, options: SyntheticOptions) -> Script:
 
 def shake(edge: float, options: SyntheticOptions) -> Script:
     """Rest, shake in the air, and rest again."""
-    return _script("locomotion", Choreography(edge).stand(0.0, 0.0).rest(1.4).shake(1.6).rest(1.2))
+    return _script("locomotion", Choreography(edge).rest(1.4).shake(1.6).rest(1.2))
 
 
 def sweep(edge: float, options: SyntheticOptions) -> Script:
     """Slide to and fro with the given peak speed."""
     reach = 0.30
-    seconds = (
-        1.875 * reach / options.speed
-    )  # the peak speed of a minimum-jerk motion is 15/8 of its mean
-    c = Choreography(edge).stand(-reach / 2, 0.04).rest(1.0)
+    # The peak speed of a minimum-jerk motion is 15/8 of its mean.
+    seconds = 1.875 * reach / options.speed
+    c = Choreography(edge, -reach / 2, 0.04).rest(1.0)
     for side in (1, -1, 1, -1):
         c.slide(side * reach / 2, 0.04, seconds).hold(0.2)
     return _script("locomotion", c.rest(0.8))
@@ -122,7 +120,7 @@ def sweep(edge: float, options: SyntheticOptions) -> Script:
 
 def fingers(edge: float, options: SyntheticOptions) -> Script:
     """Hold the cube all the time, turning and sliding it a little."""
-    c = Choreography(edge).stand(0.0, 0.0).rest(1.0).hold(0.8)
+    c = Choreography(edge).rest(1.0).hold(0.8)
     c.turn(60, 1.2).hold(0.4).slide(0.06, 0.05, 1.0).hold(0.4).turn(-100, 1.4).hold(0.6)
     return _script("locomotion", c)
 
@@ -179,9 +177,8 @@ def _stops(edge: float, options: SyntheticOptions) -> list[Array]:
         # Facing the camera, the face's right, down and inward are the camera's x, y and z.
         square = np.stack([right, -up, -np.cross(right, up)])
         direction = 2 * np.pi * (number / 4 + random.uniform(-0.1, 0.1))
-        tilt = np.deg2rad(random.uniform(18, 42)) * np.array(
-            [np.cos(direction), np.sin(direction), 0.0]
-        )
+        axis = np.array([np.cos(direction), np.sin(direction), 0.0])
+        tilt = np.deg2rad(random.uniform(18, 42)) * axis
         roll = np.array([0.0, 0.0, random.uniform(-0.6, 0.6)])
         distance = random.uniform(0.22, 0.5)
         room = np.maximum(half - 0.8 * edge * focal / distance, 0) * distance / focal
@@ -193,8 +190,7 @@ def _stops(edge: float, options: SyntheticOptions) -> list[Array]:
 SCRIPTS: dict[str, Callable[[float, SyntheticOptions], Script]] = {
     script.__name__: script
     for script in (
-        follow, sketch, companion, static, turn, turns, tip, shake, sweep, fingers, poses,
-        wave,
+        follow, sketch, companion, static, turn, turns, tip, shake, sweep, fingers, poses, wave,
     )
 }  # fmt: skip
 """Every script by its name."""

@@ -31,14 +31,7 @@ LOOK_AT_M = np.array([0.0, 0.05, -0.02])
 class SyntheticSource(FrameSource):
     """A source that renders a cube on a desk, so that the true poses are known.
 
-    The same name and options give the same images. It may be iterated more than once.
-
-    Parameters
-    ----------
-    name
-        Name of a script.
-    options
-        How the camera sees and how the script runs.
+    The same name of a script and options give the same images. It may be iterated more than once.
 
     Raises
     ------
@@ -90,10 +83,8 @@ class SyntheticSource(FrameSource):
     def frame(self, index: int) -> Frame:
         """Render one frame."""
         camera, paper, renderer = self._renderer
-        time, half = self.time(index), self.options.blur / 2
+        time, half = self.time(index), 0.0 if self._script.unrelated else self.options.blur / 2
         ends = [self._script.at(time + shift) for shift in (-half, half)]
-        if self._script.unrelated:
-            ends = [self._script.at(time)] * 2
         corners = [paper.corners(self._camera_from_cube(state)) for state in ends]
         behind = any((points[:, 2] < 0.02).any() for points in corners)
         count = 1 if behind else shutter_samples(camera, corners)
