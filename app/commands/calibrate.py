@@ -157,10 +157,10 @@ def _judge(
     """Hold a saved camera against the views; gives the exit code."""
     session.check_seen()
     verdict = check(session.collector.views, saved, session.finder.target(size))
-    color = "red" if verdict.degraded else "green"
+    color, word = ("red", "DEGRADED") if verdict.degraded else ("green", "OK")
     x, y = verdict.centre_change
     console.print(
-        f"[bold {color}]{verdict.verdict}[/]  {path}: focal length "
+        f"[bold {color}]{word}[/]  {path}: focal length "
         f"{100 * verdict.focal_change:+.2f} % (± {200 * verdict.focal_spread:.2f} %), middle "
         f"{x:+.1f} {y:+.1f} px, edges off by {verdict.residual:.3f} px "
         f"(at best {verdict.best_residual:.3f} px), from {verdict.views} views"

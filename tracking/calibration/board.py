@@ -68,18 +68,9 @@ class Board:
         width, height = self.columns * self.square, self.rows * self.square
         return np.array([(0, 0, 0), (width, 0, 0), (width, height, 0), (0, height, 0)], np.float64)
 
-    @property
-    def min_corners(self) -> int:
-        """Minimum number of detected corners."""
-        return min(8, (self.columns - 1) * (self.rows - 1))
-
 
 def write_board(path: str | Path, paper: str = "a4") -> Board:
-    """Write a PDF of a board as large as the page allows, in whole millimetres per square.
-
-    Returns
-    -------
-    The board on the page.
+    """Write and return a board as large as a page allows, in whole millimetres per square.
 
     Raises
     ------

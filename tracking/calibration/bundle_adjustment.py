@@ -77,11 +77,6 @@ def adjust(views: Sequence[View], model: CalibrationModel) -> AdjustmentResult:
     )
 
 
-def _huber_weights(residual: Array, sigma: float) -> Array:
-    """Return weights that limit the pull of a row to that of a residual of two sigma."""
-    return np.asarray(1 / np.maximum(1.0, np.abs(residual) / (2 * sigma)), np.float64)
-
-
 def _robust_sigma(views: Sequence[View], model: CalibrationModel) -> float:
     """Return the robust standard deviation of a row [px], corrected for degrees of freedom."""
     residual = np.concatenate(model.residuals(views))
@@ -158,7 +153,9 @@ def _normal_equations(
         rows[:, :9] = by_camera
         columns = 9 + 6 * view.plates[:, None] + np.arange(6)
         np.put_along_axis(rows, columns, by_plate, axis=1)
-        weights = _huber_weights(residual, sigma)[:, None] / sigma**2
+        # Huber weights limit the pull of a row to that of a residual of two sigma.
+        huber = 1 / np.maximum(1.0, np.abs(residual) / (2 * sigma))
+        weights = huber[:, None] / sigma**2
         normal += rows.T @ (rows * weights)
         right += (rows * weights).T @ residual
         own_normal = by_view.T @ (by_view * weights)
@@ -175,8 +172,7 @@ def _correlation_inflation(
 ) -> float:
     """Return by how much the variance of an edge's mean exceeds that of independent rows, ≥ 1.
 
-    The rows of one edge share pixels, light and errors of the model. Treating them as independent
-    would understate the uncertainty.
+    The rows of one edge share pixels, light and errors of the model.
     """
     correlated = independent = 0.0
     for view, residual in zip(views, residuals, strict=True):

@@ -51,11 +51,6 @@ class CameraCheck:
         max_residual = MAX_RESIDUAL_RATIO * self.best_residual + MAX_RESIDUAL_EXCESS_PX
         return abs(self.focal_change) > tolerance or self.residual > max_residual
 
-    @property
-    def verdict(self) -> str:
-        """The result as one word: OK or DEGRADED."""
-        return "DEGRADED" if self.degraded else "OK"
-
 
 def check(views: Sequence[View], saved: Intrinsics, target: CalibrationTarget) -> CameraCheck:
     """Compare a saved camera with views taken now.

@@ -1,13 +1,13 @@
-"""A camera as a vector of nine parameters, its projection with derivatives, and its prior."""
+"""A camera as a vector of nine parameters, its projection with derivatives, and its prior.
+
+The parameters are fx fy cx cy k1 k2 p1 p2 k3, as in the Jacobian of `cv2.projectPoints`.
+"""
 
 import cv2
 import numpy as np
 
 from tracking.geometry.arrays import Array, Flags
 from tracking.geometry.intrinsics import Intrinsics
-
-PARAMETERS = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
-"""Order of the parameters: OpenCV's, as in the Jacobian of `cv2.projectPoints`."""
 
 CENTRE_SIGMA = 0.04
 """Prior standard deviation of the principal point about the image centre [image widths]."""
@@ -56,14 +56,8 @@ def prior(size: tuple[int, int], focal: float, free: Flags) -> tuple[Array, Arra
     Parameters that are not free have no equation; the solver drops their columns.
     """
     width, height = size
-    sigmas = (*[CENTRE_SIGMA * width] * 2, *DISTORTION_SIGMAS)
-    means = ((width - 1) / 2, (height - 1) / 2, 0, 0, 0, 0, 0)
-    rows: list[Array] = []
-    values: list[float] = []
-    for number, sigma, mean in zip(range(2, 9), sigmas, means, strict=True):
-        if free[number]:
-            rows.append(np.eye(9)[number] / sigma)
-            values.append(mean / sigma)
-    rows.append((np.eye(9)[0] - np.eye(9)[1]) / (ASPECT_SIGMA * focal))
-    values.append(0.0)
-    return np.array(rows), np.array(values)
+    sigmas = np.array([*[CENTRE_SIGMA * width] * 2, *DISTORTION_SIGMAS])
+    means = np.array([(width - 1) / 2, (height - 1) / 2, 0, 0, 0, 0, 0])
+    rows = (np.eye(9)[2:] / sigmas[:, None])[free[2:]]
+    aspect = (np.eye(9)[0] - np.eye(9)[1]) / (ASPECT_SIGMA * focal)
+    return np.vstack([rows, aspect]), np.append((means / sigmas)[free[2:]], 0.0)

@@ -47,15 +47,7 @@ class ViewResult:
 
 
 class ViewCollector:
-    """Chooses views from the frames of one camera and keeps account of their coverage.
-
-    Parameters
-    ----------
-    finder
-        Finds the target.
-    size
-        Width and height of the frames [px].
-    """
+    """Chooses views from the frames of one camera and keeps account of their coverage."""
 
     def __init__(self, finder: TargetFinder, size: tuple[int, int]) -> None:
         self._finder = finder
@@ -64,7 +56,7 @@ class ViewCollector:
         # A guessed camera is good enough to compare poses.
         self._camera = camera_vector.from_intrinsics(Intrinsics.guess(size))
         self._previous: TargetDetection | None = None
-        self._poses: list[tuple[Array, tuple[int, ...]]] = []
+        self._poses: list[tuple[Array, frozenset[int]]] = []
         self.coverage = ViewCoverage(finder.names)
         """Which kinds of views there are and which are missing."""
         self.views: list[View] = []
@@ -81,27 +73,24 @@ class ViewCollector:
         if found is None or pose is None:
             return ViewResult("unseen", (), None)
         sample = self._sample(found, pose)
-        verdict = self._verdict(found, pose, previous)
-        if verdict == "taken":
-            view = self._finder.measure(grey, found)
-            if view is None:
-                return ViewResult("unclear", found.outlines, sample)
+        plates = frozenset(found.plates)
+        if len(self.views) >= MAX_VIEWS:
+            verdict: ViewVerdict = "full"
+        elif not self._is_new(pose, plates):
+            verdict = "known"
+        elif _speed(found, previous) > MAX_SPEED * self.size[0]:
+            verdict = "moving"
+        elif (view := self._finder.measure(grey, found)) is None:
+            verdict = "unclear"
+        else:
+            verdict = "taken"
             self.views.append(view)
             self.outlines += found.outlines
-            self._poses.append((pose, tuple(sorted(found.plates))))
+            self._poses.append((pose, plates))
             self.coverage.add(sample)
         return ViewResult(verdict, found.outlines, sample)
 
-    def _verdict(
-        self, found: TargetDetection, pose: Array, previous: TargetDetection | None
-    ) -> ViewVerdict:
-        if len(self.views) >= MAX_VIEWS:
-            return "full"
-        if not self._is_new(pose, tuple(sorted(found.plates))):
-            return "known"
-        return "taken" if _speed(found, previous) <= MAX_SPEED * self.size[0] else "moving"
-
-    def _is_new(self, pose: Array, plates: tuple[int, ...]) -> bool:
+    def _is_new(self, pose: Array, plates: frozenset[int]) -> bool:
         """Return whether no view shows the same plates in nearly the same pose."""
         distance = max(float(pose[2, 3]), 1e-3)
         for other, other_plates in self._poses:
@@ -158,14 +147,7 @@ def _tilt(found: TargetDetection, pose: Array) -> tuple[float, float]:
 
 
 def calibrate_camera(frames: Iterable[Frame], cube: CubeModel) -> tuple[Calibration, CubeModel]:
-    """Calibrate a camera from frames of a cube that is waved in front of it.
-
-    Parameters
-    ----------
-    frames
-        Frames of one size, in order: `open_source(…)` gives them.
-    cube
-        The cube as printed.
+    """Calibrate a camera from the frames of a source, where the printed cube is waved.
 
     Returns
     -------

@@ -23,18 +23,14 @@ MAX_MISFIT = 0.04
 def initial_camera(views: Sequence[View], size: tuple[int, int]) -> Array:
     """Return the parameters (9,) of the distortion-free camera that fits the views best.
 
-    A few views of two faces or of a tilted one determine the focal length to some percent, which is
-    enough for a start.
+    A few views of two faces or of a tilted one determine the focal length to some percent.
     """
     indices = np.unique(np.linspace(0, len(views) - 1, MAX_VIEWS).astype(int))
     chosen = [views[i] for i in indices]
-    cameras = [_perfect_camera(size, field) for field in FIELDS_OF_VIEW_RAD]
+    centre = (size[0] - 1) / 2, (size[1] - 1) / 2
+    focals = size[0] / 2 / np.tan(FIELDS_OF_VIEW_RAD / 2)
+    cameras = [np.array([focal, focal, *centre, 0, 0, 0, 0, 0]) for focal in focals]
     return min(cameras, key=lambda camera: _misfit(chosen, camera, size))
-
-
-def _perfect_camera(size: tuple[int, int], field_of_view: float) -> Array:
-    focal = size[0] / 2 / np.tan(field_of_view / 2)
-    return np.array([focal, focal, (size[0] - 1) / 2, (size[1] - 1) / 2, 0, 0, 0, 0, 0])
 
 
 def _misfit(views: Sequence[View], camera: Array, size: tuple[int, int]) -> float:
@@ -55,24 +51,16 @@ def _poses(view: View, camera: Array) -> Iterator[tuple[Array, float]]:
     its poses, and each proposal is refined on the points of all plates.
     """
     intrinsics = camera_vector.to_intrinsics(camera, (1, 1))
-    rays = np.asarray(
-        cv2.undistortPoints(view.pixels[:, None], intrinsics.matrix, intrinsics.distortion)[:, 0],
-        np.float64,
-    )
+    matrix, distortion = intrinsics.matrix, intrinsics.distortion
+    rays = cv2.undistortPoints(view.pixels[:, None], matrix, distortion)[:, 0].astype(np.float64)
     starts = [
         pose
-        for number in view.plate_numbers
+        for number in np.unique(view.plates)
         for pose in _plate_poses(view.points[view.plates == number], rays[view.plates == number])
     ]
     for start in starts:
-        rotation, origin = cv2.solvePnPRefineLM(
-            view.points,
-            rays,
-            np.eye(3),
-            None,
-            se3.rotation_vector(start[:3, :3])[:, None],
-            start[:3, 3:].copy(),
-        )
+        guess = se3.rotation_vector(start[:3, :3])[:, None], start[:3, 3:].copy()
+        rotation, origin = cv2.solvePnPRefineLM(view.points, rays, np.eye(3), None, *guess)
         pose = se3.pose(se3.rotation(np.ravel(rotation)), np.ravel(origin))
         points = view.points @ pose[:3, :3].T + pose[:3, 3]
         if np.isfinite(points).all() and points[:, 2].min() > 0.01:

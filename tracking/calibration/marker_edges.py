@@ -1,9 +1,8 @@
 """Measuring the edges of one marker in an image whose lens is not known yet.
 
-OpenCV's corners are off by a few tenths of a pixel, through gamma and blur. Here every black-white
-edge of a marker is measured across itself, as in `tracking.refinement.edge_refinement`. Instead of
-a camera, a smooth map from the marker to the image predicts where the edges are: a homography plus
-a quadratic, which can follow any lens over so small a part of the image.
+OpenCV's corners are off by a few tenths of a pixel, through gamma and blur. Here every edge is
+measured across itself, as in `tracking.refinement.edge_refinement`; not a camera, but a homography
+plus a quadratic, which can follow any lens over so small a part of the image, predicts the edges.
 """
 
 from dataclasses import dataclass, replace
@@ -183,16 +182,12 @@ def _quadratic_terms(points: Array) -> Array:
 def _fit_bend(points: Array, normals: Array, offset: Array) -> tuple[Array, Flags]:
     """Fit the change of the map, and the bloom, to the offsets measured across the edges.
 
-    Robust least squares with Tukey's biweight.
-
-    Returns
-    -------
-    Change of `bend`, (6, 2), and which points agree with it, (N,).
+    Return the change of `bend`, (6, 2), and which points agree with it, (N,), by robust least
+    squares with Tukey's biweight.
     """
     terms = _quadratic_terms(points)
-    rows = np.concatenate(
-        [terms * normals[:, :1], terms * normals[:, 1:], np.ones((len(terms), 1))], axis=1
-    )
+    bloom = np.ones((len(terms), 1))
+    rows = np.concatenate([terms * normals[:, :1], terms * normals[:, 1:], bloom], axis=1)
     weights = np.ones(len(rows))
     for _ in range(4):
         weighted = rows * weights[:, None]
@@ -210,9 +205,8 @@ def _fit_steps(
 ) -> tuple[Array, Array]:
     """Fit a blurred step across each edge, as `edge_refinement` does: offset [px], contrast."""
     positions = np.linspace(-1, 1, SAMPLES)[None] * reach[:, None]
-    values = patch.sample(pixels[:, None] + positions[..., None] * normals[:, None]).astype(
-        np.float64
-    )
+    places = pixels[:, None] + positions[..., None] * normals[:, None]
+    values = patch.sample(places).astype(np.float64)
     softness = np.minimum(width, reach * 0.45)[:, None]
     step = np.tanh(positions / softness) / 2
     slope = (0.25 - step**2) * 2 / softness

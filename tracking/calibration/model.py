@@ -46,7 +46,7 @@ class CalibrationModel:
     """What the unknowns describe."""
 
     camera: Array
-    """Parameters of the camera, (9,); see `camera_vector.PARAMETERS`."""
+    """Parameters of the camera, (9,); see `camera_vector`."""
 
     plates: Array
     """`target_from_plate` of each plate, (P, 4, 4): the actual pose of a plate relative to its
@@ -74,12 +74,10 @@ class CalibrationModel:
         return [self.linearise(view, number)[0] for number, view in enumerate(views)]
 
     def linearise(self, view: View, number: int) -> tuple[Array, Array, Array, Array]:
-        """Return the residuals of view `number` and the derivatives of the prediction.
+        """Return the residuals (N,) [px] of view `number` and derivatives of the prediction.
 
-        Returns
-        -------
-        Residuals (N,) [px]; derivatives by the camera (N, 9), by the plate's pose (N, 6), and by
-        the view's pose and bloom (N, 7). Steps of poses are as in `se3.moved`.
+        These are by the camera (N, 9), by the plate's pose (N, 6), and by the view's pose and bloom
+        (N, 7). Steps of poses are as in `se3.moved`.
         """
         centres, plates = self.target.centres[view.plates], self.plates[view.plates]
         rotated = np.einsum("nij,nj->ni", plates[:, :3, :3], view.points - centres)

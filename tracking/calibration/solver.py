@@ -81,14 +81,10 @@ class Calibration:
             )
 
 
-def cube_target(cube: CubeModel, size: tuple[int, int]) -> CalibrationTarget:
-    """Describe a cube as a target whose six plates may be off their nominal poses."""
-    centres = np.stack([face.corners.mean(axis=0) for face in cube.faces])
-    return CalibrationTarget(size, np.ones(9, np.bool_), centres, len(cube.faces) > 1)
-
-
 def calibrate(views: Sequence[View], target: CalibrationTarget) -> Calibration:
     """Find the camera that took these views, and the actual shape of the target.
+
+    The stages go from a camera without distortion to the full model.
 
     Raises
     ------
@@ -99,12 +95,7 @@ def calibrate(views: Sequence[View], target: CalibrationTarget) -> Calibration:
 
 
 def solve(views: Sequence[View], target: CalibrationTarget) -> tuple[Calibration, list[View]]:
-    """Run all stages, from a distortion-free camera to the full model; see `calibrate`.
-
-    Returns
-    -------
-    The calibration, and the views that agree with it.
-    """
+    """Do the same as `calibrate`; return also the views that agree with the calibration."""
     _check_count(len(views))
     rigid = replace(target, adjust_plates=False)
     model, kept = fit_poses(views, initial_camera(views, target.size), rigid)
@@ -152,15 +143,7 @@ def _without_outliers(
 
 
 def measured_cube(cube: CubeModel, plates: Array) -> CubeModel:
-    """Return the cube with its markers where they were measured.
-
-    Parameters
-    ----------
-    cube
-        The nominal cube.
-    plates
-        `Calibration.plates`.
-    """
+    """Return the nominal cube with its markers moved by `Calibration.plates`."""
     faces = []
     for face, plate in zip(cube.faces, plates, strict=True):
         centre = face.corners.mean(axis=0)

@@ -9,12 +9,14 @@ import numpy as np
 from tracking.calibration.board import Board
 from tracking.calibration.marker_edges import MarkerEdgeMeter
 from tracking.calibration.model import CalibrationTarget
-from tracking.calibration.solver import cube_target
 from tracking.calibration.view import View, join_views, view_of_corners
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import MarkerDetector, Observation, markers_of
 from tracking.geometry.arrays import Array, Image
 from tracking.geometry.image_region import Patch
+
+MIN_CORNERS = 8
+"""Minimum number of detected corners of a board."""
 
 
 @dataclass(frozen=True)
@@ -89,8 +91,9 @@ class CubeFinder:
         return join_views(time, good) if good else None
 
     def target(self, size: tuple[int, int]) -> CalibrationTarget:
-        """Describe the cube."""
-        return cube_target(self.cube, size)
+        """Describe the cube: six plates that may be off their nominal poses."""
+        centres = np.stack([face.corners.mean(axis=0) for face in self.cube.faces])
+        return CalibrationTarget(size, np.ones(9, np.bool_), centres, len(self.names) > 1)
 
 
 class BoardFinder:
@@ -108,7 +111,7 @@ class BoardFinder:
         # OpenCV returns None if there is no board.
         pixels = np.reshape([] if corners is None else corners, (-1, 2)).astype(np.float64)
         points = self.board.points[np.ravel([] if ids is None else ids).astype(np.intp)]
-        if len(pixels) < self.board.min_corners:
+        if len(pixels) < MIN_CORNERS:
             return None
         if np.linalg.matrix_rank(points[:, :2] - points[0, :2], tol=1e-6) < 2:
             return None

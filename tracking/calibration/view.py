@@ -38,11 +38,6 @@ class View:
     lines: Indices
     """Index of the straight edge of each row, (N,). Rows of one edge have correlated errors."""
 
-    @property
-    def plate_numbers(self) -> tuple[int, ...]:
-        """The indices of the visible plates, in order."""
-        return tuple(int(number) for number in np.unique(self.plates))
-
 
 def join_views(timestamp: float, parts: list[View]) -> View:
     """Combine views of single plates in one image into one view."""
@@ -64,16 +59,7 @@ def join_views(timestamp: float, parts: list[View]) -> View:
 def view_of_corners(timestamp: float, plates: Indices, points: Array, pixels: Array) -> View:
     """Make a view of M corners; each becomes two rows, one for x and one for y.
 
-    Parameters
-    ----------
-    timestamp
-        Time of the frame [s].
-    plates
-        Index of the plate of each corner, (M,).
-    points
-        Nominal position of each corner on the target, (M, 3) [m].
-    pixels
-        Measured position of each corner, (M, 2) [px].
+    Plates (M,), points (M, 3) [m] and pixels (M, 2) [px] are as in `View`.
     """
     count = len(points)
     return View(
