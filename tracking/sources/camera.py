@@ -4,6 +4,7 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import ClassVar, TypeAlias
 
 import cv2
@@ -23,7 +24,6 @@ from tracking.sources.options import UriOptions
 from tracking.sources.video_device import (
     VideoCapture,
     check_present,
-    device_path,
     open_capture,
     persistent_path,
 )
@@ -33,10 +33,6 @@ MJPG = cv2.VideoWriter.fourcc(*"MJPG")
 
 DEFAULT_SIZE_PX = (1280, 720)
 """Size that is requested unless the caller says otherwise."""
-
-DEFAULT_BUFFERS = 2
-"""One is filled while the other is read. With a single buffer many drivers drop every other image
-(nokhwa#128, horus#60). As the capture thread always reads, a second one adds no delay."""
 
 OpenCapture: TypeAlias = Callable[[int | str], VideoCapture]
 
@@ -61,26 +57,17 @@ class CameraOptions(UriOptions):
     focus: float | None = None
     """In the driver's unit, often 0 (far) to 255 (near); None: as the automatic has settled."""
 
-    buffers: int = DEFAULT_BUFFERS
-    """Number of images that the driver may queue."""
+    buffers: int = 2
+    """Number of images that the driver may queue: one is filled while the other is read. With a
+    single buffer many drivers drop every other image (nokhwa#128, horus#60)."""
 
 
 class CameraSource(LiveSource):
-    """A webcam.
+    """A webcam, opened by its number or by its path such as "/dev/video0".
 
-    Parameters
-    ----------
-    device
-        Its number, or its path such as "/dev/video0". On Linux, a camera that is plugged in again
-        is found by its name even if its number has changed.
-    size
-        Width and height to request [px]; the camera may choose others.
-    options
-        Further settings.
-    clock
-        Returns the time [s]; timestamps the frames if the driver does not.
-    capture
-        Opens the device; tests replace it.
+    The camera may choose another size than the one requested [px]. On Linux, a camera that is
+    plugged in again is found by its name even if its number has changed. `capture` opens the
+    device; tests replace it.
 
     Raises
     ------
@@ -166,7 +153,7 @@ class CaptureDevice:
 
 def _capture_opener(device: int | str) -> OpenCapture:
     """Return a function that opens a camera, also after it was plugged in elsewhere."""
-    path = device_path(device)
+    path = Path(f"/dev/video{device}" if isinstance(device, int) else device)
     check_present(device, path)
     if sys.platform != "linux":
         return open_capture

@@ -12,7 +12,7 @@ from tracking.sources.video_device import VideoCapture
 SETTLING_IMAGES = 30
 """Number of images before anything is locked, so that the automatic controls can settle."""
 
-POLL_INTERVAL_IMAGES = 15
+POLL_IMAGES = 15
 """Number of images between two readings of a value; it has settled if two readings agree."""
 
 MAX_SETTLING_IMAGES = 150
@@ -81,7 +81,7 @@ FOCUS = CameraControl("focus", cv2.CAP_PROP_AUTOFOCUS, 1.0, 0.0, cv2.CAP_PROP_FO
 
 
 class ControlLock:
-    """Locks one control of a camera: immediately at a given value, or once its own has settled.
+    """Locks one control of a camera: at a given `value` (in the driver's unit), or once settled.
 
     Each value is read back, as drivers refuse silently. Many cameras do not report the exposure
     that their automatic mode has chosen, but an old or default one (opencv#5516). A locked exposure
@@ -89,15 +89,6 @@ class ControlLock:
 
     V4L2 keeps settings after the camera is closed, so `release` switches to automatic again, and so
     does the next start, in case the program was killed.
-
-    Parameters
-    ----------
-    capture
-        The open camera.
-    control
-        What to lock.
-    value
-        In the driver's unit; None: the current one.
     """
 
     def __init__(
@@ -124,11 +115,7 @@ class ControlLock:
         self._count += 1
         if self._proof is not None:
             self._verify(image, *self._proof)
-        elif (
-            not self._done
-            and self._count >= SETTLING_IMAGES
-            and self._count % POLL_INTERVAL_IMAGES == 0
-        ):
+        elif not self._done and self._count >= SETTLING_IMAGES and self._count % POLL_IMAGES == 0:
             self._lock_if_settled(image)
 
     def release(self) -> None:

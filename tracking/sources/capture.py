@@ -9,13 +9,7 @@ import numpy as np
 from tracking.errors import TrackingError
 from tracking.geometry.arrays import Image
 from tracking.sources.capture_timing import ExposureClock, QueueGauge
-from tracking.sources.device import (
-    CapturedImage,
-    Clock,
-    Device,
-    DeviceSetting,
-    SourceState,
-)
+from tracking.sources.device import CapturedImage, Clock, Device, DeviceSetting, SourceState
 
 SILENCE_S = 0.8
 """A source without a new image for this time is lost; so a loss is reported within a second."""
@@ -31,9 +25,7 @@ RETRY_DELAY_S = 0.5
 
 STUCK_TIMEOUT_S = 12.0
 """A thread that blocks in the driver for this time is abandoned, and another one opens the device.
-
-More than OpenCV's own 10 s for V4L2: before, the device is still in use.
-"""
+More than OpenCV's own 10 s for V4L2: before, the device is still in use."""
 
 MAX_ABANDONED_THREADS = 3
 """Maximum number of threads that are left blocking in a driver."""
@@ -54,9 +46,9 @@ class _Reader:
 class CaptureThread:
     """Reads a device in a thread and keeps the newest image.
 
-    One thread opens, reads and closes the device, and reopens it after a loss, provided that an
-    image ever arrived. If the driver does not return for `STUCK_TIMEOUT_S`, another thread takes
-    over; if the first one ever returns, it closes its device and ends.
+    The thread reopens the device after a loss if an image ever arrived. If the driver does not
+    return for `STUCK_TIMEOUT_S`, another thread takes over; if the first one ever returns, it
+    closes its device and ends.
     """
 
     def __init__(
@@ -68,7 +60,7 @@ class CaptureThread:
         self._stopped = threading.Event()
         self._newest: CapturedImage | None = None
         self._last: Image | bytes | None = None
-        self._exposure_clock, self._rejected = ExposureClock(), ""
+        self.exposure_clock, self._rejected = ExposureClock(), ""
         self._abandoned = 0
         self.state: SourceState = "recovering"
         """As known to the thread; the caller must detect by itself that nothing arrives."""
@@ -107,11 +99,6 @@ class CaptureThread:
     def opening(self) -> bool:
         """Whether the driver has not finished opening the device."""
         return self._reader.device is None
-
-    @property
-    def by_driver(self) -> bool:
-        """Whether the last timestamp is the driver's."""
-        return self._exposure_clock.by_driver
 
     def reject(self, problem: str) -> None:
         """Report that the images are unusable, so that the device is reopened."""
@@ -213,8 +200,9 @@ class CaptureThread:
         with self._changed:
             if not self._is_current(reader):
                 return
-            taken = self._exposure_clock.stamp(arrival, device.exposed)
-            self.gauge.add(waited, arrival, arrival - taken if self.by_driver else None)
+            taken = self.exposure_clock.stamp(arrival, device.exposed)
+            age = arrival - taken if self.exposure_clock.by_driver else None
+            self.gauge.add(waited, arrival, age)
             self.dropped += self._newest is not None
             self._newest, self.settings = CapturedImage(image, taken), device.settings
             if self.state != "running":

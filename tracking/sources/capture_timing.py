@@ -41,15 +41,7 @@ class ExposureClock:
         self._distrust = 0
 
     def stamp(self, arrival: float, driver: float | None) -> float:
-        """Return the timestamp of an image [s].
-
-        Parameters
-        ----------
-        arrival
-            Time of arrival [s].
-        driver
-            The driver's timestamp [s]; None if it gives none.
-        """
+        """Return an image's timestamp from its arrival and, if there is one, the driver's [s]."""
         age = None if driver is None else arrival - driver
         plausible = age is not None and -MAX_DRIVER_LEAD_S <= age <= MAX_DRIVER_AGE_S
         if driver is not None and not (plausible and driver > self._last):
@@ -87,14 +79,8 @@ class QueueGauge:
     def add(self, waited: float, arrival: float, age: float | None) -> int:
         """Add an image; return how many were waiting when it was read.
 
-        Parameters
-        ----------
-        waited
-            Duration of the read [s].
-        arrival
-            When it returned [s].
-        age
-            Age of the image by the driver's timestamp [s]; None if there is none.
+        The read took `waited` [s] and returned at `arrival` [s]; `age` [s] is that of the image by
+        the driver's timestamp, if there is one.
         """
         first = not self._arrivals
         self._arrivals.append(arrival)

@@ -26,8 +26,8 @@ class EncodedImage:
     """On the clock of its source [s]."""
 
 
-class ImageDecodeError(Exception):
-    """The data is not an image; the message says what is wrong."""
+class BrokenFileError(Exception):
+    """A file cannot be read any further; the message completes the sentence "the file ..."."""
 
 
 def bgr_of(frame: av.VideoFrame) -> Image:
@@ -45,53 +45,47 @@ def bgr_of(frame: av.VideoFrame) -> Image:
     return np.ascontiguousarray(np.rot90(image, quarter_turns), np.uint8)
 
 
-class ImageDecoder:
-    """Decodes the images of one recording in order.
+def decode(images: Iterator[EncodedImage]) -> Iterator[tuple[EncodedImage, Image]]:
+    """Pair each image of a recording with its pixels.
 
     H.264 as required by Foxglove: one image per access unit and no B frames.
+
+    Raises
+    ------
+    BrokenFileError
+        Data is not an image, or `images` raised it; all images before are returned first.
     """
+    codec = av.CodecContext.create("h264", "r")
+    assert isinstance(codec, av.VideoCodecContext)
+    codec.thread_type = "SLICE"  # frame threads would delay images
+    codec.flags |= Flags.low_delay
+    pending: dict[int, EncodedImage] = {}
+    broken: BrokenFileError | None = None
+    try:
+        for number, encoded in enumerate(images):
+            if encoded.encoding == "h264":
+                pending[number] = encoded
+                packet = av.Packet(encoded.data)
+                packet.pts = number
+                yield from _pair(codec.decode(packet), pending)
+            else:
+                image = decode_jpeg(encoded.data)
+                if image is None:
+                    raise BrokenFileError("has an image that is not JPEG")
+                yield encoded, image
+    except BrokenFileError as error:
+        broken = error
+    except av.FFmpegError:
+        broken = BrokenFileError("has an image that is not H.264")
+    if pending:
+        yield from _pair(codec.decode(None), pending)
+    if broken is not None:
+        raise broken
 
-    def __init__(self) -> None:
-        codec = av.CodecContext.create("h264", "r")
-        assert isinstance(codec, av.VideoCodecContext)
-        codec.thread_type = "SLICE"  # frame threads would delay images
-        codec.flags |= Flags.low_delay
-        self._h264 = codec
-        self._pending: dict[int, EncodedImage] = {}
-        self._count = 0
 
-    def decode(self, encoded: EncodedImage) -> Iterator[tuple[EncodedImage, Image]]:
-        """Add one encoded image; return those that are ready, each with its pixels.
-
-        Raises
-        ------
-        ImageDecodeError
-            The data is not an image.
-        """
-        if encoded.encoding == "h264":
-            yield from self._decode_h264(encoded)
-            return
-        image = decode_jpeg(encoded.data) if encoded.encoding == "jpeg" else None
-        if image is None:
-            raise ImageDecodeError(f"an image that is not {encoded.encoding.upper()}")
-        yield encoded, image
-
-    def flush(self) -> Iterator[tuple[EncodedImage, Image]]:
-        """Return the images that the decoder still holds."""
-        if self._pending:
-            yield from self._pair(self._h264.decode(None))
-
-    def _decode_h264(self, encoded: EncodedImage) -> Iterator[tuple[EncodedImage, Image]]:
-        packet = av.Packet(encoded.data)
-        packet.pts = self._count
-        self._pending[self._count] = encoded
-        self._count += 1
-        try:
-            yield from self._pair(self._h264.decode(packet))
-        except av.FFmpegError as error:
-            raise ImageDecodeError("an image that is not H.264") from error
-
-    def _pair(self, frames: list[av.VideoFrame]) -> Iterator[tuple[EncodedImage, Image]]:
-        for frame in frames:
-            assert frame.pts is not None  # those of the packets, set above
-            yield self._pending.pop(frame.pts), bgr_of(frame)
+def _pair(
+    frames: list[av.VideoFrame], pending: dict[int, EncodedImage]
+) -> Iterator[tuple[EncodedImage, Image]]:
+    for frame in frames:
+        assert frame.pts is not None  # those of the packets
+        yield pending.pop(frame.pts), bgr_of(frame)

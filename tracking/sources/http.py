@@ -22,12 +22,7 @@ a second, after which the stream continues by itself."""
 class HttpSource(LiveSource):
     """An MJPEG stream, as phone apps such as "IP Webcam" and most network cameras serve it.
 
-    Parameters
-    ----------
-    url
-        "http://phone:8080/video"; a name and password may precede the host.
-    clock
-        Returns the time [s]; timestamps the frames on arrival.
+    The URL is as "http://phone:8080/video"; a name and password may precede the host.
 
     Raises
     ------
@@ -68,7 +63,8 @@ class _MjpegStream:
         try:
             self._connection.connect()
             self._socket: socket.socket = self._connection.sock
-            self._connection.request("GET", _target(address), headers=_headers(address))
+            target = (address.path or "/") + (f"?{address.query}" if address.query else "")
+            self._connection.request("GET", target, headers=_headers(address))
             self._response = self._connection.getresponse()
             self._parser = MultipartParser(_boundary(self._response, name))
         except (OSError, HTTPException) as error:
@@ -108,10 +104,6 @@ class _MjpegStream:
         """Close the connection."""
         self._response.close()
         self._connection.close()
-
-
-def _target(address: SplitResult) -> str:
-    return (address.path or "/") + (f"?{address.query}" if address.query else "")
 
 
 def _headers(address: SplitResult) -> dict[str, str]:

@@ -16,14 +16,7 @@ from tracking.sources.capture import (
     CaptureThread,
 )
 from tracking.sources.capture_timing import RECENT_IMAGES
-from tracking.sources.device import (
-    CapturedImage,
-    Clock,
-    Device,
-    Health,
-    SourceState,
-    decode_jpeg,
-)
+from tracking.sources.device import CapturedImage, Clock, Device, Health, SourceState, decode_jpeg
 
 MAX_ITERATION_GAP_S = 30.0
 """How long a plain iteration waits for a lost device."""
@@ -32,20 +25,10 @@ MAX_ITERATION_GAP_S = 30.0
 class LiveSource(FrameSource):
     """Frames that arrive by themselves; old ones are dropped in favour of newer ones.
 
-    Opening waits for the first frame. One thread opens, reads and closes the device, so a driver
-    that blocks does not block the caller. A lost device is opened again until it is back:
-    `base.LiveFrames` describes what the caller sees.
-
-    Parameters
-    ----------
-    connect
-        Opens the device; called in the capture thread, again after each loss.
-    name
-        Name of the source in messages: "camera 0".
-    clock
-        Returns the time [s]; timestamps the frames and detects silence.
-    detect_frozen
-        Whether identical images for `SILENCE_S` count as a loss.
+    Opening waits for the first frame. `connect` opens the device, in the capture thread, so a
+    driver that blocks does not block the caller; it is called again after each loss:
+    `base.LiveFrames` describes what the caller sees. With `detect_frozen`, identical images for
+    `SILENCE_S` count as a loss. Messages give the source's `name`: "camera 0".
 
     Raises
     ------
@@ -71,6 +54,7 @@ class LiveSource(FrameSource):
         self._count = 0
         self._closed = False
         self._undecodable_since: float | None = None
+        self._undecodable_text = f"{name} sends images that cannot be decoded"
         self._latencies: deque[float] = deque(maxlen=RECENT_IMAGES)
         self._capture = CaptureThread(connect, name, clock, detect_frozen)
         try:
@@ -95,7 +79,10 @@ class LiveSource(FrameSource):
             return first
         frame = self._next(timeout)
         if frame is None:
-            self._check_patience(patience)
+            if patience is not None:
+                state, since, problem = self._state()
+                if state not in ("running", "closed") and self._clock() - since >= patience:
+                    raise TrackingError(problem)
         elif frame.image.shape[1::-1] != self.size:
             width, height = frame.image.shape[1::-1]
             raise TrackingError(
@@ -121,7 +108,7 @@ class LiveSource(FrameSource):
             latency=statistics.median(self._latencies) if self._latencies else 0.0,
             mean_queue=capture.gauge.mean_depth,
             max_queue=capture.gauge.max_depth,
-            stamped_by="driver" if capture.by_driver else "arrival",
+            stamped_by="driver" if capture.exposure_clock.by_driver else "arrival",
             settings=capture.settings,
             frozen=capture.frozen and state in ("frozen", "recovering"),
         )
@@ -204,19 +191,8 @@ class LiveSource(FrameSource):
             )
         return capture.state, capture.since, problem or self._silence_text(elapsed)
 
-    def _check_patience(self, patience: float | None) -> None:
-        if patience is None:
-            return
-        state, since, problem = self._state()
-        if state not in ("running", "closed") and self._clock() - since >= patience:
-            raise TrackingError(problem)
-
     def _silence_text(self, seconds: float) -> str:
         return (
             f"{self._name} delivered no image for {seconds:.0f} s: "
             "check that it is connected and that no other program uses it"
         )
-
-    @property
-    def _undecodable_text(self) -> str:
-        return f"{self._name} sends images that cannot be decoded"

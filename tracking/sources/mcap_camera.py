@@ -16,7 +16,7 @@ from mcap.stream_reader import MAGIC_SIZE, StreamReader
 from tracking.errors import TrackingError
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.sources.base import seconds_of
-from tracking.sources.decoding import EncodedImage
+from tracking.sources.decoding import BrokenFileError, EncodedImage
 
 IMAGE_TOPIC = "/camera/image"
 CALIBRATION_TOPIC = "/camera/calibration"
@@ -26,10 +26,6 @@ IMAGE_SCHEMAS: dict[str, type[CompressedImage] | type[CompressedVideo]] = {
     "foxglove.CompressedVideo": CompressedVideo,
 }
 ENCODINGS = {"jpeg": "jpeg", "jpg": "jpeg", "h264": "h264"}
-
-
-class BrokenFileError(Exception):
-    """A file cannot be read any further; the message completes the sentence "the file ..."."""
 
 
 class CameraChannels:

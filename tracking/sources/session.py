@@ -7,12 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from tracking.errors import TrackingError
-from tracking.geometry.arrays import Image
 from tracking.geometry.frame import Frame
 from tracking.sources.base import StoredFrames, Timeline
-from tracking.sources.decoding import EncodedImage, ImageDecodeError, ImageDecoder
+from tracking.sources.decoding import BrokenFileError, EncodedImage, decode
 from tracking.sources.device import Clock
-from tracking.sources.mcap_camera import IMAGE_TOPIC, BrokenFileError, CameraChannels
+from tracking.sources.mcap_camera import IMAGE_TOPIC, CameraChannels
 
 PEEKED_IMAGES = 30
 """Number of images read while opening, to find the rate and the calibration."""
@@ -57,7 +56,7 @@ class SessionSource(StoredFrames):
     def _decoded(self, images: Iterator[EncodedImage]) -> Generator[Frame, None, None]:
         timeline, count = Timeline(), 0
         try:
-            for encoded, image in _decode(images):
+            for encoded, image in decode(images):
                 stamp = timeline.stamp(encoded.timestamp)
                 yield Frame(image, stamp, count, encoded.data, encoded.encoding)
                 count += 1
@@ -68,22 +67,6 @@ class SessionSource(StoredFrames):
 def open_uri(uri: str, size: tuple[int, int] | None, clock: Clock) -> SessionSource:
     """Open the path of a session; size and times are those of the recording."""
     return SessionSource(uri)
-
-
-def _decode(images: Iterator[EncodedImage]) -> Iterator[tuple[EncodedImage, Image]]:
-    """Pair each image with its pixels; images still in the decoder are returned before an error."""
-    decoder = ImageDecoder()
-    broken: BrokenFileError | None = None
-    try:
-        for encoded in images:
-            yield from decoder.decode(encoded)
-    except BrokenFileError as error:
-        broken = error
-    except ImageDecodeError as error:
-        broken = BrokenFileError(f"has {error}")
-    yield from decoder.flush()
-    if broken is not None:
-        raise broken
 
 
 def _nominal_rate(images: Iterator[EncodedImage]) -> tuple[float, Iterator[EncodedImage]]:

@@ -10,10 +10,8 @@ import cv2
 from tracking.errors import TrackingError
 
 BACKENDS = {"linux": cv2.CAP_V4L2, "win32": cv2.CAP_DSHOW, "darwin": cv2.CAP_AVFOUNDATION}
-"""OpenCV's backend on each system. Trying all of them takes seconds and prints warnings.
-
-DirectShow, because Media Foundation takes up to half a minute to open some cameras.
-"""
+"""OpenCV's backend on each system: trying all of them takes seconds and prints warnings, and Media
+Foundation takes up to half a minute to open some cameras."""
 
 LINKS_BY_ID = Path("/dev/v4l/by-id")
 """Where Linux keeps links from cameras' names and serial numbers to their device files."""
@@ -33,15 +31,6 @@ def open_capture(device: int | str) -> VideoCapture:
     """Open a camera with this system's backend, without OpenCV's own messages."""
     cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
     return cv2.VideoCapture(device, BACKENDS.get(sys.platform, cv2.CAP_ANY))
-
-
-def device_path(device: int | str) -> Path:
-    """Return the device file of a camera, given its number or its path.
-
-    >>> device_path(2).as_posix()
-    '/dev/video2'
-    """
-    return Path(f"/dev/video{device}" if isinstance(device, int) else device)
 
 
 def persistent_path(path: Path, links: Path = LINKS_BY_ID) -> Path:
