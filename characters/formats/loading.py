@@ -12,11 +12,7 @@ from characters.skeleton.pose import Skeleton
 
 @dataclass(frozen=True)
 class Performance:
-    """A recorded motion with the skeleton that its poses belong to.
-
-    A `Clip` alone says how joints rotate, not which joints they are. Retargeting, contact
-    detection and inspection of a recording need both.
-    """
+    """A recorded motion with the skeleton that its poses belong to."""
 
     skeleton: Skeleton
     """The performer's joints and rest pose [m], in glTF's axes (+y up)."""
@@ -48,9 +44,7 @@ class MotionOptions:
     """The vertical axis ("y", "z", "-y", …), for formats that do not state it."""
 
 
-MotionReader = Callable[[Path, MotionOptions], Performance]
-
-MOTION_READERS: dict[str, MotionReader] = {}
+MOTION_READERS: dict[str, Callable[[Path, MotionOptions], Performance]] = {}
 """Readers of one motion, by the suffix of the file; `characters.formats` registers its own."""
 
 

@@ -63,7 +63,6 @@ def _aligned(bound: Array, rest: Array) -> Array:
     for _ in range(3):  # the greatest entry first, then those of the other rows and columns
         row, column = np.unravel_index(np.abs(turn).argmax(), turn.shape)
         quarter_turns[row, column] = np.sign(turn[row, column])
-        turn = turn.copy()
         turn[row], turn[:, column] = 0.0, 0.0
     scale = float(np.sqrt(np.square(rest_points).sum() / np.square(bound_points).sum()))
     scale = 1.0 if 1 / _MIN_RESCALING < scale < _MIN_RESCALING else scale

@@ -18,15 +18,8 @@ def mirror_of(
 ) -> Mirror:
     """Return the mirror of a character, by a pose in which its skin is symmetric.
 
-    Parameters
-    ----------
-    character
-        The character.
-    pairs
-        Names of joints and of their partners, where the names do not show them.
-    symmetric
-        The pose, such as one of its clip "idle"; left out, the one that the skin was bound in,
-        since files often rest in the first frame of a clip.
+    `pairs` are names of joints and of their partners, where the names do not show them. The pose,
+    left out, is the one that the skin was bound in: files often rest in the middle of a stride.
 
     Raises
     ------

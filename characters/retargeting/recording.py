@@ -33,14 +33,9 @@ class Recording:
 def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording:
     """Read a motion: a .bvh or .amc file, or a clip of a character.
 
-    A [joints] table in the sidecar .toml file may state the body parts.
-
-    Parameters
-    ----------
-    name
-        A file, or a character (file or bundled) and one of its clips: "fox.glb#Walk".
-    skeleton
-        The .asf file of an .amc, if it is in another folder.
+    The name is a file, or a character (file or bundled) and one of its clips: "fox.glb#Walk". A
+    [joints] table in the sidecar .toml file may state the body parts. `skeleton` is the .asf file
+    of an .amc, if it is in another folder.
 
     Raises
     ------

@@ -20,10 +20,7 @@ _SMOOTHING_S = 0.3  # standard deviation; removes the sway of a stride
 
 
 def root_trajectory(clip: Clip, source: Rig, ratio: float) -> Array:
-    """Return the root trajectory of a clip, its lengths multiplied by a ratio.
-
-    It is that of the clip's root motion, else the smoothed path of the hips over the ground.
-    """
+    """Return the trajectory of the root, else of the smoothed hips, its lengths times a ratio."""
     if clip.root_motion:
         return clip.track * [ratio, ratio, 1.0]
     joint = source.anatomy.joints["hips"]

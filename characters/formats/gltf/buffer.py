@@ -29,12 +29,6 @@ class GlbBuilder:
         items.append(item)
         return len(items) - 1
 
-    def use_extension(self, name: str) -> None:
-        """List an extension as used."""
-        used: list[str] = self.document.setdefault("extensionsUsed", [])
-        if name not in used:
-            used.append(name)
-
     def accessor(
         self,
         values: ArrayLike,

@@ -137,10 +137,7 @@ list stands for an index into it, "*" for any key; "!" marks required members.""
 
 
 def parse(text: bytes) -> Json:
-    """Return the document in a JSON text, checked against the schema.
-
-    A text that is no glTF at all raises another ValueError, or a RecursionError.
-    """
+    """Return the document in a JSON text; a text that is no glTF raises another ValueError."""
     document = json.loads(text, parse_constant=_refuse_constant)
     if not isinstance(document, dict) or not isinstance(document.get("asset"), dict):
         raise ValueError("not a glTF")

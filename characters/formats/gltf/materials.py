@@ -1,18 +1,83 @@
-"""Reading and writing metallic-roughness materials with their textures."""
+"""Reading and writing metallic-roughness materials with their textures.
 
+Images are measured before they are decoded, and written as PNG.
+"""
+
+import io
 import math
 import warnings
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
+import PIL.Image
+from numpy.typing import NDArray
+from PIL import UnidentifiedImageError
 
 from characters.errors import CharacterWarning
 from characters.formats.gltf.buffer import GlbBuilder
 from characters.formats.gltf.document import DamagedFileError, Json, error_context, label
 from characters.formats.gltf.file import GltfFile
-from characters.formats.gltf.images import Image, ImageDecoder, png
 from characters.model.mesh import Material
 from characters.skeleton.pose import Array
+
+Image = NDArray[np.uint8]
+"""(height, width, 3 or 4), RGB or RGBA."""
+
+MAX_SIDE_PX = 8192  # graphics cards guarantee hardly more
+
+
+class _ImageDecoder:
+    """Decodes each requested image of a file once."""
+
+    def __init__(self, file: GltfFile) -> None:
+        self._file = file
+        self._decoded: dict[tuple[int, str], Image] = {}
+
+    def texture(self, index: int, mode: Literal["RGB", "RGBA"]) -> Image | None:
+        """Return the image of a texture, or None if it has none."""
+        source = self._file.document["textures"][index].get("source")
+        if source is None:
+            return None
+        if (source, mode) not in self._decoded:
+            image = self._file.document["images"][source]
+            name = label("image", source, image)
+            if "uri" in image:
+                data: bytes | memoryview = self._file.resource(image["uri"])
+            elif "bufferView" in image:
+                data = self._file.view(image["bufferView"])
+            else:
+                raise DamagedFileError(f"{name} has no data")
+            self._decoded[source, mode] = self._decode(data, name, mode)
+        return self._decoded[source, mode]
+
+    def _decode(self, data: bytes | memoryview, name: str, mode: Literal["RGB", "RGBA"]) -> Image:
+        try:
+            # Warnings of the library, for example about palettes, need no action.
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                with PIL.Image.open(io.BytesIO(data), formats=("PNG", "JPEG")) as opened:
+                    self._check_size(opened.size, name)
+                    if opened.mode.startswith("I;16") or opened.mode == "I":
+                        grey = (np.asarray(opened).astype(np.uint32) >> 8).astype(np.uint8)
+                        return np.asarray(PIL.Image.fromarray(grey).convert(mode))
+                    return np.asarray(opened.convert(mode))
+        except UnidentifiedImageError:
+            raise DamagedFileError(f"{name} is neither PNG nor JPEG") from None
+        except PIL.Image.DecompressionBombError:
+            raise DamagedFileError(f"{name} is larger than {MAX_SIDE_PX} pixels per side") from None
+        # PIL raises any of these for a truncated or invalid file.
+        except (OSError, SyntaxError, EOFError, IndexError, OverflowError, TypeError) as error:
+            raise DamagedFileError(f"{name} is damaged ({error})") from None
+
+    def _check_size(self, size: tuple[int, int], name: str) -> None:
+        """Refuse an image by its header, before it is decoded."""
+        width, height = size
+        if not (0 < width <= MAX_SIDE_PX and 0 < height <= MAX_SIDE_PX):
+            raise DamagedFileError(
+                f"{name} has {width} × {height} pixels; scale it to {MAX_SIDE_PX} at most"
+            )
+        self._file.budget.spend_pixels(width * height, name)
 
 
 @dataclass(frozen=True)
@@ -31,7 +96,7 @@ class MappedMaterial:
 
 def read_materials(file: GltfFile) -> list[MappedMaterial]:
     """Return all materials of a file."""
-    images = ImageDecoder(file)
+    images = _ImageDecoder(file)
     materials: list[MappedMaterial] = []
     for number, material in enumerate(file.all("materials")):
         name = label("material", number, material)
@@ -40,7 +105,7 @@ def read_materials(file: GltfFile) -> list[MappedMaterial]:
     return materials
 
 
-def _material(material: Json, images: ImageDecoder, where: str) -> MappedMaterial:
+def _material(material: Json, images: _ImageDecoder, where: str) -> MappedMaterial:
     pbr = material.get("pbrMetallicRoughness", {})
     unlit = "KHR_materials_unlit" in material.get("extensions", {})
     color, surface = pbr.get("baseColorTexture"), pbr.get("metallicRoughnessTexture")
@@ -100,7 +165,7 @@ def _same(a: tuple[int, Array | None], b: tuple[int, Array | None]) -> bool:
     return a[0] == b[0] and np.allclose(first, second, atol=1e-6)
 
 
-def _emission(material: Json, images: ImageDecoder) -> tuple[float, float, float]:
+def _emission(material: Json, images: _ImageDecoder) -> tuple[float, float, float]:
     """Return the emission; an emissive texture counts with its mean colour."""
     factor = np.array(material.get("emissiveFactor", (0.0, 0.0, 0.0)), float)
     strength = material.get("extensions", {}).get("KHR_materials_emissive_strength", {})
@@ -164,11 +229,13 @@ class MaterialWriter:
         if brightest > 1.0:
             name = "KHR_materials_emissive_strength"
             item["extensions"] = {name: {"emissiveStrength": brightest}}
-            self._builder.use_extension(name)
+            self._builder.document["extensionsUsed"] = [name]
 
     def _texture(self, image: Image) -> dict[str, int]:
         """Return a reference to the texture of an image."""
-        data = png(image)
+        file = io.BytesIO()
+        PIL.Image.fromarray(image).save(file, "PNG")
+        data = file.getvalue()
         if data not in self._textures:
             item = {"bufferView": self._builder.view(data), "mimeType": "image/png"}
             source = self._builder.add("images", item)

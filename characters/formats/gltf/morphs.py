@@ -124,10 +124,7 @@ def renumbered_morph(morph: Morph, new_number: NDArray[np.int64]) -> Morph:
 
 
 def transformed_morph(morph: Morph, normals: Array, linear: Array) -> Morph:
-    """Return a morph of a mesh that is transformed by a matrix (3, 3).
-
-    `normals` are those of the mesh before, (vertices, 3).
-    """
+    """Return a morph of a mesh transformed by a matrix (3, 3); `normals` are those before."""
     turned = morph.normal_displacements
     if turned is not None:
         inverse = np.linalg.inv(linear)

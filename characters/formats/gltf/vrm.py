@@ -74,10 +74,7 @@ def facing_plus_z(file: GltfFile) -> GltfFile:
 def mixed_expressions(
     parts: Iterable[tuple[int, Mesh]], humanoid: VrmHumanoid
 ) -> tuple[tuple[Mesh, ...], tuple[str, ...]]:
-    """Return meshes with the expressions as morphs, and the names of these.
-
-    `parts` are each mesh with all of its morph targets, and its node.
-    """
+    """Return meshes, given with their nodes, with expressions as morphs, and names of these."""
     meshes = tuple(
         replace(mesh, morphs=tuple(_expression_morphs(mesh.morphs, node, humanoid.expressions)))
         for node, mesh in parts

@@ -17,9 +17,6 @@ from characters.skeleton.pose import Array, Pose
 
 _BLOCK_FRAMES = 1024  # computed at once: a block fits in the processor's cache
 
-AxisRound = tuple[NDArray[np.intp], Array, NDArray[np.intp]]
-"""Joints (n,), axes (n, 3) and columns (n,) of rotations of different joints."""
-
 
 @dataclass(frozen=True)
 class AxisChannel:
@@ -54,23 +51,28 @@ class ChannelLayout:
 
     def poses(self, values: Array) -> Pose:
         """Return the poses of frames of numbers, (frames, numbers)."""
-        frames, joints = len(values), len(self.offsets)
-        translations = np.tile(self.offsets, (frames, 1, 1))
+        translations = np.tile(self.offsets, (len(values), 1, 1))
         for channel in self.translations:
             translations[:, channel.joint] += values[:, channel.column, None] * channel.axis
-        quaternions = np.empty((frames, joints, 4))
+        quaternions = np.tile(rotations.IDENTITY, (*translations.shape[:2], 1))
         rounds = self._rounds()
-        for start in range(0, frames, _BLOCK_FRAMES):
-            block = slice(start, start + _BLOCK_FRAMES)
-            quaternions[block] = self._rotations(values[block], rounds)
+        for start in range(0, len(values), _BLOCK_FRAMES):
+            frames = slice(start, start + _BLOCK_FRAMES)
+            block, angles = quaternions[frames], values[frames] * self.angle_unit
+            for number, (joints, axes, columns) in enumerate(rounds):
+                q = rotations.about(axes, angles[:, columns])
+                block[:, joints] = rotations.multiply(block[:, joints], q) if number else q
         return Pose(translations, quaternions)
 
-    def _rounds(self) -> list[AxisRound]:
-        """Return every joint's first rotation, then every joint's second one, and so on."""
+    def _rounds(self) -> list[tuple[NDArray[np.intp], Array, NDArray[np.intp]]]:
+        """Return every joint's first rotation, then every joint's second one, and so on.
+
+        Each round is the joints (n,), their axes (n, 3) and their columns (n,).
+        """
         by_joint: dict[int, list[AxisChannel]] = {}
         for channel in self.rotations:
             by_joint.setdefault(channel.joint, []).append(channel)
-        rounds: list[AxisRound] = []
+        rounds = []
         for mixed in zip_longest(*by_joint.values()):
             channels = [channel for channel in mixed if channel is not None]
             joints, columns = ([c.joint for c in channels], [c.column for c in channels])
@@ -78,11 +80,3 @@ class ChannelLayout:
                 (np.array(joints), np.array([c.axis for c in channels]), np.array(columns))
             )
         return rounds
-
-    def _rotations(self, values: Array, rounds: list[AxisRound]) -> Array:
-        """Return the rotations of a block of frames, (frames, joints, 4)."""
-        product = np.tile(rotations.IDENTITY, (len(values), len(self.offsets), 1))
-        for number, (joints, axes, columns) in enumerate(rounds):
-            q = rotations.about(axes, values[:, columns] * self.angle_unit)
-            product[:, joints] = rotations.multiply(product[:, joints], q) if number else q
-        return product

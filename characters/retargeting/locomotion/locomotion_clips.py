@@ -94,14 +94,9 @@ def make_locomotion(
 ) -> LocomotionResult:
     """Return a character with the clips of the movement trees, made from recordings.
 
-    Parameters
-    ----------
-    character
-        The character; it gets a root joint on the ground if it has none.
-    walks, runs
-        Straight or curved; at least one walk.
-    idle
-        Standing; left out, the character keeps its clip "idle", or gets a static one.
+    There must be at least one walk; walks and runs are straight or curved. A character without a
+    root joint on the ground gets one. Without a recording of standing, it keeps its clip "idle",
+    or gets a static one.
 
     Raises
     ------
@@ -223,10 +218,6 @@ def _static_idle(walk: Clip, rig: Rig) -> Clip:
     arm_joints = [j for j in range(len(rig.skeleton)) if set(rig.chain_to(j)) & arms]
     turns = rest.rotations.copy()
     turns[arm_joints] = mean[arm_joints]
-    scales = None if rest.scales is None else np.tile(rest.scales, (_IDLE_FRAMES, 1, 1))
-    poses = Pose(
-        np.tile(rest.translations, (_IDLE_FRAMES, 1, 1)),
-        np.tile(turns, (_IDLE_FRAMES, 1, 1)),
-        scales,
-    )
+    scales = None if rest.scales is None else rest.scales[None]
+    poses = Pose(rest.translations[None], turns[None], scales)[np.zeros(_IDLE_FRAMES, np.intp)]
     return Clip("idle", _IDLE_RATE_HZ, poses, loop=True, root_motion=True)
