@@ -30,7 +30,6 @@ from tracking.cube.model import bundled, face_corners
 
 CAMERA_FILE = Path("camera.yaml")
 
-
 Source = Annotated[
     str,
     typer.Option(

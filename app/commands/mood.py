@@ -66,9 +66,8 @@ def plot(
         raise AppError('a plot needs matplotlib: pip install "cubeling[plots]"') from error
     history = read_history(session, salvage=salvage)
     others = [replay_with(history, each) for each in personalities]
-    labels = (
-        personalities[0].label_set if personalities else fitting_label_set(history.recorded.labels)
-    )
+    fitting = fitting_label_set(history.recorded.labels)
+    labels = personalities[0].label_set if personalities else fitting
     save_plot(output, history, others, read_robot_traces(session), labels)
     Console().print(f"Plotted: [bold]{escape(str(output))}[/]", soft_wrap=True, highlight=False)
 

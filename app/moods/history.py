@@ -71,11 +71,6 @@ class MoodHistory:
         """The character's action in each frame, named as its icon; "" while it is not visible."""
         return tuple(_action(command) for command in self.commands)
 
-    @property
-    def weights(self) -> Array:
-        """Intensity of the actions, (n,), −1…1."""
-        return np.array([command.weight for command in self.commands])
-
 
 def _action(command: CharacterCommand) -> str:
     if not command.visible:
@@ -84,14 +79,7 @@ def _action(command: CharacterCommand) -> str:
 
 
 def read_history(path: Path, *, salvage: bool = False) -> MoodHistory:
-    """Read a session.
-
-    Parameters
-    ----------
-    path
-        The .mcap file.
-    salvage
-        Whether to read the intact part of a session that was cut off.
+    """Read a session; with `salvage`, the intact part of one that was cut off.
 
     Raises
     ------

@@ -120,18 +120,8 @@ def save_plot(
 ) -> None:
     """Plot a session into an .svg, .pdf or .png file.
 
-    Parameters
-    ----------
-    path
-        The file; its suffix is a key of `METADATA`.
-    history
-        What the character did, and the emotion that was recorded.
-    others
-        The emotions of other personalities; if there are any, the robot is left out.
-    robot
-        What the robot acknowledged and showed.
-    labels
-        The labels whose regions and bands are drawn: those of the first curve.
+    `others` are the emotions of other personalities; if there are any, the robot is left out. The
+    regions and bands of `labels` are drawn, those of the first curve.
 
     Raises
     ------
@@ -273,7 +263,8 @@ def _draw_actions(axes: Axes, history: MoodHistory) -> None:
         if _fits(axes, name, start, end):
             axes.text((start + end) / 2, 1.72, name, ha="center", va="center", fontweight="bold")
     if history.info.options.scenario == "companion":
-        label, ends, values = "intensity", ("−1", "+1"), history.weights
+        label, ends = "intensity", ("−1", "+1")
+        values = np.array([command.weight for command in history.commands])
     else:
         label, ends = "Speed", ("0", "5")
         values = np.clip([command.speed for command in history.commands], 0, 5) / 2.5 - 1
@@ -337,9 +328,9 @@ def _draw_plane(axes: Axes, labels: LabelSet, curves: Sequence[Curve]) -> None:
 
 def _write_heading(figure: Figure, history: MoodHistory, others: Sequence[EmotionTrack]) -> None:
     """Write which session it is, how it was recorded, and whose emotions are compared."""
-    info = history.info
+    info, own = history.info, "the scenario's own personality"
     parts = [f"scenario {info.options.scenario}", f"{info.duration:.1f} s"]
-    parts.append(f"recorded with {info.options.personality or OWN_PERSONALITY}")
+    parts.append(f"recorded with {info.options.personality or own}")
     if others:
         names = [track.personality for track in others]
         listed = " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
@@ -349,9 +340,6 @@ def _write_heading(figure: Figure, history: MoodHistory, others: Sequence[Emotio
     left = TIME_PANELS_PT[0]
     _write(figure, left, 42, f"Moods of {history.name}", fontsize=19, fontweight="bold")
     _write(figure, left, 64, "   ·   ".join(parts), fontsize=11, color=SECONDARY)
-
-
-OWN_PERSONALITY = "the scenario's own personality"
 
 
 def _write_legend(figure: Figure, curves: Sequence[Curve], robot: RobotTraces | None) -> None:
@@ -366,7 +354,7 @@ def _write_legend(figure: Figure, curves: Sequence[Curve], robot: RobotTraces | 
     figure.legend(
         handles=handles,
         loc="center left",
-        bbox_to_anchor=((TIME_PANELS_PT[0]) / WIDTH_PT, 1 - 91 / HEIGHT_PT),
+        bbox_to_anchor=(TIME_PANELS_PT[0] / WIDTH_PT, 1 - 91 / HEIGHT_PT),
         ncols=len(handles),
         frameon=False,
         borderpad=0.0,

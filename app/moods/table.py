@@ -27,14 +27,7 @@ COLUMNS = (
 
 
 def write_table(path: Path, history: MoodHistory, track: EmotionTrack, robot: RobotTraces) -> int:
-    """Write a .csv file, and return its number of rows.
-
-    Parameters
-    ----------
-    path
-        The file.
-    history, track, robot
-        The session, the emotion to write, and what the robot did with the recorded one.
+    """Write a session with an emotion to a .csv file, and return its number of rows.
 
     Raises
     ------
@@ -48,7 +41,6 @@ def write_table(path: Path, history: MoodHistory, track: EmotionTrack, robot: Ro
             writer = csv.writer(file)
             writer.writerow(COLUMNS)
             for row, command in enumerate(history.commands):
-                numbers = (*acknowledged[row], *observed[row])
                 writer.writerow(
                     (
                         f"{track.times[row]:.6f}",
@@ -58,7 +50,8 @@ def write_table(path: Path, history: MoodHistory, track: EmotionTrack, robot: Ro
                         _cell(command.weight),
                         _cell(command.speed),
                         int(command.visible),
-                        *(_cell(value) for value in numbers),
+                        *(_cell(value) for value in acknowledged[row]),
+                        *(_cell(value) for value in observed[row]),
                         moods[row],
                     )
                 )
