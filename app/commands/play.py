@@ -7,10 +7,11 @@ import typer
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.progress import play_session
+from app.errors import AppError
 from app.running.network import SITE
 from app.scenarios import scenario_cube
 from app.session import SessionOptions
-from app.ui.display import require_display
+from app.ui.display import has_display
 
 DEFAULT_CAMERA = "camera:0"
 
@@ -116,7 +117,7 @@ def play(
         pictures=pictures,
     )
     scenario_cube(scenario)  # refuses a misspelt scenario before a missing display
-    if options.windowed:
-        require_display()
+    if options.windowed and not has_display():
+        raise AppError("there is no display here: write a video with --output FILE.mp4")
     with publisher(mqtt, player, site, password_file, ca) as line:
         play_session(options, f"playing {scenario}", player=line)

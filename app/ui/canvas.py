@@ -12,6 +12,9 @@ from PIL import Image, ImageDraw, ImageFont
 from app.ui.palette import PAPER, Color
 from tracking.cube.icons import icon_mask
 
+PICTURE_HEIGHT = 720.0
+"""Height of a picture in design units, in which lengths are given."""
+
 SUBPIXEL_BITS = 4
 """Fractional bits of the coordinates that OpenCV draws with."""
 
@@ -56,7 +59,7 @@ class Card:
 
 
 class Canvas:
-    """A card that is being drawn. Lengths are in design units: a picture is 720 units high."""
+    """A card that is being drawn. Lengths are in design units, see `PICTURE_HEIGHT`."""
 
     def __init__(self, width: float, height: float, scale: float) -> None:
         self.scale = scale
@@ -151,7 +154,6 @@ def text_width(words: str, size: float) -> float:
     return float(text_mask(words, 100)[0].shape[1] * size / 100)
 
 
-@lru_cache(maxsize=32)
 def rounded_rectangle(width: int, height: int, radius: int, value: int) -> NDArray[np.uint8]:
     """Return a mask (height, width) of a rectangle with round corners; `value` inside."""
     y, x = np.mgrid[:height, :width] + 0.5

@@ -28,13 +28,7 @@ TRIM_MARGIN_PX = 10
 
 
 class ContactSheets:
-    """Draws the contact sheets of characters.
-
-    Parameters
-    ----------
-    context
-        From `create_context`; this object does not release it.
-    """
+    """Draws the contact sheets of characters; it does not release the context."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._large = PortraitRenderer(context, (240, 280))

@@ -8,14 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.pipeline.step import RobotView, Step
-from app.ui.canvas import Canvas, Card, text_width
+from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
 from app.ui.notice import Notice
 from app.ui.palette import ACTION, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
 from app.ui.robot_face import draw_face
 from app.ui.virtual_robot import VirtualRobot
 
-# Lengths are in design units: a picture is 720 units high.
-PICTURE_HEIGHT = 720.0
 MARGIN = 24.0
 CARD_HEIGHT = 108.0
 BAR_Y = 70.0
@@ -42,31 +40,6 @@ VIRTUAL_ROBOT_BAR = ((VIRTUAL_ROBOT_CARD_WIDTH - 156.0) / 2, VIRTUAL_ROBOT_TEXT_
 DIMMED_BRIGHTNESS = 0.45
 """Share of the last picture's brightness while no new frame comes."""
 
-TITLES = {
-    "stand": "Stand",
-    "idle": "Idle",
-    "walk": "Walk",
-    "run": "Run",
-    "kiss": "Kiss",
-    "shout": "Shout",
-}
-
-
-def cards(
-    step: Step, robot: RobotView, size: tuple[int, int], virtual_robot: VirtualRobot | None = None
-) -> list[Card]:
-    """Return all cards for a picture of a `size` (width, height); see `overlay`."""
-    scale = size[1] / PICTURE_HEIGHT
-    width = size[0] / scale
-    shown = [_hint(step.outcome.hint, width, scale)]
-    if virtual_robot is None or robot.real:
-        shown.append(_robot(robot, width, scale))
-    else:
-        shown.append(_virtual_robot(robot, virtual_robot.portrait(step.emotion), width, scale))
-    if step.controls.camera_from_table is not None:
-        shown.append(_action(step, scale))
-    return shown
-
 
 def overlay(
     picture: NDArray[np.uint8],
@@ -78,8 +51,16 @@ def overlay(
 
     Without a real robot, the virtual robot shows the mood; without both, a drawn face does.
     """
-    for card in cards(step, robot, (picture.shape[1], picture.shape[0]), virtual_robot):
-        card.blend_over(picture)
+    scale = picture.shape[0] / PICTURE_HEIGHT
+    width = picture.shape[1] / scale
+    _hint(step.outcome.hint, width, scale).blend_over(picture)
+    if virtual_robot is None or robot.real:
+        card = _robot(robot, width, scale)
+    else:
+        card = _virtual_robot(robot, virtual_robot.portrait(step.emotion), width, scale)
+    card.blend_over(picture)
+    if step.controls.camera_from_table is not None:
+        _action(step, scale).blend_over(picture)
     return picture
 
 
@@ -133,7 +114,7 @@ def _action_background(name: str, moves: bool, scale: float) -> Canvas:
     canvas = Canvas(292, CARD_HEIGHT, scale)
     canvas.disc(54, 54, 38, ACTION.get(name, INK))
     canvas.icon(32, 32, 44, name, PAPER)
-    canvas.text(108, 42, TITLES.get(name, name.title()), 28, INK)
+    canvas.text(108, 42, name.title(), 28, INK)
     canvas.bar(ACTION_BAR_X, BAR_Y, ACTION_BAR_WIDTH, 10, RULE)
     if moves:
         canvas.text(ACTION_BAR_X, 95, "speed", 15, QUIET)
@@ -176,7 +157,6 @@ def _robot(robot: RobotView, width: float, scale: float) -> Card:
 def _virtual_robot(
     robot: RobotView, portrait: NDArray[np.uint8], width: float, scale: float
 ) -> Card:
-    """Draw the card of the virtual robot."""
     caption = {"none": "no robot connected", "ready": "simulated robot"}.get(
         robot.link, f"simulated robot {robot.link}"
     )

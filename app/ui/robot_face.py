@@ -7,17 +7,7 @@ from app.ui.palette import INK, PAPER, between, mood_color
 
 
 def draw_face(canvas: Canvas, x: float, y: float, radius: float, mood: float) -> None:
-    """Draw the robot's face.
-
-    Parameters
-    ----------
-    canvas
-        Where to draw.
-    x, y, radius
-        The circle that the face fills, in design units.
-    mood
-        From angry, −1, over neutral to happy, 1.
-    """
+    """Draw the robot's face in a circle; `mood` is from angry, −1, over neutral to happy, 1."""
     skin = mood_color(mood)
     shade = between(skin, INK, 0.22)
     for side in (-0.5, 0.0, 0.5):  # the crest

@@ -23,23 +23,19 @@ class Screen(Protocol):
 
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Show a step, and return the player's inputs."""
-        ...
 
     def wait(self, notice: Notice | None) -> None:
         """Process events while no frame comes, and show a notice if there is one.
 
         The next `show` returns keys that are pressed in the meantime.
         """
-        ...
 
     @property
     def closed(self) -> bool:
         """Whether the player has closed it."""
-        ...
 
     def close(self) -> None:
         """Close it."""
-        ...
 
 
 class NullScreen:

@@ -40,13 +40,6 @@ class VirtualRobot:
 
     The same emotions at the same times give the same pictures, on one graphics driver. Whoever
     creates it closes it, before the context; a second `close` does nothing.
-
-    Parameters
-    ----------
-    context
-        Where to draw.
-    side
-        Of the picture [px].
     """
 
     def __init__(self, context: moderngl.Context, side: int) -> None:
@@ -55,7 +48,7 @@ class VirtualRobot:
         self._drawn_side = min(self.side, MAX_SIDE_PX)
         self._character = Character.load("robot")
         self._animator = Animator(self._character, place=RootDelta(yaw=YAW_RAD))
-        self._stage: Stage | None = Stage(context, (self._drawn_side, self._drawn_side))
+        self._stage = Stage(context, (self._drawn_side, self._drawn_side))
         self._matrix, self._camera_from_table = _camera(self._drawn_side)
         renderer = str(context.info["GL_RENDERER"]).lower()
         self._interval = (
@@ -68,28 +61,18 @@ class VirtualRobot:
         """Advance to an emotion and its time, and return the picture, (side, side, 3) BGR.
 
         With software rendering, the last picture is returned until `SOFTWARE_INTERVAL_S` is over.
-
-        Raises
-        ------
-        RuntimeError
-            The virtual robot is closed.
         """
         if self._last is not None and 0.0 <= target.timestamp - self._last[0] < self._interval:
             return self._last[1]
-        picture = self._draw(target)
+        posed = self._animator.update(self.command(target))
+        image = backdrop(self._drawn_side, target.emotion.valence)
+        view = View(image, self._matrix, np.zeros(0), self._camera_from_table)
+        picture = self._stage.draw(view, [SceneCharacter(self._character, posed)])
         if self._drawn_side != self.side:
             size = (self.side, self.side)
             picture = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_CUBIC), np.uint8)
         self._last = target.timestamp, picture
         return picture
-
-    def _draw(self, target: EmotionTarget) -> NDArray[np.uint8]:
-        if self._stage is None:
-            raise RuntimeError("the virtual robot is closed")
-        posed = self._animator.update(self.command(target))
-        image = backdrop(self._drawn_side, target.emotion.valence)
-        view = View(image, self._matrix, np.zeros(0), self._camera_from_table)
-        return self._stage.draw(view, [SceneCharacter(self._character, posed)])
 
     def command(self, target: EmotionTarget) -> CharacterCommand:
         """Return the command that shows an emotion.
@@ -107,9 +90,7 @@ class VirtualRobot:
 
     def close(self) -> None:
         """Release the graphics buffers."""
-        if self._stage is not None:
-            self._stage.release()
-            self._stage = None
+        self._stage.release()
 
 
 def intensity(emotion: Emotion, action: str | None = None) -> float:

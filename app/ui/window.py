@@ -19,6 +19,7 @@ from app.pipeline.step import RobotView, Step
 from app.ui.notice import Notice
 from app.ui.overlay import interrupted, overlay, virtual_robot_side
 from app.ui.virtual_robot import VirtualRobot
+from characters.rendering import create_context
 
 VERTEX = """
 #version 330
@@ -76,7 +77,7 @@ class Window:
             raise AppError(f"no window can be opened here: {self._error}")
         glfw.make_context_current(self._window)
         glfw.swap_interval(0)  # a camera's frame must not wait for the screen's
-        self.context = moderngl.create_context()
+        self.context = create_context(window=True)
         """Where a `Stage` for this window draws."""
         self._virtual_robot = VirtualRobot(self.context, virtual_robot_side(size[1]))
         self._start_panel()

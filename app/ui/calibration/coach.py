@@ -12,15 +12,12 @@ from numpy.typing import NDArray
 
 from app.ui.calibration.orientation_icons import draw_board, draw_cube, draw_screen
 from app.ui.calibration.session import Advice
-from app.ui.canvas import Canvas, Card, text_width
-from app.ui.palette import ACTION, HAPPY, INK, NEUTRAL, PAPER, QUIET, RULE, between
+from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from app.ui.palette import ACTION, HAPPY, INK, NEUTRAL, PAPER, QUIET, RULE, Color, between
 from tracking.calibration import ViewCoverage
 
 Picture = NDArray[np.uint8]
 Array = NDArray[np.float64]
-
-PICTURE_HEIGHT = 720.0
-"""Height of a picture in design units."""
 
 FLASH_S = 0.25
 """Time for which the picture's border flashes when a view was taken [s]."""
@@ -34,14 +31,6 @@ TILT_RAD = math.radians(34)
 ICON_ROTATION = np.array([-0.35, 0.4, 0.0])
 """Rotation vector of a target that does not tilt, so that three faces are visible."""
 
-PLACE_SENTENCES = {
-    "top left": "Move it to the top left corner",
-    "top right": "Move it to the top right corner",
-    "bottom left": "Move it to the bottom left corner",
-    "bottom right": "Move it to the bottom right corner",
-    "middle": "Move it to the middle",
-}
-
 SENTENCES = {
     "show": "Show me the {}",
     "still": "Good! Now hold it still",
@@ -53,11 +42,15 @@ SENTENCES = {
     "tilt right": "Turn the {} to the right",
     "near": "Bring it nearer",
     "far": "Hold it further away",
-    **PLACE_SENTENCES,
+    "top left": "Move it to the top left corner",
+    "top right": "Move it to the top right corner",
+    "bottom left": "Move it to the bottom left corner",
+    "bottom right": "Move it to the bottom right corner",
+    "middle": "Move it to the middle",
 }
 
-TILT_AXES = {"tilt up": (-1, 0), "tilt down": (1, 0), "tilt left": (0, 1), "tilt right": (0, -1)}
-"""Axis in the picture (x right, y down) about which each tilt rotates, right-handed."""
+TILTS = {"tilt up": (0, -1), "tilt down": (0, 1), "tilt left": (-1, 0), "tilt right": (1, 0)}
+"""Where the cube's front should look in the picture (x right, y down)."""
 
 PLACES = {
     "top left": (-1, -1),
@@ -80,13 +73,7 @@ def words_of(request: str, target: str) -> str:
 
 
 class CoachView:
-    """Draws the coach over a sequence of pictures.
-
-    Parameters
-    ----------
-    target
-        "cube" or "board".
-    """
+    """Draws the coach over a sequence of pictures; `target` is "cube" or "board"."""
 
     def __init__(self, target: str) -> None:
         self._target = target
@@ -107,7 +94,9 @@ class CoachView:
             draw_outline(picture, outline, scale)
         flash = 1 - (timestamp - self._taken_at) / FLASH_S
         if flash > 0:
-            _border(picture, flash, scale)
+            height, across = picture.shape[:2]
+            thickness = 2 * round(2 + 14 * flash * scale)
+            cv2.rectangle(picture, (0, 0), (across - 1, height - 1), HAPPY, thickness)
         phase = (timestamp - self._request_since[1]) / ANIMATION_PERIOD_S % 1.0
         left = self._animation_left(advice, width, scale)
         self._hint(advice, width, scale).blend_over(picture)
@@ -140,8 +129,9 @@ class CoachView:
         # Forth and back, with a pause at both ends.
         share = float(np.clip(0.5 - 0.75 * math.cos(2 * math.pi * phase), 0, 1))
         middle = (115.0, 100.0)
-        if request in TILT_AXES:
-            draw(canvas, middle, 44.0, TILT_RAD * share * np.array([*TILT_AXES[request], 0.0]))
+        if request in TILTS:
+            x, y = TILTS[request]
+            draw(canvas, middle, 44.0, TILT_RAD * share * np.array([y, -x, 0.0]))
             _arrow(canvas, middle, request)
         elif request in PLACES or request == "show":
             x, y = PLACES.get(request, (0, 0))
@@ -183,16 +173,9 @@ def draw_outline(picture: Picture, outline: Array, scale: float) -> None:
     cv2.polylines(picture, [quad], True, ACTION["walk"], max(1, round(3 * scale)), cv2.LINE_AA, 4)
 
 
-def _border(picture: Picture, flash: float, scale: float) -> None:
-    height, width = picture.shape[:2]
-    thickness = round(2 + 14 * flash * scale)
-    cv2.rectangle(picture, (0, 0), (width - 1, height - 1), HAPPY, 2 * thickness)
-
-
 def _arrow(canvas: Canvas, middle: tuple[float, float], request: str) -> None:
     """Draw an arrow to where the cube's front should look."""
-    directions = {"up": (0, -1), "down": (0, 1), "left": (-1, 0), "right": (1, 0)}
-    direction = np.array(directions[request.removeprefix("tilt ")])
+    direction = np.array(TILTS[request])
     aside = np.array([-direction[1], direction[0]])
     tip = np.array(middle) + direction * (88 if direction[1] else 98)
     ends = [tip - 22 * direction, tip]
@@ -219,12 +202,11 @@ def _progress(advice: Advice, width: float, scale: float) -> Card:
     _tilts(canvas, coverage, 62, 52)
     _places(canvas, coverage, 172, 52)
     for number, kind in enumerate(("far", "near")):
-        size = 11 + 9 * number
-        _dot(canvas, 262 + 46 * number, 52, size, coverage.progress_of(kind))
+        color = _progress_color(coverage, kind)
+        canvas.disc(262 + 46 * number, 52, 11 + 9 * number, color)
     for number, kind in enumerate(sides):
-        _dot(
-            canvas, 364 + 28 * (number % 3), 39 + 27 * (number // 3), 9, coverage.progress_of(kind)
-        )
+        x, y = 364 + 28 * (number % 3), 39 + 27 * (number // 3)
+        canvas.disc(x, y, 9, _progress_color(coverage, kind))
     captions = [(62, "tipped"), (172, "everywhere"), (285, "far, near"), (392, "all sides")]
     for x, words in captions[: 4 if sides else 3]:
         canvas.text(x, 106, words, 15, QUIET, "middle")
@@ -234,17 +216,12 @@ def _progress(advice: Advice, width: float, scale: float) -> Card:
 
 
 def _tilts(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
-    for kind, direction in (
-        ("tilt up", (0, -1)),
-        ("tilt down", (0, 1)),
-        ("tilt left", (-1, 0)),
-        ("tilt right", (1, 0)),
-    ):
+    for kind, direction in TILTS.items():
         ahead = np.array(direction, float)
         aside = np.array([-ahead[1], ahead[0]])
         foot = np.array([x, y]) + 13 * ahead
         triangle = np.array([foot + 13 * aside, foot + 19 * ahead, foot - 13 * aside])
-        canvas.fill(triangle, _share_color(coverage.progress_of(kind)))
+        canvas.fill(triangle, _progress_color(coverage, kind))
 
 
 def _places(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
@@ -252,14 +229,11 @@ def _places(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
         middle = np.array([x + 31 * across, y + 19 * down])
         half = np.array([13.5, 8.5])
         corners = middle + half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
-        canvas.fill(corners, _share_color(coverage.progress_of(kind)))
+        canvas.fill(corners, _progress_color(coverage, kind))
 
 
-def _dot(canvas: Canvas, x: float, y: float, radius: float, share: float) -> None:
-    canvas.disc(x, y, radius, _share_color(share))
-
-
-def _share_color(share: float) -> tuple[int, int, int]:
+def _progress_color(coverage: ViewCoverage, kind: str) -> Color:
+    share = coverage.progress_of(kind)
     if share >= 1:
         return HAPPY
     return between(RULE, NEUTRAL, 0.75 * min(1.0, 1.5 * share))

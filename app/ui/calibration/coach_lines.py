@@ -21,12 +21,7 @@ FORMATS = (".png", ".jpg")
 class CoachLines:
     """Prints a line when the advice changes, and no more often than it can be read.
 
-    Parameters
-    ----------
-    console
-        Where to print.
-    target
-        "cube" or "board".
+    `target` is "cube" or "board".
     """
 
     closed = False

@@ -14,12 +14,7 @@ Picture = NDArray[np.uint8]
 class CoachWindow(Window):
     """A window with the live picture and the coach over it; Esc ends the session.
 
-    Parameters
-    ----------
-    size
-        Width and height of the pictures [px].
-    target
-        "cube" or "board".
+    `size` is that of the pictures, (width, height) [px]; `target` is "cube" or "board".
     """
 
     def __init__(self, size: tuple[int, int], target: str) -> None:

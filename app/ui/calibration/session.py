@@ -53,11 +53,9 @@ class Coach(Protocol):
     @property
     def closed(self) -> bool:
         """Whether the user wants to end the session."""
-        ...
 
     def show_advice(self, picture: Picture, timestamp: float, advice: Advice) -> None:
         """Show the advice, over a picture (H, W, 3) that may be drawn on."""
-        ...
 
 
 RECOVERY_TIMEOUT_S = 30.0
