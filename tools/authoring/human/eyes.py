@@ -11,7 +11,7 @@ from characters.skeleton.pose import Skeleton
 from tools.authoring.human.face import EXPRESSIONS, NEUTRAL, HumanExpression, skin_displacement
 from tools.authoring.human.rig import JOINT_POSITIONS
 from tools.authoring.human.skull import EYE_WHITE, MAROON, SKIN, complexion, face_normals, on_face
-from tools.authoring.modelling.lathe import lathe, loft
+from tools.authoring.modelling.lathe import circle_profile, lathe, loft
 from tools.authoring.modelling.meshes import blend_normals, morphed
 from tools.authoring.modelling.sculpt import coated
 from tools.authoring.modelling.shapes import Array, linear_rgb
@@ -75,7 +75,7 @@ def _eyeball(sign: float, skeleton: Skeleton) -> list[Mesh]:
     sight = REST_GAZE * [sign, 1.0, 1.0]
     place = np.column_stack([_axes(sight), _centre(sign)])
     tilt = np.array([0.92, 0.72, 0.5, 0.325, 0.305, 0.282, 0.21, 0.158, 0.15, 0.07, 0.0])
-    ball = np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
+    ball = circle_profile(tilt)
     rings = EYE_FRONT_RADIUS_M * np.vstack([[0.0, 0.5], ball])
     bands = [EYE_WHITE] * 4 + [INK] * 2 + [BROWN] * 2 + [INK] * 3
     whole = lathe(rings, bands, place, joint, skeleton, 26)
@@ -101,7 +101,7 @@ def _light(
     toward = axes @ [at[0], at[1], 1.0]
     place = np.column_stack([_axes(toward / np.linalg.norm(toward)), _centre(sign)])
     tilt = wide * np.array([0.0, 1.0, 0.55, 0.0])
-    rings = EYE_FRONT_RADIUS_M * 1.003 * np.stack([np.sin(tilt), np.cos(tilt)], axis=1)
+    rings = EYE_FRONT_RADIUS_M * 1.003 * circle_profile(tilt)
     rings[:2, 1] -= 0.004
     return lathe(rings, [(1.0, 1.0, 1.0)] * 3, place, joint, skeleton, 12)
 

@@ -65,6 +65,11 @@ def _ring_normals(rings: Array) -> Array:
     return np.asarray(both / np.linalg.norm(both, axis=1, keepdims=True))
 
 
+def circle_profile(polar: Array) -> Array:
+    """Return the profile of a unit sphere at polar angles [rad], (n, 2): radius and height."""
+    return np.stack([np.sin(polar), np.cos(polar)], axis=1)
+
+
 def loft(rings: Array, colors: Array, joint: "str | Array", skeleton: Skeleton) -> Mesh:
     """Return a closed surface through rings of points.
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.lathe import frame_toward, lathe
+from tools.authoring.modelling.lathe import circle_profile, frame_toward, lathe
 from tools.authoring.modelling.rig import rest_positions
 from tools.authoring.modelling.sculpt import BodyPart, sculpt
 from tools.authoring.modelling.shapes import Array, Difference, Ellipsoid, HalfSpace, Vector
@@ -138,8 +138,7 @@ def _legs(bound: Skeleton) -> list[Mesh]:
 
 
 def _ball(place: Array, radius: float, joint: str, bound: Skeleton) -> Mesh:
-    angle = np.radians([180, 135, 90, 45, 0])
-    rings = radius * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    rings = radius * circle_profile(np.radians([180, 135, 90, 45, 0]))
     return lathe(rings, [RUBBER] * 4, frame_toward([1.0, 0, 0], place), joint, bound, 10)
 
 
@@ -169,8 +168,7 @@ def sockets(bound: Skeleton) -> list[Mesh]:
 
 def lit_lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
     """Return the lit lamps of chest and tail."""
-    angle = np.radians([180, 140, 100, 60, 30, 0])
-    bulb = 0.0168 * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    bulb = 0.0168 * circle_profile(np.radians([180, 140, 100, 60, 30, 0]))
     place = _tail_lamp()
     place[:3, 3] += 0.0075 * place[:3, 2]
     return [

@@ -6,7 +6,7 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.lathe import frame_toward, lathe
+from tools.authoring.modelling.lathe import circle_profile, frame_toward, lathe
 from tools.authoring.modelling.meshes import bound_mesh
 from tools.authoring.modelling.rig import rest_positions
 from tools.authoring.modelling.sculpt import BodyPart, sculpt
@@ -203,8 +203,7 @@ def _paired_parts(side: float, bound: Skeleton) -> list[Mesh]:
 
 def _lid(elevation: float, size: float, joint: str, center: Array, bound: Skeleton) -> Mesh:
     """Return a half-shell around an eye with a dark rim; its pole is at `elevation` [rad]."""
-    angle = np.radians([90, 79, 60, 40, 20, 0])
-    dome = np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    dome = circle_profile(np.radians([90, 79, 60, 40, 20, 0]))
     rings = EYE_RADIUS_M * size * np.vstack([[0.0, 0.0], dome])
     yaw = LID_YAW_RAD * (1 if joint.startswith("Left") else -1)
     ahead = np.cos(elevation)
@@ -218,14 +217,13 @@ def eyes(bound: Skeleton) -> list[Mesh]:
     pieces = []
     for side, name in ((1.0, "LeftEye"), (-1.0, "RightEye")):
         center, gaze = np.array(EYE_CENTRE_M) * [side, 1, 1], REST_GAZE * [side, 1, 1]
-        angle = np.radians([180, 120, 90, 70, 66, 48, 24, 0])
-        rings = EYE_RADIUS_M * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+        rings = EYE_RADIUS_M * circle_profile(np.radians([180, 120, 90, 70, 66, 48, 24, 0]))
         bands = [GLASS, GLASS, WHITE, RUBBER, GLASS, PUPIL, PUPIL]
         pieces.append(lathe(rings, bands, frame_toward(gaze, center), name, bound, 28))
         for across, up, radius in ((-0.30, 0.40, 0.0064), (0.26, -0.30, 0.0030)):
             shine = gaze + np.array([across, up, 0.0])  # on the same side in both eyes
             wide = radius / EYE_RADIUS_M * np.array([0.0, 1.0, 0.5, 0.0])
-            cap = EYE_RADIUS_M * 1.022 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
+            cap = EYE_RADIUS_M * 1.022 * circle_profile(wide)
             cap[0, 1] *= 0.95
             pieces.append(lathe(cap, [WHITE] * 3, frame_toward(shine, center), "head", bound, 14))
     return pieces
@@ -242,9 +240,8 @@ def lit_lenses(mood: str, color: Vector, bound: Skeleton) -> list[Mesh]:
         lens(temple(side), TEMPLE_LAMP_RADIUS_M, color, f"head_{mood}", bound)
         for side in (1.0, -1.0)
     ]
-    angle = np.radians([180, 66, 60, 53, 48, 0])
     size = EYE_RADIUS_M * np.array([0.90, 0.99, 1.018, 1.018, 0.99, 0.90])[:, None]
-    rings = size * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    rings = size * circle_profile(np.radians([180, 66, 60, 53, 48, 0]))
     for side, name in ((1.0, "LeftIris"), (-1.0, "RightIris")):
         place = frame_toward(REST_GAZE * [side, 1, 1], np.array(EYE_CENTRE_M) * [side, 1, 1])
         pieces.append(lathe(rings, [color] * 5, place, f"{name}_{mood}", bound, 28))

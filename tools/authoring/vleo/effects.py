@@ -4,7 +4,7 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.lathe import frame_toward, lathe
+from tools.authoring.modelling.lathe import circle_profile, frame_toward, lathe
 from tools.authoring.modelling.meshes import join
 from tools.authoring.modelling.sculpt import BodyPart, PaintCoat, sculpt
 from tools.authoring.modelling.shapes import Ellipsoid, RoundCone, Union, Vector, linear_rgb
@@ -34,8 +34,7 @@ def _burst(joint: str, bound: Skeleton) -> Mesh:
     """Return a spiky star, 60 mm wide, that looks alike from every side."""
     ways = np.array(list(np.ndindex(3, 3, 3))) - 1.0
     corners = np.count_nonzero(ways, axis=1)
-    angle = np.linspace(np.pi, 0, 7)
-    ball = 0.0150 * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    ball = 0.0150 * circle_profile(np.linspace(np.pi, 0, 7))
     place = frame_toward(np.array([0.0, 0.0, 1.0]), np.array(MOUTH_M))
     rays = [lathe(ball, [YELLOW] * 6, place, joint, bound, 10)]
     for way in ways[corners != 2]:  # a cube's six faces and eight corners

@@ -7,7 +7,7 @@ import numpy as np
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
 from tools.authoring.modelling.curves import smoothstep
-from tools.authoring.modelling.lathe import frame_toward, lathe, loft
+from tools.authoring.modelling.lathe import circle_profile, frame_toward, lathe, loft
 from tools.authoring.modelling.meshes import blend_normals, morphed
 from tools.authoring.modelling.shapes import Array, linear_rgb
 from tools.authoring.modelling.surface import normals_of
@@ -43,15 +43,16 @@ def _ball(side: float, bound: Skeleton) -> list[Mesh]:
     """Return an eyeball and its highlights."""
     joint = "LeftEye" if side > 0 else "RightEye"
     center, sight = EYE_CENTRE_M * [side, 1, 1], REST_GAZE * [side, 1, 1]
-    angle = np.radians([180, 110, 75, 54, 41.5, 40, 37, 31, 28, 14, 0])
-    rings = EYE_RADIUS_M * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    rings = EYE_RADIUS_M * circle_profile(
+        np.radians([180, 110, 75, 54, 41.5, 40, 37, 31, 28, 14, 0])
+    )
     bands = [WHITE] * 4 + [RIM] * 2 + [IRIS] * 2 + [PUPIL] * 2
     pieces = [lathe(rings, bands, frame_toward(sight, center), joint, bound, 26)]
     frame = frame_toward(sight, center)[:3, :3]
     for across, up, radius in ((-0.24, 0.30, 0.0052), (0.20, -0.27, 0.0024)):
         toward = frame @ [across, up, 1.0]  # on the same side in both eyes
         wide = radius / EYE_RADIUS_M * np.array([0.0, 1.0, 0.55, 0.0])
-        rings = EYE_RADIUS_M * 1.024 * np.stack([np.sin(wide), np.cos(wide)], axis=1)
+        rings = EYE_RADIUS_M * 1.024 * circle_profile(wide)
         rings[:2, 1] *= 0.96
         pieces.append(lathe(rings, [WHITE] * 3, frame_toward(toward, center), joint, bound, 16))
     return pieces

@@ -4,7 +4,7 @@ import numpy as np
 
 from characters.model.mesh import Mesh
 from characters.skeleton.pose import Skeleton
-from tools.authoring.modelling.lathe import frame_toward, lathe
+from tools.authoring.modelling.lathe import circle_profile, frame_toward, lathe
 from tools.authoring.vleo.body import CLAW, LASH, ORANGE, PINK, SPOT, spine_line
 from tools.authoring.vleo.pieces import attached, patches
 from tools.authoring.vleo.skin import SkinSurface
@@ -70,8 +70,7 @@ def _claws(side: float, bound: Skeleton) -> list[Mesh]:
     claws = []
     for which, x, z in (("Front", 0.043, 0.060), ("Hind", 0.045, -0.048)):
         for across, ahead in ((-0.0150, 0.0205), (0.0, 0.0268), (0.0150, 0.0205)):
-            angle = np.radians([180, 120, 75, 40, 0])
-            rings = 0.0066 * np.stack([np.sin(angle), np.cos(angle)], axis=1)
+            rings = 0.0066 * circle_profile(np.radians([180, 120, 75, 40, 0]))
             place = frame_toward(
                 np.array([side * across * 20, -0.1, 1.0]),
                 np.array([side * (x + across), 0.0072, z + ahead]),
