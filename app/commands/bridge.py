@@ -36,21 +36,15 @@ def bridge(
     mqtt: Broker = None,
     robot: Annotated[
         list[str] | None,
-        typer.Option(
-            help="NAME=URL: drive this robot, a URL as for --robot of `play`; repeatable."
-        ),
+        typer.Option(help="NAME=URL: drive this robot, a URL as for `play --robot`; repeatable."),
     ] = None,
     play: Annotated[
         list[str] | None,
-        typer.Option(
-            help="NAME=SESSION.mcap: publish a recorded session as this player; repeatable."
-        ),
+        typer.Option(help="NAME=FILE.mcap: publish a recorded session as this player; repeatable."),
     ] = None,
     follow: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Players to follow: PLAYER, SITE/PLAYER, SITE/*; without, all of the site."
-        ),
+        typer.Option(help="Players to follow: PLAYER, SITE/PLAYER, SITE/*; default: the site's."),
     ] = None,
     site: Site = SITE,
     user: Annotated[str | None, typer.Option(help="The broker's user, if not in the URL.")] = None,
@@ -67,9 +61,7 @@ def bridge(
     max_age: Annotated[
         float, typer.Option(min=0.0, help="Seconds after which an action expires.")
     ] = MAX_AGE_S,
-    watch: Annotated[
-        bool, typer.Option("--watch", help="Print every message, one per line.")
-    ] = False,
+    watch: Annotated[bool, typer.Option("--watch", help="Print every message, in a line.")] = False,
     seconds: Annotated[
         float | None, typer.Option(min=0.0, help="Run for this time; without, until Ctrl-C.")
     ] = None,
@@ -82,9 +74,8 @@ def bridge(
     Example: [cyan]cubeling bridge --mqtt mqtt://museum.local --robot rex=/dev/ttyACM0[/]
     """
     robots = named(robot or (), "--robot", "rex=sim")
-    sessions = {
-        name: Path(path) for name, path in named(play or (), "--play", "ann=a.mcap").items()
-    }
+    files = named(play or (), "--play", "ann=a.mcap")
+    sessions = {name: Path(path) for name, path in files.items()}
     if mqtt is None and not (robots and sessions):
         raise AppError(
             "without --mqtt there are no other members: give both --robot and --play, "
@@ -135,10 +126,7 @@ def run(
 
 
 class EventPrinter:
-    """Prints messages, changes of presence, and problems of connections, one per line.
-
-    With `every` it prints every message, otherwise only changes of presence.
-    """
+    """Prints every message, or only changes of presence, and problems of connections, in lines."""
 
     def __init__(self, console: Console, *, every: bool) -> None:
         self._console = console
@@ -180,17 +168,12 @@ class EventPrinter:
 
 
 def named(given: Iterable[str], option: str, example: str) -> dict[str, str]:
-    """Return the values of options of the form NAME=VALUE, by name.
-
-    Raises AppError if an option has another form, or a name is used twice.
-    """
+    """Return the values of NAME=VALUE options by name; AppError for another form or a repeat."""
     values: dict[str, str] = {}
     for text in given:
         name, equals, value = text.partition("=")
         if not (name and equals and value):
-            raise AppError(
-                f"{option} {text}: a name and a value are needed, as in {option} {example}"
-            )
+            raise AppError(f"{option} {text}: needs a name and a value, as in {option} {example}")
         if name in values:
             raise AppError(f"{option}: {name} is named twice")
         values[name] = value

@@ -39,30 +39,22 @@ Source = Annotated[
         help="camera:0, a video, a session (.mcap), http://PHONE:8080/video, synthetic:wave.",
     ),
 ]
-Output = Annotated[
-    Path, typer.Option("--output", "-o", help="The camera file to write, for --intrinsics.")
-]
+Output = Annotated[Path, typer.Option("--output", "-o", help="The camera file, for --intrinsics.")]
 SaveCube = Annotated[
     Path | None,
     typer.Option(help="Keep the cube as it really is, folds and all, in this .toml file."),
 ]
 BoardKind = Annotated[str, typer.Option(help="charuco: use a printed board, not the cube.")]
-PrintBoard = Annotated[
-    Path | None, typer.Option(help="Write that board as a PDF to print, and end.")
-]
+PrintBoard = Annotated[Path | None, typer.Option(help="Write that board as a PDF, and end.")]
 Checked = Annotated[
     Path | None,
     typer.Option("--check", help="Say whether this camera file still fits; write nothing."),
 ]
-Coverage = Annotated[
-    Path | None, typer.Option(help="Write a .png or .jpg of where the views were.")
-]
+Coverage = Annotated[Path | None, typer.Option(help="Draw where the views were: .png or .jpg.")]
 Seconds = Annotated[
     float, typer.Option(min=5, max=600, help="A live camera is watched no longer than this.")
 ]
-Shown = Annotated[
-    bool, typer.Option("--window/--no-window", help="Print the coach's lines instead.")
-]
+Shown = Annotated[bool, typer.Option("--window/--no-window", help="Open a window, or print lines.")]
 
 
 def calibrate(

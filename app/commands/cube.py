@@ -10,12 +10,8 @@ from tracking import CubeModel, write_sheet
 
 
 def cube(
-    name: Annotated[
-        str, typer.Argument(help="locomotion, companion, or the .toml file of your own cube.")
-    ],
-    edge_mm: Annotated[
-        float | None, typer.Option(help="Edge of the cube; the markers grow with it.")
-    ] = None,
+    name: Annotated[str, typer.Argument(help="locomotion, companion, or your own .toml file.")],
+    edge_mm: Annotated[float | None, typer.Option(help="Edge; the markers grow with it.")] = None,
     paper: Annotated[str, typer.Option(help="a4, letter or a3.")] = "a4",
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="The PDF to write; NAME.pdf without.")

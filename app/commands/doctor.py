@@ -141,9 +141,8 @@ def _characters() -> Finding:
         characters = [Character.load(name) for name in ("human", "vleo", "robot")]
     except CharacterError as error:
         return Finding("characters", "bad", str(error))
-    return Finding(
-        "characters", "good", ", ".join(f"{c.name} ({len(c.clips)} clips)" for c in characters)
-    )
+    found = ", ".join(f"{one.name} ({len(one.clips)} clips)" for one in characters)
+    return Finding("characters", "good", found)
 
 
 def _recordings() -> Finding:

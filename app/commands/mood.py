@@ -75,9 +75,7 @@ def plot(
 @app.command()
 def table(
     session: Session,
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="Write this .csv file.")
-    ] = None,
+    output: Annotated[Path | None, typer.Option("--output", "-o", help="The .csv file.")] = None,
     personality: Annotated[
         str | None, typer.Option(help="Write what this personality would have felt.")
     ] = None,

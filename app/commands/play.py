@@ -24,9 +24,7 @@ SourceOption = Annotated[
         "http://PHONE:8080/video, synthetic:NAME.",
     ),
 ]
-CubeOption = Annotated[
-    str | None, typer.Option(help="A bundled cube, or the .toml file of your own.")
-]
+CubeOption = Annotated[str | None, typer.Option(help="A bundled cube, or your own .toml file.")]
 CharacterOption = Annotated[str | None, typer.Option(help="A bundled character, or a .glb file.")]
 PersonalityOption = Annotated[
     str | None,
@@ -50,9 +48,7 @@ RobotSettingsOption = Annotated[
     typer.Option(help="A .toml file for the robot: what a Pleo or an OpenCat does for each mood."),
 ]
 RecordOption = Annotated[Path | None, typer.Option(help="Record the session to this .mcap file.")]
-CodecOption = Annotated[
-    str, typer.Option(help="How a recording stores the pictures: jpeg or h264 (smaller).")
-]
+CodecOption = Annotated[str, typer.Option(help="How to record pictures: jpeg or h264 (smaller).")]
 OutputOption = Annotated[
     Path | None,
     typer.Option("--output", "-o", help="Write an .mp4 video instead of opening a window."),
@@ -77,9 +73,7 @@ def play(
     speed_map: Annotated[
         str, typer.Option(help="corrected, or legacy as printed in the thesis.")
     ] = "corrected",
-    turns: Annotated[
-        float, typer.Option(help="Full turns from the least to the greatest intensity.")
-    ] = 2.0,
+    turns: Annotated[float, typer.Option(help="Turns from least to greatest intensity.")] = 2.0,
     personality: PersonalityOption = None,
     look: Annotated[
         str, typer.Option(help="What the character's eyes follow: auto, cube, hand, camera, none.")

@@ -37,10 +37,7 @@ def play_session(
 
 
 def run_with_progress(session: OpenedSession, console: Console, title: str) -> Summary:
-    """Run a session; show a progress bar where its length is known and it has no window.
-
-    Ctrl-C discards an unfinished video.
-    """
+    """Run a session, with a progress bar if its length is known; Ctrl-C discards a video."""
     duration = session.source.duration
     if duration is None or session.paced or not console.is_terminal:
         summary = run(session)

@@ -26,9 +26,7 @@ from app.ui.display import has_display
 
 
 def replay(
-    session: Annotated[
-        Path, typer.Argument(help="A session recorded with --record, or a bundled one.")
-    ],
+    session: Annotated[Path, typer.Argument(help="A recorded session, or a bundled one.")],
     scenario: Annotated[str | None, typer.Option(help="Play it as another scenario.")] = None,
     character: CharacterOption = None,
     personality: PersonalityOption = None,
@@ -46,9 +44,7 @@ def replay(
             "command or pose.",
         ),
     ] = "camera",
-    salvage: Annotated[
-        bool, typer.Option(help="Play what can be read of a session that was cut off.")
-    ] = False,
+    salvage: Annotated[bool, typer.Option(help="Play what is left of a cut-off session.")] = False,
     check: Annotated[
         bool, typer.Option(help="Process the frames again and compare every recorded channel.")
     ] = False,

@@ -69,17 +69,13 @@ SVG_TEMPLATE = """\
 def conform(
     port: Annotated[
         str,
-        typer.Argument(
-            metavar="PORT", help="/dev/ttyACM0, COM3, socket://HOST:PORT, sim:cubeling …"
-        ),
+        typer.Argument(metavar="PORT", help="/dev/ttyACM0, COM3, socket://HOST:PORT, sim:cubeling"),
     ] = "",
     only: Annotated[
         list[str] | None,
         typer.Option(help="Only checks with this word in their names; repeatable."),
     ] = None,
-    output: Annotated[
-        Path | None, typer.Option("--json", help="Write the results to this file too.")
-    ] = None,
+    output: Annotated[Path | None, typer.Option("--json", help="Write the results here.")] = None,
     picture: Annotated[
         Path | None, typer.Option("--svg", help="Write the output to this file as a picture too.")
     ] = None,

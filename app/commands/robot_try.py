@@ -28,9 +28,7 @@ def try_(
         str,
         typer.Argument(help="/dev/ttyACM0, pleo:COM3, opencat:/dev/ttyUSB0, sim:pleo …"),
     ],
-    mood: Annotated[
-        list[str] | None, typer.Option(help="Only this mood; may be given again.")
-    ] = None,
+    mood: Annotated[list[str] | None, typer.Option(help="Only this mood; repeatable.")] = None,
     seconds: Annotated[float, typer.Option(help="How long each mood is held.")] = 5.0,
     settings: Annotated[
         Path | None, typer.Option(help="A .toml file for the robot: what it does for each mood.")

@@ -93,10 +93,7 @@ class Attention:
         return self._glance
 
     def _hand(self, cube: Array, camera: Array) -> Array:
-        """Return where the hand that holds the cube probably is.
-
-        Hands are not tracked. A hand that holds a cube comes from the player's side and from above.
-        """
+        """Return a guess of the hand's place: hands come from the player's side and from above."""
         toward = camera - cube
         toward[1] = 0.0
         toward /= max(float(np.linalg.norm(toward)), 1e-6)

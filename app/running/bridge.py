@@ -29,10 +29,7 @@ PUBLISHED_TOPICS: dict[str, type[Any]] = {
 
 
 class RecordedPlayer:
-    """Publishes the actions and emotions of a recorded session, in its own time.
-
-    Raises AppError if the file is not a session.
-    """
+    """Publishes a recorded session in its own time; raises AppError if the file is none."""
 
     def __init__(self, publisher: PlayerPublisher, path: Path) -> None:
         session_info(path)  # raises AppError if it is not a session

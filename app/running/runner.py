@@ -165,10 +165,7 @@ def _frames(session: OpenedSession, summary: Summary) -> Iterator[Frame | Health
 
 
 def _readable_frames(session: OpenedSession, summary: Summary) -> Iterator[Frame | Health]:
-    """Yield what can be read; a camera that fails ends the session and keeps the recording.
-
-    A file that breaks off is an error: it can be played again with `salvage`.
-    """
+    """Yield what can be read; a live camera that fails ends the session and keeps the recording."""
     try:
         yield from _source_frames(session)
     except TrackingError as error:

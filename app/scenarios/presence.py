@@ -7,10 +7,7 @@ HIDE_DELAY_S = 0.6
 
 
 class Presence:
-    """Shows the character while the cube is visible (AvatAR), and for a moment longer.
-
-    The scenario keeps its state while the character is hidden, so it comes back as it was.
-    """
+    """Shows the character while the cube is visible (AvatAR), and for a moment longer."""
 
     def __init__(self) -> None:
         self._last_seen: float | None = None

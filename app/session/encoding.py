@@ -34,10 +34,7 @@ def encode(message: object) -> bytes:
 
 
 def decode(kind: type[T], document: bytes) -> T:
-    """Return the dataclass of type `kind` that `encode` wrote.
-
-    Raises ValueError if the document is not JSON, or not of that type.
-    """
+    """Return the dataclass that `encode` wrote; ValueError if it is no JSON or not of that type."""
     try:
         value = _typed(kind, _upgraded(kind, json.loads(document)))
     except (KeyError, TypeError, AttributeError) as error:

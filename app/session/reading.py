@@ -82,9 +82,7 @@ def _options(path: Path) -> SessionOptions:
                     break
         except READ_ERRORS:
             pass
-    raise AppError(
-        f"'{path}' does not say which scenario it holds: it was not recorded by Cubeling"
-    )
+    raise AppError(f"'{path}' names no scenario: it was not recorded by Cubeling")
 
 
 def _readable_frames(path: Path) -> tuple[int, float]:

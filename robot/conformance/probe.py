@@ -44,10 +44,7 @@ Kind = TypeVar("Kind")
 
 
 class Probe:
-    """A host for one robot, under the control of the checks.
-
-    `host` is the number of the first host; each check acts as another one.
-    """
+    """A host for one robot, under the checks' control; each acts as another, from `host` on."""
 
     def __init__(self, channel: Channel, host: int) -> None:
         self.log = FrameLog()

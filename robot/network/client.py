@@ -27,8 +27,7 @@ E = TypeVar("E", bound=Endpoint)
 class BusClient(Closeable, Generic[E]):
     """Runs an endpoint on a bus of its own. Close it, or use it in a `with` statement.
 
-    Hold `lock` while accessing the endpoint from elsewhere, for a short time only. The clock gives
-    the time [s].
+    Hold `lock` while accessing the endpoint from elsewhere, for a short time only.
     """
 
     def __init__(self, endpoint: E, bus: Bus, clock: Clock) -> None:

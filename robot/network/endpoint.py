@@ -60,10 +60,7 @@ class SessionEpoch:
 
 
 class Endpoint:
-    """A member's part of the communication, driven by the owner of clock and bus. Never blocks.
-
-    This one receives nothing and publishes nothing.
-    """
+    """A member's part of the communication, driven by the owner of clock and bus. Never blocks."""
 
     topic_filters: tuple[str, ...] = ()
     """Its subscriptions, in the order in which it needs the retained messages."""
@@ -116,10 +113,7 @@ class Endpoint:
 
 
 class MemberEndpoint(Endpoint):
-    """Base of players and robots' nodes: session epoch, heartbeat, last will.
-
-    `session` is the number of its epoch, see `SessionEpoch`; `follows` are the players it follows.
-    """
+    """Base of players and robots' nodes: session epoch, heartbeat, last will."""
 
     def __init__(self, member: Member, session: int, follows: tuple[Pattern, ...] = ()) -> None:
         self.member = member

@@ -37,8 +37,8 @@ class RobotControl(Protocol):
 class RobotNode(MemberEndpoint):
     """The node of a robot, without clock, thread or bus.
 
-    The caller closes `robot`. `session` is the number of the node's epoch, see `SessionEpoch`;
-    `hold` is how long the emotion of a player who is gone is kept [s].
+    `session` is the number of its epoch, see `SessionEpoch`; `hold` is how long the emotion of a
+    player who is gone is kept [s]. The caller closes the robot.
     """
 
     def __init__(

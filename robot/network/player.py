@@ -86,10 +86,7 @@ class Player(MemberEndpoint):
         self._last_emotion = self._last_resend = self._last_progress = -math.inf
 
     def act(self, name: str, weight: float, now: float) -> None:
-        """Publish an action, for the robots that follow to do once.
-
-        Raises ValueError if the name cannot be sent, or the weight is not from −1 to 1.
-        """
+        """Publish an action once; ValueError if its name or its weight (−1…1) cannot be sent."""
         if not (name and m.is_text(name)):
             raise ValueError(f"{name!r} cannot be an action: 1 to {MAX_TEXT_BYTES} printable bytes")
         if not -1.0 <= weight <= 1.0:

@@ -113,10 +113,7 @@ def member_of(topic: str) -> tuple[Member, str] | None:
 
 
 def is_name(text: str) -> bool:
-    """Whether this is a valid name: letters and digits of any script, and - _ after the first.
-
-    Such a name has no special meaning in a topic, a client's id, a command line or a terminal.
-    """
+    """Whether this is a valid name: letters and digits of any script, and - _ after the first."""
     inner = text.replace("-", "x").replace("_", "x")
     return inner.isalnum() and text[0].isalnum() and len(text.encode()) <= MAX_NAME_BYTES
 

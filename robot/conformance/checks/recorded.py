@@ -49,9 +49,7 @@ def own_session_in_header(probe: Probe) -> None:
     violations = probe.log.violations.get("session", [])
     if violations:
         count = probe.log.violation_counts["session"]
-        raise CheckFailed(
-            f"session {probe.session} or the one before", f"{count} × {violations[0]}"
-        )
+        raise CheckFailed(f"session {probe.session} or the last one", f"{count} × {violations[0]}")
 
 
 @RECORDED.must_of(7)

@@ -25,10 +25,7 @@ _NEUTRAL, _HAPPY, _ANGRY = [_NAMES.index(name) for name in ("neutral", "happy", 
 
 
 class DinoBody:
-    """A dinosaur of servos, and a buzzer if it has one.
-
-    After `rest_after` ms without a session it rests, and its servos lose power.
-    """
+    """A dinosaur of servos and a buzzer; it rests after `rest_after` ms without a session."""
 
     def __init__(
         self, joints: ServoJoints, board: RobotBoard, buzzer: bool, rest_after: int

@@ -77,15 +77,11 @@ class ServoJoints:
         for index, servo in enumerate(self._servos):
             if not self.powered[index]:
                 continue
-            target = targets[index]
-            low, high = 100 * servo.low, 100 * servo.high
-            target = low if target < low else high if target > high else target
+            target = min(max(targets[index], 100 * servo.low), 100 * servo.high)
             max_step = servo.speed * elapsed // 10
             way = target - self.angles[index]
             if way:
-                self.angles[index] += (
-                    -max_step if way < -max_step else max_step if way > max_step else way
-                )
+                self.angles[index] += min(max(way, -max_step), max_step)
                 if not self._pulse(index):
                     # The pulse generator failed, and every servo is off.
                     self.powered[:] = [False] * len(self.powered)

@@ -15,10 +15,7 @@ ERROR_PAUSE_MS = 300
 
 
 class Firmware:
-    """The firmware's state between a start, or an error, and the next.
-
-    The expected angles of the servos survive an error, so `joints` comes from outside.
-    """
+    """The firmware's state until the next error; the expected angles of the joints survive one."""
 
     def __init__(self, board: RobotBoard, table: ServoTable, joints: ServoJoints) -> None:
         self._board = board

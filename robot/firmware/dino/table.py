@@ -112,6 +112,4 @@ def _check_slices(pins: list[int], buzzer: int | None) -> None:
             if other > pin and (other - pin) % 16 == 0:
                 raise ValueError(f"pins {pin} and {other} share one PWM on this board")
         if buzzer is not None and pin % 16 // 2 == buzzer % 16 // 2:
-            raise ValueError(
-                f"pin {pin} shares the frequency of its PWM with the buzzer's pin {buzzer}"
-            )
+            raise ValueError(f"pin {pin} shares its PWM's frequency with the buzzer's pin {buzzer}")

@@ -78,9 +78,7 @@ class Address:
         user = unquote(parts.username) if parts.username else given.user
         password = unquote(parts.password) if parts.password else _password(given)
         if user is None and parts.password:
-            raise RobotError(
-                f"{shown}: a password needs a user, as in mqtt://USER@{parts.hostname}"
-            )
+            raise RobotError(f"{shown}: a password needs a user: mqtt://USER@{parts.hostname}")
         return cls(
             parts.hostname or "",
             parts.port or DEFAULT_PORTS[parts.scheme],

@@ -86,10 +86,7 @@ class MqttBus(Bus):
         self._client = client
 
     def open(self) -> None:
-        """Connect, and wait for the broker's answer, at most `OPEN_TIMEOUT_S`.
-
-        Raises RobotError if the broker refuses: user, password, certificate.
-        """
+        """Connect, and wait up to `OPEN_TIMEOUT_S`; RobotError if the broker refuses us."""
         client, will = self._client, self._will
         if will is not None:
             client.will_set(will.topic, will.payload, QOS, will.retain)
@@ -140,9 +137,7 @@ class MqttBus(Bus):
 
     # --- Callbacks, on paho's thread -----------------------------------------------------------
 
-    def _on_connect(
-        self, client: paho.Client, _: Any, flags: Any, reason: ReasonCode, *__: Any
-    ) -> None:
+    def _on_connect(self, client: Any, _: Any, flags: Any, reason: ReasonCode, *__: Any) -> None:
         if self._closing:
             client.disconnect()
             return
@@ -173,9 +168,7 @@ class MqttBus(Bus):
             hint = "; does it speak TLS there?" if reset else ""
             self._change("away", f"{self._address}: {_describe(error)}{hint}")
 
-    def _on_disconnect(
-        self, client: paho.Client, _: Any, flags: Any, reason: ReasonCode, *__: Any
-    ) -> None:
+    def _on_disconnect(self, client: Any, _: Any, flags: Any, reason: ReasonCode, *__: Any) -> None:
         if self._state == "connected":
             self._change("away", f"{self._address}: the connection broke")
         elif self._state != "refused":
@@ -189,9 +182,7 @@ class MqttBus(Bus):
                 handler(message.topic, bytes(message.payload))
                 return  # overlapping filters deliver it once
 
-    def _on_publish(
-        self, client: paho.Client, _: Any, mid: int, reason: ReasonCode, *__: Any
-    ) -> None:
+    def _on_publish(self, client: Any, _: Any, mid: int, reason: ReasonCode, *__: Any) -> None:
         # In theory the confirmation can arrive before `publish` has noted the topic.
         topic = self._topics.pop(mid, "a topic")
         if reason.is_failure:

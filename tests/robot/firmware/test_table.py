@@ -90,7 +90,7 @@ def test_an_invalid_table_is_refused_in_one_line(changes, says):
 def test_pins_that_share_a_pwm_are_refused_on_that_board():
     buzzer = changed(SERVOS=(row(pin=23),))
     ServoTable(buzzer).check("esp32")
-    with pytest.raises(ValueError, match="shares the frequency"):
+    with pytest.raises(ValueError, match="shares its PWM's frequency"):
         ServoTable(buzzer).check("rp2")
     both = changed(SERVOS=(row(pin=2), row(name="other", pin=18)))
     ServoTable(both).check("esp32")
