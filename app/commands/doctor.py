@@ -3,7 +3,6 @@
 import importlib.metadata
 import platform
 import shutil
-import sys
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -84,9 +83,8 @@ def examine(*, cameras: bool = True) -> list[Finding]:
 
 
 def _python() -> Finding:
-    version = platform.python_version()
-    verdict: Literal["good", "bad"] = "good" if sys.version_info >= (3, 11) else "bad"
-    return Finding("Python", verdict, f"{version} on {platform.system()} {platform.machine()}")
+    system = f"{platform.system()} {platform.machine()}"
+    return Finding("Python", "good", f"{platform.python_version()} on {system}")
 
 
 def _opencv() -> Finding:

@@ -82,9 +82,8 @@ class _FrameLoop:
         """Process one frame."""
         session = self._session
         began = time.perf_counter()
-        inputs = self._inputs
-        if frame.timestamp in session.start_overs:
-            inputs = Inputs(clear=True)
+        start_over = frame.timestamp in session.start_overs
+        inputs = Inputs(clear=True) if start_over else self._inputs
         replay = None if session.replay_inputs is None else next(session.replay_inputs, None)
         if self._encode is not None:
             frame = self._encode(frame)

@@ -95,12 +95,10 @@ class Sketch:
 
     def may_add(self, point: NDArray[np.float64]) -> bool:
         """Whether a point (x, z) [m] may be set: not a ninth, and not near the previous one."""
-        if len(self._points) >= MAX_POINTS:
-            return False
-        return (
-            not self._points
-            or float(np.linalg.norm(point - self._points[-1])) >= MIN_POINT_DISTANCE_M
-        )
+        if not self._points:
+            return True
+        distance = float(np.linalg.norm(point - self._points[-1]))
+        return len(self._points) < MAX_POINTS and distance >= MIN_POINT_DISTANCE_M
 
     def _target(self, character: PosedCharacter | None) -> NDArray[np.float64] | None:
         if self._path is None or character is None:

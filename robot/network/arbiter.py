@@ -71,10 +71,6 @@ class PlayerArbiter:
             known = self.players[member] = new
         return known
 
-    def set_online(self, player: FollowedPlayer, now: float) -> None:
-        """Note that a player is online."""
-        player.online, player.last_seen = True, now
-
     def set_offline(self, player: FollowedPlayer, now: float) -> None:
         """Note that a player is gone."""
         if player.online:

@@ -117,13 +117,13 @@ class RobotNode(MemberEndpoint):
             if known is None or (message.session, message.number) > (known.session, known.number):
                 player.emotion, player.emotion_changed = message, now
         elif kind == "action":
-            self.arbiter.set_online(player, now)
+            player.online, player.last_seen = True, now
             self._take(member, player, message)
         elif message.status != "online":
             self.arbiter.set_offline(player, now)
         elif message.number > player.heartbeat:
             player.heartbeat = message.number
-            self.arbiter.set_online(player, now)
+            player.online, player.last_seen = True, now
 
     def _take(self, member: Member, player: FollowedPlayer, action: m.ActionMessage) -> None:
         """Take an action if it is the next one; acknowledge it, also if it was taken before.

@@ -43,23 +43,6 @@ class _PendingAction:
     timestamp: float
 
 
-@dataclass
-class PlayerCounts:
-    """Counters of a player."""
-
-    made: int = 0
-    """Actions made."""
-
-    sent: int = 0
-    """Actions published, repeats included."""
-
-    overrun: int = 0
-    """Actions dropped because `MAX_PENDING_ACTIONS` newer ones were pending."""
-
-    expired: int = 0
-    """Actions dropped because they became too old."""
-
-
 class Player(MemberEndpoint):
     """A player, without clock, thread or bus.
 
@@ -71,8 +54,8 @@ class Player(MemberEndpoint):
         super().__init__(member, session)
         self.followers = Followers(member)
         """The robots that follow."""
-        self.counts = PlayerCounts()
-        """The counters."""
+        self.counts = {"made": 0, "sent": 0, "overrun": 0, "expired": 0}
+        """Actions made; published, repeats included; dropped for newer ones; dropped as too old."""
         self.topic_filters = (
             member.topic("status"),
             f"{ROOT}/+/robot/+/status",
@@ -93,10 +76,10 @@ class Player(MemberEndpoint):
             raise ValueError(f"the weight of {name!r} must be from -1 to 1, not {weight!r}")
         if len(self._pending) == MAX_PENDING_ACTIONS:
             self._pending.popleft()
-            self.counts.overrun += 1
+            self.counts["overrun"] += 1
         self._number += 1
         self._pending.append(_PendingAction(self._number, name, weight, now))
-        self.counts.made += 1
+        self.counts["made"] += 1
 
     def feel(self, emotion: Emotion) -> None:
         """Publish an emotion; the latest wins."""
@@ -144,7 +127,7 @@ class Player(MemberEndpoint):
             self._pending.popleft()
         while self._pending and now - self._pending[0].timestamp > self._max_age:
             self._pending.popleft()
-            self.counts.expired += 1
+            self.counts["expired"] += 1
         last_activity = max(self._last_progress, self._last_resend)
         behind = self.followers.any_behind(self._sent)
         if self._pending and behind and now - last_activity >= RESEND_AFTER_S:
@@ -189,7 +172,7 @@ class Player(MemberEndpoint):
 
     def _action(self, action: _PendingAction, now: float) -> Message:
         self._sent = action.number
-        self.counts.sent += 1
+        self.counts["sent"] += 1
         content = m.ActionMessage(
             self._epoch.number,
             action.number,
