@@ -20,8 +20,7 @@ from app.ui.contact_sheets import ContactSheets, save
 from characters import Character, Skeleton
 from characters.errors import CharacterWarning
 from characters.formats.loading import Performance, is_motion_only, load_motion
-from characters.model.inspection import Inspection, inspect
-from characters.model.statistics import ClipStats, FootContactStats
+from characters.model.inspection import ClipStats, FootContactStats, Inspection, inspect
 from characters.model.stick_figure import stick_figure
 from characters.rendering import create_context
 

@@ -11,10 +11,7 @@ MAX_FILE_BYTES = 1 << 30
 
 
 def read_file(path: Path, max_bytes: int = MAX_FILE_BYTES) -> bytes:
-    """Return the content of a file, or refuse it in one line.
-
-    Pipes and devices are refused: opening or reading them may never return.
-    """
+    """Return the content of a file; refuse pipes and devices, which may never return."""
     try:
         status = os.stat(path)
         if not S_ISREG(status.st_mode) and not S_ISDIR(status.st_mode):

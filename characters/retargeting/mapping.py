@@ -60,7 +60,7 @@ def map_joints(source: Rig, target: Rig) -> JointMapping:
 
 def _require_same_kind(source: Rig, target: Rig) -> None:
     for role, rig in (("source", source), ("target", target)):
-        if rig.part("hips") is None or rig.anatomy.kind == "other":
+        if rig.anatomy.joint("hips") is None or rig.anatomy.kind == "other":
             raise CharacterError(
                 f"retargeting: the {role} is neither a person nor a quadruped "
                 f"(found: {', '.join(rig.anatomy.joints) or 'none'}); say which joints are hips, "
@@ -83,7 +83,6 @@ def _pairs(source: Rig, target: Rig) -> list[tuple[int, int]]:
         if name in by_name
         and joint not in target_parts
         and by_name[name] not in source_parts
-        and target.skeleton.parents[joint] >= 0
         and _is_below_hips(target, joint)
         and _is_below_hips(source, by_name[name])
     ]
@@ -117,7 +116,7 @@ def _trunk_segments(*rigs: Rig) -> tuple[list[list[int]], ...]:
     """Return the trunk of each rig, cut at the parts that all of them have, ends included."""
     trunks = [_trunk(rig) for rig in rigs]
     cuts: list[list[int]] = [[] for _ in rigs]
-    candidates = [[rig.part(part) for rig in rigs] for part in ("hips", "neck", "head")]
+    candidates = [[rig.anatomy.joint(part) for rig in rigs] for part in ("hips", "neck", "head")]
     candidates.insert(1, [_top_of_spine(rig) for rig in rigs])
     for joints in candidates:
         if all(j is not None and j in trunk for j, trunk in zip(joints, trunks, strict=True)):
@@ -131,14 +130,14 @@ def _trunk_segments(*rigs: Rig) -> tuple[list[list[int]], ...]:
 
 def _trunk(rig: Rig) -> list[int]:
     """Return the joints from the hips to the head, or as far up as there are any."""
-    present = [j for part in _TRUNK if (j := rig.part(part)) is not None]
+    present = [j for part in _TRUNK if (j := rig.anatomy.joint(part)) is not None]
     chain = rig.chain_to(max(present, key=lambda joint: len(rig.chain_to(joint))))
     hips = rig.anatomy.joints["hips"]
     return chain[chain.index(hips) :] if hips in chain else [hips]
 
 
 def _top_of_spine(rig: Rig) -> int | None:
-    present = [j for part in _TRUNK[1:4] if (j := rig.part(part)) is not None]
+    present = [j for part in _TRUNK[1:4] if (j := rig.anatomy.joint(part)) is not None]
     return present[-1] if present else None
 
 
@@ -169,13 +168,13 @@ def _rest_corrections(source: Rig, target: Rig) -> dict[int, Array]:
             for start, end in bones:
                 own = target.direction(side + start, side + end)
                 other = source.direction(side + start, side + end)
-                joint = target.part(side + start)
+                joint = target.anatomy.joint(side + start)
                 if own is None or other is None or joint is None:
                     break
                 aligned = rotations.between(rotations.rotate(turn, own), other)
                 turn = rotations.multiply(aligned, turn)
                 corrections[joint] = turn
-            hand = target.part(side + bones[-1][1])
+            hand = target.anatomy.joint(side + bones[-1][1])
             if hand is not None and bones[-1][1] == "Hand":  # hand and fingers follow the arm
                 parts = target.anatomy.joints.values()
                 corrections |= {j: turn for j in parts if hand in target.chain_to(j)}

@@ -49,10 +49,6 @@ class Rig:
     anatomy: Anatomy
     """Which joint is which body part."""
 
-    def part(self, name: str) -> int | None:
-        """Return the joint of a body part, or None."""
-        return self.anatomy.joint(name)
-
     @cached_property
     def common_from_skeleton(self) -> Array:
         """The rotation (4,) from the skeleton's axes to the common ones, by quarter turns.
@@ -62,7 +58,8 @@ class Rig:
         positions = self.skeleton.rest.globals(self.skeleton)[:, :3, 3]
         left, right = self._side_centre(positions, "left"), self._side_centre(positions, "right")
         legs = [positions[leg.end] for leg in self.legs]
-        trunk = [positions[j] for j in (self.part("hips"), self.part("head")) if j is not None]
+        trunk_joints = map(self.anatomy.joint, ("hips", "head"))
+        trunk = [positions[joint] for joint in trunk_joints if joint is not None]
         if not legs or left is None or right is None:
             return rotations.IDENTITY
         up = _nearest_axis(np.mean(trunk, axis=0) - np.mean(legs, axis=0))
@@ -97,10 +94,11 @@ class Rig:
         )
 
     def _leg(self, side: str) -> LegJoints | None:
-        upper, lower, foot = (self.part(side + p) for p in ("UpperLeg", "LowerLeg", "Foot"))
+        joint = self.anatomy.joint
+        upper, lower, foot = (joint(side + part) for part in ("UpperLeg", "LowerLeg", "Foot"))
         if upper is None or lower is None or foot is None or upper not in self.chain_to(lower):
             return None
-        return LegJoints(upper, lower, foot, self.part(side + "Toes"), lower in self.chain_to(foot))
+        return LegJoints(upper, lower, foot, joint(side + "Toes"), lower in self.chain_to(foot))
 
     def chain_to(self, joint: int) -> list[int]:
         """Return the ancestors of a joint from the root down, and the joint itself."""
@@ -108,7 +106,7 @@ class Rig:
 
     def direction(self, start: str, end: str) -> Array | None:
         """Return the unit vector (3,) from one body part to another at rest, or None."""
-        a, b = self.part(start), self.part(end)
+        a, b = self.anatomy.joint(start), self.anatomy.joint(end)
         if a is None or b is None:
             return None
         bone = self.rest_positions[b] - self.rest_positions[a]

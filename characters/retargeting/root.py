@@ -87,10 +87,7 @@ def with_root_joint(character: Character) -> Character:
 
 
 def clip_with_root(clip: Clip, skeleton: Skeleton, anatomy: Anatomy) -> Clip:
-    """Return a clip of a character without a root joint for the same character with one.
-
-    The root follows the hips smoothly; every joint stays where it was.
-    """
+    """Return a clip with a root joint that follows the hips; every other joint stays in place."""
     trajectory = root_trajectory(clip, Rig(skeleton, anatomy), 1.0)
     children = np.flatnonzero(np.array(skeleton.parents) < 0) + 1
     poses = with_root_trajectory(_with_static_root(clip.poses), children, trajectory)

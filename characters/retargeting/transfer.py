@@ -76,10 +76,7 @@ def _hips_height(rig: Rig) -> float:
 
 
 def _ankle_height(rig: Rig, clip: Clip) -> float:
-    """Return the height of standing ankles above the ground [m].
-
-    It is measured at rest if the rig rests on its feet, else it is the median in the rig's clip.
-    """
+    """Return the height of standing ankles [m]: at rest on its feet, or the median in a clip."""
     feet = [leg.foot for leg in rig.legs[:2]]
     if rig.rests_on_feet:
         return float(np.mean(rig.rest_positions[feet, 1]))

@@ -47,7 +47,7 @@ def directions(clip: Clip, rig: Rig) -> NDArray[np.float64]:
     at = clip.poses.globals(rig.skeleton)[..., :3, 3]
     found = np.zeros((len(clip), len(LIMBS), 3))
     for number, (start, end) in enumerate(LIMBS):
-        a, b = rig.part(start), rig.part(end)
+        a, b = rig.anatomy.joint(start), rig.anatomy.joint(end)
         if a is not None and b is not None:
             bone = at[:, b] - at[:, a]
             found[:, number] = bone / np.linalg.norm(bone, axis=-1, keepdims=True)

@@ -23,23 +23,14 @@ _COMPONENTS = {"translation": 3, "rotation": 4, "scale": 3}
 
 
 @dataclass(frozen=True)
-class KeyframeTrack:
+class _KeyframeTrack:
     """Keyframes of one property of a joint, or of the morph weights of a mesh."""
 
-    target: int | list[int]
-    """The joint, or the columns of the morphs in the pose."""
-
-    path: str
-    """"translation", "rotation", "scale" or "weights"."""
-
-    times: Array
-    """Ascending, (keys,) [s]."""
-
-    values: Array
-    """(keys, components); a cubic spline has in-tangent, value and out-tangent of each key."""
-
-    interpolation: str
-    """"LINEAR", "STEP" or "CUBICSPLINE"."""
+    target: int | list[int]  # the joint, or the columns of the morphs in the pose
+    path: str  # "translation", "rotation", "scale" or "weights"
+    times: Array  # ascending, (keys,) [s]
+    values: Array  # (keys, components); a cubic spline has in-tangent, value, out-tangent of each
+    interpolation: str  # "LINEAR", "STEP" or "CUBICSPLINE"
 
     @property
     def max_angular_speed(self) -> float:
@@ -74,7 +65,7 @@ def _clip(
     file: GltfFile,
     name: str,
     animation: Json,
-    tracks: list[KeyframeTrack],
+    tracks: list[_KeyframeTrack],
     skeleton: Skeleton,
     morphs: MorphTable,
 ) -> Clip:
@@ -105,7 +96,7 @@ def _clip(
 
 
 def _poses(
-    tracks: list[KeyframeTrack], times: Array, skeleton: Skeleton, morphs: MorphTable
+    tracks: list[_KeyframeTrack], times: Array, skeleton: Skeleton, morphs: MorphTable
 ) -> Pose:
     rest = skeleton.rest
     weights = np.zeros(len(morphs.names)) if morphs.rest is None else morphs.rest
@@ -135,7 +126,7 @@ def _common_rate(keys: Array) -> float:
     return _FALLBACK_RATE_HZ
 
 
-def _sufficient_rate(rate: float, tracks: list[KeyframeTrack]) -> float:
+def _sufficient_rate(rate: float, tracks: list[_KeyframeTrack]) -> float:
     """Return the rate times a power of two at which linear interpolation is exact enough."""
     fastest = max(track.max_angular_speed for track in tracks)
     while fastest / rate > _MAX_FRAME_ANGLE and rate <= _FALLBACK_RATE_HZ:
@@ -156,9 +147,9 @@ def _is_loop(poses: Pose, skeleton: Skeleton) -> bool:
 
 def _read_tracks(
     file: GltfFile, animation: Json, tree: NodeTree, morphs: MorphTable, where: str
-) -> list[KeyframeTrack]:
+) -> list[_KeyframeTrack]:
     """Return the tracks of an animation that move the skeleton; `where` is for warnings."""
-    tracks: list[KeyframeTrack] = []
+    tracks: list[_KeyframeTrack] = []
     times_of: dict[int, Array] = {}  # shared by most channels
     for number, channel in enumerate(animation["channels"]):
         target = channel["target"]
@@ -177,7 +168,7 @@ def _read_tracks(
             if target["path"] == "rotation":
                 keyed = slice(1, None, 3) if kind == "CUBICSPLINE" else slice(None)
                 values[keyed] = unit_quaternions(values[keyed], where)
-        tracks.append(KeyframeTrack(moved, target["path"], times, values, kind))
+        tracks.append(_KeyframeTrack(moved, target["path"], times, values, kind))
     return tracks
 
 
@@ -212,7 +203,7 @@ def _key_values(file: GltfFile, sampler: Json, path: str, width: int, keys: int)
     return values.reshape(-1, width)
 
 
-def _sampled(track: KeyframeTrack, times: Array) -> Array:
+def _sampled(track: _KeyframeTrack, times: Array) -> Array:
     """Return a track's values at some times, constant beyond its ends.
 
     Cubic splines as in the glTF 2.0 specification, appendix C.

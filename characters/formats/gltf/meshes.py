@@ -158,10 +158,7 @@ def _uvs(file: GltfFile, attributes: Json, mapped: MappedMaterial) -> Array | No
 def _without_unused_vertices(
     geometry: _Geometry, skin: VertexSkin, morphs: tuple[Morph, ...]
 ) -> tuple[_Geometry, VertexSkin, tuple[Morph, ...]]:
-    """Return a primitive without the vertices that its triangles do not use.
-
-    Primitives of one mesh often share its vertices and draw some of them each.
-    """
+    """Return a primitive without the vertices that only other primitives of the mesh use."""
     count = len(geometry.positions)
     kept = np.flatnonzero(np.bincount(geometry.triangles.ravel(), minlength=count))
     if len(kept) == count:

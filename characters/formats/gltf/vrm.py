@@ -99,7 +99,6 @@ def _expression_morphs(
 
 
 def _weighted_sum(name: str, weighted: list[tuple[Morph, float]]) -> Morph:
-    """Return the weighted sum of several morphs."""
     where = np.unique(np.concatenate([morph.vertices for morph, _ in weighted]))
     displacements = np.zeros((len(where), 3), np.float32)
     normal_displacements: NDArray[np.float32] = np.zeros_like(displacements)

@@ -32,9 +32,8 @@ def load_motion(path: Path, options: MotionOptions) -> Performance:
     the ends of last bones are joints too, such as ``ltoes_end``.
 
     The .asf left out is the one in the same folder with the motion's name or the first part of it
-    (16_08.amc: 16.asf), or the only one there. The rate left out is the one in the file, or 120 Hz.
-    The scale left out is the stated unit if it makes a performer of 0.5 to 2.5 m, else it is
-    recognised by size.
+    (16_08.amc: 16.asf), or the only one there. The scale left out is the stated unit if it makes a
+    performer of 0.5 to 2.5 m, else it is recognised by size.
     """
     file = TextFile.read(path)
     body = load_skeleton(options.skeleton or _find_skeleton(path))
@@ -70,10 +69,7 @@ def _find_skeleton(path: Path) -> Path:
 
 
 def _header(file: TextFile, angle_unit: float) -> tuple[float, float, int]:
-    """Return angle unit [rad], rate [Hz] and index of the first character of the first frame.
-
-    Angles are in the unit of the .asf if the lines before the first frame do not say.
-    """
+    """Return angle unit [rad], by default that of the .asf, rate [Hz] and start of the frames."""
     rate = _CMU_RATE_HZ
     for number, line in enumerate(re.finditer(r".*\n?", file.text), start=1):
         words = line[0].partition("#")[0].split()

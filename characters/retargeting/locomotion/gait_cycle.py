@@ -150,14 +150,9 @@ class GaitCycle:
 
     def _with_lean(self, pose: Pose, path: ArcPath) -> Pose:
         """Return poses that lean into a curve and look ahead in it."""
-        new, old = (
-            np.clip(
-                _LEAN_SHARE * np.arctan(p.speed * p.yaw_rate / (_GRAVITY * self.rig.leg_length)),
-                -_MAX_LEAN,
-                _MAX_LEAN,
-            )
-            for p in (path, self.path)
-        )
+        weight = _GRAVITY * self.rig.leg_length
+        balance = np.array([np.arctan(p.speed * p.yaw_rate / weight) for p in (path, self.path)])
+        new, old = np.clip(_LEAN_SHARE * balance, -_MAX_LEAN, _MAX_LEAN)
         look_yaw = _LOOK_AHEAD_S * (path.yaw_rate - self.path.yaw_rate)
         look_yaw = np.clip(look_yaw, -_MAX_LOOK_YAW, _MAX_LOOK_YAW)
         translations, turns = pose.translations.copy(), pose.rotations.copy()
@@ -166,7 +161,7 @@ class GaitCycle:
         translations[:, children] = rotations.rotate(lean, translations[:, children])
         turns[:, children] = rotations.multiply(lean, turns[:, children])
         pose = replace(pose, translations=translations, rotations=turns)
-        necks = [j for part in ("neck", "head") if (j := self.rig.part(part)) is not None]
+        necks = [j for part in ("neck", "head") if (j := self.rig.anatomy.joint(part)) is not None]
         for joint in necks:
             turn = rotations.about("y", look_yaw / len(necks))
             pose = _turned(pose, self.rig, joint, turn)

@@ -6,6 +6,7 @@ Every clip of a tree is then bent from the recording whose turn is nearest.
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -107,7 +108,9 @@ def make_locomotion(
     character = replace(character, skeleton=with_bind_pose(character))
     walker = with_root_joint(character)
     clips, recordings, made = dict(walker.clips), [], []
-    mirror = _mirror(walker)
+    mirror: Mirror | None = None
+    with suppress(CharacterError):  # of characters that are not symmetric
+        mirror = mirror_of(walker)
     for kind, names, given in (("walk", WALK_CLIPS, walks), ("run", RUN_CLIPS, runs)):
         gaits = [extract_gait(recording, character, walker) for recording in given]
         recordings += [GaitReport.of(gait.origin, gait) for gait in gaits]
@@ -168,14 +171,6 @@ def _nearest_gait(
     return gaits[number], mirrored
 
 
-def _mirror(character: Character) -> Mirror | None:
-    """Return the mirror of a character, or None if it is not symmetric."""
-    try:
-        return mirror_of(character)
-    except CharacterError:
-        return None
-
-
 def _mirrored(gait: GaitCycle, mirror: Mirror) -> GaitCycle:
     """Return a gait mirrored and shifted by half a cycle, so that it begins with the left foot."""
     clip = gait.clip
@@ -214,7 +209,9 @@ def _static_idle(walk: Clip, rig: Rig) -> Clip:
     rest = rig.skeleton.rest
     mean = walk.in_place.rotations.sum(0)
     mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1e-9)
-    arms = {j for side in ("left", "right") if (j := rig.part(side + "UpperArm")) is not None}
+    arms = {
+        j for side in ("left", "right") if (j := rig.anatomy.joint(side + "UpperArm")) is not None
+    }
     arm_joints = [j for j in range(len(rig.skeleton)) if set(rig.chain_to(j)) & arms]
     turns = rest.rotations.copy()
     turns[arm_joints] = mean[arm_joints]
