@@ -121,8 +121,7 @@ def hold_feet_in_contact(
 def _foot_vectors(rig: Rig, leg: LegJoints, turns: Array) -> tuple[Array, Array]:
     """Return the vectors from the ankle to the ball and to the heel, (frames, 3) [m] each.
 
-    The heel has no joint: it is assumed on the ground, a part of the foot's length behind the
-    ankle.
+    The heel has no joint: it is assumed on the ground behind the ankle.
     """
     if leg.toes is None:
         zero = np.zeros((len(turns), 3))

@@ -68,10 +68,7 @@ def _retarget(clip: Clip, source: Rig, target: Rig, hold_feet: bool) -> Clip:
 
 
 def _stride_share(clip: Clip, source: Rig, target: Rig) -> float:
-    """Return how long the steps may be relative to the proportion of the legs, 0…1.
-
-    A quadruped with straight legs cannot step as far as one with bent legs.
-    """
+    """Return how long steps may be in proportion to the legs, 0…1: straight legs step less far."""
     if target.anatomy.kind != "quadruped":
         return 1.0
     ratio = target.leg_length / source.leg_length

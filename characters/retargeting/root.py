@@ -36,8 +36,7 @@ def root_trajectory(clip: Clip, source: Rig, ratio: float) -> Array:
 def gaussian_smoothed(values: Array, deviation: float) -> Array:
     """Return values (frames, n) under a Gaussian of a standard deviation [frames].
 
-    The values are continued by point reflection at both ends, so that a body that enters or
-    leaves at full speed keeps its speed.
+    Point reflection continues them at both ends: a body that enters or leaves keeps its speed.
     """
     reach = min(int(3 * deviation), len(values) - 1)
     if reach < 1:

@@ -159,9 +159,8 @@ def unit_quaternions(quaternions: Array, where: str) -> Array:
     """Return normalised quaternions (n, 4); warn of other lengths, refuse length zero."""
     lengths: Array = np.linalg.norm(quaternions, axis=1, keepdims=True)
     if (lengths < 1e-6).any():
-        raise DamagedFileError(
-            f"rotation {quaternions[int(lengths.argmin())].tolist()} has no length"
-        )
+        shortest = quaternions[int(lengths.argmin())].tolist()
+        raise DamagedFileError(f"rotation {shortest} has no length")
     worst = int(np.abs(lengths - 1).argmax()) if len(quaternions) else 0
     if len(quaternions) and abs(lengths[worst, 0] - 1) > _MAX_LENGTH_ERROR:
         warnings.warn(

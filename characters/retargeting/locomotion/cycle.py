@@ -132,8 +132,7 @@ def _seams(
 ) -> Iterator[tuple[int, NDArray[np.intp], Array]]:
     """Yield first frames, the last frames that may go with each, and the seams between them.
 
-    A seam is the root mean square difference. With the counted landings of the feet, (frames, 2),
-    each foot lands once in between.
+    With the counted landings of the feet, (frames, 2), each foot lands once in between.
     """
     features = _features(clip, rig)
     stride = max(1, (len(clip) - shortest) // _MAX_STARTS)

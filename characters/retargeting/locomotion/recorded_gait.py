@@ -31,10 +31,7 @@ _MIN_SPEED = 0.1  # leg lengths a second
 
 
 def extract_gait(recording: Recording, character: Character, walker: Character) -> GaitCycle:
-    """Return the best cycle of a recording on a character, on an arc at constant speed.
-
-    `character` and `walker` are the target without and with a root joint.
-    """
+    """Return the best cycle of a recording; `walker` is the character with a root joint."""
     rig = Rig(walker.skeleton, walker.anatomy)
     clip, contacts = on_character(recording, character, walker)
     clip = _without_treadmill(clip, rig, contacts)
