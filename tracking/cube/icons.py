@@ -7,7 +7,6 @@ Painting them one after the other, ink or paper, gives the same result.
 
 import itertools
 import math
-from collections.abc import Callable
 
 import cv2
 import numpy as np
@@ -35,19 +34,8 @@ None is dark: next to a marker, a dark colour would look like its black to a cam
 
 
 def icon_paths(name: str) -> list[Array]:
-    """Return the loops of an icon, (N, 2) each, in the unit square.
-
-    Parameters
-    ----------
-    name
-        One of `ICONS`.
-
-    Raises
-    ------
-    KeyError
-        There is no such icon.
-    """
-    return ICONS[name]()
+    """Return the loops of one of `ICONS`, (N, 2) each; a `KeyError` where there is none."""
+    return ICONS[name]
 
 
 def icon_mask(name: str, pixels: int) -> Image:
@@ -107,70 +95,16 @@ def _heart(x: float, y: float, size: float) -> Array:
     return np.column_stack([across, -upwards - 2.5]) * (size / 32) + (x, y)
 
 
-def _stand() -> list[Array]:
-    return [
-        _disc(0.5, 0.155, 0.125),
-        *_stroke(0.24, (0.5, 0.42), (0.5, 0.56)),
-        *_stroke(0.1, (0.41, 0.36), (0.31, 0.5), (0.3, 0.64)),
-        *_stroke(0.1, (0.59, 0.36), (0.69, 0.5), (0.7, 0.64)),
-        *_stroke(0.115, (0.44, 0.6), (0.42, 0.92)),
-        *_stroke(0.115, (0.56, 0.6), (0.58, 0.92)),
-    ]
-
-
-def _walk() -> list[Array]:
-    return [
-        _disc(0.55, 0.145, 0.12),
-        *_stroke(0.19, (0.53, 0.4), (0.5, 0.55)),
-        *_stroke(0.095, (0.56, 0.36), (0.68, 0.5), (0.8, 0.53)),
-        *_stroke(0.095, (0.5, 0.36), (0.36, 0.46), (0.31, 0.6)),
-        *_stroke(0.115, (0.53, 0.58), (0.66, 0.73), (0.71, 0.93), (0.78, 0.93)),
-        *_stroke(0.115, (0.48, 0.58), (0.42, 0.77), (0.25, 0.91)),
-    ]
-
-
-def _run() -> list[Array]:
-    return [
-        _disc(0.68, 0.135, 0.115),
-        *_stroke(0.185, (0.59, 0.37), (0.51, 0.52)),
-        *_stroke(0.095, (0.63, 0.33), (0.75, 0.47), (0.89, 0.42)),
-        *_stroke(0.095, (0.55, 0.32), (0.39, 0.34), (0.33, 0.48)),
-        *_stroke(0.115, (0.53, 0.55), (0.7, 0.64), (0.66, 0.85), (0.73, 0.87)),
-        *_stroke(0.115, (0.48, 0.55), (0.38, 0.74), (0.17, 0.76)),
-        *_stroke(0.05, (0.07, 0.3), (0.24, 0.3)),
-        *_stroke(0.05, (0.04, 0.45), (0.17, 0.45)),
-        *_stroke(0.05, (0.04, 0.6), (0.24, 0.6)),
-    ]
-
-
 def _turn() -> list[Array]:
     loops: list[Array] = [_disc(0.5, 0.5, 0.09)]
     for start in (-70, 110):
         loops.append(_arc(0.5, 0.5, 0.35, 0.12, start, start + 118))
         end = math.radians(start + 112)
-        way, ahead = (
-            np.array([math.cos(end), math.sin(end)]),
-            np.array([-math.sin(end), math.cos(end)]),
-        )
+        way = np.array([math.cos(end), math.sin(end)])
+        ahead = np.array([-math.sin(end), math.cos(end)])
         head = [way * 0.18, way * 0.35 + ahead * 0.21, way * 0.5]
         loops.append(np.array(head)[::-1] + 0.5)
     return loops
-
-
-def _dinosaur() -> list[Array]:
-    return [
-        *_limb((0.36, 0.6, 0.14), (0.47, 0.57, 0.165), (0.58, 0.57, 0.145)),
-        *_limb((0.61, 0.54, 0.12), (0.72, 0.36, 0.078), (0.79, 0.2, 0.07)),
-        *_limb((0.8, 0.175, 0.085), (0.91, 0.2, 0.062)),
-        *_limb((0.34, 0.61, 0.12), (0.2, 0.7, 0.075), (0.09, 0.68, 0.04), (0.04, 0.58, 0.018)),
-        *_stroke(0.14, (0.35, 0.68), (0.34, 0.87)),
-        *_stroke(0.14, (0.6, 0.66), (0.61, 0.87)),
-        _hole(_disc(0.82, 0.165, 0.024)),
-    ]
-
-
-def _kiss() -> list[Array]:
-    return [_heart(0.42, 0.57, 0.78), _heart(0.85, 0.17, 0.27)]
 
 
 def _shout() -> list[Array]:
@@ -182,45 +116,65 @@ def _shout() -> list[Array]:
     return [burst, _hole(stroke), _hole(_disc(0.5, 0.69, 0.055))]
 
 
-def _cut() -> list[Array]:
-    return [
+ICONS: dict[str, list[Array]] = {
+    "stand": [
+        _disc(0.5, 0.155, 0.125),
+        *_stroke(0.24, (0.5, 0.42), (0.5, 0.56)),
+        *_stroke(0.1, (0.41, 0.36), (0.31, 0.5), (0.3, 0.64)),
+        *_stroke(0.1, (0.59, 0.36), (0.69, 0.5), (0.7, 0.64)),
+        *_stroke(0.115, (0.44, 0.6), (0.42, 0.92)),
+        *_stroke(0.115, (0.56, 0.6), (0.58, 0.92)),
+    ],
+    "walk": [
+        _disc(0.55, 0.145, 0.12),
+        *_stroke(0.19, (0.53, 0.4), (0.5, 0.55)),
+        *_stroke(0.095, (0.56, 0.36), (0.68, 0.5), (0.8, 0.53)),
+        *_stroke(0.095, (0.5, 0.36), (0.36, 0.46), (0.31, 0.6)),
+        *_stroke(0.115, (0.53, 0.58), (0.66, 0.73), (0.71, 0.93), (0.78, 0.93)),
+        *_stroke(0.115, (0.48, 0.58), (0.42, 0.77), (0.25, 0.91)),
+    ],
+    "run": [
+        _disc(0.68, 0.135, 0.115),
+        *_stroke(0.185, (0.59, 0.37), (0.51, 0.52)),
+        *_stroke(0.095, (0.63, 0.33), (0.75, 0.47), (0.89, 0.42)),
+        *_stroke(0.095, (0.55, 0.32), (0.39, 0.34), (0.33, 0.48)),
+        *_stroke(0.115, (0.53, 0.55), (0.7, 0.64), (0.66, 0.85), (0.73, 0.87)),
+        *_stroke(0.115, (0.48, 0.55), (0.38, 0.74), (0.17, 0.76)),
+        *_stroke(0.05, (0.07, 0.3), (0.24, 0.3)),
+        *_stroke(0.05, (0.04, 0.45), (0.17, 0.45)),
+        *_stroke(0.05, (0.04, 0.6), (0.24, 0.6)),
+    ],
+    "turn": _turn(),
+    "idle": [
+        *_limb((0.36, 0.6, 0.14), (0.47, 0.57, 0.165), (0.58, 0.57, 0.145)),
+        *_limb((0.61, 0.54, 0.12), (0.72, 0.36, 0.078), (0.79, 0.2, 0.07)),
+        *_limb((0.8, 0.175, 0.085), (0.91, 0.2, 0.062)),
+        *_limb((0.34, 0.61, 0.12), (0.2, 0.7, 0.075), (0.09, 0.68, 0.04), (0.04, 0.58, 0.018)),
+        *_stroke(0.14, (0.35, 0.68), (0.34, 0.87)),
+        *_stroke(0.14, (0.6, 0.66), (0.61, 0.87)),
+        _hole(_disc(0.82, 0.165, 0.024)),
+    ],
+    "kiss": [_heart(0.42, 0.57, 0.78), _heart(0.85, 0.17, 0.27)],
+    "shout": _shout(),
+    "cut": [
         *_limb((0.3, 0.68, 0.05), (0.74, 0.08, 0.03)),
         *_limb((0.7, 0.68, 0.05), (0.26, 0.08, 0.03)),
         _disc(0.25, 0.78, 0.17),
         _hole(_disc(0.25, 0.78, 0.09)),
         _disc(0.75, 0.78, 0.17),
         _hole(_disc(0.75, 0.78, 0.09)),
-    ]
-
-
-def _fold() -> list[Array]:
-    return [
+    ],
+    "fold": [
         np.array([(0.04, 0.62), (0.46, 0.62), (0.46, 0.96), (0.04, 0.96)]),
         *_stroke(0.06, (0.57, 0.65), (0.57, 0.93)),
         np.array([(0.66, 0.6), (0.96, 0.42), (0.96, 0.76), (0.66, 0.94)]),
         _arc(0.5, 0.52, 0.34, 0.09, 200, 300),
         np.array([(0.62, 0.08), (0.84, 0.3), (0.55, 0.38)]),
-    ]
-
-
-def _glue() -> list[Array]:
-    return [
+    ],
+    "glue": [
         np.array([(0.43, 0.04), (0.57, 0.04), (0.64, 0.26), (0.36, 0.26)]),
         np.array([(0.3, 0.3), (0.7, 0.3), (0.74, 0.4), (0.74, 0.96), (0.26, 0.96), (0.26, 0.4)]),
         _hole(_heart(0.5, 0.66, 0.3)),
-    ]
-
-
-ICONS: dict[str, Callable[[], list[Array]]] = {
-    "stand": _stand,
-    "walk": _walk,
-    "run": _run,
-    "turn": _turn,
-    "idle": _dinosaur,
-    "kiss": _kiss,
-    "shout": _shout,
-    "cut": _cut,
-    "fold": _fold,
-    "glue": _glue,
+    ],
 }
 """All icons. Those in `ICON_COLOURS` are printed on faces, the others in the instructions."""

@@ -53,19 +53,12 @@ def _borders(cells: Flags) -> dict[tuple[int, int], list[tuple[int, int]]]:
     """List the steps along black cells from each grid point, with black on the right."""
     around = np.pad(cells, 1)
     steps: dict[tuple[int, int], list[tuple[int, int]]] = {}
-    for row, column in np.argwhere(cells):
-        corner = np.array(
-            [(column, row), (column + 1, row), (column + 1, row + 1), (column, row + 1)]
-        )
-        neighbours = (
-            (row, column + 1),
-            (row + 1, column + 2),
-            (row + 2, column + 1),
-            (row + 1, column),
-        )
-        for (x, y), step, neighbour in zip(corner, GRID_STEPS, neighbours, strict=True):
-            if not around[neighbour]:
-                steps.setdefault((int(x), int(y)), []).append(step)
+    for row, column in np.argwhere(cells).tolist():
+        x, y = column, row
+        for dx, dy in GRID_STEPS:
+            if not around[row + 1 - dx, column + 1 + dy]:  # white on the left
+                steps.setdefault((x, y), []).append((dx, dy))
+            x, y = x + dx, y + dy
     return steps
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pypdfium2
 import pytest
 
+from tests.tracking.cube.folding import cube_from_face
 from tracking import CubeModel, TrackingError, icon_mask, icon_paths, write_sheet
 from tracking.cube.icons import ICON_COLOURS, ICONS, signed_area
 from tracking.cube.marker import marker_cells, marker_loops
@@ -64,7 +65,7 @@ def test_the_detected_page_folds_to_the_model_within_a_tenth_of_a_millimetre(pri
     for face in cube.faces:
         paper = (corners[face.marker_id] - middle) * (0.001, -0.001)
         local = np.column_stack([paper - net.centre(face.name), np.zeros(4), np.ones(4)])
-        folded = (local @ net.cube_from_face(face.name).T)[:, :3]
+        folded = (local @ cube_from_face(net, face.name).T)[:, :3]
         assert np.linalg.norm(folded - face.corners, axis=1).max() < 1e-4
 
 

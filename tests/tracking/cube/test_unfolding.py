@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
+from tests.tracking.cube.folding import cube_from_face, cube_from_tab
 from tracking.cube.model import FACE_AXES, CubeModel, bundled, face_corners
 from tracking.cube.printing.unfolding import Unfolding
 
@@ -26,14 +27,14 @@ def test_the_folded_net_has_every_marker_where_the_model_has_it(name):
     assert {face.name for face in cube.faces} == set(FACE_AXES)
     for face in cube.faces:
         printed = face_corners("front", face.roll_deg, cube.marker_size, 0.0)[:, :2]
-        folded = carried(net.cube_from_face(face.name), printed)
+        folded = carried(cube_from_face(net, face.name), printed)
         np.testing.assert_allclose(folded, face.corners, rtol=0, atol=1e-12)
 
 
 def test_the_flat_net_has_the_faces_where_the_paper_shows_them():
     net = Unfolding(EDGE)
     for face in FACE_AXES:
-        flat = net.cube_from_face(face, angle=0.0)
+        flat = cube_from_face(net, face, angle=0.0)
         np.testing.assert_allclose(flat[:3, :3], np.eye(3), atol=1e-15)
         np.testing.assert_allclose(flat[:2, 3], net.centre(face), atol=1e-15)
 
@@ -47,7 +48,7 @@ def test_faces_stay_joined_at_their_hinges_while_they_fold(angle):
         for face in FACE_AXES:
             local = middle - net.centre(face)
             if np.abs(local).max() < EDGE / 2 + 1e-9:
-                places.append(carried(net.cube_from_face(face, angle), local[None])[0])
+                places.append(carried(cube_from_face(net, face, angle), local[None])[0])
         for one, other in combinations(places, 2):
             np.testing.assert_allclose(one, other, atol=1e-12)
 
@@ -56,13 +57,13 @@ def folded_tabs(net):
     for tab in net.tabs():
         across = {"right": (1, 0), "up": (0, 1), "left": (-1, 0), "down": (0, -1)}[tab.side]
         fold = net.centre(tab.face) + EDGE / 2 * np.array(across)
-        yield tab, carried(net.cube_from_tab(tab), tab.corners - fold)
+        yield tab, carried(cube_from_tab(net, tab), tab.corners - fold)
 
 
 def test_every_tab_ends_under_the_face_it_is_glued_to():
     net = Unfolding(EDGE)
     for tab, corners in folded_tabs(net):
-        inside = np.linalg.inv(net.cube_from_face(tab.under))
+        inside = np.linalg.inv(cube_from_face(net, tab.under))
         local = corners @ inside[:3, :3].T + inside[:3, 3]
         np.testing.assert_allclose(local[:, 2], 0, atol=1e-12)
         assert np.abs(local[:, :2]).max() <= EDGE / 2 + 1e-12
@@ -72,7 +73,7 @@ def test_tabs_under_one_face_do_not_overlap():
     net = Unfolding(EDGE)
     under: dict[str, list[np.ndarray]] = {}
     for tab, corners in folded_tabs(net):
-        inside = np.linalg.inv(net.cube_from_face(tab.under))
+        inside = np.linalg.inv(cube_from_face(net, tab.under))
         local = (corners @ inside[:3, :3].T + inside[:3, 3])[:, :2]
         under.setdefault(tab.under, []).append((local * 1000).astype(np.float32))
     assert len(under["top"]) == len(under["bottom"]) == 3
@@ -88,7 +89,7 @@ def test_every_edge_of_the_cube_is_either_folded_or_glued():
     for start, end in net.folds():
         middle = (start + end) / 2
         face = min(FACE_AXES, key=lambda name: np.abs(middle - net.centre(name)).max())
-        place = carried(net.cube_from_face(face), (middle - net.centre(face))[None])[0]
+        place = carried(cube_from_face(net, face), (middle - net.centre(face))[None])[0]
         held.setdefault(tuple(np.rint(place * 1e6).astype(int)), []).append(face)
     assert len(held) == 12
     assert all(len(faces) == 1 for faces in held.values())

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tracking.cube.model import CubeModel, Face
+from tracking.cube.model import FACE_AXES, CubeModel, Face
 from tracking.cube.printing.unfolding import TAB_DEPTH, Unfolding
 from tracking.errors import TrackingError
 from tracking.geometry.arrays import Array
@@ -72,9 +72,8 @@ class SheetLayout:
 
     def marker_corners(self, face: Face) -> Array:
         """Corners of a face's marker on the page, (4, 2) [mm], unfolded from the cube."""
-        face_from_cube = np.linalg.inv(self.net.cube_from_face(face.name))
-        flat = face.corners @ face_from_cube[:3, :3].T + face_from_cube[:3, 3]
-        return self.place(flat[:, :2] + self.net.centre(face.name))
+        flat = face.corners @ np.transpose(FACE_AXES[face.name])
+        return self.place(flat + self.net.centre(face.name))
 
 
 def _check_fits(edge: float, paper: str) -> None:

@@ -1,28 +1,19 @@
-"""The net of the cube on paper: its squares, its glue tabs, and how they fold.
+"""The net of the cube on paper: its squares and its glue tabs.
 
-The printed side of the paper becomes the outside of the cube. All lengths are metres.
-
-Frames: **paper**, x right, y up, z towards the reader, origin in the middle of `front`; **face**,
-the same axes with the origin in the middle of that face; **cube** as everywhere. The frame of a
-face folds with it, so what is printed on a face keeps its coordinates.
+The printed side of the paper becomes the outside of the cube. All lengths are metres. The paper has
+x to the right, y up, and its origin in the middle of `front`.
 """
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from tracking.geometry.arrays import Array
 
-SIDES: dict[str, tuple[int, int]] = {
-    "right": (1, 0),
-    "up": (0, 1),
-    "left": (-1, 0),
-    "down": (0, -1),
-}
+SIDES = {"right": (1, 0), "up": (0, 1), "left": (-1, 0), "down": (0, -1)}
 """The sides of a square on paper, counter-clockwise, with their outward directions."""
 
-HINGES: dict[str, tuple[str, str]] = {
+HINGES = {
     "top": ("front", "up"),
     "bottom": ("front", "down"),
     "left": ("front", "left"),
@@ -31,7 +22,7 @@ HINGES: dict[str, tuple[str, str]] = {
 }
 """For each face except `front`: the face that it is joined to, and the side of that face."""
 
-TABS: dict[tuple[str, str], str] = {
+TABS = {
     ("left", "up"): "top",
     ("right", "up"): "top",
     ("back", "up"): "top",
@@ -93,28 +84,11 @@ class Unfolding:
         half = self.edge / 2
         return self.centre(face) + half * np.array([(1, -1), (1, 1), (-1, 1), (-1, -1)])
 
-    def cube_from_face(self, face: str, angle: float = math.pi / 2) -> Array:
-        """Pose of a face when every fold is bent by `angle`, (4, 4).
-
-        Right angles make the cube; 0 leaves the paper flat in the plane of `front`.
-
-        >>> Unfolding(2.0).cube_from_face("right").round().astype(int).tolist()
-        [[0, 0, 1, 1], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]]
-        """
-        if face == "front":
-            return _shift(0, 0, self.edge / 2)
-        parent, side = HINGES[face]
-        return self.cube_from_face(parent, angle) @ self._over(side, angle, self.edge / 2)
-
     def tabs(self) -> tuple[Tab, ...]:
         """All glue tabs."""
         return tuple(
             Tab(face, side, under, self._tab(face, side)) for (face, side), under in TABS.items()
         )
-
-    def cube_from_tab(self, tab: Tab, angle: float = math.pi / 2) -> Array:
-        """Pose of a tab, (4, 4), with paper axes and the origin in the middle of its fold."""
-        return self.cube_from_face(tab.face, angle) @ self._over(tab.side, angle, 0.0)
 
     def folds(self) -> tuple[tuple[Array, Array], ...]:
         """Return the ends of every line to fold, on paper, two (2,) [m] each."""
@@ -159,32 +133,8 @@ class Unfolding:
         along = TAB_SLANT * depth * (last - first) / self.edge
         return np.array([first, first + outwards + along, last + outwards - along, last])
 
-    def _over(self, side: str, angle: float, beyond: float) -> Array:
-        """Pose, in the frame of a face, of a part `beyond` the fold over one of its sides."""
-        x, y = SIDES[side]
-        half = self.edge / 2
-        bend = _turn(x, y, angle)
-        return _shift(x * half, y * half, 0) @ bend @ _shift(x * beyond, y * beyond, 0)
-
 
 _OPPOSITE = {"right": "left", "left": "right", "up": "down", "down": "up"}
-
-
-def _shift(x: float, y: float, z: float) -> Array:
-    matrix = np.eye(4)
-    matrix[:3, 3] = x, y, z
-    return matrix
-
-
-def _turn(x: int, y: int, angle: float) -> Array:
-    """Rotate the paper's direction (x, y) away from the reader."""
-    cosine, sine = math.cos(angle), math.sin(angle)
-    matrix = np.eye(4)
-    if x:
-        matrix[0, 0], matrix[0, 2], matrix[2, 0], matrix[2, 2] = cosine, x * sine, -x * sine, cosine
-    else:
-        matrix[1, 1], matrix[1, 2], matrix[2, 1], matrix[2, 2] = cosine, y * sine, -y * sine, cosine
-    return matrix
 
 
 def _micrometres(point: Array) -> tuple[int, int]:
