@@ -17,9 +17,8 @@ class Projection:
     """
 
     def __init__(self, intrinsics: Intrinsics) -> None:
-        self.intrinsics = intrinsics
-        self.matrix = np.asarray(intrinsics.matrix, np.float64)
-        self.distortion = np.asarray(intrinsics.distortion, np.float64).ravel()
+        self.matrix = intrinsics.matrix
+        self.distortion = intrinsics.distortion
         self.size = intrinsics.size
         self._zero = np.zeros(3)
 
@@ -40,6 +39,5 @@ class Projection:
     def rays(self, pixels: Array) -> Array:
         """Undistort pixels, (N, 2), to points at z = 1 of the camera frame, (N, 2)."""
         points = np.ascontiguousarray(pixels, np.float64).reshape(-1, 1, 2)
-        return np.asarray(
-            cv2.undistortPoints(points, self.matrix, self.distortion), np.float64
-        ).reshape(-1, 2)
+        rays = cv2.undistortPoints(points, self.matrix, self.distortion)
+        return np.asarray(rays, np.float64).reshape(-1, 2)

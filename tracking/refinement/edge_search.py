@@ -68,7 +68,8 @@ class EdgeSearch:
         self._faces = FacePlanes(cube)
         self._refiner = EdgeRefiner(cube, projection)
         self._reader = CellReader(cube, projection)
-        self._footprint = Footprint(cube, projection)
+        self.footprint = Footprint(cube, projection)
+        """Where the cube appears in the image, and how large."""
 
     def match(
         self, patch: Patch, start: Array, blur_motion: Array | None = None, wide: bool = False
@@ -122,9 +123,9 @@ class EdgeSearch:
         Lens, paper and light displace all edges a little in common: sideways, in size and in tilt.
         """
         pose = found.camera_from_cube
-        extent = 0.0 if blur_motion is None else self._footprint.blur_extent(blur_motion)
-        half_edge = self._footprint.half_edge
-        pixel = self._footprint.metres_per_pixel(pose)
+        extent = 0.0 if blur_motion is None else self.footprint.blur_extent(blur_motion)
+        half_edge = self.footprint.half_edge
+        pixel = self.footprint.metres_per_pixel(pose)
         side, size, tilt = np.array(COMMON_ERROR_PX) * pixel
         size, tilt = size * float(pose[2, 3]) / half_edge, tilt / half_edge
         floor = np.square([side, side, size, tilt, tilt, tilt])
@@ -134,8 +135,8 @@ class EdgeSearch:
 
     def _is_rigid(self, found: EdgeRefinement) -> bool:
         """Whether the edges lie as those of one rigid cube, and not as on a picture of one."""
-        pixel = self._footprint.metres_per_pixel(found.camera_from_cube)
-        edge = 2 * self._footprint.half_edge
+        pixel = self.footprint.metres_per_pixel(found.camera_from_cube)
+        edge = 2 * self.footprint.half_edge
         return found.residual < max(MAX_RESIDUAL_PX, MAX_RESIDUAL_SHARE * edge / pixel)
 
 
