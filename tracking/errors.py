@@ -2,7 +2,4 @@
 
 
 class TrackingError(Exception):
-    """Bad input to `tracking`: the message is one line for a person.
-
-    It says what was wrong, where, and what to do.
-    """
+    """Bad input: the message says in one line what was wrong, where, and what to do."""

@@ -7,13 +7,7 @@ from tracking.errors import TrackingError
 
 
 def write_whole(path: str | Path, content: bytes, what: str) -> None:
-    """Write a file completely or not at all.
-
-    Raises
-    ------
-    TrackingError
-        It cannot be written; the message names it by `what` and its path.
-    """
+    """Write a file completely or not at all; a `TrackingError` names it by `what` and its path."""
     target = Path(path)
     partial = target.with_name(target.name + ".partial")
     try:

@@ -9,8 +9,7 @@ from tracking.cube.model import CubeModel, Face
 from tracking.geometry.arrays import Array, Flags, Indices
 
 POINTS_PER_CELL = 5
-"""Points along an edge for each cell: at arm's length they are 2 to 3 px apart, so their noise is
-independent."""
+"""Points along an edge for each cell: 2 to 3 px apart at arm's length, for independent noise."""
 
 
 @dataclass(frozen=True)
@@ -79,12 +78,9 @@ def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, ...]:
 
 
 def _vertical_edges(cells: Flags) -> Array:
-    """Place points on the vertical edges of a padded pattern.
+    """Place points on the vertical edges of a padded pattern, (N, 7) [cells].
 
-    Returns
-    -------
-    Position (2), one cell along the edge (2), one across it (2), and the distance to its nearer
-    end, (N, 7) [cells].
+    Position (2), one cell along the edge (2), one across it (2), distance to its nearer end.
     """
     rows = []
     for column in range(1, cells.shape[1]):

@@ -11,9 +11,7 @@ from tracking.files import write_whole
 
 
 def write_cube(cube: CubeModel, path: str | Path) -> None:
-    """Write a cube, with the measured corners of the faces that differ from the ideal ones.
-
-    The file is written completely or not at all.
+    """Write a cube completely or not at all, with the corners that differ from the ideal ones.
 
     Raises
     ------

@@ -16,7 +16,7 @@ from tracking.geometry.arrays import Array, Image
 Point = tuple[float, float]
 
 CIRCLE_POINTS = 40
-"""Points of a circle: at 6 mm its sides are half a millimetre long and look round."""
+"""At 6 mm the sides of such a circle are half a millimetre long and look round."""
 
 ICON_COLOURS: dict[str, tuple[int, int, int]] = {
     "stand": (42, 157, 143),

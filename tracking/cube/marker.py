@@ -18,14 +18,10 @@ def marker_cells(dictionary: str, marker_id: int) -> Flags:
 
 
 def marker_loops(dictionary: str, marker_id: int) -> list[Array]:
-    """Outline the black of a marker.
+    """Outline the black of a marker: one path, as adjacent squares would show seams.
 
-    One filled path has no seams between its cells, unlike adjacent squares.
-
-    Returns
-    -------
-    Loops (N, 2) in the unit square, x right and y down: clockwise around black, counter-clockwise
-    around white inside it, so the nonzero and the even-odd rule agree.
+    The loops, (N, 2) in the unit square, x right and y down, go clockwise around black and
+    counter-clockwise around white inside it, so the nonzero and the even-odd rule agree.
     """
     cells = marker_cells(dictionary, marker_id)
     outgoing = _borders(cells)

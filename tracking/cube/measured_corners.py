@@ -13,27 +13,10 @@ MAX_DISPLACEMENT = 0.15
 
 
 def measured_corners(value: object, ideal: Array, marker: float, of_face: str) -> Array:
-    """Read the corners that `write_cube` wrote.
+    """Read corners in the cube frame, 4 of 3 numbers [mm] → (4, 3) [m].
 
-    Parameters
-    ----------
-    value
-        The value in the file: 4 corners of 3 numbers [mm].
-    ideal
-        The ideal corners, (4, 3) [m].
-    marker
-        Side of the black square [m].
-    of_face
-        File and face, for errors.
-
-    Returns
-    -------
-    Array in the cube frame, (4, 3) [m].
-
-    Raises
-    ------
-    TrackingError
-        They are not the corners of such a square near its ideal place.
+    They must be those of a square with the side `marker` [m] near the `ideal` ones, (4, 3) [m],
+    else a `TrackingError` names file and face by `of_face`.
     """
     try:
         corners = np.array(value, np.float64) / 1000

@@ -22,10 +22,7 @@ FACE_AXES: dict[str, tuple[tuple[int, int, int], tuple[int, int, int]]] = {
     "top": ((1, 0, 0), (0, 0, -1)),
     "bottom": ((1, 0, 0), (0, 0, 1)),
 }
-"""For each face, seen from outside: the directions (right, up) in the cube frame.
-
-The faces unfold to a cross around `front`, so `top` and `bottom` continue its edges.
-"""
+"""For each face, seen from outside: the directions (right, up) in the cube frame."""
 
 
 @dataclass(frozen=True)
@@ -64,10 +61,9 @@ class Face:
 
 @dataclass(frozen=True)
 class CubeModel:
-    """A cube with a marker on each of its faces.
+    """A cube with markers on its faces.
 
-    The cube frame has its origin in the centre, +y through `top`, +z through `front`, +x through
-    `right`.
+    Its frame: origin in the centre, +y through `top`, +z through `front`, +x through `right`.
     """
 
     name: str
@@ -90,12 +86,7 @@ class CubeModel:
 
     @classmethod
     def load(cls, name_or_path: str | Path) -> Self:
-        """Read a cube from a bundled name or a TOML file.
-
-        Parameters
-        ----------
-        name_or_path
-            "locomotion", "companion", or the path of a TOML file.
+        """Read a cube from a bundled name ("locomotion", "companion") or a TOML file.
 
         Raises
         ------
@@ -151,17 +142,9 @@ class CubeModel:
         )
 
     def scaled(self, edge: float) -> Self:
-        """Return the same cube in another size, its markers grown or shrunk with it.
+        """Return the same cube with another edge [m], its markers grown or shrunk with it.
 
-        Parameters
-        ----------
-        edge
-            Edge of the new cube [m].
-
-        Raises
-        ------
-        TrackingError
-            The size is not 10 to 1000 mm.
+        A `TrackingError` if the edge is not 10 to 1000 mm.
         """
         if not 0.01 <= edge <= 1:
             raise TrackingError(f"the edge must be 10 to 1000 mm, not {edge * 1000:g} mm")
@@ -228,9 +211,8 @@ def _check_each_once(values: Sequence[object], what: str, where: str) -> None:
 
 def _capacity(dictionary: object, where: str) -> int:
     if not isinstance(dictionary, str) or not dictionary.startswith("DICT_"):
-        raise TrackingError(
-            f"{where}: 'dictionary' must be a name such as DICT_4X4_50, not {dictionary!r}"
-        )
+        wanted = "a name such as DICT_4X4_50"
+        raise TrackingError(f"{where}: 'dictionary' must be {wanted}, not {dictionary!r}")
     if not isinstance(getattr(cv2.aruco, dictionary, None), int):
         raise TrackingError(f"{where}: OpenCV has no dictionary {dictionary}; try DICT_4X4_50")
     return len(aruco_dictionary(dictionary).bytesList)
@@ -250,9 +232,8 @@ def _face(table: object, marker: float, edge: float, where: str) -> Face:
         raise TrackingError(f"{of_face} has roll_deg {roll!r}; use 0, 90, 180 or 270")
     role, icon = (_text(table, key, where, f"face '{name}': ") for key in ("role", "icon"))
     if icon and icon not in ICON_COLOURS:
-        raise TrackingError(
-            f"{of_face} has the icon '{icon}'; use one of {', '.join(ICON_COLOURS)}"
-        )
+        known = ", ".join(ICON_COLOURS)
+        raise TrackingError(f"{of_face} has the icon '{icon}'; use one of {known}")
     corners = face_corners(name, int(roll), marker, edge)
     if "corners_mm" in table:
         corners = measured_corners(table["corners_mm"], corners, marker, of_face)

@@ -7,12 +7,9 @@ import numpy as np
 
 from tracking.geometry.arrays import Array, Flags, Image, Indices
 
-THRESHOLD_WINDOW_PX = 25
-"""Window of the local mean that a dark pixel must be below: larger dark cells become hollow, but
-keep their borders."""
-
-THRESHOLD_OFFSET = 5
-"""By how much it must be below [grey levels]: little, for dark rooms; more than blurred noise."""
+THRESHOLD_WINDOW_PX, THRESHOLD_OFFSET = 25, 5
+"""A dark pixel is this many grey levels below the mean of this window. Larger dark cells become
+hollow but keep their borders; dark rooms need a small offset, noise a larger one."""
 
 MIN_OUTLINE_PX = 56
 """Length of the outline of the smallest blob: a marker of 14 px."""
@@ -67,14 +64,8 @@ class BorderSegments:
 
 def find_border_segments(grey: Image) -> BorderSegments:
     """Find the straight borders of the dark blobs in a grey image, (H, W), slightly blurred."""
-    dark = cv2.adaptiveThreshold(
-        grey,
-        255,
-        cv2.ADAPTIVE_THRESH_MEAN_C,
-        cv2.THRESH_BINARY_INV,
-        THRESHOLD_WINDOW_PX,
-        THRESHOLD_OFFSET,
-    )
+    method, kind = cv2.ADAPTIVE_THRESH_MEAN_C, cv2.THRESH_BINARY_INV
+    dark = cv2.adaptiveThreshold(grey, 255, method, kind, THRESHOLD_WINDOW_PX, THRESHOLD_OFFSET)
     outlines = cv2.findContours(dark, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)[0]
     loops = [
         cv2.approxPolyDP(outline, MAX_DEVIATION_PX, True)[:, 0]
@@ -124,9 +115,7 @@ def _longest(segments: BorderSegments) -> BorderSegments:
 def quadrilaterals(segments: BorderSegments) -> tuple[Indices, Array]:
     """Combine segments that can be the four sides of one dark quad, parts of which are hidden.
 
-    Returns
-    -------
-    Indices of the segments, (Q, 4), clockwise as seen (y down), and the corners, (Q, 4, 2) [px]:
+    Return their indices, (Q, 4), clockwise as seen (y down), and the corners, (Q, 4, 2) [px]:
     corner k lies between the segments k − 1 and k.
     """
     first, second, corner = _neighbours(segments)

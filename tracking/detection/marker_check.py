@@ -34,11 +34,6 @@ class CellReading:
         """The greatest share of any face; 0 where no face is in view."""
         return max(self.agreement.values(), default=0.0)
 
-    @property
-    def read(self) -> tuple[str, ...]:
-        """Names of the faces of which at most one cell in twenty is wrong."""
-        return tuple(name for name, share in self.agreement.items() if share >= 0.95)
-
 
 class CellReader:
     """Reads the marker cells of one cube seen by one camera."""

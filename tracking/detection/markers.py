@@ -66,10 +66,7 @@ class MarkerDetector:
 
 
 def markers_of(cube: CubeModel, markers: Sequence[Marker]) -> list[Observation]:
-    """Keep the markers of one cube.
-
-    A marker can be detected twice: `CornerPoseSolver` tells which of the two is the cube's.
-    """
+    """Keep the markers of one cube; `CornerPoseSolver` chooses between two of the same id."""
     faces = {face.marker_id: face for face in cube.faces}
     return [
         Observation(faces[marker.marker_id], marker.corners)

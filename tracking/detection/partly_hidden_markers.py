@@ -37,9 +37,8 @@ MIN_CONTRAST = 8
 class PartlyHiddenMarkerDetector:
     """Detects markers of one cube by the visible parts of their four sides.
 
-    OpenCV looks for whole quads: a finger on one corner loses the marker. Here four straight
-    segments of one blob's border are enough. The result is a proposal, not a proof: a hand can
-    cover the cells that tell two markers apart, so a pose must be checked on all edges of the cube.
+    OpenCV looks for whole quads; here four straight segments of one blob's border are enough. The
+    result is a proposal to check on all edges: a hand can cover the cells that tell markers apart.
     """
 
     def __init__(self, cube: CubeModel) -> None:
@@ -58,9 +57,9 @@ class PartlyHiddenMarkerDetector:
         self._paper, self._border, self._bits = depth < 0, (depth > 0) & (depth < 1), depth > 1
 
     def detect(self, grey: Image) -> list[Observation]:
-        """Detect markers in a grey image, (H, W), the most certain first.
+        """Detect whole and partly hidden markers in a grey image, (H, W), the most certain first.
 
-        Whole markers are among them. A marker can occur twice.
+        A marker can occur twice.
         """
         soft = np.asarray(cv2.GaussianBlur(grey, (5, 5), 0), np.uint8)
         quads = find_quads(soft)

@@ -54,24 +54,15 @@ class CornerPoseSolver:
     def solve(
         self, observations: Sequence[Observation], expected: Array | None = None
     ) -> list[CornerPose]:
-        """Find the poses that explain the detected markers, the best first.
+        """Find the poses that explain the detected markers, at most two, the best first.
 
         Every marker alone proposes its two poses. The proposal that most other markers agree with
         is refined on all of them together. Markers that disagree are left out: a second cube, a
-        picture of a marker, a misread id.
+        picture of a marker, a misread id. The same face may occur twice.
 
-        Parameters
-        ----------
-        observations
-            The detected markers; the same face may occur twice.
-        expected
-            Predicted pose, (4, 4): a first proposal, and the choice between two cubes with equally
-            many markers.
-
-        Returns
-        -------
-        The best pose, and another one where it has as many markers: the second pose of a single
-        face seen from afar, or a second cube. Empty where no pose has its faces towards the camera.
+        `expected` is the predicted pose, (4, 4): a first proposal, and the choice between two cubes
+        with equally many markers. A second pose has as many markers as the best: the other pose of
+        a single face seen from afar, or another cube.
         """
         if expected is not None and len(observations) > 1:
             solution = self._consensus(expected, observations)

@@ -11,11 +11,8 @@ from tracking.geometry.arrays import Array, Image
 MIN_SIDE_PX = 14.0
 """Shortest side of a quad."""
 
-MIN_VISIBLE_OUTLINE = 0.45
-"""Share of the outline of a quad that must be visible."""
-
-MIN_VISIBLE_SIDE = 0.15
-"""The same for each side."""
+MIN_VISIBLE_OUTLINE, MIN_VISIBLE_SIDE = 0.45, 0.15
+"""Share of the outline of a quad that must be visible, and of each side."""
 
 MAX_SIDE_RATIO = 3.0
 """Greatest ratio of opposite sides: beyond, a marker could not be read."""
@@ -29,8 +26,7 @@ class Quads:
     """Squares, seen in perspective."""
 
     corners: Array
-    """Their corners, clockwise as seen (y down), (N, 4, 2) [px]; a hidden one is where its two
-    sides would meet."""
+    """Clockwise as seen (y down), (N, 4, 2) [px]; a hidden one is where its sides would meet."""
 
     gaps: Array
     """Hidden part of the sides at each corner, as a share of their length, (N, 4)."""
@@ -44,8 +40,7 @@ class Quads:
     def map(self, places: Array) -> Array:
         """Map places in the unit square, (M, 2), to the image, (N, M, 2) [px].
 
-        The first three corners lie at (0, 0), (1, 0), (1, 1). Heckbert 1989, "Fundamentals of
-        texture mapping and image warping", section 2.2.3.
+        Heckbert 1989, "Fundamentals of texture mapping and image warping", section 2.2.3.
         """
         first, second, third, fourth = np.moveaxis(self.corners, 1, 0)
         skew = first - second + third - fourth
@@ -65,9 +60,8 @@ def find_quads(grey: Image) -> Quads:
     chosen, corners = quadrilaterals(sides)
     length = _side_lengths(corners)
     share = sides.length[chosen] / np.maximum(length, 1.0)
-    keep = (length.min(axis=1, initial=np.inf) > MIN_SIDE_PX) & (
-        share.mean(axis=1) > MIN_VISIBLE_OUTLINE
-    )
+    keep = length.min(axis=1, initial=np.inf) > MIN_SIDE_PX
+    keep &= share.mean(axis=1) > MIN_VISIBLE_OUTLINE
     keep &= (share.min(axis=1, initial=1.0) > MIN_VISIBLE_SIDE) & (share < 1.3).all(axis=1)
     keep &= (length < MAX_SIDE_RATIO * length[:, [2, 3, 0, 1]]).all(axis=1)
     used = sides.select(chosen[keep].ravel())
@@ -112,10 +106,7 @@ def _refined_corners(grey: Image, used: BorderSegments) -> Array:
 
 
 def _fit_lines(x: Array, y: Array) -> tuple[Array, Array]:
-    """Fit a line to each row of y, (N, M), at x, (M,): value at 0 and slope, (N,) each.
-
-    Outliers of a first fit are left out of the second.
-    """
+    """Fit a line to each row of y, (N, M), at x, (M,): value at 0 and slope, (N,) each."""
     weight = np.ones_like(y)
     for _ in range(2):
         total = weight.sum(axis=1)
@@ -123,6 +114,7 @@ def _fit_lines(x: Array, y: Array) -> tuple[Array, Array]:
         dx, dy = x - mean_x[:, None], y - mean_y[:, None]
         slope = (weight * dx * dy).sum(axis=1) / (weight * dx * dx).sum(axis=1)
         miss = np.abs(dy - slope[:, None] * dx)
+        # The second fit leaves out the outliers of the first.
         weight = (miss <= 2.0 * np.median(miss, axis=1)[:, None] + 0.05).astype(np.float64)
     return mean_y - slope * mean_x, slope
 

@@ -26,22 +26,10 @@ class Patch:
     """First row in the image [px]."""
 
     @classmethod
-    def crop(
-        cls,
-        image: Image,
-        region: Region | None = None,
-        tone: Floats | None = None,
-    ) -> Self:
-        """Crop a region of an image.
+    def crop(cls, image: Image, region: Region | None = None, tone: Floats | None = None) -> Self:
+        """Crop a region of an image, (H, W, 3) BGR or (H, W) grey, or take all of it.
 
-        Parameters
-        ----------
-        image
-            The image, (H, W, 3) BGR or (H, W) grey.
-        region
-            The bounds; None for the whole image.
-        tone
-            Light for each grey value, (256,); None to keep the grey values.
+        `tone` is the light for each grey value, (256,); None keeps the grey values.
         """
         left, top, right, bottom = region or (0, 0, image.shape[1], image.shape[0])
         part = image[top:bottom, left:right]

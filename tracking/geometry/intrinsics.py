@@ -69,17 +69,7 @@ class Intrinsics:
         return cls(matrix, np.zeros(5), size)
 
     def undistorted(self, points: ArrayLike) -> Array:
-        """Return where the same camera without distortion would see pixels.
-
-        Parameters
-        ----------
-        points
-            Pixels of the distorted image, (…, 2).
-
-        Returns
-        -------
-        Pixels of the pinhole with the same matrix, (…, 2).
-        """
+        """Return where a pinhole with the same matrix would see pixels, (…, 2) → (…, 2)."""
         pixels = np.asarray(points, np.float64)
         flat = pixels.reshape(-1, 1, 2)
         if not len(flat):
@@ -109,9 +99,8 @@ class Intrinsics:
         try:
             document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
         except OSError as error:
-            raise TrackingError(
-                f"cannot read the camera file '{path}': {error.strerror}"
-            ) from error
+            reason = error.strerror
+            raise TrackingError(f"cannot read the camera file '{path}': {reason}") from error
         except (yaml.YAMLError, UnicodeDecodeError, ValueError, RecursionError) as error:
             reason = " ".join(str(error).split())
             raise TrackingError(f"the camera file '{path}' is not YAML: {reason}") from error
@@ -136,10 +125,7 @@ class Intrinsics:
         return cls(matrix.reshape(3, 3), distortion, (width, height))
 
     def save(self, path: str | Path, name: str = "camera") -> None:
-        """Write a ROS `camera_info` YAML file that `load` reads back exactly.
-
-        The file is written completely or not at all.
-        """
+        """Write a ROS `camera_info` YAML file, completely or not at all; `load` reads it back."""
         document = {
             "image_width": self.size[0],
             "image_height": self.size[1],

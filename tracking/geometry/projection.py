@@ -11,10 +11,7 @@ MIN_DEPTH = 0.03
 
 
 class Projection:
-    """A pinhole camera with any distortion model of OpenCV.
-
-    A pixel's coordinates are those of its centre: the first pixel covers −0.5…0.5.
-    """
+    """A pinhole camera with any distortion model of OpenCV; pixel centres at whole numbers."""
 
     def __init__(self, intrinsics: Intrinsics) -> None:
         self.matrix = intrinsics.matrix

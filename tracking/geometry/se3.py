@@ -62,10 +62,7 @@ def rotation_vector(matrix: Array) -> Array:
 
 
 def quaternion(matrix: Array) -> Array:
-    """Return the unit quaternion xyzw with w ≥ 0 of a rotation matrix, (3, 3) → (4,).
-
-    Uses the best conditioned of the four formulas of Shepperd (1978).
-    """
+    """Return the unit quaternion xyzw with w ≥ 0, (3, 3) → (4,), as Shepperd (1978) does."""
     trace = float(np.trace(matrix))
     best = int(np.argmax(np.append(np.diag(matrix), trace)))
     skew = np.array(
@@ -107,20 +104,7 @@ def moved(transform: Array, pose_delta: Array) -> Array:
 
 
 def along(transform: Array, pose_delta: Array, shares: Array) -> Array:
-    """Poses along a pose delta: `moved(transform, share * pose_delta)` for each share.
-
-    Parameters
-    ----------
-    transform
-        A pose, (4, 4).
-    pose_delta
-        The motion, (6,).
-    shares
-        Shares of the motion, (N,).
-
-    Returns
-    -------
-    (N, 4, 4)
+    """Poses along a pose delta: `moved(transform, share * pose_delta)` for N shares, (N, 4, 4).
 
     >>> motion = np.array([0.1, 0.0, -0.2, 0.3, -0.1, 0.2])
     >>> half = along(np.eye(4), motion, np.array([0.5]))[0]

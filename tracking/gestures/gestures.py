@@ -24,12 +24,11 @@ MIN_LIFT_M = 0.010
 """Height above the table from which the cube is lifted, plus the uncertainty of the table."""
 
 TOWARDS_CAMERA = np.array([0.0, 1.0, -1.0])
-"""Down in the image plus against the viewing direction [camera frame]. Projected on the table, both
-point to the camera.
+"""Down in the image plus against the viewing direction [camera frame].
 
-The thesis measures the cube's angle from the viewing direction, not from the line to the camera
-(M10), so a cube that is slid keeps its heading. For a level camera the viewing direction alone
-would be enough, for one that looks straight down the image axis; the sum works for every tilt.
+Projected on the table, both point to the camera; the sum works for every tilt. The thesis measures
+from the viewing direction, not from the line to the camera (M10): a cube that is slid keeps its
+heading.
 """
 
 MIN_LIFT_S = 0.1
@@ -64,15 +63,7 @@ class _TablePose:
 
 
 class CubeGestures:
-    """Recognizes what the hand does with one cube.
-
-    Deterministic: time comes from `CubeState.timestamp` only.
-
-    Parameters
-    ----------
-    cube
-        The cube; only its edge matters.
-    """
+    """Recognizes what the hand does with one cube, of which only the edge matters."""
 
     def __init__(self, cube: CubeModel) -> None:
         self._edge = cube.edge
@@ -94,11 +85,7 @@ class CubeGestures:
         """Return what the hand does, given the next state."""
         pose, now = state.camera_from_cube, state.timestamp
         before = replace(
-            self._controls,
-            visible=state.visible,
-            placed=False,
-            shaken=False,
-            timestamp=now,
+            self._controls, visible=state.visible, placed=False, shaken=False, timestamp=now
         )
         if not state.visible or pose is None:
             self._controls = before

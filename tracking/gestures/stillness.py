@@ -15,10 +15,8 @@ MAX_SPEED = (0.02, 0.2)
 """Slower than this is still [m/s, rad/s]."""
 
 MAX_TREMOR = (2.5e-4, 3.5e-3)
-"""Standard deviation of a cube on a table, apart from the covariance of its pose [m, rad].
-
-A hand in the air trembles by 0.3 to 1 mm at 8 to 12 Hz (physiological tremor) and drifts by more.
-"""
+"""Standard deviation of a cube on a table, apart from the covariance of its pose [m, rad]. A hand
+in the air trembles by 0.3 to 1 mm at 8 to 12 Hz (physiological tremor)."""
 
 
 @dataclass(frozen=True)

@@ -1,17 +1,13 @@
 """The plane of the table, estimated from where the cube rests.
 
-The rule in full:
-
 1. A cube that keeps still for 0.3 s (`StillnessDetector`) is evidence. A *firm* rest, without
    tremor, counts at once. A trembling one counts after a second, and its table is provisional.
 2. Up is first the normal of the visible face that is closest to `PRIOR_UP`, later the table's own.
-3. Rests that agree with the table improve it. Each place counts once, however long the cube stays
-   there: its errors (a badly folded face, the lens) are the same in every frame. So the table
-   settles within a second and then does not move at all.
+3. Rests that agree with the table improve it. Each place counts once: its errors (a badly folded
+   face, the lens) are the same in every frame. So the table settles within a second.
 4. Rests that agree with each other but not with the table are evidence for another table. It
    replaces the first after 0.3 s if that was provisional and the rests are firm, after 1.5 s of
-   firm rest, or after 4 s of trembling rest. So a hand that held the cube still in the air is
-   forgotten, and a moved camera is noticed.
+   firm rest (the camera was moved), or after 4 s of trembling rest.
 """
 
 from dataclasses import dataclass
@@ -25,13 +21,8 @@ from tracking.geometry.arrays import Array
 PRIOR_UP = np.array([0.0, -np.cos(np.deg2rad(35)), -np.sin(np.deg2rad(35))])
 """Up in the camera frame for an upright camera that looks down by 35°."""
 
-FACE_TILT_SIGMA = np.deg2rad(1.0)
-"""Tilt error of a face of a folded cube [rad]."""
-
-HEIGHT_SIGMA_M = 0.001
-"""Distance of the foot of a resting cube from the table."""
-
-SIGMAS = np.array([HEIGHT_SIGMA_M, FACE_TILT_SIGMA, FACE_TILT_SIGMA])
+SIGMAS = np.array([0.001, np.deg2rad(1.0), np.deg2rad(1.0)])
+"""Errors of the foot's height [m] and of both slopes [rad] of a folded cube at rest."""
 
 SETTLING_TIME_S = 0.5
 """Rest at one place counts for this long; later frames there add nothing."""
@@ -70,8 +61,7 @@ DIRECTIONS = {name: np.cross(*axes).astype(np.float64) for name, axes in FACE_AX
 def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Rest | None:
     """Return where a resting cube stands; None where no side of it can be up.
 
-    Without a table (`up` is None) only sides that face the camera can be up, and none that is 60°
-    off `PRIOR_UP`.
+    Without a table (`up` is None) only sides that face the camera can be up.
     """
     rotation, centre = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
     normals = np.stack(list(DIRECTIONS.values())) @ rotation.T
@@ -89,8 +79,7 @@ def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Re
 class Table:
     """A plane that every place of rest improves, by recursive least squares.
 
-    It is the height above its first estimate, (x, z) ↦ d + a·x + b·z. A rest measures the height at
-    its foot and, less precisely, both slopes.
+    It is the height above its first estimate, (x, z) ↦ d + a·x + b·z. Rests measure it and slopes.
     """
 
     def __init__(self, rest: Rest) -> None:
@@ -109,13 +98,18 @@ class Table:
         if share <= 0:
             return
         self._rest_time += share * SETTLING_TIME_S
-        x, y, z, a, b = self._measured(rest)
+        x, y, z = (se3.inverse(self._start) @ np.append(rest.foot, 1))[:3].tolist()
+        normal = self._start[:3, :3].T @ rest.up
+        a, b = -normal[0] / normal[1], -normal[2] / normal[1]
         rows = np.array([[1, x, z], [0, 1, 0], [0, 0, 1]])
         weights = share / SIGMAS**2
         self._information = self._information + (rows.T * weights) @ rows
         error = np.array([y, a, b]) - rows @ self._plane
         self._plane = self._plane + np.linalg.solve(self._information, rows.T @ (weights * error))
-        self._rebuild()
+        d, a, b = self._plane
+        up = self._start[:3, :3] @ np.array([-a, 1.0, -b])
+        origin = self._start @ np.array([0, d, 0, 1])
+        self.camera_from_table = _frame(origin[:3], up / np.linalg.norm(up))
 
     def height(self, point: Array) -> tuple[float, float]:
         """Height of a point of the camera frame above the table, and its standard deviation [m]."""
@@ -135,23 +129,6 @@ class Table:
     def up(self) -> Array:
         """Normal of the table in the camera frame, (3,)."""
         return self.camera_from_table[:3, 1]
-
-    def _measured(self, rest: Rest) -> tuple[float, ...]:
-        x, y, z = (se3.inverse(self._start) @ np.append(rest.foot, 1))[:3]
-        normal = self._start[:3, :3].T @ rest.up
-        return (
-            float(x),
-            float(y),
-            float(z),
-            float(-normal[0] / normal[1]),
-            float(-normal[2] / normal[1]),
-        )
-
-    def _rebuild(self) -> None:
-        d, a, b = self._plane
-        up = self._start[:3, :3] @ np.array([-a, 1.0, -b])
-        origin = self._start @ np.array([0, d, 0, 1])
-        self.camera_from_table = _frame(origin[:3], up / np.linalg.norm(up))
 
 
 class TableEstimator:
@@ -208,8 +185,7 @@ class TableEstimator:
 def _frame(origin: Array, up: Array) -> Array:
     """Frame of a table, (4, 4): +y up, +z horizontally towards the camera.
 
-    Straight below the camera, where no horizontal direction leads to it, +z points down in the
-    image.
+    Straight below the camera, where that has no direction, +z points down in the image.
     """
     towards = -origin - up * (-origin @ up)
     if float(np.linalg.norm(towards)) < 0.02:

@@ -36,11 +36,7 @@ def clockwise_angle_of(direction: Array) -> float:
 
 
 class TurnCounter:
-    """Unwraps angles: each step is the shorter way around.
-
-    This holds for a cube that was hidden for a while, too: a hidden turn of more than half a turn
-    is not counted.
-    """
+    """Unwraps angles: each step is the shorter way around, also after the cube was hidden."""
 
     def __init__(self) -> None:
         self._angle: float | None = None

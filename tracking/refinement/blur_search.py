@@ -12,21 +12,16 @@ from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.motion_blur_alignment import MotionBlurAligner
 from tracking.refinement.photometric_fit import Alignment
 
-MAX_EDGE_BLUR_CELLS = 0.6
-"""Cells that an edge may cross during the exposure and still be measured as an edge."""
+MAX_EDGE_BLUR_CELLS, VISIBLE_EDGE_BLUR_CELLS = 0.6, 0.3
+"""Blur extents up to which edges can be measured, and below which they must be found."""
 
-VISIBLE_EDGE_BLUR_CELLS = 0.3
-"""Below this blur extent the edges of the cube must be found."""
-
-MIN_CORRELATION = 0.85
-"""Correlation of a blurred image with the rendered one from which on it shows the cube."""
-
-MIN_CORRELATION_ALONE = 0.95
-"""The same where nothing else speaks for the cube."""
+MIN_CORRELATION, MIN_CORRELATION_ALONE = 0.85, 0.95
+"""Correlation of a blurred image with the rendered one from which on it shows the cube: with other
+evidence, and without."""
 
 MOTION_SPREAD, FIRST_MOTION_SPREAD = (0.12, 0.0025, 0.04), (0.35, 0.004, 0.06)
-"""Standard deviation of an expected blur motion: a share of it, and [m, rad] besides; the second
-holds while the exposure is not known."""
+"""Standard deviation of an expected blur motion with a known and an unknown exposure: a share of
+it, and [m, rad] besides."""
 
 UNKNOWN_MOTION_SPREAD = (1.5, 0.15)
 """Standard deviation of the motion of a cube without a past [cells, rad]."""
@@ -52,10 +47,9 @@ class BlurSearch:
         camera: CameraModel,
         coarse: bool | None = None,
     ) -> Alignment | None:
-        """Align the image of a cube at an expected pose and with an expected motion.
+        """Align the image of a cube at an expected pose and motion; None if it shows no cube.
 
-        None where the image does not show the cube. `coarse` searches coarsely first; None does so
-        only where the fine search fails.
+        `coarse` searches coarsely first; None does so only where the fine search fails.
         """
         share, shift, turn = MOTION_SPREAD if camera.exposure_known else FIRST_MOTION_SPREAD
         sizes = [np.linalg.norm(blur_motion[:3]), np.linalg.norm(blur_motion[3:])]
@@ -70,13 +64,11 @@ class BlurSearch:
         return found if found and _shows_cube(found) else None
 
     def align_unknown_motion(self, patch: Patch, start: Array) -> Alignment | None:
-        """Align a cube without a past, whose corners alone were read: it may move in any direction.
-
-        A motion and its reverse blur alike, so half of all directions are enough.
-        """
+        """Align a cube without a past, of which only corners were read, in any direction."""
         best: Alignment | None = None
         shift, turn = UNKNOWN_MOTION_SPREAD
         prior = np.repeat([shift * self._footprint.cell, turn], 3)
+        # A motion and its reverse blur alike: half of all directions are enough.
         for angle in np.arange(4) * np.pi / 4:
             direction = np.array([np.cos(angle), np.sin(angle), 0, 0, 0, 0])
             found = self._aligner.align(patch, start, self._footprint.cell * direction, prior)

@@ -8,37 +8,24 @@ import numpy as np
 from tracking.geometry.arrays import Array, Floats
 from tracking.refinement.photometric_fit import Alignment
 
-FIRST_EXPOSURE_S = 0.010
-"""Exposure that is assumed before it is measured: roughly that of a webcam indoors."""
+FIRST_EXPOSURE_S, MAX_EXPOSURE_S = 0.010, 0.05
+"""Exposure that is assumed before it is measured, that of a webcam indoors, and the longest."""
 
-MAX_EXPOSURE_S = 0.05
-"""No exposure is longer than this."""
+FIRST_EXPONENT, MIN_EXPONENT, MAX_EXPONENT = 2.2, 1.0, 2.6
+"""Light is the grey value to this power: in nearly every camera (sRGB), and the plausible range."""
 
-EXPOSURE_SAMPLES = 15
-"""The exposure is the median of this many measurements."""
+EXPOSURE_SAMPLES, EXPONENT_SAMPLES = 15, 9
+"""Exposure and exponent are the medians of this many measurements."""
 
 MIN_MOTION_INFORMATION = 100.0
 """Information about the blur motion along the velocity, relative to its square, from which on a
 measurement counts: ten standard deviations."""
 
-FIRST_EXPONENT = 2.2
-"""Exponent of nearly every camera: light is the grey value to this power (sRGB)."""
-
-MIN_EXPONENT, MAX_EXPONENT = 1.0, 2.6
-"""Plausible exponents."""
-
-EXPONENT_SAMPLES = 9
-"""The exponent is the median of this many measurements."""
-
 MIN_EXPONENT_STEP = 0.15
-"""The exponent changes only by more than this: a new table shifts the poses by hundredths of a
-millimetre."""
+"""The exponent changes only by more than this: a new table moves poses by hundredths of a mm."""
 
-MIN_BLUR_CELLS = 0.2
-"""Blur extent from which on the tones of an edge tell of the camera's tone curve [cells]."""
-
-MIN_BLUR_PX = 3.5
-"""The same in pixels: below, an unknown lens blurs as much."""
+MIN_BLUR_CELLS, MIN_BLUR_PX = 0.2, 3.5
+"""Blur extent from which on an edge tells of the camera: below, an unknown lens blurs as much."""
 
 MAX_STUDIES = 60
 """Sharp frames that are aligned as blurred ones at most, only to learn the camera from them."""
@@ -103,11 +90,7 @@ class CameraModelEstimator:
         )
 
     def learn(self, blur: BlurObservation | None, studied: bool) -> None:
-        """Learn from the blur of one frame.
-
-        `studied` tells whether a sharp image was aligned only for this, which happens at most
-        `MAX_STUDIES` times.
-        """
+        """Learn from the blur of one frame; `studied` if a sharp image was aligned for this."""
         self._studies += studied
         if blur is None or blur.blur_extent * blur.pixels_per_cell < MIN_BLUR_PX:
             return
@@ -117,10 +100,9 @@ class CameraModelEstimator:
 
 
 class ExposureEstimator:
-    """The exposure time of one camera.
+    """The exposure time τ of one camera: a cube with velocity v moves by v·τ during it.
 
-    A cube that moves with velocity v moves by v·τ during the exposure; the ratio of the two,
-    weighted by what the blur tells of each direction, is τ.
+    Each direction is weighted by what the blur tells of it.
     """
 
     def __init__(self) -> None:
@@ -146,8 +128,7 @@ class ExposureEstimator:
 class ToneCurve:
     """The tone curve of one camera, as a power of the grey value.
 
-    Blur mixes light, not grey values: half black and half white is not the grey halfway between.
-    Where that is not undone, every blurred edge seems to lie too far in the black.
+    Blur mixes light, not grey values: else every blurred edge seems to lie too far in the black.
     """
 
     def __init__(self) -> None:
@@ -165,12 +146,8 @@ class ToneCurve:
     def learn(self, bend: float, black: float) -> None:
         """Learn from by how much the middle between black and white is too bright for a mixture.
 
-        Parameters
-        ----------
-        bend
-            c of light = a + b·m + c·m(1 − m), with m the share of white in a mixture, over b.
-        black
-            a/(a + b): the light of black over that of white.
+        The light of a mixture with a share m of white is a + b·m + c·m(1 − m): `bend` is c/b, and
+        `black` a/(a + b), the light of black over that of white.
         """
         measured = _exponent(self.exponent, bend, black)
         self._samples.append(np.clip(measured, MIN_EXPONENT, MAX_EXPONENT).item())

@@ -9,11 +9,9 @@ from tracking.geometry.image_region import Patch
 from tracking.geometry.robust_statistics import quantile, tukey_weight
 from tracking.refinement.profiles import EdgeMeasurements, EdgeProfiles, measure_profiles
 
-BLOOM_PX = 0.3
-"""How far white grows over black, one standard deviation: gamma, ink and overexposure."""
-
-BLOOM_PER_BLUR = 0.15
-"""The same for a blurred edge, for each pixel of blur: gamma again."""
+BLOOM_PX, BLOOM_PER_BLUR = 0.3, 0.15
+"""How far white grows over black, one standard deviation: gamma, ink and overexposure; and more for
+each pixel of blur: gamma again."""
 
 PRIOR = np.diag([1e-3] * 6 + [1 / BLOOM_PX**2, 1 / BLOOM_PER_BLUR**2])
 """Information of the priors of the blooms, and a little that keeps the pose delta solvable."""
@@ -29,8 +27,7 @@ MIN_EDGE_POINTS = 36
 """Fewer edge points than this do not determine a pose."""
 
 INDEPENDENT_SHARE = 0.5
-"""Share of the covariance for independent residuals that is added: a few lines tell little of
-their own spread."""
+"""Share of the covariance of independent residuals to add: a few lines show too little spread."""
 
 PIXEL_PHASE_ERROR_PX = 0.02
 """Error that all points of a line have in common if they lie alike on the pixel grid."""
@@ -71,8 +68,7 @@ def fit_edges(
     """Measure all profiles, and solve for the pose delta and the blooms with robust weights.
 
     `shifts` is how far along their normals the edges have moved since the profiles were placed,
-    (N,) [px], or None. `blur` is the width of an edge at rest [px]. None where too few edges are
-    visible.
+    (N,) [px], `blur` the width of an edge at rest [px]. None where too few edges are visible.
     """
     measured = measure_profiles(patch, profiles, 0.0 if shifts is None else shifts, blur)
     good = _is_printed(profiles.face, measured)
@@ -103,8 +99,7 @@ def fit_edges(
 def _is_printed(face: Indices, measured: EdgeMeasurements) -> Flags:
     """Whether each edge has as much contrast as the other edges of its face, (N,).
 
-    Weber contrast, relative to the local light, is used: ink on paper keeps it in a shadow, where
-    plain contrast falls; skin has little of it anywhere.
+    In a shadow, ink keeps its Weber contrast, relative to the local light; skin has little of it.
     """
     weber = measured.contrast / np.maximum(measured.level, 1.0)
     least = np.empty(len(face))
@@ -118,12 +113,10 @@ def _is_printed(face: Indices, measured: EdgeMeasurements) -> Flags:
 def covariance(fit: EdgeFit, lines: Indices, pixels: Array) -> Array:
     """Covariance of the pose delta, (6, 6), with each straight line as one measurement.
 
-    The errors of the points of one line are not independent: they share the paper, the light and
-    their phase on the pixel grid. So the sandwich estimator for clusters is used (Liang and Zeger,
-    1986): normal⁻¹ (Σ s sᵀ) normal⁻¹, with s the sum of the scores of the points of one line.
-
-    `lines` is the index of the line of each profile of the fit, ascending, (M,), and `pixels` its
-    position, (M, 2) [px].
+    The points of a line share paper, light and their phase on the pixel grid. So this is the
+    sandwich estimator for clusters (Liang and Zeger, 1986): normal⁻¹ (Σ s sᵀ) normal⁻¹, with s the
+    sum of the scores of one line. `lines` is the index of the line of each profile of the fit,
+    ascending, (M,), and `pixels` its position, (M, 2) [px].
     """
     inverse = np.asarray(np.linalg.inv(fit.normal), np.float64)
     starts = np.flatnonzero(np.diff(lines, prepend=-1))
@@ -145,9 +138,8 @@ def covariance(fit: EdgeFit, lines: Indices, pixels: Array) -> Array:
 def _phase_covariance(inverse: Array, starts: Indices, weighted: Array, pixels: Array) -> Array:
     """Covariance of the errors that come from the phase of a line on the pixel grid, (6, 6).
 
-    All points of a line that is parallel to the rows or columns of pixels are off together by a few
-    hundredths of a pixel; along a slanted line that averages out. The residuals do not show it
-    where the pose can absorb it.
+    The points of a line along the rows or columns of pixels are off together by a few hundredths of
+    a pixel, which residuals do not show; along a slanted line that averages out.
     """
     phases = 2 * np.pi * pixels
     columns = np.concatenate([np.cos(phases), np.sin(phases), weighted], axis=1)

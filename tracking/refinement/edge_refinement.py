@@ -1,9 +1,8 @@
 """Gauss-Newton on the edges of all visible markers, from a good pose to the best one.
 
-The image is sampled across each edge of the model. A blurred step is fitted to each such profile;
-it gives the distance of the edge from its expected position to a few hundredths of a pixel. The
-correction is the pose delta that brings all edges into place together. The idea is RAPiD's (Harris
-and Stennett, 1990); the profile fit, the bloom and the covariance are ours.
+A blurred step is fitted to the image across each edge. It gives the distance of the edge from its
+expected position; the correction is the pose delta that brings all edges into place together. The
+idea is RAPiD's (Harris and Stennett, 1990); the profile fit, the bloom and the covariance are ours.
 """
 
 from dataclasses import dataclass
@@ -28,16 +27,13 @@ WIDE_STEP_PX = 5.0
 PRECISE_STEPS_PX: tuple[float, ...] = (2.0, 1.0)
 """Widths of the fitted step: in the wide search, and first and last otherwise."""
 
-MAX_SHIFT_PX = 0.7
-"""The profiles are placed again where an edge moves by more than this."""
+MAX_SHIFT_PX, MAX_PLACEMENTS = 0.7, 3
+"""The profiles are placed again where an edge moves by more than this, but only so often."""
 
 CONVERGED_PX = 0.04
 """The profiles are measured again while edges move by more than this."""
 
-MAX_PLACEMENTS = 3
-"""How often the profiles are placed at most."""
-
-MAX_WIDE_STEPS = 2
+WIDE_STEPS = 2
 """Steps of the wide search."""
 
 
@@ -86,25 +82,14 @@ class EdgeRefiner:
     def refine(
         self, patch: Patch, start: Array, blur_motion: Array | None = None, wide: bool = False
     ) -> EdgeRefinement | None:
-        """Refine a pose that is right to about half a cell in the image, or a whole one.
+        """Refine a pose, (4, 4), that is right to about half a cell in the image.
 
-        Parameters
-        ----------
-        patch
-            The image around the cube.
-        start
-            Pose of the cube, (4, 4).
-        blur_motion
-            Pose delta of the cube during the exposure, (6,); None for a cube at rest.
-        wide
-            Whether to begin with the outlines only, which can be found from a whole cell away.
-
-        Returns
-        -------
-        None where too few edges are in view or found, or where they do not agree.
+        `blur_motion` is the pose delta of the cube during the exposure, (6,), or None for a cube at
+        rest. `wide` begins with the outlines only, which can be found from a whole cell away. None
+        where too few edges are in view or found, or where they do not agree.
         """
         current = start
-        for _ in range(MAX_WIDE_STEPS if wide else 0):
+        for _ in range(WIDE_STEPS if wide else 0):
             rough = self._profiles(patch, current, blur_motion, True)
             step = fit_edges(patch, rough, None, WIDE_STEP_PX) if rough else None
             if step is None:

@@ -14,11 +14,9 @@ from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_refinement import EdgeRefinement, EdgeRefiner
 from tracking.refinement.footprint import Footprint
 
-MIN_EDGE_SUPPORT = 0.55
-"""Share of the edges in view that must be found for the edges alone to prove the cube."""
-
-MIN_EDGE_SUPPORT_WITH_MARKERS = 0.25
-"""The same where the markers can be read as well; fingers cover the rest."""
+MIN_EDGE_SUPPORT, MIN_EDGE_SUPPORT_WITH_MARKERS = 0.55, 0.25
+"""Share of the edges in view that must be found for the edges alone to prove the cube, and where
+the markers can be read as well; fingers cover the rest."""
 
 MIN_SHARPNESS_RATIO = 0.65
 """Below this ratio of the dullest to the sharpest edges, the cube moved in an unexpected way."""
@@ -30,18 +28,17 @@ whichever is more: a cube folded 1 mm askew does, a cube on a screen seen from t
 MIN_FACE_AGREEMENT = 0.6
 """Share of a face's cells that must be as expected for its edges to count as its own."""
 
-MIN_READ_AGREEMENT = 0.95
-"""Share of a face's cells that must be as expected for its marker to count as read."""
-
-MIN_SUPPORTED_AGREEMENT = 0.75
-"""The same where the edges of the cube are found too."""
+MIN_READ_AGREEMENT, MIN_SUPPORTED_AGREEMENT = 0.95, 0.75
+"""Share of a face's cells that must be as expected for its marker to count as read, and where the
+edges of the cube are found too."""
 
 COVARIANCE_FACTOR, DOUBLING_BLUR_EXTENT = 1.5, 0.25
 """By how much the variance exceeds what the residuals tell, at rest, and the blur extent [cells]
 that doubles it. Measured as the coverage that `make bench-tracking` prints."""
 
 COMMON_ERROR_PX = (0.01, 0.002, 0.005)
-"""Error that all edges have in common: sideways, in size and in tilt, at the cube's border."""
+"""Error that all edges have in common by lens, paper and light: sideways, in size and in tilt, at
+the cube's border."""
 
 
 @dataclass(frozen=True)
@@ -110,18 +107,12 @@ class EdgeSearch:
         )
 
     def mirrored_pose(self, candidate: Candidate) -> Array:
-        """Return the other pose that a candidate of a single face could have, (4, 4), not refined.
-
-        Seen from afar, a square that tilts towards the camera looks like one that tilts away.
-        """
+        """Return the pose of a candidate of one face, tilted the other way, (4, 4), not refined."""
         face = self._faces.names.index(candidate.faces[0])
         return self._faces.mirrored(candidate.camera_from_cube, face)
 
     def _inflate_covariance(self, found: EdgeRefinement, blur_motion: Array | None) -> Array:
-        """Covariance of a refined pose, (6, 6), with the errors that no residual shows.
-
-        Lens, paper and light displace all edges a little in common: sideways, in size and in tilt.
-        """
+        """Covariance of a refined pose, (6, 6), with the errors that all edges have in common."""
         pose = found.camera_from_cube
         extent = 0.0 if blur_motion is None else self.footprint.blur_extent(blur_motion)
         half_edge = self.footprint.half_edge
@@ -143,11 +134,7 @@ class EdgeSearch:
 def _prove(found: EdgeRefinement, reading: CellReading) -> bool:
     if found.sharpness_ratio < MIN_SHARPNESS_RATIO:
         return False
-    if (
-        min(found.support, found.inner_support) > MIN_EDGE_SUPPORT
-        and reading.best > MIN_FACE_AGREEMENT
-    ):
-        return True
-    return reading.best >= MIN_READ_AGREEMENT or (
-        found.support > MIN_EDGE_SUPPORT and reading.best > MIN_SUPPORTED_AGREEMENT
-    )
+    if found.support <= MIN_EDGE_SUPPORT:
+        return reading.best >= MIN_READ_AGREEMENT
+    inner = found.inner_support > MIN_EDGE_SUPPORT
+    return reading.best > (MIN_FACE_AGREEMENT if inner else MIN_SUPPORTED_AGREEMENT)

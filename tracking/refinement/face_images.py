@@ -28,22 +28,11 @@ class FaceTextures:
     ) -> tuple[Floats, Array]:
         """Blur faces by a Gaussian that is round in the camera's image, not on the paper.
 
-        A tilted face is blurred more along its tilt. The faces have white borders, so the blur may
-        wrap around.
+        `texels_to_pixels` is the Jacobian of the image by the texels of each face, (faces, 2, 2),
+        and `sigma` the standard deviation [px]. Their white borders let the blur wrap around.
 
-        Parameters
-        ----------
-        faces
-            Their indices, (faces,).
-        texels_to_pixels
-            Jacobian of the image by the texels of each, (faces, 2, 2).
-        sigma
-            Standard deviation of the Gaussian [px].
-
-        Returns
-        -------
-        The faces below each other, each texel with its derivatives to the right and down, (faces ·
-        side, side, 3), and the largest standard deviation on each face, (faces,) [m].
+        Return the faces below each other, each texel with its derivatives to the right and down,
+        (faces · side, side, 3), and the largest standard deviation on each face, (faces,) [m].
         """
         spread = np.linalg.inv(texels_to_pixels)
         spread = sigma**2 * spread @ spread.transpose(0, 2, 1)

@@ -9,8 +9,7 @@ from tracking.geometry.image_region import Patch, Region
 from tracking.geometry.projection import MIN_DEPTH, Projection
 
 MARGIN_SHARE, MARGIN_PX = 0.15, 12
-"""Margin around the predicted cube, for the acceleration of a hand: a share of its size, and [px]
-besides."""
+"""Margin for the acceleration of a hand: a share of the cube's size, and [px] besides."""
 
 MIN_REGION_PX = 32
 """The cube is not searched in a region narrower or lower than this."""
@@ -44,10 +43,7 @@ class Footprint:
         return (shift + self.half_edge * turn) / self.cell
 
     def crop(self, image: Image, camera_from_cube: Array, tone: Floats) -> Patch | None:
-        """Crop the cube at a pose from an image, (H, W, 3) BGR; None where it is not in view.
-
-        `tone` is the light for each grey value, (256,).
-        """
+        """Do `Patch.crop` with the region of the cube at a pose; None where it is not in view."""
         region = self.region(camera_from_cube)
         return Patch.crop(image, region, tone) if region else None
 

@@ -1,10 +1,9 @@
 """Photometric alignment of a cube that moved while the shutter was open.
 
-The image of a moving cube is the mean of its images along the motion. The printed faces are known,
-so this mean can be rendered for any pose and any motion. Gauss-Newton adjusts twelve numbers, the
-pose in the middle of the exposure and the motion during it, until the rendering matches the image.
-The idea is ESM-Blur's (Park, Lepetit and Woo, 2009), extended to a whole cube, to fingers, and to a
-camera whose tone curve is not known.
+The image of a moving cube is the mean of its images along the motion, rendered here from the known
+faces. Gauss-Newton adjusts the pose in the middle of the exposure and the motion during it until
+the rendering matches the image. The idea is ESM-Blur's (Park, Lepetit and Woo, 2009), extended to a
+whole cube, to fingers, and to a camera whose tone curve is not known.
 """
 
 from dataclasses import dataclass
@@ -37,17 +36,14 @@ LENS_BLUR_PX = 0.85
 """Blur of a focused lens and of the pixels themselves, one standard deviation."""
 
 MIN_BORDER_BLURS = 1.5
-"""Samples closer to the border of their face than this many standard deviations of the blur are
-left out: what lies beyond the border is not known."""
+"""Samples lie at least this many standard deviations of the blur inside their face."""
 
 BLOCKS_PER_SIDE = 5
 """Blocks of samples along each side of a face. Each block counts as one measurement."""
 
-MIN_MOMENTS, MAX_MOMENTS = 5, 15
-"""Number of moments of the exposure whose mean is rendered."""
-
-MOMENT_STEP_CELLS = 0.22
-"""How far an edge may move from one moment to the next: less than it is blurred anyway."""
+MIN_MOMENTS, MAX_MOMENTS, MOMENT_STEP_CELLS = 5, 15, 0.22
+"""Number of moments of the exposure whose mean is rendered, and how far an edge may move from one
+to the next: less than it is blurred anyway."""
 
 STAGES = ((0.5, COARSE_SAMPLES, 4), (0.15, FINE_SAMPLES, 4))
 """Of the coarse search and of the fine one: blur of rendering and image [cells], samples, steps."""
@@ -79,11 +75,10 @@ class MotionBlurAligner:
     def align(
         self, patch: Patch, start: Array, blur_motion: Array, prior: Array, coarse: bool = True
     ) -> Alignment | None:
-        """Align from a pose, (4, 4), that is right to about a cell in the image.
+        """Align from a pose, (4, 4), that is right to about a cell; None if it is not in view.
 
         `blur_motion` is the expected pose delta during the exposure, (6,), with the standard
         deviations `prior`, (6,). `coarse` searches with image and rendering much blurred first.
-        None where the cube is not in view.
         """
         pose, motion = start, blur_motion
         last: tuple[_Samples, PhotometricFit, Array, Array] | None = None
@@ -171,10 +166,8 @@ class MotionBlurAligner:
         ]
         number, place = np.divmod(use, samples.count**2)
         row, column = np.divmod(place, samples.count)
-        block = (
-            number * BLOCKS_PER_SIDE + row * BLOCKS_PER_SIDE // samples.count
-        ) * BLOCKS_PER_SIDE
-        block += column * BLOCKS_PER_SIDE // samples.count
+        down, across = (at * BLOCKS_PER_SIDE // samples.count for at in (row, column))
+        block = (number * BLOCKS_PER_SIDE + down) * BLOCKS_PER_SIDE + across
         rendered = means[0, :, 0].astype(np.float64)
         values, by_motion = samples.values[use], np.concatenate(jacobian, axis=1)
         mixture = PhotometricSamples(number, block, values, rendered, by_motion)
@@ -202,20 +195,17 @@ class MotionBlurAligner:
         x = np.clip((u + half) * scale - 0.5, 0, size - 1).astype(np.float32)
         y = np.clip((v + half) * scale - 0.5, 0, size - 1).astype(np.float32)
         y += (np.arange(len(samples.facing), dtype=np.float32) * size)[:, None]
-        count = len(u)
-        read = cv2.remap(
-            samples.layers, x.reshape(count, -1), y.reshape(count, -1), cv2.INTER_LINEAR
-        )
+        x, y = x.reshape(len(u), -1), y.reshape(len(u), -1)
+        read = cv2.remap(samples.layers, x, y, cv2.INTER_LINEAR)
         return np.asarray(read, np.float32), inside
 
     def _slides(self, axes: Array, arm: Array, rays: Array) -> Array:
         """Jacobian of the texel under each sample's ray by a pose delta, (faces · N, 2, 6).
 
         A point X = (x Z, y Z, Z) of the face moves by Ẋ; the point under the ray then moves by
-        u̇ = −B⁻¹ ẋ on the face, with ẋ = (Ẋ − x Ż)/Z and B the Jacobian of x by u.
-
-        `axes` are those of the faces, (faces, 3, 2), `arm` the vectors from the cube's origin to
-        the samples, (faces, 3, N) [m], and `rays` the samples' rays, (faces, 3, N).
+        u̇ = −B⁻¹ ẋ on the face, with ẋ = (Ẋ − x Ż)/Z and B the Jacobian of x by u. `axes` are those
+        of the faces, (faces, 3, 2), `arm` leads from the cube's origin to the samples, as `rays`
+        (faces, 3, N) [m].
         """
         x, y = rays[:, 0], rays[:, 1]
         a, b = (axes[:, 0, n, None] - x * axes[:, 2, n, None] for n in (0, 1))

@@ -7,12 +7,9 @@ import numpy as np
 from tracking.geometry.arrays import Array, Indices
 from tracking.geometry.robust_statistics import quantile
 
-MAX_RESIDUAL_SIGMAS = 2.0
-"""Residuals beyond this many standard deviations lose their weight: fingers, glare, shadows."""
-
-MIN_CUT_SHARE = 0.2
-"""But not below this share of the contrast: an edge that is not yet in place leaves as much, and
-must not be taken for a finger."""
+MAX_RESIDUAL_SIGMAS, MIN_CUT_SHARE = 2.0, 0.2
+"""Residuals beyond this many standard deviations lose their weight (fingers, glare, shadows), but
+not below this share of the contrast, which an edge leaves that is not yet in place."""
 
 MIN_FACE_SAMPLES = 30
 """A face with fewer samples has no correlation of its own."""
@@ -69,20 +66,17 @@ class PhotometricFit:
     def step(self, expected: Array, prior: Array) -> Array:
         """Solve for the step of pose and blur motion, (12,).
 
-        The prior of the motion expects the step `expected`, (6,), with the standard deviations
-        `prior`, (6,).
+        That of the motion is expected to be `expected` with standard deviations `prior`, (6,) each.
         """
         normal, right_side = self._with(prior), self.right_side.copy()
         right_side[6:12] += expected / prior**2
         return np.asarray(np.linalg.solve(normal, right_side)[:12], np.float64)
 
     def covariance(self, prior: Array) -> Array:
-        """Covariance of pose and blur motion, (12, 12), with each block as one measurement.
-
-        The same estimator as for edges: the errors of neighbours are not independent.
-        """
+        """Covariance of pose and blur motion, (12, 12), with each block as one measurement."""
         inverse = np.linalg.inv(self._with(prior))
-        starts, order = self._blocks()
+        order = np.argsort(self.samples.block, kind="stable")
+        starts = np.flatnonzero(np.diff(self.samples.block[order], prepend=-1))
         weighted = self.rows * (self.weights * self.residual)[:, None]
         scores = np.add.reduceat(weighted[order], starts) @ inverse[:, :12]
         count, used = len(starts), self.rows.shape[1] / 2
@@ -92,10 +86,9 @@ class PhotometricFit:
         return np.asarray(spread + own @ own.T + 0.2 * inverse[:12, :12], np.float64)
 
     def motion_information(self, motion: Array, step: Array, prior: Array) -> tuple[Array, Array]:
-        """Information times blur motion, (6,), and information, (6, 6), from the image alone.
+        """Information times blur motion, (6,), and information, (6, 6), without the prior.
 
-        `motion` is the blur motion before the step, (6,), and `step` the result of `step` with this
-        prior, which does not count here.
+        `motion` is the blur motion before the step, (6,), and `step` the result of `step`.
         """
         inverse = np.linalg.inv(self._with(prior))
         marginal = np.linalg.inv(inverse[6:12, 6:12]) - np.diag(1 / prior**2)
@@ -134,10 +127,6 @@ class PhotometricFit:
         diagonal[6:12] = 1 / prior**2
         normal[np.diag_indices_from(normal)] += diagonal
         return normal
-
-    def _blocks(self) -> tuple[Indices, Indices]:
-        order = np.argsort(self.samples.block, kind="stable")
-        return np.flatnonzero(np.diff(self.samples.block[order], prepend=-1)), order
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ REACH_PX = 3.5
 """Half the length of a profile, which is never more than half a cell."""
 
 WIDE_REACH_PX, WIDE_REACH_CELLS = 14.0, 0.9
-"""Half the length of a profile of the wide search, the smaller of the two: only the outlines of the
-markers have a whole cell of paper next to them."""
+"""The same in the wide search, the smaller of the two: outlines have a cell of paper around."""
 
 TAPS = 9
 """Samples in a profile."""
@@ -95,9 +94,7 @@ def place_profiles(
 ) -> EdgeProfiles | None:
     """Place profiles across the edges in view of a cube at a pose, as far as a patch shows them.
 
-    `blur_motion` is the pose delta of the cube during the exposure, (6,), or None for a cube at
-    rest. `wide` uses the outlines only, with profiles of a whole cell. None where the cube is too
-    close to the camera.
+    `blur_motion` and `wide` are as in `EdgeRefiner.refine`. None where the cube is too close.
     """
     rotation = camera_from_cube[:3, :3]
     rotated = model.points @ rotation.T
@@ -136,9 +133,8 @@ def measure_profiles(
 
     The model a + b·S(u/σ) − b·δ·s(u/σ)/σ, with S a smooth step and s its derivative, is linear in
     a, b and b·δ. Its parts are orthogonal after centring, so no iteration and no matrix is needed.
-
-    `shifts` are those of the profiles along their normals, (N,) [px]; the measured offsets are from
-    the shifted positions. `blur` is the width of an edge at rest [px].
+    Offsets count from profiles moved by `shifts` along their normals, (N,) [px]. `blur` is the
+    width of an edge at rest [px].
     """
     reach, normals = profiles.reach.astype(np.float32), profiles.normals.astype(np.float32)
     places = profiles.pixels + np.reshape(shifts, (-1, 1)) * profiles.normals

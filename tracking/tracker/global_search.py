@@ -76,9 +76,8 @@ class GlobalDetector:
     ) -> list[Candidate]:
         """Propose up to two poses for an image, (H, W, 3) BGR, with its markers.
 
-        These are the first that edges prove and that leave no choice, else those of the most
-        thorough search: `thorough` looks for partly hidden markers too. `expected` is the predicted
-        pose, if there is one, and `tone` the light for each grey value.
+        These are the first that edges prove and that leave no choice, else those of the last
+        search; `thorough` looks for partly hidden markers too. `expected` is the predicted pose.
         """
         patch = Patch.crop(markers.grey, None, tone)
         found: list[Candidate] = []

@@ -38,11 +38,7 @@ class LocalTracker:
         self._blur = blur
 
     def search(
-        self,
-        image: Image,
-        track: Track,
-        prediction: Prediction,
-        camera: CameraModel,
+        self, image: Image, track: Track, prediction: Prediction, camera: CameraModel
     ) -> LocalMatch:
         """Find the cube in an image, (H, W, 3) BGR, near its predicted pose."""
         patch = self._footprint.crop(image, prediction.camera_from_cube, camera.tone)

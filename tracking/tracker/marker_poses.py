@@ -10,26 +10,19 @@ from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeMatch, EdgeSearch
 
-MAX_CORNER_DISTANCE_CELLS = 1.0
-"""Edges and corners must agree to this share of a cell, or the edges found something else."""
-
-MAX_LONE_CORNER_DISTANCE_PX = 1.15
-"""The same where only one marker was read: blur moves the corners away from the edges, and would
-put the cube centimetres too near or too far."""
+MAX_CORNER_DISTANCE_CELLS, MAX_LONE_CORNER_DISTANCE_PX = 1.0, 1.15
+"""Edges and corners must agree to this, the second where only one marker was read: blur moves its
+corners away from the edges, and would put the cube centimetres too near or too far."""
 
 MIN_EDGE_SUPPORT = 0.3
 """Share of the edges in view that must be found where markers were read; fingers cover the rest."""
 
-MIN_FACE_SUPPORT = 0.6
-"""The same for the edges of the best of the faces whose markers were read."""
-
-MIN_LONE_FACE_SUPPORT = 0.85
-"""The same for the only face whose marker was read: blur that hides the other faces leaves less of
-it, fingers that do so leave all of it."""
+MIN_FACE_SUPPORT, MIN_LONE_FACE_SUPPORT = 0.6, 0.85
+"""The same for the best of the faces whose markers were read, and for the only one: blur that hides
+the other faces leaves less of it, fingers that do so leave all of it."""
 
 MIN_SHARPNESS = 0.75
-"""Edges that are duller than this show a blurred image. It is aligned as one, since unknown blur
-puts a lone face centimetres too near or too far."""
+"""Edges that are duller than this show a blurred image, which is aligned as one."""
 
 MIN_FINE_CELL_PX = 4.0
 """Cells larger than this have edges that a sharp image shows."""
@@ -48,10 +41,7 @@ class MarkerPoses:
     def find(
         self, patch: Patch, observations: list[Observation], expected: Array | None
     ) -> list[Candidate]:
-        """Propose up to two poses for the markers that were read in an image.
-
-        `expected` is the predicted pose of the cube, (4, 4), if there is one.
-        """
+        """Propose up to two poses for the markers of an image; `expected` is the predicted one."""
         solutions = self._solver.solve(observations, expected)
         solutions = [each for each in solutions if not _is_contradicted(each, observations)]
         if expected is not None:
@@ -126,8 +116,5 @@ class MarkerPoses:
 
 
 def _is_contradicted(solution: CornerPose, observations: list[Observation]) -> bool:
-    """Whether a pose rests on one marker while others of the same cube say that it is elsewhere.
-
-    A cube cut open and laid flat, its printed sheet, shows several; a cube never does.
-    """
+    """Whether other markers contradict a pose that rests on one: those of a flat sheet do."""
     return len(solution.observations) == 1 < len({each.face.name for each in observations})

@@ -109,10 +109,9 @@ class Track:
     ) -> tuple[Array, Array]:
         """Return velocity and acceleration at a new pose, (6,) each.
 
-        They are those of the parabola through this pose and the last two: a plain difference would
-        be the velocity of half a frame ago. The acceleration counts only as far as it exceeds the
-        noise of the poses (Wiener, 1949), each axis by itself, so a cube at rest stays at rest.
-        Both are zero after a pause longer than `MAX_PREDICTION_S`.
+        They are those of the parabola through this pose and the last two. The acceleration counts
+        only as far as it exceeds the noise of the poses (Wiener, 1949), each axis by itself. Both
+        are zero after a pause longer than `MAX_PREDICTION_S`.
         """
         still = np.zeros(6)
         if not self.poses:

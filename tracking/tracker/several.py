@@ -13,10 +13,7 @@ from tracking.tracker.tracker import CubeTracker
 
 
 class CubesTracker:
-    """Tracks several cubes through the frames of one camera.
-
-    Each has a tracker of its own. Where some are out of sight, the markers of the image are read
-    once for all of them.
+    """Tracks several cubes through the frames of one camera; they share its markers.
 
     Parameters
     ----------

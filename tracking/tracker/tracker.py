@@ -1,8 +1,4 @@
-"""The tracker of one cube: a pipeline of stages, from a camera frame to the state of the cube.
-
-`CubeTracker` reads from top to bottom as the way of one frame. Each stage takes values and returns
-a value; only `CubeTracker` keeps what a later frame needs.
-"""
+"""The tracker of one cube: stages that hand on values, from a camera frame to the cube's state."""
 
 from dataclasses import replace
 
@@ -39,9 +35,8 @@ class CubeTracker:
 
     Notes
     -----
-    There is no smoothing filter: a pose rests on its own frame alone, so it has no lag.
-    The past is used to look in the right place, to choose between the two poses of a single face,
-    and to refuse jumps.
+    There is no smoothing filter: a pose rests on its own frame alone, so it has no lag. The past
+    says where to look, chooses between the two poses of a single face, and refuses jumps.
     """
 
     def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
@@ -57,14 +52,7 @@ class CubeTracker:
         self._past = Past()
 
     def update(self, frame: Frame, markers: FrameMarkers | None = None) -> CubeState:
-        """Find the cube in the next frame.
-
-        Parameters
-        ----------
-        frame
-            The frame.
-        markers
-            Its markers, where several trackers share them; None to read them where needed.
+        """Find the cube in the next frame, whose `markers` several trackers may share.
 
         Raises
         ------
@@ -134,10 +122,7 @@ class CubeTracker:
         )
 
     def predict(self, timestamp: float) -> CubeState:
-        """Return where the cube will be at a time shortly after that of the last frame.
-
-        The velocity is extrapolated; see `tracking/README.md` for how far off that is.
-        """
+        """Return where the cube will be shortly after the last frame, by extrapolation."""
         return self._predicted(timestamp, "")
 
     def _check_size(self, frame: Frame) -> None:

@@ -22,8 +22,8 @@ MAX_LONE_FACE_SPEED = 0.65
 """A single face that moves faster than this [m/s] is too blurred to tell its distance."""
 
 MAX_CHOICE_AGE_S, MAX_CHOICE_ANGLE = 0.07, np.deg2rad(15)
-"""The track tells two poses of a face apart no longer than this after its last pose, and only where
-one of them is closer than this to the predicted one [rad]."""
+"""The track tells two poses of a face apart for so long after its last pose, and only where one of
+them is as close as this to the predicted one [rad]."""
 
 MAX_JUMP_CHECK_AGE_S = 1.0
 """After this time out of sight the cube may appear anywhere without confirmation."""
@@ -98,10 +98,7 @@ def judge_followed(
 def judge_detected(
     candidates: Sequence[Candidate], prediction: Prediction | None, past: Past, now: float
 ) -> Verdict:
-    """Choose between poses found anywhere in the image, and refuse those that cannot be.
-
-    `now` is the time of the frame [s].
-    """
+    """Choose between poses found anywhere at a time [s], and refuse those that cannot be."""
     fitting = [each for each in candidates if _fits(each, prediction)]
     if not fitting:
         return Verdict(None, "", past)
@@ -149,10 +146,7 @@ def _choose(
 
 
 def _continued_track(candidate: Candidate, past: Past, now: float) -> Track | None:
-    """Return the track that a pose continues: its own, or that of a jump which it confirms.
-
-    None where no hand can have moved the cube there.
-    """
+    """Return the track that a pose continues, or that of the jump it confirms; None for a jump."""
     if not past.track.poses:
         return past.track
     pose, last, jump = candidate.camera_from_cube, past.track.poses[-1], past.jump
@@ -164,10 +158,7 @@ def _continued_track(candidate: Candidate, past: Past, now: float) -> Track | No
 
 
 def _unless_uncertain(candidate: Candidate, past: Past) -> Verdict:
-    """Trust a pose, unless it may be off by more than a person would accept.
-
-    The prediction is better than such a pose.
-    """
+    """Trust a pose, unless it may be off by more than a person would accept."""
     shift = np.linalg.eigvalsh(candidate.covariance[:3, :3])[-1]
     turn = np.linalg.eigvalsh(candidate.covariance[3:, 3:])[-1]
     uncertain = shift > MAX_POSE_SPREAD[0] ** 2 or turn > MAX_POSE_SPREAD[1] ** 2

@@ -63,11 +63,8 @@ class SheetLayout:
         (right, upper), (left, lower) = self.place(self.net.square("front"))[[1, 3]]
         tab = TAB_DEPTH * self.cube.edge * 1000
         x = (inset, left - 7) if column == "left" else (right + 8, self.page_size[0] - inset)
-        y = (
-            (inset, upper - tab - 3)
-            if row == "top"
-            else (lower + tab + 4, self.page_size[1] - inset)
-        )
+        foot = self.page_size[1] - inset
+        y = (inset, upper - tab - 3) if row == "top" else (lower + tab + 4, foot)
         return PageArea(float(x[0]), float(y[0]), float(x[1]), float(y[1]))
 
     def marker_corners(self, face: Face) -> Array:

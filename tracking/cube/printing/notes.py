@@ -60,9 +60,7 @@ def _draw_cube_view(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
     icons = {face.name: face.icon for face in sheet.cube.faces}
     for name, shade in (("front", 252), ("right", 236), ("top", 245)):
         right, up = (np.array(axis, float) for axis in FACE_AXES[name])
-        corner = (
-            np.cross(right, up) - right + up
-        ) / 2  # the upper left corner of the face, in edges
+        corner = (np.cross(right, up) - right + up) / 2  # upper left of the face, in edges
 
         def on_page(
             loop: Array, corner: Array = corner, right: Array = right, up: Array = up
@@ -114,9 +112,8 @@ def _draw_facts(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
         x, y = (box.left + box.right - height) / 2, box.top
         mascot = "idle" if any(face.icon == "idle" for face in cube.faces) else "run"
         page.fill([loop * height + (x, y) for loop in icon_paths(mascot)], MASCOT_COLOUR)
-        page.stroke(
-            [(x - 2, y + height * 0.945), (x + height, y + height * 0.945)], 0.5, MASCOT_COLOUR
-        )
+        ground = y + height * 0.945
+        page.stroke([(x - 2, ground), (x + height, ground)], 0.5, MASCOT_COLOUR)
     facts = (
         f"edge {cube.edge * 1000:.4g} mm",
         f"markers {cube.marker_size * 1000:.4g} mm, {cube.dictionary}",

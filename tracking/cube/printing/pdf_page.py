@@ -59,18 +59,11 @@ class PdfPage:
         align: float = 0.0,
         turn: float = 0.0,
     ) -> None:
-        """Write a line.
+        """Write a line in a font of a height [mm].
 
-        Parameters
-        ----------
-        words
-            Characters outside Latin-1 become "?": the built-in fonts of PDF have no others.
-        x, y
-            Position on the baseline, at the share `align` of the length of the line.
-        size
-            Height of the font [mm].
-        turn
-            Degrees counter-clockwise about that point.
+        (x, y) is on the baseline, at the share `align` of the length of the line, and the line is
+        turned by `turn` degrees counter-clockwise about it. Characters outside Latin-1 become "?":
+        the built-in fonts of PDF have no others.
         """
         self._font(size, bold)
         self._pdf.set_text_color(*colour)

@@ -85,10 +85,7 @@ def _draw_tab(page: "PdfPage", sheet: SheetLayout, tab: Tab) -> None:
 
 
 def _draw_caption(page: "PdfPage", sheet: SheetLayout, face: Face) -> None:
-    """Draw icon, role and name under the marker, close to the fold.
-
-    The gap to the marker is its quiet zone: a camera finds the black square by the white around it.
-    """
+    """Draw icon, role and name close to the fold; the gap to the marker is its quiet zone."""
     edge = sheet.cube.edge * 1000
     margin = (edge - sheet.cube.marker_size * 1000) / 2
     height = 0.7 * margin
@@ -100,10 +97,8 @@ def _draw_caption(page: "PdfPage", sheet: SheetLayout, face: Face) -> None:
     foot = middle + edge / 2 - 0.1 * margin
     x -= (icon + sum(widths) + gap * (len(words) - 1 + bool(face.icon))) / 2
     if face.icon:
-        page.fill(
-            [loop * height + (x, foot - height) for loop in icon_paths(face.icon)],
-            ICON_COLOURS[face.icon],
-        )
+        loops = [loop * height + (x, foot - height) for loop in icon_paths(face.icon)]
+        page.fill(loops, ICON_COLOURS[face.icon])
         x += icon + gap
     for word, width in zip(words, widths, strict=True):
         role = word is face.role

@@ -33,24 +33,22 @@ TABS = {
 }
 """The glue tabs, (face, side), and the face that each is glued under.
 
-All but one are next to the arms of the cross, in free space. So a net of edge e needs 4 e plus one
-tab by 3 e of paper.
+All but one are in the free space next to the arms: the net is 4 edges and one tab by 3 edges.
 """
 
 TAB_DEPTH = 0.18
 """Depth of a tab as a share of the edge."""
 
 TAB_SLANT = 1.12
-"""How far a tab narrows at each end, as a share of its depth; 1 is 45°."""
+"""How far a tab narrows at each end, as a share of its depth.
+
+With 1 (45°) tabs that meet under a face would touch; thick paper and scissors need more room.
+"""
 
 
 @dataclass(frozen=True)
 class Tab:
-    """A glue tab: a trapezoid that folds under another face.
-
-    Tabs that meet under one face share its corner. With slants of 45° they would touch; these are a
-    little flatter, to leave room for thick paper and imprecise scissors.
-    """
+    """A glue tab: a trapezoid that folds under another face."""
 
     face: str
     """The face that it is joined to."""
