@@ -29,3 +29,16 @@ class Port(Protocol):
 
 Opener = Callable[[], Port]
 """Opens a port, the first time and again; raises RobotError while it cannot."""
+
+
+class SendBuffer:
+    """Base of objects that collect bytes for a port."""
+
+    def __init__(self) -> None:
+        self._out = bytearray()
+
+    def bytes_to_send(self) -> bytes:
+        """Return the bytes to write, once."""
+        data = bytes(self._out)
+        self._out.clear()
+        return data

@@ -42,20 +42,8 @@ _REASONS = {
 def opener(url: str, clock: Clock = time.monotonic, baud: int = timing.BAUD) -> Opener:
     """Return a function that opens a port, now and after every unplugging.
 
-    Parameters
-    ----------
-    url
-        Any pySerial URL: "/dev/ttyACM0", "COM3", "socket://localhost:5000"; or a simulated robot:
-        "sim:cubeling", "sim:pleo?drop=0.05&seed=7".
-    clock
-        The time of a simulated robot.
-    baud
-        Bits per second on a real serial line.
-
-    Raises
-    ------
-    RobotError
-        If the URL names no port, with the reason; both this function and the opener raise it.
+    For the URL see `robot.connect`; `clock` is for a simulated robot, `baud` for a real line.
+    Both this function and the opener raise RobotError with the reason if the URL names no port.
     """
     if not url:
         raise RobotError("a port must be named; `cubeling robot list` shows those there are")

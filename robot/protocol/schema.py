@@ -144,13 +144,7 @@ def spec_of(kind: type[Any]) -> MessageSpec:
 
 
 def pack(content: Any, session: int, version: int = VERSION) -> bytes:
-    """Return the body of a message in `version` of the protocol.
-
-    Raises
-    ------
-    ValueError
-        If a field is out of range.
-    """
+    """Return the body of a message in a version; raises ValueError if a field is out of range."""
     spec = _BY_KIND[type(content)]
     body = HEADER.pack(spec.number, session)
     for part in spec.parts_of(version):
@@ -159,27 +153,12 @@ def pack(content: Any, session: int, version: int = VERSION) -> bytes:
 
 
 def unpack(body: bytes, sender: Sender) -> tuple[int, Any]:
-    """Return the session and the message of a body.
+    """Return the session and the message of a body, None if it is unknown or not of `sender`.
 
     Bytes after the last known field are ignored: a later version added them. The fields that a
     version added have their defaults unless all of them are there: the peer may be older.
 
-    Parameters
-    ----------
-    body
-        The content of a frame.
-    sender
-        The peer. A message that only the own side may send is an echo and is ignored.
-
-    Returns
-    -------
-    tuple
-        The session, and the message or None if it is unknown.
-
-    Raises
-    ------
-    MessageError
-        If the body is shorter than its message, or a field is out of range.
+    Raises MessageError if the body is shorter than its message, or a field is out of range.
     """
     if len(body) < HEADER.size:
         raise MessageError("shorter than a header")

@@ -66,13 +66,7 @@ def cobs_decode(encoded: bytes) -> bytes:
 
 
 def encode_frame(body: bytes) -> bytes:
-    """Return the bytes on the wire of one body, both delimiters included.
-
-    Raises
-    ------
-    ValueError
-        If the body is empty or longer than `MAX_BODY`.
-    """
+    """Return the bytes on the wire of a body of 1 to `MAX_BODY` bytes, delimiters included."""
     if not 1 <= len(body) <= MAX_BODY:
         raise ValueError(f"a frame holds 1 to {MAX_BODY} bytes, not {len(body)}")
     encoded = cobs_encode(body)

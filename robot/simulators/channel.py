@@ -56,17 +56,8 @@ class FaultyChannel:
     """One direction of a line. It loses, corrupts, duplicates and delays, but never reorders.
 
     A frame ends at an edge and includes the zero bytes before it. Its faults are drawn at its first
-    byte; bytes never wait for the end of their frame.
-
-    Parameters
-    ----------
-    faults
-        The faults; those of the robot itself are ignored.
-    edge
-        The byte that ends a frame.
-    seed
-        Seed of all draws. Each kind of fault has its own generator, so that adding one kind does
-        not change the others.
+    byte; bytes never wait for the end of their frame. Each kind of fault has its own generator, so
+    that adding one kind does not change the others. Faults of the robot itself are ignored.
     """
 
     def __init__(self, faults: Faults, edge: bytes, seed: tuple[int, ...]) -> None:

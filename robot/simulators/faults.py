@@ -85,10 +85,7 @@ class Faults:
 def faults_of(url: str, options: Mapping[str, str]) -> Faults:
     """Return the faults in the options of a simulator's URL.
 
-    Raises
-    ------
-    RobotError
-        For an unknown option, or a value that is not allowed.
+    Raises RobotError for an unknown option, or a value that is not allowed.
     """
     fields: dict[str, object] = {}
     for name, text in options.items():

@@ -34,16 +34,9 @@ def open_simulated(url: str, clock: Clock) -> Opener:
 def simulator_of(url: str) -> Simulated:
     """Make the simulated robot that a URL names, with its faults.
 
-    Parameters
-    ----------
-    url
-        "sim:NAME?OPTIONS"; "sim:" may be omitted. The options are `seed` and `faults.OPTIONS`:
-        "cubeling?drop=0.05&stall=1s/10s&seed=7".
-
-    Raises
-    ------
-    RobotError
-        If there is no such robot or option, or a value is not allowed.
+    The URL is "sim:NAME?OPTIONS"; "sim:" may be omitted. The options are `seed` and
+    `faults.OPTIONS`: "cubeling?drop=0.05&stall=1s/10s&seed=7". Raises RobotError if there is no
+    such robot or option, or a value is not allowed.
     """
     name, _, query = url.removeprefix("sim:").partition("?")
     if name not in SIMULATORS:

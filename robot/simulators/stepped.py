@@ -43,17 +43,8 @@ def _read_available(port: Port) -> bytes:
 class SteppedRobot(Robot):
     """A simulated robot in virtual time; the same calls give the same bytes.
 
-    It serves sessions that are drawn faster or slower than real time, studies and tests. Its owner
-    closes it, as any `Robot`.
-
-    Parameters
-    ----------
-    url
-        "sim:NAME", optionally with faults: "sim:cubeling?drop=0.05&seed=7".
-    on_bytes
-        Receives every byte of both directions, with the virtual time.
-    settings
-        A TOML file for the driver, or None.
+    It serves sessions that are drawn faster or slower than real time, studies and tests. For the
+    parameters see `robot.connect`; `on_bytes` gets the virtual time.
 
     Raises
     ------
@@ -94,17 +85,9 @@ class SteppedRobot(Robot):
             self.advance(STEP_S)
 
     def advance(self, seconds: float) -> None:
-        """Advance the virtual time.
+        """Advance the virtual time by 0 s or more; an hour takes about 15 s of real time.
 
-        Parameters
-        ----------
-        seconds
-            By how much, 0 or more [s]; an hour takes about 15 s of real time.
-
-        Raises
-        ------
-        ValueError
-            If it is negative or not finite.
+        Raises ValueError if the time is negative or not finite.
         """
         if not 0 <= seconds < math.inf:  # also refuses NaN
             raise ValueError(f"time goes on by 0 s or more, not by {seconds!r}")

@@ -12,6 +12,7 @@ from typing import Any, Literal
 from affect import Emotion
 from robot.contract.catalogue import Catalogue
 from robot.contract.driver import Driver, DriverKind
+from robot.contract.port import SendBuffer
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.cubeling.capabilities import CapabilityQuery, with_state
 from robot.drivers.cubeling.scheduler import CommandScheduler, RoundTrip
@@ -26,19 +27,15 @@ Phase = Literal["port", "greeting", "asking", "open", "closed"]
 """port: there is none. greeting: HELLO was sent. asking: the catalogue is incomplete."""
 
 
-class HostLink:
+class HostLink(SendBuffer):
     """The host side of one link; a `Driver`.
 
-    Parameters
-    ----------
-    host
-        A number for the life of this program, not 0. A robot that knows it from an earlier session
-        does not take a command twice.
-    session
-        Number of the first session, not 0; each later one is the next.
+    `host` is a number for the life of this program, not 0: a robot that knows it from an earlier
+    session does not take a command twice. `session` is the number of the first session, not 0.
     """
 
     def __init__(self, host: int, session: int = 1) -> None:
+        super().__init__()
         self.catalogue: Catalogue | None = None
         """What the robot has; None until it is known."""
         self.scheduler = CommandScheduler()
@@ -50,7 +47,6 @@ class HostLink:
         self._host = host
         self._session = session - 1
         self._phase: Phase = "port"
-        self._out = bytearray()
         self._query: CapabilityQuery | None = None
         self._state: m.State | None = None
         self._last_received: float | None = None
@@ -122,12 +118,6 @@ class HostLink:
         if self._phase in ("asking", "open") and now - self._beat_sent >= timing.BEAT_EVERY:
             self._beat_sent = now
             self._send(m.Beat(self.round_trip.start(now)))
-
-    def bytes_to_send(self) -> bytes:
-        """Return the bytes to write, once."""
-        data = bytes(self._out)
-        self._out.clear()
-        return data
 
     def state(self, now: float) -> LinkState:
         """Return the state of the link at time `now` [s]; see `LinkState`."""

@@ -33,13 +33,7 @@ Phase = Literal["port", "greeting", "open", "closed"]
 
 
 class OpenCatHost:
-    """The host side of a line to a board with OpenCat; a `Driver`.
-
-    Parameters
-    ----------
-    settings
-        How each mood is shown; None for the bundled settings.
-    """
+    """The host side of a line to a board with OpenCat; a `Driver`. None: the bundled settings."""
 
     def __init__(self, settings: Settings | None = None) -> None:
         self.catalogue: Catalogue | None = None

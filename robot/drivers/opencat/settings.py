@@ -104,10 +104,7 @@ class Settings:
 def load_settings(path: Path | None = None) -> Settings:
     """Return the settings in a TOML file; what it does not set is as in the bundled file.
 
-    Raises
-    ------
-    RobotError
-        If it cannot be read, or a value is wrong or may not be sent.
+    Raises RobotError if it cannot be read, or a value is wrong or may not be sent.
     """
     if path is None:
         return parse_settings({}, BUNDLED.name)

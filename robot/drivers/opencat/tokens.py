@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 
+from robot.contract.port import SendBuffer
 from robot.errors import RobotError
 
 MAX_LINE_BYTES = 30
@@ -87,13 +88,7 @@ def _pairs(pairs: Iterable[tuple[int, int]]) -> str:
 
 
 def checked(line: bytes) -> bytes:
-    """Return the line if it may be sent.
-
-    Raises
-    ------
-    RobotError
-        If it may not, with the reason.
-    """
+    """Return the line if it may be sent; raises RobotError with the reason if it may not."""
     reason = why_not(line)
     if reason is not None:
         raise RobotError(f"{line[:40]!r} is not sent to an OpenCat board: {reason}")
@@ -136,15 +131,15 @@ def _why_not_skill(name: str) -> str | None:
     return None
 
 
-class RateLimitedWriter:
+class RateLimitedWriter(SendBuffer):
     """Collects allowed lines for the port, at most `per_second`."""
 
     def __init__(self, per_second: float) -> None:
+        super().__init__()
         self.sent = 0
         """Number of lines sent."""
         self._interval = 1.0 / per_second
         self._last = -math.inf
-        self._out = bytearray()
 
     def is_free(self, now: float) -> bool:
         """Return whether a line may be sent at time `now` [s]."""
@@ -155,12 +150,6 @@ class RateLimitedWriter:
         self._out += checked(line)
         self._last = now
         self.sent += 1
-
-    def bytes_to_send(self) -> bytes:
-        """Return the bytes to write, once."""
-        data = bytes(self._out)
-        self._out.clear()
-        return data
 
     def clear(self) -> None:
         """Drop the lines that were not written."""

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
+from robot.contract.port import SendBuffer
 from robot.drivers.pleo import timing
 from robot.drivers.pleo.commands import NUDGE, Command
 from robot.drivers.pleo.console_reader import Answer, ConsoleReader
@@ -52,10 +53,11 @@ class PromptedCommand:
     """Number of nudges."""
 
 
-class Console:
+class Console(SendBuffer):
     """The console; for `boot_text` see `ConsoleReader`."""
 
     def __init__(self, boot_text: tuple[str, ...]) -> None:
+        super().__init__()
         self.reader = ConsoleReader(boot_text)
         """Reads its answers."""
         self.sent = 0
@@ -64,7 +66,6 @@ class Console:
         """Answers that ended with a prompt."""
         self.pending: PromptedCommand | None = None
         """The pending command; None while the console is free."""
-        self._out = bytearray()
 
     def send(self, command: Command, now: float, patient: bool = False) -> None:
         """Send a command. The caller knows that the console is free, or searches for it."""
@@ -98,12 +99,6 @@ class Console:
         self.pending = None
         self._out.clear()
         self.reader.begin()
-
-    def bytes_to_send(self) -> bytes:
-        """Return the bytes to write, once."""
-        data = bytes(self._out)
-        self._out.clear()
-        return data
 
     def _finish(self, pending: PromptedCommand, silent: bool = False) -> CommandResult:
         came = self.reader.prompt_came

@@ -49,13 +49,7 @@ class Answer:
 
 
 class ConsoleReader:
-    """Reads the bytes of the console, however they are cut.
-
-    Parameters
-    ----------
-    boot_text
-        Texts of which one is in a line after a restart.
-    """
+    """Reads the bytes of the console; `boot_text` are texts of which one follows a restart."""
 
     def __init__(self, boot_text: tuple[str, ...] = ()) -> None:
         self.answer = Answer()

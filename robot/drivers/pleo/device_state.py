@@ -89,14 +89,7 @@ class Step(NamedTuple):
 def body_steps(mood: Mood | None, device: DeviceState, timeout: float) -> Iterator[Step]:
     """Yield the steps of the body that show a mood, or, for None, take the neutral pose.
 
-    Parameters
-    ----------
-    mood
-        The mood.
-    device
-        What was sent so far; speeds and angles that are set are not sent again.
-    timeout
-        Time for the answer to a PLAY [s].
+    Speeds and angles that are set already are not sent again; `timeout` is that of a PLAY [s].
     """
     if mood is None:
         yield Step(commands.JOINT_NEUTRAL, "body")

@@ -104,10 +104,7 @@ class Settings:
 def load_settings(path: Path | None = None) -> Settings:
     """Return the settings in a TOML file; None for the bundled file.
 
-    Raises
-    ------
-    RobotError
-        If it cannot be read, is not TOML, or a value is wrong.
+    Raises RobotError if it cannot be read, is not TOML, or a value is wrong.
     """
     path = BUNDLED if path is None else path
     top = Table(read(path, RobotError), str(path), error=RobotError)

@@ -18,6 +18,7 @@ from affect.words import closest_word
 from robot.contract.catalogue import Catalogue
 from robot.contract.driver import MAX_QUEUED_ACTIONS, Driver, DriverKind
 from robot.contract.motions import Array, SineMotion
+from robot.contract.port import SendBuffer
 from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.commands import CommandQueue, DesiredState
 from robot.drivers.lines import LineReader
@@ -62,10 +63,11 @@ class PendingTarget:
     """Time of the send [s]."""
 
 
-class ReachyDriver:
+class ReachyDriver(SendBuffer):
     """Drives a Reachy Mini; a `Driver`."""
 
     def __init__(self) -> None:
+        super().__init__()
         self.catalogue: Catalogue | None = None
         """What the robot has; None until the daemon has answered."""
         self.reader = LineReader(MAX_LINE_BYTES)
@@ -84,7 +86,6 @@ class ReachyDriver:
         self._last_received: float | None = None
         self._reported_angles: list[float] = []
         self._limp = False
-        self._out = bytearray()
         self._sent = self._received = self._skipped = self._sessions = 0
 
     def express(self, emotion: Emotion) -> None:
@@ -154,12 +155,6 @@ class ReachyDriver:
         due = self._last_target is None or now - self._last_target >= TARGET_INTERVAL_S
         if self._pending is None and due:
             self._send_target(now)
-
-    def bytes_to_send(self) -> bytes:
-        """Return the bytes to write, once."""
-        data = bytes(self._out)
-        self._out.clear()
-        return data
 
     def state(self, now: float) -> LinkState:
         """Return the state of the link at time `now` [s]; see `LinkState`."""

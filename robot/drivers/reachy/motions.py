@@ -120,14 +120,9 @@ def catalogue(firmware: str) -> Catalogue:
 
 
 def step_towards(angles: Array, wanted: Array, elapsed: float) -> Array:
-    """Return the angles after a step towards the wanted ones, within limits and speeds.
+    """Return the angles after a step of `elapsed` [s] towards the wanted ones, (joints,) [rad].
 
-    Parameters
-    ----------
-    angles, wanted
-        (joints,) [rad]
-    elapsed
-        Time of the step [s].
+    They stay within the limits and speeds.
     """
     reach = SPEED * elapsed
     return np.clip(angles + np.clip(wanted - angles, -reach, reach), LOW, HIGH)

@@ -40,10 +40,7 @@ Connect = Callable[[str, int], Any]
 def open_reachy(url: str, _clock: Clock) -> Callable[[], Port]:
     """Return a function that connects to the daemon at "HOST", "HOST:PORT" or "".
 
-    Raises
-    ------
-    RobotError
-        If the URL is wrong, or the SDK is not installed.
+    Raises RobotError if the URL is wrong, or the SDK is not installed.
     """
     host, colon, number = url.partition(":")
     if colon and not (number.isascii() and number.isdigit() and 0 < int(number[:6]) < 65536):
@@ -75,15 +72,7 @@ def _connect(host: str, port: int) -> Any:
 
 
 class ReachyPort:
-    """A connection to one robot, made in the background.
-
-    Parameters
-    ----------
-    host, port
-        Address of the robot's daemon.
-    connect
-        Makes the connection.
-    """
+    """A connection to one robot's daemon, made in the background."""
 
     def __init__(self, host: str, port: int, connect: Connect = _connect) -> None:
         self._address = host, port

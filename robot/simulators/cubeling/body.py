@@ -54,10 +54,7 @@ class Battery:
 class DinosaurBody:
     """A simulated robot like a Pleo; a `Body` for `DeviceLink`.
 
-    Parameters
-    ----------
-    seed
-        Seed of the sensor noise and the first battery level.
+    The seed determines the sensor noise and the first battery level.
     """
 
     catalogue = dinosaur.CATALOGUE

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 from affect import Emotion
 from robot.contract.catalogue import Catalogue
+from robot.contract.port import SendBuffer
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.fields import MessageError
@@ -37,10 +38,11 @@ class Body(Protocol):
         """Return the current state; the link sets `beat` and `taken`."""
 
 
-class DeviceLink:
+class DeviceLink(SendBuffer):
     """The robot side of one link. A reboot is a new `DeviceLink`."""
 
     def __init__(self, body: Body) -> None:
+        super().__init__()
         self.body = body
         self.session = 0
         """The open session; 0 when none is."""
@@ -56,7 +58,6 @@ class DeviceLink:
         self._state_sent = 0.0
         self._gone_sent = float("-inf")
         self._reader = FrameReader()
-        self._out = bytearray()
 
     @property
     def frames_received(self) -> int:
@@ -81,12 +82,6 @@ class DeviceLink:
             self._end_session()
         if self.session and now - self._state_sent >= timing.STATE_EVERY:
             self._send_state(now)
-
-    def bytes_to_send(self) -> bytes:
-        """Return the bytes to write, once."""
-        data = bytes(self._out)
-        self._out.clear()
-        return data
 
     def _take(self, session: int, message: Any, now: float) -> None:
         if isinstance(message, m.Hello):

@@ -5,13 +5,7 @@ from robot.simulators.cubeling.device import DeviceLink
 
 
 class Simulator:
-    """A simulated dinosaur robot with the protocol "cubeling"; a `Simulated`.
-
-    Parameters
-    ----------
-    seed
-        Seed of all draws.
-    """
+    """A simulated dinosaur robot with the protocol "cubeling"; a `Simulated`."""
 
     edge = b"\0"
     """Every frame ends with it."""

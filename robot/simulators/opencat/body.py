@@ -60,13 +60,7 @@ SKILLS = {
 
 
 class OpenCatBody:
-    """The body of a simulated Bittle or Nybble; angles change linearly over time.
-
-    Parameters
-    ----------
-    crossed
-        Whether its back legs bend the other way, as Nybble's.
-    """
+    """The body of a simulated Bittle, or Nybble if `crossed`; angles change linearly over time."""
 
     def __init__(self, crossed: bool) -> None:
         self.powered = False

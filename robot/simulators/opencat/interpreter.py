@@ -34,19 +34,7 @@ class Job:
 
 
 class Interpreter:
-    """Executes lines.
-
-    Parameters
-    ----------
-    random
-        Source of all draws.
-    names
-        Model and version, the answer to "?".
-    quirks
-        The quirks of the board.
-    send_line
-        Sends a line.
-    """
+    """Executes lines; `names` are model and version, the answer to "?"."""
 
     def __init__(
         self,

@@ -9,6 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from robot.contract.port import SendBuffer
 from robot.simulators.opencat.body import SKILLS
 from robot.simulators.opencat.interpreter import Interpreter, Job
 from robot.simulators.opencat.quirks import CALIBRATION_QUESTION, BoardQuirks, startup
@@ -26,19 +27,11 @@ MAX_LOG_LINES = 500
 """Number of lines that the log keeps."""
 
 
-class OpenCatSimulator:
+class OpenCatSimulator(SendBuffer):
     """A simulated robot with OpenCat, by default Petoi's dog Bittle on a BiBoard; a `Simulated`.
 
-    Parameters
-    ----------
-    seed
-        Seed of all draws.
-    model, version
-        The names that it reports.
-    quirks
-        The quirks of its board.
-    new_board
-        Whether it asks at its first start whether to erase its calibration.
+    It reports its model and version. A new board asks at its first start whether to erase its
+    calibration.
     """
 
     edge = b"\n"
@@ -52,6 +45,7 @@ class OpenCatSimulator:
         quirks: BoardQuirks | None = None,
         new_board: bool = False,
     ) -> None:
+        super().__init__()
         random = np.random.default_rng(seed)
         self.quirks = quirks or BoardQuirks()
         """The quirks of the board."""
@@ -70,7 +64,6 @@ class OpenCatSimulator:
         self._new_board = new_board
         self._now: float | None = None
         self._event_time = 0.0
-        self._out = bytearray()
         self._forget()
 
     def _forget(self) -> None:
@@ -99,12 +92,6 @@ class OpenCatSimulator:
         if self._job is not None and self._job.skill and self.quirks.merges:
             self._job = None  # interrupted, and never echoed
         self.advance(now)
-
-    def bytes_to_send(self) -> bytes:
-        """Return the bytes to write, once."""
-        data = bytes(self._out)
-        self._out.clear()
-        return data
 
     def advance(self, now: float) -> None:
         """Advance to time `now` [s]."""

@@ -51,15 +51,7 @@ class _JointMove:
 
 
 class PleoBody:
-    """Joints, loudspeaker and battery.
-
-    Parameters
-    ----------
-    battery
-        First charge, from 0 to 1.
-    now
-        Time of the start [s].
-    """
+    """Joints, loudspeaker and battery, with its first charge, from 0 to 1, at its start [s]."""
 
     def __init__(self, battery: float, now: float) -> None:
         self.now = now

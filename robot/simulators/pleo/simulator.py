@@ -48,11 +48,6 @@ class PleoSimulator:
     """A simulated Pleo with the protocol "pleo"; a `Simulated`.
 
     At first it shows its prompt, and its own behaviour is running.
-
-    Parameters
-    ----------
-    seed
-        Seed of all draws.
     """
 
     body: PleoBody
