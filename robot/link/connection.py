@@ -28,7 +28,7 @@ def connect(
     answer_within: float | None = None,
     settings: Path | str | None = None,
 ) -> "Robot":
-    """Open a port and wait until the robot on it has reported its catalogue.
+    """Return the robot on a port, once it has reported its catalogue; the caller closes it.
 
     Parameters
     ----------
@@ -47,11 +47,6 @@ def connect(
     settings
         A TOML file for the driver: the motion of each mood …; None for the bundled one.
 
-    Returns
-    -------
-    Robot
-        Ready for `express`. The caller closes it.
-
     Raises
     ------
     RobotError
@@ -68,12 +63,13 @@ def connect(
         open_port = kind.opener(url, clock)
     if kind.spacing:
         open_port = spaced(open_port, kind.spacing, clock)
-    robot = Robot(url, IoThread(url, open_port, driver, clock, on_bytes), driver, clock)
+    thread = IoThread(url, open_port, driver, clock, on_bytes)
+    robot = Robot(url, thread, driver, clock)
     wait = kind.answer_within if answer_within is None else answer_within
     try:
         if robot.wait_until_ready(wait):
             return robot
-        if robot.failed:
+        if thread.failure is not None:
             robot.check()
         answers = robot.telemetry.silence is not None
         if answers and robot.wait_until_ready(CATALOGUE_TIMEOUT_S):
@@ -120,9 +116,7 @@ class Robot(Closeable):
     def __init__(self, url: str, exchange: PortExchange, driver: Driver, clock: Clock) -> None:
         self.url = url
         """Its port."""
-        self._driver = driver
-        self._clock = clock
-        self._exchange = exchange
+        self._driver, self._clock, self._exchange = driver, clock, exchange
         self._wish: Emotion | None = None
 
     def express(self, emotion: Emotion) -> None:
@@ -196,17 +190,10 @@ class Robot(Closeable):
         telemetry = self.telemetry
         if telemetry.state in ("ready", "degraded"):
             return
-        reason = {
-            "connecting": "has not answered yet",
-            "closed": "was closed",
-        }.get(telemetry.state, "has fallen silent")
+        reasons = {"connecting": "has not answered yet", "closed": "was closed"}
+        reason = reasons.get(telemetry.state, "has fallen silent")
         silent = "" if telemetry.silence is None else f" (last heard {telemetry.silence:.1f} s ago)"
         raise RobotError(f"the robot on {self.url} {reason}{silent}")
-
-    @property
-    def failed(self) -> bool:
-        """Whether the link's thread has ended with an error; `check` raises it."""
-        return self._exchange.failure is not None
 
     def wait_until_ready(self, timeout: float) -> bool:
         """Wait at most `timeout` seconds until the link is ready; return whether it is."""

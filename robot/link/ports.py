@@ -4,11 +4,8 @@ from dataclasses import dataclass
 
 from serial.tools import list_ports
 
-PLEO_VENDOR = 0x6962
-"""USB vendor id of Ugobe's Pleo (source: PleoCommand, 2010)."""
-
 _GUESSES = {
-    PLEO_VENDOR: "a Pleo",
+    0x6962: "a Pleo",  # source: PleoCommand, 2010
     0x2341: "an Arduino",
     0x2E8A: "a Raspberry Pi Pico",
     0x303A: "an ESP32",
@@ -38,19 +35,10 @@ class SerialPort:
     """USB product id, or None."""
 
 
-def guess_device(vendor: int | None) -> str | None:
-    """Return the device that a USB vendor id suggests, or None.
-
-    >>> guess_device(0x6962)
-    'a Pleo'
-    """
-    return None if vendor is None else _GUESSES.get(vendor)
-
-
 def serial_ports() -> list[SerialPort]:
     """List the serial ports of this computer, USB ports first; opens none of them."""
     found = [
-        SerialPort(port.device, port.description or "", guess_device(port.vid), port.vid, port.pid)
+        SerialPort(port.device, port.description or "", _GUESSES.get(port.vid), port.vid, port.pid)
         for port in list_ports.comports()
     ]
     return sorted(found, key=lambda port: (port.vendor is None, port.url))

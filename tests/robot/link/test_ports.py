@@ -19,5 +19,7 @@ def test_a_pleo_is_recognised_and_usb_comes_first(monkeypatch):
 
 
 @pytest.mark.parametrize(("vendor", "what"), [(0x303A, "an ESP32"), (0x1234, None), (None, None)])
-def test_only_what_is_known_is_guessed(vendor, what):
-    assert ports.guess_device(vendor) == what
+def test_only_what_is_known_is_guessed(monkeypatch, vendor, what):
+    found = SimpleNamespace(device="/dev/ttyACM0", description="n/a", vid=vendor, pid=1)
+    monkeypatch.setattr("serial.tools.list_ports.comports", lambda: [found])
+    assert ports.serial_ports()[0].guess == what
