@@ -35,15 +35,14 @@ class _PtyLine:
             tty.setraw(self._far, termios.TCSANOW)
             os.set_blocking(self._near, False)
             self.url = os.ttyname(self._far)
-            self._wake_reader, self._wake_writer = os.pipe()
         except BaseException:
             os.close(self._near)
             os.close(self._far)
             raise
 
     def read(self) -> bytes:
-        ready, _, _ = select.select([self._near, self._wake_reader], [], [], POLL_TIMEOUT_S)
-        if self._near not in ready:
+        ready, _, _ = select.select([self._near], [], [], POLL_TIMEOUT_S)
+        if not ready:
             return b""
         try:
             return os.read(self._near, MAX_READ_BYTES)
@@ -56,12 +55,9 @@ class _PtyLine:
         with contextlib.suppress(BlockingIOError):
             os.write(self._near, data)
 
-    def wake(self) -> None:
-        os.write(self._wake_writer, b"!")
-
     def close(self) -> None:
-        for descriptor in (self._near, self._far, self._wake_reader, self._wake_writer):
-            os.close(descriptor)
+        os.close(self._near)
+        os.close(self._far)
 
 
 class _TcpLine:
@@ -70,11 +66,10 @@ class _TcpLine:
     def __init__(self, number: int) -> None:
         self._server = socket.create_server(("127.0.0.1", number))
         self._client: socket.socket | None = None
-        self._wake_reader, self._wake_writer = socket.socketpair()
         self.url = f"socket://127.0.0.1:{self._server.getsockname()[1]}"
 
     def read(self) -> bytes:
-        watched = [self._server, self._wake_reader, *([self._client] if self._client else [])]
+        watched = [self._server, *([self._client] if self._client else [])]
         ready, _, _ = select.select(watched, [], [], POLL_TIMEOUT_S)
         if self._server in ready:
             self._drop_client()
@@ -97,13 +92,9 @@ class _TcpLine:
             with contextlib.suppress(OSError):
                 self._client.send(data)
 
-    def wake(self) -> None:
-        self._wake_writer.send(b"!")
-
     def close(self) -> None:
         self._drop_client()
-        for sock in (self._server, self._wake_reader, self._wake_writer):
-            sock.close()
+        self._server.close()
 
     def _drop_client(self) -> None:
         if self._client is not None:
@@ -119,9 +110,8 @@ class SimulatedPort(Closeable):
     simulator
         The robot; a new one if None. Only this port's thread uses it until `close`.
     kind
-        "pty" for a pseudo-terminal, "tcp" for a port on 127.0.0.1; None for what the system has.
-    tcp_port
-        Number of the TCP port; 0 for any free one.
+        "pty" for a pseudo-terminal, "tcp" for `tcp_port` on 127.0.0.1, where 0 is any free one;
+        None for what the system has.
     clock
         The time of the robot [s].
 
@@ -151,7 +141,6 @@ class SimulatedPort(Closeable):
         self.url = self._line.url
         """The URL of the robot for pySerial."""
         self._closing = threading.Event()
-        self._closed = False
         self._thread = threading.Thread(
             target=self._serve, name=f"robot at {self.url}", daemon=True
         )
@@ -159,11 +148,9 @@ class SimulatedPort(Closeable):
 
     def close(self) -> None:
         """Stop the robot and close the port. A second call does nothing."""
-        if self._closed:
+        if self._closing.is_set():
             return
-        self._closed = True
         self._closing.set()
-        self._line.wake()
         self._thread.join()  # it never waits longer than `POLL_TIMEOUT_S`
         self._line.close()
 
