@@ -78,7 +78,8 @@ class FaultyChannel:
         self._babble = faults.babble
         self._noise_at = float("inf")  # until the first call tells the time
         self._in_flight: deque[tuple[float, bytes]] = deque()
-        self._size = 0
+        self.in_flight = 0
+        """Number of bytes in flight."""
         self._last_arrival = float("-inf")
         self._started = False
         self._copy: bytes | None = None  # the part so far of a frame that will be duplicated
@@ -88,11 +89,6 @@ class FaultyChannel:
     def due(self) -> float:
         """Time of the next arrival [s]; infinite if nothing is in flight."""
         return min(self._in_flight[0][0], self._noise_at) if self._in_flight else self._noise_at
-
-    @property
-    def in_flight(self) -> int:
-        """Number of bytes in flight."""
-        return self._size
 
     def send(self, data: bytes, now: float) -> None:
         """Send bytes at time `now` [s]."""
@@ -118,13 +114,13 @@ class FaultyChannel:
         arrived = in_flight.popleft()[1]
         while in_flight and in_flight[0][0] <= now:
             arrived += in_flight.popleft()[1]
-        self._size -= len(arrived)
+        self.in_flight -= len(arrived)
         return arrived
 
     def clear(self) -> None:
         """Lose everything in flight."""
         self._in_flight.clear()
-        self._size = 0
+        self.in_flight = 0
         self._noise_at, self._started = float("inf"), False
         self._forget_frame()
 
@@ -188,10 +184,10 @@ class FaultyChannel:
         self._append(data, arrival)
 
     def _append(self, data: bytes, arrival: float) -> None:
-        if self._size + len(data) > MAX_IN_FLIGHT_BYTES:
+        if self.in_flight + len(data) > MAX_IN_FLIGHT_BYTES:
             self.counts["lost"] += len(data)
             return
-        self._size += len(data)
+        self.in_flight += len(data)
         self._last_arrival = max(arrival, self._last_arrival)
         self._in_flight.append((self._last_arrival, data))
 

@@ -51,7 +51,8 @@ class FaultyRobot:
         self._mean_intervals.append(faults.reboot)
         self._random = [np.random.default_rng((seed, 2, kind)) for kind in range(3)]
         self._now: float | None = None
-        self._inbox = b""
+        self.inbox = b""
+        """The bytes that wait for the stalled robot."""
 
     @property
     def plugged_in(self) -> bool:
@@ -62,11 +63,6 @@ class FaultyRobot:
     def unplug_count(self) -> int:
         """How often the plug was pulled; a port opened before the last time is gone."""
         return self.counts["unplug"]
-
-    @property
-    def inbox_size(self) -> int:
-        """Number of bytes that wait for the stalled robot."""
-        return len(self._inbox)
 
     @property
     def due(self) -> float:
@@ -95,7 +91,7 @@ class FaultyRobot:
     def reboot(self) -> None:
         """Restart the robot, as after a loss of power."""
         self.counts["reboot"] += 1
-        self._inbox = b""
+        self.inbox = b""
         self.stalled_until = -NEVER
         self.robot.reboot()
 
@@ -109,7 +105,7 @@ class FaultyRobot:
         self.from_robot.clear()
         self.to_robot.cut = self.from_robot.cut = False
         self._now = now
-        self._inbox = b""
+        self.inbox = b""
         self.stalled_until = -NEVER
         self._poll_at = now
         self._stall_at = now + self._draw_interval(0)
@@ -144,12 +140,12 @@ class FaultyRobot:
             self._stall(at)
         arrived = self.to_robot.receive(at)
         if at >= self.stalled_until:
-            self._poll(self._inbox + arrived, at)
-            self._inbox = b""
+            self._poll(self.inbox + arrived, at)
+            self.inbox = b""
         else:
-            kept = arrived[: MAX_INBOX_BYTES - len(self._inbox)]
+            kept = arrived[: MAX_INBOX_BYTES - len(self.inbox)]
             self.counts["lost"] += len(arrived) - len(kept)
-            self._inbox += kept
+            self.inbox += kept
             self._poll_at = self.stalled_until
 
     def _poll(self, data: bytes, at: float) -> None:

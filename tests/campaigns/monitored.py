@@ -120,7 +120,7 @@ class MonitoredLink(DeviceLink):
         super().__init__(self.light)
         self.monitor = monitor
         self.heard = monitor.now
-        self._reader = MonitoredReader(monitor, "there")
+        self.reader = MonitoredReader(monitor, "there")
 
     def tick(self, now: float) -> None:
         session = self.session

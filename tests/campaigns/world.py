@@ -230,10 +230,10 @@ class CampaignWorld:
         host, link, faulty = self.host, self.light.link, self.faulty
         sizes = {
             "frame in host": (host.reader.buffered, MAX_FRAME + 1),
-            "frame in robot": (link._reader.buffered, MAX_FRAME + 1),
+            "frame in robot": (link.reader.buffered, MAX_FRAME + 1),
             "actions": (len(self.scheduler.actions), timing.ACTIONS_MAX),
             "beats": (host.round_trip.pending, 16),
-            "inbox": (faulty.inbox_size, MAX_INBOX_BYTES),
+            "inbox": (len(faulty.inbox), MAX_INBOX_BYTES),
             "line": (
                 max(faulty.to_robot.in_flight, faulty.from_robot.in_flight),
                 MAX_IN_FLIGHT_BYTES,

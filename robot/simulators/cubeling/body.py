@@ -65,7 +65,8 @@ class DinosaurBody:
         self._target = np.zeros(2)
         self._emotion = np.zeros(2)
         self._commanded_mood = m.NOTHING
-        self._label = LABELS[0]
+        self.label = LABELS[0]
+        """The mood that it shows."""
         self._angles = np.zeros(len(dinosaur.LOW))
         self._motion: SineMotion = dinosaur.MOOD_LOOPS[0]
         self._motion_time = 0.0
@@ -125,12 +126,12 @@ class DinosaurBody:
         self._emotion = self._emotion + way * min(
             1.0, MAX_EMOTION_SPEED * STEP_S / max(length, 1e-9)
         )
-        before = self._label
+        before = self.label
         if self._commanded_mood == m.NOTHING:
-            self._label = next_label(before, float(self._emotion[0]))
+            self.label = next_label(before, float(self._emotion[0]))
         else:
-            self._label = LABELS[self._commanded_mood]
-        if self._label != before:
+            self.label = LABELS[self._commanded_mood]
+        if self.label != before:
             if not self._plays_once:
                 self._start_motion(self._loop)
             if self._loop.sound and not self._still:
@@ -161,7 +162,7 @@ class DinosaurBody:
             valence=emotion.valence,
             arousal=emotion.arousal,
             battery=self._battery.level,
-            mood=LABELS.index(self._label),
+            mood=LABELS.index(self.label),
             motion=m.NOTHING if self._still else dinosaur.MOTIONS.index(self._motion),
             sound=self.catalogue.sounds.index(self._sound) if self._sound else m.NOTHING,
             joints=(*measured.tolist(), *[0.0] * (m.JOINTS_MAX - measured.size)),
@@ -172,11 +173,6 @@ class DinosaurBody:
         """The emotion that it shows."""
         valence, arousal = np.clip(self._emotion, -1.0, 1.0).tolist()
         return Emotion(valence, arousal)
-
-    @property
-    def label(self) -> str:
-        """The mood that it shows."""
-        return self._label
 
     @property
     def target(self) -> Emotion:
@@ -191,7 +187,7 @@ class DinosaurBody:
 
     @property
     def _loop(self) -> SineMotion:
-        return dinosaur.MOOD_LOOPS[LABELS.index(self._label)]
+        return dinosaur.MOOD_LOOPS[LABELS.index(self.label)]
 
     def _start_motion(self, motion: SineMotion, once: bool = False) -> None:
         self._motion, self._motion_time, self._plays_once = motion, 0.0, once

@@ -57,18 +57,14 @@ class DeviceLink(SendBuffer):
         self._version = timing.VERSION
         self._state_sent = 0.0
         self._gone_sent = float("-inf")
-        self._reader = FrameReader()
-
-    @property
-    def frames_received(self) -> int:
-        """Number of valid frames received."""
-        return self._reader.frames
+        self.reader = FrameReader()
+        """Decodes the received frames."""
 
     def receive(self, data: bytes, now: float) -> None:
         """Process received bytes at time `now` [s]."""
         # First the clock: bytes that waited during a stall belong to a session that is over.
         self.tick(now)
-        for body in self._reader.feed(data):
+        for body in self.reader.feed(data):
             try:
                 session, message = unpack(body, "host")
             except MessageError:

@@ -13,9 +13,6 @@ from robot.drivers.pleo.joints import JOINTS, Joint
 MOTION_LENGTH_RANGE_S = (2.0, 5.0)
 """Shortest and longest motion [s]; the name of a motion determines its length."""
 
-SOUND_LENGTH_S = 1.5
-"""Length of a sound [s]."""
-
 BATTERY_LIFE_S = 3600.0
 """Time from full to empty [s]."""
 
@@ -58,8 +55,6 @@ class PleoBody:
         """Its own time [s]; it never runs backwards."""
         self.played: deque[Played] = deque(maxlen=MAX_PLAYED)
         """The motions and sounds that were played."""
-        self.volume = 50
-        """Volume [%]."""
         self.motion_speed = 100
         """Speed of motions [%]."""
         self.motion: str | None = None
@@ -67,8 +62,6 @@ class PleoBody:
         self._motion_ends = 0.0
         self.mood = "neutral"
         """The mood that it shows: the last one after which a motion was named."""
-        self._sound: str | None = None
-        self._sound_ends = 0.0
         self._moves = [_JointMove() for _ in JOINTS]
         self._battery = battery + now / BATTERY_LIFE_S
 
@@ -83,11 +76,6 @@ class PleoBody:
         return tuple(
             move.at(joint, self.now) for move, joint in zip(self._moves, JOINTS, strict=True)
         )
-
-    @property
-    def sound(self) -> str | None:
-        """The file of the sound that is playing, or None."""
-        return self._sound if self.now < self._sound_ends else None
 
     def advance(self, now: float) -> None:
         """Advance to time `now` [s]."""
@@ -124,4 +112,3 @@ class PleoBody:
     def play_sound(self, name: str) -> None:
         """Start a sound; it ends any other."""
         self.played.append(Played(self.now, "sound", name))
-        self._sound, self._sound_ends = name, self.now + SOUND_LENGTH_S

@@ -70,7 +70,7 @@ class Monitor:
             "motion speed": self._motion_speed,
             "sound play": self._sound_play,
             "sound speed": self._percent,
-            "sound volume": self._sound_volume,
+            "sound volume": self._percent,
             "stats power": self._stats_power,
         }
         command = commands.get(name)
@@ -129,11 +129,6 @@ class Monitor:
             return [f"Error: file not found: {words[0]}"], self._duration(*LOAD_RANGE_S)
         self.body.play_sound(words[0])
         return [], self._duration(*LOAD_RANGE_S)
-
-    def _sound_volume(self, words: list[str]) -> Answer:
-        said = self._percent(words)
-        self.body.volume = int(words[0])
-        return said
 
     def _percent(self, words: list[str]) -> Answer:
         if not 0 <= int(words[0]) <= 200:

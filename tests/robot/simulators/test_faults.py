@@ -91,7 +91,7 @@ def test_every_wrong_bit_is_noticed(world):
     assert w.applied == []
     assert w.telemetry.state == "connecting"
     assert w.robot.link.session == 0
-    assert w.robot.link.frames_received == 0
+    assert w.robot.link.reader.frames == 0
 
 
 def test_a_long_session_does_not_grow(world):
