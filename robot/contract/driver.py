@@ -29,7 +29,10 @@ class Driver(Protocol):
         """Request an emotion; only the latest counts."""
 
     def play(self, item: int, index: int) -> bool:
-        """Request a motion or a sound of the catalogue once; return False if too many wait."""
+        """Request a motion or a sound of the catalogue once; return False if too many wait.
+
+        Without a session it is dropped at once, so that it is not played late.
+        """
 
     def stop(self) -> None:
         """Request the neutral pose."""

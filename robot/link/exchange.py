@@ -24,8 +24,7 @@ MAX_READ_BYTES = 1024
 """Most bytes that one transfer reads."""
 
 MAX_BYTES_PER_S = 12_000
-"""Long-term limit of what is decoded [bytes/s]: slightly more than 115200 baud. A robot of our
-protocol sends about 2 kB/s; without a limit, decoding noise could keep whole cores busy."""
+"""Long-term limit of what is decoded [bytes/s]: 115200 baud. Noise keeps no core busy."""
 
 MAX_BURST_BYTES = 16_000
 """Bytes that may arrive at once: what is waiting after this computer has slept for seconds."""
@@ -91,7 +90,6 @@ class PortExchange:
 
     def close(self) -> None:
         """End the session and close the port. A second call does nothing."""
-        self.closing.set()
         self._shut_down()
 
     def _transfer(self, port: Port, read: Callable[[Port], bytes]) -> bool:

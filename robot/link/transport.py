@@ -141,10 +141,9 @@ def _reason(url: str, error: Exception) -> str:
 
 
 class SpacedPort:
-    """A port with a minimum time between writes; everything else is the port's own.
+    """A port with a minimum time between writes, for robots that read all that waits as one line.
 
-    A driver with its own rate limit never waits here. Only its last bytes do, when they follow a
-    command closely.
+    A driver with its own rate limit waits here only with its last bytes.
     """
 
     def __init__(self, port: Port, spacing: float, clock: Clock) -> None:

@@ -91,8 +91,7 @@ class FieldSpec:
         values = list(value) if self.wire_type == "i16x16" else [value]
         if len(values) != self.count:
             raise ValueError(f"{self.name} must have {self.count} values, not {len(values)}")
-        scale = self.scale
-        counts = [round(number / scale) for number in values]
+        counts = [round(number / self.scale) for number in values]
         self._check(counts, ValueError)
         return counts
 

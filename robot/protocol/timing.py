@@ -10,10 +10,8 @@ STATE_EVERY = 0.100
 """Longest interval between two STATEs of a session [s]; the robot also answers every BEAT."""
 
 FAILSAFE_AFTER = 0.450
-"""Silence of the host after which the robot goes to neutral [s].
-
-The promise is 0.5 s; the difference is for a robot that reads its clock only every 50 ms.
-"""
+"""Silence of the host after which the robot goes to neutral [s]: the promise, less 50 ms
+for a robot that reads its clock only that often."""
 
 FAILSAFE_PROMISE = 0.500
 """Longest time from the last received frame to the neutral state [s]."""

@@ -59,8 +59,7 @@ def simulator_of(url: str) -> Simulated:
 class MemoryPort:
     """A simulated robot behind pySerial's interface, without a port.
 
-    Every call advances the robot. After an unplugging every call raises serial.SerialException, as
-    a real port does.
+    Every call advances the robot, or raises serial.SerialException after an unplugging.
     """
 
     def __init__(self, simulator: Simulated, clock: Clock) -> None:

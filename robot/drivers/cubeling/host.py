@@ -1,6 +1,6 @@
 """The host side of the protocol, without clock, thread or port.
 
-The owner calls `receive` and `tick` with the time. A link sends HELLO, asks for the catalogue, and
+A link sends HELLO, asks for the catalogue, and
 is open then. Silence, a GONE, or a command that is never acknowledged starts a new session with the
 next number, for as long as the link exists.
 """
@@ -60,10 +60,7 @@ class HostLink(SendBuffer):
         self.scheduler.express(emotion)
 
     def play(self, item: int, index: int) -> bool:
-        """Request a motion or a sound once; return False if too many wait already.
-
-        Without a session it is dropped at once, so that it is not played late.
-        """
+        """Request a motion or a sound once; return False if too many wait already."""
         if self._phase != "open":
             self.scheduler.actions.dropped += 1
             return True

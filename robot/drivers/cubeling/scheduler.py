@@ -154,8 +154,7 @@ class CommandScheduler:
     def start_session(self, taken: int) -> None:
         """Start a session with a robot in which command `taken` is in force, 0 for none.
 
-        Commands are taken in the order of their numbers, and the desired state was never skipped,
-        so a later number means that it is in force too.
+        Commands are taken in order, so a later number means that the desired state is in force.
         """
         if taken >= self._state_number > 0:
             if not self._unsent:

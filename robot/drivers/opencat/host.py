@@ -1,7 +1,4 @@
-"""The host side of OpenCat's line, without clock, thread or port.
-
-The owner calls `receive` and `tick` with the time.
-"""
+"""The host side of OpenCat's line, without clock, thread or port."""
 
 import math
 from types import MappingProxyType
@@ -57,10 +54,7 @@ class OpenCatHost:
         self._scheduler.express(emotion)
 
     def play(self, item: int, index: int) -> bool:
-        """Request a motion or a sound once; return False if too many wait already.
-
-        Without a session it is dropped at once, so that it is not played late.
-        """
+        """Request a motion or a sound once; return False if too many wait already."""
         if self._phase != "open" or self.catalogue is None:
             self._scheduler.actions.dropped += 1
             return True
@@ -128,11 +122,7 @@ class OpenCatHost:
         return self._writer.bytes_to_send()
 
     def state(self, now: float) -> LinkState:
-        """Return the state of the link at time `now` [s].
-
-        degraded: the echo of a command is late, or a question was asked twice. lost: it was asked
-        three times in vain, the board restarts, or the port is gone.
-        """
+        """Return the state of the link; degraded: an echo is late, or a question was repeated."""
         if self._phase == "closed":
             return "closed"
         if self._phase != "open":
@@ -209,11 +199,8 @@ class OpenCatHost:
         command = self._echoes.give_up()
         if command is not None:
             self._scheduler.give_up(command, now)
-        if (
-            self._phase == "greeting"
-            and question == tokens.QUERY
-            and self._handshake.receive_echo()
-        ):
+        model_asked = self._phase == "greeting" and question == tokens.QUERY
+        if model_asked and self._handshake.receive_echo():
             self._open()
 
     def _handle_restart(self, now: float) -> None:

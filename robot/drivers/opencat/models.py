@@ -11,8 +11,7 @@ from robot.contract.catalogue import JointLimits
 from robot.drivers.opencat.tokens import MAX_ANGLE_DEG
 
 ASSUMED_SPEED_DEG_PER_S = 240.0
-"""Assumed top speed of every servo [°/s]. Petoi states none; its small servos are faster without
-load, and no command depends on it."""
+"""Assumed top speed of every servo [°/s]: Petoi states none, and no command depends on it."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +73,7 @@ MODELS: dict[str, tuple[Joint, ...]] = {
     ),
     "other": (),
 }
-"""The joints of each model. "other" is a board that reports no model, or another robot: it shows
-moods by postures alone."""
+"""The joints of each model; "other" is any other board: it shows moods by postures alone."""
 
 
 def model_of(name: str) -> str:

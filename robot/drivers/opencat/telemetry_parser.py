@@ -14,8 +14,7 @@ _COMPLAINTS = ("Low power", "EXCEPTION", "Undefined token", "?")
 """Beginnings of error lines: about the battery, a fall, a token and a skill."""
 
 LOW_BATTERY_S = 25.0
-"""Time after a low battery report without another one after which the board has power again [s]. It
-reports a low battery every 10 s, and not every board reports the end of it."""
+"""Time after a low battery report until the board has power again [s]; it reports every 10 s."""
 
 Report = Literal["known", "power", "weak", "fell", "unknown"]
 """known: nothing to do. power: the board executes a moving command. weak: the battery is low.

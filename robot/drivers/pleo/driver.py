@@ -1,7 +1,5 @@
 """The host side of the Pleo Monitor console, without clock, thread or port.
 
-The owner calls `receive` and `tick` with the time.
-
 A session begins when the console is found: in any state it answers an empty line with a prompt.
 Then Pleo's own behaviour is ended, its joints move to neutral, and its volume is set. A console
 that falls silent or restarts is searched for again, for as long as the driver exists.
@@ -53,10 +51,7 @@ class PleoDriver:
         self._scheduler.express(emotion)
 
     def play(self, item: int, index: int) -> bool:
-        """Request a motion or a sound once; return False if too many wait already.
-
-        Without a session it is dropped at once, so that it is not played late.
-        """
+        """Request a motion or a sound once; return False if too many wait already."""
         if self._phase != "open":
             self._scheduler.actions.dropped += 1
             return True
@@ -124,11 +119,7 @@ class PleoDriver:
         return "degraded" if shaky else "ready"
 
     def telemetry(self, now: float) -> Telemetry:
-        """Return everything that is known at time `now` [s].
-
-        The console does not report what Pleo shows, so `observed`, `label`, `motion`, `sound` and
-        `joints` stay empty.
-        """
+        """Return everything that is known; the console does not report what Pleo shows."""
         scheduler = self._scheduler
         return Telemetry(
             state=self.state(now),

@@ -1,8 +1,7 @@
 """The driver: moods become targets of head, body and antennas, at a rate that the robot can follow.
 
-It exchanges lines of JSON with `ReachyPort`, which calls the SDK. Therefore it has no clock, thread
-or port, the lines can be recorded, and a robot that hangs delays only that port's thread. One
-target is pending at a time: targets that are set as fast as possible make the robot jerk.
+It exchanges lines of JSON with `ReachyPort`, so that the lines can be recorded, and a robot that
+hangs delays only that port's thread. More than one pending target would make the robot jerk.
 """
 
 import json
@@ -98,10 +97,7 @@ class ReachyDriver(SendBuffer):
         self._mood, self._state.commanded, self._still = mood, emotion, False
 
     def play(self, item: int, index: int) -> bool:
-        """Request a motion once; return False if too many wait already.
-
-        Without a session it is dropped at once, so that it is not played late.
-        """
+        """Request a motion once; return False if too many wait already."""
         if self.state(self._last_received or 0.0) not in ("ready", "degraded"):
             self._actions.dropped += 1
             return True

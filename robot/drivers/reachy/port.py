@@ -1,8 +1,7 @@
 """Reachy Mini's SDK behind the interface of a port: lines of JSON in both directions.
 
-The SDK waits for the network, for its daemon and for the end of a motion. It does so in its own
-thread here, so that nothing else waits. A daemon that dies, or is silent for a second, is an
-unplugged port.
+The SDK waits for the network, its daemon and the end of a motion, here in a thread of its own. A
+daemon that dies, or is silent for a second, is an unplugged port.
 """
 
 import contextlib

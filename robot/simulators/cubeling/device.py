@@ -1,7 +1,4 @@
-"""The robot side of the protocol, without clock, thread or port: it commands a body.
-
-The owner calls `receive` and `tick` with the time.
-"""
+"""The robot side of the protocol, without clock, thread or port: it commands a body."""
 
 from dataclasses import replace
 from typing import Any, Protocol

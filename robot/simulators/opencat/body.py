@@ -30,10 +30,7 @@ class Skill:
     """The mood that it shows: from −1, angry, to 1, happy, and its word."""
 
     def angles(self, crossed: bool) -> list[int]:
-        """Return the final angles of the board's 16 joints [°].
-
-        `crossed` is for a cat, whose back legs bend the other way.
-        """
+        """Return the final angles of the board's 16 joints [°]; a cat's back legs are `crossed`."""
         (front, back), (knee, heel) = self.shoulders, self.knees
         if crossed:
             back, heel = -back, -heel

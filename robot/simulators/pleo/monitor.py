@@ -39,10 +39,7 @@ UNLOAD_RANGE_S = (0.3, 1.2)
 
 @dataclass
 class Monitor:
-    """The commands of the console.
-
-    The error texts are our own: no source has Pleo's.
-    """
+    """The commands of the console. The error texts are our own: no source has Pleo's."""
 
     body: PleoBody
     """The body that the commands control."""
