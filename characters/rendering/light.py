@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from characters.rendering.projection import NEAR_M, is_invertible, project
 from characters.rendering.scene import Box, View
-
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array
 
 TO_LIGHT = np.array([-0.42, 1.0, 0.34]) / np.linalg.norm([-0.42, 1.0, 0.34])
 """Direction to the key light in the table frame: from above, from the left, and from the camera's

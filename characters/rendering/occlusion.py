@@ -6,7 +6,6 @@ from typing import Self
 
 import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from characters.rendering.projection import (
     NEAR_M,
@@ -16,8 +15,7 @@ from characters.rendering.projection import (
     project,
 )
 from characters.rendering.scene import Box
-
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array
 
 _FACE = np.array([(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, -1, 1), (1, 1, 1), (-1, 1, 1)]) / 2
 UNIT_CUBE = np.concatenate([s * np.roll(_FACE, axis, axis=1) for axis in range(3) for s in (1, -1)])

@@ -38,18 +38,10 @@ class PortraitCamera:
     def around(
         cls, points: Array, elevation: float, size: tuple[int, int], margin: float = MARGIN
     ) -> Self:
-        """Return the nearest camera that sees all of some points.
+        """Return the nearest camera that sees all of some points (n, 3) of the table frame.
 
-        Parameters
-        ----------
-        points
-            In the table frame, (n, 3).
-        elevation
-            Angle by which the camera looks down [rad].
-        size
-            Of the picture, (width, height) [px].
-        margin
-            Share of the picture that stays free on each side.
+        It looks down by the angle `elevation` [rad]; `size` is (width, height) [px]; `margin` is
+        the share of the picture that stays free on each side.
         """
         sine, cosine = math.sin(elevation), math.cos(elevation)
         rotation = np.array([[1.0, 0.0, 0.0], [0.0, -cosine, sine], [0.0, -sine, -cosine]])
@@ -77,13 +69,7 @@ class PortraitCamera:
 
 
 class CharacterExtent:
-    """The extent of a character in any pose, by its extreme vertices.
-
-    Parameters
-    ----------
-    character
-        Its meshes are read.
-    """
+    """The extent of a character in any pose, by its extreme vertices."""
 
     def __init__(self, character: Drawable) -> None:
         self._character = character
@@ -109,12 +95,7 @@ class CharacterExtent:
 def joints_below(character: Drawable, part: str) -> NDArray[np.bool_]:
     """Return a mask of the joints of a body part and of all joints below it, (joints,).
 
-    Parameters
-    ----------
-    character
-        Its joints are searched.
-    part
-        A part of `Anatomy`, such as "head" or "leftHand".
+    `part` is one of `Anatomy`, such as "head" or "leftHand".
 
     Raises
     ------

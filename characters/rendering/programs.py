@@ -6,9 +6,8 @@ from importlib.resources import files
 
 import moderngl
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array
 
 SHADERS = files("characters.rendering") / "shaders"
 

@@ -4,9 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array
 
 NEAR_M, FAR_M = 0.02, 20.0
 """Depths of the near and far planes [m]: from a hand at the lens to the end of a room."""

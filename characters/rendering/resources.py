@@ -15,8 +15,8 @@ from characters.rendering.programs import set_uniforms
 from characters.rendering.projection import Rectangle, bounding_rectangle, clip_from_camera
 from characters.rendering.scene import Box, Scene
 from characters.rendering.target import RenderTarget, RenderTargets
+from characters.skeleton.pose import Array
 
-Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 

@@ -9,9 +9,7 @@ from numpy.typing import NDArray
 
 from characters.control.command import PosedCharacter
 from characters.model.mesh import Mesh
-from characters.skeleton.pose import Skeleton
-
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array, Skeleton
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 from characters.errors import CharacterError
 from characters.rendering.projection import is_pinhole
 from characters.rendering.scene import View
+from characters.skeleton.pose import Array
 
-Array = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 BACKDROP_TOP_BGR, BACKDROP_BOTTOM_BGR = (226.0, 224.0, 222.0), (176.0, 180.0, 186.0)

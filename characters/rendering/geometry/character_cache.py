@@ -6,14 +6,12 @@ from dataclasses import dataclass
 
 import moderngl
 import numpy as np
-from numpy.typing import NDArray
 
 from characters.rendering.geometry.skinned_character import SkinnedCharacter
 from characters.rendering.programs import ShaderPrograms
 from characters.rendering.projection import is_invertible
 from characters.rendering.scene import Drawable, SceneCharacter
-
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array
 
 MAX_CHARACTERS = 8
 """Characters that stay on the graphics card; more only if one picture shows more."""
@@ -40,8 +38,7 @@ class CharacterCache:
         self._context = context
         self._programs = programs
         # By character, and by its number among its copies in the picture: each has own vertices.
-        self._kept: OrderedDict[tuple[int, int], tuple[Drawable, SkinnedCharacter]]
-        self._kept = OrderedDict()
+        self._kept: OrderedDict[tuple[int, int], tuple[Drawable, SkinnedCharacter]] = OrderedDict()
 
     def skin(self, characters: Sequence[SceneCharacter]) -> tuple[CharacterInstance, ...]:
         """Skin the visible characters whose pose is finite.

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from characters.errors import CharacterError
 from characters.model.mesh import Mesh, Morph
-
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array
 
 
 @dataclass(frozen=True)

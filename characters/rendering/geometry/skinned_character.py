@@ -2,15 +2,13 @@
 
 import moderngl
 import numpy as np
-from numpy.typing import NDArray
 
 from characters.rendering.geometry.morph_mixer import MorphMixer
 from characters.rendering.geometry.surfaces import SurfaceBuffers
 from characters.rendering.geometry.vertices import CharacterVertices
 from characters.rendering.programs import ShaderPrograms
 from characters.rendering.scene import Drawable
-
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array
 
 SHADOW_CELLS = 44
 """Grid cells along a character's height to which the mesh for its shadow is simplified; a shadow

@@ -11,8 +11,7 @@ from characters.errors import CharacterError
 from characters.model.mesh import Material, Mesh, Morph
 from characters.rendering.geometry.extreme_vertices import extreme_vertices
 from characters.rendering.geometry.morph_mixer import merge_morphs
-
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,7 @@ from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import Rectangle, merge_rectangles
 from characters.rendering.resources import FrameResources, Region
 from characters.rendering.scene import FloorPath
-
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array
 
 POINT_RADIUS_M, HIGHLIGHT_RADIUS_M = 0.005, 0.0075
 """Radii of a point, and of the highlighted one [m]."""

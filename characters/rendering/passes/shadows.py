@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 import moderngl
 import numpy as np
-from numpy.typing import NDArray
 
 from characters.rendering.geometry.character_cache import CharacterInstance
 from characters.rendering.light import TO_LIGHT
@@ -12,8 +11,7 @@ from characters.rendering.passes.render_pass import RenderPass
 from characters.rendering.programs import ShaderPrograms, set_uniforms
 from characters.rendering.projection import Rectangle
 from characters.rendering.resources import FrameResources, Region
-
-Array = NDArray[np.float64]
+from characters.skeleton.pose import Array
 
 MAP_SIDE = 80
 """Texels along each side of a shadow map; a character covers about half of them."""
