@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from affect.hysteresis import ANGRY_BELOW, HAPPY_ABOVE
+from affect.hysteresis import label_at
 
 
 @dataclass(frozen=True)
@@ -34,11 +34,7 @@ class Emotion:
     @property
     def label(self) -> str:
         """The word for it; without a chosen one "neutral", "happy" or "angry" by the valence."""
-        if self.word is not None:
-            return self.word
-        if self.valence > HAPPY_ABOVE:
-            return "happy"
-        return "angry" if self.valence < ANGRY_BELOW else "neutral"
+        return label_at(self.valence) if self.word is None else self.word
 
 
 NEUTRAL = Emotion(0.0, 0.0, "neutral")

@@ -15,25 +15,24 @@ ANGRY_BELOW = -0.33
 """Valence below which it is called angry."""
 
 
-def next_label(
-    label: Label,
-    valence: float,
-    happy_above: float = HAPPY_ABOVE,
-    angry_below: float = ANGRY_BELOW,
-    hysteresis: float = 0.05,
-) -> Label:
+def next_label(label: str, valence: float, hysteresis: float = 0.05) -> Label:
     """Return the label that follows `label` at a valence.
 
-    Happy is entered above `happy_above` and left below `happy_above` − `hysteresis`; angry
+    Happy is entered above `HAPPY_ABOVE` and left below `HAPPY_ABOVE` − `hysteresis`; angry
     likewise. The label between happy and angry is always neutral, however far the valence jumps.
 
     >>> next_label("neutral", 0.30), next_label("happy", 0.30), next_label("happy", -1.0)
     ('neutral', 'happy', 'neutral')
     """
     if label == "happy":
-        return "happy" if valence >= happy_above - hysteresis else "neutral"
+        return "happy" if valence >= HAPPY_ABOVE - hysteresis else "neutral"
     if label == "angry":
-        return "angry" if valence <= angry_below + hysteresis else "neutral"
-    if valence > happy_above:
+        return "angry" if valence <= ANGRY_BELOW + hysteresis else "neutral"
+    return label_at(valence)
+
+
+def label_at(valence: float) -> Label:
+    """Return the label at a valence, without hysteresis."""
+    if valence > HAPPY_ABOVE:
         return "happy"
-    return "angry" if valence < angry_below else "neutral"
+    return "angry" if valence < ANGRY_BELOW else "neutral"

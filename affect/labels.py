@@ -1,8 +1,4 @@
-"""Label sets: words for emotions, and where each lies in the plane of valence and arousal.
-
-`TABLE` holds every word. A label set is the rows that name it, in their order; the words that
-robots have for their moods (`affect.words`) are in the same table.
-"""
+"""Label sets: words for emotions, and where each lies in the plane of valence and arousal."""
 
 import math
 from collections.abc import Mapping
@@ -12,7 +8,7 @@ from typing import Literal, NamedTuple
 
 from affect.emotion import Emotion
 from affect.errors import AffectError
-from affect.hysteresis import Label, next_label
+from affect.hysteresis import next_label
 
 Face = Literal["neutral", "happy", "sad", "angry", "surprised", "afraid", "disgusted"]
 Simple = Literal["neutral", "happy", "angry"]
@@ -152,8 +148,7 @@ class LabelSet:
         'excited'
         """
         if self.by_valence:
-            was: Label = "happy" if label == "happy" else "angry" if label == "angry" else "neutral"
-            return next_label(was, emotion.valence, hysteresis=hysteresis)
+            return next_label(label, emotion.valence, hysteresis)
         point = (emotion.valence, emotion.arousal)
         nearest = min(self.places, key=lambda word: math.dist(self.places[word], point))
         # Across the border between two places the difference of distances grows twice as fast.
@@ -178,7 +173,7 @@ LABEL_SETS: Mapping[str, LabelSet] = MappingProxyType(
 
 
 def label_set(name: str) -> LabelSet:
-    """Return a label set; raises AffectError, in one line, where there is none of that name."""
+    """Return a label set; raise AffectError if there is none of that name."""
     if name not in LABEL_SETS:
         raise AffectError(f"there is no label set {name!r}: choose one of {', '.join(LABEL_SETS)}")
     return LABEL_SETS[name]

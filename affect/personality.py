@@ -10,10 +10,9 @@ from typing import Any, Literal
 from affect.emotion import Emotion
 from affect.errors import AffectError
 from affect.labels import LabelSet, label_set
-from affect.personality_file import bundled_text, parse_fields, read_fields
+from affect.personality_file import bundled_text, fields_of
+from affect.settings import parse, read
 from affect.traits import AffectImpulse, Ocean
-
-ArousalLaw = Literal["own", "magnitude"]
 
 MAX_GAIN_PER_S = 10.0
 """Largest gain of an action [1/s]: it crosses the whole plane in 0.2 s."""
@@ -58,7 +57,7 @@ class Personality:
     movement: float = 0.0
     """How far top speed raises the arousal that it decays to."""
 
-    arousal: ArousalLaw = "own"
+    arousal: Literal["own", "magnitude"] = "own"
     """"own": arousal has a state of its own. "magnitude": it is the magnitude of the valence, or
     that of the movement where that is larger; the law of the thesis."""
 
@@ -125,16 +124,17 @@ class Personality:
             In one line: which file, which key, and what it may be.
         """
         if name.endswith(".toml"):
-            return cls._of(read_fields(Path(name)), name)
+            return cls._of(read(Path(name)), name)
         return cls.parse(bundled_text(name), f"{name}.toml")
 
     @classmethod
     def parse(cls, text: str, source: str) -> "Personality":
         """Return the personality that a TOML text describes; errors name it as `source`."""
-        return cls._of(parse_fields(text, source), source)
+        return cls._of(parse(text, source), source)
 
     @classmethod
-    def _of(cls, fields: dict[str, Any], source: str) -> "Personality":
+    def _of(cls, document: dict[str, Any], source: str) -> "Personality":
+        fields = fields_of(document, source)
         try:
             return cls(**fields)
         except AffectError as error:

@@ -6,7 +6,7 @@ from typing import Any
 
 from affect.emotion import Emotion
 from affect.errors import AffectError
-from affect.settings import Table, parse, read
+from affect.settings import Table
 from affect.traits import AffectImpulse, Ocean
 
 BUNDLED_FOLDER = Path(__file__).parent / "personalities"
@@ -34,17 +34,8 @@ def bundled_text(name: str) -> str:
     return (BUNDLED_FOLDER / f"{name}.toml").read_text(encoding="utf-8")
 
 
-def read_fields(path: Path) -> dict[str, Any]:
-    """Return the fields of `Personality` that a .toml file gives."""
-    return _fields(read(path), str(path))
-
-
-def parse_fields(text: str, source: str) -> dict[str, Any]:
-    """Return the fields of `Personality` that a TOML text gives; errors name it as `source`."""
-    return _fields(parse(text, source), source)
-
-
-def _fields(document: Mapping[str, Any], source: str) -> dict[str, Any]:
+def fields_of(document: Mapping[str, Any], source: str) -> dict[str, Any]:
+    """Return the fields of `Personality` in a TOML document; errors name it as `source`."""
     table = Table(document, source)
     table.only(*_TEXTS, *_NUMBERS, *_TABLES)
     fields: dict[str, Any] = {"name": Path(source).stem}

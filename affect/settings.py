@@ -1,8 +1,4 @@
-"""Reads TOML files of personalities and robot settings, and validates their values.
-
-A wrong value is refused in one line, "FILE: KEY must be WHAT IS ALLOWED, not WHAT WAS GIVEN", with
-the error class of the caller's room.
-"""
+"""Reads TOML files of personalities and robot settings, and validates their values."""
 
 import math
 import stat
@@ -113,9 +109,8 @@ class Table:
     def names(self, longest: int = MAX_KEY_BYTES) -> list[str]:
         """Return the keys of a table with free keys, each at most `longest` bytes of UTF-8."""
         if len(self._values) > MAX_ENTRIES:
-            raise self.wrong(
-                "", f"must have at most {MAX_ENTRIES} entries, not {len(self._values)}"
-            )
+            count = len(self._values)
+            raise self.wrong("", f"must have at most {MAX_ENTRIES} entries, not {count}")
         for key in self._values:
             if not key or not key.isprintable() or len(key.encode()) > longest:
                 raise self.wrong(key, f"a name has 1 to {longest} bytes, all of them printable")

@@ -1,6 +1,6 @@
 """Impulses in the plane of valence and arousal, and the five traits that scale them."""
 
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 from affect.emotion import Emotion
 
@@ -48,13 +48,7 @@ class Ocean:
         >>> Ocean(0.8, 0.1, 0.7, 0.5, 0.05).responses  # the thesis' example
         (0.62, 0.175)
         """
-        o, c, e, a, n = (
-            self.openness,
-            self.conscientiousness,
-            self.extraversion,
-            self.agreeableness,
-            self.neuroticism,
-        )
+        o, c, e, a, n = astuple(self)
         good = 0.15 * o + 0.45 * e + 0.40 * a - 0.30 * n
         bad = 0.10 * o + 0.10 * c + 0.10 * a + 0.70 * n
         return round(min(max(good, 0.0), 1.0), 9), round(min(max(bad, 0.0), 1.0), 9)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from types import MappingProxyType
 
 from affect.emotion import Emotion
-from affect.labels import SIMPLE_FACES, TABLE, Simple
+from affect.labels import SIMPLE_FACES, TABLE
 
 PLACES = MappingProxyType(
     {row.word: (row.valence, row.arousal) for row in reversed(TABLE)}  # the first row counts
@@ -45,16 +45,3 @@ def closest_word(words: Sequence[str], emotion: Emotion) -> str | None:
         return other_face, other_mood, math.dist(PLACES[word], PLACES[own])
 
     return min(known, key=difference, default=None)
-
-
-def simple_mood(emotion: Emotion) -> Simple:
-    """Return which of neutral, happy and angry an emotion is shown as.
-
-    >>> simple_mood(Emotion(0.6, 0.7, "excited"))
-    'happy'
-    """
-    if emotion.word is not None and emotion.word in SIMPLE:
-        return SIMPLE[emotion.word]
-    word = closest_word(("neutral", "happy", "angry"), emotion)
-    assert word is not None
-    return SIMPLE[word]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from affect import LABEL_SETS, Emotion
 from affect.errors import AffectError
 from affect.labels import TABLE, label_set
-from affect.words import PLACES, SIMPLE, closest_word, simple_mood
+from affect.words import PLACES, SIMPLE, closest_word
 
 THREE = ("neutral", "happy", "angry")
 
@@ -31,7 +31,6 @@ def test_a_robot_with_three_moods_shows_the_sensible_one_for_every_word():
     for word, mood in expected.items():
         for robot in itertools.permutations(THREE):
             assert closest_word(robot, Emotion(0, 0, word)) == mood, word
-        assert simple_mood(Emotion(0, 0, word)) == mood
 
 
 @pytest.mark.parametrize(
@@ -55,7 +54,6 @@ def test_a_robot_with_other_moods_shows_the_closest(words, label, closest):
 def test_without_a_known_label_the_emotion_decides(valence, arousal, label):
     word = closest_word(THREE, Emotion(valence, arousal, label))
     assert word == min(THREE, key=lambda each: math.dist(PLACES[each], (valence, arousal)))
-    assert simple_mood(Emotion(valence, arousal, label)) == word
 
 
 def test_the_24_emotions_have_the_faces_of_table_5_2():
