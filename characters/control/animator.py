@@ -7,7 +7,7 @@ import numpy as np
 
 from characters.body.posture import ExpressivityFilter
 from characters.control.command import CharacterCommand, LocomotionIntent, PosedCharacter
-from characters.control.controllers import controller_for
+from characters.control.controllers import CONTROLLERS, default_height
 from characters.control.layers import LAYERS, FrameContext, LayerFactory
 from characters.errors import CharacterError
 from characters.model.character import Character
@@ -50,12 +50,12 @@ class Animator:
         seed: int = 0,
         layers: Sequence[LayerFactory] = LAYERS,
     ) -> None:
-        kind = controller_for(character)
         if scale is None:
-            scale = kind.height(character) / max(character.height, 1e-9)
+            scale = default_height(character) / max(character.height, 1e-9)
         self.character = character
         self.scale = scale
-        self._controller = kind.make(character, scale, place)
+        controller = next(each for each in CONTROLLERS if each.suits(character))
+        self._controller = controller(character, scale, place)
         self._layers = [layer(character, seed) for layer in layers]
         self._expressivity = ExpressivityFilter()
         self._rest = 1.0

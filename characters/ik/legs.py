@@ -1,9 +1,4 @@
-"""Inverse kinematics of the legs of a skeleton.
-
-A mix of joint angles moves the feet along a path that belongs to no clip: they slide and sink into
-the ground. `LegIK` bends hips and knees so that feet reach given positions, such as the mean of the
-clips' feet. A foot that stands still in every clip then stands still in the mix.
-"""
+"""Inverse kinematics of the legs of a skeleton: hips and knees bend so that feet reach places."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.ik import two_bones
-from characters.skeleton import rotations
 from characters.skeleton.feet import foot_joints_by_side
 from characters.skeleton.masks import subtree
 from characters.skeleton.pose import Array, Pose, Skeleton
@@ -61,39 +55,10 @@ class LegIK:
         """Ankle and toes of each leg, numbers in the whole skeleton."""
         return tuple(map(tuple, self.indices[self.joints[:, 3:]].tolist()))
 
-    @cached_property
-    def lengths(self) -> Array:
-        """Length of thigh and shin together, (legs,) [m]."""
-        offsets = self.skeleton.rest.translations[self.joints[:, 2:4]]
-        lengths: Array = np.sqrt(np.einsum("lji,lji->lj", offsets, offsets)).sum(1)
-        return lengths
-
-    @cached_property
-    def rest_globals(self) -> Array:
-        """`character_from_joint` of the joints at rest, (n, 4, 4)."""
-        return self.skeleton.rest.globals(self.skeleton)
-
     def globals(self, pose: Pose) -> Array:
         """Return `character_from_joint` of the joints, (…, n, 4, 4)."""
         part = Pose(pose.translations[..., self.indices, :], pose.rotations[..., self.indices, :])
         return part.globals(self.skeleton)
-
-    def plant(self, mixed: Pose, poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
-        """Return a mixed pose with its feet at the weighted mean of the members' feet.
-
-        Parameters
-        ----------
-        mixed
-            The mixed pose.
-        poses, weights
-            The mixed members; the weights sum to one.
-        """
-        stacked = Pose(
-            np.stack([pose.translations for pose in poses]),
-            np.stack([pose.rotations for pose in poses]),
-        )
-        balls, facings = self._mean_feet(self.globals(stacked), np.asarray(weights))
-        return self.reach(mixed, balls.tolist(), facings.tolist())
 
     def frames(self, pose: Pose) -> LegFrames:
         """Return the global frames of the joints in one pose."""
@@ -115,7 +80,7 @@ class LegIK:
         Hips and knees bend as far as the legs reach.
         """
         frames = self.frames(pose)
-        offsets = pose.translations[self._toes].tolist()
+        offsets = pose.translations[self.indices[self.joints[:, 4]]].tolist()
         ankles, turns = [], []
         for (*_, ankle, _), offset, ball, facing in zip(
             self._joints, offsets, balls, facings, strict=True
@@ -155,7 +120,7 @@ class LegIK:
             rows.append(multiply(conjugate(thigh), shin))
             rows.append(multiply(conjugate(shin), multiply(foot, frames.rotations[ankle])))
         bent = pose.rotations.copy()
-        bent[self._bent_joints] = rows
+        bent[self.indices[self.joints[:, 1:4]].ravel()] = rows
         return Pose(pose.translations, bent, pose.scales, pose.morphs)
 
     def lower_pelvis(
@@ -170,7 +135,7 @@ class LegIK:
         moved = pose.translations.copy()
         moved[self.indices[pelvis]] += down
         positions = list(frames.positions)
-        for joint in self._below_pelvis:
+        for joint in subtree(self.skeleton, pelvis):
             x, y, z = positions[joint]
             positions[joint] = (x, y - distance, z)
         return replace(pose, translations=moved), LegFrames(frames.rotations, positions)
@@ -180,29 +145,6 @@ class LegIK:
         """`joints` as Python numbers."""
         joints: list[list[int]] = self.joints.tolist()
         return joints
-
-    @cached_property
-    def _toes(self) -> NDArray[np.intp]:
-        """The toes, numbers in the whole skeleton."""
-        return self.indices[self.joints[:, 4]]
-
-    @cached_property
-    def _bent_joints(self) -> NDArray[np.intp]:
-        """Hip, knee and ankle of all legs, numbers in the whole skeleton."""
-        return self.indices[self.joints[:, 1:4]].ravel()
-
-    @cached_property
-    def _below_pelvis(self) -> list[int]:
-        """The pelvis of the first leg and its descendants, numbers in `skeleton`."""
-        return subtree(self.skeleton, int(self.joints[0, 0]))
-
-    def _mean_feet(self, globals_: Array, share: Array) -> tuple[Array, Array]:
-        """Return mean ball positions, (legs, 3), and mean orientations of the feet, (legs, 4)."""
-        ankle, toes = self.joints[:, 3], self.joints[:, 4]
-        balls = np.einsum("p,pli->li", share, globals_[..., :3, 3][:, toes])
-        facing = rotations.from_matrix(globals_[..., :3, :3][:, ankle])
-        facing = rotations.align(facing, facing[int(share.argmax())])
-        return balls, rotations.normalize(np.einsum("p,pli->li", share, facing))
 
 
 def find_legs(skeleton: Skeleton) -> LegIK | None:

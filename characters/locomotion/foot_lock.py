@@ -38,7 +38,9 @@ class FootLock:
         self._body_height = body_height
         self._points, self._rest_heights = _rest_foot_points(legs)
         self._hip, self._ankle, self._toes = legs.joints[:, [1, 3, 4]].T.tolist()
-        self._lengths: list[float] = legs.lengths.tolist()
+        offsets = legs.skeleton.rest.translations[legs.joints[:, 2:4]]
+        lengths = np.sqrt(np.einsum("lji,lji->lj", offsets, offsets))
+        self._lengths: list[float] = lengths.sum(1).tolist()
         self._pelvis_drop = 0.0
         self._first_frame = True
 
@@ -158,7 +160,7 @@ def _rest_foot_points(legs: LegIK) -> tuple[list[list[Vector]], list[tuple[float
 
     The heel is below the ankle, and half as far behind it as the ball is in front of it.
     """
-    rest = legs.rest_globals
+    rest = legs.skeleton.rest.globals(legs.skeleton)
     ankle, ball = rest[legs.joints[:, 3]], rest[legs.joints[:, 4], :3, 3]
     heel = ankle[:, :3, 3] - 0.5 * (ball - ankle[:, :3, 3])
     heel[:, 1] = 0.0

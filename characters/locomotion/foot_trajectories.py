@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 
@@ -34,13 +32,13 @@ class FootTrajectories:
     """The clips, then the stance. The extra values are ball (3), orientation (4) and contact (1) of
     each foot, zeros for the stance."""
 
-    homes: Array
+    homes: list[list[list[float]]]
     """Mean of ball and orientation of each foot while it stands, (clips, legs, 7)."""
 
     legs: LegIK
     """The legs of these feet."""
 
-    stance: Array
+    stance: list[list[float]]
     """Ball (3) and orientation (4) of each foot of the stance, (legs, 7)."""
 
     _times: dict[tuple[int, float], float] = field(default_factory=dict, repr=False, compare=False)
@@ -62,11 +60,11 @@ class FootTrajectories:
         stance = _feet(standing, legs)
         clips = [motion.motion for motion in motions if isinstance(motion.motion, Clip)]
         feet = [_foot_trajectory(clip, skeleton, legs, stance) for clip in clips]
-        still = Clip("stance", 1.0, _as_frame(standing), loop=False)
+        still = Clip("stance", 1.0, standing[None], loop=False)
         extra = [*(each.reshape(len(each), -1) for each in feet), np.zeros((1, legs.count * 8))]
         bank = ClipBank.of(skeleton, [*clips, still], np.float64, extra)
-        homes = np.stack([_mean_standing(each) for each in feet])
-        return FootTrajectories(tuple(motions), bank, homes, legs, stance)
+        homes = [_mean_standing(each).tolist() for each in feet]
+        return FootTrajectories(tuple(motions), bank, homes, legs, stance.tolist())
 
     def mixed(
         self, contributions: Sequence[tuple[int, float]], phase: float, share: float
@@ -94,12 +92,11 @@ class FootTrajectories:
     def time(self, number: int, phase: float) -> float:
         """Return the time [s] in a clip at a phase."""
         key = number, phase
-        time = self._times.get(key)
-        if time is None:
+        if key not in self._times:
             if len(self._times) >= _CACHED_TIMES:
                 self._times.clear()
-            time = self._times[key] = self.motions[number].time(phase)
-        return time
+            self._times[key] = self.motions[number].time(phase)
+        return self._times[key]
 
     def travel(self, number: int, start: float, end: float) -> RootDelta:
         """Return how the root of a clip moves over the ground between two phases."""
@@ -111,35 +108,7 @@ class FootTrajectories:
         for mixed, mixed_phase, contacts in self._last_mix:
             if mixed is contributions and mixed_phase == phase:
                 return contacts
-        total = [0.0] * self.legs.count
-        for number, weight in contributions:
-            motion, down = self.motions[number], self._down[number]
-            last = len(down) - 1
-            at = self.time(number, phase) / motion.motion.duration % 1.0 * last
-            frame = min(int(at), last - 1)
-            u = at - frame
-            for foot, (before, after) in enumerate(zip(down[frame], down[frame + 1], strict=True)):
-                total[foot] += weight * (before + (after - before) * u)
-        return total
-
-    @cached_property
-    def stance_list(self) -> list[list[float]]:
-        """`stance` as Python numbers."""
-        stance: list[list[float]] = self.stance.tolist()
-        return stance
-
-    @cached_property
-    def homes_list(self) -> list[list[list[float]]]:
-        """`homes` as Python numbers."""
-        homes: list[list[list[float]]] = self.homes.tolist()
-        return homes
-
-    @cached_property
-    def _down(self) -> list[list[list[float]]]:
-        """Contacts of each foot in each frame of each clip, as Python numbers."""
-        feet = self.bank.table[:, -self.legs.count * 8 :].reshape(-1, self.legs.count, 8)
-        starts = self.bank.starts.tolist()
-        return [feet[low:high, :, 7].tolist() for low, high in pairwise(starts)]
+        return [foot[7] for foot in self.mixed(contributions, phase, 1.0)[1]]
 
 
 def _foot_trajectory(clip: Clip, skeleton: Skeleton, legs: LegIK, stance: Array) -> Array:
@@ -172,13 +141,3 @@ def _feet(poses: Pose, legs: LegIK) -> Array:
     ankle, toes = legs.joints[:, 3], legs.joints[:, 4]
     facing = rotations.from_matrix(placed[..., :3, :3][..., ankle, :, :])
     return np.concatenate([placed[..., :3, 3][..., toes, :], facing], axis=-1)
-
-
-def _as_frame(pose: Pose) -> Pose:
-    """Return a pose as a clip's poses of one frame."""
-    return Pose(
-        pose.translations[None],
-        pose.rotations[None],
-        None if pose.scales is None else pose.scales[None],
-        None if pose.morphs is None else pose.morphs[None],
-    )

@@ -1,10 +1,9 @@
 """Blends of clips at one phase whose standing feet do not slide, at any stride length.
 
-A mix of joint angles moves the feet along a path that belongs to no clip: they slide and sink into
-the ground. Here the feet follow the weighted mean of the clips' feet. For shorter strides they are
-also drawn towards the place where they stand: if p is a standing foot of a body that moves by u and
-turns, and r the same foot of a body that only turns, then s p + (1 − s) r stands still under a body
-that moves by s u.
+A mix of joint angles moves the feet along a path that belongs to no clip: they slide. Here the feet
+follow the weighted mean of the clips' feet. For shorter strides they are also drawn towards the
+place where they stand: if p is a standing foot of a body that moves by u and turns, and r the same
+foot of a body that only turns, then s p + (1 − s) r stands still under a body that moves by s u.
 """
 
 import math
@@ -85,10 +84,9 @@ class StrideBlend(PhaseDriven):
         """
         balls: list[Vector] = []
         facings: list[Quaternion] = []
-        stance = self.trajectories.stance_list
-        for leg, (foot, still) in enumerate(zip(feet, stance, strict=True)):
+        for leg, (foot, still) in enumerate(zip(feet, self.trajectories.stance, strict=True)):
             homes = [
-                (self.trajectories.homes_list[number][leg], weight)
+                (self.trajectories.homes[number][leg], weight)
                 for number, weight in self.contributions
             ]
             home = [sum(h[k] * weight for h, weight in homes) for k in range(7)]

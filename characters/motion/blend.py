@@ -6,7 +6,6 @@ from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -55,14 +54,6 @@ def _sum(arrays: Sequence[Array], share: Array) -> Array:
     return total
 
 
-class FootPlanter(Protocol):
-    """Keeps the feet of a mixed pose at the members' feet; see `characters.ik.legs.LegIK`."""
-
-    def plant(self, mixed: Pose, poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
-        """Return the mixed pose with its feet at the weighted mean of the members' feet."""
-        ...
-
-
 @dataclass(frozen=True)
 class Blend(PhaseDriven):
     """Motions mixed at one phase; `Cyclic`, so blends can be blended.
@@ -77,9 +68,6 @@ class Blend(PhaseDriven):
 
     weights: tuple[float, ...]
     """Weight of each; none negative, sum one: see `shares`."""
-
-    legs: FootPlanter | None = None
-    """Keeps the feet where the members' feet are; None mixes the joints only."""
 
     def __post_init__(self) -> None:
         """Refuse weights that do not sum to one."""
@@ -109,11 +97,7 @@ class Blend(PhaseDriven):
             member.at(phase * rate)
             for (member, _), rate in zip(self._active, self._rates, strict=True)
         ]
-        weights = [weight for _, weight in self._active]
-        mixed = mix(poses, weights)
-        if self.legs is None or len(poses) == 1:
-            return mixed
-        return self.legs.plant(mixed, poses, weights)
+        return mix(poses, [weight for _, weight in self._active])
 
     def between(self, start: float, end: float) -> RootDelta:
         """Return the mean of the members' root deltas between two phases."""

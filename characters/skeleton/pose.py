@@ -60,8 +60,8 @@ class Pose:
             matrices = matrices[..., ancestors, :, :] @ matrices
         return matrices[..., :-1, :, :]
 
-    def __getitem__(self, frames: "int | slice | NDArray[np.intp]") -> "Pose":
-        """Return some of the poses, selected along the first leading axis."""
+    def __getitem__(self, frames: "int | slice | NDArray[np.intp] | None") -> "Pose":
+        """Return some of the poses, selected along the first leading axis; None adds an axis."""
         return Pose(
             self.translations[frames],
             self.rotations[frames],

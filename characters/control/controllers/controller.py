@@ -1,6 +1,5 @@
 """What every controller is: it decides what a character plays, and where it stands."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -49,7 +48,18 @@ class ControllerFrame:
 
 
 class CharacterController(Protocol):
-    """Plays one character under commands: one of `CONTROLLERS`."""
+    """Plays one character under commands: one of `CONTROLLERS`.
+
+    `scale` is in table metres per metre of the character. Without a first `place` it starts where
+    it is first sent.
+    """
+
+    def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None: ...
+
+    @staticmethod
+    def suits(character: Character) -> bool:
+        """Return whether it can play a character."""
+        ...
 
     @property
     def actions(self) -> tuple[str, ...]:
@@ -76,18 +86,3 @@ class CharacterController(Protocol):
             If the character does not know the action.
         """
         ...
-
-
-@dataclass(frozen=True)
-class ControllerType:
-    """A controller as it is registered."""
-
-    suits: Callable[[Character], bool]
-    """Whether it can play a character."""
-
-    make: Callable[[Character, float, RootDelta | None], CharacterController]
-    """Makes it for a character at a scale (table metres per metre of the character) and a first
-    place; without one it starts where it is first sent."""
-
-    height: Callable[[Character], float]
-    """Default height of a character on the table [m]."""

@@ -6,9 +6,8 @@ from hypothesis import strategies as st
 from characters import Character, Pose, Skeleton
 from characters.ik.legs import find_legs
 from characters.locomotion.gaits import Gaits
-from characters.motion.blend import Blend, mix
+from characters.motion.blend import mix
 from characters.motion.motion import RootDelta
-from characters.motion.phase import phased
 from characters.skeleton import rotations
 
 NAMES = (
@@ -39,9 +38,17 @@ def human():
 
 
 def planted(body, poses, weights):
+    """The mix of poses, its feet at the mean of their feet."""
     legs = find_legs(body)
     assert legs is not None
-    return legs.plant(mix(poses, weights), poses, weights)
+    mixed = mix(poses, weights)
+    feet = [pose.globals(body) for pose in (*poses, mixed)]
+    balls = [
+        np.tensordot(weights, [each[toes, :3, 3] for each in feet[:-1]], 1).tolist()
+        for toes in (5, 9)
+    ]
+    facings = [rotations.from_matrix(feet[-1][ankle, :3, :3]).tolist() for ankle in (4, 8)]
+    return legs.reach(mixed, balls, facings)
 
 
 def bent(body, angles):
@@ -91,8 +98,8 @@ def test_without_knees_there_are_no_legs_to_bend(skeleton):
 
 @pytest.mark.parametrize("weight", [0.25, 0.5, 0.75])
 def test_a_foot_that_stands_in_walk_and_in_run_stands_in_the_mix(human, weight):
-    members = tuple(phased(human.clips[name], human.skeleton) for name in ("Walk", "Run"))
-    blend = Blend(members, (1 - weight, weight), find_legs(human.skeleton))
+    gaits = Gaits(human.clips, human.skeleton, human.clips["idle"].sample(0.0))
+    blend = gaits.at(2.75 + 0.5 * weight, 0.0)
     toes = human.skeleton.index("LeftToe")
     phases = np.linspace(0.1, 0.25, 16)  # the left foot is flat on the ground in both
     places = []
