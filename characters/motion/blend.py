@@ -174,8 +174,7 @@ class TimeScaled:
 
     def between(self, start: float, end: float) -> RootDelta:
         """Return how the root moves over the ground between two phases."""
-        delta = self.motion.between(start, end)
-        return RootDelta(delta.x * self.stride, delta.z * self.stride, delta.yaw)
+        return self.motion.between(start, end).scaled(self.stride)
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s] since phase 0."""

@@ -144,5 +144,4 @@ class Clip:
     def _place(self, time: float) -> RootDelta:
         """Return where the root is at a time [s], relative to the start of the current loop."""
         frame, u = self.position(time)
-        a, b = self._places[frame], self._places[min(frame + 1, self._last)]
-        return RootDelta(a.x + (b.x - a.x) * u, a.z + (b.z - a.z) * u, a.yaw + (b.yaw - a.yaw) * u)
+        return self._places[frame].interpolated(self._places[min(frame + 1, self._last)], u)

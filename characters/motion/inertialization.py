@@ -103,8 +103,8 @@ class Inertialization:
         return Inertialization(
             OffsetDecay(turns, spin, length),
             OffsetDecay(shifts, (moved - shifts) / step, length),
-            _scale_decay(old[0], new[0], length),
-            _morph_decay(old[0], new[0], length),
+            _without_velocity(old[0].scales, new[0].scales, 1.0, length),
+            _without_velocity(old[0].morphs, new[0].morphs, 0.0, length),
         )
 
     def apply(self, pose: Pose, time: float) -> Pose:
@@ -142,21 +142,14 @@ def _rotation_offset(old: Pose, new: Pose) -> Array:
     )
 
 
-def _scale_decay(old: Pose, new: Pose, length: float) -> OffsetDecay | None:
-    """Return the decay of scales, without velocity, so that no scale becomes negative."""
-    if old.scales is None and new.scales is None:
+def _without_velocity(
+    old: Array | None, new: Array | None, default: float, length: float
+) -> OffsetDecay | None:
+    """Return the decay of scales or morphs; without velocity, so that none becomes negative."""
+    if old is None and new is None:
         return None
-    offset = old.scales_or_ones - new.scales_or_ones
-    return OffsetDecay(offset, np.zeros_like(offset), length)
-
-
-def _morph_decay(old: Pose, new: Pose, length: float) -> OffsetDecay | None:
-    """Return the decay of morphs, without velocity, so that no weight becomes negative."""
-    if old.morphs is None and new.morphs is None:
-        return None
-    before = np.zeros(1) if old.morphs is None else old.morphs
-    after = np.zeros(1) if new.morphs is None else new.morphs
-    offset: Array = before - after
+    before = np.float64(default) if old is None else old
+    offset = np.asarray(before - (default if new is None else new))
     return OffsetDecay(offset, np.zeros_like(offset), length)
 
 

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from characters.motion.clip import Clip
-from characters.motion.motion import Motion, RootDelta
-from characters.motion.phase import as_cyclic, has_footfalls
+from characters.motion.motion import RootDelta
+from characters.motion.phase import TransformedMotion, has_footfalls
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
 from characters.skeleton.symmetry import (
@@ -193,40 +193,23 @@ class Mirror:
 
 
 @dataclass(frozen=True)
-class Mirrored:
+class Mirrored(TransformedMotion):
     """A motion with left and right exchanged; `Cyclic`.
 
     Its left footfall is the right footfall of the motion, so the phases of a motion with footfalls
     differ by half a cycle. Times are equal.
     """
 
-    motion: Motion
-    """The motion."""
-
     mirror: Mirror
     """The mirror of its skeleton."""
 
-    @property
-    def duration(self) -> float:
-        """Time until it repeats or ends [s]."""
-        return self.motion.duration
+    def pose(self, pose: Pose) -> Pose:
+        """Return a mirrored pose."""
+        return self.mirror.pose(pose)
 
-    def sample(self, time: float) -> Pose:
-        """Return the pose at a time [s]."""
-        return self.mirror.pose(self.motion.sample(time))
-
-    def travel(self, start: float, end: float) -> RootDelta:
-        """Return how the root moves over the ground between two times [s]."""
-        return self.mirror.delta(self.motion.travel(start, end))
-
-    def at(self, phase: float) -> Pose:
-        """Return the pose at a phase."""
-        return self.mirror.pose(as_cyclic(self.motion).at(phase + self.lead))
-
-    def between(self, start: float, end: float) -> RootDelta:
-        """Return how the root moves over the ground between two phases."""
-        lead = self.lead
-        return self.mirror.delta(as_cyclic(self.motion).between(start + lead, end + lead))
+    def delta(self, delta: RootDelta) -> RootDelta:
+        """Return a mirrored root delta."""
+        return self.mirror.delta(delta)
 
     @property
     def lead(self) -> float:

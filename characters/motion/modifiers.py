@@ -16,7 +16,7 @@ import numpy as np
 from characters.errors import CharacterError
 from characters.motion.curves import check_knots
 from characters.motion.motion import Motion, RootDelta
-from characters.motion.phase import as_cyclic
+from characters.motion.phase import TransformedMotion, as_cyclic
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose
 from characters.smoothing import hermite
@@ -134,11 +134,8 @@ class Loop:
 
 
 @dataclass(frozen=True)
-class RootOffset:
+class RootOffset(TransformedMotion):
     """A motion at another place on the ground; `Cyclic`."""
-
-    motion: Motion
-    """The motion."""
 
     offset: RootDelta
     """From its place to the new place."""
@@ -146,28 +143,8 @@ class RootOffset:
     roots: tuple[int, ...] = (0,)
     """The joints without a parent."""
 
-    @property
-    def duration(self) -> float:
-        """Time until it repeats or ends [s]."""
-        return self.motion.duration
-
-    def sample(self, time: float) -> Pose:
-        """Return the pose at a time [s]."""
-        return self._placed(self.motion.sample(time))
-
-    def travel(self, start: float, end: float) -> RootDelta:
-        """Return how the root moves over the ground between two times [s]."""
-        return self._moved(self.motion.travel(start, end))
-
-    def at(self, phase: float) -> Pose:
-        """Return the pose at a phase."""
-        return self._placed(as_cyclic(self.motion).at(phase))
-
-    def between(self, start: float, end: float) -> RootDelta:
-        """Return how the root moves over the ground between two phases."""
-        return self._moved(as_cyclic(self.motion).between(start, end))
-
-    def _placed(self, pose: Pose) -> Pose:
+    def pose(self, pose: Pose) -> Pose:
+        """Return a pose at the new place."""
         roots = list(self.roots)
         turn = rotations.about("y", self.offset.yaw)
         moved, turned = pose.translations.copy(), pose.rotations.copy()
@@ -176,7 +153,7 @@ class RootOffset:
         turned[roots] = rotations.multiply(turn, turned[roots])
         return replace(pose, translations=moved, rotations=turned)
 
-    def _moved(self, delta: RootDelta) -> RootDelta:
+    def delta(self, delta: RootDelta) -> RootDelta:
         """Return a delta of the motion in the frame of the new place."""
         return self.offset.then(delta).then(self.offset.inverse())
 

@@ -98,6 +98,14 @@ class RootDelta:
         x, z = other.x - self.x, other.z - self.z
         return RootDelta(cosine * x - sine * z, sine * x + cosine * z, other.yaw - self.yaw)
 
+    def interpolated(self, other: "RootDelta", u: float) -> "RootDelta":
+        """Return the place a fraction u of the way to another, along a line."""
+        return RootDelta(
+            self.x + (other.x - self.x) * u,
+            self.z + (other.z - self.z) * u,
+            self.yaw + (other.yaw - self.yaw) * u,
+        )
+
     def repeated(self, times: int) -> "RootDelta":
         """Return the delta composed with itself a whole number of times, in closed form.
 
@@ -116,6 +124,10 @@ class RootDelta:
             ratio = math.sin(times * half) / math.sin(half)
         turned = RootDelta(yaw=(times - 1) * half).then(RootDelta(self.x * ratio, self.z * ratio))
         return RootDelta(turned.x, turned.z, times * self.yaw)
+
+    def scaled(self, factor: float) -> "RootDelta":
+        """Return the delta over a distance multiplied by a factor, with the same turn."""
+        return RootDelta(self.x * factor, self.z * factor, self.yaw)
 
     @property
     def length(self) -> float:

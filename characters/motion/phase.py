@@ -110,6 +110,48 @@ class PhasedMotion(PhaseDriven):
 
 
 @dataclass(frozen=True)
+class TransformedMotion:
+    """Base of motions that change each pose and root delta of another motion; `Cyclic`."""
+
+    motion: Motion
+    """The motion."""
+
+    @property
+    def duration(self) -> float:
+        """Time until it repeats or ends [s]."""
+        return self.motion.duration
+
+    @property
+    def lead(self) -> float:
+        """Phase of the motion ahead of the changed one."""
+        return 0.0
+
+    def pose(self, pose: Pose) -> Pose:
+        """Return a changed pose."""
+        raise NotImplementedError
+
+    def delta(self, delta: RootDelta) -> RootDelta:
+        """Return a changed root delta."""
+        raise NotImplementedError
+
+    def sample(self, time: float) -> Pose:
+        """Return the pose at a time [s]."""
+        return self.pose(self.motion.sample(time))
+
+    def travel(self, start: float, end: float) -> RootDelta:
+        """Return how the root moves over the ground between two times [s]."""
+        return self.delta(self.motion.travel(start, end))
+
+    def at(self, phase: float) -> Pose:
+        """Return the pose at a phase."""
+        return self.pose(as_cyclic(self.motion).at(phase + self.lead))
+
+    def between(self, start: float, end: float) -> RootDelta:
+        """Return how the root moves over the ground between two phases."""
+        return self.delta(as_cyclic(self.motion).between(start + self.lead, end + self.lead))
+
+
+@dataclass(frozen=True)
 class StaticPose:
     """A pose that is held; `Cyclic`, with a cycle of any length."""
 

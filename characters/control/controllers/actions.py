@@ -1,18 +1,15 @@
 """Actions: what a character can perform besides standing and walking, at any intensity."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
+from characters.control.command import ActionIntent
+from characters.errors import CharacterError
 from characters.face.affect_display import EMOTIONAL_WORDS
 from characters.model.character import Character
 from characters.motion.blend import BlendSpace1D
 from characters.motion.clip import Clip
-from characters.motion.contacts import find_contacts
-from characters.motion.motion import RootDelta
-from characters.motion.phase import PhasedMotion
+from characters.motion.phase import PhasedMotion, RetimedMotion
 from characters.motion.state_machine import StateMachine
-from characters.skeleton.feet import Feet
-from characters.skeleton.pose import Pose, Skeleton
 
 INTENSITIES = (("head", -1.0), ("legs", 0.0), ("tail", 1.0))
 """Suffixes of an action's clips and the weights that they stand for (thesis, section 5.3)."""
@@ -21,26 +18,7 @@ WEIGHT_LAG_S = 0.12
 """Time constant with which the intensity of an action follows the command [s]."""
 
 
-@dataclass(frozen=True)
-class ActionContacts:
-    """Which feet an action has on the ground, in each frame of its clip."""
-
-    down: list[list[bool]]
-    """(frames, feet)."""
-
-    @staticmethod
-    def of(clip: Clip, skeleton: Skeleton, feet: Feet) -> "ActionContacts":
-        """Return the contacts that are detected in a clip."""
-        return ActionContacts(find_contacts(clip, skeleton, feet).tolist())
-
-    def at(self, phase: float) -> list[bool]:
-        """Return which feet are down at a phase."""
-        last = len(self.down) - 1
-        frame = (phase if phase == 1.0 else phase % 1.0) * last
-        return self.down[min(int(frame), last)]
-
-
-class ActionMotion:
+class ActionMotion(RetimedMotion):
     """An action whose intensity may change while it plays; a `Motion`.
 
     Parameters
@@ -56,38 +34,24 @@ class ActionMotion:
     def __init__(self, name: str, space: BlendSpace1D, once: bool) -> None:
         self.shows_emotion = name in EMOTIONAL_WORDS
         """Whether its clips show an emotion themselves: it is named after one."""
+        super().__init__(space.at(0.0))
         self._space = space
         self._once = once
-        self._motion = space.at(0.0)
-        self._phase = self._time = 0.0
-
-    @property
-    def duration(self) -> float:
-        """Duration at the present intensity [s]."""
-        return self._motion.duration
 
     def begin(self, weight: float) -> None:
         """Restart at time 0, at an intensity −1…1."""
-        self._motion, self._phase, self._time = self._space.at(weight), 0.0, 0.0
+        self.restart(self._space.at(weight), 0.0)
 
-    def change(self, weight: float, time: float) -> None:
+    def set_weight(self, weight: float, time: float) -> None:
         """Continue at another intensity from a time on [s]."""
         phase = self.phase(time)
-        # Whole cycles are dropped, so that a long session does not lose precision.
-        self._phase, self._time = phase if self._once else phase % 1.0, time
-        self._motion = self._space.at(weight)
+        self.change(self._space.at(weight), time)
+        if self._once:
+            self._phase = phase  # not wrapped: an action that has ended stays at its end
 
     def over(self, time: float) -> bool:
         """Whether it has ended at a time [s]."""
         return self._once and self.phase(time) >= 1.0
-
-    def sample(self, time: float) -> Pose:
-        """Return the pose at a time [s]."""
-        return self._motion.at(self.phase(time))
-
-    def travel(self, start: float, end: float) -> RootDelta:
-        """Return the motion of the root over the ground between two times [s]."""
-        return self._motion.between(self.phase(start), self.phase(end))
 
     @property
     def clip(self) -> Clip:
@@ -99,10 +63,8 @@ class ActionMotion:
         return middle.motion
 
     def phase(self, time: float) -> float:
-        """Return the phase at a time [s]."""
-        phase = self._phase
-        if self._motion.duration > 0.0:
-            phase += (time - self._time) / self._motion.duration
+        """Return the phase at a time [s]; an action that has ended stays at 1."""
+        phase = super().phase(time) if self.duration > 0.0 else self._phase
         return min(phase, 1.0) if self._once else phase
 
 
@@ -150,14 +112,24 @@ def actions_of(character: Character, besides: Iterable[str] = ()) -> dict[str, A
 def next_action(
     machine: StateMachine,
     actions: Mapping[str, ActionMotion],
-    asked: str,
+    intent: ActionIntent | None,
     finished: str,
     now: float,
 ) -> tuple[str, str]:
-    """Return the action to play when `asked` for one, and the asked action that has finished.
+    """Return the action to play for an intent, and the asked action that has finished.
 
     An action that ends is followed by "idle" for as long as the same action is asked for.
+
+    Raises
+    ------
+    CharacterError
+        If the character does not know the action.
     """
+    asked = "idle" if intent is None or intent.name == "move" else intent.name
+    if asked != "idle" and asked not in actions:
+        raise CharacterError(
+            f"the character does not know {asked!r}; it knows {', '.join(machine.states)}"
+        )
     if asked != finished:
         finished = ""
     if asked == machine.state and asked in actions and actions[asked].over(now - machine.entered):

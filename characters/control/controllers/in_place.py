@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from characters.control.command import CharacterCommand, LocomotionIntent
 from characters.control.controllers.actions import WEIGHT_LAG_S, actions_of, next_action
 from characters.control.controllers.controller import ControllerFrame
-from characters.errors import CharacterError
 from characters.model.character import Character
+from characters.motion.curves import ease
 from characters.motion.motion import Motion, RootDelta
 from characters.motion.phase import StaticPose
 from characters.motion.state_machine import StateMachine
@@ -32,13 +32,8 @@ class _Hop:
     def at(self) -> tuple[RootDelta, float]:
         """Return the place on the table and the height [m]."""
         u = min(self.time / HOP_TIME_S, 1.0)
-        ease = u * u * (3 - 2 * u)
-        a, b = self.start, self.end
-        place = RootDelta(
-            a.x + (b.x - a.x) * ease, a.z + (b.z - a.z) * ease, a.yaw + (b.yaw - a.yaw) * ease
-        )
-        top = 0.006 + 0.25 * math.hypot(b.x - a.x, b.z - a.z)
-        return place, 4 * u * (1 - u) * top
+        top = 0.006 + 0.25 * math.hypot(self.end.x - self.start.x, self.end.z - self.start.z)
+        return self.start.interpolated(self.end, ease(u, "cubic")), 4 * u * (1 - u) * top
 
 
 class InPlaceController:
@@ -93,23 +88,17 @@ class InPlaceController:
     def _act(self, command: CharacterCommand, elapsed: float, now: float) -> None:
         """Play the action that is asked for."""
         weight = min(max(command.weight, -1.0), 1.0)
-        asked = "idle" if command.action is None else command.action.name
-        if asked == "move":
-            asked = "idle"
-        if asked != "idle" and asked not in self._actions:
-            raise CharacterError(
-                f"the character does not know {asked!r}; it knows "
-                f"{', '.join(['idle', *self._actions])}"
-            )
+        name, self._finished = next_action(
+            self._machine, self._actions, command.action, self._finished, now
+        )
         self._weight = low_pass(self._weight, weight, elapsed, WEIGHT_LAG_S)
-        name, self._finished = next_action(self._machine, self._actions, asked, self._finished, now)
         if name != self._machine.state and name != "idle":
             self._weight = weight
             self._actions[name].begin(weight)
         self._machine.request(name, now)
         self._state = name
         if name != "idle":
-            self._actions[name].change(self._weight, now - self._machine.entered)
+            self._actions[name].set_weight(self._weight, now - self._machine.entered)
 
     def _move(self, going: LocomotionIntent, elapsed: float) -> None:
         """Hop to the target and turn to the point to be faced."""
@@ -140,12 +129,8 @@ class InPlaceController:
         # Hops of equal length, so that the last one is not much shorter than the others.
         part = 1.0 / math.ceil(max(distance / MAX_HOP_M, abs(turn) / MAX_HOP_TURN_RAD))
         self._turn_speed = 0.0
-        end = RootDelta(
-            self._place.x + part * (target.x - self._place.x),
-            self._place.z + part * (target.z - self._place.z),
-            self._place.yaw + part * turn,
-        )
-        return _Hop(self._place, end, 0.0)
+        way = self._place.interpolated(target, part)
+        return _Hop(self._place, RootDelta(way.x, way.z, self._place.yaw + part * turn), 0.0)
 
 
 def _bearing(place: RootDelta, going: LocomotionIntent) -> float:

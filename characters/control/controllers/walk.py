@@ -7,13 +7,11 @@ import numpy as np
 from characters.control.command import CharacterCommand
 from characters.control.controllers.actions import (
     WEIGHT_LAG_S,
-    ActionContacts,
     ActionMotion,
     actions_of,
     next_action,
 )
 from characters.control.controllers.controller import ControllerFrame
-from characters.errors import CharacterError
 from characters.locomotion.gaits import (
     IDLE_SPEED,
     MAX_ANGULAR_RAD,
@@ -26,6 +24,7 @@ from characters.locomotion.gaits import (
 from characters.locomotion.steering import STANDSTILL, Steering, SteeringOutput
 from characters.locomotion.stride_blending import StrideBlend
 from characters.model.character import Character
+from characters.motion.contacts import find_contacts
 from characters.motion.motion import Motion, RootDelta
 from characters.motion.phase import Cyclic, RetimedMotion
 from characters.motion.state_machine import StateMachine
@@ -71,8 +70,8 @@ class WalkController:
         self._weight = 0.0
         legs = self.gaits.legs
         self._feet = 0 if legs is None else legs.count
-        self._contacts = {
-            name: ActionContacts.of(action.clip, skeleton, () if legs is None else legs.feet)
+        self._contacts: dict[str, list[list[bool]]] = {
+            name: find_contacts(action.clip, skeleton, () if legs is None else legs.feet).tolist()
             for name, action in self._actions.items()
         }
 
@@ -91,16 +90,8 @@ class WalkController:
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
     ) -> ControllerFrame:
         """Advance by a time [s] under a command and return what is played."""
-        asked = "idle" if command.action is None else command.action.name
-        if asked == "move":
-            asked = "idle"
-        if asked != "idle" and asked not in self._actions:
-            raise CharacterError(
-                f"the character does not know {asked!r}; it knows "
-                f"{', '.join(['idle', 'move', *self._actions])}"
-            )
         action, self._finished = next_action(
-            self._machine, self._actions, asked, self._finished, self._time
+            self._machine, self._actions, command.action, self._finished, self._time
         )
         if action != "idle":
             return self.steer(STANDSTILL, elapsed, action, min(max(command.weight, -1.0), 1.0))
@@ -117,9 +108,7 @@ class WalkController:
         now, self._time = self._time, self._time + elapsed
         self._play(steered, "move" if course.speed > 0.0 else action, weight, now)
         step = self._machine.travel(now, self._time)
-        self.place = self.place.then(
-            RootDelta(step.x * self._scale, step.z * self._scale, step.yaw)
-        )
+        self.place = self.place.then(step.scaled(self._scale))
         return self._frame(steered, course.speed > 0.0 and not self._turning)
 
     def _frame(self, steered: SteeringOutput, going: bool) -> ControllerFrame:
@@ -150,7 +139,9 @@ class WalkController:
             return None
         state, spent = self._machine.state, self._time - self._machine.entered
         if state in self._actions:
-            return self._contacts[state].at(self._actions[state].phase(spent))
+            contacts, phase = self._contacts[state], self._actions[state].phase(spent)
+            frame = int((phase if phase == 1.0 else phase % 1.0) * (len(contacts) - 1))
+            return contacts[frame]
         if state == "idle":
             return [True] * self._feet
         assert isinstance(self._motion, StrideBlend)  # as always for a character with legs
@@ -210,7 +201,7 @@ class WalkController:
             action.begin(weight)
             return
         self._weight = low_pass(self._weight, weight, self._time - now, WEIGHT_LAG_S)
-        action.change(self._weight, now - self._machine.entered)
+        action.set_weight(self._weight, now - self._machine.entered)
 
 
 def _most_similar_phase(pose: Pose, motion: Cyclic, skeleton: Skeleton) -> float:
