@@ -27,33 +27,12 @@ from characters.skeleton.scalar_quaternions import (
 )
 from characters.smoothing import damped_spring
 
-
-@dataclass(frozen=True)
-class GazeLimits:
-    """How far a body can look, relative to its chest."""
-
-    head_yaw: float = math.radians(72)
-    """Yaw of the head to either side [rad]."""
-
-    head_up: float = math.radians(42)
-    """Pitch of the head upwards [rad]."""
-
-    head_down: float = math.radians(48)
-    """Pitch of the head downwards [rad]."""
-
-    eye_yaw: float = math.radians(24)
-    """Yaw of the eyes in the head to either side [rad]."""
-
-    eye_pitch: float = math.radians(15)
-    """Pitch of the eyes in the head up and down [rad]."""
-
-    max_target_yaw: float = math.radians(130)
-    """Yaw beyond which a target is ignored [rad]."""
-
-
-HUMAN_GAZE = GazeLimits()
-"""Slightly within the range of motion of a healthy adult's neck (Youdas et al., 1992), and within
-that of the eyes, since drawn lids hide no more."""
+# How far a body can look, relative to its chest: slightly within the range of motion of a healthy
+# adult's neck (Youdas et al., 1992), and within that of the eyes, since drawn lids hide no more.
+MAX_HEAD_YAW_RAD = math.radians(72)  # to either side
+MAX_HEAD_UP_RAD, MAX_HEAD_DOWN_RAD = math.radians(42), math.radians(48)
+MAX_EYE_YAW_RAD, MAX_EYE_PITCH_RAD = math.radians(24), math.radians(15)  # in the head
+MAX_TARGET_YAW_RAD = math.radians(130)  # a target beyond is ignored
 
 EYES_ONLY_RAD = math.radians(9)  # turns up to this are made by the eyes alone
 HEAD_SHARE = 0.92  # part of the rest that the head takes
@@ -96,16 +75,11 @@ class Gaze:
     ----------
     skeleton, anatomy
         The body.
-    limits
-        Limits of its turns.
     """
 
-    def __init__(
-        self, skeleton: Skeleton, anatomy: Anatomy, limits: GazeLimits = HUMAN_GAZE
-    ) -> None:
+    def __init__(self, skeleton: Skeleton, anatomy: Anatomy) -> None:
         head = anatomy.joint("head")
         self._able = head is not None
-        self._limits = limits
         self._yaw = self._pitch = self._yaw_speed = self._pitch_speed = 0.0
         self.shift = 0.0
         """Angle by which the target moved in the last update [rad]."""
@@ -211,14 +185,14 @@ class Gaze:
         if max(map(abs, way)) < 1e-6:
             return None
         aim = _angles(rotate(conjugate(body), way))
-        return aim if abs(aim[0]) < self._limits.max_target_yaw else None
+        return aim if abs(aim[0]) < MAX_TARGET_YAW_RAD else None
 
     def _head_turn(
         self, aim: tuple[float, float], held: tuple[float, float], share: float
     ) -> tuple[float, float]:
         """Return the turn of the head relative to the pose [rad]: yaw, pitch."""
-        limits, turns = self._limits, []
-        ranges = ((-limits.head_yaw, limits.head_yaw), (-limits.head_down, limits.head_up))
+        turns = []
+        ranges = ((-MAX_HEAD_YAW_RAD, MAX_HEAD_YAW_RAD), (-MAX_HEAD_DOWN_RAD, MAX_HEAD_UP_RAD))
         for angle, now, (low, high) in zip(aim, held, ranges, strict=True):
             away = angle - now
             beyond = math.copysign(max(abs(away) - EYES_ONLY_RAD, 0.0) * HEAD_SHARE, away)
@@ -252,10 +226,9 @@ class Gaze:
                 x, y, z = rotate(whole, subtract(eye.place, head.place))
                 place = (x + head.place[0], y + head.place[1], z + head.place[2])
                 yaw, pitch = _angles(rotate(back, subtract(point, place)))
-                yaw_most, pitch_most = self._limits.eye_yaw, self._limits.eye_pitch
                 target = (
-                    min(max(yaw, -yaw_most), yaw_most),
-                    min(max(pitch, -pitch_most), pitch_most),
+                    min(max(yaw, -MAX_EYE_YAW_RAD), MAX_EYE_YAW_RAD),
+                    min(max(pitch, -MAX_EYE_PITCH_RAD), MAX_EYE_PITCH_RAD),
                 )
             before = self._eye_turns[number]
             yaw, pitch = (w + (b - w) * kept for w, b in zip(target, before, strict=True))

@@ -11,7 +11,7 @@ from operator import mul
 from affect import Emotion
 from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from characters.skeleton.pose import Array
-from characters.smoothing import low_pass
+from characters.smoothing import damped_spring, low_pass
 
 RECIPES: dict[str, tuple[float, ...]] = {
     #            happy angry  sad  surprised relaxed lids
@@ -148,13 +148,10 @@ class AffectDisplay:
         asked = any(targets)
         if not self._visible and not asked:
             return
-        rate = 2.0 / FACE_LAG_S
-        decay = math.exp(-rate * elapsed)  # of a critically damped spring, as in `damped_spring`
         for channel, target in enumerate(targets):
-            offset, speed = self._weights[channel] - target, self._rates[channel]
-            slope = speed + rate * offset
-            self._weights[channel] = target + (offset + slope * elapsed) * decay
-            self._rates[channel] = (speed - rate * slope * elapsed) * decay
+            self._weights[channel], self._rates[channel] = damped_spring(
+                self._weights[channel], self._rates[channel], target, elapsed, FACE_LAG_S
+            )
         largest = max(map(abs, (*self._weights, *self._rates)))
         self._visible = asked or largest > NEGLIGIBLE
         if not self._visible:

@@ -10,6 +10,8 @@ import math
 
 import numpy as np
 
+from characters.motion.curves import ease
+
 MEAN_INTERVAL_S = 3.6
 """Mean time between two blinks [s]."""
 
@@ -72,9 +74,5 @@ def lid_closure(time: float) -> float:
     if time <= 0.0 or time >= CLOSING_S + CLOSED_S + OPENING_S:
         return 0.0
     if time < CLOSING_S:
-        return _smooth(time / CLOSING_S)
-    return _smooth(1.0 - max(time - CLOSING_S - CLOSED_S, 0.0) / OPENING_S)
-
-
-def _smooth(u: float) -> float:
-    return u * u * (3.0 - 2.0 * u)
+        return ease(time / CLOSING_S, "cubic")
+    return ease(1.0 - max(time - CLOSING_S - CLOSED_S, 0.0) / OPENING_S, "cubic")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from characters.face.lids import normalized
+from characters.face.lids import numbers_by_name
 from characters.skeleton.pose import Array
 
 EXPRESSIONS = ("happy", "angry", "sad", "surprised", "relaxed")
@@ -56,10 +56,7 @@ class ExpressionMorphs:
         >>> ExpressionMorphs.of(["blink", "happy", "sad", "aa"]).able
         (True, False, True, False, False)
         """
-        found: dict[str, int] = {}
-        for number, name in enumerate(morphs):
-            for form in (name, name.rpartition(".")[2]):
-                found.setdefault(normalized(form), number)
+        found = numbers_by_name(morphs)
         weights = np.zeros((len(morphs), len(EXPRESSIONS)))
         for column, expression in enumerate(EXPRESSIONS):
             whole = next((n for n in _WHOLE[expression] if n in found), None)

@@ -37,10 +37,7 @@ class Lids:
         >>> Lids.of(["jawOpen", "eyeBlinkLeft", "eyeBlinkRight"]).sides.tolist()
         [1, 2]
         """
-        found: dict[str, int] = {}
-        for number, name in enumerate(morphs):
-            for form in (name, name.rpartition(".")[2]):
-                found.setdefault(normalized(form), number)
+        found = numbers_by_name(morphs)
         both = next((found[name] for name in _BOTH if name in found), None)
         pairs = (
             (found[stem + left], found[stem + right])
@@ -81,13 +78,17 @@ class Lids:
                 weights[number] = most
 
 
-def normalized(name: str) -> str:
-    """Return a morph's name in lower case, without blanks and punctuation.
+def numbers_by_name(morphs: Sequence[str]) -> dict[str, int]:
+    """Return morph numbers by name and by its last part: lower case, no blanks or punctuation.
 
-    >>> normalized("Eye Blink_L")
-    'eyeblinkl'
+    >>> numbers_by_name(["Face.Eye Blink_L"])
+    {'faceeyeblinkl': 0, 'eyeblinkl': 0}
     """
-    return re.sub(r"[\W_]", "", name).lower()
+    found: dict[str, int] = {}
+    for number, name in enumerate(morphs):
+        for form in (name, name.rpartition(".")[2]):
+            found.setdefault(re.sub(r"[\W_]", "", form).lower(), number)
+    return found
 
 
 def blink_shares(morphs: Sequence[str], meshes: Iterable[Mesh], lids: Lids) -> Array:

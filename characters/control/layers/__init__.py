@@ -4,7 +4,7 @@ from characters.control.layers.breath import BreathLayer
 from characters.control.layers.face import FaceLayer
 from characters.control.layers.foot_lock import FootLockLayer
 from characters.control.layers.gaze import GazeLayer
-from characters.control.layers.layer import FrameContext, LayerFactory, PoseLayer
+from characters.control.layers.layer import FrameContext, LayerFactory
 from characters.control.layers.posture import PostureLayer
 
 FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
@@ -20,12 +20,7 @@ __all__ = [
     "FOOT_LAYERS",
     "LAYERS",
     "LIVELINESS_LAYERS",
-    "BreathLayer",
-    "FaceLayer",
     "FootLockLayer",
     "FrameContext",
-    "GazeLayer",
     "LayerFactory",
-    "PoseLayer",
-    "PostureLayer",
 ]

@@ -21,17 +21,6 @@ Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True)
-class _Level:
-    """The joints of one depth."""
-
-    positions: slice
-    """Their positions in the order of depth."""
-
-    parents: Indices
-    """Positions of their parents, (joints of the level,)."""
-
-
-@dataclass(frozen=True)
 class _DepthOrder:
     """Joints sorted by depth."""
 
@@ -41,8 +30,8 @@ class _DepthOrder:
     positions: Indices
     """Position of each joint, (joints,)."""
 
-    levels: tuple[_Level, ...]
-    """All levels below the roots, from the top down."""
+    levels: tuple[tuple[slice, Indices], ...]
+    """Positions of the joints and of their parents in each depth below the roots."""
 
 
 def crowd_globals(bank: ClipBank, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Floats:
@@ -78,11 +67,7 @@ def crowd_globals(bank: ClipBank, clips: ArrayLike, times: ArrayLike, weights: A
 
 
 def _globals(
-    turns: Floats,
-    shifts: Floats,
-    scales: Floats | None,
-    scaled: Indices,
-    skeleton: Skeleton,
+    turns: Floats, shifts: Floats, scales: Floats | None, scaled: Indices, skeleton: Skeleton
 ) -> Floats:
     """Return matrices (characters, joints, 3, 4) of local values (joints, 4 or 3, characters).
 
@@ -96,15 +81,15 @@ def _globals(
     if scales is not None:
         matrices[:, :3, order.positions[scaled]] *= scales.swapaxes(0, 1)
     matrices[:, 3] = shifts.swapaxes(0, 1)[:, order.joints]
-    for level in order.levels:
-        above, here = matrices[:, :, level.parents], matrices[:, :, level.positions]
+    for positions, parents in order.levels:
+        above, here = matrices[:, :, parents], matrices[:, :, positions]
         below = above[:, 0, None] * here[0]
         part = above[:, 1, None] * here[1]
         below += part
         np.multiply(above[:, 2, None], here[2], out=part)
         below += part
         below[:, 3] += above[:, 3]
-        matrices[:, :, level.positions] = below
+        matrices[:, :, positions] = below
     sorted_back = matrices.transpose(2, 0, 1, 3)[order.positions]
     return _transposed(sorted_back.reshape(-1, count)).reshape(count, joints, 3, 4)
 
@@ -151,5 +136,5 @@ def _depth_order(parents: tuple[int, ...]) -> _DepthOrder:
     levels = []
     for start, end in pairwise(column_ends[1:]):
         own = joints[start:end]
-        levels.append(_Level(slice(int(start), int(end)), positions[np.array(parents)[own]]))
+        levels.append((slice(int(start), int(end)), positions[np.array(parents)[own]]))
     return _DepthOrder(joints, positions, tuple(levels))

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -122,7 +122,6 @@ class Builder:
             if str(error).startswith(self._plan.source):
                 raise
             self._refuse(node, str(error))
-        raise AssertionError("refused above")
 
     def _of(self, node: Node, values: Values, key: str = "of") -> Motion:
         return self._fixed(node.motions[key], values)
@@ -168,12 +167,8 @@ class Builder:
         return space.at([values[along], values[across]])
 
     def _layered(self, node: Node, values: Values) -> Motion:
-        return self._layer_over(
-            node,
-            self._of(node, values, "base"),
-            self._of(node, values, "over"),
-            node.fields["weight"],
-        )
+        base, over = (self._of(node, values, key) for key in ("base", "over"))
+        return self._layer_over(node, base, over, node.fields["weight"])
 
     def _crossfade(self, node: Node, values: Values) -> Motion:
         return CrossFade(
@@ -208,7 +203,6 @@ class Builder:
             return AdditiveLayer(base, over, None, weight, mask)
         except CharacterError as error:
             self._refuse(node, str(error))
-        raise AssertionError("refused above")
 
     def _rows(self, node: Node, values: Values) -> tuple[Motion, ...]:
         return tuple(self._fixed(row.motion, values) for row in node.rows)
@@ -224,7 +218,7 @@ class Builder:
         except CharacterError as error:
             raise CharacterError(f"{self._plan.source}: masks.{name}: {error}") from None
 
-    def _refuse(self, node: Node, what: str) -> None:
+    def _refuse(self, node: Node, what: str) -> NoReturn:
         raise CharacterError(f"{self._plan.source}: {node.path}: {what}")
 
 

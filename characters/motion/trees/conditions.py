@@ -32,9 +32,6 @@ class Condition:
     text: str
     """Its text in the file."""
 
-    names: frozenset[str] = field(compare=False)
-    """Names of the values that it uses."""
-
     _tree: ast.expr = field(compare=False, repr=False)
 
     @staticmethod
@@ -61,9 +58,8 @@ class Condition:
             raise ConditionError(
                 f"{text!r} cannot be read; write for example speed > 0.5"
             ) from None
-        names: set[str] = set()
-        _check(tree, text, texts, numbers, names)
-        return Condition(text, frozenset(names), tree)
+        _check(tree, text, texts, numbers)
+        return Condition(text, tree)
 
     def holds(self, values: Values) -> bool:
         """Return whether it is true for given values.
@@ -77,33 +73,29 @@ class Condition:
         return bool(_value(self._tree, values))
 
 
-def _check(
-    tree: ast.expr, text: str, texts: frozenset[str], numbers: frozenset[str], names: set[str]
-) -> None:
-    """Refuse expressions that are not conditions, and collect the names."""
+def _check(tree: ast.expr, text: str, texts: frozenset[str], numbers: frozenset[str]) -> None:
+    """Refuse expressions that are not conditions."""
     match tree:
         case ast.BoolOp(values=values):
             for each in values:
-                _check(each, text, texts, numbers, names)
+                _check(each, text, texts, numbers)
         case ast.UnaryOp(op=ast.Not(), operand=operand):
-            _check(operand, text, texts, numbers, names)
+            _check(operand, text, texts, numbers)
         case ast.Compare(left=left, ops=ops, comparators=others):
-            kinds = {_operand(each, text, texts, numbers, names) for each in (left, *others)}
+            kinds = {_operand(each, text, texts, numbers) for each in (left, *others)}
             ordered = any(not isinstance(op, (ast.Eq, ast.NotEq)) for op in ops)
             if any(type(op) not in _OPERATORS for op in ops):
                 raise ConditionError(f"{text!r} uses a comparison other than < <= > >= == !=")
             if len(kinds) > 1 or (ordered and kinds == {str}):
                 raise ConditionError(f"{text!r} compares a text with a number, or texts by order")
         case ast.Name(id=name) if name in numbers:
-            names.add(name)
+            pass
         case _:
             known = ", ".join(sorted(numbers | texts))
             raise ConditionError(f"{text!r} may only compare {known}, joined by and, or, not")
 
 
-def _operand(
-    tree: ast.expr, text: str, texts: frozenset[str], numbers: frozenset[str], names: set[str]
-) -> type:
+def _operand(tree: ast.expr, text: str, texts: frozenset[str], numbers: frozenset[str]) -> type:
     """Return whether one side of a comparison is a number or a text."""
     match tree:
         case ast.Constant(value=value) if isinstance(value, (int, float, str)):
@@ -113,7 +105,6 @@ def _operand(
         ):
             return float
         case ast.Name(id=name) if name in numbers | texts:
-            names.add(name)
             return str if name in texts else float
         case ast.Name(id=name):
             known = ", ".join(sorted(numbers | texts))

@@ -6,7 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import Animator, Character, CharacterCommand, Pose, Skeleton
-from characters.body.gaze import HUMAN_GAZE, Gaze
+from characters.body.gaze import (
+    MAX_EYE_PITCH_RAD,
+    MAX_EYE_YAW_RAD,
+    MAX_HEAD_DOWN_RAD,
+    MAX_HEAD_UP_RAD,
+    MAX_HEAD_YAW_RAD,
+    Gaze,
+)
 from characters.face.blink import BlinkTimer, lid_closure
 from characters.face.lids import Lids
 from characters.skeleton import rotations
@@ -75,10 +82,10 @@ def test_nothing_turns_farther_than_a_body_can(seed, target):
     for _ in range(90):
         pose = gaze.update(skeleton.rest, np.array(target), STEP)
         head = looking(skeleton, pose, 4)
-        assert abs(math.atan2(head[0], head[2])) < HUMAN_GAZE.head_yaw + math.radians(1)
-        assert -HUMAN_GAZE.head_down - 0.02 < math.asin(head[1]) < HUMAN_GAZE.head_up + 0.02
+        assert abs(math.atan2(head[0], head[2])) < MAX_HEAD_YAW_RAD + math.radians(1)
+        assert -MAX_HEAD_DOWN_RAD - 0.02 < math.asin(head[1]) < MAX_HEAD_UP_RAD + 0.02
         for eye in (5, 6):
-            most = math.hypot(HUMAN_GAZE.eye_yaw, HUMAN_GAZE.eye_pitch)
+            most = math.hypot(MAX_EYE_YAW_RAD, MAX_EYE_PITCH_RAD)
             assert angle(looking(skeleton, pose, eye), head) < most + 1e-6
 
 
