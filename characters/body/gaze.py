@@ -69,13 +69,7 @@ class _Joint:
 
 
 class Gaze:
-    """Turns neck, head and eyes of one character.
-
-    Parameters
-    ----------
-    skeleton, anatomy
-        The body.
-    """
+    """Turns neck, head and eyes of one character."""
 
     def __init__(self, skeleton: Skeleton, anatomy: Anatomy) -> None:
         head = anatomy.joint("head")
@@ -109,8 +103,6 @@ class Gaze:
 
         Parameters
         ----------
-        pose
-            The pose.
         target
             The point to look at, (3,) in the character frame [m]; None for none.
         elapsed

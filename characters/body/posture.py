@@ -5,7 +5,7 @@ expression of emotion", 1998); arousal shows in the tempo and size of all moveme
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -137,21 +137,14 @@ class ExpressivityFilter:
 class Posture:
     """The joints by which one body shows its expressivity.
 
-    Parameters
-    ----------
-    skeleton, anatomy
-        The body.
-    moving
-        Joints that turn anyway, (m,), by breath and sway.
+    Joints that are `moving`, (m,), turn anyway, by breath and sway.
     """
 
-    def __init__(
-        self, skeleton: Skeleton, anatomy: Anatomy, moving: Sequence[int] | NDArray[np.intp] = ()
-    ) -> None:
+    def __init__(self, skeleton: Skeleton, anatomy: Anatomy, moving: NDArray[np.intp]) -> None:
         quadruped = anatomy.kind == "quadruped"
         erect = _joints(_ERECT_QUADRUPED if quadruped else _ERECT, anatomy)
         tense = _joints(_TENSE_QUADRUPED if quadruped else _TENSE, anatomy)
-        joints = list(dict.fromkeys([*map(int, moving), *erect, *tense]))
+        joints = list(dict.fromkeys([*moving.tolist(), *erect, *tense]))
         self.joints = np.array(joints, np.intp)
         """The joints that turn, (n,): first those that turn anyway."""
         axes, none = body_axes(skeleton, self.joints), (0.0, 0.0, 0.0)
@@ -167,6 +160,5 @@ class Posture:
 
 
 def _joints(degrees: Mapping[str, Degrees], anatomy: Anatomy) -> dict[int, Degrees]:
-    """Return turns of body parts as those of the joints that a body has."""
     found = {anatomy.joint(part): turn for part, turn in degrees.items()}
     return {joint: turn for joint, turn in found.items() if joint is not None}

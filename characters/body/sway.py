@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from characters.body.axes import Degrees, body_axes, rotation_vectors
-from characters.body.posture import NEUTRAL_EXPRESSIVITY, Expressivity
+from characters.body.posture import Expressivity
 from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Skeleton
@@ -59,12 +59,7 @@ _MIN_WAVE_HZ, _MAX_WAVE_HZ = 0.05, 0.33
 class BodySway:
     """Breath and sway of one character.
 
-    Parameters
-    ----------
-    skeleton, anatomy
-        The body.
-    seed
-        Seed of the sway; characters with different seeds do not sway together.
+    Characters with different seeds do not sway together.
     """
 
     def __init__(self, skeleton: Skeleton, anatomy: Anatomy, seed: int) -> None:
@@ -94,8 +89,8 @@ class BodySway:
         elapsed: float,
         effort: float,
         calm: float,
-        expressivity: Expressivity = NEUTRAL_EXPRESSIVITY,
-        posture: Array | None = None,
+        expressivity: Expressivity,
+        posture: Array | None,
     ) -> Array:
         """Advance by a time [s] and return the rotations of the joints, (n, 4).
 
@@ -103,14 +98,10 @@ class BodySway:
 
         Parameters
         ----------
-        elapsed
-            Time since the last call.
         effort
             How hard the body works, 0 at rest … 1 at a full run; breath follows it slowly.
         calm
             How much of the sway shows, 0…1.
-        expressivity
-            Tempo and amplitude of the movements.
         posture
             Rotation vectors of a posture, (m, 3), in the frames of `joints` and others after
             them; they are added, and m rotations are returned.
@@ -124,11 +115,8 @@ class BodySway:
         vectors = self._breath * (depth * expressivity.amplitude)
         if calm > 1e-3:
             waves = np.sin(self._rates * self._time + self._phases).sum(0)
-            vectors += np.einsum(
-                "ja,jak->jk",
-                waves * (calm * expressivity.amplitude / math.sqrt(_WAVES)),
-                self._sway,
-            )
+            waves *= calm * expressivity.amplitude / math.sqrt(_WAVES)
+            vectors += np.einsum("ja,jak->jk", waves, self._sway)
         if posture is not None:
             posture[: len(vectors)] += vectors
             vectors = posture

@@ -115,12 +115,7 @@ class AffectDisplay:
     An action that speaks, by the mouth or by an expression of its own, has priority over the
     emotion. Without an emotion the face is left to the clips.
 
-    Parameters
-    ----------
-    morphs
-        Names of the character's morphs.
-    blinks
-        How far each closes the lids, (morphs,): see `blink_shares`.
+    `blinks` tell how far each of the `morphs` closes the lids, (morphs,): see `blink_shares`.
     """
 
     def __init__(self, morphs: Sequence[str], blinks: Array) -> None:

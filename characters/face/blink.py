@@ -25,13 +25,7 @@ CLOSING_S, CLOSED_S, OPENING_S = 0.09, 0.03, 0.17
 
 
 class BlinkTimer:
-    """Blinks at random intervals; the same seed gives the same blinks.
-
-    Parameters
-    ----------
-    seed
-        Seed of the intervals.
-    """
+    """Blinks at random intervals; the same seed gives the same blinks."""
 
     def __init__(self, seed: int) -> None:
         self._rng = np.random.default_rng(seed)
@@ -41,14 +35,7 @@ class BlinkTimer:
     def update(self, elapsed: float, gaze_shift: float = 0.0, tempo: float = 1.0) -> float:
         """Advance by a time [s] and return how far the lids are closed, 0…1.
 
-        Parameters
-        ----------
-        elapsed
-            Time since the last call.
-        gaze_shift
-            Shift of the gaze since then [rad].
-        tempo
-            Tempo of the blinks. The lids themselves become slower with it, but not faster.
+        `gaze_shift` is that of this time [rad]. A low tempo also slows the lids themselves.
         """
         waiting = self._now < self._start
         self._now += elapsed * (tempo if waiting else min(tempo, 1.0))

@@ -73,7 +73,6 @@ class ExpressionMorphs:
         )
 
     def __bool__(self) -> bool:
-        """Whether there are any."""
         return any(self.able)
 
 

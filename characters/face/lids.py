@@ -48,7 +48,6 @@ class Lids:
         return Lids(both, np.array(next(pairs, ()), np.intp))
 
     def __bool__(self) -> bool:
-        """Whether there are any."""
         return self.both is not None or self.sides.size > 0
 
     def closed(self, weights: Array | None) -> float:

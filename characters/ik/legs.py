@@ -96,16 +96,9 @@ class LegIK:
         ankles: Sequence[Vector],
         turns: Sequence[Sequence[float]],
     ) -> Pose:
-        """Return a pose with its ankles moved and its feet turned.
+        """Return a pose with its ankles moved to new positions [m] and its feet turned.
 
-        Parameters
-        ----------
-        pose, frames
-            The pose, and its frames.
-        ankles
-            New positions of the ankles [m].
-        turns
-            Rotations of the feet from their present orientation, in the character's frame.
+        `turns` are rotations from the present orientation of the feet, in the character's frame.
         """
         rows: list[Quaternion] = []
         for (pelvis, hip, knee, ankle, _), target, foot in zip(
@@ -142,7 +135,6 @@ class LegIK:
 
     @cached_property
     def _joints(self) -> list[list[int]]:
-        """`joints` as Python numbers."""
         joints: list[list[int]] = self.joints.tolist()
         return joints
 

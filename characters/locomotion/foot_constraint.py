@@ -183,12 +183,10 @@ class FootConstraint:
         return low and late and self.offset.length < _EARLY_LANDING_DISTANCE * self._body_height
 
     def _start_decay(self, old: list[float], velocity: list[float], length: float) -> None:
-        """Start the decay of an offset over a length [s]."""
         self._old, self._old_velocity = list(old), velocity
         self._age, self._decay_time = 0.0, length
 
     def _decayed(self) -> list[float]:
-        """Return the rest of the old offset."""
         if self._age >= self._decay_time:
             return [0.0] * 4
         position, velocity = quintic_decay(self._age / self._decay_time)

@@ -22,15 +22,7 @@ _YAW_RADIUS = 0.06  # [body heights]: converts a foot's rotation to a length
 
 
 class FootLock:
-    """Holds the feet of one character; advanced once a frame.
-
-    Parameters
-    ----------
-    legs
-        The legs of its skeleton.
-    body_height
-        Height of the body [m].
-    """
+    """Holds the feet of one character of a height [m]; advanced once a frame."""
 
     def __init__(self, legs: LegIK, body_height: float) -> None:
         self.legs = legs
@@ -76,7 +68,6 @@ class FootLock:
         return self._bent(pose, frames, place, elapsed)
 
     def _update(self, foot: FootConstraint, points: FootPoints, down: bool, standing: bool) -> None:
-        """Hold or release a foot."""
         others_held = all(other.held for other in self.feet if other is not foot)
         step_back = standing and others_held
         if not down:

@@ -63,14 +63,8 @@ _IN_PLACE_SHORTENING = 0.4  # steps in place are shorter by this part
 class Gaits:
     """The movement tree of a character: a motion for every Speed and Angular.
 
-    Parameters
-    ----------
-    clips
-        "Walk" and, if available, the others of `WALK_CLIPS` and `RUN_CLIPS`.
-    skeleton
-        The skeleton of the clips.
-    standing
-        Slow walking is mixed with this pose, which shortens its steps.
+    The clips are "Walk" and, if available, the others of `WALK_CLIPS` and `RUN_CLIPS`. Slow walking
+    is mixed with the `standing` pose, which shortens its steps.
     """
 
     def __init__(self, clips: Mapping[str, Clip], skeleton: Skeleton, standing: Pose) -> None:
@@ -158,5 +152,4 @@ class Gaits:
 def _phased_clips(
     clips: Mapping[str, Clip], names: Mapping[float, str], skeleton: Skeleton
 ) -> dict[float, PhasedMotion]:
-    """Return the available clips of a tree by Angular [degrees]."""
     return {knot: phased(clips[name], skeleton) for knot, name in names.items() if name in clips}

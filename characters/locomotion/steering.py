@@ -47,12 +47,7 @@ STANDSTILL = SteeringOutput(0.0, 0.0, 1.0)
 class Steering:
     """Steers a walker to a target and detects its arrival.
 
-    Parameters
-    ----------
-    gaits
-        Gaits of the walker.
-    scale
-        Table metres for each metre of the walker.
+    `scale` is in table metres for each metre of the walker.
     """
 
     def __init__(self, gaits: Gaits, scale: float) -> None:
@@ -66,18 +61,9 @@ class Steering:
     def update(
         self, place: RootDelta, target: tuple[float, float], speed: float, stop: bool
     ) -> SteeringOutput:
-        """Return the motion from a place towards a target, both on the table.
+        """Return the motion from a place towards a target (x, z) [m], both on the table.
 
-        Parameters
-        ----------
-        place
-            Place and heading of the walker.
-        target
-            x, z [m].
-        speed
-            Requested Speed of AvatAR.
-        stop
-            Whether to stop at the target; otherwise it is passed.
+        `speed` is the requested Speed of AvatAR. Without `stop` the target is passed.
         """
         distance = math.hypot(target[0] - place.x, target[1] - place.z)
         self._arrived = stop and distance < (

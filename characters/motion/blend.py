@@ -70,7 +70,6 @@ class Blend(PhaseDriven):
     """Weight of each; none negative, sum one: see `shares`."""
 
     def __post_init__(self) -> None:
-        """Refuse weights that do not sum to one."""
         least, total = min(self.weights, default=math.nan), sum(self.weights)
         # Written so that NaN is refused as well.
         if len(self.weights) == len(self.members) and least >= 0.0 and abs(total - 1.0) < 1e-6:
@@ -197,7 +196,6 @@ class BlendSpace1D:
     """One for each knot."""
 
     def __post_init__(self) -> None:
-        """Refuse knots that do not ascend."""
         ascending = all(a < b for a, b in itertools.pairwise(self.knots))
         if not self.knots or len(self.knots) != len(self.motions) or not ascending:
             raise CharacterError(
@@ -244,7 +242,6 @@ class BlendSpace2D:
     """One for each point."""
 
     def __post_init__(self) -> None:
-        """Refuse points that are equal or not finite."""
         count = len(self.motions)
         if not np.isfinite(self.points).all():
             raise CharacterError(f"blend space: points {self.points.tolist()}; give finite numbers")

@@ -32,7 +32,6 @@ class Clip:
     """Whether joint 0 is on the ground and carries the planar root motion; see `travel`."""
 
     def __post_init__(self) -> None:
-        """Refuse empty or misshapen poses and a rate that is not positive."""
         if self.poses.rotations.ndim != 3 or len(self) < 1 or not self.rate > 0:
             raise CharacterError(
                 f"clip {self.name!r}: poses of shape {self.poses.rotations.shape} at {self.rate} "
@@ -40,7 +39,6 @@ class Clip:
             )
 
     def __len__(self) -> int:
-        """Return the number of frames."""
         return len(self.poses.rotations)
 
     @cached_property
@@ -138,7 +136,6 @@ class Clip:
 
     @cached_property
     def _last(self) -> int:
-        """Number of the last frame."""
         return len(self) - 1
 
     def _place(self, time: float) -> RootDelta:

@@ -35,7 +35,6 @@ class CrossFade:
     """Shape of the fade."""
 
     def __post_init__(self) -> None:
-        """Refuse times that are not finite and lengths that are not positive."""
         if not math.isfinite(self.start) or not 0.0 < self.length < math.inf:
             raise CharacterError(
                 f"cross-fade at {self.start} s over {self.length} s; give a positive length"

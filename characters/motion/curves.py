@@ -64,7 +64,6 @@ class FadeCurve:
     """Shape of both."""
 
     def __post_init__(self) -> None:
-        """Refuse negative times and unknown shapes."""
         _check_times("fade curve", self.shape, self.fade_in, self.fade_out)
 
     @staticmethod
@@ -105,7 +104,6 @@ class Adsr:
     """Shape between the values."""
 
     def __post_init__(self) -> None:
-        """Refuse negative times and unknown shapes."""
         _check_times("ADSR curve", self.shape, self.attack, self.decay, self.release)
         if not 0.0 <= self.level <= 1.0:
             raise CharacterError(f"ADSR curve: level {self.level}; give 0 to 1")
@@ -132,7 +130,6 @@ class Keyed:
     """Shape between the values."""
 
     def __post_init__(self) -> None:
-        """Refuse times out of order."""
         check_knots("keyed curve", self.times, self.values)
         _check_times("keyed curve", self.shape)
 

@@ -85,16 +85,9 @@ class Inertialization:
     def begin(
         old: tuple[Pose, Pose], new: tuple[Pose, Pose], step: float, length: float
     ) -> "Inertialization":
-        """Return the transition between two motions.
+        """Return the transition of a length [s] between two motions.
 
-        Parameters
-        ----------
-        old, new
-            Two poses of each motion: at the switch, and `step` seconds later without the switch.
-        step
-            Time between the two [s].
-        length
-            Length of the transition [s].
+        `old` and `new` are two poses of each: at the switch, and `step` [s] later without it.
         """
         turns, later = (_rotation_offset(a, b) for a, b in zip(old, new, strict=True))
         spin = (_nearer(later, turns) - turns) / step
@@ -136,7 +129,6 @@ def quintic_decay(u: float) -> tuple[float, float]:
 
 
 def _rotation_offset(old: Pose, new: Pose) -> Array:
-    """Return the rotation of each joint from the new pose to the old one, as rotation vectors."""
     return rotations.to_rotation_vector(
         rotations.multiply(old.rotations, rotations.conjugate(new.rotations))
     )

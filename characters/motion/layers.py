@@ -41,7 +41,6 @@ class MaskedLayer(_Layer):
     """Factor of the weight for morphs, if `over` has any."""
 
     def __post_init__(self) -> None:
-        """Refuse invalid masks and weights."""
         check_mask("layer", self.mask)
         if isinstance(self.weight, (int, float)) and not 0.0 <= self.weight <= 1.0:
             raise CharacterError(f"layer: weight {self.weight}; give 0 to 1")
@@ -92,7 +91,6 @@ class AdditiveLayer(_Layer):
     """Factor of the weight for each joint, (joints,), or None for 1."""
 
     def __post_init__(self) -> None:
-        """Refuse an invalid mask or weight."""
         check_mask("added layer", self.mask)
         if isinstance(self.weight, (int, float)) and not np.isfinite(self.weight):
             raise CharacterError(f"added layer: weight {self.weight}; give a finite number")
@@ -164,7 +162,6 @@ def added(base: Pose, over: Pose, reference: Pose, shares: Array, morphs: float)
 
 
 def _shares(mask: Mask | None, weight: float, pose: Pose) -> Array:
-    """Return the share of each joint, (joints,)."""
     joints = pose.rotations.shape[-2]
     if mask is None:
         return np.full(joints, weight)

@@ -68,9 +68,7 @@ class Mirror:
 
     @staticmethod
     def of(
-        skeleton: Skeleton,
-        morphs: tuple[str, ...] = (),
-        pairs: Mapping[str, str] = _NONE,
+        skeleton: Skeleton, morphs: tuple[str, ...] = (), pairs: Mapping[str, str] = _NONE
     ) -> "Mirror":
         """Return the mirror of a skeleton, with pairs found by positions and names.
 
@@ -103,22 +101,15 @@ class Mirror:
         symmetric: Array,
         exact: NDArray[np.bool_],
     ) -> "Mirror":
-        """Return the mirror of a skeleton for any symmetric pose.
+        """Return the mirror of a skeleton for any symmetric pose; see `of`.
 
         Parameters
         ----------
-        skeleton, morphs, pairs
-            As for `of`.
         symmetric
             `character_from_joint` in the symmetric pose, (joints, 4, 4).
         exact
             Skinned joints, (joints,), whose skin is mirrored exactly; of other joints only the
             positions are.
-
-        Raises
-        ------
-        CharacterError
-            If the pose is not symmetric, or a joint has no partner.
         """
         positions = symmetric[:, :3, 3]
         partners = paired_joints(skeleton, positions, pairs)

@@ -33,7 +33,6 @@ class Stretch:
     """The new duration [s]."""
 
     def __post_init__(self) -> None:
-        """Refuse infinite durations and durations that are not positive."""
         if not 0.0 < self.duration < math.inf:
             raise CharacterError(f"stretch to {self.duration} s; give a positive duration")
         _finite("stretch", self.motion)
@@ -73,7 +72,6 @@ class Window:
     """End of the part [s]; may be beyond the motion's end."""
 
     def __post_init__(self) -> None:
-        """Refuse an empty or infinite part."""
         if not 0.0 <= self.start < self.end < math.inf:
             raise CharacterError(
                 f"window: {self.start} s to {self.end} s; give a start of 0 or more and a later end"
@@ -104,7 +102,6 @@ class Loop:
     """The repeated motion; it must have an end."""
 
     def __post_init__(self) -> None:
-        """Refuse a motion without an end."""
         _finite("loop", self.motion)
 
     @property
@@ -173,7 +170,6 @@ class TimeCurve:
     """Times of the motion [s], one for each time."""
 
     def __post_init__(self) -> None:
-        """Refuse times that are not ascending."""
         check_knots("time curve", self.times, self.sources)
 
     def at(self, time: float) -> float:
@@ -229,7 +225,6 @@ class Warped:
 
 
 def _finite(what: str, motion: Motion) -> None:
-    """Refuse a motion without an end."""
     if not math.isfinite(motion.duration):
         raise CharacterError(
             f"{what}: a {type(motion).__name__} of duration {motion.duration} s has no end; "

@@ -57,7 +57,6 @@ class Action:
     """Length of the fade before `until` [s]."""
 
     def __post_init__(self) -> None:
-        """Refuse invalid masks, weights and times."""
         what = f"action {self.name!r}"
         check_mask(what, self.mask)
         for weight in (self.weight, self.morphs):
@@ -115,7 +114,6 @@ class Schedule:
     """The skeleton's rest pose: shown by joints without actions, and reference of scales."""
 
     def __post_init__(self) -> None:
-        """Refuse duplicate names."""
         names = [action.name for action in self.actions if action.name]
         for name in names:
             if names.count(name) > 1:
@@ -297,7 +295,6 @@ def _mixed_morphs(contributions: list[_Contribution]) -> Array | None:
 
 
 def _scaled(pose: Pose, rest: Pose, scale: float, scales: Array | None) -> Pose:
-    """Return the pose with its distance from the rest pose multiplied."""
     if scale == 1.0 and scales is None:
         return pose
     factor = (np.ones(rest.rotations.shape[-2]) if scales is None else scales)[:, None] * scale

@@ -126,7 +126,6 @@ class StateMachine:
     def _inertialized(
         self, last: _Switch, state: str, time: float, begin: Callable[[], None] | None
     ) -> _Switch:
-        """Return the switch to a state by inertialization."""
         motion = self.states[state]
         # Forward differences: before its start, a loop with a gap would jump.
         old = (self._shown(last, time), self._shown(last, time + _VELOCITY_STEP_S))

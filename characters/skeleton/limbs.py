@@ -32,8 +32,6 @@ def find_parts(skeleton: Skeleton, known: Mapping[str, int]) -> dict[str, int]:
 
 
 class _PartSearch:
-    """Search for the parts of one skeleton."""
-
     def __init__(self, skeleton: Skeleton, known: Mapping[str, int]) -> None:
         self.skeleton = skeleton
         self.known = dict(known)
@@ -249,7 +247,6 @@ class _PartSearch:
         return level and all(self.positions[hand, 1] < low for hand in hands)
 
     def _fingers(self, side: str) -> dict[str, int]:
-        """Return the fingers of one side that are recognised by name."""
         found: dict[str, int] = {}
         joints = [j for j, name in enumerate(self.names) if name.finger and self._side(j) == side]
         for finger in ("Thumb", "Index", "Middle", "Ring", "Little"):

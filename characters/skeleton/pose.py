@@ -84,7 +84,6 @@ class Skeleton:
     """The rest pose in the file."""
 
     def __post_init__(self) -> None:
-        """Refuse inconsistent lengths and parents after children."""
         joints = len(self.names)
         if len(self.parents) != joints or self.rest.rotations.shape != (joints, 4):
             raise CharacterError(
@@ -99,7 +98,6 @@ class Skeleton:
                 )
 
     def __len__(self) -> int:
-        """Return the number of joints."""
         return len(self.names)
 
     def index(self, name: str) -> int:

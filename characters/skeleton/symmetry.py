@@ -97,5 +97,4 @@ def paired_names(names: tuple[str, ...]) -> NDArray[np.intp]:
 
 
 def _other_side(match: re.Match[str]) -> str:
-    """Return the word for the other side in the same case."""
     return _OTHER[match[0]]

@@ -21,14 +21,8 @@ WEIGHT_LAG_S = 0.12
 class ActionMotion(RetimedMotion):
     """An action whose intensity may change while it plays; a `Motion`.
 
-    Parameters
-    ----------
-    name
-        Its name.
-    space
-        Its clips over the intensity; they start together.
-    once
-        Whether it ends; otherwise it repeats.
+    Its clips lie in `space` over the intensity and start together. With `once` it ends; otherwise
+    it repeats.
     """
 
     def __init__(self, name: str, space: BlendSpace1D, once: bool) -> None:
@@ -57,7 +51,7 @@ class ActionMotion(RetimedMotion):
     def clip(self) -> Clip:
         """Its clip of middle intensity, or the one nearest to it."""
         motions = self._space.motions
-        middle = motions[min(len(motions) // 2, len(motions) - 1)]
+        middle = motions[len(motions) // 2]
         assert isinstance(middle, PhasedMotion)
         assert isinstance(middle.motion, Clip)
         return middle.motion
@@ -74,17 +68,10 @@ def clips_of_actions(
     """Return the clips of each action by intensity.
 
     An action X is the clips X_head, X_legs and X_tail, for weights −1, 0 and 1. A clip without
-    such a suffix is an action of one intensity.
+    such a suffix is an action of one intensity. "idle" and the clips `besides` are no actions.
 
     >>> clips_of_actions(["idle", "kiss_head", "kiss_tail", "nod"])
     {'kiss': {-1.0: 'kiss_head', 1.0: 'kiss_tail'}, 'nod': {0.0: 'nod'}}
-
-    Parameters
-    ----------
-    clips
-        Names of all clips of a character.
-    besides
-        Clips that are not actions; "idle" never is one.
     """
     known, others = list(clips), {"idle", *besides}
     actions: dict[str, dict[float, str]] = {}

@@ -86,7 +86,6 @@ class InPlaceController:
         )
 
     def _act(self, command: CharacterCommand, elapsed: float, now: float) -> None:
-        """Play the action that is asked for."""
         weight = min(max(command.weight, -1.0), 1.0)
         name, self._finished = next_action(
             self._machine, self._actions, command.action, self._finished, now

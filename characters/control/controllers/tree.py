@@ -34,20 +34,10 @@ class TreeController:
     """Plays a plan of blend trees and states; a `CharacterController`.
 
     The root moves as the motions do. Steering sets parameters only; the plan turns them into steps.
-
-    Parameters
-    ----------
-    character
-        A character with a plan.
-    scale
-        Table metres per metre of the character.
-    place
-        Where it first stands on the table.
     """
 
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
-        if character.plan is None:
-            raise ValueError(f"{character.name} has no plan")
+        assert character.plan is not None  # it suits
         self._plan: Plan = character.plan
         self._place = place or RootDelta()
         self._scale = scale
@@ -63,11 +53,11 @@ class TreeController:
         )
         machine = self._plan.machine
         nodes = {"": self._plan.root} if machine is None else machine.states
-        built = {n: builder.build(node, self._values) for n, node in nodes.items() if node}
-        self._motions: dict[str, Motion] = {name: motion for name, (motion, _) in built.items()}
-        self._bindings: dict[str, ParameterBindings] = {
-            name: bindings for name, (_, bindings) in built.items()
-        }
+        self._motions: dict[str, Motion] = {}
+        self._bindings: dict[str, ParameterBindings] = {}
+        for name, node in nodes.items():
+            if node is not None:
+                self._motions[name], self._bindings[name] = builder.build(node, self._values)
         self._machine = StateMachine(self._motions, "" if machine is None else machine.start)
 
     @property
@@ -146,7 +136,8 @@ class TreeController:
         values: dict[str, float | str | bool] = {**self._values, "time": spent, "done": ended}
         values["action"] = command.activity
         for change in machine.transitions:
-            if _starts_in(change, state) and change.when.holds(values):
+            here = change.end != state and change.start in (state, "*")
+            if here and change.when.holds(values):
                 self._enter(change, now)
                 return
 
@@ -160,7 +151,3 @@ class TreeController:
             change.seconds if change.crossfade else 0.0,
             lambda: bindings.restart_with(self._values),
         )
-
-
-def _starts_in(change: Transition, state: str) -> bool:
-    return change.end != state and change.start in (state, "*")

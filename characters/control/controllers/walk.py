@@ -184,7 +184,6 @@ class WalkController:
         )
 
     def _play(self, steered: SteeringOutput, state: str, weight: float, now: float) -> None:
-        """Play a state with the parameters in use."""
         motion = self._motion = self.gaits.at(steered.speed, steered.angular, steered.stride)
         if self._machine.state == "move":
             self._strides.change(motion, now - self._machine.entered)
@@ -195,7 +194,6 @@ class WalkController:
         self._machine.request(state, now)
 
     def _perform(self, action: ActionMotion, weight: float, now: float, playing: bool) -> None:
-        """Continue an action, or begin it."""
         if not playing:
             self._weight = weight
             action.begin(weight)

@@ -79,10 +79,8 @@ class ClipBank:
 
         Parameters
         ----------
-        skeleton
-            The skeleton of all clips.
-        clips
-            The clips; later arguments refer to them by number.
+        skeleton, clips
+            Later arguments refer to the clips by number.
         dtype
             Of the table. The error of single precision is about 0.1 µm at 1 m.
         extra
@@ -128,18 +126,12 @@ class ClipBank:
         )
 
     def __len__(self) -> int:
-        """Return the number of clips."""
         return len(self.starts)
 
     def rows(self, clips: ArrayLike, times: ArrayLike) -> tuple[Indices, Array]:
         """Return the row at or before each time, (…), and the fraction towards the next row.
 
-        Parameters
-        ----------
-        clips
-            Numbers of clips, (…).
-        times
-            Times since their starts [s], (…); loops repeat, other clips hold their ends.
+        Times are since the starts of the clips [s], (…); loops repeat, other clips hold their ends.
         """
         number = np.asarray(clips, np.intp)
         last = self.last_frames[number]
@@ -174,12 +166,8 @@ class ClipBank:
     def blend(self, contributions: Sequence[tuple[int, float, float]]) -> tuple[Pose, Floats]:
         """Return the mixed pose of one character, and its mixed extra values, (columns,).
 
-        Equal to `mixed_rows` and `pose`, faster for one character.
-
-        Parameters
-        ----------
-        contributions
-            Number of a clip, time since its start [s], and weight, for each.
+        Equal to `mixed_rows` and `pose`, faster for one character. A contribution is the number of
+        a clip, the time since its start [s], and its weight.
         """
         rows: list[int] = []
         factors: list[float] = []
@@ -282,7 +270,6 @@ def _repeat_single_frame(pose: Pose) -> Pose:
 
 
 def _repeat_single_row(rows: Array) -> Array:
-    """Return extra values with a single row repeated."""
     return rows[[0, 0]] if len(rows) == 1 else rows
 
 

@@ -37,21 +37,8 @@ class _DepthOrder:
 def crowd_globals(bank: ClipBank, clips: ArrayLike, times: ArrayLike, weights: ArrayLike) -> Floats:
     """Return `character_from_joint` of many characters, each of which mixes some clips.
 
-    Equal to `Pose.globals` of `ClipBank.sample`, but faster.
-
-    Parameters
-    ----------
-    bank
-        The clips.
-    clips, times
-        Clip numbers and times [s] for each character, (characters, clips of each).
-    weights
-        Their weights, (characters, clips of each); each row sums to one.
-
-    Returns
-    -------
-    ndarray
-        (characters, joints, 3, 4); the last row of each matrix, (0, 0, 0, 1), is left out.
+    Equal to `Pose.globals` of `ClipBank.sample`, with the same arguments, but faster. The shape is
+    (characters, joints, 3, 4): the last row of each matrix, (0, 0, 0, 1), is left out.
     """
     rows = bank.mixed_rows(clips, times, weights)
     columns = _transposed(rows)
@@ -125,7 +112,6 @@ def _transposed(rows: Floats) -> Floats:
 
 @lru_cache(maxsize=64)
 def _depth_order(parents: tuple[int, ...]) -> _DepthOrder:
-    """Return the joints sorted by depth."""
     depths: list[int] = []
     for parent in parents:
         depths.append(0 if parent < 0 else depths[parent] + 1)

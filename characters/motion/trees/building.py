@@ -32,14 +32,7 @@ from characters.skeleton.pose import Skeleton
 class Builder:
     """Builds the motions of a plan for one character.
 
-    Parameters
-    ----------
-    plan
-        The plan.
-    skeleton, clips, anatomy
-        Those of the character.
-    mirror
-        Returns its mirror; called only if the plan contains a mirrored motion.
+    `mirror` returns its mirror; it is called only if the plan contains a mirrored motion.
     """
 
     def __init__(
@@ -59,13 +52,6 @@ class Builder:
 
     def build(self, node: Node, values: Values) -> tuple[Motion, ParameterBindings]:
         """Return the motion of a node, and the bindings that set its parameters.
-
-        Parameters
-        ----------
-        node
-            A node of the plan.
-        values
-            The initial values of the parameters.
 
         Raises
         ------

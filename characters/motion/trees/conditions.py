@@ -36,14 +36,9 @@ class Condition:
 
     @staticmethod
     def read(text: str, texts: frozenset[str], numbers: frozenset[str]) -> "Condition":
-        """Return the condition in a text.
+        """Return the condition in a text, such as "speed > 0.5 and not done".
 
-        Parameters
-        ----------
-        text
-            Such as "speed > 0.5 and not done".
-        texts, numbers
-            Names of the values by type; those in `numbers` may also be used as truth values.
+        `texts` and `numbers` name the values by type; numbers may also be used as truth values.
 
         Raises
         ------
@@ -74,7 +69,6 @@ class Condition:
 
 
 def _check(tree: ast.expr, text: str, texts: frozenset[str], numbers: frozenset[str]) -> None:
-    """Refuse expressions that are not conditions."""
     match tree:
         case ast.BoolOp(values=values):
             for each in values:
@@ -114,7 +108,6 @@ def _operand(tree: ast.expr, text: str, texts: frozenset[str], numbers: frozense
 
 
 def _value(tree: ast.expr, values: Values) -> "float | str | bool":
-    """Return the value of a checked expression."""
     match tree:
         case ast.BoolOp(op=op, values=parts):
             together = all if isinstance(op, ast.And) else any

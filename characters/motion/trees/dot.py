@@ -27,8 +27,6 @@ def to_dot(plan: Plan, title: str = "") -> str:
 
 
 class _DotWriter:
-    """Collects the lines of a graph."""
-
     def __init__(self, title: str) -> None:
         self.lines = [
             f"digraph {_quoted(title)} {{",
@@ -70,6 +68,5 @@ class _DotWriter:
 
 
 def _quoted(text: str) -> str:
-    """Return a text as a quoted DOT string."""
     escaped = text.replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'

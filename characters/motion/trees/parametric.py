@@ -12,12 +12,7 @@ Values = Mapping[str, float]
 class ParametricMotion(RetimedMotion):
     """A motion that depends on parameters and keeps its phase when they change; a `Motion`.
 
-    Parameters
-    ----------
-    make
-        Returns the motion for given values.
-    values
-        The initial values.
+    `make` returns the motion for given values.
     """
 
     def __init__(self, make: Callable[[Values], Motion], values: Values) -> None:

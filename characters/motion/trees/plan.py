@@ -274,7 +274,6 @@ def _row_label(fields: Mapping[str, Any]) -> str:
 
 
 def _formatted(value: object) -> str:
-    """Return a value as text for people."""
     if isinstance(value, float):
         return f"{value:g}".replace("-", "−")
     if isinstance(value, tuple):

@@ -35,16 +35,9 @@ TABLES = ("masks", "parameters", "motions", "machine", "play")
 
 
 def read_plan(document: Mapping[str, Any], source: str, clips: Collection[str]) -> Plan | None:
-    """Return the plan in a document; None if there is none.
+    """Return the plan in a parsed TOML document; None if there is none.
 
-    Parameters
-    ----------
-    document
-        The parsed TOML.
-    source
-        Name of the file, for messages.
-    clips
-        Names of the character's clips.
+    `source` names the file in messages; `clips` are the names of the character's clips.
 
     Raises
     ------
@@ -57,8 +50,6 @@ def read_plan(document: Mapping[str, Any], source: str, clips: Collection[str]) 
 
 
 class _Reader:
-    """Reads the plan of one document."""
-
     def __init__(self, document: Mapping[str, Any], source: str, clips: Collection[str]) -> None:
         self._document = document
         self._source = source
@@ -151,7 +142,6 @@ class _Reader:
         return MaskPlan(subtrees, joints, default)
 
     def _motion(self, given: object, path: str) -> Node:
-        """Return the motion of a name or a table."""
         if self._depth >= MAX_DEPTH:
             self._refuse(path, f"motions nest more than {MAX_DEPTH} deep; use fewer")
         self._depth += 1
@@ -293,6 +283,5 @@ class _Reader:
 
 
 def _abbreviated(given: object) -> str:
-    """Return a value as short text for a message of one line."""
     text = repr(given)
     return text if len(text) <= 60 else text[:57] + "..."

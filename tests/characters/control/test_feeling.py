@@ -173,7 +173,7 @@ def test_no_morph_leaves_its_range_and_none_pops(name, plan, action):
 
 
 def test_a_bearing_changes_without_a_jolt():
-    posture = Posture(CAST["human"].skeleton, CAST["human"].anatomy)
+    posture = Posture(CAST["human"].skeleton, CAST["human"].anatomy, np.zeros(0, np.intp))
     expressivity = ExpressivityFilter()
     last = posture.rotation_vectors(expressivity.value, 1.0)
     for number in range(300):
