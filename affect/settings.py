@@ -139,11 +139,7 @@ class Table:
         return value
 
     def number(
-        self,
-        key: str,
-        low: float = -math.inf,
-        high: float = math.inf,
-        default: float | None = None,
+        self, key: str, low: float = -math.inf, high: float = math.inf, default: float | None = None
     ) -> float:
         """Return a number from `low` to `high`; never NaN."""
         value = self._values.get(key, default)

@@ -1,8 +1,4 @@
-"""Breath and the sway of a body that stands.
-
-The chest rises and falls, the trunk sways a little, the head sways: a few slow sine waves turn a
-few joints by a few degrees. The legs stay still.
-"""
+"""Breath and sway of a standing body: slow sine waves turn a few joints, but not the legs."""
 
 import math
 
@@ -37,10 +33,7 @@ _BREATH: dict[str, Degrees] = {
     "rightUpperArm": (0.0, 0.0, 1.2),
 }
 # The trunk of a quadruped carries the forelegs too: only neck and head move.
-_BREATH_QUADRUPED: dict[str, Degrees] = {
-    "neck": (-1.2, 0.0, 0.0),
-    "head": (0.8, 0.0, 0.0),
-}
+_BREATH_QUADRUPED: dict[str, Degrees] = {"neck": (-1.2, 0.0, 0.0), "head": (0.8, 0.0, 0.0)}
 # Amplitudes of the sway of joints about the same axes [degrees]; each has waves of its own.
 _SWAY: dict[str, Degrees] = {
     "spine": (0.35, 0.5, 0.45),

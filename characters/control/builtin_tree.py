@@ -16,24 +16,11 @@ def built_in(character: Character) -> Plan:
     The controllers also steer, plant feet and hop; played from a file, this plan does less.
     """
     states = _walking(character) if WalkController.suits(character) else _in_place(character)
-    start = next(iter(states))
-    changes = [
-        Transition(
-            start,
-            name,
-            _condition("speed > 0.5" if name == "move" else f"action == {name!r}"),
-            0.25,
-        )
-        for name in states
-        if name != start
-    ]
-    changes += [
-        Transition(
-            name, start, _condition("speed < 0.5" if name == "move" else "action == 'idle'"), 0.25
-        )
-        for name in states
-        if name != start
-    ]
+    start, *others = states
+    enter = {name: f"action == {name!r}" for name in others} | {"move": "speed > 0.5"}
+    leave = dict.fromkeys(others, "action == 'idle'") | {"move": "speed < 0.5"}
+    changes = [Transition(start, name, _condition(enter[name]), 0.25) for name in others]
+    changes += [Transition(name, start, _condition(leave[name]), 0.25) for name in others]
     return Plan(character.name, None, StateGraph(states, start, tuple(changes)))
 
 

@@ -1,7 +1,6 @@
 """Affect display: the face that shows an emotion, and when an action has priority.
 
-The places of the words in the plane of valence and arousal are Russell's ("A circumplex model of
-affect", 1980); which expressions go with which word is ours.
+Places of words: Russell, "A circumplex model of affect", 1980; which expressions they have is ours.
 """
 
 import math

@@ -1,9 +1,8 @@
 """Blinks: when they happen, and how far the lids are closed.
 
-People at rest blink about 17 times a minute, at uneven intervals (Bentivoglio et al., "Analysis of
-blink rate patterns in normal subjects", 1997); a lid falls in about 90 ms and rises in 170
-(Evinger, Manning and Sibony, "Eyelid movements", 1991). A large shift of gaze triggers a
-blink (Evinger et al., "Not looking while leaping", 1994).
+Sources: Bentivoglio et al., "Analysis of blink rate patterns in normal subjects", 1997, for the
+intervals; Evinger, Manning and Sibony, "Eyelid movements", 1991, for the lids; Evinger et al., "Not
+looking while leaping", 1994, for blinks at large gaze shifts.
 """
 
 import math

@@ -1,7 +1,4 @@
-"""Analytic two-bone inverse kinematics for a leg.
-
-It works on single quaternions and vectors: for one leg that is several times as fast as NumPy.
-"""
+"""Analytic two-bone inverse kinematics for one leg, several times as fast as NumPy."""
 
 import math
 

@@ -1,9 +1,8 @@
 """Foot constraints: a foot that has landed stays in place until it lifts.
 
-The heel or the ball of a standing foot is held in the world, and so is its heading; the difference
-from the motion is the foot's offset. When the foot lifts, the offset decays from its present
-velocity, so there is no jump: inertialization (Bollo, GDC 2018) for a foot. A foot whose offset
-becomes too large takes a quick step.
+The heel or the ball is held in the world, and so is the heading. When the foot lifts, its offset
+from the motion decays from its present velocity: inertialization (Bollo, GDC 2018) for a foot. A
+foot whose offset becomes too large takes a quick step.
 """
 
 import math

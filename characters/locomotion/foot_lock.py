@@ -1,8 +1,4 @@
-"""Holds the feet of a character in place while they stand.
-
-`FootConstraint` decides for each foot; here the legs are bent accordingly, and the pelvis is
-lowered slightly if a leg is too short.
-"""
+"""Holds standing feet in place: bends the legs, and lowers the pelvis if a leg is too short."""
 
 import math
 

@@ -1,7 +1,6 @@
 """Gaits: walking and running at any speed and turn, by AvatAR's movement tree.
 
-Source: Fernández-Baena's thesis, section 5.2: a walk tree of seven clips and a run tree of five,
-both over Angular, −90…90°, are blended over Speed; the border between walking and running is 3.
+Source: Fernández-Baena's thesis, section 5.2. Both trees, over Angular, are blended over Speed.
 """
 
 import math

@@ -50,8 +50,7 @@ def mix(poses: Sequence[Pose], weights: Sequence[float]) -> Pose:
 
 
 def _sum(arrays: Sequence[Array], share: Array) -> Array:
-    total: Array = np.tensordot(share, np.stack(arrays), 1)
-    return total
+    return np.tensordot(share, np.stack(arrays), 1)
 
 
 @dataclass(frozen=True)

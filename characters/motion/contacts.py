@@ -1,12 +1,8 @@
 """When feet stand on the ground: detected in a clip without manual marks.
 
-A foot stands while one of its joints is both low and slow over the ground. The speed limit grows
-with the body's own speed, the height limit with its height. The limits have hysteresis, and very
-short contacts and gaps are dropped. Under a clip that walks in place the ground moves backward, as
-on a treadmill; its velocity is estimated from the standing feet.
-
-Source: Ikemoto, Arikan and Forsyth, "Knowing when to put your foot down", I3D 2006, for the
-criteria "low" and "slow".
+A foot stands while one of its joints is both low and slow over the ground (Ikemoto, Arikan and
+Forsyth, "Knowing when to put your foot down", I3D 2006). The limits have hysteresis and grow with
+the body's height and speed; very short contacts and gaps are dropped.
 """
 
 import numpy as np
@@ -37,14 +33,8 @@ _SPEED_WINDOW_S = 0.4  # the body's speed is averaged over about half a cycle
 def find_contacts(clip: Clip, skeleton: Skeleton, feet: Feet) -> NDArray[np.bool_]:
     """Return when each foot stands on the ground, (frames, feet).
 
-    Parameters
-    ----------
-    clip
-        With or without root motion; a loop is treated as periodic.
-    skeleton
-        The skeleton of the clip.
-    feet
-        The joints of each foot; see `find_feet`.
+    `feet` are the joints of each foot; see `find_feet`. A loop is treated as periodic. Under a clip
+    that walks in place the ground moves backward, as on a treadmill.
     """
     if len(clip) < 2 or not feet:
         return np.ones((len(clip), len(feet)), bool)

@@ -1,9 +1,4 @@
-"""Cross-fade: both motions play for a while and are mixed.
-
-A cross-fade samples two motions, and feet slide where they differ; inertialization (`StateMachine`,
-`characters.motion.inertialization`) avoids both. Use a cross-fade where the old motion must visibly
-continue during the transition.
-"""
+"""Cross-fade: both motions play for a while and are mixed, so feet slide where they differ."""
 
 import math
 from dataclasses import dataclass

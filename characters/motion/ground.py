@@ -109,8 +109,7 @@ def find_ground(clip: Clip, tracks: JointTrajectories, joints: NDArray[np.intp])
 
 def height_above_lowest(heights: Array) -> Array:
     """Return the heights of joints above their lowest positions, (frames, n), outliers aside."""
-    above: Array = heights - np.quantile(heights, 0.02, axis=0)
-    return above
+    return heights - np.quantile(heights, 0.02, axis=0)
 
 
 def _fit_rigid(positions: Array, velocities: Array, body_height: float) -> tuple[Array, float]:

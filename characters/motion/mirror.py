@@ -19,12 +19,7 @@ from characters.motion.motion import RootDelta
 from characters.motion.phase import TransformedMotion, has_footfalls
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.symmetry import (
-    REFLECTION,
-    check_symmetry,
-    paired_joints,
-    paired_names,
-)
+from characters.skeleton.symmetry import REFLECTION, check_symmetry, paired_joints, paired_names
 
 _QUATERNION_REFLECTION = np.array([1.0, -1.0, -1.0, 1.0])
 LENGTH_TOLERANCE = 1e-5

@@ -1,9 +1,4 @@
-"""Motions that change the time or place of another motion.
-
-Modifiers that preserve cycles (`Stretch`, `RootOffset`, and `Mirrored` of
-`characters.motion.mirror`) are also `Cyclic`, so a mirrored walk can be blended with a walk, left
-foot with left foot.
-"""
+"""Motions that change the time or place of another motion."""
 
 import itertools
 import math

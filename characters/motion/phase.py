@@ -1,8 +1,4 @@
-"""Motions addressed by phase: 0 at the left footfall, one half at the right footfall.
-
-Two clips that are both at phase 0.3 can be mixed: their left steps coincide, whatever the lengths
-of the clips.
-"""
+"""Motions addressed by phase: 0 at the left footfall, one half at the right footfall."""
 
 import itertools
 import math

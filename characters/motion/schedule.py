@@ -1,8 +1,7 @@
-"""Schedules: actions on a time line that share the joints by their weights.
+"""Schedules: actions on a time line that share the joints by weight, mask and fade curve.
 
 After the blending engine MIRAnim (Egges, "Real-time animation of interactive virtual humans", 2006,
-section 4.2). Each joint shows the mean of the active actions by weight, mask and fade curve. A
-schedule is a motion, so schedules nest; nesting does not change the result.
+section 4.2).
 """
 
 import math
@@ -166,9 +165,7 @@ class Schedule:
         divisor = np.where(unmoved, 1.0, total)
         shared = [
             _Contribution(
-                part.pose,
-                part.weights / divisor,
-                part.morph_weight / morphs if morphs > 0 else 0.0,
+                part.pose, part.weights / divisor, part.morph_weight / morphs if morphs > 0 else 0.0
             )
             for part in active
         ]

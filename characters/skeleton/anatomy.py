@@ -1,9 +1,8 @@
-"""Which joint is which part of a body: the common vocabulary of different skeletons.
+"""Which joint of a skeleton is which part of a body.
 
 Parts are named as in VRM 1.0's humanoid ("leftUpperLeg"). A quadruped's hind legs and trunk have
 the names of a person's legs and trunk, its front legs are "leftFrontUpperLeg" and so on, its tail
-is "tail1", "tail2" …. Declared parts have priority; the others are guessed from joint names and the
-shape of the skeleton.
+is "tail1", "tail2" ….
 """
 
 import difflib

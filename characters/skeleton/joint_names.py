@@ -1,8 +1,7 @@
 """Side and body part that are encoded in a joint's name.
 
-Naming conventions differ: "mixamorig:LeftUpLeg", "thigh.L", "lfemur", "l_hip", "Bip01 L Thigh",
-"J_Bip_L_UpperLeg", "BackUpLeg.L". A name is split into words; sides, prefixes and numbers are
-removed; the rest is looked up.
+A name ("mixamorig:LeftUpLeg", "thigh.L", "lfemur", "Bip01 L Thigh", "BackUpLeg.L") is split into
+words; sides, prefixes and numbers are removed; the rest is looked up.
 """
 
 import re
@@ -107,9 +106,6 @@ class JointName:
     front: bool = False
     """Whether the name says front leg."""
 
-    hind: bool = False
-    """Whether the name says hind leg."""
-
     auxiliary: bool = False
     """Whether it is a helper joint: an end, a twist, an IK target, hair."""
 
@@ -143,7 +139,7 @@ def read_name(name: str) -> JointName:
 
     >>> read_name("mixamorig:LeftUpLeg").word, read_name("lfemur").side, read_name("FootR").side
     ('upleg', 'left', 'right')
-    >>> read_name("BackUpLeg.L") == JointName("upleg", "left", hind=True)
+    >>> read_name("BackUpLeg.L") == JointName("upleg", "left")
     True
     """
     own = re.split(r"[:|]", name)[-1]
@@ -152,12 +148,12 @@ def read_name(name: str) -> JointName:
     sides = [_SIDES[word] for word in words if word in _SIDES]
     auxiliary = not _AUXILIARY.isdisjoint(words)
     rest = [word for word in words if word not in _SIDES and word not in _FILLERS]
-    front, hind = False, False
+    front = False
     if len(rest) > 1 and "".join(rest) not in _KNOWN and "".join(rest[1:]) in _KNOWN:
         # "BackLeg" is a hind leg, but "Back" alone and "ForeArm" are not.
-        front, hind = rest[0] in _FRONT, rest[0] in _HIND
-        rest = rest[1:] if front or hind else rest
-    return JointName("".join(rest), sides[0] if sides else "", front, hind, auxiliary)
+        front = rest[0] in _FRONT
+        rest = rest[1:] if front or rest[0] in _HIND else rest
+    return JointName("".join(rest), sides[0] if sides else "", front, auxiliary)
 
 
 def _split_side(word: str) -> list[str]:

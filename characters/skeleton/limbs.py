@@ -1,8 +1,7 @@
 """Limbs and trunk of a skeleton, found by joint names first, else by the shape of the skeleton.
 
-A limb is a chain of joints. Its parts are assigned for the chain as a whole: the assignment, in
-order, that fits the names best. "Shoulder, Arm, ForeArm, Hand" and "Collar, Shoulder, Elbow, Wrist"
-are therefore both read correctly.
+The parts of a limb are assigned for the chain as a whole, so "Shoulder, Arm, ForeArm, Hand" and
+"Collar, Shoulder, Elbow, Wrist" are both read correctly.
 """
 
 from collections.abc import Callable, Mapping, Sequence

@@ -1,8 +1,4 @@
-"""Joint masks: one weight 0…1 for each joint.
-
-A mask is a plain array (joints,), so masks are combined by arithmetic: `1 - mask`, `upper * left`,
-`np.maximum(a, b)`.
-"""
+"""Joint masks: one weight 0…1 for each joint, in plain arrays, to be combined by arithmetic."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -30,8 +26,6 @@ def mask_of(
 
     Parameters
     ----------
-    skeleton
-        The skeleton of the mask.
     subtrees
         Weight of a joint and all its descendants; later entries override earlier ones.
     joints

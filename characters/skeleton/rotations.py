@@ -1,8 +1,7 @@
-"""Unit quaternions xyzw, as in glTF, over any leading axes.
+"""Unit quaternions xyzw, as in glTF, over any leading axes; all functions broadcast.
 
-All functions broadcast. The product of two quaternions is one outer product and one matrix product
-with a constant table: for the few dozen joints of a skeleton the number of NumPy calls sets the
-cost, not the arithmetic.
+A product is one outer product and one matrix product with a constant table: for the few dozen
+joints of a skeleton the number of NumPy calls sets the cost.
 
 Source of the formulas: Shoemake, "Animating rotation with quaternion curves", SIGGRAPH 1985.
 """

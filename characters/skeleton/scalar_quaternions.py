@@ -1,7 +1,6 @@
-"""Single quaternions and vectors as tuples of floats.
+"""Single quaternions xyzw and vectors as tuples of floats.
 
-For one rotation this is much faster than calls of NumPy; for many rotations at once see
-`characters.skeleton.rotations`. Vectors are (x, y, z), unit quaternions (x, y, z, w).
+For one rotation this is much faster than `characters.skeleton.rotations`.
 """
 
 import math

@@ -63,8 +63,7 @@ class FrameContext:
             return None
         placed = self.table_from_character
         offset = np.asarray(self.command.gaze, float) - placed[:3, 3]
-        target: Array = offset @ placed[:3, :3] / float(placed[1, 1]) ** 2
-        return target
+        return offset @ placed[:3, :3] / float(placed[1, 1]) ** 2
 
 
 class PoseLayer(Protocol):

@@ -1,12 +1,8 @@
 """Many clips in one table, to sample and mix clips for many characters at once.
 
-A row of the table is a pose, and a mixed pose is a weighted sum of rows. Sampling and mixing any
-number of clips for any number of characters is therefore one look-up, one matrix product and one
-normalisation.
-
-Quaternions between two frames are mixed before they are normalised. In a mix of very different
-motions a joint may therefore deviate from `blend.mix` by a thousandth of a turn. Single motions are
-identical.
+A row of the table is a pose, and a mixed pose is a weighted sum of rows. Quaternions between two
+frames are mixed before they are normalised: in a mix of very different motions a joint may deviate
+from `blend.mix` by a thousandth of a turn. Single motions are identical.
 """
 
 import math
@@ -104,7 +100,7 @@ class ClipBank:
         unscaled = not scaling.size and np.allclose(scales[0], 1.0, atol=_CONSTANT_TOLERANCE)
         parts = [turns, shifts[:, moving], scales[:, scaling], morphs]
         if extra is not None:
-            parts.append(np.concatenate([_repeat_single_row(each) for each in extra]))
+            parts.append(np.concatenate([e[[0, 0]] if len(e) == 1 else e for e in extra]))
         table = np.concatenate([part.reshape(len(turns), -1) for part in parts], axis=1)
         return ClipBank(
             skeleton=skeleton,
@@ -267,10 +263,6 @@ class ClipBank:
 def _repeat_single_frame(pose: Pose) -> Pose:
     """Return poses with a single frame repeated, so that every row has a next row."""
     return pose[np.array([0, 0])] if len(pose.rotations) == 1 else pose
-
-
-def _repeat_single_row(rows: Array) -> Array:
-    return rows[[0, 0]] if len(rows) == 1 else rows
 
 
 def _stacked(

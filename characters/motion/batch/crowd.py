@@ -1,6 +1,5 @@
-"""Global joint transforms of many characters at once.
+"""Global joint transforms of many characters at once, depth by depth.
 
-The skeleton is processed by depth: all joints of one depth, of all characters, in a few products.
 Characters are the innermost axis, so that the products run over contiguous memory.
 """
 

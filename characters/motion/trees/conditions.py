@@ -1,7 +1,6 @@
 """Conditions of state machines: comparisons of parameters.
 
-Examples are `speed > 0.5 and action == "move"` and `done or not weight >= 0`. They are parsed with
-Python's grammar, restricted to comparisons and logic; nothing is executed.
+They are parsed with Python's grammar, restricted to comparisons and logic; nothing is executed.
 """
 
 import ast

@@ -1,7 +1,4 @@
-"""Plans: descriptions of blend trees and state machines, as read from a file and checked.
-
-The kinds of nodes and their fields are in one table, `KINDS`.
-"""
+"""Plans: descriptions of blend trees and state machines, as read from a file and checked."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
