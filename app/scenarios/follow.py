@@ -9,7 +9,7 @@ from app.scenarios.mood import MoodController
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
 from characters import ActionIntent, CharacterCommand, LocomotionIntent, PosedCharacter, RootDelta
-from characters.control.command import IDLE_SPEED
+from characters.locomotion.gaits import IDLE_SPEED
 from tracking import CubeControls, CubeModel
 
 Point = NDArray[np.float64]

@@ -17,7 +17,7 @@ from characters import (
     PosedCharacter,
     RootDelta,
 )
-from characters.control.command import IDLE_SPEED
+from characters.locomotion.gaits import IDLE_SPEED
 from characters.rendering import FloorPath
 from tracking import CubeControls, CubeModel
 

@@ -89,15 +89,9 @@ class BodySway:
 
         They are in the joints' own frames: they multiply local rotations from the right.
 
-        Parameters
-        ----------
-        effort
-            How hard the body works, 0 at rest … 1 at a full run; breath follows it slowly.
-        calm
-            How much of the sway shows, 0…1.
-        posture
-            Rotation vectors of a posture, (m, 3), in the frames of `joints` and others after
-            them; they are added, and m rotations are returned.
+        Breath slowly follows `effort`, 0 at rest … 1 at a full run. `calm` is how much of the sway
+        shows, 0…1. The rotation vectors of a posture, (m, 3), in the frames of `joints` and others
+        after them, are added, and m rotations are returned.
         """
         self._time += elapsed * expressivity.tempo
         self._effort += (effort - self._effort) * (1.0 - math.exp(-elapsed / EFFORT_LAG_S))

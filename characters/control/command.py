@@ -6,10 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from affect import Emotion
+from characters.locomotion.gaits import IDLE_SPEED
 from characters.skeleton.pose import Pose
-
-IDLE_SPEED = 0.5
-"""AvatAR's Speed up to which a character stands."""
 
 
 @dataclass(frozen=True)

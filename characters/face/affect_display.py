@@ -156,16 +156,8 @@ class AffectDisplay:
     ) -> tuple[float, float]:
         """Lay the face over the morph weights (morphs,) of the clips, in place.
 
-        Parameters
-        ----------
-        weights
-            Weights of all morphs.
-        elapsed
-            Time since the last call [s].
-        closed
-            How far a blink has closed the lids, 0…1.
-        acting
-            How far an action shows an emotion of its own, 0…1.
+        A blink has `closed` the lids so far, and an action shows so much of its own emotion
+        (`acting`), both 0…1; `elapsed` is the time since the last call [s].
 
         Returns
         -------

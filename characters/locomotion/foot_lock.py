@@ -142,7 +142,7 @@ class FootLock:
         return needed
 
 
-def _rest_foot_points(legs: LegIK) -> tuple[list[list[Vector]], list[tuple[float, float]]]:
+def _rest_foot_points(legs: LegIK) -> tuple[list[list[Vector]], list[list[float]]]:
     """Return heel and ball in the frame of each ankle, and their heights at rest [m].
 
     The heel is below the ankle, and half as far behind it as the ball is in front of it.
@@ -153,4 +153,4 @@ def _rest_foot_points(legs: LegIK) -> tuple[list[list[Vector]], list[tuple[float
     heel[:, 1] = 0.0
     points = np.stack([heel, ball], axis=1)
     local = (points - ankle[:, None, :3, 3]) @ ankle[:, :3, :3]
-    return local.tolist(), [tuple(row) for row in points[..., 1].tolist()]
+    return local.tolist(), points[..., 1].tolist()

@@ -71,15 +71,8 @@ class FootTrajectories:
     ) -> tuple[Pose, list[list[float]]]:
         """Return the mean of clips at a phase, and of ball, orientation and contact of each foot.
 
-        Parameters
-        ----------
-        contributions
-            Number and weight of each clip; the weights sum to one.
-        phase
-            Phase of all clips.
-        share
-            Weight of the clips in the pose, 0…1; the rest is the stance. The feet are not mixed
-            with the stance.
+        `contributions` are number and weight of each clip; the weights sum to one. `share`, 0…1, is
+        the weight of the clips in the pose; the rest is the stance, with which feet are not mixed.
         """
         active = [(n, self.time(n, phase), weight * share) for n, weight in contributions]
         if share < 1.0:

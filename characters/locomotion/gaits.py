@@ -101,16 +101,10 @@ class Gaits:
         return math.hypot(cycle.x, cycle.z) / max(2 * math.sin(abs(cycle.yaw) / 2), 1e-6)
 
     def at(self, speed: float, angular: float, stride: float = 1.0) -> "StrideBlend | TimeScaled":
-        """Return the motion at a Speed and an Angular.
+        """Return the motion at a Speed, of which at least 0.5 is used, and an Angular.
 
-        Parameters
-        ----------
-        speed
-            AvatAR's Speed; at least 0.5 is used.
-        angular
-            Turning rate [rad], −π/2…π/2; positive to the right.
-        stride
-            Factor of the distance over the ground, for tighter turns than any clip.
+        Angular is the turning rate [rad], −π/2…π/2, positive to the right; `stride` is a factor of
+        the distance over the ground, for tighter turns than any clip.
         """
         running = interpolate(speed, WALK_RUN_SPEEDS, (0.0, 1.0))
         rate, share = self._rate_and_step_length(speed, running)

@@ -161,15 +161,10 @@ def mean_delta(deltas: Sequence[RootDelta], weights: Sequence[float]) -> RootDel
 def integrate_travel(
     start: float, end: float, travel: Callable[[float, float, float], RootDelta]
 ) -> RootDelta:
-    """Return the root's delta between two times [s] of a mix whose weights vary.
+    """Return the root's delta between two times [s], start ≤ end, of a mix whose weights vary.
 
-    Parameters
-    ----------
-    start, end
-        The times, start ≤ end.
-    travel
-        Called with the ends of a short interval and the time of the weights in it. These times lie
-        on a fixed grid, so the result does not depend on how start…end is split into parts.
+    `travel` is called with the ends of a short interval and the time of the weights in it. These
+    times lie on a fixed grid, so the result does not depend on how start…end is split into parts.
     """
     total = RootDelta()
     first, last = (math.floor(time / _WEIGHT_INTERVAL_S) for time in (start, end))

@@ -69,16 +69,9 @@ class CharacterController(Protocol):
     def update(
         self, command: CharacterCommand, elapsed: float, tempo: float = 1.0
     ) -> ControllerFrame:
-        """Advance by a time and return what is played.
+        """Advance by a time [s] under a command and return what is played.
 
-        Parameters
-        ----------
-        command
-            What is asked for.
-        elapsed
-            Time since the last call [s].
-        tempo
-            Tempo of standing: an emotion changes it.
+        `tempo` is that of standing: an emotion changes it.
 
         Raises
         ------

@@ -60,18 +60,16 @@ class WalkController:
         self._steering = Steering(self.gaits, scale)
         self._motion = self.gaits.at(IDLE_SPEED, 0.0)
         self._strides = RetimedMotion(self._motion)
-        self._first_phase = _most_similar_phase(
-            idle.sample(0.0), self.gaits.at(IDLE_SPEED, 0.0), skeleton
-        )
+        self._first_phase = _most_similar_phase(idle.sample(0.0), self._motion, skeleton)
         self._actions = actions_of(character, NOT_ACTIONS)
         self._finished = ""
         self._machine = StateMachine({"idle": idle, "move": self._strides, **self._actions}, "idle")
         self._time = 0.0
         self._weight = 0.0
-        legs = self.gaits.legs
-        self._feet = 0 if legs is None else legs.count
+        feet = () if self.gaits.legs is None else self.gaits.legs.feet
+        self._feet = len(feet)
         self._contacts: dict[str, list[list[bool]]] = {
-            name: find_contacts(action.clip, skeleton, () if legs is None else legs.feet).tolist()
+            name: find_contacts(action.clip, skeleton, feet).tolist()
             for name, action in self._actions.items()
         }
 
