@@ -61,20 +61,16 @@ class Attention:
         if state.camera_from_cube is not None:
             seen = table_from_camera @ state.camera_from_cube[:, 3]
             self._cube = np.asarray(seen[:3], float)
-        self._note_motion(state, controls)
-        camera = np.asarray(table_from_camera[:3, 3], float)
-        look = self._choose(controls, command) if self._look == "auto" else self._look
-        if look == "camera" or self._cube is None:
-            return camera
-        return self._hand(self._cube, camera) if look == "hand" else self._cube
-
-    def _note_motion(self, state: CubeState, controls: CubeControls) -> None:
-        """Remember when the cube last moved."""
         velocity = state.velocity  # NaN while the cube is not visible
         moves = np.linalg.norm(velocity[:3]) > MIN_SPEED_M_S
         turns = np.linalg.norm(velocity[3:]) > MIN_TURN_RAD_S
         if moves or turns or controls.lifted:
             self._last_moved = controls.timestamp
+        camera = np.asarray(table_from_camera[:3, 3], float)
+        look = self._choose(controls, command) if self._look == "auto" else self._look
+        if look == "camera" or self._cube is None:
+            return camera
+        return self._hand(self._cube, camera) if look == "hand" else self._cube
 
     def _choose(self, controls: CubeControls, command: CharacterCommand) -> str:
         """Return what to look at with "auto"."""

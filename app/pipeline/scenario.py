@@ -126,12 +126,8 @@ def make_scenario(
 ) -> Scenario:
     """Make a scenario by name; without a cube and a personality it has its own bundled ones.
 
-    Raises
-    ------
-    AppError
-        There is no scenario of that name, or a setting is wrong.
-    AffectError
-        The personality is missing or cannot be used.
+    Raises AppError if there is no scenario of that name or a setting is wrong, and AffectError if
+    the personality is missing or cannot be used.
     """
     loaded = None if personality is None else Personality.load(personality)
     settings = ScenarioSettings(speed_map, turns, loaded)

@@ -119,25 +119,11 @@ def run_checks(
     on_result: Callable[[CheckResult], None] = lambda result: None,
     max_duration: float = MAX_DURATION_S,
 ) -> ConformanceReport:
-    """Run checks, and always leave the robot neutral and without a session.
+    """Run checks in this order, and always leave the robot neutral and without a session.
 
-    Parameters
-    ----------
-    channel
-        The channel to the robot; it must not lose frames, for a check sends everything once.
-    checks
-        The checks, in this order.
-    host
-        A host number that the robot has not seen before.
-    on_result
-        Called after each check.
-    max_duration
-        No check starts later than this [s].
-
-    Raises
-    ------
-    RobotError
-        If no robot answers HELLO, or the port is lost.
+    The channel must not lose frames, for a check sends everything once. `host` is a number that
+    the robot has not seen before. No check starts later than `max_duration` [s]. Raises RobotError
+    if no robot answers HELLO, or the port is lost.
     """
     probe = Probe(channel, host)
     begin = probe.now

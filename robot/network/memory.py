@@ -31,7 +31,7 @@ class MemoryBroker:
             bus.disconnect("the broker was killed")
 
     def start(self) -> None:
-        """Run again, without any state. Buses come back by `MemoryBus.reconnect`."""
+        """Run again, without any state. Buses come back by `MemoryBus.open`."""
         self.running = True
 
     def add(self, bus: "MemoryBus") -> bool:
@@ -73,11 +73,7 @@ class MemoryBus(Bus):
         self._broker = broker
 
     def open(self) -> None:
-        """Connect; if the broker does not run, the state is "away"."""
-        self.reconnect()
-
-    def reconnect(self) -> None:
-        """Try again to connect."""
+        """Connect, or try it again; if the broker does not run, the state is "away"."""
         if self._state in ("connected", "closed"):
             return
         if self._broker.add(self):

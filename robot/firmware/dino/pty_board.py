@@ -37,12 +37,12 @@ class PtyBoard(RobotBoard):
         """Frequency of the buzzer; 0 for silence."""
         self.errors: list[BaseException] = []
         """Errors of the firmware that it recovered from."""
-        self._last = self._now()
+        self._last = int(1000 * time.monotonic())
         self._closing = False
 
     def elapsed(self) -> int:
         """Return the time since the last call [whole ms]."""
-        now = self._now()
+        now = int(1000 * time.monotonic())
         elapsed, self._last = now - self._last, now
         return elapsed
 
@@ -90,9 +90,6 @@ class PtyBoard(RobotBoard):
         """Close the pseudo-terminal."""
         for descriptor in (self._master, self._slave, self._wake_reader, self._wake_writer):
             os.close(descriptor)
-
-    def _now(self) -> int:
-        return int(1000 * time.monotonic())
 
 
 def run_on_pty(table: ServoTable) -> None:

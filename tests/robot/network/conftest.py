@@ -96,7 +96,7 @@ class NetworkWorld:
                 handler(topic, payload)
             for name, client in self.clients.items():
                 if self.buses[name].state == "away" and name not in self.offline:
-                    self.buses[name].reconnect()
+                    self.buses[name].open()
                 client.step()
 
     def vanish(self, name: str) -> None:
