@@ -58,10 +58,6 @@ class CalibrationModel:
     blooms: Array
     """How far white grows over black in each view [px], (V,)."""
 
-    def of_views(self, chosen: Sequence[int]) -> Self:
-        """Return the model of some of the views."""
-        return replace(self, poses=self.poses[list(chosen)], blooms=self.blooms[list(chosen)])
-
     @property
     def free_parameters(self) -> Indices:
         """Indices of the free ones among the 9 + 6 P parameters of camera and plates."""

@@ -139,7 +139,8 @@ def _without_outliers(
     usual = max(float(np.median(result.view_residuals)), 0.1)
     chosen = np.flatnonzero(result.view_residuals < MAX_RESIDUAL_RATIO * usual).tolist()
     _check_count(len(chosen))
-    return result.model.of_views(chosen), [views[number] for number in chosen]
+    poses, blooms = result.model.poses[chosen], result.model.blooms[chosen]
+    return replace(result.model, poses=poses, blooms=blooms), [views[number] for number in chosen]
 
 
 def measured_cube(cube: CubeModel, plates: Array) -> CubeModel:

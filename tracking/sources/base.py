@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Generator, Iterator
-from types import TracebackType
 from typing import Protocol, Self, runtime_checkable
 
 from tracking.errors import TrackingError
@@ -57,12 +56,7 @@ class FrameSource(Protocol):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self.close()
 
 
@@ -77,14 +71,9 @@ class LiveFrames(FrameSource, Protocol):
     """
 
     def wait(self, timeout: float, patience: float | None = None) -> Frame | None:
-        """Wait for a frame newer than the last one.
+        """Wait for a frame newer than the last one; None if none arrives within `timeout` [s].
 
-        Parameters
-        ----------
-        timeout
-            Return None if no frame arrives within this time [s].
-        patience
-            How long the source may be lost or frozen [s]; None: without limit.
+        The source may be lost or frozen for up to `patience` [s]; None: without limit.
 
         Raises
         ------
@@ -105,13 +94,7 @@ class StoredFrames(FrameSource):
     live = False
 
     def start(self, frames: Generator[Frame, None, None], if_empty: str) -> None:
-        """Decode the first frame, to know the size.
-
-        Raises
-        ------
-        TrackingError
-            There is no frame; `if_empty` is the message.
-        """
+        """Decode the first frame, to know the size; `if_empty` is the error if there is none."""
         self._frames = frames
         self._first = next(frames, None)
         if self._first is None:

@@ -12,21 +12,11 @@ import numpy as np
 
 from tracking.errors import TrackingError
 from tracking.geometry.arrays import Image
-from tracking.sources.camera_controls import (
-    EXPOSURE,
-    EXPOSURE_UNITS_PER_MS,
-    FOCUS,
-    ControlLock,
-)
+from tracking.sources.camera_controls import EXPOSURE, FOCUS, ControlLock
 from tracking.sources.device import Clock, DeviceSetting
 from tracking.sources.live import LiveSource
 from tracking.sources.options import UriOptions
-from tracking.sources.video_device import (
-    VideoCapture,
-    check_present,
-    open_capture,
-    persistent_path,
-)
+from tracking.sources.video_device import VideoCapture, check_present, open_capture, persistent_path
 
 MJPG = cv2.VideoWriter.fourcc(*"MJPG")
 """The only format in which most cameras reach 30 frames/s at 1280x720."""
@@ -177,7 +167,7 @@ def _request_buffers(capture: VideoCapture, count: int) -> DeviceSetting:
 def _locks(capture: VideoCapture, options: CameraOptions) -> tuple[ControlLock, ...]:
     if sys.platform != "linux":  # other systems' drivers use other units
         return ()
-    exposure = None if options.exposure is None else options.exposure * EXPOSURE_UNITS_PER_MS
+    exposure = None if options.exposure is None else options.exposure * EXPOSURE.units
     wanted = ((EXPOSURE, exposure), (FOCUS, options.focus))
     return tuple(
         ControlLock(capture, control, value)

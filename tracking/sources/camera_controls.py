@@ -27,12 +27,6 @@ MAX_BRIGHTNESS_CHANGE = 0.25
 READ_BACK_TOLERANCE = 0.05
 """Relative difference between a value set and the same value read back: drivers have steps."""
 
-MANUAL, AUTOMATIC = 1.0, 3.0
-"""Exposure modes of V4L2: V4L2_EXPOSURE_MANUAL, V4L2_EXPOSURE_APERTURE_PRIORITY."""
-
-EXPOSURE_UNITS_PER_MS = 10.0
-"""V4L2 measures exposure in units of 100 µs."""
-
 
 @dataclass(frozen=True)
 class CameraControl:
@@ -70,12 +64,12 @@ class CameraControl:
 
 EXPOSURE = CameraControl(
     "exposure",
-    cv2.CAP_PROP_AUTO_EXPOSURE,
-    AUTOMATIC,
-    MANUAL,
-    cv2.CAP_PROP_EXPOSURE,
-    EXPOSURE_UNITS_PER_MS,
-    " ms",
+    mode=cv2.CAP_PROP_AUTO_EXPOSURE,
+    automatic=3.0,  # V4L2_EXPOSURE_APERTURE_PRIORITY
+    manual=1.0,  # V4L2_EXPOSURE_MANUAL
+    value=cv2.CAP_PROP_EXPOSURE,
+    units=10.0,  # V4L2 measures exposure in units of 100 µs
+    suffix=" ms",
 )
 FOCUS = CameraControl("focus", cv2.CAP_PROP_AUTOFOCUS, 1.0, 0.0, cv2.CAP_PROP_FOCUS)
 

@@ -154,12 +154,9 @@ class CaptureThread:
             reader.device = reader.blocked_since = None
             if not self.delivered:
                 return  # the caller gets the error and may try another device
-            self._sleep(RETRY_DELAY_S)
-
-    def _sleep(self, seconds: float) -> None:
-        began = self._clock()
-        while not self._stopped.wait(POLL_S) and self._clock() - began < seconds:
-            pass
+            began = self._clock()
+            while not self._stopped.wait(POLL_S) and self._clock() - began < RETRY_DELAY_S:
+                pass
 
     def _set_open(self, reader: _Reader, device: Device) -> None:
         with self._changed:

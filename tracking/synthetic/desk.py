@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.synthetic.camera_rays import CameraRays
 
+Color = tuple[float, float, float]
+"""Blue, green, red, 0…255."""
+
 HALF_WIDTH_M = 1.3
 """Half the side of the desk's square texture."""
 
@@ -123,9 +126,7 @@ def _quad(x: float, z: float, width: float, depth: float, turn: float) -> NDArra
     return np.array([_texel(*corner) for corner in corners], np.int32)
 
 
-def _draw_flat(
-    texture: Floats, outline: NDArray[np.int32], color: tuple[float, float, float]
-) -> None:
+def _draw_flat(texture: Floats, outline: NDArray[np.int32], color: Color) -> None:
     """Draw a flat object on the desk, with a soft shadow at its edge."""
     low = np.maximum(outline.min(axis=0) // 16 - 32, 0)
     high = outline.max(axis=0) // 16 + 32
@@ -170,8 +171,8 @@ def draw_objects(image: Floats, camera: CameraRays) -> None:
     # OpenCV anti-aliases on integer images only.
     canvas = np.clip(np.rint(image), 0, 255).astype(np.uint8)
     _draw_mug(canvas, camera)
-    _draw_pencil(canvas, camera, (0.17, -0.40, 0.35), (60, 175, 240))
-    _draw_pencil(canvas, camera, (0.21, -0.385, 0.10), (190, 120, 60))
+    _draw_pencil(canvas, camera, 0.17, -0.40, 0.35, (60, 175, 240))
+    _draw_pencil(canvas, camera, 0.21, -0.385, 0.10, (190, 120, 60))
     image[:] = canvas
 
 
@@ -206,17 +207,13 @@ def _draw_mug(image: Image, camera: CameraRays) -> None:
 
 
 def _draw_pencil(
-    image: Image,
-    camera: CameraRays,
-    place: tuple[float, float, float],
-    color: tuple[float, float, float],
+    image: Image, camera: CameraRays, x: float, z: float, turn: float, color: Color
 ) -> None:
-    x, z, turn = place
     along = np.array([np.cos(turn), 0.0, np.sin(turn)])
     aside = np.array([-np.sin(turn), 0.0, np.cos(turn)]) * 0.0037
     middle = np.array([x, 0.004, z])
 
-    def band(start: float, end: float, taper: float, shade: tuple[float, float, float]) -> None:
+    def band(start: float, end: float, taper: float, shade: Color) -> None:
         quad = [
             middle + start * along + aside,
             middle + end * along + aside * taper,

@@ -161,8 +161,7 @@ def _mipmaps(texture: Floats) -> list[Floats]:
     levels = [texture]
     for level in range(1, MIPMAP_LEVELS):
         size = (TEXELS >> level, TEXELS >> level)
-        small = cv2.resize(texture, size, interpolation=cv2.INTER_AREA)
-        levels.append(np.asarray(small, np.float32))
+        levels.append(cv2.resize(texture, size, interpolation=cv2.INTER_AREA).astype(np.float32))
     return levels
 
 

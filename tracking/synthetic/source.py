@@ -45,7 +45,6 @@ class SyntheticSource(FrameSource):
         if name not in SCRIPTS:
             known = ", ".join(SCRIPTS)
             raise TrackingError(f"there is no synthetic scene '{name}': choose one of {known}")
-        self.name = name
         self.options = options = options or SyntheticOptions()
         self.intrinsics: Intrinsics | None = webcam(options)
         self.size = (options.width, options.height)
@@ -109,13 +108,7 @@ class SyntheticSource(FrameSource):
 
 
 def open_synthetic(name: str) -> SyntheticSource:
-    """Open "NAME" or "NAME?key=value&…"; see `SCRIPTS` and `SyntheticOptions`.
-
-    Raises
-    ------
-    TrackingError
-        There is no such script or option.
-    """
+    """Open "NAME" or "NAME?key=value&…", with errors as of `SyntheticSource` and its options."""
     return SyntheticSource(*SyntheticOptions.parse(f"synthetic:{name}"))
 
 
