@@ -45,7 +45,15 @@ class EdgeModel:
         return self._of(np.flatnonzero(np.isin(self.face, faces)))
 
     def _of(self, chosen: Indices) -> "EdgeModel":
-        return EdgeModel(**{name: values[chosen] for name, values in vars(self).items()})
+        return EdgeModel(
+            points=self.points[chosen],
+            along=self.along[chosen],
+            across=self.across[chosen],
+            to_end=self.to_end[chosen],
+            outline=self.outline[chosen],
+            face=self.face[chosen],
+            line=self.line[chosen],
+        )
 
     @classmethod
     def of(cls, cube: CubeModel) -> "EdgeModel":

@@ -8,6 +8,7 @@ from tracking.cube.model import CubeModel
 from tracking.detection.markers import Observation
 from tracking.detection.quads import Quads, find_quads, sampled
 from tracking.geometry.arrays import Array, Flags, Image, Indices
+from tracking.geometry.image_region import Region
 
 UNREAD_BAND = 0.15
 """A cell closer to the middle between black and white than this share of the contrast is unread."""
@@ -56,22 +57,27 @@ class PartlyHiddenMarkerDetector:
         depth = np.minimum(np.minimum(x, y), count - np.maximum(x, y))
         self._paper, self._border, self._bits = depth < 0, (depth > 0) & (depth < 1), depth > 1
 
-    def detect(self, grey: Image) -> list[Observation]:
-        """Detect whole and partly hidden markers in a grey image, (H, W), the most certain first.
+    def detect(self, grey: Image, region: Region | None = None) -> list[Observation]:
+        """Detect markers in a grey image, (H, W), or in a region of it.
 
-        A marker can occur twice.
+        Returns
+        -------
+        Markers, the most certain first, whole ones among them. A marker can occur twice.
         """
-        soft = np.asarray(cv2.GaussianBlur(grey, (5, 5), 0), np.uint8)
+        left, top, right, bottom = region or (0, 0, grey.shape[1], grey.shape[0])
+        soft = np.asarray(cv2.GaussianBlur(grey[top:bottom, left:right], (5, 5), 0), np.uint8)
         quads = find_quads(soft)
         if not len(quads):
             return []
         number, fit = self._read(soft, quads)
         # Of quads that fit alike, the most visible one has the best corners.
         order = np.argsort(-(fit + 0.5 * quads.visible), kind="stable")
+        origin = np.array([left, top], np.float64)
         found: list[Observation] = []
         for each in order[number[order] >= 0].tolist():
             face, turn = divmod(int(number[each]), 4)
-            seen = Observation(self._faces[face], np.roll(quads.corners[each], turn, axis=0))
+            corners = np.roll(quads.corners[each], turn, axis=0) + origin
+            seen = Observation(self._faces[face], corners)
             if not any(_same(seen, other) for other in found):
                 found.append(seen)
         return found

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from tracking.cube.faces import FacePlanes, face_frame
-from tracking.cube.model import CubeModel
+from tracking.cube.model import CubeModel, Face
 from tracking.detection.markers import Observation
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array
@@ -41,15 +40,30 @@ class CornerPose:
     """Of a pose delta, (6, 6)."""
 
 
+@dataclass(frozen=True)
+class _FaceGeometry:
+    centre: Array
+    normal: Array
+    marker_from_cube: Array
+    side: float
+
+    @classmethod
+    def of(cls, face: Face) -> "_FaceGeometry":
+        """Frame of the marker: x to its right, y to its top, z outward."""
+        top_left, top_right, _, bottom_left = face.corners
+        side = float(np.linalg.norm(top_right - top_left))
+        axes = [(top_right - top_left) / side, (top_left - bottom_left) / side, face.normal]
+        centre = face.corners.mean(axis=0)
+        frame = se3.pose(np.stack(axes, axis=1), centre)
+        return cls(centre, face.normal, se3.inverse(frame), side)
+
+
 class CornerPoseSolver:
     """Solves for poses of one rigid cube seen by one camera."""
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._projection = projection
-        self._faces = FacePlanes(cube)
-        # x to the marker's right, y to its top, z outward, as IPPE wants it.
-        frames = {face.name: face_frame(face) * (1, -1, -1, 1) for face in cube.faces}
-        self._marker_from_cube = {name: se3.inverse(frame) for name, frame in frames.items()}
+        self._geometry = {face.name: _FaceGeometry.of(face) for face in cube.faces}
 
     def solve(
         self, observations: Sequence[Observation], expected: Array | None = None
@@ -79,10 +93,12 @@ class CornerPoseSolver:
         most = len(solutions[0].observations) if solutions else 0
         return [solution for solution in solutions if len(solution.observations) == most][:2]
 
-    def faces_towards_camera(self, camera_from_cube: Array) -> set[str]:
-        """Names of the faces that show their outside, and not at a grazing angle."""
-        facing = self._faces.facing(camera_from_cube, MIN_FACING_COSINE)
-        return {self._faces.names[number] for number in facing}
+    def looks_at_camera(self, face: str, camera_from_cube: Array) -> bool:
+        """Whether a face shows its outside, and not at a grazing angle."""
+        rotation, geometry = camera_from_cube[:3, :3], self._geometry[face]
+        centre = rotation @ geometry.centre + camera_from_cube[:3, 3]
+        cosine = -(rotation @ geometry.normal) @ centre
+        return bool(centre[2] > MIN_DEPTH and cosine > MIN_FACING_COSINE * np.sqrt(centre @ centre))
 
     def error(self, camera_from_cube: Array, observations: Sequence[Observation]) -> float:
         """Root mean square reprojection error of the corners at a pose [px]."""
@@ -97,8 +113,8 @@ class CornerPoseSolver:
     def _proposals(self, observations: Sequence[Observation]) -> Iterator[Array]:
         """Poses of the cube from each marker alone: both of IPPE (Collins and Bartoli, 2014)."""
         for seen in observations:
-            side = float(np.linalg.norm(seen.face.corners[1] - seen.face.corners[0]))
-            square = np.array([(-1, 1, 0), (1, 1, 0), (1, -1, 0), (-1, -1, 0)]) * side / 2
+            geometry = self._geometry[seen.face.name]
+            square = np.array([(-1, 1, 0), (1, 1, 0), (1, -1, 0), (-1, -1, 0)]) * geometry.side / 2
             rays = self._projection.rays(seen.corners).reshape(-1, 1, 2)
             found, turns, origins = cv2.solvePnPGeneric(
                 square, rays, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE_SQUARE
@@ -107,7 +123,7 @@ class CornerPoseSolver:
                 vectors = np.array([turn, origin], np.float64).reshape(2, 3)
                 if np.isfinite(vectors).all():
                     marker = se3.pose(se3.rotation(vectors[0]), vectors[1])
-                    yield marker @ self._marker_from_cube[seen.face.name]
+                    yield marker @ geometry.marker_from_cube
 
     def _consensus(self, start: Array, observations: Sequence[Observation]) -> CornerPose | None:
         """Refine a proposal on all markers that agree with it, until these stay the same."""
@@ -127,14 +143,15 @@ class CornerPoseSolver:
     ) -> list[Observation]:
         """Return the best marker of each face whose error is within a share of its side."""
         best: dict[str, tuple[float, Observation]] = {}
-        facing = self.faces_towards_camera(pose)
         for seen in observations:
             name = seen.face.name
-            if name not in facing:
+            if not self.looks_at_camera(name, pose):
                 continue
             error = self.error(pose, [seen])
-            limit = max(MIN_TOLERANCE_PX, tolerance * seen.size)
-            if error < min(limit, best.get(name, (np.inf,))[0]):
+            if (
+                error < max(MIN_TOLERANCE_PX, tolerance * seen.size)
+                and error < best.get(name, (np.inf,))[0]
+            ):
                 best[name] = error, seen
         return [seen for _, seen in best.values()]
 

@@ -14,8 +14,9 @@ class Projection:
     """A pinhole camera with any distortion model of OpenCV; pixel centres at whole numbers."""
 
     def __init__(self, intrinsics: Intrinsics) -> None:
-        self.matrix = intrinsics.matrix
-        self.distortion = intrinsics.distortion
+        self.intrinsics = intrinsics
+        self.matrix = np.asarray(intrinsics.matrix, np.float64)
+        self.distortion = np.asarray(intrinsics.distortion, np.float64).ravel()
         self.size = intrinsics.size
         self._zero = np.zeros(3)
 
@@ -36,5 +37,6 @@ class Projection:
     def rays(self, pixels: Array) -> Array:
         """Undistort pixels, (N, 2), to points at z = 1 of the camera frame, (N, 2)."""
         points = np.ascontiguousarray(pixels, np.float64).reshape(-1, 1, 2)
-        rays = cv2.undistortPoints(points, self.matrix, self.distortion)
-        return np.asarray(rays, np.float64).reshape(-1, 2)
+        return np.asarray(
+            cv2.undistortPoints(points, self.matrix, self.distortion), np.float64
+        ).reshape(-1, 2)

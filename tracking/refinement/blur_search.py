@@ -9,6 +9,7 @@ from tracking.geometry.projection import Projection
 from tracking.refinement.camera_model import CameraModel
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeSearch
+from tracking.refinement.footprint import Footprint
 from tracking.refinement.motion_blur_alignment import MotionBlurAligner
 from tracking.refinement.photometric_fit import Alignment
 
@@ -36,7 +37,7 @@ class BlurSearch:
 
     def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
         self._aligner = MotionBlurAligner(cube, projection)
-        self._footprint = edges.footprint
+        self._footprint = Footprint(cube, projection)
         self._edges = edges
 
     def align(

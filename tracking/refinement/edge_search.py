@@ -65,8 +65,7 @@ class EdgeSearch:
         self._faces = FacePlanes(cube)
         self._refiner = EdgeRefiner(cube, projection)
         self._reader = CellReader(cube, projection)
-        self.footprint = Footprint(cube, projection)
-        """Where the cube appears in the image, and how large."""
+        self._footprint = Footprint(cube, projection)
 
     def match(
         self, patch: Patch, start: Array, blur_motion: Array | None = None, wide: bool = False
@@ -114,9 +113,9 @@ class EdgeSearch:
     def _inflate_covariance(self, found: EdgeRefinement, blur_motion: Array | None) -> Array:
         """Covariance of a refined pose, (6, 6), with the errors that all edges have in common."""
         pose = found.camera_from_cube
-        extent = 0.0 if blur_motion is None else self.footprint.blur_extent(blur_motion)
-        half_edge = self.footprint.half_edge
-        pixel = self.footprint.metres_per_pixel(pose)
+        extent = 0.0 if blur_motion is None else self._footprint.blur_extent(blur_motion)
+        half_edge = self._footprint.half_edge
+        pixel = self._footprint.metres_per_pixel(pose)
         side, size, tilt = np.array(COMMON_ERROR_PX) * pixel
         size, tilt = size * float(pose[2, 3]) / half_edge, tilt / half_edge
         floor = np.square([side, side, size, tilt, tilt, tilt])
@@ -126,8 +125,8 @@ class EdgeSearch:
 
     def _is_rigid(self, found: EdgeRefinement) -> bool:
         """Whether the edges lie as those of one rigid cube, and not as on a picture of one."""
-        pixel = self.footprint.metres_per_pixel(found.camera_from_cube)
-        edge = 2 * self.footprint.half_edge
+        pixel = self._footprint.metres_per_pixel(found.camera_from_cube)
+        edge = 2 * self._footprint.half_edge
         return found.residual < max(MAX_RESIDUAL_PX, MAX_RESIDUAL_SHARE * edge / pixel)
 
 

@@ -16,6 +16,7 @@ from tracking.geometry.projection import Projection
 from tracking.refinement.blur_search import BlurSearch
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeSearch
+from tracking.refinement.footprint import Footprint
 from tracking.tracker.marker_poses import MarkerPoses
 
 MIN_HALVED_HEIGHT_PX = 480
@@ -61,7 +62,7 @@ class GlobalDetector:
         self, cube: CubeModel, projection: Projection, edges: EdgeSearch, blur: BlurSearch
     ) -> None:
         self._cube = cube
-        self._footprint = edges.footprint
+        self._footprint = Footprint(cube, projection)
         self._poses = MarkerPoses(cube, projection, edges)
         self._hidden = PartlyHiddenMarkerDetector(cube)
         self._blur = blur

@@ -2,12 +2,15 @@
 
 from dataclasses import dataclass
 
+from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Image
 from tracking.geometry.image_region import Patch
+from tracking.geometry.projection import Projection
 from tracking.refinement.blur_search import MAX_EDGE_BLUR_CELLS, MIN_CORRELATION_ALONE, BlurSearch
 from tracking.refinement.camera_model import BlurObservation, CameraModel, shows_exposure
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeSearch
+from tracking.refinement.footprint import Footprint
 from tracking.refinement.photometric_fit import Alignment
 from tracking.tracker.prediction import Prediction, Track
 
@@ -32,8 +35,10 @@ class LocalMatch:
 class LocalTracker:
     """Finds one cube near its predicted pose, by `edges` or by `blur`."""
 
-    def __init__(self, edges: EdgeSearch, blur: BlurSearch) -> None:
-        self._footprint = edges.footprint
+    def __init__(
+        self, cube: CubeModel, projection: Projection, edges: EdgeSearch, blur: BlurSearch
+    ) -> None:
+        self._footprint = Footprint(cube, projection)
         self._edges = edges
         self._blur = blur
 

@@ -104,7 +104,7 @@ class MarkerPoses:
         """Whether the edges moved the pose by less than the corners allow."""
         refined, seen = match.refinement, solution.observations
         pose = refined.camera_from_cube
-        if not {each.face.name for each in seen} <= self._solver.faces_towards_camera(pose):
+        if not all(self._solver.looks_at_camera(each.face.name, pose) for each in seen):
             return False
         alone = len(seen) == 1
         cell = min(each.size for each in seen) / CELLS_PER_MARKER

@@ -17,7 +17,7 @@ from tracking.refinement.edge_search import EdgeSearch
 from tracking.tracker.global_search import FrameMarkers, GlobalDetector
 from tracking.tracker.local_search import LocalMatch, LocalTracker
 from tracking.tracker.prediction import TrackedPose
-from tracking.tracker.verdict import Past, judge_detected, judge_followed
+from tracking.tracker.verdict import FollowedPoseJudge, Past, judge_detected
 
 MAX_THOROUGH_FRAMES, THOROUGH_INTERVAL = 30, 5
 """Frames without the cube in which partly hidden markers are detected, then the interval."""
@@ -43,9 +43,10 @@ class CubeTracker:
         self.cube = cube
         self.intrinsics = intrinsics
         projection = Projection(intrinsics)
-        edges = self._edges = EdgeSearch(cube, projection)
+        edges = EdgeSearch(cube, projection)
         blur = BlurSearch(cube, projection, edges)
-        self._local_tracker = LocalTracker(edges, blur)
+        self._local_tracker = LocalTracker(cube, projection, edges, blur)
+        self._followed_pose_judge = FollowedPoseJudge(cube, projection, edges)
         self._global_detector = GlobalDetector(cube, projection, edges, blur)
         self._detectors = {cube.dictionary: MarkerDetector(cube.dictionary)}
         self._camera = CameraModelEstimator()
@@ -74,7 +75,7 @@ class CubeTracker:
 
         if match.candidate is not None:
             # Judge the pose: a single face may tilt either way.
-            verdict = judge_followed(match.candidate, image, tone, past, self._edges)
+            verdict = self._followed_pose_judge.judge(match.candidate, image, tone, past)
         else:
             # Search the whole image: detect markers, and refine the poses that they propose.
             past = replace(past, frames_lost=past.frames_lost + 1)

@@ -5,10 +5,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.arrays import Floats, Image
+from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeSearch
+from tracking.refinement.footprint import Footprint
 from tracking.tracker.prediction import MAX_PREDICTION_S, Prediction, Track, TrackedPose
 
 MIN_DISTINCT_ANGLE, MIN_HARMFUL_ANGLE, MIN_LASTING_ANGLE = np.deg2rad((3, 7, 10))
@@ -60,39 +63,43 @@ class Verdict:
     """What the tracker remembers, without this pose."""
 
 
-def judge_followed(
-    candidate: Candidate, image: Image, tone: Floats, past: Past, edges: EdgeSearch
-) -> Verdict:
-    """Judge a pose found near the predicted one: a single face may tilt to the camera or away.
+class FollowedPoseJudge:
+    """Judges poses found near the predicted one: a single face may tilt to the camera or away."""
 
-    Its edges tell which way it tilts, else its past, else nothing. Once the tilt is known it stays
-    known until the face comes square to the camera, where one pose can become the other. `image` is
-    (H, W, 3) BGR, `tone` the light for each grey value.
-    """
-    settled, unsettled = (replace(past, tilt_settled=known) for known in (True, False))
-    ambiguous = Verdict(candidate, "ambiguous", past)
-    if len(candidate.faces) != 1:
-        return _unless_uncertain(candidate, settled)
-    if candidate.blur_motion is not None:
-        return _unless_uncertain(candidate, past) if past.tilt_settled else ambiguous
-    mirrored = edges.mirrored_pose(candidate)
-    angle = se3.angle_between(candidate.camera_from_cube, mirrored)
-    if angle < MIN_DISTINCT_ANGLE:
-        return _unless_uncertain(candidate, unsettled)
-    if past.tilt_settled and angle > MIN_LASTING_ANGLE:
-        return _unless_uncertain(candidate, past)
-    patch = edges.footprint.crop(image, candidate.camera_from_cube, tone)
-    other = edges.search(patch, mirrored) if patch else None
-    if other is None:
-        return _unless_uncertain(candidate, past)
-    if candidate.same_pose(other):
-        return _unless_uncertain(candidate, unsettled)
-    best, worse = sorted((candidate, other), key=lambda each: each.residual)
-    if best.clearly_better_than(worse):
-        return _unless_uncertain(best, settled)
-    if angle < MIN_HARMFUL_ANGLE:
-        return _unless_uncertain(candidate.widened_to(other), past)
-    return ambiguous
+    def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
+        self._footprint = Footprint(cube, projection)
+        self._edges = edges
+
+    def judge(self, candidate: Candidate, image: Image, tone: Floats, past: Past) -> Verdict:
+        """Tell which way a face tilts: by its edges, else by its past, else not at all.
+
+        Once the tilt is known it stays known until the face comes square to the camera, where one
+        pose can become the other. `image` is (H, W, 3) BGR, `tone` the light for each grey value.
+        """
+        settled, unsettled = (replace(past, tilt_settled=known) for known in (True, False))
+        ambiguous = Verdict(candidate, "ambiguous", past)
+        if len(candidate.faces) != 1:
+            return _unless_uncertain(candidate, settled)
+        if candidate.blur_motion is not None:
+            return _unless_uncertain(candidate, past) if past.tilt_settled else ambiguous
+        mirrored = self._edges.mirrored_pose(candidate)
+        planar_ambiguity_angle = se3.angle_between(candidate.camera_from_cube, mirrored)
+        if planar_ambiguity_angle < MIN_DISTINCT_ANGLE:
+            return _unless_uncertain(candidate, unsettled)
+        if past.tilt_settled and planar_ambiguity_angle > MIN_LASTING_ANGLE:
+            return _unless_uncertain(candidate, past)
+        patch = self._footprint.crop(image, candidate.camera_from_cube, tone)
+        other = self._edges.search(patch, mirrored) if patch else None
+        if other is None:
+            return _unless_uncertain(candidate, past)
+        if candidate.same_pose(other):
+            return _unless_uncertain(candidate, unsettled)
+        best, worse = sorted((candidate, other), key=lambda each: each.residual)
+        if best.clearly_better_than(worse):
+            return _unless_uncertain(best, settled)
+        if planar_ambiguity_angle < MIN_HARMFUL_ANGLE:
+            return _unless_uncertain(candidate.widened_to(other), past)
+        return ambiguous
 
 
 def judge_detected(

@@ -201,7 +201,7 @@ def test_a_finger_over_one_face_does_not_hide_two_others_in_motion() -> None:
         past = se3.moved(pose, time * across)
         track = track.add(TrackedPose(past, across, 1e-8 * np.eye(6), time))
     edges = EdgeSearch(CUBE, projection)
-    tracker = LocalTracker(edges, BlurSearch(CUBE, projection, edges))
+    tracker = LocalTracker(CUBE, projection, edges, BlurSearch(CUBE, projection, edges))
     prediction, camera = track.predict(0.0), CameraModelEstimator().model
     assert prediction is not None
     found = tracker.search(photograph(light), track, prediction, camera).candidate

@@ -130,7 +130,7 @@ class Clip:
         """Follow the cube through the clip, each time with its true past."""
         edges = EdgeSearch(self.cube, self.projection)
         blur = BlurSearch(self.cube, self.projection, edges)
-        tracker = LocalTracker(edges, blur)
+        tracker = LocalTracker(self.cube, self.projection, edges, blur)
         for picture, times, poses in self.shots:
             track = track_of(poses[:2], times[:2])
             prediction = track.predict(times[2])
