@@ -11,7 +11,7 @@ import pytest
 from foxglove_schemas_protobuf.CameraCalibration_pb2 import CameraCalibration
 from foxglove_schemas_protobuf.CompressedImage_pb2 import CompressedImage
 from foxglove_schemas_protobuf.CompressedVideo_pb2 import CompressedVideo
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from mcap.writer import CompressionType
 from mcap_protobuf.writer import Writer
@@ -165,6 +165,7 @@ def test_every_complete_frame_of_a_truncated_session_is_read(session, tmp_path):
 
 
 @given(place=st.floats(0.1, 0.9), bit=st.integers(0, 7))
+@example(place=0.24608066831063077, bit=3)  # the type of a record: a whole chunk is skipped
 @settings(max_examples=40)
 def test_a_flipped_bit_never_gives_a_wrong_image(session, tmp_path_factory, place, bit):
     data = bytearray(session.read_bytes())
@@ -172,7 +173,10 @@ def test_a_flipped_bit_never_gives_a_wrong_image(session, tmp_path_factory, plac
     path = tmp_path_factory.getbasetemp() / "flipped.mcap"
     path.write_bytes(data)
     frames, _ = read(path)
-    assert all(frame.encoded == jpeg(frame.index) for frame in frames)
+    for frame in frames:
+        recorded = round(frame.timestamp * 1e9 / STEP_NS)  # frames may be lost before it
+        assert frame.timestamp == pytest.approx(recorded * STEP_NS / 1e9, abs=1e-9)
+        assert frame.encoded == jpeg(recorded)
 
 
 @pytest.mark.parametrize(
