@@ -1,17 +1,29 @@
 """File formats of characters and motions.
 
-A format is one module (or folder) with its reader, and one line here.
+A format is one module (or folder) with its reader, and one line here. A reader is imported when
+its first file is read.
 """
 
-from characters.formats.gltf import reading as gltf
-from characters.formats.gltf import writing
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
 from characters.formats.loading import MOTION_READERS, Performance, load_motion
-from characters.formats.mocap import amc, asf, bvh
 from characters.model.character import READERS, WRITERS
 
-READERS |= {".glb": gltf.load_character, ".gltf": gltf.load_character, ".vrm": gltf.load_character}
-WRITERS[".glb"] = writing.save
-MOTION_READERS |= dict.fromkeys(READERS, gltf.load_motion)
-MOTION_READERS |= {".bvh": bvh.load_motion, ".amc": amc.load_motion, ".asf": asf.refuse_motion}
+
+def _deferred(module: str, function: str) -> Callable[..., Any]:
+    """Return a function of a module of this folder that imports the module when it is called."""
+    return lambda *arguments: getattr(import_module(f"{__name__}.{module}"), function)(*arguments)
+
+
+READERS |= dict.fromkeys((".glb", ".gltf", ".vrm"), _deferred("gltf.reading", "load_character"))
+WRITERS[".glb"] = _deferred("gltf.writing", "save")
+MOTION_READERS |= dict.fromkeys(READERS, _deferred("gltf.reading", "load_motion"))
+MOTION_READERS |= {
+    ".bvh": _deferred("mocap.bvh", "load_motion"),
+    ".amc": _deferred("mocap.amc", "load_motion"),
+    ".asf": _deferred("mocap.asf", "refuse_motion"),
+}
 
 __all__ = ["Performance", "load_motion"]
