@@ -47,7 +47,7 @@ def upgraded(topic: str, document: bytes) -> bytes:
     kind = MESSAGE_TYPES[topic]
     content = json.loads(document)
     newer = _upgraded(kind, content)
-    return document if newer is content else encode(decode(kind, document))
+    return document if newer is content else encode(_typed(kind, newer))
 
 
 def schema(kind: type[Any]) -> bytes:
@@ -55,27 +55,34 @@ def schema(kind: type[Any]) -> bytes:
     return json.dumps({"title": kind.__name__, **_schema(kind)}, separators=(",", ":")).encode()
 
 
-def _upgraded(kind: type[Any], old: Any) -> Any:
-    """Return the content of a document in today's fields; sessions before 0.2 have others.
+def _upgraded(kind: type[Any], content: Any) -> Any:
+    """Return the content of a document in today's fields.
 
-    There a command had its intents side by side, and an emotion its word beside it.
+    Before `affect.Emotion` held its word, an emotion had a label beside it, and the intents of a
+    command were single fields, of which the oldest sessions lack some.
     """
-    if kind is EmotionTarget and "label" in old:
-        emotion = {**old["emotion"], "word": old["label"]}
-        return {"emotion": emotion, "timestamp": old["timestamp"]}
-    if kind is CharacterCommand and "look_at" in old:
-        action, feeling = old["action"], old.get("feeling")
-        emotion = feeling and {"valence": feeling[0], "arousal": feeling[1]}
-        return {
-            "timestamp": old["timestamp"],
-            "locomotion": {key: old[key] for key in ("speed", "target", "stop")}
-            | {"facing": old["look_at"]},
-            "action": None if action == "move" else {"name": action, "weight": old["weight"]},
-            "gaze": old.get("gaze"),
-            "emotion": emotion and {**emotion, "word": old["mood"] or None},
-            "visible": old["visible"],
-        }
-    return old
+    if kind is EmotionTarget and "label" in content:
+        emotion = {**content["emotion"], "word": content["label"]}
+        return {"emotion": emotion, "timestamp": content["timestamp"]}
+    if kind is CharacterCommand and isinstance(content.get("action"), str):
+        return _upgraded_command(content)
+    return content
+
+
+def _upgraded_command(old: dict[str, Any]) -> dict[str, Any]:
+    """Return a command with intents from one whose intents are single fields."""
+    going = {"speed": "speed", "target": "target", "stop": "stop", "look_at": "facing"}
+    command: dict[str, Any] = {
+        key: old[key] for key in ("timestamp", "gaze", "visible") if key in old
+    }
+    command["locomotion"] = {new: old[key] for key, new in going.items() if key in old}
+    if old["action"] != "move":
+        command["action"] = {"name": old["action"], "weight": old.get("weight", 0.0)}
+    if old.get("feeling") is not None:
+        valence, arousal = old["feeling"]
+        word = old.get("mood") or None
+        command["emotion"] = {"valence": valence, "arousal": arousal, "word": word}
+    return command
 
 
 def _plain(value: object) -> object:

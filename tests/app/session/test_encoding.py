@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from affect import Emotion
 from app.pipeline.scenario import EmotionTarget
-from app.session.encoding import MESSAGE_TYPES, decode, encode, schema
+from app.session.encoding import MESSAGE_TYPES, decode, encode, schema, upgraded
+from characters import ActionIntent, CharacterCommand, LocomotionIntent
 from tracking import CubeState
 
 NUMBERS = st.floats(-1e3, 1e3)
@@ -62,3 +63,41 @@ def test_every_message_type_has_a_json_schema(topic):
 def test_another_document_is_refused(document):
     with pytest.raises(ValueError, match=r"EmotionTarget|Expecting"):
         decode(EmotionTarget, document)
+
+
+OLD_COMMAND = {
+    "timestamp": 1.5, "action": "kiss", "speed": 0.0, "target": [0.1, 0.2], "look_at": [0.0, 2.0],
+    "gaze": None, "weight": 0.5, "feeling": [0.25, -0.5], "mood": "sad", "visible": True,
+    "stop": True,
+}  # fmt: skip
+"""A command of a session before intents."""
+
+
+def test_a_command_of_an_older_session_is_decoded_into_intents():
+    command = decode(CharacterCommand, json.dumps(OLD_COMMAND).encode())
+    assert command.action == ActionIntent("kiss", 0.5)
+    assert command.emotion == Emotion(0.25, -0.5, "sad")
+    target, facing = np.array([0.1, 0.2]), np.array([0.0, 2.0])
+    assert_equal(command.locomotion, LocomotionIntent(0.0, target, True, facing))
+    assert (command.timestamp, command.visible) == (1.5, True)
+
+
+def test_a_command_of_the_oldest_sessions_is_decoded_with_what_it_has():
+    """The first recordings had no stop, gaze, feeling or mood."""
+    there = ("timestamp", "action", "speed", "target", "look_at", "weight", "visible")
+    old = {key: OLD_COMMAND[key] for key in there} | {"action": "move", "speed": 2.0}
+    command = decode(CharacterCommand, json.dumps(old).encode())
+    assert command.activity == "move"
+    target, facing = np.array([0.1, 0.2]), np.array([0.0, 2.0])
+    assert_equal(command.locomotion, LocomotionIntent(2.0, target, True, facing))
+    assert command.emotion is None
+    assert command.gaze is None
+
+
+def test_an_older_document_becomes_todays_and_todays_stays():
+    old = json.dumps(
+        {"emotion": {"valence": 0.5, "arousal": 0.1}, "label": "happy", "timestamp": 2}
+    )
+    today = encode(EmotionTarget(Emotion(0.5, 0.1, "happy"), 2.0))
+    assert upgraded("/robot/emotion", old.encode()) == today
+    assert upgraded("/robot/emotion", today) == today
