@@ -70,7 +70,18 @@ class Board:
 
 
 def write_board(path: str | Path, paper: str = "a4") -> Board:
-    """Write and return a board as large as a page allows, in whole millimetres per square.
+    """Write a board to print as a PDF, as large as the page allows, in whole mm per square.
+
+    Parameters
+    ----------
+    path
+        The file; it is written completely or not at all.
+    paper
+        "a4", "letter" or "a3".
+
+    Returns
+    -------
+    The board that is on the page.
 
     Raises
     ------

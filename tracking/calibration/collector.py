@@ -47,7 +47,15 @@ class ViewResult:
 
 
 class ViewCollector:
-    """Chooses views from the frames of one camera and keeps account of their coverage."""
+    """Chooses views from the frames of one camera and keeps account of their coverage.
+
+    Parameters
+    ----------
+    finder
+        Finds and measures the target.
+    size
+        Width and height of the frames [px].
+    """
 
     def __init__(self, finder: TargetFinder, size: tuple[int, int]) -> None:
         self._finder = finder
@@ -147,7 +155,14 @@ def _tilt(found: TargetDetection, pose: Array) -> tuple[float, float]:
 
 
 def calibrate_camera(frames: Iterable[Frame], cube: CubeModel) -> tuple[Calibration, CubeModel]:
-    """Calibrate a camera from the frames of a source, where the printed cube is waved.
+    """Calibrate a camera from frames in which the printed cube is waved.
+
+    Parameters
+    ----------
+    frames
+        Frames of one size, in order, as `open_source` returns them.
+    cube
+        The cube as it was printed.
 
     Returns
     -------

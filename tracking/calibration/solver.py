@@ -144,7 +144,15 @@ def _without_outliers(
 
 
 def measured_cube(cube: CubeModel, plates: Array) -> CubeModel:
-    """Return the nominal cube with its markers moved by `Calibration.plates`."""
+    """Return the cube with its markers where the calibration found them.
+
+    Parameters
+    ----------
+    cube
+        The nominal cube.
+    plates
+        `Calibration.plates`, (P, 4, 4): one for each face, in the order of `cube.faces`.
+    """
     faces = []
     for face, plate in zip(cube.faces, plates, strict=True):
         centre = face.corners.mean(axis=0)

@@ -11,7 +11,14 @@ from tracking.files import write_whole
 
 
 def write_cube(cube: CubeModel, path: str | Path) -> None:
-    """Write a cube completely or not at all, with the corners that differ from the ideal ones.
+    """Write a cube as the TOML file that `CubeModel.load` reads.
+
+    Parameters
+    ----------
+    cube
+        The cube; corners of markers that are off their ideal places are written, too.
+    path
+        The file, which must end in .toml; it is written completely or not at all.
 
     Raises
     ------

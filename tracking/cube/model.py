@@ -90,7 +90,12 @@ class CubeModel:
 
     @classmethod
     def load(cls, name_or_path: str | Path) -> Self:
-        """Read a cube from a bundled name ("locomotion", "companion") or a TOML file.
+        """Read a bundled cube or the TOML file of one.
+
+        Parameters
+        ----------
+        name_or_path
+            "locomotion", "companion", or the path of a TOML file.
 
         Raises
         ------
@@ -146,9 +151,17 @@ class CubeModel:
         )
 
     def scaled(self, edge: float) -> Self:
-        """Return the same cube with another edge [m], its markers grown or shrunk with it.
+        """Return the same cube in another size, its markers grown or shrunk with it.
 
-        A `TrackingError` if the edge is not 10 to 1000 mm.
+        Parameters
+        ----------
+        edge
+            Edge of the new cube [m], 0.01 to 1.
+
+        Raises
+        ------
+        TrackingError
+            The edge is not 10 to 1000 mm.
         """
         if not 0.01 <= edge <= 1:
             raise TrackingError(f"the edge must be 10 to 1000 mm, not {edge * 1000:g} mm")
@@ -157,7 +170,13 @@ class CubeModel:
         return replace(self, edge=edge, marker_size=self.marker_size * factor, faces=faces)
 
     def face(self, name: str) -> Face:
-        """Return the face called `name`; a `KeyError` where the cube has none."""
+        """Return the face with a name, one of `FACE_AXES`.
+
+        Raises
+        ------
+        KeyError
+            No face of the cube with this name has a marker.
+        """
         for face in self.faces:
             if face.name == name:
                 return face

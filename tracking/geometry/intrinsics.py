@@ -69,7 +69,17 @@ class Intrinsics:
         return cls(matrix, np.zeros(5), size)
 
     def undistorted(self, points: ArrayLike) -> Array:
-        """Return where a pinhole with the same matrix would see pixels, (…, 2) → (…, 2)."""
+        """Move pixels to where the same camera without lens distortion would see them.
+
+        Parameters
+        ----------
+        points
+            Pixels of the distorted image, (…, 2) [px].
+
+        Returns
+        -------
+        Pixels of a pinhole with the same matrix, (…, 2) [px].
+        """
         pixels = np.asarray(points, np.float64)
         flat = pixels.reshape(-1, 1, 2)
         if not len(flat):
@@ -79,7 +89,13 @@ class Intrinsics:
         return moved.reshape(pixels.shape).astype(np.float64)
 
     def scaled(self, size: tuple[int, int]) -> Self:
-        """Return the same camera with images of another size, still of its whole sensor."""
+        """Return the same camera with images of another size, still of its whole sensor.
+
+        Parameters
+        ----------
+        size
+            Width and height of the new images [px].
+        """
         horizontal, vertical = size[0] / self.size[0], size[1] / self.size[1]
         scale = np.array([[horizontal, 0, 0], [0, vertical, 0], [0, 0, 1]])
         matrix = scale @ self.matrix
@@ -125,7 +141,20 @@ class Intrinsics:
         return cls(matrix.reshape(3, 3), distortion, (width, height))
 
     def save(self, path: str | Path, name: str = "camera") -> None:
-        """Write a ROS `camera_info` YAML file, completely or not at all; `load` reads it back."""
+        """Write a ROS `camera_info` YAML file, completely or not at all; `load` reads it back.
+
+        Parameters
+        ----------
+        path
+            The file.
+        name
+            Name of the camera in the file.
+
+        Raises
+        ------
+        TrackingError
+            The file cannot be written.
+        """
         document = {
             "image_width": self.size[0],
             "image_height": self.size[1],

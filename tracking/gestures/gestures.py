@@ -63,7 +63,15 @@ class _TablePose:
 
 
 class CubeGestures:
-    """Recognizes what the hand does with one cube, of which only the edge matters."""
+    """Recognizes what the hand does with one cube.
+
+    It keeps no clock: all times come from `CubeState.timestamp`.
+
+    Parameters
+    ----------
+    cube
+        The cube; only its edge matters.
+    """
 
     def __init__(self, cube: CubeModel) -> None:
         self._edge = cube.edge

@@ -71,9 +71,14 @@ class LiveFrames(FrameSource, Protocol):
     """
 
     def wait(self, timeout: float, patience: float | None = None) -> Frame | None:
-        """Wait for a frame newer than the last one; None if none arrives within `timeout` [s].
+        """Wait for a frame newer than the last one.
 
-        The source may be lost or frozen for up to `patience` [s]; None: without limit.
+        Parameters
+        ----------
+        timeout
+            Return None if no frame arrives within this time [s].
+        patience
+            How long the source may be lost or frozen [s]; None: without limit.
 
         Raises
         ------
