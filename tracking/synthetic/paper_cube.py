@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from tracking.cube.icons import ICON_COLOURS, ICONS, icon_mask
+from tracking.cube.icons import ICON_COLOURS, icon_mask, icons
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import FACE_AXES, CubeModel, Face
 from tracking.geometry.arrays import Array, Floats
@@ -178,7 +178,7 @@ def _print_marker(texture: Floats, cube: CubeModel, face: Face) -> None:
 def _print_icon(texture: Floats, cube: CubeModel, face: Face) -> None:
     margin = (cube.edge - cube.marker_size) / 2 / cube.edge * TEXELS
     size = int(0.72 * margin)
-    if face.icon not in ICONS or size < 8:
+    if face.icon not in icons() or size < 8:
         return
     ink = np.array(ICON_COLOURS.get(face.icon, (60, 60, 60))[::-1], np.float32)
     mask = icon_mask(face.icon, size).astype(np.float32)[..., None] / 255

@@ -9,7 +9,7 @@ import pytest
 
 from tests.tracking.cube.folding import cube_from_face
 from tracking import CubeModel, TrackingError, icon_mask, icon_paths, write_sheet
-from tracking.cube.icons import ICON_COLOURS, ICONS, signed_area
+from tracking.cube.icons import ICON_COLOURS, icons, signed_area
 from tracking.cube.marker import marker_cells, marker_loops
 from tracking.cube.model import aruco_dictionary, bundled
 from tracking.cube.printing.layout import PAPERS, largest_edge_mm
@@ -208,7 +208,7 @@ def test_marker_outlines_fill_to_the_marker(dictionary, numbers):
         np.testing.assert_array_equal(picture[2::4, 2::4], cells)
 
 
-@pytest.mark.parametrize("name", ICONS)
+@pytest.mark.parametrize("name", icons())
 def test_icons_stay_in_their_square_and_are_told_apart_when_small(name):
     for loop in icon_paths(name):
         assert loop.min() >= 0
