@@ -4,8 +4,6 @@ from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 
 import numpy as np
-from fpdf import FPDF, ViewerPreferences
-from fpdf.enums import PathPaintRule
 from numpy.typing import ArrayLike
 
 Colour = tuple[int, int, int]
@@ -18,6 +16,9 @@ class PdfPage:
     """
 
     def __init__(self, width: float, height: float, title: str) -> None:
+        # Imported late: the PDF library slows the start of every command that prints nothing.
+        from fpdf import FPDF, ViewerPreferences
+
         self._pdf = FPDF(unit="mm", format=(width, height))
         self._pdf.set_compression(False)
         self._pdf.set_creation_date(datetime(2026, 1, 1, tzinfo=UTC))
@@ -103,6 +104,8 @@ class PdfPage:
         width: float = 0.0,
         closed: bool = True,
     ) -> None:
+        from fpdf.enums import PathPaintRule
+
         with self._pdf.new_path() as path:
             path.style.fill_color = None if fill is None else _hex(fill)
             path.style.stroke_color = None if stroke is None else _hex(stroke)

@@ -1,7 +1,6 @@
 """The sheet to print, cut, fold and glue."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,11 +8,10 @@ from tracking.cube.icons import ICON_COLOURS, icon_paths
 from tracking.cube.marker import marker_loops
 from tracking.cube.model import CubeModel, Face
 from tracking.cube.printing.layout import SheetLayout
+from tracking.cube.printing.notes import draw_notes
+from tracking.cube.printing.pdf_page import PdfPage
 from tracking.cube.printing.unfolding import Tab
 from tracking.files import write_whole
-
-if TYPE_CHECKING:
-    from tracking.cube.printing.pdf_page import PdfPage
 
 CUT_COLOUR = (70, 76, 90)
 FOLD_COLOUR = (150, 156, 168)
@@ -44,10 +42,6 @@ def write_sheet(
         The net does not fit the paper, a marker does not fit its face, or the file cannot be
         written.
     """
-    # Imported late: the PDF library slows the start of every other command.
-    from tracking.cube.printing.notes import draw_notes
-    from tracking.cube.printing.pdf_page import PdfPage
-
     if edge_mm is not None:
         cube = cube.scaled(edge_mm / 1000)
     sheet = SheetLayout(cube, paper.lower())
@@ -57,7 +51,7 @@ def write_sheet(
     write_whole(path, page.to_bytes(), "sheet")
 
 
-def draw_net(page: "PdfPage", sheet: SheetLayout) -> None:
+def draw_net(page: PdfPage, sheet: SheetLayout) -> None:
     """Draw the net: tabs, markers, captions, then the lines to fold and to cut."""
     for tab in sheet.net.tabs():
         _draw_tab(page, sheet, tab)
@@ -72,7 +66,7 @@ def draw_net(page: "PdfPage", sheet: SheetLayout) -> None:
     page.stroke(sheet.place(sheet.net.outline()), 0.45, CUT_COLOUR, closed=True)
 
 
-def _draw_tab(page: "PdfPage", sheet: SheetLayout, tab: Tab) -> None:
+def _draw_tab(page: PdfPage, sheet: SheetLayout, tab: Tab) -> None:
     corners = sheet.place(tab.corners)
     page.fill([corners], TAB_COLOUR)
     x, y = corners.mean(axis=0)
@@ -84,7 +78,7 @@ def _draw_tab(page: "PdfPage", sheet: SheetLayout, tab: Tab) -> None:
         page.text("glue", x, y + size * 0.35, size, CAPTION_COLOUR, align=0.5)
 
 
-def _draw_caption(page: "PdfPage", sheet: SheetLayout, face: Face) -> None:
+def _draw_caption(page: PdfPage, sheet: SheetLayout, face: Face) -> None:
     """Draw icon, role and name close to the fold; the gap to the marker is its quiet zone."""
     edge = sheet.cube.edge * 1000
     margin = (edge - sheet.cube.marker_size * 1000) / 2
