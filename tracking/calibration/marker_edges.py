@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 
 from tracking.calibration.view import View
+from tracking.cube.edges import edge_points
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel, Face
 from tracking.detection.markers import Observation
@@ -148,30 +149,10 @@ def _measure(
 
 def _layout(cube: CubeModel, face: Face) -> _Layout:
     """Place points on the edges of a marker."""
-    white = np.pad(~marker_cells(cube.dictionary, face.marker_id), 1, constant_values=True)
-    vertical, horizontal = _edge_points(white), _edge_points(white.T)
-    rows = np.concatenate([vertical, horizontal[:, [1, 0, 3, 2, 5, 4, 6, 7]]])
-    rows[len(vertical) :, 7] += vertical[:, 7].max() + 1
-    count = len(white) - 2
-    points, along, across = (rows[:, pair : pair + 2] / count for pair in (0, 2, 4))
+    cells = marker_cells(cube.dictionary, face.marker_id)
+    rows = edge_points(cells, POINTS_PER_CELL)
+    points, along, across = (rows[:, pair : pair + 2] / len(cells) for pair in (0, 2, 4))
     return _Layout(points, along, across, rows[:, 6], rows[:, 7].astype(np.intp))
-
-
-def _edge_points(white: Flags) -> Array:
-    """List points on vertical edges [cells]: x y, along (2), across (2), end distance, line."""
-    rows: list[tuple[float, ...]] = []
-    line = 0
-    for column in range(1, white.shape[1]):
-        polarity = white[:, column].astype(int) - white[:, column - 1]
-        for run in np.split(np.arange(len(white)), np.flatnonzero(np.diff(polarity)) + 1):
-            side = int(polarity[run[0]])
-            if side == 0:
-                continue
-            for place in (np.arange(len(run) * POINTS_PER_CELL) + 0.5) / POINTS_PER_CELL:
-                end = float(min(place, len(run) - place))
-                rows.append((column - 1, run[0] - 1 + place, 0, 1, side, 0, end, line))
-            line += 1
-    return np.array(rows, np.float64)
 
 
 def _quadratic_terms(points: Array) -> Array:

@@ -71,37 +71,44 @@ class EdgeModel:
         return edges._of(np.argsort(line, kind="stable"))
 
 
-def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, ...]:
-    white = ~marker_cells(cube.dictionary, face.marker_id)
-    cells = np.pad(white, 1, constant_values=True)
-    count = len(cells) - 2
-    # Vertical edges (between columns), then horizontal ones, in cells from the top left.
-    vertical, horizontal = _vertical_edges(cells), _vertical_edges(cells.T)
-    flat = np.concatenate([vertical, horizontal[:, [1, 0, 3, 2, 5, 4, 6]]])
+def _face_edges(cube: CubeModel, face: Face) -> tuple[Array, Array, Array, Array, Flags]:
+    cells = marker_cells(cube.dictionary, face.marker_id)
+    count = len(cells)
+    flat = edge_points(cells, POINTS_PER_CELL)
     top_left, top_right, _, bottom_left = face.corners
     axes = np.stack([top_right - top_left, bottom_left - top_left]) / count
     points = top_left + flat[:, 0:2] @ axes
-    outline = np.isclose(flat[:, :2] % count, 0).any(axis=1)
+    outline = np.asarray(np.isclose(flat[:, :2] % count, 0).any(axis=1))
     return points, flat[:, 2:4] @ axes, flat[:, 4:6] @ axes, flat[:, 6], outline
 
 
-def _vertical_edges(cells: Flags) -> Array:
-    """Place points on the vertical edges of a padded pattern, (N, 7) [cells].
+def edge_points(cells: Flags, per_cell: int) -> Array:
+    """Place points on the edges of a marker with these black cells, (N, 8) [cells].
 
-    Position (2), one cell along the edge (2), one across it (2), distance to its nearer end.
+    From the top left, x right and y down: position (2), one cell along the edge (2), one across it
+    from black to white (2), distance to its nearer end, and index of the edge.
     """
-    rows = []
-    for column in range(1, cells.shape[1]):
+    white = np.pad(~cells, 1, constant_values=True)
+    # Vertical edges (between columns), then horizontal ones.
+    vertical, horizontal = _vertical_edges(white, per_cell), _vertical_edges(white.T, per_cell)
+    points = np.concatenate([vertical, horizontal[:, [1, 0, 3, 2, 5, 4, 6, 7]]])
+    points[len(vertical) :, 7] += vertical[:, 7].max() + 1
+    return points
+
+
+def _vertical_edges(white: Flags, per_cell: int) -> Array:
+    rows: list[tuple[float, ...]] = []
+    edge = 0
+    for column in range(1, white.shape[1]):
         # +1 where white is on the right, −1 where on the left, 0 where there is no edge.
-        polarity = cells[:, column].astype(int) - cells[:, column - 1]
+        polarity = white[:, column].astype(int) - white[:, column - 1]
         breaks = np.flatnonzero(np.diff(polarity)) + 1
-        for run in np.split(np.arange(len(cells)), breaks):
-            white = polarity[run[0]]
-            if white == 0:
+        for run in np.split(np.arange(len(white)), breaks):
+            side = polarity[run[0]]
+            if side == 0:
                 continue
-            places = (np.arange(len(run) * POINTS_PER_CELL) + 0.5) / POINTS_PER_CELL
-            for place in places:
-                rows.append(
-                    (column - 1, run[0] - 1 + place, 0, 1, white, 0, min(place, len(run) - place))
-                )
-    return np.array(rows, np.float64).reshape(-1, 7)
+            for place in (np.arange(len(run) * per_cell) + 0.5) / per_cell:
+                end = min(place, len(run) - place)
+                rows.append((column - 1, run[0] - 1 + place, 0, 1, side, 0, end, edge))
+            edge += 1
+    return np.array(rows, np.float64)
