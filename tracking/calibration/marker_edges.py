@@ -17,6 +17,7 @@ from tracking.cube.model import CubeModel, Face
 from tracking.detection.markers import Observation
 from tracking.geometry.arrays import Array, Flags, Indices
 from tracking.geometry.image_region import Patch
+from tracking.geometry.robust_statistics import tukey_weight
 
 POINTS_PER_CELL = 2
 """Number of measured points along one cell."""
@@ -176,8 +177,7 @@ def _fit_bend(points: Array, normals: Array, offset: Array) -> tuple[Array, Flag
         normal = weighted.T @ rows + 1e-3 * np.eye(rows.shape[1])
         solution = np.linalg.solve(normal, weighted.T @ offset)
         residual = np.abs(offset - rows @ solution)
-        cut = max(4.685 * 1.4826 * float(np.median(residual)), 0.1)
-        weights = np.square(np.clip(1 - (residual / cut) ** 2, 0, None))
+        weights = tukey_weight(residual, max(4.685 * 1.4826 * float(np.median(residual)), 0.1))
     return solution[:12].reshape(2, 6).T, weights > 0.1
 
 
