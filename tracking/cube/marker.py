@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from tracking.cube.model import aruco_dictionary
+from tracking.cube.model import CubeModel, aruco_dictionary
 from tracking.geometry.arrays import Array, Flags
 
 GRID_STEPS = ((1, 0), (0, 1), (-1, 0), (0, -1))
@@ -15,6 +15,20 @@ def marker_cells(dictionary: str, marker_id: int) -> Flags:
     pattern = aruco_dictionary(dictionary)
     picture = cv2.aruco.generateImageMarker(pattern, marker_id, pattern.markerSize + 2)
     return np.asarray(picture) < 128
+
+
+def cell_size(cube: CubeModel) -> float:
+    """Edge of one cell of a cube's markers [m]."""
+    return cube.marker_size / len(marker_cells(cube.dictionary, cube.faces[0].marker_id))
+
+
+def black_texels(cube: CubeModel, cells: Flags, side: int) -> Flags:
+    """Return which texels of a face are black where its marker has these cells, (side, side)."""
+    texel = (np.arange(side) + 0.5) / side * cube.edge - cube.edge / 2
+    cell = (texel + cube.marker_size / 2) / cube.marker_size * len(cells)
+    inside = (cell >= 0) & (cell < len(cells))
+    index = np.clip(cell.astype(int), 0, len(cells) - 1)
+    return np.asarray(cells[index][:, index] & inside[:, None] & inside)
 
 
 def marker_loops(dictionary: str, marker_id: int) -> list[Array]:

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from tracking.cube.marker import marker_cells
+from tracking.cube.marker import black_texels, marker_cells
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Floats, Indices
 
@@ -50,10 +50,5 @@ def _texture(cube: CubeModel, face: int, side: int) -> Floats:
     """Draw a face, 1 white and 0 black, (side, side)."""
     fine = 4
     cells = marker_cells(cube.dictionary, cube.faces[face].marker_id)
-    texel = (np.arange(side * fine) + 0.5) / (side * fine) * cube.edge - cube.edge / 2
-    cell = (texel + cube.marker_size / 2) / cube.marker_size * len(cells)
-    inside = (cell >= 0) & (cell < len(cells))
-    index = np.clip(cell.astype(int), 0, len(cells) - 1)
-    black = cells[index][:, index] & inside[:, None] & inside
-    white = 1 - black.astype(np.float32)
+    white = 1 - black_texels(cube, cells, side * fine).astype(np.float32)
     return np.asarray(cv2.resize(white, (side, side), interpolation=cv2.INTER_AREA), np.float32)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from tracking.cube.marker import marker_cells
+from tracking.cube.marker import cell_size
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Floats, Image
 from tracking.geometry.image_region import Patch, Region
@@ -25,7 +25,7 @@ class Footprint:
         self._corners = np.array(signs, np.float64) * cube.edge / 2
         self.half_edge = cube.edge / 2
         """Half the edge of the cube [m]."""
-        self.cell = cube.marker_size / len(marker_cells(cube.dictionary, cube.faces[0].marker_id))
+        self.cell = cell_size(cube)
         """Edge of a marker's cell [m]."""
 
     def metres_per_pixel(self, camera_from_cube: Array) -> float:

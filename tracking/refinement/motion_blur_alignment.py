@@ -12,7 +12,7 @@ import cv2
 import numpy as np
 
 from tracking.cube.faces import FacePlanes, face_frame
-from tracking.cube.marker import marker_cells
+from tracking.cube.marker import cell_size
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array, Flags, Floats, Indices
@@ -64,7 +64,7 @@ class MotionBlurAligner:
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._faces = FacePlanes(cube)
         self._projection = projection
-        self._cell = cube.marker_size / len(marker_cells(cube.dictionary, cube.faces[0].marker_id))
+        self._cell = cell_size(cube)
         self._half = cube.edge / 2
         self._frames = np.stack([face_frame(face) for face in cube.faces])
         side = round(cube.edge / self._cell * TEXELS_PER_CELL)

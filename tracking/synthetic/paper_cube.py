@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from tracking.cube.icons import ICON_COLOURS, icon_mask, icons
-from tracking.cube.marker import marker_cells
+from tracking.cube.marker import black_texels, marker_cells
 from tracking.cube.model import FACE_AXES, CubeModel, Face
 from tracking.geometry.arrays import Array, Floats
 from tracking.synthetic.camera_rays import CameraRays, PixelRegion, averaged
@@ -167,12 +167,7 @@ def _mipmaps(texture: Floats) -> list[Floats]:
 
 def _print_marker(texture: Floats, cube: CubeModel, face: Face) -> None:
     cells = np.rot90(marker_cells(cube.dictionary, face.marker_id), -(face.roll_deg // 90))
-    texel = (np.arange(TEXELS) + 0.5) / TEXELS * cube.edge - cube.edge / 2
-    place = (texel + cube.marker_size / 2) / cube.marker_size * len(cells)
-    inside = (place >= 0) & (place < len(cells))
-    index = np.clip(place.astype(int), 0, len(cells) - 1)
-    black = cells[index][:, index] & inside[:, None] & inside
-    texture[black] = BLACK
+    texture[black_texels(cube, cells, TEXELS)] = BLACK
 
 
 def _print_icon(texture: Floats, cube: CubeModel, face: Face) -> None:
