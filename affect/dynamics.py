@@ -24,6 +24,11 @@ class Feelings:
     ----------
     personality
         A personality, or the name of a bundled one or a .toml file.
+
+    Raises
+    ------
+    AffectError
+        If there is no such personality, or its file is invalid.
     """
 
     def __init__(self, personality: Personality | str = "thesis") -> None:
@@ -92,6 +97,11 @@ class Feelings:
         -------
         bool
             Whether the personality knows the event. The next update shows the effect.
+
+        Raises
+        ------
+        AffectError
+            If the strength is out of range.
         """
         check_range(f"the strength of {event!r}", strength, 0.0, 1.0)
         impulse = self.personality.event(event).times(strength)

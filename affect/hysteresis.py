@@ -18,8 +18,9 @@ ANGRY_BELOW = -0.33
 def next_label(label: str, valence: float, hysteresis: float = 0.05) -> Label:
     """Return the label that follows `label` at a valence.
 
-    Happy is entered above `HAPPY_ABOVE` and left below `HAPPY_ABOVE` − `hysteresis`; angry
-    likewise. The label between happy and angry is always neutral, however far the valence jumps.
+    Happy is entered above `HAPPY_ABOVE` and left below `HAPPY_ABOVE` − `hysteresis`; angry is
+    entered below `ANGRY_BELOW` and left above `ANGRY_BELOW` + `hysteresis`. The label between happy
+    and angry is always neutral, however far the valence jumps.
 
     >>> next_label("neutral", 0.30), next_label("happy", 0.30), next_label("happy", -1.0)
     ('neutral', 'happy', 'neutral')

@@ -118,6 +118,11 @@ class Personality:
     def load(cls, name: str) -> "Personality":
         """Read a bundled personality by its name, or one of your own from a .toml file.
 
+        Parameters
+        ----------
+        name
+            Its name, "lively", or the path of a file that ends in ".toml".
+
         Raises
         ------
         AffectError
@@ -129,7 +134,20 @@ class Personality:
 
     @classmethod
     def parse(cls, text: str, source: str) -> "Personality":
-        """Return the personality that a TOML text describes; errors name it as `source`."""
+        """Return the personality that a TOML text describes.
+
+        Parameters
+        ----------
+        text
+            The content of a personality's file.
+        source
+            Name of the file, for messages; without its suffix it is the default name.
+
+        Raises
+        ------
+        AffectError
+            In one line: which file, which key, and what it may be.
+        """
         return cls._of(parse(text, source), source)
 
     @classmethod

@@ -23,9 +23,9 @@ def closest_word(words: Sequence[str], emotion: Emotion) -> str | None:
     """Return which of the words that a robot or character has comes closest to an emotion.
 
     The emotion's own word, if it is among them. Else one with the same face; else one that a robot
-    with three moods shows alike (`SIMPLE`); else any; of several, the one nearest to the place of
-    the emotion's word. For an emotion without a known word, the word nearest to its place. None if
-    none of the words is known.
+    with three moods shows in the same way (`SIMPLE`); else any; of several, the one nearest to the
+    place of the emotion's word. For an emotion without a known word, the word nearest to its place.
+    None if none of the words is known.
 
     >>> closest_word(("neutral", "happy", "angry"), Emotion(-0.5, -0.3, "sad"))
     'neutral'

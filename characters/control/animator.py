@@ -33,13 +33,19 @@ class Animator:
     character
         The character.
     scale
-        Table metres per metre of the character; by default as its controller has it.
+        Table metres per metre of the character; left out, it is 15 or 17 cm tall on the table.
     place
-        Where it first stands on the table [m] and faces [rad].
+        Where it first stands on the table [m] and faces [rad]; left out, at the origin, or, if it
+        acts in place, where it is first sent.
     seed
         Seed of blinks and sway.
     layers
         What is applied to the controller's poses, in order.
+
+    Raises
+    ------
+    CharacterError
+        If the plan of the file beside the character cannot be played.
     """
 
     def __init__(

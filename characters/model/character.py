@@ -54,6 +54,11 @@ class Character:
 
         A .toml file of the same name next to it may add to it: see `characters.model.sidecar`.
 
+        Parameters
+        ----------
+        name_or_path
+            The name of a bundled character, one of `bundled()`, or the path of a file.
+
         Raises
         ------
         CharacterError

@@ -18,8 +18,15 @@ def mirror_of(
 ) -> Mirror:
     """Return the mirror of a character, by a pose in which its skin is symmetric.
 
-    `pairs` are names of joints and of their partners, where the names do not show them. The pose,
-    left out, is the one that the skin was bound in: files often rest in the middle of a stride.
+    Parameters
+    ----------
+    character
+        The character.
+    pairs
+        Partners that cannot be found, by joint names; each pair applies both ways.
+    symmetric
+        A pose (joints, …) that is symmetric about x = 0; left out, the one that the skin was bound
+        in: files often rest in the middle of a stride.
 
     Raises
     ------

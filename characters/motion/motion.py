@@ -185,7 +185,7 @@ class Motion(Protocol):
 
     @property
     def duration(self) -> float:
-        """Time until it repeats or ends [s]."""
+        """Time until it repeats or ends [s]; infinite without an end."""
         ...
 
     def sample(self, time: float) -> Pose:

@@ -48,6 +48,20 @@ class StateMachine:
     A state plays from its own time 0 when it is entered. A request records a decaying offset, so
     any later pose depends on the time only. Even during a transition a pose samples one state; only
     a cross-fade samples the previous state as well.
+
+    Parameters
+    ----------
+    states
+        The motions by name.
+    initial
+        Name of the state that is entered at time 0.
+    length
+        Length of a transition by inertialization [s].
+
+    Raises
+    ------
+    CharacterError
+        If there is no state of the initial name.
     """
 
     def __init__(self, states: Mapping[str, Motion], initial: str, length: float = 0.25) -> None:

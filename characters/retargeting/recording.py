@@ -33,9 +33,15 @@ class Recording:
 def load_recording(name: str, skeleton: "str | Path | None" = None) -> Recording:
     """Read a motion: a .bvh or .amc file, or a clip of a character.
 
-    The name is a file, or a character (file or bundled) and one of its clips: "fox.glb#Walk". A
-    [joints] table in the sidecar .toml file may state the body parts. `skeleton` is the .asf file
-    of an .amc, if it is in another folder.
+    A [joints] table in the sidecar .toml file may state the body parts.
+
+    Parameters
+    ----------
+    name
+        A file, or a character (file or bundled) and one of its clips: "fox.glb#Walk". The clip may
+        be left out if there is only one.
+    skeleton
+        The .asf file of an .amc; left out, the one in the same folder.
 
     Raises
     ------

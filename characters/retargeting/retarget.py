@@ -33,8 +33,18 @@ def retarget(
 
     Joints rotate as their partners do, whatever their axes, rest poses and names; distances are
     in proportion to the legs. A target with a root joint on the ground gets root motion. Joints
-    without a partner stay at rest. With `hold_feet`, the feet of the target stay in place on the
-    ground while those of the source stand.
+    without a partner stay at rest.
+
+    Parameters
+    ----------
+    clip
+        The motion.
+    source, source_anatomy
+        The skeleton of the clip, and which of its joints is which body part.
+    target, target_anatomy
+        The skeleton that is to move, and its body parts.
+    hold_feet
+        Whether the feet of the target stay in place on the ground while those of the source stand.
 
     Raises
     ------

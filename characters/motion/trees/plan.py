@@ -254,7 +254,8 @@ class Plan:
     """Masks by name."""
 
     lags: Mapping[str, float] = field(default_factory=dict)
-    """Time constants of parameters [s]; defaults are `characters.control.controllers.tree.LAGS`."""
+    """Time constants of parameters by name [s]; defaults are
+    `characters.control.controllers.tree.DEFAULT_LAGS_S`."""
 
     @property
     def roots(self) -> tuple[Node, ...]:

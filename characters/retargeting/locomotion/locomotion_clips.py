@@ -95,9 +95,16 @@ def make_locomotion(
 ) -> LocomotionResult:
     """Return a character with the clips of the movement trees, made from recordings.
 
-    There must be at least one walk; walks and runs are straight or curved. A character without a
-    root joint on the ground gets one. Without a recording of standing, it keeps its clip "idle",
-    or gets a static one.
+    Parameters
+    ----------
+    character
+        Who is to walk; without a root joint on the ground, it gets one.
+    walks, runs
+        Recordings of walking, at least one, and of running: straight or curved. Without runs, the
+        character runs with its walk.
+    idle
+        A recording of standing; left out, the character keeps its clip "idle", or gets a static
+        one.
 
     Raises
     ------
