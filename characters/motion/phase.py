@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol, cast
@@ -106,7 +107,7 @@ class PhasedMotion(PhaseDriven):
 
 
 @dataclass(frozen=True)
-class TransformedMotion:
+class TransformedMotion(ABC):
     """Base of motions that change each pose and root delta of another motion; `Cyclic`."""
 
     motion: Motion
@@ -122,13 +123,13 @@ class TransformedMotion:
         """Phase of the motion ahead of the changed one."""
         return 0.0
 
+    @abstractmethod
     def pose(self, pose: Pose) -> Pose:
         """Return a changed pose."""
-        raise NotImplementedError
 
+    @abstractmethod
     def delta(self, delta: RootDelta) -> RootDelta:
         """Return a changed root delta."""
-        raise NotImplementedError
 
     def sample(self, time: float) -> Pose:
         """Return the pose at a time [s]."""
