@@ -88,6 +88,8 @@ class Animator:
         elapsed = min(max(elapsed, 0.0), MAX_TIME_STEP_S)
         tempo = math.sqrt(self._expressivity.value.tempo)
         frame = self._controller.update(command, elapsed, tempo)
+        activity = max(float(frame.acting), min(2.0 * frame.effort, 1.0))
+        self._rest = low_pass(self._rest, 1.0 - activity, elapsed, REST_LAG_S)
         context = FrameContext(
             elapsed,
             command,
@@ -97,8 +99,6 @@ class Animator:
             self._expressivity.update(elapsed, command.emotion),
             self._rest,
         )
-        activity = max(float(frame.acting), min(2.0 * context.effort, 1.0))
-        context.rest = self._rest = low_pass(self._rest, 1.0 - activity, elapsed, REST_LAG_S)
         pose = frame.pose
         for layer in self._layers:
             pose = layer.update(pose, context)

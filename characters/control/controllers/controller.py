@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from characters.control.command import CharacterCommand
+from characters.locomotion.gaits import TOP_SPEED
 from characters.model.character import Character
 from characters.motion.motion import RootDelta
 from characters.skeleton.pose import Pose
@@ -45,6 +46,11 @@ class ControllerFrame:
 
     standing: bool = False
     """Whether the feet step back to their places where they were left elsewhere."""
+
+    @property
+    def effort(self) -> float:
+        """How hard the body works, 0 at rest … 1 at a full run."""
+        return self.speed / TOP_SPEED
 
 
 class CharacterController(Protocol):

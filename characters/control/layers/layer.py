@@ -10,7 +10,6 @@ from affect import Emotion
 from characters.body.posture import Expressivity
 from characters.control.command import CharacterCommand
 from characters.control.controllers.controller import ControllerFrame
-from characters.locomotion.gaits import TOP_SPEED
 from characters.model.character import Character
 from characters.skeleton.pose import Array, Pose
 
@@ -45,11 +44,6 @@ class FrameContext:
 
     breath: float = 0.0
     """Set by the posture layer for those after it: filling of the lungs, 0…1."""
-
-    @property
-    def effort(self) -> float:
-        """How hard the body works, 0 at rest … 1 at a full run."""
-        return self.frame.speed / TOP_SPEED
 
     @property
     def emotion(self) -> Emotion | None:

@@ -30,7 +30,7 @@ class PostureLayer:
             joints = self._posture.joints
             posture = self._posture.rotation_vectors(expressivity, posture_share(context))
         turns = self._sway.update(
-            context.elapsed, context.effort, context.rest, expressivity, posture
+            context.elapsed, context.frame.effort, context.rest, expressivity, posture
         )
         context.breath = self._sway.breath
         local = pose.rotations.copy()
