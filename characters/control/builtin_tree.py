@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from characters.control.controllers.actions import clips_of_actions
 from characters.control.controllers.walk import NOT_ACTIONS, WalkController
-from characters.locomotion.gaits import RUN_CLIPS, WALK_CLIPS, WALK_RUN_SPEEDS
+from characters.locomotion.gaits import IDLE_SPEED, RUN_CLIPS, WALK_CLIPS, WALK_RUN_SPEEDS
 from characters.model.character import Character
 from characters.motion.trees.conditions import Condition
 from characters.motion.trees.plan import PARAMETERS, Node, Plan, Row, StateGraph, Transition
@@ -17,8 +17,8 @@ def built_in(character: Character) -> Plan:
     """
     states = _walking(character) if WalkController.suits(character) else _in_place(character)
     start, *others = states
-    enter = {name: f"action == {name!r}" for name in others} | {"move": "speed > 0.5"}
-    leave = dict.fromkeys(others, "action == 'idle'") | {"move": "speed < 0.5"}
+    enter = {name: f"action == {name!r}" for name in others} | {"move": f"speed > {IDLE_SPEED}"}
+    leave = dict.fromkeys(others, "action == 'idle'") | {"move": f"speed < {IDLE_SPEED}"}
     changes = [Transition(start, name, _condition(enter[name]), 0.25) for name in others]
     changes += [Transition(name, start, _condition(leave[name]), 0.25) for name in others]
     return Plan(character.name, None, StateGraph(states, start, tuple(changes)))

@@ -44,6 +44,17 @@ STANDSTILL = SteeringOutput(0.0, 0.0, 1.0)
 """Standing still."""
 
 
+def has_arrived(distance: float, arrived: bool) -> bool:
+    """Return whether a target at a distance [m on the table] is reached.
+
+    `arrived` is the last result; it gives hysteresis.
+
+    >>> has_arrived(0.06, False), has_arrived(0.06, True)
+    (False, True)
+    """
+    return distance < (DEPARTURE_DISTANCE_M if arrived else ARRIVAL_DISTANCE_M)
+
+
 class Steering:
     """Steers a walker to a target and detects its arrival.
 
@@ -66,9 +77,7 @@ class Steering:
         `speed` is the requested Speed of AvatAR. Without `stop` the target is passed.
         """
         distance = math.hypot(target[0] - place.x, target[1] - place.z)
-        self._arrived = stop and distance < (
-            DEPARTURE_DISTANCE_M if self._arrived else ARRIVAL_DISTANCE_M
-        )
+        self._arrived = stop and has_arrived(distance, self._arrived)
         if self._arrived or distance == 0.0:
             return STANDSTILL
         error = -place.bearing(*target)  # positive to the right

@@ -5,7 +5,8 @@ import math
 from characters.control.command import CharacterCommand, LocomotionIntent
 from characters.control.controllers.controller import ControllerFrame
 from characters.face.affect_display import EMOTIONAL_WORDS
-from characters.locomotion.steering import ARRIVAL_DISTANCE_M, DEPARTURE_DISTANCE_M
+from characters.locomotion.gaits import TOP_SPEED
+from characters.locomotion.steering import ARRIVAL_DISTANCE_M, has_arrived
 from characters.model.character import Character
 from characters.model.mirroring import mirror_of
 from characters.motion.motion import Motion, RootDelta
@@ -103,9 +104,7 @@ class TreeController:
         if command.activity == "move" and going.target is not None:
             x, z = map(float, going.target)
             away = math.hypot(x - self._place.x, z - self._place.z)
-            self._arrived = going.stop and away < (
-                DEPARTURE_DISTANCE_M if self._arrived else ARRIVAL_DISTANCE_M
-            )
+            self._arrived = going.stop and has_arrived(away, self._arrived)
             if not self._arrived:
                 target_values |= self._course(going, (x, z), away)
         for name, value in target_values.items():
@@ -117,7 +116,7 @@ class TreeController:
     ) -> dict[str, float]:
         """Return the parameters that lead to a target."""
         right = -self._place.bearing(*target)
-        speed = min(max(going.speed, 0.0), 5.0)
+        speed = min(max(going.speed, 0.0), TOP_SPEED)
         if going.stop:
             speed = min(speed, 0.6 + BRAKING_PER_M * max(away - ARRIVAL_DISTANCE_M, 0.0))
         if abs(right) > SLOW_TURN_RAD:
