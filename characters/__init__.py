@@ -13,6 +13,7 @@ from characters.control.command import (
 )
 from characters.errors import CharacterError, CharacterWarning
 from characters.formats import load_motion  # importing formats registers the file readers
+from characters.locomotion.gaits import IDLE_SPEED, RUN_SPEED
 from characters.locomotion.paths import ClosedPath
 from characters.model.character import Character
 from characters.model.mesh import Material, Mesh, Morph
@@ -31,6 +32,8 @@ from characters.skeleton.masks import Mask, mask_of
 from characters.skeleton.pose import Pose, Skeleton
 
 __all__ = [
+    "IDLE_SPEED",
+    "RUN_SPEED",
     "Action",
     "ActionIntent",
     "AdditiveLayer",

@@ -17,9 +17,8 @@ from rich.tree import Tree
 from app.commands import character_graph, character_locomotion
 from app.errors import AppError
 from app.ui.contact_sheets import ContactSheets, save
-from characters import Character, Skeleton
-from characters.errors import CharacterWarning
-from characters.formats.loading import Performance, is_motion_only, load_motion
+from characters import Character, CharacterWarning, Skeleton, load_motion
+from characters.formats import Performance, is_motion_only
 from characters.model.inspection import ClipStats, FootContactStats, Inspection, inspect
 from characters.model.stick_figure import stick_figure
 from characters.rendering import create_context

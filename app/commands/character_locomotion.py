@@ -14,8 +14,12 @@ from rich.table import Table
 
 from app.errors import AppError
 from characters import Character
-from characters.retargeting import GaitReport, load_recording, make_locomotion
-from characters.retargeting.locomotion.locomotion_clips import YAW_RATE_PER_ANGULAR
+from characters.retargeting import (
+    YAW_RATE_PER_ANGULAR,
+    GaitReport,
+    load_recording,
+    make_locomotion,
+)
 
 Files = Annotated[
     list[str] | None,

@@ -8,14 +8,18 @@ from app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from app.scenarios.mood import MoodController
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
-from characters import ActionIntent, CharacterCommand, LocomotionIntent, PosedCharacter, RootDelta
-from characters.locomotion.gaits import IDLE_SPEED
+from characters import (
+    IDLE_SPEED,
+    RUN_SPEED,
+    ActionIntent,
+    CharacterCommand,
+    LocomotionIntent,
+    PosedCharacter,
+    RootDelta,
+)
 from tracking import CubeControls, CubeModel
 
 Point = NDArray[np.float64]
-
-MAX_WALK_SPEED = 3.0
-"""AvatAR's Speed above which the character runs."""
 
 CUBE_CLEARANCE_M = 0.04
 """Distance from the cube's centre at which the character stops."""
@@ -104,7 +108,7 @@ def gait(speed: float) -> str:
     """Return the gait at a Speed, which is also its icon: "stand", "walk" or "run"."""
     if speed <= IDLE_SPEED:
         return "stand"
-    return "walk" if speed <= MAX_WALK_SPEED else "run"
+    return "walk" if speed <= RUN_SPEED else "run"
 
 
 def _hint(controls: CubeControls, speed: float) -> str:
@@ -114,4 +118,4 @@ def _hint(controls: CubeControls, speed: float) -> str:
         return "Put the cube on the table"
     if speed <= IDLE_SPEED:
         return "Turn the cube to walk"
-    return "Move the cube: I follow you" if speed <= MAX_WALK_SPEED else "I run after you!"
+    return "Move the cube: I follow you" if speed <= RUN_SPEED else "I run after you!"

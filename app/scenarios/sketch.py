@@ -10,6 +10,7 @@ from app.scenarios.mood import MoodController
 from app.scenarios.presence import Presence
 from app.scenarios.speed import SpeedDial
 from characters import (
+    IDLE_SPEED,
     ActionIntent,
     CharacterCommand,
     ClosedPath,
@@ -17,7 +18,6 @@ from characters import (
     PosedCharacter,
     RootDelta,
 )
-from characters.locomotion.gaits import IDLE_SPEED
 from characters.rendering import FloorPath
 from tracking import CubeControls, CubeModel
 

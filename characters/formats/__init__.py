@@ -8,7 +8,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
-from characters.formats.loading import MOTION_READERS, Performance, load_motion
+from characters.formats.loading import MOTION_READERS, Performance, is_motion_only, load_motion
 from characters.model.character import READERS, WRITERS
 
 
@@ -26,4 +26,4 @@ MOTION_READERS |= {
     ".asf": _deferred("mocap.asf", "refuse_motion"),
 }
 
-__all__ = ["Performance", "load_motion"]
+__all__ = ["Performance", "is_motion_only", "load_motion"]

@@ -5,6 +5,7 @@ character needs to walk and run where it is sent.
 """
 
 from characters.retargeting.locomotion.locomotion_clips import (
+    YAW_RATE_PER_ANGULAR,
     GaitReport,
     LocomotionResult,
     make_locomotion,
@@ -13,6 +14,7 @@ from characters.retargeting.recording import Recording, load_recording
 from characters.retargeting.retarget import retarget
 
 __all__ = [
+    "YAW_RATE_PER_ANGULAR",
     "GaitReport",
     "LocomotionResult",
     "Recording",
