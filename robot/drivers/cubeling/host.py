@@ -1,8 +1,7 @@
 """The host side of the protocol, without clock, thread or port.
 
-A link sends HELLO, asks for the catalogue, and
-is open then. Silence, a GONE, or a command that is never acknowledged starts a new session with the
-next number, for as long as the link exists.
+A link sends HELLO, asks for the catalogue, and is open then. Silence, a GONE, or a command that is
+never acknowledged starts a new session with the next number, for as long as the link exists.
 """
 
 from dataclasses import replace

@@ -28,7 +28,7 @@ class Joint:
     """Smallest angle [°]: the narrower limit of the two firmwares."""
 
     high: int
-    """Largest angle [°], likewise."""
+    """Largest angle [°]: the narrower limit of the two firmwares."""
 
     def clamped(self, angle: float) -> int:
         """Return an angle [°] within the limits.

@@ -101,7 +101,7 @@ class HostSession:
         )
 
     def _describe(self, item: int, index: int, session: int) -> int:
-        """Write an entry of the catalogue into `_answer`; return its size, 0 if there is none."""
+        """Write an entry of the catalogue into `_reply`; return its size, 0 if there is none."""
         if item >= len(self._names) or index >= len(self._names[item]):
             return 0
         name = self._names[item][index].encode()
