@@ -33,7 +33,15 @@ class Channel(Protocol):
 
 
 class PortChannel:
-    """An open port in real time; the caller closes it. `clock` gives the time [s]."""
+    """A port in real time.
+
+    Parameters
+    ----------
+    port
+        An open port; the caller closes it.
+    clock
+        Returns the time [s].
+    """
 
     def __init__(self, port: Port, clock: Clock) -> None:
         self._port = port
@@ -67,7 +75,13 @@ class PortChannel:
 
 
 class SimulatedChannel:
-    """A simulated robot in virtual time."""
+    """A simulated robot in virtual time.
+
+    Parameters
+    ----------
+    robot
+        The robot at the other end.
+    """
 
     def __init__(self, robot: Simulated) -> None:
         self._robot = robot

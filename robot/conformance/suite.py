@@ -101,7 +101,13 @@ def all_checks() -> list[Check]:
 
 
 def select_checks(words: Iterable[str]) -> list[Check]:
-    """Return the checks whose names contain any of the words; RobotError if one is in no name."""
+    """Return the checks whose names contain any of the words, in the order of the document.
+
+    Raises
+    ------
+    RobotError
+        If one of the words is in no name.
+    """
     selected: set[str] = set()
     for word in words:
         plain = word.lower().replace("-", " ").replace("_", " ").strip()
@@ -121,9 +127,23 @@ def run_checks(
 ) -> ConformanceReport:
     """Run checks in this order, and always leave the robot neutral and without a session.
 
-    The channel must not lose frames, for a check sends everything once. `host` is a number that
-    the robot has not seen before. No check starts later than `max_duration` [s]. Raises RobotError
-    if no robot answers HELLO, or the port is lost.
+    Parameters
+    ----------
+    channel
+        The robot. The channel must not lose frames, because a check sends everything once.
+    checks
+        The checks.
+    host
+        Number of the first host, one that the robot has not seen before.
+    on_result
+        Called after each check.
+    max_duration
+        No check starts later than this after the first one [s].
+
+    Raises
+    ------
+    RobotError
+        If no robot answers HELLO, or the port is lost.
     """
     probe = Probe(channel, host)
     begin = probe.now

@@ -47,6 +47,11 @@ def connect(
     settings
         A TOML file for the driver: the motion of each mood …; None for the bundled one.
 
+    Returns
+    -------
+    Robot
+        Ready for `express`.
+
     Raises
     ------
     RobotError
@@ -122,8 +127,11 @@ class Robot(Closeable):
     def express(self, emotion: Emotion) -> None:
         """Let the robot show an emotion from now on; the latest wins. Never waits, never raises.
 
-        Of the robot's own words for its moods, the one closest to the emotion's word is shown.
-        Without a word, the robot chooses.
+        Parameters
+        ----------
+        emotion
+            Valence and arousal, and optionally a word, "happy". Of the robot's own words for its
+            moods, the one closest to that word is shown; without a word the robot chooses.
         """
         if self._wish == emotion:
             return  # every frame of a session asks; only a new emotion is worth waking the link

@@ -28,6 +28,15 @@ class BusClient(Closeable, Generic[E]):
     """Runs an endpoint on a bus of its own. Close it, or use it in a `with` statement.
 
     Hold `lock` while accessing the endpoint from elsewhere, for a short time only.
+
+    Parameters
+    ----------
+    endpoint
+        A player, a robot's node or an observer.
+    bus
+        Its own connection; the client opens and closes it.
+    clock
+        Returns the time [s].
     """
 
     def __init__(self, endpoint: E, bus: Bus, clock: Clock) -> None:
@@ -53,9 +62,12 @@ class BusClient(Closeable, Generic[E]):
         bus.on_change(self._wake.set)
 
     def open(self) -> Self:
-        """Connect and start; raises RobotError if the broker can be reached and refuses.
+        """Connect and start. If the broker cannot be reached, the bus tries again until `close`.
 
-        Nothing is left open then. If it cannot be reached, the bus tries again until `close`.
+        Raises
+        ------
+        RobotError
+            If the broker can be reached and refuses; nothing is left open then.
         """
         try:
             self.bus.open()

@@ -66,7 +66,7 @@ class MemoryBroker:
 
 
 class MemoryBus(Bus):
-    """One member's connection to a `MemoryBroker`; see `Bus`."""
+    """One member's connection to a `MemoryBroker`, made by `MemoryBroker.bus`; see `Bus`."""
 
     def __init__(self, broker: MemoryBroker) -> None:
         super().__init__()

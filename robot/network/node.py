@@ -37,8 +37,19 @@ class RobotControl(Protocol):
 class RobotNode(MemberEndpoint):
     """The node of a robot, without clock, thread or bus.
 
-    `session` is the number of its epoch, see `SessionEpoch`; `hold` is how long the emotion of a
-    player who is gone is kept [s]. The caller closes the robot.
+    Parameters
+    ----------
+    member
+        Its place in the topic tree.
+    robot
+        The robot; the caller closes it.
+    session
+        Number of its epoch, 1 or more, greater than that of every earlier program of its name; see
+        `SessionEpoch`.
+    follows
+        The players whose actions and emotions it takes.
+    hold
+        How long the emotion of a player who is gone is kept [s].
     """
 
     def __init__(

@@ -46,8 +46,15 @@ class _PendingAction:
 class Player(MemberEndpoint):
     """A player, without clock, thread or bus.
 
-    `session` is the number of its epoch, see `SessionEpoch`; actions expire at the age of `max_age`
-    [s], `math.inf` for never.
+    Parameters
+    ----------
+    member
+        Its place in the topic tree.
+    session
+        Number of its epoch, 1 or more, greater than that of every earlier program of its name; see
+        `SessionEpoch`.
+    max_age
+        Age at which an action expires [s]; `math.inf` for never.
     """
 
     def __init__(self, member: Member, session: int, max_age: float = MAX_AGE_S) -> None:
@@ -69,7 +76,22 @@ class Player(MemberEndpoint):
         self._last_emotion = self._last_resend = self._last_progress = -math.inf
 
     def act(self, name: str, weight: float, now: float) -> None:
-        """Publish an action once; ValueError if its name or its weight (−1…1) cannot be sent."""
+        """Publish an action once; the robots that follow do it too.
+
+        Parameters
+        ----------
+        name
+            Its name, "kiss": 1 to `MAX_TEXT_BYTES` printable bytes of UTF-8.
+        weight
+            Its strength, −1 … 1.
+        now
+            The time [s].
+
+        Raises
+        ------
+        ValueError
+            If its name cannot be sent, or its weight is not from −1 to 1.
+        """
         if not (name and m.is_text(name)):
             raise ValueError(f"{name!r} cannot be an action: 1 to {MAX_TEXT_BYTES} printable bytes")
         if not -1.0 <= weight <= 1.0:

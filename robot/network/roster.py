@@ -34,7 +34,15 @@ class RosterEntry:
 
 
 class Roster(Endpoint):
-    """An observer of all members of a site, or of all sites, which publishes nothing."""
+    """An observer of all members of a site, or of all sites, which publishes nothing.
+
+    Parameters
+    ----------
+    site
+        The site; `ANY` for all of them.
+    on_message
+        Called with every valid message, except those of an earlier epoch of its sender.
+    """
 
     def __init__(self, site: str = ANY, on_message: OnMessage | None = None) -> None:
         place = "+" if site == ANY else site

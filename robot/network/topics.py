@@ -66,9 +66,19 @@ class Pattern:
 
     @classmethod
     def parse(cls, text: str, site: str) -> "Pattern":
-        """Parse "ann", "*", "south/ann", "south/*" or "*/*"; raises RobotError for another form.
+        """Parse "ann", "*", "south/ann", "south/*" or "*/*".
 
-        Without a site in the text it is `site`.
+        Parameters
+        ----------
+        text
+            A name or "*", with a site or "*" before it if that is not `site`.
+        site
+            The site of a text without one.
+
+        Raises
+        ------
+        RobotError
+            If the text has another form, or a name in it is not valid.
         """
         place, slash, name = text.rpartition("/")
         found = cls(place if slash else site, name)
@@ -119,7 +129,20 @@ def is_name(text: str) -> bool:
 
 
 def check_name(text: str, what: str) -> str:
-    """Return a name; raises RobotError if it is not valid."""
+    """Return a name.
+
+    Parameters
+    ----------
+    text
+        The name: letters and digits of any script, `-` and `_` after the first character.
+    what
+        What it names, for the message: "site".
+
+    Raises
+    ------
+    RobotError
+        If it is not valid, or longer than `MAX_NAME_BYTES`.
+    """
     if not is_name(text):
         raise RobotError(
             f"{text!r} cannot be a {what}; use letters, digits, - and _, "

@@ -110,8 +110,9 @@ class SimulatedPort(Closeable):
     simulator
         The robot; a new one if None. Only this port's thread uses it until `close`.
     kind
-        "pty" for a pseudo-terminal, "tcp" for `tcp_port` on 127.0.0.1, where 0 is any free one;
-        None for what the system has.
+        "pty" for a pseudo-terminal, "tcp" for a port on 127.0.0.1; None for what the system has.
+    tcp_port
+        Number of the TCP port; 0 for any free one.
     clock
         The time of the robot [s].
 

@@ -43,8 +43,17 @@ def _read_available(port: Port) -> bytes:
 class SteppedRobot(Robot):
     """A simulated robot in virtual time; the same calls give the same bytes.
 
-    It serves sessions that are drawn faster or slower than real time, studies and tests. For the
-    parameters see `robot.connect`; `on_bytes` gets the virtual time.
+    It serves sessions that are drawn faster or slower than real time, studies and tests. The caller
+    closes it, as any `Robot`.
+
+    Parameters
+    ----------
+    url
+        A simulated robot, with faults if needed: "sim:cubeling?drop=0.05&seed=7".
+    on_bytes
+        Receives every byte of both directions, with the virtual time [s].
+    settings
+        A TOML file for the driver; None for the bundled one.
 
     Raises
     ------
@@ -85,9 +94,17 @@ class SteppedRobot(Robot):
             self.advance(STEP_S)
 
     def advance(self, seconds: float) -> None:
-        """Advance the virtual time by 0 s or more; an hour takes about 15 s of real time.
+        """Advance the virtual time.
 
-        Raises ValueError if the time is negative or not finite.
+        Parameters
+        ----------
+        seconds
+            How far, 0 or more [s]; an hour takes about 15 s of real time.
+
+        Raises
+        ------
+        ValueError
+            If it is negative or not finite.
         """
         if not 0 <= seconds < math.inf:  # also refuses NaN
             raise ValueError(f"time goes on by 0 s or more, not by {seconds!r}")

@@ -67,8 +67,19 @@ class Address:
         """Parse "mqtt://[USER[:PASSWORD]@]HOST[:PORT]", or mqtts:// for TLS.
 
         The password is, in this order, the one in the URL, the first line of the password file,
-        or the environment variable `PASSWORD_VARIABLE`. Raises RobotError if the URL is not valid,
-        or a file cannot be used; its text never contains a password.
+        or the environment variable `PASSWORD_VARIABLE`.
+
+        Parameters
+        ----------
+        url
+            The broker's URL; without a port, the scheme's default.
+        given
+            User, password file and certificates next to the URL; None for none.
+
+        Raises
+        ------
+        RobotError
+            If the URL is not valid, or a file cannot be used; its text never contains a password.
         """
         given = given or Credentials()
         parts = _split(url)

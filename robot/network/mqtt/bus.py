@@ -59,7 +59,14 @@ class MqttBus(Bus):
 
     The broker keeps no session between connections. Messages without confirmation are sent again
     after a reconnection, before everything that the member publishes then; so a topic always ends
-    with the latest message. Every member and session needs another `client_id`.
+    with the latest message.
+
+    Parameters
+    ----------
+    address
+        The broker.
+    client_id
+        The client's id at the broker; another one for every member and session.
     """
 
     def __init__(self, address: Address, client_id: str) -> None:
@@ -86,7 +93,13 @@ class MqttBus(Bus):
         self._client = client
 
     def open(self) -> None:
-        """Connect, and wait up to `OPEN_TIMEOUT_S`; RobotError if the broker refuses us."""
+        """Connect, and wait up to `OPEN_TIMEOUT_S`.
+
+        Raises
+        ------
+        RobotError
+            If the broker can be reached and refuses our user, password or certificate, or we its.
+        """
         client, will = self._client, self._will
         if will is not None:
             client.will_set(will.topic, will.payload, QOS, will.retain)

@@ -5,7 +5,15 @@ from robot.simulators.cubeling.device import DeviceLink
 
 
 class Simulator:
-    """A simulated dinosaur robot with the protocol "cubeling"; a `Simulated`."""
+    """A simulated dinosaur robot with the protocol "cubeling"; a `Simulated`.
+
+    It has no clock: the caller advances it to a time.
+
+    Parameters
+    ----------
+    seed
+        Seed of everything random in it: the noise of its sensors and its first battery level.
+    """
 
     edge = b"\0"
     """Every frame ends with it."""
