@@ -104,7 +104,7 @@ class FrameDecoder:
         return decode(self._frame, count, self.body)
 
 
-class SendBuffer:
+class TransmitBuffer:
     """Frames to be sent. When it is full, new frames are dropped, as a line may lose them."""
 
     def __init__(self, size: int = 512) -> None:

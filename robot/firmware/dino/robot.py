@@ -2,7 +2,7 @@
 
 from .board import RobotBoard
 from .body import DinoBody
-from .frames import SendBuffer
+from .frames import TransmitBuffer
 from .joints import ServoJoints
 from .session import HostSession
 from .table import ServoTable
@@ -19,7 +19,7 @@ class Firmware:
 
     def __init__(self, board: RobotBoard, table: ServoTable, joints: ServoJoints) -> None:
         self._board = board
-        self._send_buffer = SendBuffer()
+        self._send_buffer = TransmitBuffer()
         self._to_send = memoryview(self._send_buffer.data)
         self._input = bytearray(256)
         self._watchdog_started = False

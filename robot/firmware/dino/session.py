@@ -4,7 +4,7 @@ from . import messages as m
 from .board import RobotBoard
 from .body import DinoBody
 from .codec import pack, unpack
-from .frames import FrameDecoder, SendBuffer, crc16
+from .frames import FrameDecoder, TransmitBuffer, crc16
 
 FIRMWARE = "dino 1"
 """Name and version of the firmware."""
@@ -14,7 +14,7 @@ class HostSession:
     """The robot's side of the protocol: one session, its commands and its failsafe."""
 
     def __init__(
-        self, body: DinoBody, send_buffer: SendBuffer, name: str, board: RobotBoard
+        self, body: DinoBody, send_buffer: TransmitBuffer, name: str, board: RobotBoard
     ) -> None:
         self.number = 0
         """Number of the open session; 0 if none is."""

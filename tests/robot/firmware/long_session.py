@@ -8,7 +8,7 @@ import struct
 from dino import frames
 
 part = now = 0
-box = frames.SendBuffer(64)
+box = frames.TransmitBuffer(64)
 
 
 def say(*message):

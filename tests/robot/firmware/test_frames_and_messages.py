@@ -32,7 +32,7 @@ def read(data: bytes) -> list[bytes]:
 
 def frame(body: bytes) -> bytes:
     """Return the firmware's frame of a body."""
-    out = frames.SendBuffer(256)
+    out = frames.TransmitBuffer(256)
     out.put(bytearray(body), len(body))
     return bytes(out.data[: out.end])
 
@@ -137,7 +137,7 @@ def test_a_body_is_skipped_exactly_where_the_host_side_code_skips_it(number, res
 
 
 def test_a_frame_without_room_is_dropped_as_a_whole():
-    out = frames.SendBuffer(100)
+    out = frames.TransmitBuffer(100)
     for size in (40, 40, 40, 3):
         out.put(bytearray(40), size)
     assert (out.end, out.dropped) == (92, 2)

@@ -138,7 +138,7 @@ def test_micropython_reads_and_writes_every_vector(tmp_path):
     script.write_text(
         "from dino import frames\n"
         f"for text in {frames!r}:\n"
-        "    reader, out = frames.FrameDecoder(), frames.SendBuffer(256)\n"
+        "    reader, out = frames.FrameDecoder(), frames.TransmitBuffer(256)\n"
         "    for byte in bytes.fromhex(text):\n"
         "        size = reader.feed(byte)\n"
         "        if size:\n"
