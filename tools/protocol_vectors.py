@@ -48,9 +48,9 @@ VECTORS = (
     Vector(1, m.Name(m.ITEM_MOOD, 1, "happy")),
     Vector(
         0xABCD,
-        m.State(513, 4, m.STILL, 0.8, -0.25, 0.5, 1, m.NOTHING, 1, (0.0, -1.571, *[0.0] * 14)),
+        m.State(513, 4, m.FLAG_STILL, 0.8, -0.25, 0.5, 1, m.NOTHING, 1, (0.0, -1.571, *[0.0] * 14)),
     ),
-    Vector(0xABCD, m.Ack(4, m.TAKEN)),
+    Vector(0xABCD, m.Ack(4, m.RESULT_TAKEN)),
     Vector(7, m.Gone()),
 )
 """At least one frame of every message, and of every version that extended it."""
@@ -73,7 +73,7 @@ def broken() -> list[tuple[str, bytes]]:
         ("number 0 of a command", encode_frame(bytes([0x12, 0xCD, 0xAB, 0, 0, 0, 0]))),
         ("a valence out of its range", _out_of_range()),
         ("a number that no message has", encode_frame(bytes([0x77, 0xCD, 0xAB, 1, 2, 3]))),
-        ("what only a robot may say", Vector(0xABCD, m.Ack(4, m.TAKEN)).frame),
+        ("what only a robot may say", Vector(0xABCD, m.Ack(4, m.RESULT_TAKEN)).frame),
     ]
 
 

@@ -123,7 +123,7 @@ class _WireDecoder:
                 )
             case m.Stop():
                 self._commands.setdefault(content.number, (time, UNKNOWN))
-            case m.Ack() if content.result == m.TAKEN and content.number in self._commands:
+            case m.Ack() if content.result == m.RESULT_TAKEN and content.number in self._commands:
                 self._acknowledge(content.number, time)
             case m.Welcome():  # after a reconnection, the last command may still be in force
                 emotion = self._commands.get(content.taken, (time, UNKNOWN))[1]

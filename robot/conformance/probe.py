@@ -238,7 +238,7 @@ class Probe:
         self.send(m.Beat(count))
         return self.expect(m.State, f"BEAT({count}) after {after}", beat=count)
 
-    def command(self, command: Any, result: int = m.TAKEN) -> int:
+    def command(self, command: Any, result: int = m.RESULT_TAKEN) -> int:
         """Send a command, expect its ACK, and return its number."""
         self.send(command)
         name = spec_of(type(command)).name

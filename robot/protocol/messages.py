@@ -17,19 +17,20 @@ ITEM_MOTION: Final = 1
 ITEM_SOUND: Final = 2
 ITEM_MOOD: Final = 3
 
-TAKEN: Final = 0
-UNKNOWN: Final = 1
+RESULT_TAKEN: Final = 0
+RESULT_REFUSED: Final = 1
+"""ACK.result of a command whose index the catalogue does not have."""
 
-CHARGING: Final = 1
+FLAG_CHARGING: Final = 1
 """Bit of STATE.flags: the battery is being charged."""
 
-STILL: Final = 2
+FLAG_STILL: Final = 2
 """Bit of STATE.flags: stopped; the robot holds its neutral pose."""
 
-LIMP: Final = 4
+FLAG_LIMP: Final = 4
 """Bit of STATE.flags: the motors have no power; nothing moves."""
 
-RECKONED: Final = 8
+FLAG_RECKONED: Final = 8
 """Bit of STATE.flags: the joint angles are calculated, because the robot cannot measure them."""
 
 

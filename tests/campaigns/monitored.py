@@ -47,7 +47,7 @@ class MonitoredScheduler(CommandScheduler):
             self.monitor.sends(self.host, command)
         return command
 
-    def acknowledge(self, number: int, result: int = m.TAKEN) -> None:
+    def acknowledge(self, number: int, result: int = m.RESULT_TAKEN) -> None:
         waiting = self.pending is not None
         super().acknowledge(number, result)
         if waiting and self.pending is None:

@@ -15,7 +15,7 @@ _ECHOES = (
     m.Joint(0, -1.0, 1.0, 1.0, "echo"),
     m.Name(m.ITEM_MOTION, 0, "echo"),
     m.State(1, 0, 0, 0.0, 0.0, 1.0, 0, m.NOTHING, m.NOTHING, (0.0,) * 16),
-    m.Ack(1, m.TAKEN),
+    m.Ack(1, m.RESULT_TAKEN),
     m.Gone(),
 )
 _HOST_MESSAGES = (
@@ -72,7 +72,8 @@ def longer_body_used(probe: Probe) -> None:
         probe.expect(m.State, f"a BEAT with {more} bytes more", beat=count)
         number = probe.next_number()
         probe.write(_extended(m.Express(number, 0.0, 0.0), probe, more))
-        probe.expect(m.Ack, f"an EXPRESS with {more} bytes more", number=number, result=m.TAKEN)
+        what = f"an EXPRESS with {more} bytes more"
+        probe.expect(m.Ack, what, number=number, result=m.RESULT_TAKEN)
         probe.next_session()
         probe.write(_extended(m.Hello(2, probe.host), probe, more))
         probe.expect(m.Welcome, f"a HELLO with {more} bytes more")
@@ -110,7 +111,7 @@ def express_of_version_1_used(probe: Probe) -> None:
         number = probe.next_number()
         probe.send(m.Express(number, 0.5, 0.5), version=1)
         what = f"an EXPRESS of 11 bytes, after HELLO (version {offer})"
-        probe.expect(m.Ack, what, number=number, result=m.TAKEN)
+        probe.expect(m.Ack, what, number=number, result=m.RESULT_TAKEN)
 
 
 @BODIES.must

@@ -54,7 +54,7 @@ def repeat_without_effect(probe: Probe) -> None:
         probe.send(m.Express(number, -0.8, -0.6))
         probe.send(m.Stop(number))
     after = probe.keep_alive(EFFECT_WITHIN_S)[-1]
-    if after.flags & m.STILL:
+    if after.flags & m.FLAG_STILL:
         raise CheckFailed("no effect of STOP 4 after EXPRESS 5", f"STATE(flags={after.flags})")
     if after.valence <= before:
         raise CheckFailed(
@@ -82,7 +82,7 @@ def latest_wins(probe: Probe) -> None:
     before = probe.beat("HELLO").valence
     probe.send(m.Express(1, 0.8, 0.0), m.Express(2, -0.8, 0.0))
     for number in (1, 2):
-        probe.expect(m.Ack, "EXPRESS 1 and 2 in one write", number=number, result=m.TAKEN)
+        probe.expect(m.Ack, "EXPRESS 1 and 2 in one write", number=number, result=m.RESULT_TAKEN)
     states = probe.keep_alive(1.0, lambda state: abs(state.valence - before) > EMOTION_CHANGE)
     if states[-1].valence >= before:
         raise CheckFailed(
@@ -97,7 +97,7 @@ def unknown_index_refused(probe: Probe) -> None:
     welcome = probe.open_session()
     for item, count in ((m.ITEM_MOTION, welcome.motions), (m.ITEM_SOUND, welcome.sounds)):
         for index in {count, 255}:
-            number = probe.command(m.Play(probe.next_number(), item, index), m.UNKNOWN)
+            number = probe.command(m.Play(probe.next_number(), item, index), m.RESULT_REFUSED)
             probe.expect_taken(number, f"PLAY {number} with index {index}")
 
 
@@ -110,7 +110,7 @@ def unknown_mood_refused(probe: Probe) -> None:
     before = probe.beat("HELLO").valence
     for mood in {welcome.moods, 254}:
         command = m.Express(probe.next_number(), 0.8, 0.0, mood)
-        number = probe.command(command, m.UNKNOWN)
+        number = probe.command(command, m.RESULT_REFUSED)
         probe.expect_taken(number, f"EXPRESS {number} with mood {mood}")
     after = probe.keep_alive(EFFECT_WITHIN_S)[-1].valence
     if after > before + EMOTION_CHANGE:
@@ -129,8 +129,8 @@ def refusal_changes_nothing(probe: Probe) -> None:
     if probe.version >= 2:
         commands.append(m.Express(probe.next_number(), 0.5, 0.5, m.NOTHING - 1))
     for command in commands:
-        probe.command(command, m.UNKNOWN)
-        probe.command(command, m.UNKNOWN)
+        probe.command(command, m.RESULT_REFUSED)
+        probe.command(command, m.RESULT_REFUSED)
     flags = probe.keep_alive(EFFECT_WITHIN_S)[-1].flags
-    if not flags & m.STILL:
+    if not flags & m.FLAG_STILL:
         raise CheckFailed("flag 1 after STOP and refused commands", f"flags={flags}")

@@ -147,7 +147,7 @@ def failsafe_not_reset_by_skipped_bodies(probe: Probe) -> None:
     probe.open_session()
     probe.beat("HELLO")
     frames = (
-        probe.frame(m.Ack(1, m.TAKEN)),
+        probe.frame(m.Ack(1, m.RESULT_TAKEN)),
         probe.raw_frame(0x42, b"\1\1\1\1"),
         probe.raw_frame(0x03, b"\1"),
         probe.raw_frame(0x10, b"\1\1\1\1\x7f\x7f\x7f\x7f\xff"),

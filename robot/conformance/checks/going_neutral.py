@@ -168,7 +168,7 @@ def stopped_robot_stays_still(probe: Probe) -> None:
             probe.reopen_session()
         expect_stop_pose(probe, f"STOP and {end}", within=0.0)
         state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
-        if not state.flags & m.STILL:
+        if not state.flags & m.FLAG_STILL:
             raise CheckFailed(f"flag 1 after STOP and {end}", f"flags={state.flags}")
         expect_stop_pose(probe, f"STOP and {end}", within=0.0)
 
@@ -216,7 +216,7 @@ def _expect_neutral(probe: Probe, played: dict[int, int], after: str) -> None:
         for item, index in played.items():
             if played_item(state, item) == index:
                 raise CheckFailed(f"the end of {ITEM_WORDS[item]} {index} after {after}", "none")
-        if state.flags & m.STILL:
+        if state.flags & m.FLAG_STILL:
             raise CheckFailed(f"flag 1 clear after {after}: no STOP was sent", "flag 1")
         if named and state.mood:
             expected = f"mood 0 within {1000 * EFFECT_WITHIN_S:.0f} ms after {after}"

@@ -98,7 +98,7 @@ def refused_play_ends_nothing(probe: Probe) -> None:
     """A refused PLAY does not end what is played."""
     index = long_entries(probe, m.ITEM_MOTION)[m.ITEM_MOTION]
     play(probe, m.ITEM_MOTION, index)
-    probe.command(m.Play(probe.next_number(), m.ITEM_MOTION, m.NOTHING - 1), m.UNKNOWN)
+    probe.command(m.Play(probe.next_number(), m.ITEM_MOTION, m.NOTHING - 1), m.RESULT_REFUSED)
     state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
     expect_still_played(state, m.ITEM_MOTION, index, "a refused PLAY")
 

@@ -67,7 +67,7 @@ def state_values_valid(probe: Probe) -> None:
         beyond = state.joints[welcome.joints :]
         if any(beyond):
             raise CheckFailed(f"0 for joints from {welcome.joints} on", f"{beyond}")
-        if state.flags & ~(m.CHARGING | m.STILL | m.LIMP | m.RECKONED):
+        if state.flags & ~(m.FLAG_CHARGING | m.FLAG_STILL | m.FLAG_LIMP | m.FLAG_RECKONED):
             raise CheckFailed("STATE with no flags but 0 to 3", f"flags={state.flags}")
 
 

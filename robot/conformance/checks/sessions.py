@@ -170,7 +170,7 @@ def version_1_spoken(probe: Probe) -> None:
     number = probe.next_number()
     probe.command(m.Express(number, 0.0, 0.0))
     for state in probe.keep_alive(0.2):
-        later = state.flags & ~(m.CHARGING | m.STILL)
+        later = state.flags & ~(m.FLAG_CHARGING | m.FLAG_STILL)
         if later:
             raise CheckFailed("STATE with flags 0 and 1 alone in version 1", f"flags={state.flags}")
 

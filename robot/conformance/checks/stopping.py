@@ -36,7 +36,7 @@ def stop_stops(probe: Probe) -> None:
     probe.keep_alive(0.1)
     probe.command(m.Stop(probe.next_number()))
     probe.expect_state(
-        lambda state: bool(state.flags & m.STILL) and state.motion == state.sound == m.NOTHING,
+        lambda state: bool(state.flags & m.FLAG_STILL) and state.motion == state.sound == m.NOTHING,
         EFFECT_WITHIN_S,
         "STATE with flag 1, motion=255, sound=255 after STOP",
         "flags", "motion", "sound",
@@ -73,7 +73,7 @@ def express_after_stop(probe: Probe) -> None:
     target = -0.8 if before > 0 else 0.8
     probe.express(target, 0.0)
     last = probe.keep_alive(1.0, lambda state: abs(state.valence - before) > EMOTION_CHANGE)[-1]
-    if last.flags & m.STILL or (last.valence - before) * target <= 0:
+    if last.flags & m.FLAG_STILL or (last.valence - before) * target <= 0:
         raise CheckFailed(
             f"flag 1 clear, and valence going from {before} to {target}, after STOP and EXPRESS",
             f"flags={last.flags}, valence={last.valence}",
@@ -90,7 +90,7 @@ def play_after_stop(probe: Probe) -> None:
     probe.keep_alive(0.1)
     probe.command(m.Play(probe.next_number(), m.ITEM_MOTION, welcome.motions - 1))
     probe.expect_state(
-        lambda state: not state.flags & m.STILL,
+        lambda state: not state.flags & m.FLAG_STILL,
         EFFECT_WITHIN_S,
         "flag 1 clear after STOP and PLAY",
         "flags",

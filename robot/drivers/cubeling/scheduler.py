@@ -134,13 +134,13 @@ class CommandScheduler:
         pending.sent = now
         return pending.command
 
-    def acknowledge(self, number: int, result: int = m.TAKEN) -> None:
+    def acknowledge(self, number: int, result: int = m.RESULT_TAKEN) -> None:
         """Process the acknowledgement of the command with this number."""
         pending = self.pending
         if pending is None or number != pending.command.number:
             return
         self.pending = None
-        if result != m.TAKEN:
+        if result != m.RESULT_TAKEN:
             self.refused += 1
         elif not isinstance(pending.command, m.Play):
             self.state.confirm(pending.emotion, stopped=pending.emotion is None)

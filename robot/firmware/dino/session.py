@@ -26,7 +26,7 @@ class HostSession:
         self._reply = bytearray(m.MAX_BODY)
         self._host = 0
         self._taken = 0  # number of the last command, kept between sessions of the same host
-        self._result = m.TAKEN
+        self._result = m.RESULT_TAKEN
         self._in_force = False
         self._beat = 0
         self._version = m.VERSION
@@ -132,26 +132,26 @@ class HostSession:
         elif kind == m.EXPRESS:
             valence, arousal, mood = values[3], values[4], values[5]
             if mood != m.NOTHING and mood >= len(self._body.moods):
-                return m.UNKNOWN
+                return m.RESULT_REFUSED
             self._body.express(valence, arousal, mood)
         else:
             item, index = values[3], values[4]
             if index >= len(self._names[item]):
-                return m.UNKNOWN
+                return m.RESULT_REFUSED
             if item == m.ITEM_MOTION:
                 self._body.play_motion(index)
             else:
                 self._body.play_sound(index)
-        return m.TAKEN
+        return m.RESULT_TAKEN
 
     def _send_state(self, now: int) -> None:
         self._last_state = now
         body = self._body
         joints = body.joints
         angles = [joints.mrad(index) for index in range(len(joints.angles))]
-        flags = m.STILL if body.stopped else 0
+        flags = m.FLAG_STILL if body.stopped else 0
         if self._version >= 2:
-            flags |= m.RECKONED | (m.LIMP if joints.limp else 0)
+            flags |= m.FLAG_RECKONED | (m.FLAG_LIMP if joints.limp else 0)
         self._send(
             m.STATE,
             self._beat,

@@ -158,7 +158,7 @@ class DinosaurBody:
         return m.State(
             beat=0,
             taken=0,
-            flags=m.CHARGING * self._battery.charging | m.STILL * self._still,
+            flags=m.FLAG_CHARGING * self._battery.charging | m.FLAG_STILL * self._still,
             valence=emotion.valence,
             arousal=emotion.arousal,
             battery=self._battery.level,

@@ -48,7 +48,7 @@ class DeviceLink(SendBuffer):
         """Number of the last command; it survives the sessions of the same host."""
         self.last_received = 0.0
         """Time of the last message of the session [s]."""
-        self._result = m.TAKEN
+        self._result = m.RESULT_TAKEN
         self._in_force = False
         self._beat = 0
         self._version = timing.VERSION
@@ -142,22 +142,22 @@ class DeviceLink(SendBuffer):
             case m.Express():
                 moods = len(self.body.catalogue.moods)
                 if command.mood >= moods and command.mood != m.NOTHING:
-                    return m.UNKNOWN
+                    return m.RESULT_REFUSED
                 self.body.express(Emotion(command.valence, command.arousal), command.mood)
             case m.Play():
                 if command.index >= len(_names(self.body.catalogue, command.item)):
-                    return m.UNKNOWN
+                    return m.RESULT_REFUSED
                 self.body.play(command.item, command.index)
             case m.Stop():
                 self.body.stop()
-        return m.TAKEN
+        return m.RESULT_TAKEN
 
     def _send_state(self, now: float) -> None:
         self._state_sent = now
         state = self.body.state()
         flags = state.flags
         if self._version < 2:
-            flags &= m.CHARGING | m.STILL  # version 1 has no others
+            flags &= m.FLAG_CHARGING | m.FLAG_STILL  # version 1 has no others
         self._send(replace(state, beat=self._beat, taken=self.last_command, flags=flags))
 
     def _refuse(self, session: int, now: float) -> None:

@@ -46,13 +46,13 @@ SAID = [
     (0.01, "rx", m.Welcome(2, 0, 1, 0, 0, 0, 2, "dino", "test")),
     (0.02, "rx", m.Name(m.ITEM_MOOD, 1, "merry")),
     (0.05, "tx", m.Express(1, 0.5, 0.25)),
-    (0.10, "rx", m.Ack(1, m.TAKEN)),
-    (0.11, "rx", m.Ack(1, m.TAKEN)),
+    (0.10, "rx", m.Ack(1, m.RESULT_TAKEN)),
+    (0.11, "rx", m.Ack(1, m.RESULT_TAKEN)),
     (0.15, "rx", state(0.1, 0.05)),
     (0.16, "tx", m.Express(2, 0.6, 0.3)),  # its acknowledgement is lost
     (0.20, "rx", state(0.4, 0.2, 1)),
     (0.25, "tx", m.Express(3, 0.7, 0.4)),
-    (0.26, "rx", m.Ack(3, m.UNKNOWN)),
+    (0.26, "rx", m.Ack(3, m.RESULT_REFUSED)),
     (0.30, "rx", m.Gone()),
 ]
 
@@ -140,7 +140,7 @@ def test_asked_acknowledged_and_observed_are_told_apart(talking_session):
 def test_a_robot_that_was_away_still_has_what_it_had_taken(tmp_path, talking_session):
     path = tmp_path / "away.mcap"
     said = [*SAID[:5], (0.2, "rx", m.Welcome(2, 1, 1, 0, 0, 0, 2, "dino", "test"))]
-    said += [(0.25, "tx", m.Stop(2)), (0.3, "rx", m.Ack(2, m.TAKEN))]
+    said += [(0.25, "tx", m.Stop(2)), (0.3, "rx", m.Ack(2, m.RESULT_TAKEN))]
     with open_source(str(talking_session)) as source, Recorder(path, {"scenario": "x"}) as recorder:
         playground = Playground("companion", intrinsics_for(source.intrinsics, source.size))
         recorder.write(playground.step(next(iter(source))))

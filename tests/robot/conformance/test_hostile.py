@@ -148,7 +148,7 @@ def test_the_robot_is_always_left_neutral_and_without_a_session():
     assert isinstance(robot.told[-1], m.Bye)
     assert robot.link.session == 0
     assert robot.body.target.valence == robot.body.target.arousal == 0
-    assert not robot.body.state().flags & m.STILL
+    assert not robot.body.state().flags & m.FLAG_STILL
 
 
 class DeadPort:

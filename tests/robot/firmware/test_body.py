@@ -114,12 +114,12 @@ def test_without_a_host_it_rests_with_limp_servos_and_wakes_for_a_host(dino):
     dino.send(m.Hello(2, 9))
     dino.send(m.Beat(1))
     flags = dino.sent()[-1][1].flags
-    assert flags & m.LIMP
+    assert flags & m.FLAG_LIMP
     dino.run(100)
     dino.send(m.Beat(2))
     flags = dino.sent()[-1][1].flags
-    assert not flags & m.LIMP
-    assert flags & m.RECKONED
+    assert not flags & m.FLAG_LIMP
+    assert flags & m.FLAG_RECKONED
 
 
 def test_an_unplugged_servo_driver_is_reported_as_limp(dino):
@@ -128,7 +128,7 @@ def test_an_unplugged_servo_driver_is_reported_as_limp(dino):
     dino.board.dead = True
     dino.run(40)
     dino.send(m.Beat(1))
-    assert dino.sent()[-1][1].flags & m.LIMP
+    assert dino.sent()[-1][1].flags & m.FLAG_LIMP
     where = list(dino.joints.angles)
     dino.run(300)
     assert dino.joints.angles == where, "what has no power does not move"

@@ -101,7 +101,7 @@ def test_a_host_of_version_1_gets_version_1(dino):
     dino.send(m.Express(1, 0.9, 0.9), version=1)
     dino.send(m.Beat(4))
     welcome, ack, state = [message for _, message in dino.sent()]
-    assert (welcome.version, ack.result, state.flags) == (1, m.TAKEN, 0)
+    assert (welcome.version, ack.result, state.flags) == (1, m.RESULT_TAKEN, 0)
     dino.run(300)
     assert dino.robot.body.valence > 0
 
@@ -207,7 +207,7 @@ def _gist(data: bytes) -> list[tuple[object, ...]]:
                 counts = (said.version, said.taken, said.motions, said.sounds, said.moods)
                 gist.append((kind, session, *counts))
             case m.State():
-                still = said.flags & m.STILL
+                still = said.flags & m.FLAG_STILL
                 known = (said.beat, said.taken, still, said.motion == m.NOTHING)
                 gist.append((kind, session, *known))
             case _:

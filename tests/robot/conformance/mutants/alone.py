@@ -146,7 +146,7 @@ class Left(Stating):
         def leaving() -> None:
             state = self.body.state()
             self.left = True
-            self.motion = state.motion >= FIRST_ACTION and not state.flags & m.STILL
+            self.motion = state.motion >= FIRST_ACTION and not state.flags & m.FLAG_STILL
             neutral()
 
         def feeling(emotion: Emotion, mood: int = m.NOTHING) -> None:
@@ -175,7 +175,7 @@ class SoundsOnWhenAlone(Left):
 @breaks("failsafe goes to neutral", "bye goes to neutral", "another host goes to neutral")
 class IsStoppedWhenAlone(Left):
     def alter_state(self, state: m.State) -> m.State:
-        return replace(state, flags=state.flags | m.STILL) if self.left else state
+        return replace(state, flags=state.flags | m.FLAG_STILL) if self.left else state
 
 
 @breaks("failsafe does not jump")
@@ -194,7 +194,7 @@ class MovesOnWhenAlone(Left):
 @breaks("stopped robot stays still")
 class SwaysWhenStoppedAndAlone(Left):
     def alter_state(self, state: m.State) -> m.State:
-        if not (self.left and state.flags & m.STILL):
+        if not (self.left and state.flags & m.FLAG_STILL):
             return state
         return replace(state, joints=(0.2, *state.joints[1:]))
 

@@ -79,7 +79,7 @@ class ReadsNumbersSigned(Commanded):
         if command.number < 0x80000000:
             super().on_command(command)
         else:
-            self.send(self.session, m.Ack(command.number, m.TAKEN))
+            self.send(self.session, m.Ack(command.number, m.RESULT_TAKEN))
 
 
 @breaks("latest wins")
@@ -92,7 +92,7 @@ class TakesTheFirstOfTwo(Commanded):
 class AgreesToEverything(Mutant):
     def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Ack):
-            message = replace(message, result=m.TAKEN)
+            message = replace(message, result=m.RESULT_TAKEN)
         super().send_message(session, message)
 
 
@@ -144,7 +144,7 @@ class PlaysOnWhenStopped(Mutant):
 @breaks("stop holds the pose")
 class TremblesWhenStopped(Mutant):
     def send_message(self, session: int, message: Any) -> None:
-        if isinstance(message, m.State) and message.flags & m.STILL:
+        if isinstance(message, m.State) and message.flags & m.FLAG_STILL:
             head = 0.1 * sin(self.now * 20)
             message = replace(message, joints=(head, *message.joints[1:]))
         super().send_message(session, message)
@@ -153,7 +153,7 @@ class TremblesWhenStopped(Mutant):
 @breaks("stop holds the pose")
 class KeepsItsFeelingsWhenStopped(Mutant):
     def send_message(self, session: int, message: Any) -> None:
-        if isinstance(message, m.State) and message.flags & m.STILL:
+        if isinstance(message, m.State) and message.flags & m.FLAG_STILL:
             message = replace(message, valence=0.4)
         super().send_message(session, message)
 
@@ -173,5 +173,5 @@ class StaysStopped(Mutant):
 
     def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State) and self.stopped:
-            message = replace(message, flags=message.flags | m.STILL)
+            message = replace(message, flags=message.flags | m.FLAG_STILL)
         super().send_message(session, message)

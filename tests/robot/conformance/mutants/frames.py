@@ -158,7 +158,7 @@ class HasABatteryBeyondFull(Mutant):
 class AcknowledgesWhatItDoesNotKnow(Mutant):
     def on_body(self, number: int, session: int, body: bytes) -> None:
         if number not in MESSAGES:
-            self.send(session, m.Ack(1, m.UNKNOWN))
+            self.send(session, m.Ack(1, m.RESULT_REFUSED))
         super().on_body(number, session, body)
 
 

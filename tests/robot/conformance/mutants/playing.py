@@ -105,7 +105,7 @@ class AgreesAtTheSecondTime(Mutant):
     def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.Ack) and message.result:
             if message.number == self.refused:
-                message = replace(message, result=m.TAKEN)
+                message = replace(message, result=m.RESULT_TAKEN)
             self.refused = message.number
         super().send_message(session, message)
 
@@ -163,7 +163,7 @@ class KeepsTheNamedMood(Named):
 @breaks("stop ends a named mood")
 class KeepsItsMoodWhenStopped(Named):
     def keeps(self, state: m.State) -> bool:
-        return bool(state.flags & m.STILL)
+        return bool(state.flags & m.FLAG_STILL)
 
 
 @breaks("failsafe goes to neutral", "bye goes to neutral", "another host goes to neutral")
@@ -204,7 +204,7 @@ class TakesAnotherPoseEachTime(Stating):
         self.body.stop = stopping  # type: ignore[method-assign]
 
     def alter_state(self, state: m.State) -> m.State:
-        if not state.flags & m.STILL:
+        if not state.flags & m.FLAG_STILL:
             return state
         return replace(state, joints=(0.1 * (self.stops % 2), *state.joints[1:]))
 
@@ -212,6 +212,6 @@ class TakesAnotherPoseEachTime(Stating):
 @breaks("stop holds the pose")
 class SwaysSlowlyWhenStopped(Stating):
     def alter_state(self, state: m.State) -> m.State:
-        if not state.flags & m.STILL:
+        if not state.flags & m.FLAG_STILL:
             return state
         return replace(state, joints=(0.1 * sin(self.now), *state.joints[1:]))

@@ -71,7 +71,7 @@ class OpensSessionZero(Mutant):
 class BelievesThatSessionZeroIsOpen(Mutant):
     def on_body(self, number: int, session: int, body: bytes) -> None:
         if session == self.session == 0 and number == 3:
-            self.send(0, m.Ack(1, m.TAKEN))
+            self.send(0, m.Ack(1, m.RESULT_TAKEN))
         else:
             super().on_body(number, session, body)
 
@@ -211,7 +211,7 @@ class SpeaksVersion2ToAll(Mutant):
 class FlagsOfVersion2InVersion1(Mutant):
     def send_message(self, session: int, message: Any) -> None:
         if isinstance(message, m.State):
-            message = replace(message, flags=message.flags | m.RECKONED)
+            message = replace(message, flags=message.flags | m.FLAG_RECKONED)
         super().send_message(session, message)
 
 

@@ -320,9 +320,9 @@ class ForeignHost:
 def test_a_command_that_comes_twice_is_taken_once_and_acknowledged_twice():
     foreign = ForeignHost()
     foreign.say(m.Hello(1, 5))
-    assert foreign.say(m.Express(1, 0.5, 0)) == [m.Ack(1, m.TAKEN)]
+    assert foreign.say(m.Express(1, 0.5, 0)) == [m.Ack(1, m.RESULT_TAKEN)]
     foreign.say(m.Express(2, -0.5, 0))
-    assert foreign.say(m.Express(1, 0.5, 0)) == [m.Ack(1, m.TAKEN)]
+    assert foreign.say(m.Express(1, 0.5, 0)) == [m.Ack(1, m.RESULT_TAKEN)]
     assert foreign.robot.body.target.valence == -0.5
 
 
@@ -342,7 +342,7 @@ def test_another_host_finds_a_neutral_robot_that_counts_from_one():
     (welcome,) = foreign.say(m.Hello(1, 6), session=2)
     assert welcome.taken == 0
     assert foreign.robot.body.target == Emotion(0, 0)
-    assert foreign.say(m.Express(1, 0.5, 0), session=2) == [m.Ack(1, m.TAKEN)]
+    assert foreign.say(m.Express(1, 0.5, 0), session=2) == [m.Ack(1, m.RESULT_TAKEN)]
 
 
 def test_a_session_that_is_not_open_is_answered_by_gone_at_a_limited_rate():
