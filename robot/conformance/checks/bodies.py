@@ -9,8 +9,8 @@ from robot.protocol.wire import MAX_BODY, encode_frame
 
 BODIES = CheckGroup("Bodies", 3)
 
-_UNKNOWN = (0x00, 0x04, 0x13, 0x42, 0x80, 0xA0, 0xFF)
-_ECHOES = (
+_UNKNOWN_NUMBERS = (0x00, 0x04, 0x13, 0x42, 0x80, 0xA0, 0xFF)
+_ROBOT_MESSAGES = (
     m.Welcome(2, 0, 1, 1, 1, 1, 1, "echo", "echo"),
     m.Joint(0, -1.0, 1.0, 1.0, "echo"),
     m.Name(m.ITEM_MOTION, 0, "echo"),
@@ -32,7 +32,7 @@ _HOST_MESSAGES = (
 def unknown_message_skipped(probe: Probe) -> None:
     """A message with an unknown number is skipped, in the session and outside."""
     probe.open_session()
-    for number in _UNKNOWN:
+    for number in _UNKNOWN_NUMBERS:
         for session in (probe.session, probe.session + 0x0101):
             frame = probe.raw_frame(number, b"\x01\x02\x03\x04\x05", session)
             probe.expect_no_reply(frame, f"a message {number:02X}")
@@ -42,7 +42,7 @@ def unknown_message_skipped(probe: Probe) -> None:
 def echo_skipped(probe: Probe) -> None:
     """A message that only robots send is an echo and is skipped, in the session and outside."""
     probe.open_session()
-    for echo in _ECHOES:
+    for echo in _ROBOT_MESSAGES:
         for session in (probe.session, probe.session + 0x0101):
             what = f"an echo of {spec_of(type(echo)).name}"
             probe.expect_no_reply(probe.frame(echo, session), what)
@@ -127,4 +127,4 @@ def _extended(message: object, probe: Probe, more: int) -> bytes:
     return encode_frame(body[:MAX_BODY])
 
 
-assert not {*_UNKNOWN} & {*MESSAGES}
+assert not {*_UNKNOWN_NUMBERS} & {*MESSAGES}

@@ -10,27 +10,28 @@ CATALOGUE = CheckGroup("Catalogue", 5)
 REPEATED_ENTRIES = 4
 """Entries that are read twice, about."""
 
-_ITEMS = {
+ITEM_WORDS = {
     m.ITEM_JOINT: "joint",
     m.ITEM_MOTION: "motion",
     m.ITEM_SOUND: "sound",
     m.ITEM_MOOD: "mood",
 }
+"""The items of a catalogue, in words."""
 
 
 @CATALOGUE.must
 def catalogue_complete(probe: Probe) -> str:
     """ASK is answered by JOINT or NAME for every entry that WELCOME counts, within 100 ms."""
     entries = _read_catalogue(probe)
-    counts = {item: sum(key[0] == item for key in entries) for item in _ITEMS}
-    return ", ".join(f"{count} {_ITEMS[item]}s" for item, count in counts.items())
+    counts = {item: sum(key[0] == item for key in entries) for item in ITEM_WORDS}
+    return ", ".join(f"{count} {ITEM_WORDS[item]}s" for item, count in counts.items())
 
 
 @CATALOGUE.must
 def names_distinct(probe: Probe) -> None:
     """Every entry has a name, different from the others of its kind; the robot has a name too."""
     entries = _known_catalogue(probe)
-    for item, word in _ITEMS.items():
+    for item, word in ITEM_WORDS.items():
         names = [entry.name for key, entry in entries.items() if key[0] == item]
         if not all(name.strip() for name in names) or len(set(names)) != len(names):
             raise CheckFailed(f"a different name for every {word}", ", ".join(map(repr, names)))
@@ -62,7 +63,7 @@ def catalogue_constant(probe: Probe) -> None:
     keys = _keys(second)
     for key in keys[:: max(len(keys) // REPEATED_ENTRIES, 1)]:
         if _ask(probe, *key) != _ask(probe, *key):
-            what = f"{_ITEMS[key[0]]} {key[1]}"
+            what = f"{ITEM_WORDS[key[0]]} {key[1]}"
             raise CheckFailed(f"the same entry at every ASK for {what}", "two different ones")
 
 
@@ -71,7 +72,7 @@ def no_entry_beyond_the_catalogue(probe: Probe) -> None:
     """ASK for an entry that the catalogue does not have is not answered, and does no harm."""
     welcome = probe.open_session()
     questions = list(enumerate(_counts(welcome)))
-    questions += [(item, 255) for item in _ITEMS] + [(4, 0), (255, 255)]
+    questions += [(item, 255) for item in ITEM_WORDS] + [(4, 0), (255, 255)]
     for item, index in questions:
         what = f"ASK for item {item}, index {index}"
         probe.expect_no_reply(probe.frame(m.Ask(item, index)), what)
@@ -104,7 +105,7 @@ def _keys(welcome: m.Welcome) -> list[tuple[int, int]]:
 
 def _ask(probe: Probe, item: int, index: int) -> m.Joint | m.Name:
     probe.send(m.Ask(item, index))
-    after = f"ASK for {_ITEMS[item]} {index}"
+    after = f"ASK for {ITEM_WORDS[item]} {index}"
     if item == m.ITEM_JOINT:
         return probe.expect(m.Joint, after, index=index)
     return probe.expect(m.Name, after, item=item, index=index)

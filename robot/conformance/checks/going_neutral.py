@@ -1,9 +1,9 @@
 """Checks of section 7: a robot without its host goes to neutral."""
 
 from robot.conformance.check import CheckGroup
+from robot.conformance.checks.catalogue import ITEM_WORDS
 from robot.conformance.checks.failsafe import FAILSAFE_NOT_BEFORE_S, SILENCE_S
 from robot.conformance.checks.playing import (
-    ITEM_WORDS,
     expect_still_played,
     long_entries,
     play,

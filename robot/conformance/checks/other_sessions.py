@@ -13,7 +13,7 @@ OTHER_SESSIONS = CheckGroup("Messages of other sessions", 5)
 LISTENING_TIME_S = 0.4
 """Time in which a robot without a session must be silent [s]."""
 
-FRAMES = 240
+FRAME_COUNT = 240
 """Frames of another session in a row."""
 
 FRAMES_PER_WRITE = 4
@@ -65,19 +65,19 @@ def gone_rate_bounded(probe: Probe) -> None:
     probe.receive(2 * timing.GONE_EVERY)
     begin = probe.now
     received: list[ReceivedFrame] = []
-    for _ in range(FRAMES // FRAMES_PER_WRITE):
+    for _ in range(FRAME_COUNT // FRAMES_PER_WRITE):
         probe.write(frame * FRAMES_PER_WRITE, keep=True)
         received += probe.receive(WRITE_EVERY_S)
     received += probe.receive(REPLY_WITHIN_S)
     gone = [one for one in received if isinstance(one.message, m.Gone)]
     if not gone:
-        raise CheckFailed(f"GONE after {FRAMES} BEATs of another session", "none")
+        raise CheckFailed(f"GONE after {FRAME_COUNT} BEATs of another session", "none")
     duration = gone[-1].timestamp - begin
     limit = (duration + TIMING_SLACK_S) / timing.GONE_EVERY + 2
     if len(gone) > limit:
         raise CheckFailed(
             f"at most {limit:.0f} GONEs in {1000 * duration:.0f} ms, "
-            f"after {FRAMES} BEATs of another session",
+            f"after {FRAME_COUNT} BEATs of another session",
             f"{len(gone)}",
         )
 

@@ -3,6 +3,7 @@
 from math import inf
 
 from robot.conformance.check import CheckGroup
+from robot.conformance.checks.catalogue import ITEM_WORDS
 from robot.conformance.errors import CheckFailed, NotApplicableError
 from robot.conformance.probe import EFFECT_WITHIN_S, Probe
 from robot.protocol import messages as m
@@ -19,7 +20,8 @@ MIN_PLAY_TIME_S = 3 * EFFECT_WITHIN_S
 POLL_EVERY_S = 0.010
 """Time between two BEATs that watch for a motion or sound [s]; a sound may be short."""
 
-ITEM_WORDS = {m.ITEM_MOTION: "motion", m.ITEM_SOUND: "sound"}
+PLAYED_ITEMS = (m.ITEM_MOTION, m.ITEM_SOUND)
+"""The items that PLAY can name."""
 
 
 @PLAYING.must
@@ -185,7 +187,7 @@ def _measure_durations(probe: Probe) -> dict[int, float]:
     """Play a motion and a sound at the same time, to save time, and measure their durations."""
     probe.open_neutral_session()
     state = probe.beat("HELLO")
-    indices = {item: _idle_entry(probe, state, item) for item in ITEM_WORDS}
+    indices = {item: _idle_entry(probe, state, item) for item in PLAYED_ITEMS}
     indices = {item: index for item, index in indices.items() if index != m.NOTHING}
     durations = _play_to_the_end(probe, indices)
     for item, time in durations.items():

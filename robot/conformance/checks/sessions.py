@@ -9,7 +9,7 @@ from robot.protocol import timing
 
 SESSIONS = CheckGroup("Sessions", 5)
 
-HELLOS = 40
+HELLO_COUNT = 40
 """HELLOs in a row."""
 
 HELLO_EVERY_S = 0.005
@@ -105,12 +105,12 @@ def newest_session_wins(probe: Probe) -> None:
 def many_hellos_survived(probe: Probe) -> None:
     """After 40 sessions that began within 200 ms the last one is open."""
     probe.open_session()
-    for _ in range(HELLOS):
+    for _ in range(HELLO_COUNT):
         probe.next_session()
         probe.send(m.Hello(timing.VERSION, probe.host))
         probe.receive(HELLO_EVERY_S)
     probe.receive(REPLY_WITHIN_S)
-    probe.beat(f"{HELLOS} HELLOs")
+    probe.beat(f"{HELLO_COUNT} HELLOs")
 
 
 @SESSIONS.must
