@@ -78,7 +78,7 @@ def _constants(specs: list[MessageSpec]) -> str:
         "JOINTS_MAX": JOINTS_MAX,
         "NOTHING": NOTHING,
     }
-    for name in timing.RULES:
+    for name in timing.RULE_DESCRIPTIONS:
         values[f"{name}_MS"] = round(1000 * getattr(timing, name))
     for spec in specs:
         values[spec.name] = f"0x{spec.number:02X}"

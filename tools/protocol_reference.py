@@ -32,7 +32,8 @@ def message_tables() -> str:
 def timing_table() -> str:
     """Return the table of all times."""
     rows = [
-        f"| {1000 * getattr(timing, name):.0f} | {rule} |" for name, rule in timing.RULES.items()
+        f"| {1000 * getattr(timing, name):.0f} | {rule} |"
+        for name, rule in timing.RULE_DESCRIPTIONS.items()
     ]
     return "\n".join(["| ms | what |", "|---:|---|", *rows])
 

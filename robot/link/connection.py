@@ -122,7 +122,7 @@ class Robot(Closeable):
         self.url = url
         """Its port."""
         self._driver, self._clock, self._exchange = driver, clock, exchange
-        self._wish: Emotion | None = None
+        self._expressed: Emotion | None = None
 
     def express(self, emotion: Emotion) -> None:
         """Let the robot show an emotion from now on; the latest wins. Never waits, never raises.
@@ -133,10 +133,10 @@ class Robot(Closeable):
             Valence and arousal, and optionally a word, "happy". Of the robot's own words for its
             moods, the one closest to that word is shown; without a word the robot chooses.
         """
-        if self._wish == emotion:
+        if self._expressed == emotion:
             return  # every frame of a session asks; only a new emotion is worth waking the link
         with self._exchange.lock:
-            self._wish = emotion
+            self._expressed = emotion
             self._driver.express(emotion)
         self._exchange.wake()
 
@@ -168,7 +168,7 @@ class Robot(Closeable):
     def stop(self) -> None:
         """End everything and hold the neutral pose until the next `express` or `play`."""
         with self._exchange.lock:
-            self._wish = None
+            self._expressed = None
             self._driver.stop()
         self._exchange.wake()
 

@@ -52,7 +52,7 @@ ANSWER_WITHIN = 2.0
 BAUD = 115200
 """Bits per second on a real serial line; 8N1, no flow control."""
 
-RULES: dict[str, str] = {
+RULE_DESCRIPTIONS: dict[str, str] = {
     "BEAT_EVERY": "the host sends BEAT",
     "STATE_EVERY": "the robot sends STATE of its own accord if it has not for this long",
     "FAILSAFE_AFTER": "silence of the host after which a robot should act",

@@ -12,7 +12,7 @@ from robot.simulators.faulty import FaultyRobot
 BIN_WIDTH_S = 0.0005
 """Bin width of the histogram of latencies [s]."""
 
-BINS = 40_000
+BIN_COUNT = 40_000
 """Bins of that histogram; the last one counts all longer latencies."""
 
 MAX_REMEMBERED = 4096
@@ -66,7 +66,7 @@ class InvariantMonitor:
         self.now = 0.0
         self.counts: Counter[str] = Counter()
         self.worst_failsafe = 0.0
-        self.latencies = [0] * BINS
+        self.latencies = [0] * BIN_COUNT
         self.asked = 0  # serial of the last emotion
         self.faulty: FaultyRobot | None = None
         self.frames = {"there": RecentItems(), "back": RecentItems()}
@@ -144,7 +144,7 @@ class InvariantMonitor:
         asked_at = self._asked_at.pop(serial, None)
         if asked_at is not None:
             self.counts["emotions"] += 1
-            self.latencies[min(int((self.now - asked_at) / BIN_WIDTH_S), BINS - 1)] += 1
+            self.latencies[min(int((self.now - asked_at) / BIN_WIDTH_S), BIN_COUNT - 1)] += 1
 
     def falls_silent(self, heard: float, now: float) -> None:
         """Check the failsafe's time."""

@@ -41,7 +41,7 @@ TICK_S = 0.020
 REQUEST_EVERY_S = 3.0
 """Mean time between two requests [s]."""
 
-MEASUREMENTS = 24
+MEASUREMENT_COUNT = 24
 """Number of times at which all objects are counted."""
 
 MAX_GROWTH_RATIO = 1.05
@@ -169,9 +169,9 @@ class SoakRun:
 def soak(name: str, hours: float, seed: int = 1) -> SoakResult:
     """Run one protocol for a number of hours."""
     start, day = time.perf_counter(), SoakRun(name, seed)
-    result, every = day.result, 3600.0 * hours / MEASUREMENTS
+    result, every = day.result, 3600.0 * hours / MEASUREMENT_COUNT
     try:
-        for look in range(1, MEASUREMENTS + 1):
+        for look in range(1, MEASUREMENT_COUNT + 1):
             day.live_until(look * every)
             gc.collect()
             result.held.append(weight(day.driver, day.robot, logs=False))

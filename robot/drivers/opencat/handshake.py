@@ -20,12 +20,12 @@ MAX_START_S = 15.0
 MAX_NAMELESS_ECHOES = 3
 """Echoes of "?" without a model after which the board is taken for one without an answer."""
 
-STARTS = ("* Start *", "Flush the serial buffer", "rst:0x", "ets Jun", "entry 0x")
+STARTUP_LINE_PREFIXES = ("* Start *", "Flush the serial buffer", "rst:0x", "ets Jun", "entry 0x")
 """Beginnings of lines that a board sends only while it starts."""
 
 _READY = "Ready!"
 _OWNER_QUESTION = "(Y/n)"
-_MODELS = ("bittle", "nybble", "dof16", "cub", "nova", "chero", "mini")
+_MODEL_PREFIXES = ("bittle", "nybble", "dof16", "cub", "nova", "chero", "mini")
 _VERSION = re.compile(r"[A-Za-z0-9.]{1,8}_[0-9]{6}\w{0,8}")
 
 Stage = Literal["starting", "waiting for owner", "asking", "known"]
@@ -98,7 +98,7 @@ class Handshake:
         name = version = ""
         before = ""
         for line in self._lines:
-            if line.lower().startswith(_MODELS) and not _VERSION.fullmatch(line):
+            if line.lower().startswith(_MODEL_PREFIXES) and not _VERSION.fullmatch(line):
                 name = line
             elif _VERSION.fullmatch(line):
                 version, name = line, name or before

@@ -11,9 +11,9 @@ from robot.contract.telemetry import LinkCounts, LinkState, Telemetry
 from robot.drivers.lines import LineReader
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.echo import MAX_QUESTION_TRIES, EchoMatcher, PendingLine
-from robot.drivers.opencat.handshake import STARTS, Handshake
+from robot.drivers.opencat.handshake import STARTUP_LINE_PREFIXES, Handshake
 from robot.drivers.opencat.models import model_of
-from robot.drivers.opencat.scheduler import REST, SkillScheduler
+from robot.drivers.opencat.scheduler import REST_COMMAND, SkillScheduler
 from robot.drivers.opencat.settings import Settings, load_settings
 from robot.drivers.opencat.telemetry_parser import TelemetryParser
 from robot.protocol import messages as m
@@ -163,7 +163,7 @@ class OpenCatHost:
 
     def _process(self, line: str, now: float) -> None:
         self._last_received = now
-        if line.startswith(STARTS):
+        if line.startswith(STARTUP_LINE_PREFIXES):
             self._handle_restart(now)
             return
         starting = self._handshake.stage == "starting"
@@ -230,7 +230,7 @@ class OpenCatHost:
             if not self._scheduler.resting:
                 self._writer.send(self._echoes.ask(now), now)
                 return
-            command = REST
+            command = REST_COMMAND
         if command is not None:
             self._writer.send(self._echoes.send(command, now), now)
 

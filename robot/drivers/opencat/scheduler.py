@@ -18,7 +18,7 @@ GESTURE_TIMEOUT_S = 15.0
 MELODY_TIMEOUT_S = 3.0
 """Longest time from the last note of a melody to its echo [s]."""
 
-REST = BoardCommand("rest", tokens.REST, "", POSTURE_TIMEOUT_S)
+REST_COMMAND = BoardCommand("rest", tokens.REST, "", POSTURE_TIMEOUT_S)
 """The command to lie down and switch the servos off."""
 
 
@@ -85,7 +85,7 @@ class SkillScheduler:
             return None
         if not self.limp and 0 < self._settings.rest_after <= now - self._idle_since:
             self.resting = True
-            return REST
+            return REST_COMMAND
         if self.desired.due is not None:
             waits = self.desired.due.kind == "posture" and now < self._skill_from
             return None if waits else self.desired.send()

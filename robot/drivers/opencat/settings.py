@@ -14,7 +14,7 @@ from robot.drivers.opencat import tokens
 from robot.drivers.opencat.models import MODELS
 from robot.errors import RobotError
 
-BUNDLED = Path(__file__).with_name("opencat.toml")
+BUNDLED_SETTINGS = Path(__file__).with_name("opencat.toml")
 """The bundled settings; a person's own file overrides parts of them."""
 
 BAUDS = (57600, 115200)
@@ -107,13 +107,13 @@ def load_settings(path: Path | None = None) -> Settings:
     Raises RobotError if it cannot be read, or a value is wrong or may not be sent.
     """
     if path is None:
-        return parse_settings({}, BUNDLED.name)
+        return parse_settings({}, BUNDLED_SETTINGS.name)
     return parse_settings(read(path, RobotError), str(path))
 
 
 @cache
 def _bundled() -> Mapping[str, Any]:
-    return read(BUNDLED, RobotError)
+    return read(BUNDLED_SETTINGS, RobotError)
 
 
 def parse_settings(document: Mapping[str, Any], source: str) -> Settings:

@@ -18,7 +18,7 @@ from robot.drivers.pleo.console import CommandResult
 from robot.drivers.pleo.device_state import DeviceState, Step, body_steps, sound_steps
 from robot.drivers.pleo.settings import Clip, Mood, Settings
 
-STOP = ""
+STOP_WORD = ""
 """Takes the place of a mood's word for the neutral pose; no mood has an empty word."""
 
 
@@ -36,8 +36,8 @@ class StepScheduler:
         """Commands answered with an error."""
         self._settings = settings
         self._device = DeviceState()
-        self._requested: str | None = None  # a mood, STOP, or nothing yet
-        self._current: str | None = None  # the mood or STOP of `_steps`
+        self._requested: str | None = None  # a mood, STOP_WORD, or nothing yet
+        self._current: str | None = None  # the mood or STOP_WORD of `_steps`
         self._interrupted = False  # whether the current mood must begin again
         self._since = float("-inf")  # when the current mood began
         self._steps: deque[Step] = deque()
@@ -58,9 +58,9 @@ class StepScheduler:
         """Request the neutral pose, before and instead of everything that waits."""
         self.actions.drop_all()
         acting = self._pending is not None and self._pending.part == "action"
-        if self._current == STOP and (acting or self._action_ends > self._since):
+        if self._current == STOP_WORD and (acting or self._action_ends > self._since):
             self._interrupted = True  # an action came between: take the pose again
-        self.state.commanded, self._requested = None, STOP
+        self.state.commanded, self._requested = None, STOP_WORD
 
     def play(self, motion: Clip | None, sound: str) -> bool:
         """Request a motion, or else a sound, once; return False if too many wait already."""
@@ -143,7 +143,7 @@ class StepScheduler:
         """Return whether another mood, or an interrupted one, must begin now."""
         if self._requested is None or (self._requested == self._current and not self._interrupted):
             return False
-        return self._requested == STOP or now - self._since >= self._settings.mood_every
+        return self._requested == STOP_WORD or now - self._since >= self._settings.mood_every
 
     def _begin_mood(self, now: float) -> None:
         self._current, self._since = self._requested, now
@@ -157,7 +157,7 @@ class StepScheduler:
     @property
     def _mood(self) -> Mood | None:
         """The current mood; None for the neutral pose of a stop, or for nothing."""
-        return self._settings.moods.get(self._current or STOP)
+        return self._settings.moods.get(self._current or STOP_WORD)
 
     def _body_steps(self) -> Iterator[Step]:
         return body_steps(self._mood, self._device, self._settings.play_within)

@@ -11,7 +11,7 @@ from robot.drivers.pleo import timing
 from robot.drivers.pleo.joints import JOINT_NUMBERS, JOINTS
 from robot.errors import RobotError
 
-BUNDLED = Path(__file__).with_name("pleo.toml")
+BUNDLED_SETTINGS = Path(__file__).with_name("pleo.toml")
 """The bundled settings; a person's own file replaces them."""
 
 MAX_FILE_NAME_CHARS = 64
@@ -106,7 +106,7 @@ def load_settings(path: Path | None = None) -> Settings:
 
     Raises RobotError if it cannot be read, is not TOML, or a value is wrong.
     """
-    path = BUNDLED if path is None else path
+    path = BUNDLED_SETTINGS if path is None else path
     top = Table(read(path, RobotError), str(path), error=RobotError)
     top.only("console", "moods", "motions", "sounds")
     console = top.table("console")

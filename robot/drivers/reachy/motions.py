@@ -22,9 +22,9 @@ JOINTS = tuple(name for name, *_ in _LIMITS_DEG)
 """Joint names. Zero looks ahead; positive is right, down and to its left, as the SDK's roll, pitch
 and yaw; antennas are upright at zero and fall outwards or back."""
 
-LOW = np.radians([row[1] for row in _LIMITS_DEG])
-HIGH = np.radians([row[2] for row in _LIMITS_DEG])
-SPEED = np.radians([row[3] for row in _LIMITS_DEG])
+MIN_ANGLES_RAD = np.radians([row[1] for row in _LIMITS_DEG])
+MAX_ANGLES_RAD = np.radians([row[2] for row in _LIMITS_DEG])
+MAX_SPEEDS_RAD_PER_S = np.radians([row[3] for row in _LIMITS_DEG])
 """Limits [rad] and top speeds [rad/s] of the joints, (joints,) each."""
 
 MOODS = (
@@ -124,5 +124,5 @@ def step_towards(angles: Array, wanted: Array, elapsed: float) -> Array:
 
     They stay within the limits and speeds.
     """
-    reach = SPEED * elapsed
-    return np.clip(angles + np.clip(wanted - angles, -reach, reach), LOW, HIGH)
+    reach = MAX_SPEEDS_RAD_PER_S * elapsed
+    return np.clip(angles + np.clip(wanted - angles, -reach, reach), MIN_ANGLES_RAD, MAX_ANGLES_RAD)

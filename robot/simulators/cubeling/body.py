@@ -29,7 +29,7 @@ CHARGE_TIME_S = 3600.0
 ANGLE_NOISE_RAD = np.radians(0.2)
 """Standard deviation of a measured angle [rad]."""
 
-_MAX_STEP_RAD = dinosaur.SPEED * STEP_S
+_MAX_STEP_RAD = dinosaur.MAX_SPEEDS_RAD_PER_S * STEP_S
 
 
 class Battery:
@@ -67,7 +67,7 @@ class DinosaurBody:
         self._commanded_mood = m.NOTHING
         self.label = LABELS[0]
         """The mood that it shows."""
-        self._angles = np.zeros(len(dinosaur.LOW))
+        self._angles = np.zeros(len(dinosaur.MIN_ANGLES_RAD))
         self._motion: SineMotion = dinosaur.MOOD_LOOPS[0]
         self._motion_time = 0.0
         self._plays_once = False
@@ -146,14 +146,14 @@ class DinosaurBody:
         if not self._still:
             wanted = self._motion.angles(self._motion_time, dinosaur.JOINTS)
         # Not np.clip: for so few numbers its overhead is most of the time.
-        wanted = np.minimum(np.maximum(wanted, dinosaur.LOW), dinosaur.HIGH)
+        wanted = np.minimum(np.maximum(wanted, dinosaur.MIN_ANGLES_RAD), dinosaur.MAX_ANGLES_RAD)
         way = wanted - self._angles
         self._angles = self._angles + np.minimum(np.maximum(way, -_MAX_STEP_RAD), _MAX_STEP_RAD)
 
     def state(self) -> m.State:
         """Return the state; the angles are measured, with noise."""
         noise = self._random.normal(0.0, ANGLE_NOISE_RAD, self._angles.shape)
-        measured = np.clip(self._angles + noise, dinosaur.LOW, dinosaur.HIGH)
+        measured = np.clip(self._angles + noise, dinosaur.MIN_ANGLES_RAD, dinosaur.MAX_ANGLES_RAD)
         emotion = self.emotion
         return m.State(
             beat=0,
@@ -193,4 +193,4 @@ class DinosaurBody:
         self._motion, self._motion_time, self._plays_once = motion, 0.0, once
 
     def _start_sound(self, name: str) -> None:
-        self._sound, self._sound_left = name, dinosaur.SOUNDS[name]
+        self._sound, self._sound_left = name, dinosaur.SOUND_LENGTHS_S[name]

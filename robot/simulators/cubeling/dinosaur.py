@@ -7,9 +7,9 @@ import numpy as np
 
 from robot.contract.catalogue import Catalogue
 from robot.contract.motions import JointSine, SineMotion
-from robot.drivers.pleo.joints import JOINTS as PLEO
+from robot.drivers.pleo.joints import JOINTS as PLEO_JOINTS
 
-_LIMITS = tuple(joint.limits for joint in PLEO)
+_LIMITS = tuple(joint.limits for joint in PLEO_JOINTS)
 
 JOINTS = tuple(joint.name for joint in _LIMITS)
 """Joint names in the order of the catalogue."""
@@ -87,15 +87,22 @@ ACTIONS = (
 )
 """Motions that play once; then the loop of the mood continues."""
 
-SOUNDS = {"breath": 2.0, "purr": 3.0, "growl": 1.5, "chirp": 0.5, "smack": 0.6, "roar": 1.8}
+SOUND_LENGTHS_S = {
+    "breath": 2.0,
+    "purr": 3.0,
+    "growl": 1.5,
+    "chirp": 0.5,
+    "smack": 0.6,
+    "roar": 1.8,
+}
 """Length of every sound [s]."""
 
 MOTIONS = MOOD_LOOPS + ACTIONS
 """Every motion, in the order of the catalogue."""
 
-LOW = np.array([joint.low for joint in _LIMITS])
-HIGH = np.array([joint.high for joint in _LIMITS])
-SPEED = np.array([joint.speed for joint in _LIMITS])
+MIN_ANGLES_RAD = np.array([joint.low for joint in _LIMITS])
+MAX_ANGLES_RAD = np.array([joint.high for joint in _LIMITS])
+MAX_SPEEDS_RAD_PER_S = np.array([joint.speed for joint in _LIMITS])
 """Limits [rad] and top speeds [rad/s] of the joints, (joints,) each."""
 
 CATALOGUE = Catalogue(
@@ -103,7 +110,7 @@ CATALOGUE = Catalogue(
     firmware="simulator 1",
     joints=_LIMITS,
     motions=tuple(motion.name for motion in MOTIONS),
-    sounds=tuple(SOUNDS),
+    sounds=tuple(SOUND_LENGTHS_S),
     moods=tuple(loop.name for loop in MOOD_LOOPS),
 )
 """The catalogue that the simulated robot reports."""

@@ -38,7 +38,7 @@ class Skill:
         return [*self.head, *rolls, front, front, back, back, knee, knee, heel, heel]
 
 
-REST = Skill(0.0, (-25, -70, -40), (65, 65), (-50, -50), (0.0, "resting"))
+REST_SKILL = Skill(0.0, (-25, -70, -40), (65, 65), (-50, -50), (0.0, "resting"))
 """The pose after "d" and after the start."""
 
 SKILLS = {
@@ -62,10 +62,10 @@ class OpenCatBody:
     def __init__(self, crossed: bool) -> None:
         self.powered = False
         """Whether the servos have power."""
-        self.mood = REST.mood
+        self.mood = REST_SKILL.mood
         """The mood that it shows, and its word."""
         self._crossed = crossed
-        self._from = self._to = [float(angle) for angle in REST.angles(crossed)]
+        self._from = self._to = [float(angle) for angle in REST_SKILL.angles(crossed)]
         self._begun = self._ends = 0.0
 
     def perform(self, skill: Skill, now: float) -> float:
@@ -87,7 +87,7 @@ class OpenCatBody:
         """Switch the servos off; they stay where they are."""
         self._from = self._to = self.angles(now)
         self.powered = False
-        self.mood = REST.mood
+        self.mood = REST_SKILL.mood
 
     def angles(self, now: float) -> list[float]:
         """Return the joint angles at time `now` [s], in degrees."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robot.drivers.opencat.tokens import JOINTS
-from robot.simulators.opencat.body import REST, SKILLS, OpenCatBody
+from robot.simulators.opencat.body import REST_SKILL, SKILLS, OpenCatBody
 from robot.simulators.opencat.quirks import BoardQuirks
 
 FORBIDDEN_TOKENS = frozenset("acsS!gGnwWKTXzpRxMLIfFoqtlvVzhuPrBCmU;:")
@@ -66,7 +66,7 @@ class Interpreter:
                 self._answer(token, rest, now)
             case "d":
                 self._send_line("g")
-                seconds = self.body.perform(REST, now) if self.body.powered else 0.0
+                seconds = self.body.perform(REST_SKILL, now) if self.body.powered else 0.0
                 return Job(now + seconds, self._power_off)
             case "k":
                 return self._play(rest, now, brown_out)

@@ -240,8 +240,8 @@ def test_sounds_glide_and_end(dino):
 def test_sounds_last_as_long_as_those_of_the_simulated_robot():
     for name, glides in sounds.SOUNDS:
         length = sum(glide[2] for glide in glides) / 1000
-        assert length == pytest.approx(dinosaur.SOUNDS[name], abs=0.05), name
-    assert [name for name, _ in sounds.SOUNDS] == list(dinosaur.SOUNDS)
+        assert length == pytest.approx(dinosaur.SOUND_LENGTHS_S[name], abs=0.05), name
+    assert [name for name, _ in sounds.SOUNDS] == list(dinosaur.SOUND_LENGTHS_S)
 
 
 def test_generated_files_are_current():

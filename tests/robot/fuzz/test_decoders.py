@@ -106,7 +106,7 @@ def test_no_decoder_fails_on_anything(name):
     holds()
 
 
-HALF = 32
+FLOODS_PER_HALF = 32
 """Floods in 128 KiB, of which nothing may be kept for ever."""
 
 FLOODS = {
@@ -123,8 +123,8 @@ def check_held(who: object, feed: Callable[[float], None]) -> None:
     """Feed it a quarter of a megabyte, and see that the second half made it no heavier."""
     held = []
     for half in range(2):
-        for index in range(HALF):
-            feed(0.001 * (half * HALF + index))
+        for index in range(FLOODS_PER_HALF):
+            feed(0.001 * (half * FLOODS_PER_HALF + index))
         held.append(weight(who)[1])
     assert held[1] < MAX_HELD_BYTES
     assert held[1] - held[0] < MAX_GROWTH_BYTES

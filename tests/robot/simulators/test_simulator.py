@@ -51,19 +51,21 @@ def test_no_joint_leaves_its_limits_or_turns_faster_than_it_can(wishes):
                 getattr(body, name)()
         angles = np.vstack([before, live(body, now, 0.6)])
         now, before = now + 0.6, angles[-1]
-        assert (angles >= dinosaur.LOW - 1e-12).all()
-        assert (angles <= dinosaur.HIGH + 1e-12).all()
-        assert (np.abs(np.diff(angles, axis=0)) <= dinosaur.SPEED * STEP_S + 1e-12).all()
+        assert (angles >= dinosaur.MIN_ANGLES_RAD - 1e-12).all()
+        assert (angles <= dinosaur.MAX_ANGLES_RAD + 1e-12).all()
+        assert (
+            np.abs(np.diff(angles, axis=0)) <= dinosaur.MAX_SPEEDS_RAD_PER_S * STEP_S + 1e-12
+        ).all()
 
 
 @pytest.mark.parametrize("motion", dinosaur.MOTIONS, ids=lambda motion: motion.name)
 def test_every_motion_asks_only_what_the_joints_can_do(motion):
     times = np.arange(0, motion.period, STEP_S)
     angles = np.array([motion.angles(t, dinosaur.JOINTS) for t in [*times, motion.period]])
-    assert (angles >= dinosaur.LOW - 1e-9).all()
-    assert (angles <= dinosaur.HIGH + 1e-9).all()
+    assert (angles >= dinosaur.MIN_ANGLES_RAD - 1e-9).all()
+    assert (angles <= dinosaur.MAX_ANGLES_RAD + 1e-9).all()
     assert np.allclose(angles[0], angles[-1])  # a loop closes
-    assert (np.abs(np.diff(angles, axis=0)) <= dinosaur.SPEED * STEP_S + 1e-9).all()
+    assert (np.abs(np.diff(angles, axis=0)) <= dinosaur.MAX_SPEEDS_RAD_PER_S * STEP_S + 1e-9).all()
 
 
 def test_the_moods_look_different_and_none_of_them_freezes():

@@ -8,7 +8,7 @@ import robot.drivers.pleo
 from robot.contract.driver import MAX_QUEUED_ACTIONS
 from robot.drivers.pleo import commands, timing
 from robot.drivers.pleo.commands import Command
-from robot.drivers.pleo.settings import BUNDLED
+from robot.drivers.pleo.settings import BUNDLED_SETTINGS
 from robot.protocol import messages as m
 
 OK = "\r\n> "
@@ -77,7 +77,7 @@ def test_of_the_moods_asked_for_while_the_console_is_busy_only_the_last_is_sent(
 
 def test_a_motions_speed_is_sent_only_where_it_changes(script, tmp_path):
     angry = "length_s = 2.0\nsound"
-    hasty = BUNDLED.read_text().replace(angry, f"motion_speed = 150\n{angry}")
+    hasty = BUNDLED_SETTINGS.read_text().replace(angry, f"motion_speed = 150\n{angry}")
     pleo = shown(script(write(tmp_path, hasty)).started(), "happy")
     for word, sent in (
         ("neutral", ["MOTION PLAY a:neutral.umf"]),
@@ -339,7 +339,7 @@ def test_a_sound_whose_answer_is_lost_is_not_sent_again_and_nor_is_its_motion(sc
 
 
 def test_what_is_left_of_a_mood_is_not_sent_once_another_is_asked_for(script, tmp_path):
-    slowly = BUNDLED.read_text().replace("mood_every_s = 0.5", "mood_every_s = 5")
+    slowly = BUNDLED_SETTINGS.read_text().replace("mood_every_s = 0.5", "mood_every_s = 5")
     pleo = script(write(tmp_path, slowly)).started()
     pleo.express("happy")
     assert pleo.run(0.1) + pleo.say(OK) == b"MOTION SPEED 100\nMOTION PLAY a:happy.umf\n"

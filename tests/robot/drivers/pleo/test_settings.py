@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.drivers.pleo.joints import JOINTS
-from robot.drivers.pleo.settings import BUNDLED, Clip, Settings, load_settings
+from robot.drivers.pleo.settings import BUNDLED_SETTINGS, Clip, Settings, load_settings
 from robot.errors import RobotError
 
 NEUTRAL = '[moods.neutral]\nmotion = "n.umf"\nlength_s = 2\n'
@@ -128,4 +128,4 @@ def test_the_joints_are_those_of_the_table():
     assert (torso.low, torso.high, torso.speed) == pytest.approx(
         (math.radians(-15), math.radians(15), math.radians(20))
     )
-    assert BUNDLED.is_file()
+    assert BUNDLED_SETTINGS.is_file()

@@ -68,10 +68,10 @@ def test_no_joint_leaves_its_limits_or_is_faster_than_allowed(wishes):
         desk.run(seconds)
     times = np.array([when for when, _ in desk.asked])
     angles = np.array([target for _, target in desk.asked])
-    assert (angles >= motions.LOW - 1e-4).all()
-    assert (angles <= motions.HIGH + 1e-4).all()
+    assert (angles >= motions.MIN_ANGLES_RAD - 1e-4).all()
+    assert (angles <= motions.MAX_ANGLES_RAD + 1e-4).all()
     speeds = np.abs(np.diff(angles, axis=0)) / np.diff(times)[:, None]
-    assert (speeds <= motions.SPEED * 1.01 + 1e-3).all()
+    assert (speeds <= motions.MAX_SPEEDS_RAD_PER_S * 1.01 + 1e-3).all()
     assert np.abs(angles[:, 2] - angles[:, 3]).max() <= np.radians(65)
 
 
