@@ -6,7 +6,7 @@ from typing import Any
 
 from affect.emotion import Emotion
 from affect.errors import AffectError
-from affect.settings import Table
+from affect.settings import TomlTable
 from affect.traits import AffectImpulse, Ocean
 
 BUNDLED_FOLDER = Path(__file__).parent / "personalities"
@@ -36,7 +36,7 @@ def bundled_text(name: str) -> str:
 
 def fields_of(document: Mapping[str, Any], source: str) -> dict[str, Any]:
     """Return the fields of `Personality` in a TOML document; errors name it as `source`."""
-    table = Table(document, source)
+    table = TomlTable(document, source)
     table.only(*_TEXTS, *_NUMBERS, *_TABLES)
     fields: dict[str, Any] = {"name": Path(source).stem}
     fields |= {key: table.text(key) for key in _TEXTS if key in table}
@@ -57,5 +57,5 @@ def fields_of(document: Mapping[str, Any], source: str) -> dict[str, Any]:
     return fields
 
 
-def _impulse(table: Table) -> AffectImpulse:
+def _impulse(table: TomlTable) -> AffectImpulse:
     return AffectImpulse(**{axis: table.number(axis) for axis in table.names()})

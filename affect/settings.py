@@ -68,7 +68,7 @@ def printable(text: str) -> str:
     return text if text.isprintable() else repr(text)
 
 
-class Table:
+class TomlTable:
     """A table of a file; its methods return validated values.
 
     Every method raises `error` for a wrong value, and for a missing one without a default.
@@ -116,17 +116,17 @@ class Table:
                 raise self.wrong(key, f"a name has 1 to {longest} bytes, all of them printable")
         return list(self._values)
 
-    def table(self, key: str, *keys: str) -> "Table":
+    def table(self, key: str, *keys: str) -> "TomlTable":
         """Return a subtable, empty if missing; only `keys` are allowed in it, if any are given."""
         value = self._values.get(key, {})
         if not isinstance(value, Mapping):
             raise self.unlike(key, f"a table{' of ' if keys else ''}{', '.join(keys)}")
-        table = Table(value, self._source, self._at(key), self._error_class)
+        table = TomlTable(value, self._source, self._at(key), self._error_class)
         if keys:
             table.only(*keys)
         return table
 
-    def tables(self, key: str, *keys: str, longest: int = MAX_KEY_BYTES) -> dict[str, "Table"]:
+    def tables(self, key: str, *keys: str, longest: int = MAX_KEY_BYTES) -> dict[str, "TomlTable"]:
         """Return the subtables of a subtable with free keys."""
         table = self.table(key)
         return {name: table.table(name, *keys) for name in table.names(longest)}

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from affect.errors import AffectError
-from affect.settings import MAX_ENTRIES, MAX_FILE_BYTES, Table, parse, read
+from affect.settings import MAX_ENTRIES, MAX_FILE_BYTES, TomlTable, parse, read
 
 
 def outcome(do, *what) -> str | None:
@@ -32,8 +32,8 @@ def refusal(do, *what) -> str:
     return line
 
 
-def table(**values) -> Table:
-    return Table({"moods": values}, "my.toml").table("moods")
+def table(**values) -> TomlTable:
+    return TomlTable({"moods": values}, "my.toml").table("moods")
 
 
 # --- The file -------------------------------------------------------------------------------------

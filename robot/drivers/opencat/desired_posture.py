@@ -7,7 +7,7 @@ from affect.words import closest_word
 from robot.drivers.commands import DesiredState
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.echo import BoardCommand
-from robot.drivers.opencat.settings import Behaviour, Mood
+from robot.drivers.opencat.settings import Behaviour, OpenCatMood
 
 POSTURE_TIMEOUT_S = 5.0
 """Longest time of a posture [s]; a joint moves from end to end in less than 2 s."""
@@ -34,12 +34,12 @@ class DesiredPosture(DesiredState):
         self._repeat = False  # whether everything is due again after the next echo
 
     @property
-    def requested_mood(self) -> Mood | None:
+    def requested_mood(self) -> OpenCatMood | None:
         """The requested mood; None for a stop."""
         return self._behaviour.moods[self._word] if self.number and self._word else None
 
     @property
-    def shown_mood(self) -> Mood | None:
+    def shown_mood(self) -> OpenCatMood | None:
         """The requested mood if the robot shows it."""
         return self.requested_mood if self.shown == self._word else None
 
@@ -152,6 +152,6 @@ class DesiredPosture(DesiredState):
             "posture", line, name, POSTURE_TIMEOUT_S, self._word, self.number, whole
         )
 
-    def _pose(self, mood: Mood) -> BoardCommand:
+    def _pose(self, mood: OpenCatMood) -> BoardCommand:
         line = tokens.pose(mood.pose)
         return BoardCommand("pose", line, "", POSE_TIMEOUT_S, self._word, self.number, whole=True)

@@ -14,7 +14,7 @@ from robot.drivers.opencat.echo import MAX_QUESTION_TRIES, EchoMatcher, PendingL
 from robot.drivers.opencat.handshake import STARTUP_LINE_PREFIXES, Handshake
 from robot.drivers.opencat.models import model_of
 from robot.drivers.opencat.scheduler import REST_COMMAND, SkillScheduler
-from robot.drivers.opencat.settings import Settings, load_settings
+from robot.drivers.opencat.settings import OpenCatSettings, load_settings
 from robot.drivers.opencat.telemetry_parser import TelemetryParser
 from robot.protocol import messages as m
 
@@ -32,7 +32,7 @@ Phase = Literal["port", "greeting", "open", "closed"]
 class OpenCatHost:
     """The host side of a line to a board with OpenCat; a `Driver`. None: the bundled settings."""
 
-    def __init__(self, settings: Settings | None = None) -> None:
+    def __init__(self, settings: OpenCatSettings | None = None) -> None:
         self.catalogue: Catalogue | None = None
         """What the robot has; None until its model is known."""
         self._settings = settings or load_settings()

@@ -15,7 +15,7 @@ ASSUMED_SPEED_DEG_PER_S = 240.0
 
 
 @dataclass(frozen=True)
-class Joint:
+class OpenCatJoint:
     """A joint of a robot."""
 
     number: int
@@ -33,7 +33,7 @@ class Joint:
     def clamped(self, angle: float) -> int:
         """Return an angle [°] within the limits.
 
-        >>> Joint(1, "head tilt", -75, 40).clamped(90)
+        >>> OpenCatJoint(1, "head tilt", -75, 40).clamped(90)
         40
         """
         low, high = max(self.low, -MAX_ANGLE_DEG), min(self.high, MAX_ANGLE_DEG)
@@ -48,24 +48,24 @@ class Joint:
 
 def _legs(
     shoulders: tuple[tuple[int, int], ...], knees: tuple[tuple[int, int], ...]
-) -> list[Joint]:
+) -> list[OpenCatJoint]:
     corners = ("left front", "right front", "right back", "left back")
     return [
-        Joint(first + index, f"{corner} {part}", *limits[index])
+        OpenCatJoint(first + index, f"{corner} {part}", *limits[index])
         for first, part, limits in ((8, "shoulder", shoulders), (12, "knee", knees))
         for index, corner in enumerate(corners)
     ]
 
 
-MODELS: dict[str, tuple[Joint, ...]] = {
+MODELS: dict[str, tuple[OpenCatJoint, ...]] = {
     "bittle": (
-        Joint(0, "head", -120, 120),
+        OpenCatJoint(0, "head", -120, 120),
         *_legs(((-200, 80), (-200, 80), (-80, 200), (-80, 200)), ((-80, 200),) * 4),
     ),
     "nybble": (
-        Joint(0, "head", -120, 120),
-        Joint(1, "head tilt", -75, 40),
-        Joint(2, "tail", -120, 120),
+        OpenCatJoint(0, "head", -120, 120),
+        OpenCatJoint(1, "head tilt", -75, 40),
+        OpenCatJoint(2, "tail", -120, 120),
         *_legs(
             ((-100, 80), (-100, 80), (-80, 100), (-80, 100)),
             ((-60, 80), (-60, 80), (-80, 60), (-80, 60)),

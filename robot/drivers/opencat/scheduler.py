@@ -10,7 +10,7 @@ from robot.drivers.commands import CommandQueue
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.desired_posture import POSTURE_TIMEOUT_S, DesiredPosture
 from robot.drivers.opencat.echo import BoardCommand
-from robot.drivers.opencat.settings import Behaviour, Settings
+from robot.drivers.opencat.settings import Behaviour, OpenCatSettings
 
 GESTURE_TIMEOUT_S = 15.0
 """Longest time of a skill [s]; an earlier question would interrupt it on new boards."""
@@ -25,7 +25,7 @@ REST_COMMAND = BoardCommand("rest", tokens.REST, "", POSTURE_TIMEOUT_S)
 class SkillScheduler:
     """The commands for one board, over all its sessions."""
 
-    def __init__(self, settings: Settings, behaviour: Behaviour) -> None:
+    def __init__(self, settings: OpenCatSettings, behaviour: Behaviour) -> None:
         self.desired = DesiredPosture(behaviour)
         """The mood or stop that was requested last."""
         self.actions: CommandQueue[str] = CommandQueue(MAX_QUEUED_ACTIONS)

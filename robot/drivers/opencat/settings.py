@@ -7,7 +7,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from affect.settings import Table, read, shown
+from affect.settings import TomlTable, read, shown
 from affect.words import PLACES
 from robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from robot.drivers.opencat import tokens
@@ -28,7 +28,7 @@ Notes = tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True)
-class Mood:
+class OpenCatMood:
     """How a mood is shown."""
 
     posture: str
@@ -51,7 +51,7 @@ class Mood:
 class Behaviour:
     """How a model behaves."""
 
-    moods: Mapping[str, Mood]
+    moods: Mapping[str, OpenCatMood]
     """Its moods by word, "neutral" first."""
 
     motions: tuple[str, ...]
@@ -76,7 +76,7 @@ class Behaviour:
 
 
 @dataclass(frozen=True)
-class Settings:
+class OpenCatSettings:
     """A settings file."""
 
     baud: int
@@ -101,7 +101,7 @@ class Settings:
     """The behaviour of each of `MODELS`."""
 
 
-def load_settings(path: Path | None = None) -> Settings:
+def load_settings(path: Path | None = None) -> OpenCatSettings:
     """Return the settings in a TOML file; what it does not set is as in the bundled file.
 
     Raises RobotError if it cannot be read, or a value is wrong or may not be sent.
@@ -116,9 +116,9 @@ def _bundled() -> Mapping[str, Any]:
     return read(BUNDLED_SETTINGS, RobotError)
 
 
-def parse_settings(document: Mapping[str, Any], source: str) -> Settings:
+def parse_settings(document: Mapping[str, Any], source: str) -> OpenCatSettings:
     """Return the settings in a TOML document, over the bundled ones."""
-    top = Table(_merged(_bundled(), document), source, error=RobotError)
+    top = TomlTable(_merged(_bundled(), document), source, error=RobotError)
     top.only("opencat", *MODELS)
     common = top.table("opencat")
     common.only("baud", "model", "commands_per_s", "dwell_s", "ask_every_s", "rest_after_s")
@@ -128,7 +128,7 @@ def parse_settings(document: Mapping[str, Any], source: str) -> Settings:
     baud = common.whole("baud", min(BAUDS), max(BAUDS))
     if baud not in BAUDS:
         raise common.unlike("baud", f"one of {', '.join(map(str, BAUDS))}")
-    return Settings(
+    return OpenCatSettings(
         baud=baud,
         model=model or None,
         commands_per_s=common.number("commands_per_s", 0.1, 10.0),
@@ -139,7 +139,7 @@ def parse_settings(document: Mapping[str, Any], source: str) -> Settings:
     )
 
 
-def _behaviour(table: Table, model: str) -> Behaviour:
+def _behaviour(table: TomlTable, model: str) -> Behaviour:
     table.only("stop", "motions", "sounds", "moods")
     melodies = table.table("sounds")
     sounds = {name: _melody(melodies, name) for name in melodies.names(MAX_NAME_BYTES)}
@@ -160,13 +160,13 @@ def _behaviour(table: Table, model: str) -> Behaviour:
     return Behaviour(moods, tuple(motions), sounds, stop)
 
 
-def _mood(table: Table, model: str, sounds: Mapping[str, Notes]) -> Mood:
+def _mood(table: TomlTable, model: str, sounds: Mapping[str, Notes]) -> OpenCatMood:
     table.only("posture", "pose", "gestures", "gesture_every_s", "sound")
     sound = table.text("sound", "")
     if sound and sound not in sounds:
         known = ", ".join(sounds) or "none"
         raise table.wrong("sound", f"there is no sound {shown(sound)}; there is {known}")
-    mood = Mood(
+    mood = OpenCatMood(
         posture=_skill(table, "posture"),
         pose=_pose(table, model),
         gestures=_skills(table, "gestures"),
@@ -179,7 +179,7 @@ def _mood(table: Table, model: str, sounds: Mapping[str, Notes]) -> Mood:
     return mood
 
 
-def _pose(table: Table, model: str) -> Mapping[int, int]:
+def _pose(table: TomlTable, model: str) -> Mapping[int, int]:
     joints = {joint.name: joint for joint in MODELS[model]}
     angles = table.table("pose")
     pose = {}
@@ -193,20 +193,20 @@ def _pose(table: Table, model: str) -> Mapping[int, int]:
     return pose
 
 
-def _skill(table: Table, key: str) -> str:
+def _skill(table: TomlTable, key: str) -> str:
     name = table.text(key)
     _check_line(table, key, lambda: tokens.skill(name))
     return name
 
 
-def _skills(table: Table, key: str) -> tuple[str, ...]:
+def _skills(table: TomlTable, key: str) -> tuple[str, ...]:
     names = table.texts(key)
     for name in names:
         _check_line(table, key, partial(tokens.skill, name))
     return names
 
 
-def _melody(table: Table, key: str) -> Notes:
+def _melody(table: TomlTable, key: str) -> Notes:
     notes = table.list(key, "[note, value] pairs")
     if not notes or not all(_is_note(note) for note in notes):
         raise table.unlike(key, "a list of [note, value] pairs")
@@ -222,7 +222,7 @@ def _is_note(note: Any) -> bool:
     return pair and all(type(number) is int and 0 <= number < 1000 for number in note)
 
 
-def _check_line(table: Table, key: str, make: Callable[[], bytes]) -> None:
+def _check_line(table: TomlTable, key: str, make: Callable[[], bytes]) -> None:
     """Make a line for the board; raise its refusal with the place in the file."""
     try:
         make()

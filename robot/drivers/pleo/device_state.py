@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 from robot.drivers.pleo import commands
 from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.joints import JOINTS
-from robot.drivers.pleo.settings import Mood
+from robot.drivers.pleo.settings import PleoMood
 
 _MOVES = tuple(f"JOINT MOVE {number}" for number in range(len(JOINTS)))
 
@@ -72,7 +72,7 @@ class DeviceState:
         self._values[name] = value
 
 
-class Step(NamedTuple):
+class CommandStep(NamedTuple):
     """One command of a mood or an action."""
 
     command: Command
@@ -86,27 +86,29 @@ class Step(NamedTuple):
     """Length of the motion that it starts [s]; 0 for none."""
 
 
-def body_steps(mood: Mood | None, device: DeviceState, timeout: float) -> Iterator[Step]:
+def body_steps(mood: PleoMood | None, device: DeviceState, timeout: float) -> Iterator[CommandStep]:
     """Yield the steps of the body that show a mood, or, for None, take the neutral pose.
 
     Speeds and angles that are set already are not sent again; `timeout` is that of a PLAY [s].
     """
     if mood is None:
-        yield Step(commands.JOINT_NEUTRAL, "body")
+        yield CommandStep(commands.JOINT_NEUTRAL, "body")
     elif mood.motion is None:
-        yield from (Step(command, "body") for command in device.moves_to(mood.joints))
+        yield from (CommandStep(command, "body") for command in device.moves_to(mood.joints))
     else:
         speed = commands.motion_speed(mood.motion_speed)
         if not device.has(speed):
-            yield Step(speed, "tone")
-        yield Step(commands.motion_play(mood.motion.file, timeout), "body", mood.round)
+            yield CommandStep(speed, "tone")
+        yield CommandStep(commands.motion_play(mood.motion.file, timeout), "body", mood.round)
 
 
-def sound_steps(mood: Mood | None, device: DeviceState, timeout: float) -> Iterator[Step]:
+def sound_steps(
+    mood: PleoMood | None, device: DeviceState, timeout: float
+) -> Iterator[CommandStep]:
     """Yield the steps of a mood's sound, if it has one; as for `body_steps`."""
     if mood is None or mood.sound is None:
         return
     for tone in (commands.sound_speed(mood.sound_speed), commands.sound_volume(mood.volume)):
         if not device.has(tone):
-            yield Step(tone, "sound")
-    yield Step(commands.sound_play(mood.sound, timeout), "sound")
+            yield CommandStep(tone, "sound")
+    yield CommandStep(commands.sound_play(mood.sound, timeout), "sound")

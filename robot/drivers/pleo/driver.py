@@ -17,7 +17,7 @@ from robot.drivers.pleo import commands, timing
 from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.console import CommandResult, Console
 from robot.drivers.pleo.scheduler import StepScheduler
-from robot.drivers.pleo.settings import Settings, load_settings
+from robot.drivers.pleo.settings import PleoSettings, load_settings
 from robot.protocol import messages as m
 
 Phase = Literal["port", "searching", "starting", "open", "closed"]
@@ -27,7 +27,7 @@ Phase = Literal["port", "searching", "starting", "open", "closed"]
 class PleoDriver:
     """The host side of the console; a `Driver`."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: PleoSettings) -> None:
         self.catalogue: Catalogue | None = None
         """What Pleo has according to the settings; None until a console has answered."""
         self.console = Console(settings.boot_text)

@@ -13,7 +13,7 @@ ASSUMED_SPEED_DEG_PER_S = 50.0
 
 
 @dataclass(frozen=True)
-class Joint:
+class PleoJoint:
     """One joint. Zero is neutral; positive is forward, up or right."""
 
     name: str
@@ -53,21 +53,21 @@ class Joint:
 
 
 JOINTS = (
-    Joint("right shoulder", -30, 55, 1, 30),
-    Joint("right elbow", 0, 90, 1, 70),
-    Joint("left shoulder", -30, 55, 1, 30),
-    Joint("left elbow", 0, 90, 1, 70),
-    Joint("left hip", -45, 40, 10),
-    Joint("left knee", -70, 0, 2, 50),
-    Joint("right hip", -45, 40, 10),
-    Joint("right knee", -70, 0, 2, 50),
-    Joint("torso", -15, 15, 2, 20),
-    Joint("tail sideways", -90, 90, 1, 200),
-    Joint("tail up", -90, 90, 1, 200),
-    Joint("neck sideways", -65, 55, 1),
-    Joint("neck up", -75, 75, 1, 40),
+    PleoJoint("right shoulder", -30, 55, 1, 30),
+    PleoJoint("right elbow", 0, 90, 1, 70),
+    PleoJoint("left shoulder", -30, 55, 1, 30),
+    PleoJoint("left elbow", 0, 90, 1, 70),
+    PleoJoint("left hip", -45, 40, 10),
+    PleoJoint("left knee", -70, 0, 2, 50),
+    PleoJoint("right hip", -45, 40, 10),
+    PleoJoint("right knee", -70, 0, 2, 50),
+    PleoJoint("torso", -15, 15, 2, 20),
+    PleoJoint("tail sideways", -90, 90, 1, 200),
+    PleoJoint("tail up", -90, 90, 1, 200),
+    PleoJoint("neck sideways", -65, 55, 1),
+    PleoJoint("neck up", -75, 75, 1, 40),
     # One motor: 25…85 are the eyelids, −80…−30 the mouth. Sources give a step of 1 to 20.
-    Joint("eyes and mouth", -80, 85, 1, 220),
+    PleoJoint("eyes and mouth", -80, 85, 1, 220),
 )
 """Every joint; its index is its number on the console."""
 

@@ -15,8 +15,8 @@ from robot.drivers.commands import CommandQueue, DesiredState
 from robot.drivers.pleo import commands, timing
 from robot.drivers.pleo.commands import Command
 from robot.drivers.pleo.console import CommandResult
-from robot.drivers.pleo.device_state import DeviceState, Step, body_steps, sound_steps
-from robot.drivers.pleo.settings import Clip, Mood, Settings
+from robot.drivers.pleo.device_state import CommandStep, DeviceState, body_steps, sound_steps
+from robot.drivers.pleo.settings import MotionFile, PleoMood, PleoSettings
 
 STOP_WORD = ""
 """Takes the place of a mood's word for the neutral pose; no mood has an empty word."""
@@ -25,10 +25,10 @@ STOP_WORD = ""
 class StepScheduler:
     """The commands for one Pleo, over all its sessions."""
 
-    def __init__(self, settings: Settings) -> None:
+    def __init__(self, settings: PleoSettings) -> None:
         self.state = DesiredState()
         """The emotion or stop that was requested last."""
-        self.actions: CommandQueue[Step] = CommandQueue(MAX_QUEUED_ACTIONS)
+        self.actions: CommandQueue[CommandStep] = CommandQueue(MAX_QUEUED_ACTIONS)
         """Motions and sounds that wait."""
         self.retries = 0
         """Commands sent again."""
@@ -40,8 +40,8 @@ class StepScheduler:
         self._current: str | None = None  # the mood or STOP_WORD of `_steps`
         self._interrupted = False  # whether the current mood must begin again
         self._since = float("-inf")  # when the current mood began
-        self._steps: deque[Step] = deque()
-        self._pending: Step | None = None
+        self._steps: deque[CommandStep] = deque()
+        self._pending: CommandStep | None = None
         self._body_refused = False
         self._tries = 0
         self._repeat_at: float | None = None  # when the body steps are due again
@@ -62,13 +62,13 @@ class StepScheduler:
             self._interrupted = True  # an action came between: take the pose again
         self.state.commanded, self._requested = None, STOP_WORD
 
-    def play(self, motion: Clip | None, sound: str) -> bool:
+    def play(self, motion: MotionFile | None, sound: str) -> bool:
         """Request a motion, or else a sound, once; return False if too many wait already."""
         timeout = self._settings.play_within
         if motion is not None:
             command = commands.motion_play(motion.file, timeout)
-            return self.actions.add(Step(command, "action", motion.length))
-        return self.actions.add(Step(commands.sound_play(sound, timeout), "action"))
+            return self.actions.add(CommandStep(command, "action", motion.length))
+        return self.actions.add(CommandStep(commands.sound_play(sound, timeout), "action"))
 
     def end_session(self) -> None:
         """Drop waiting and pending actions; the desired state is sent again later."""
@@ -119,7 +119,7 @@ class StepScheduler:
             return self._complete_body(result.sent)
         return False
 
-    def _next_step(self, now: float) -> Step | None:
+    def _next_step(self, now: float) -> CommandStep | None:
         if self._requested != self._current and self._steps:
             self._steps.clear()
             self._interrupted = True
@@ -155,14 +155,14 @@ class StepScheduler:
         self._steps = deque([*self._body_steps(), *sound_steps(self._mood, self._device, timeout)])
 
     @property
-    def _mood(self) -> Mood | None:
+    def _mood(self) -> PleoMood | None:
         """The current mood; None for the neutral pose of a stop, or for nothing."""
         return self._settings.moods.get(self._current or STOP_WORD)
 
-    def _body_steps(self) -> Iterator[Step]:
+    def _body_steps(self) -> Iterator[CommandStep]:
         return body_steps(self._mood, self._device, self._settings.play_within)
 
-    def _recover(self, step: Step) -> None:
+    def _recover(self, step: CommandStep) -> None:
         """Handle a command that the console may or may not have executed."""
         if step.part == "action":
             self.actions.dropped += 1

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from affect.settings import Table, read
+from affect.settings import TomlTable, read
 from robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from robot.drivers.pleo import timing
 from robot.drivers.pleo.joints import JOINT_NUMBERS, JOINTS
@@ -19,7 +19,7 @@ MAX_FILE_NAME_CHARS = 64
 
 
 @dataclass(frozen=True)
-class Clip:
+class MotionFile:
     """A motion file and its length."""
 
     file: str
@@ -30,10 +30,10 @@ class Clip:
 
 
 @dataclass(frozen=True)
-class Mood:
+class PleoMood:
     """How a mood is shown: by a motion or by a pose, optionally with a sound."""
 
-    motion: Clip | None = None
+    motion: MotionFile | None = None
     """The motion; None for a pose."""
 
     loop: bool = True
@@ -61,13 +61,13 @@ class Mood:
 
 
 @dataclass(frozen=True)
-class Settings:
+class PleoSettings:
     """A settings file."""
 
-    moods: Mapping[str, Mood]
+    moods: Mapping[str, PleoMood]
     """The moods by word, neutral first."""
 
-    motions: Mapping[str, Clip]
+    motions: Mapping[str, MotionFile]
     """The motions of `play`, by name."""
 
     sounds: Mapping[str, str]
@@ -101,13 +101,13 @@ class Settings:
         )
 
 
-def load_settings(path: Path | None = None) -> Settings:
+def load_settings(path: Path | None = None) -> PleoSettings:
     """Return the settings in a TOML file; None for the bundled file.
 
     Raises RobotError if it cannot be read, is not TOML, or a value is wrong.
     """
     path = BUNDLED_SETTINGS if path is None else path
-    top = Table(read(path, RobotError), str(path), error=RobotError)
+    top = TomlTable(read(path, RobotError), str(path), error=RobotError)
     top.only("console", "moods", "motions", "sounds")
     console = top.table("console")
     console.only("volume", "battery_every_s", "mood_every_s", "play_within_s", "boot_text")
@@ -116,14 +116,14 @@ def load_settings(path: Path | None = None) -> Settings:
     if "neutral" not in tables:
         raise top.wrong("moods", "there must be a mood called neutral: write [moods.neutral]")
     moods = {name: _mood(table, volume) for name, table in tables.items()}
-    clips = top.tables("motions", longest=MAX_NAME_BYTES)
-    motions = {name: _clip(table) for name, table in clips.items()}
+    files = top.tables("motions", longest=MAX_NAME_BYTES)
+    motions = {name: _motion_file(table) for name, table in files.items()}
     sounds = top.table("sounds")
     names = sounds.names(MAX_NAME_BYTES)
     both = set(motions) & set(names)
     if both:
         raise sounds.wrong(min(both), "a motion has this name too; call one of them otherwise")
-    return Settings(
+    return PleoSettings(
         moods={"neutral": moods.pop("neutral"), **moods},
         motions=motions,
         sounds={name: _file(sounds, name) for name in names},
@@ -135,7 +135,7 @@ def load_settings(path: Path | None = None) -> Settings:
     )
 
 
-def _mood(table: Table, volume: int) -> Mood:
+def _mood(table: TomlTable, volume: int) -> PleoMood:
     table.only(
         "motion", "length_s", "loop", "motion_speed", "joints", "sound", "sound_speed", "volume"
     )
@@ -145,8 +145,8 @@ def _mood(table: Table, volume: int) -> Mood:
         raise table.wrong("joints", "length_s, loop and motion_speed are for a motion")
     motion = None
     if "motion" in table:
-        motion = Clip(_file(table, "motion"), table.number("length_s", 0.5, 600))
-    return Mood(
+        motion = MotionFile(_file(table, "motion"), table.number("length_s", 0.5, 600))
+    return PleoMood(
         motion=motion,
         loop=table.truth("loop", True),
         motion_speed=table.whole("motion_speed", 1, 200, 100),
@@ -157,7 +157,7 @@ def _mood(table: Table, volume: int) -> Mood:
     )
 
 
-def _joints(table: Table) -> dict[int, int]:
+def _joints(table: TomlTable) -> dict[int, int]:
     angles = {}
     for name in table.names():
         if name not in JOINT_NUMBERS:
@@ -168,12 +168,12 @@ def _joints(table: Table) -> dict[int, int]:
     return angles
 
 
-def _clip(table: Table) -> Clip:
+def _motion_file(table: TomlTable) -> MotionFile:
     table.only("file", "length_s")
-    return Clip(_file(table, "file"), table.number("length_s", 0.1, 600))
+    return MotionFile(_file(table, "file"), table.number("length_s", 0.1, 600))
 
 
-def _file(table: Table, key: str) -> str:
+def _file(table: TomlTable, key: str) -> str:
     """Return a file name: one word of ISO-8859-1, so that it is one argument of a command."""
     name = table.text(key)
     if (

@@ -8,7 +8,7 @@ from zlib import crc32
 import numpy as np
 
 from affect.words import PLACES
-from robot.drivers.pleo.joints import JOINTS, Joint
+from robot.drivers.pleo.joints import JOINTS, PleoJoint
 
 MOTION_LENGTH_RANGE_S = (2.0, 5.0)
 """Shortest and longest motion [s]; the name of a motion determines its length."""
@@ -41,7 +41,7 @@ class _JointMove:
     began: float = 0.0
     goal: float = 0.0
 
-    def at(self, joint: Joint, now: float) -> float:
+    def at(self, joint: PleoJoint, now: float) -> float:
         reach = joint.speed * max(now - self.began, 0.0)
         way = self.goal - self.start
         return self.start + min(max(way, -reach), reach)

@@ -8,7 +8,7 @@ import pytest
 
 from affect import Emotion
 from robot.drivers.opencat.host import OpenCatHost
-from robot.drivers.opencat.settings import Settings, load_settings
+from robot.drivers.opencat.settings import OpenCatSettings, load_settings
 from robot.simulators.opencat.quirks import BoardQuirks
 from robot.simulators.opencat.simulator import OpenCatSimulator
 
@@ -36,7 +36,7 @@ class Desk:
     def __init__(
         self,
         robot: OpenCatSimulator | None = None,
-        settings: Settings | None = None,
+        settings: OpenCatSettings | None = None,
         step: float = 0.02,
         seed: int = 0,
         flip: float = 0.0,

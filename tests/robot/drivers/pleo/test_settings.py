@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot.drivers.pleo.joints import JOINTS
-from robot.drivers.pleo.settings import BUNDLED_SETTINGS, Clip, Settings, load_settings
+from robot.drivers.pleo.settings import BUNDLED_SETTINGS, MotionFile, PleoSettings, load_settings
 from robot.errors import RobotError
 
 NEUTRAL = '[moods.neutral]\nmotion = "n.umf"\nlength_s = 2\n'
@@ -25,7 +25,7 @@ def test_the_bundled_settings_are_those_of_the_thesis():
     assert bundled.moods["angry"].round == pytest.approx(2.0)
     assert bundled.catalogue.motions == ("nod", "wag tail")
     assert bundled.catalogue.sounds == ("chirp",)
-    console = Settings({}, {}, {})
+    console = PleoSettings({}, {}, {})
     for name in ("volume", "battery_every", "mood_every", "play_within", "boot_text"):
         assert getattr(bundled, name) == getattr(console, name)
 
@@ -40,7 +40,7 @@ def test_ones_own_settings_stand_instead_of_the_bundled_ones(tmp_path):
     assert tuple(mine.moods) == ("neutral", "sad")
     assert mine.moods["sad"].joints == {8: 10, 12: -30}
     assert (mine.moods["sad"].volume, mine.moods["sad"].sound) == (30, "é.usf")
-    assert mine.motions == {"bow": Clip("bow.umf", 1.5)}
+    assert mine.motions == {"bow": MotionFile("bow.umf", 1.5)}
     assert mine.sounds == {}
 
 
