@@ -4,12 +4,12 @@ from affect.labels import LabelSet
 from app.ui.palette import ACTION, Color, between, bgr, mood_color
 
 WHITE = bgr("#ffffff")
-TEXT, SECONDARY, BORDER, GRID = "#2b3345", "#6d7385", "#a9aebb", "#dcdfe6"
+TEXT_COLOR, SECONDARY_COLOR, BORDER_COLOR, GRID_COLOR = "#2b3345", "#6d7385", "#a9aebb", "#dcdfe6"
 
-OBSERVED = "#56b4e9"
+OBSERVED_COLOR = "#56b4e9"
 """What the robot shows: a wide pale line below the others."""
 
-CURVES: tuple[tuple[str, tuple[float, ...]], ...] = (
+CURVE_STYLES: tuple[tuple[str, tuple[float, ...]], ...] = (
     ("#000000", ()),
     ("#d55e00", (7.0, 3.0)),
     ("#0072b2", (2.0, 2.5)),
