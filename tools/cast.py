@@ -51,7 +51,7 @@ def draw_cast(cast: Iterable[Character], folder: Path = FOLDER) -> Iterator[Path
                 yield path
 
 
-GROUP: tuple[tuple[str, str, float, RootDelta], ...] = (
+GROUP_MEMBERS: tuple[tuple[str, str, float, RootDelta], ...] = (
     ("vleo", "kiss", 1.7, RootDelta(-0.15, 0.0, 0.55)),
     ("human", "wave", 1.25, RootDelta(0.0, 0.02, 0.1)),
     ("robot", "happy", 0.5, RootDelta(0.15, 0.0, -0.55)),
@@ -62,7 +62,7 @@ GROUP: tuple[tuple[str, str, float, RootDelta], ...] = (
 def draw_group(context: moderngl.Context, size: tuple[int, int] = (1100, 520)) -> Image:
     """Return a picture of all characters on one table, (height, width, 3) BGR."""
     characters, points = [], []
-    for name, action, seconds, place in GROUP:
+    for name, action, seconds, place in GROUP_MEMBERS:
         character = Character.load(name)
         posed = _after(Animator(character, place=place), action, seconds)
         extent = CharacterExtent(character).points(posed.pose)
@@ -79,7 +79,7 @@ def draw_group(context: moderngl.Context, size: tuple[int, int] = (1100, 520)) -
         stage.release()
 
 
-MOODS = ("neutral", "happy", "excited", "surprised", "angry", "afraid", "sad", "sleepy")
+SHEET_MOODS = ("neutral", "happy", "excited", "surprised", "angry", "afraid", "sad", "sleepy")
 """The columns of the sheet of moods."""
 
 SETTLED_S = 4.0, 4.7
@@ -88,7 +88,9 @@ SETTLED_S = 4.0, 4.7
 
 def draw_moods(sheets: ContactSheets, cast: Iterable[Character]) -> Image:
     """Return a sheet of every character in every mood."""
-    rows = [sheets.moods(who, {label: _mood_pose(who, label) for label in MOODS}) for who in cast]
+    rows = [
+        sheets.moods(who, {label: _mood_pose(who, label) for label in SHEET_MOODS}) for who in cast
+    ]
     return stacked(*rows)
 
 

@@ -16,7 +16,7 @@ from app.session import SessionOptions
 
 FOLDER = Path(__file__).parent.parent / "recordings"
 
-LIMIT = 6_000_000
+MAX_RECORDING_BYTES = 6_000_000
 """Greatest size of a bundled recording [B]."""
 
 
@@ -31,10 +31,11 @@ def make(name: str, console: Console) -> None:
     with open_session(options) as session:
         summary = run_with_progress(session, console, f"recording {path.name}")
     size = fresh.stat().st_size
-    if size > LIMIT:
+    if size > MAX_RECORDING_BYTES:
         fresh.unlink()
         raise SystemExit(
-            f"{path.name} would be {size / 1e6:.1f} MB; the limit is {LIMIT / 1e6:.0f}"
+            f"{path.name} would be {size / 1e6:.1f} MB; "
+            f"the limit is {MAX_RECORDING_BYTES / 1e6:.0f}"
         )
     fresh.replace(path)
     console.print(summary)

@@ -14,7 +14,7 @@ from rich.live import Live
 from app.commands.access import Broker, Ca, PasswordFile, Site
 from app.errors import AppError
 from app.running.bridge import Bridge
-from app.running.network import SITE, Network
+from app.running.network import DEFAULT_SITE, Network
 from app.ui.roster import line, table
 from robot.network import Credentials, Member
 from robot.network.arbiter import HOLD_S
@@ -46,7 +46,7 @@ def bridge(
         list[str] | None,
         typer.Option(help="Players to follow: PLAYER, SITE/PLAYER, SITE/*; default: the site's."),
     ] = None,
-    site: Site = SITE,
+    site: Site = DEFAULT_SITE,
     user: Annotated[str | None, typer.Option(help="The broker's user, if not in the URL.")] = None,
     password_file: PasswordFile = None,
     ca: Ca = None,

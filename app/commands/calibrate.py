@@ -11,7 +11,7 @@ from rich.console import Console
 from app.commands.play import DEFAULT_CAMERA, CubeOption
 from app.errors import AppError
 from app.running.opening import intrinsics_for
-from app.ui.calibration.coach_lines import FORMATS, CoachLines, write_coverage
+from app.ui.calibration.coach_lines import COVERAGE_SUFFIXES, CoachLines, write_coverage
 from app.ui.calibration.session import CalibrationSession, Coach
 from app.ui.display import has_display
 from tracking import CubeModel, FrameSource, Intrinsics, open_source
@@ -185,7 +185,7 @@ def _check_paths(output: Path, save_cube: Path | None, coverage: Path | None) ->
     for path in (output, save_cube, coverage):
         if path is not None and not path.parent.is_dir():
             raise AppError(f"there is no folder '{path.parent}' for '{path.name}'")
-    if coverage is not None and coverage.suffix not in FORMATS:
+    if coverage is not None and coverage.suffix not in COVERAGE_SUFFIXES:
         raise AppError(f"the picture '{coverage}' must be a .png or a .jpg file")
     if save_cube is not None and save_cube.suffix != ".toml":
         raise AppError(f"a cube is kept in a .toml file, not in '{save_cube}'")

@@ -22,7 +22,7 @@ from characters.rendering import create_context
 from robot import serial_ports
 from tracking import FrameSource, LiveFrames, TrackingError, open_source
 
-MARKS = {"good": "[green]✓[/]", "missing": "[yellow]–[/]", "bad": "[red]✗[/]"}
+VERDICT_MARKS = {"good": "[green]✓[/]", "missing": "[yellow]–[/]", "bad": "[red]✗[/]"}
 
 CAMERA_CHECK_S = 4.0
 """How long the camera is read: it locks its exposure after a second or two."""
@@ -58,7 +58,9 @@ def doctor(
     table = Table.grid(padding=(0, 2))
     for finding in findings:
         remedy = f"\n[cyan]{finding.remedy}[/]" if finding.remedy else ""
-        table.add_row(MARKS[finding.verdict], f"[bold]{finding.name}[/]", finding.found + remedy)
+        table.add_row(
+            VERDICT_MARKS[finding.verdict], f"[bold]{finding.name}[/]", finding.found + remedy
+        )
     console = Console()
     console.print(table)
     if any(finding.verdict == "bad" for finding in findings):

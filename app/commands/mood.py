@@ -22,7 +22,7 @@ app = typer.Typer(
 MAX_PERSONALITIES = 4
 """Personalities that can be told apart in one plot."""
 
-FORMATS = (".svg", ".pdf", ".png")
+PLOT_SUFFIXES = (".svg", ".pdf", ".png")
 """Suffixes of the files that a plot can be written to."""
 
 Session = Annotated[Path, typer.Argument(help="A session recorded with --record.")]
@@ -52,8 +52,8 @@ def plot(
     Example: [cyan]cubeling mood plot today.mcap --personality lively --personality shy[/]
     """
     output = output or Path(f"{session.stem}-mood.svg")
-    if output.suffix.lower() not in FORMATS:
-        raise AppError(f"moods are plotted as {', '.join(FORMATS)}, not as '{output}'")
+    if output.suffix.lower() not in PLOT_SUFFIXES:
+        raise AppError(f"moods are plotted as {', '.join(PLOT_SUFFIXES)}, not as '{output}'")
     personalities = [Personality.load(name) for name in personality or ()]
     if len(personalities) > MAX_PERSONALITIES:
         count = f"{len(personalities)} personalities are too many for one plot"

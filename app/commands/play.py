@@ -8,7 +8,7 @@ import typer
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.progress import play_session
 from app.errors import AppError
-from app.running.network import SITE
+from app.running.network import DEFAULT_SITE
 from app.scenarios import scenario_cube
 from app.session import SessionOptions
 from app.ui.display import has_display
@@ -81,7 +81,7 @@ def play(
     pictures: PicturesOption = True,
     mqtt: Broker = None,
     player: PlayerName = None,
-    site: Site = SITE,
+    site: Site = DEFAULT_SITE,
     password_file: PasswordFile = None,
     ca: Ca = None,
 ) -> None:

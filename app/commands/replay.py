@@ -19,7 +19,7 @@ from app.commands.play import (
     RobotSettingsOption,
 )
 from app.commands.progress import play_session
-from app.running.network import SITE
+from app.running.network import DEFAULT_SITE
 from app.running.replay_check import check_session
 from app.session import session_info
 from app.ui.display import has_display
@@ -50,7 +50,7 @@ def replay(
     ] = False,
     mqtt: Broker = None,
     player: PlayerName = None,
-    site: Site = SITE,
+    site: Site = DEFAULT_SITE,
     password_file: PasswordFile = None,
     ca: Ca = None,
 ) -> None:

@@ -26,7 +26,11 @@ from robot.conformance import (
 from robot.errors import RobotError
 from robot.link.transport import opener
 
-LABELS = {"ok": ("ok", "green"), "failed": ("FAILED", "bold red"), "skipped": ("skipped", "dim")}
+VERDICT_LABELS = {
+    "ok": ("ok", "green"),
+    "failed": ("FAILED", "bold red"),
+    "skipped": ("skipped", "dim"),
+}
 FAILED_SHOULD_LABEL = ("poor", "yellow")
 """The label of a failed check of level "should"."""
 
@@ -140,7 +144,7 @@ def _run_checks(port: str, checks: list[Check], console: Console) -> Conformance
 
 def show(result: CheckResult, console: Console) -> None:
     """Print the result of a check."""
-    label, style = LABELS[result.verdict]
+    label, style = VERDICT_LABELS[result.verdict]
     if result.verdict == "failed" and result.check.level == "should":
         label, style = FAILED_SHOULD_LABEL
     console.print(

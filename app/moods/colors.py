@@ -1,7 +1,7 @@
 """Colours of the mood plot: those of the screen, pale enough to write on."""
 
 from affect.labels import LabelSet
-from app.ui.palette import ACTION, Color, between, bgr, mood_color
+from app.ui.palette import ACTION_COLORS, Color, between, bgr, mood_color
 
 WHITE = bgr("#ffffff")
 TEXT_COLOR, SECONDARY_COLOR, BORDER_COLOR, GRID_COLOR = "#2b3345", "#6d7385", "#a9aebb", "#dcdfe6"
@@ -35,7 +35,7 @@ def label_color(labels: LabelSet, label: str) -> str:
 
 def action_color(action: str, *, pale: bool = False) -> str:
     """Return the pale colour of an action, that of its icon on screen, or a paler one."""
-    return _hex(between(WHITE, ACTION.get(action, bgr("#8a8fa0")), 0.14 if pale else 0.45))
+    return _hex(between(WHITE, ACTION_COLORS.get(action, bgr("#8a8fa0")), 0.14 if pale else 0.45))
 
 
 def _hex(color: Color) -> str:

@@ -19,7 +19,7 @@ from tracking import CubeControls
 
 Array = NDArray[np.float64]
 
-CHANNELS: dict[str, type[Any]] = {
+CHANNEL_TYPES: dict[str, type[Any]] = {
     "/cube/controls": CubeControls,
     "/character/command": CharacterCommand,
     "/robot/emotion": EmotionTarget,
@@ -89,13 +89,13 @@ def read_history(path: Path, *, salvage: bool = False) -> MoodHistory:
     info = session_info(path, salvage=salvage)
     frames: list[dict[str, Any]] = []
     frame: dict[str, Any] = {}
-    for topic, _, data in messages(path, *CHANNELS):
+    for topic, _, data in messages(path, *CHANNEL_TYPES):
         try:
-            frame[topic] = decode(CHANNELS[topic], data)
+            frame[topic] = decode(CHANNEL_TYPES[topic], data)
         except ValueError as error:
             raise AppError(f"cannot read the session '{path}': {topic} is {error}") from error
         if topic == "/robot/emotion":  # the last of these channels in a frame
-            if len(frame) == len(CHANNELS):
+            if len(frame) == len(CHANNEL_TYPES):
                 frames.append(frame)
             frame = {}
     if len(frames) < 2:

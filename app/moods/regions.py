@@ -11,7 +11,7 @@ from affect.labels import LabelSet
 
 Array = NDArray[np.float64]
 
-PLANE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+PLANE_CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 """Corners of the plane: (valence, arousal)."""
 
 
@@ -35,7 +35,7 @@ def regions(labels: LabelSet) -> dict[str, Array]:
         label_at.setdefault(point, label)
     found = {}
     for point, label in label_at.items():
-        polygon = PLANE
+        polygon = PLANE_CORNERS
         for other in label_at:
             if other != point:
                 polygon = _nearer_part(polygon, np.array(point), np.array(other))

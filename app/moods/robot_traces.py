@@ -18,7 +18,7 @@ from robot.protocol.wire import FrameReader
 
 Array = NDArray[np.float64]
 
-UNKNOWN = (float("nan"), float("nan"))
+UNKNOWN_EMOTION = (float("nan"), float("nan"))
 """An unknown emotion."""
 
 
@@ -113,7 +113,7 @@ class _WireDecoder:
         last, self._last_received = self._last_received, time
         if last is not None and time - last > timing.LOST_AFTER:
             for trace in (self.acknowledged, self.observed):
-                trace.append((last + timing.LOST_AFTER, UNKNOWN, ""))
+                trace.append((last + timing.LOST_AFTER, UNKNOWN_EMOTION, ""))
 
     def _handle(self, content: Any, time: float) -> None:
         match content:
@@ -122,14 +122,14 @@ class _WireDecoder:
                     content.number, (time, (content.valence, content.arousal))
                 )
             case m.Stop():
-                self._commands.setdefault(content.number, (time, UNKNOWN))
+                self._commands.setdefault(content.number, (time, UNKNOWN_EMOTION))
             case m.Ack() if content.result == m.RESULT_TAKEN and content.number in self._commands:
                 self._acknowledge(content.number, time)
             case m.Welcome():  # after a reconnection, the last command may still be in force
-                emotion = self._commands.get(content.taken, (time, UNKNOWN))[1]
+                emotion = self._commands.get(content.taken, (time, UNKNOWN_EMOTION))[1]
                 self.acknowledged.append((time, emotion, ""))
             case m.Gone() | m.Bye():
-                self.acknowledged.append((time, UNKNOWN, ""))
+                self.acknowledged.append((time, UNKNOWN_EMOTION, ""))
             case m.Name() if content.item == m.ITEM_MOOD:
                 self._moods[content.index] = content.name
             case m.State():

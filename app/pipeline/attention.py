@@ -11,7 +11,7 @@ from tracking import CubeControls, CubeState
 
 Array = NDArray[np.float64]
 
-LOOKS = ("auto", "cube", "hand", "camera", "none")
+LOOK_CHOICES = ("auto", "cube", "hand", "camera", "none")
 """What the user may choose."""
 
 MIN_SPEED_M_S = 0.03
@@ -35,13 +35,13 @@ class Attention:
 
     With "auto" it watches a cube that moves, and the hand while it lifts the cube. When the cube
     is still it looks at the player, with a glance at the cube now and then. `edge` is that of the
-    cube [m]. Raises AppError if `look` is not one of `LOOKS`.
+    cube [m]. Raises AppError if `look` is not one of `LOOK_CHOICES`.
     """
 
     def __init__(self, look: str, edge: float) -> None:
-        if look not in LOOKS:
+        if look not in LOOK_CHOICES:
             raise AppError(
-                f"nothing to look at is called '{look}': choose one of {', '.join(LOOKS)}"
+                f"nothing to look at is called '{look}': choose one of {', '.join(LOOK_CHOICES)}"
             )
         self._look = look
         self._edge = edge

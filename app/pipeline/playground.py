@@ -41,7 +41,7 @@ class Playground:
     context
         Where to draw; None for no pictures.
     look
-        What the character's eyes follow: one of `LOOKS`.
+        What the character's eyes follow: one of `LOOK_CHOICES`.
     """
 
     def __init__(

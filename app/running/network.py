@@ -20,7 +20,7 @@ from robot.network.topics import Role
 
 E = TypeVar("E", bound=Endpoint)
 
-SITE = "home"
+DEFAULT_SITE = "home"
 """The default site."""
 
 
@@ -32,7 +32,10 @@ class Network(Closeable):
     """
 
     def __init__(
-        self, url: str | None = None, site: str = SITE, credentials: Credentials | None = None
+        self,
+        url: str | None = None,
+        site: str = DEFAULT_SITE,
+        credentials: Credentials | None = None,
     ) -> None:
         self.site = check_name(site, "site")
         """Our site."""

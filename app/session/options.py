@@ -35,7 +35,7 @@ class SessionOptions:
     """A bundled personality or a .toml file; None for the scenario's own."""
 
     look: str = "auto"
-    """What the character's eyes follow: one of `LOOKS`."""
+    """What the character's eyes follow: one of `LOOK_CHOICES`."""
 
     robot: str = "sim"
     """URL of the robot, as `RobotLine.open` takes it."""
@@ -59,7 +59,7 @@ class SessionOptions:
     """Whether a source that breaks off counts as finished."""
 
     start: str = "camera"
-    """The channel that a replay starts from: one of `STARTS`."""
+    """The channel that a replay starts from: one of `START_STAGES`."""
 
     @property
     def windowed(self) -> bool:

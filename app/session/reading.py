@@ -20,7 +20,7 @@ from app.session.options import SessionOptions
 START_OVER_EVENT = "start over"
 """Event of a player who starts over. It is an input, so a replay repeats it."""
 
-MAGIC = b"\x89MCAP0\r\n"
+MCAP_MAGIC = b"\x89MCAP0\r\n"
 """The first and the last bytes of an MCAP file."""
 
 READ_ERRORS = (McapError, EOFError, ValueError, struct.error, LookupError, OSError, ZstdError)
@@ -97,19 +97,19 @@ def _check_magic(path: Path) -> None:
         if stat.S_ISFIFO(path.stat().st_mode):  # opening one waits for a writer
             raise AppError(f"cannot read the session '{path}': it is a pipe, no file")
         with path.open("rb") as file:
-            start = file.read(len(MAGIC))
+            start = file.read(len(MCAP_MAGIC))
     except OSError as error:
         raise AppError(f"cannot read the session '{path}': {error.strerror}") from error
-    if start != MAGIC:
+    if start != MCAP_MAGIC:
         raise AppError(f"'{path}' is not a session: it does not begin as an .mcap file does")
 
 
 def _is_complete(path: Path) -> bool:
-    """Whether a file that begins with `MAGIC` was written to its end."""
+    """Whether a file that begins with `MCAP_MAGIC` was written to its end."""
     with path.open("rb") as file:
         size = file.seek(0, os.SEEK_END)
-        file.seek(-min(size, len(MAGIC)), os.SEEK_END)
-        return file.read() == MAGIC and size > len(MAGIC)
+        file.seek(-min(size, len(MCAP_MAGIC)), os.SEEK_END)
+        return file.read() == MCAP_MAGIC and size > len(MCAP_MAGIC)
 
 
 def messages(path: Path, *topics: str) -> Iterator[tuple[str, float, bytes]]:

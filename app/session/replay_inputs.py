@@ -9,7 +9,7 @@ from app.pipeline.step import ReplayInputs
 from app.session import messages
 from app.session.encoding import MESSAGE_TYPES, decode
 
-STARTS = ("camera", "state", "controls", "command", "pose")
+START_STAGES = ("camera", "state", "controls", "command", "pose")
 """The stages that a replay can start from; each takes one channel more as recorded."""
 
 FIELD_OF_TOPIC = {
@@ -26,11 +26,13 @@ def read_replay_inputs(source: str, start: str) -> Iterator[ReplayInputs]:
 
     Raises AppError if there is no such stage, or the source is no session.
     """
-    if start not in STARTS:
-        raise AppError(f"a replay cannot start from '{start}': choose one of {', '.join(STARTS)}")
+    if start not in START_STAGES:
+        raise AppError(
+            f"a replay cannot start from '{start}': choose one of {', '.join(START_STAGES)}"
+        )
     if not source.endswith(".mcap"):
         raise AppError(f"'{source}' has no recorded channels to start from '{start}'")
-    return _read(Path(source), tuple(FIELD_OF_TOPIC)[: STARTS.index(start)])
+    return _read(Path(source), tuple(FIELD_OF_TOPIC)[: START_STAGES.index(start)])
 
 
 def _read(path: Path, topics: tuple[str, ...]) -> Iterator[ReplayInputs]:

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from app.pipeline.step import RobotView, Step
 from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
 from app.ui.notice import Notice
-from app.ui.palette import ACTION, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
+from app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
 from app.ui.robot_face import draw_face
 from app.ui.virtual_robot import VirtualRobot
 
-MARGIN = 24.0
+CARD_MARGIN = 24.0
 CARD_HEIGHT = 108.0
 BAR_Y = 70.0
 """Distance of a bar from its card's top edge."""
@@ -102,17 +102,17 @@ def _action(step: Step, scale: float) -> Card:
     moves = step.command.activity == "move" or name in ("stand", "walk", "run")
     canvas = _action_background(name, moves, scale).copy()
     if moves:
-        _speed(canvas, step.command.speed, ACTION.get(name, INK))
+        _speed(canvas, step.command.speed, ACTION_COLORS.get(name, INK))
     elif name != "idle":
-        _intensity(canvas, step.command.weight, ACTION.get(name, INK))
-    return canvas.card(MARGIN, PICTURE_HEIGHT - CARD_HEIGHT - MARGIN)
+        _intensity(canvas, step.command.weight, ACTION_COLORS.get(name, INK))
+    return canvas.card(CARD_MARGIN, PICTURE_HEIGHT - CARD_HEIGHT - CARD_MARGIN)
 
 
 @lru_cache(maxsize=16)
 def _action_background(name: str, moves: bool, scale: float) -> Canvas:
     """Draw what does not change during an action."""
     canvas = Canvas(292, CARD_HEIGHT, scale)
-    canvas.disc(54, 54, 38, ACTION.get(name, INK))
+    canvas.disc(54, 54, 38, ACTION_COLORS.get(name, INK))
     canvas.icon(32, 32, 44, name, PAPER)
     canvas.text(108, 42, name.title(), 28, INK)
     canvas.bar(ACTION_BAR_X, BAR_Y, ACTION_BAR_WIDTH, 10, RULE)
@@ -151,7 +151,9 @@ def _robot(robot: RobotView, width: float, scale: float) -> Card:
     mood = robot.mood if math.isfinite(robot.mood) else 0.0
     draw_face(canvas, 56, 54, 38, mood)
     _mood_knob(canvas, MOOD_BAR_X, BAR_Y, MOOD_BAR_WIDTH, mood)
-    return canvas.card(width - ROBOT_CARD_WIDTH - MARGIN, PICTURE_HEIGHT - CARD_HEIGHT - MARGIN)
+    return canvas.card(
+        width - ROBOT_CARD_WIDTH - CARD_MARGIN, PICTURE_HEIGHT - CARD_HEIGHT - CARD_MARGIN
+    )
 
 
 def _virtual_robot(
@@ -166,7 +168,7 @@ def _virtual_robot(
     mood = robot.mood if math.isfinite(robot.mood) else 0.0
     _mood_knob(canvas, *VIRTUAL_ROBOT_BAR, mood)
     x, y = width - VIRTUAL_ROBOT_CARD_WIDTH, PICTURE_HEIGHT - VIRTUAL_ROBOT_CARD_HEIGHT
-    return canvas.card(x - MARGIN, y - MARGIN)
+    return canvas.card(x - CARD_MARGIN, y - CARD_MARGIN)
 
 
 def _mood_knob(canvas: Canvas, x: float, y: float, length: float, mood: float) -> None:

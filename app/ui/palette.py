@@ -28,7 +28,7 @@ ANGRY = bgr("#e5533d")
 NEUTRAL = bgr("#f2b63c")
 HAPPY = bgr("#43b36b")
 
-ACTION: dict[str, Color] = {
+ACTION_COLORS: dict[str, Color] = {
     "idle": bgr("#4aa3a2"),
     "stand": bgr("#4aa3a2"),
     "walk": bgr("#3a7bd5"),

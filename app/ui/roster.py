@@ -14,7 +14,7 @@ from robot.network.messages import (
     StatusMessage,
 )
 
-COLOURS = {"online": "green", "lost": "red", "closed": "dim"}
+PRESENCE_STYLES = {"online": "green", "lost": "red", "closed": "dim"}
 
 MAX_ROWS = 40
 """Most rows of the table."""
@@ -27,7 +27,7 @@ def table(roster: Roster, now: float) -> Table:
         entry = roster.members[member]
         presence = entry.presence(now)
         row = _player(entry) if member.role == "player" else _robot(entry)
-        status = Text(presence, COLOURS[presence])
+        status = Text(presence, PRESENCE_STYLES[presence])
         shown.add_row(member.site, f"{member.role} {member.name}", status, *row)
     if not roster.members:
         shown.add_row("", Text("no members yet", "dim"), "", "", "", "")

@@ -21,7 +21,7 @@ from app.ui.overlay import interrupted, overlay, virtual_robot_side
 from app.ui.virtual_robot import VirtualRobot
 from characters.rendering import create_context
 
-VERTEX = """
+VERTEX_SHADER = """
 #version 330
 out vec2 place;
 void main() {
@@ -31,7 +31,7 @@ void main() {
 }
 """
 
-FRAGMENT = """
+FRAGMENT_SHADER = """
 #version 330
 uniform sampler2D picture;
 in vec2 place;
@@ -39,7 +39,7 @@ out vec4 color;
 void main() { color = vec4(texture(picture, place).bgr, 1.0); }
 """
 
-HELP = "Esc  quit      F  full screen      C  start over      H  this panel"
+KEY_HELP = "Esc  quit      F  full screen      C  start over      H  this panel"
 
 
 class Window:
@@ -82,7 +82,9 @@ class Window:
         self._virtual_robot = VirtualRobot(self.context, virtual_robot_side(size[1]))
         self._start_panel()
         self._texture = self.context.texture(size, 3, alignment=1)
-        self._program = self.context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
+        self._program = self.context.program(
+            vertex_shader=VERTEX_SHADER, fragment_shader=FRAGMENT_SHADER
+        )
         self._quad = self.context.vertex_array(self._program, [])
         self._shown_at: deque[float] = deque(maxlen=60)
         self._panel = False
@@ -190,7 +192,7 @@ class Window:
         imgui.text(f"character {step.posed.state}   speed {step.posed.speed:.2f}")
         imgui.text(f"robot     {robot.link}   {robot.label} {robot.mood:+.2f}")
         imgui.separator()
-        imgui.text(HELP)
+        imgui.text(KEY_HELP)
         imgui.end()
 
     def _on_key(self, _window: Any, key: int, _scan: int, action: int, _mods: int) -> None:

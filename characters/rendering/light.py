@@ -13,7 +13,7 @@ TO_LIGHT = np.array([-0.42, 1.0, 0.34]) / np.linalg.norm([-0.42, 1.0, 0.34])
 """Direction to the key light in the table frame: from above, from the left, and from the camera's
 side, as most desks are lit. The shadow falls to the right and to the back, where it is visible."""
 
-LUMA = np.array([0.2126, 0.7152, 0.0722])
+LUMA_WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 """Weights of red, green and blue in luminance (Rec. 709)."""
 
 LINEAR_FROM_SRGB = np.where(
@@ -81,7 +81,7 @@ class LightEstimator:
     PAPER_CAST_SHARE = 0.8
     """The same share for the colour cast of paper."""
 
-    SMOOTHING = 0.08
+    SMOOTHING_SHARE = 0.08
     """Share of the way to the new estimate in each picture: half of it after eight pictures."""
 
     LUMINANCE_RANGE = (0.25, 1.1)
@@ -105,19 +105,21 @@ class LightEstimator:
         else:
             white = _reduce_cast(paper / self.PAPER_ALBEDO, self.PAPER_CAST_SHARE)
         white = np.maximum(white, 1e-3)
-        white = white * np.clip(white @ LUMA, *self.LUMINANCE_RANGE) / (white @ LUMA)
+        white = (
+            white * np.clip(white @ LUMA_WEIGHTS, *self.LUMINANCE_RANGE) / (white @ LUMA_WEIGHTS)
+        )
         ground = np.maximum(linear.mean(axis=0), 0.25 * self.LUMINANCE_RANGE[0])
         if self._white is None or self._ground is None:
             self._white, self._ground = white, ground
-        self._white = self._white + self.SMOOTHING * (white - self._white)
-        self._ground = self._ground + self.SMOOTHING * (ground - self._ground)
+        self._white = self._white + self.SMOOTHING_SHARE * (white - self._white)
+        self._ground = self._ground + self.SMOOTHING_SHARE * (ground - self._ground)
         return Light(key=0.72 * self._white, sky=0.36 * self._white, ground=0.6 * self._ground)
 
     def _white_from_picture(self, linear: Array) -> Array:
         """Return the colour of a white sheet, estimated from the whole picture."""
         bright = (linear**self.MINKOWSKI_P).mean(axis=0) ** (1 / self.MINKOWSKI_P)
         bright = bright / self.BRIGHT_ALBEDO
-        gain = float(np.sqrt(self.EXPOSED_WHITE / max(float(bright @ LUMA), 1e-6)))
+        gain = float(np.sqrt(self.EXPOSED_WHITE / max(float(bright @ LUMA_WEIGHTS), 1e-6)))
         return _reduce_cast(bright, self.PICTURE_CAST_SHARE) * gain
 
 
@@ -127,7 +129,7 @@ def paper_color(picture: NDArray[np.uint8], matrix: Array, view: View) -> Array 
     `picture` is undistorted, (height, width, 3) BGR; `matrix` its pinhole matrix, (3, 3) [px].
     """
     papers = [paper for box in view.occluders for paper in _face_papers(picture, matrix, box)]
-    return max(papers, key=lambda paper: float(paper @ LUMA), default=None)
+    return max(papers, key=lambda paper: float(paper @ LUMA_WEIGHTS), default=None)
 
 
 def _face_papers(picture: NDArray[np.uint8], matrix: Array, box: Box) -> list[Array]:
@@ -144,11 +146,11 @@ def _face_papers(picture: NDArray[np.uint8], matrix: Array, box: Box) -> list[Ar
     papers = []
     for columns, rows in pixels[inside].transpose(0, 2, 1):
         colors = LINEAR_FROM_SRGB[picture[rows, columns, ::-1]]
-        luminance = colors @ LUMA
+        luminance = colors @ LUMA_WEIGHTS
         papers.append(colors[luminance >= np.quantile(luminance, PAPER_QUANTILE)].mean(axis=0))
     return papers
 
 
 def _reduce_cast(color: Array, share: float) -> Array:
     """Return a colour of the same luminance with only a share of its colour cast."""
-    return np.asarray(share * color + (1.0 - share) * (color @ LUMA))
+    return np.asarray(share * color + (1.0 - share) * (color @ LUMA_WEIGHTS))

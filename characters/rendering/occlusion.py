@@ -23,7 +23,7 @@ UNIT_CUBE = np.concatenate([s * np.roll(_FACE, axis, axis=1) for axis in range(3
 
 _EDGE_ENDS = np.array([(a, a | b) for a in range(8) for b in (1, 2, 4) if not a & b])
 _CORNERS = (np.arange(8)[:, None] >> np.arange(3) & 1) - 0.5
-EDGES = _CORNERS[_EDGE_ENDS]
+CUBE_EDGES = _CORNERS[_EDGE_ENDS]
 """Both ends of its twelve edges, (12, 2, 3)."""
 
 MAX_SIDES = 10
@@ -83,7 +83,7 @@ def visible_cubes(
 def _outline(box: Box, matrix: Array) -> Array:
     """Return the lines (n, 3) around a box in the picture, positive inside."""
     pose = np.asarray(box.camera_from_box, float)
-    ends = box.edge * EDGES @ pose[:3, :3].T + pose[:3, 3]
+    ends = box.edge * CUBE_EDGES @ pose[:3, :3].T + pose[:3, 3]
     depths = ends[..., 2]
     crossing = (depths.min(axis=1) < NEAR_M) & (depths.max(axis=1) > NEAR_M)
     share = (NEAR_M - depths[crossing, :1]) / np.diff(depths[crossing], axis=1)

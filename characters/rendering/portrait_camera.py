@@ -17,7 +17,7 @@ from characters.skeleton.pose import Array, Pose
 FIELD_OF_VIEW_RAD = math.radians(24.0)
 """Along the picture's shorter side; portraits look best with a long lens."""
 
-MARGIN = 0.07
+MARGIN_SHARE = 0.07
 """Share of the picture that stays free on each side."""
 
 MIN_DISTANCE_M = 0.04
@@ -36,7 +36,7 @@ class PortraitCamera:
 
     @classmethod
     def around(
-        cls, points: Array, elevation: float, size: tuple[int, int], margin: float = MARGIN
+        cls, points: Array, elevation: float, size: tuple[int, int], margin: float = MARGIN_SHARE
     ) -> Self:
         """Return the nearest camera that sees all of some points (n, 3) of the table frame.
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from characters.skeleton.pose import Array
 
-SHADERS = files("characters.rendering") / "shaders"
+SHADER_FOLDER = files("characters.rendering") / "shaders"
 
 
 class ShaderPrograms:
@@ -63,7 +63,7 @@ def _source(name: str, *defines: str) -> str:
 
 
 def _text(name: str) -> str:
-    return (SHADERS / f"{name}.glsl").read_text(encoding="utf-8")
+    return (SHADER_FOLDER / f"{name}.glsl").read_text(encoding="utf-8")
 
 
 def set_uniforms(

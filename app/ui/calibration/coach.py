@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from app.ui.calibration.orientation_icons import draw_board, draw_cube, draw_screen
 from app.ui.calibration.session import Advice
 from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
-from app.ui.palette import ACTION, HAPPY, INK, NEUTRAL, PAPER, QUIET, RULE, Color, between
+from app.ui.palette import ACTION_COLORS, HAPPY, INK, NEUTRAL, PAPER, QUIET, RULE, Color, between
 from tracking.calibration import ViewCoverage
 
 Picture = NDArray[np.uint8]
@@ -31,7 +31,7 @@ TILT_RAD = math.radians(34)
 ICON_ROTATION = np.array([-0.35, 0.4, 0.0])
 """Rotation vector of a target that does not tilt, so that three faces are visible."""
 
-SENTENCES = {
+REQUEST_SENTENCES = {
     "show": "Show me the {}",
     "still": "Good! Now hold it still",
     "done": "Done! Thank you",
@@ -49,10 +49,15 @@ SENTENCES = {
     "middle": "Move it to the middle",
 }
 
-TILTS = {"tilt up": (0, -1), "tilt down": (0, 1), "tilt left": (-1, 0), "tilt right": (1, 0)}
+TILT_DIRECTIONS = {
+    "tilt up": (0, -1),
+    "tilt down": (0, 1),
+    "tilt left": (-1, 0),
+    "tilt right": (1, 0),
+}
 """Where the cube's front should look in the picture (x right, y down)."""
 
-PLACES = {
+PICTURE_PLACES = {
     "top left": (-1, -1),
     "top right": (1, -1),
     "bottom left": (-1, 1),
@@ -69,7 +74,7 @@ def words_of(request: str, target: str) -> str:
     """
     if request.startswith("side "):
         return "Turn it over: show me another side"
-    return SENTENCES[request].format(target)
+    return REQUEST_SENTENCES[request].format(target)
 
 
 class CoachView:
@@ -129,12 +134,12 @@ class CoachView:
         # Forth and back, with a pause at both ends.
         share = float(np.clip(0.5 - 0.75 * math.cos(2 * math.pi * phase), 0, 1))
         middle = (115.0, 100.0)
-        if request in TILTS:
-            x, y = TILTS[request]
+        if request in TILT_DIRECTIONS:
+            x, y = TILT_DIRECTIONS[request]
             draw(canvas, middle, 44.0, TILT_RAD * share * np.array([y, -x, 0.0]))
             _arrow(canvas, middle, request)
-        elif request in PLACES or request == "show":
-            x, y = PLACES.get(request, (0, 0))
+        elif request in PICTURE_PLACES or request == "show":
+            x, y = PICTURE_PLACES.get(request, (0, 0))
             start = (-1.9, 0.0) if request == "show" else (-x * 0.5, -y * 0.5)
             at = (start[0] + (x - start[0]) * share, start[1] + (y - start[1]) * share)
             draw_screen(canvas, middle, (190.0, 120.0))
@@ -170,16 +175,18 @@ def draw_outline(picture: Picture, outline: Array, scale: float) -> None:
     """Draw the outline of the target in this frame, in place."""
     quad = np.round(outline * 16).astype(np.int32)
     cv2.polylines(picture, [quad], True, PAPER, max(1, round(5 * scale)), cv2.LINE_AA, 4)
-    cv2.polylines(picture, [quad], True, ACTION["walk"], max(1, round(3 * scale)), cv2.LINE_AA, 4)
+    cv2.polylines(
+        picture, [quad], True, ACTION_COLORS["walk"], max(1, round(3 * scale)), cv2.LINE_AA, 4
+    )
 
 
 def _arrow(canvas: Canvas, middle: tuple[float, float], request: str) -> None:
     """Draw an arrow to where the cube's front should look."""
-    direction = np.array(TILTS[request])
+    direction = np.array(TILT_DIRECTIONS[request])
     aside = np.array([-direction[1], direction[0]])
     tip = np.array(middle) + direction * (88 if direction[1] else 98)
     ends = [tip - 22 * direction, tip]
-    color = ACTION["kiss"]
+    color = ACTION_COLORS["kiss"]
     canvas.line(ends, color, 7)
     back = tip - 13 * direction
     canvas.line([back + 12 * aside, tip, back - 12 * aside], color, 7)
@@ -216,7 +223,7 @@ def _progress(advice: Advice, width: float, scale: float) -> Card:
 
 
 def _tilts(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
-    for kind, direction in TILTS.items():
+    for kind, direction in TILT_DIRECTIONS.items():
         ahead = np.array(direction, float)
         aside = np.array([-ahead[1], ahead[0]])
         foot = np.array([x, y]) + 13 * ahead
@@ -225,7 +232,7 @@ def _tilts(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
 
 
 def _places(canvas: Canvas, coverage: ViewCoverage, x: float, y: float) -> None:
-    for kind, (across, down) in PLACES.items():
+    for kind, (across, down) in PICTURE_PLACES.items():
         middle = np.array([x + 31 * across, y + 19 * down])
         half = np.array([13.5, 8.5])
         corners = middle + half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])

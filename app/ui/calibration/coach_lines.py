@@ -14,7 +14,7 @@ from app.ui.calibration.session import Advice, CalibrationSession
 
 Picture = NDArray[np.uint8]
 
-FORMATS = (".png", ".jpg")
+COVERAGE_SUFFIXES = (".png", ".jpg")
 """Suffixes of a picture of the coverage."""
 
 

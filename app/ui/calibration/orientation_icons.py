@@ -4,19 +4,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.ui.canvas import Canvas
-from app.ui.palette import ACTION, INK, PAPER, RULE, Color, between
+from app.ui.palette import ACTION_COLORS, INK, PAPER, RULE, Color, between
 from tracking.geometry import se3
 
 Array = NDArray[np.float64]
 Point = tuple[float, float]
 
 FACE_COLORS: tuple[tuple[tuple[int, int, int], Color], ...] = (
-    ((0, 0, -1), ACTION["walk"]),
-    ((0, 0, 1), ACTION["run"]),
-    ((-1, 0, 0), ACTION["idle"]),
-    ((1, 0, 0), ACTION["shout"]),
-    ((0, -1, 0), ACTION["kiss"]),
-    ((0, 1, 0), between(ACTION["idle"], INK, 0.3)),
+    ((0, 0, -1), ACTION_COLORS["walk"]),
+    ((0, 0, 1), ACTION_COLORS["run"]),
+    ((-1, 0, 0), ACTION_COLORS["idle"]),
+    ((1, 0, 0), ACTION_COLORS["shout"]),
+    ((0, -1, 0), ACTION_COLORS["kiss"]),
+    ((0, 1, 0), between(ACTION_COLORS["idle"], INK, 0.3)),
 )
 """Outward normals of the faces in the picture's axes (x right, y down, z away), and the colour of
 the marker on each."""

@@ -19,10 +19,10 @@ MAP_SIDE = 80
 BLUR_TAPS = 10
 """Taps of the blur on each side; `BLUR_TAPS` in `shadow_blur.frag` too."""
 
-SLOPE = TO_LIGHT[[0, 2]] / TO_LIGHT[1]
+SHADOW_SLOPE = TO_LIGHT[[0, 2]] / TO_LIGHT[1]
 """Horizontal offset (x, z) of a point from its shadow, for each metre of the point's height."""
 
-LEVELS = (0.0, 0.1, 0.4, 1.0)
+SHADOW_LEVELS = (0.0, 0.1, 0.4, 1.0)
 """Heights whose shadows are blurred separately, as shares of the character's height."""
 
 KEY_BLUR = (0.010, 0.022, 0.05, 0.10)
@@ -118,7 +118,7 @@ class ShadowMap:
         self.extent = _extent(character.enclosing, height)
         self.area = _map_area(self.extent, height)
         context = self._context
-        set_uniforms(self._caster, area=self.area, slope=SLOPE, levels=LEVELS)
+        set_uniforms(self._caster, area=self.area, slope=SHADOW_SLOPE, levels=SHADOW_LEVELS)
         for target in reversed(self._targets):
             target.use()
             target.viewport = (0, 0, 2 * MAP_SIDE, MAP_SIDE)
@@ -186,7 +186,7 @@ class ShadowMap:
 def _extent(enclosing: Array, height: float) -> Array:
     """Return lowest x and z, highest x and z that a character's shadow can reach [m]."""
     below = enclosing[:, [0, 2]]
-    shadow = below - SLOPE * np.maximum(enclosing[:, 1:2], 0.0)
+    shadow = below - SHADOW_SLOPE * np.maximum(enclosing[:, 1:2], 0.0)
     low = np.minimum(below.min(axis=0), shadow.min(axis=0)) - BLUR_MARGIN * height
     high = np.maximum(below.max(axis=0), shadow.max(axis=0)) + BLUR_MARGIN * height
     return np.concatenate([low, high])

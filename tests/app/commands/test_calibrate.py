@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.commands import calibrate as command
-from app.ui.calibration.coach import SENTENCES, CoachView, words_of
+from app.ui.calibration.coach import REQUEST_SENTENCES, CoachView, words_of
 from app.ui.calibration.session import Advice, CalibrationSession
 from tracking import CubeModel, Frame, Intrinsics
 from tracking.calibration import CubeFinder, ViewCoverage
@@ -156,7 +156,7 @@ def test_the_board_is_printed(cubeling, tmp_path):
 
 def test_every_wish_has_words_and_a_drawing():
     coverage = ViewCoverage([face.name for face in CubeModel.load("companion").faces])
-    for request in [*SENTENCES, *coverage.needed]:
+    for request in [*REQUEST_SENTENCES, *coverage.needed]:
         assert words_of(request, "cube")
         for target, time in itertools.product(("cube", "board"), (0.0, 0.9)):
             view = CoachView(target)

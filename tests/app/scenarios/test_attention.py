@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from app.errors import AppError
-from app.pipeline.attention import LOOKS, Attention
+from app.pipeline.attention import LOOK_CHOICES, Attention
 from characters import CharacterCommand
 from tests.characters.commands import command
 from tracking import CubeControls, CubeState
@@ -85,7 +85,7 @@ def test_it_looks_at_nothing_before_the_table_is_known_or_when_told_so():
 
 
 def test_a_look_that_is_none_is_refused():
-    with pytest.raises(AppError, match=", ".join(LOOKS)):
+    with pytest.raises(AppError, match=", ".join(LOOK_CHOICES)):
         Attention("sky", EDGE)
 
 

@@ -16,7 +16,7 @@ from app.scenarios import SCENARIOS
 from app.session import SessionOptions, messages, session_info, start_over_times
 from app.session.bundled import bundled
 from app.session.encoding import MESSAGE_TYPES, decode, encode
-from app.session.replay_inputs import STARTS, read_replay_inputs
+from app.session.replay_inputs import START_STAGES, read_replay_inputs
 from app.ui.screen import NullScreen
 from tracking import open_source
 
@@ -50,7 +50,7 @@ def test_a_replay_agrees_with_what_was_recorded(name):
             assert_close(topic, time, one, other)
 
 
-@pytest.mark.parametrize("start", STARTS)
+@pytest.mark.parametrize("start", START_STAGES)
 def test_a_replay_may_start_from_any_stage(short_session, start):
     """What comes after the start is computed again, and is the same."""
     with open_source(str(short_session)) as source:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from characters import Character, CharacterError, Clip, Pose
 from characters.rendering.portrait import PAPER_BGR, PortraitRenderer
-from characters.rendering.portrait_camera import MARGIN, PortraitCamera
+from characters.rendering.portrait_camera import MARGIN_SHARE, PortraitCamera
 
 SIZE = (90, 120)
 
@@ -72,9 +72,9 @@ def test_a_camera_sees_all_points_from_the_smallest_distance(points, elevation, 
     assert (seen[:, 2] > 0.03).all()
     pixels = (seen / seen[:, 2:] @ framing.matrix.T)[:, :2] + 0.5
     shares = np.abs(2.0 * pixels / (width, height) - 1.0).max()
-    assert shares <= 1.0 - 2.0 * MARGIN + 1e-6
+    assert shares <= 1.0 - 2.0 * MARGIN_SHARE + 1e-6
     if np.ptp(seen[:, :2], axis=0).max() > 0.1:  # else the nearest point limits the distance
-        assert shares >= 1.0 - 2.0 * MARGIN - 1e-6
+        assert shares >= 1.0 - 2.0 * MARGIN_SHARE - 1e-6
 
 
 @pytest.mark.parametrize("stretch", [(1.0, 1.0, 1.0), (1.0, 1.0, 6.0), (0.2, 5.0, 0.2)])
