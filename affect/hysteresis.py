@@ -4,7 +4,7 @@ from typing import Literal
 
 Label = Literal["angry", "neutral", "happy"]
 
-LABELS: tuple[Label, ...] = ("neutral", "happy", "angry")
+THESIS_LABELS: tuple[Label, ...] = ("neutral", "happy", "angry")
 """The labels; the first is the initial one."""
 
 HAPPY_ABOVE = 0.33

@@ -2,18 +2,17 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, NamedTuple
 
 from affect.emotion import Emotion
 from affect.errors import AffectError
-from affect.hysteresis import next_label
+from affect.hysteresis import Label, next_label
 
 Face = Literal["neutral", "happy", "sad", "angry", "surprised", "afraid", "disgusted"]
-Simple = Literal["neutral", "happy", "angry"]
 
-SIMPLE_FACES: Mapping[Face, Simple] = MappingProxyType(
+LABEL_OF_FACE: Mapping[Face, Label] = MappingProxyType(
     {
         "neutral": "neutral",
         "happy": "happy",
@@ -24,9 +23,9 @@ SIMPLE_FACES: Mapping[Face, Simple] = MappingProxyType(
         "disgusted": "angry",
     }
 )
-"""What a robot with the three moods of the thesis shows for each face. Anger, fear and disgust are
-shown as angry: unpleasant and aroused. Sadness and surprise are shown as neutral: neither the angry
-nor the happy motion fits them."""
+"""What a robot that knows only the three labels of the thesis shows for each face. Anger, fear and
+disgust are shown as angry: unpleasant and aroused. Sadness and surprise are shown as neutral:
+neither the angry nor the happy motion fits them."""
 
 
 class Word(NamedTuple):
@@ -48,10 +47,10 @@ class Word(NamedTuple):
     """The label set that it belongs to; "words" for what robots call their moods."""
 
 
-_RIM = 0.8
-_SLANT = round(_RIM * math.sqrt(0.5), 3)
+_CIRCLE_RADIUS = 0.8
+_DIAGONAL_OFFSET = round(_CIRCLE_RADIUS * math.sqrt(0.5), 3)
 
-TABLE: tuple[Word, ...] = (
+WORD_TABLE: tuple[Word, ...] = (
     # The three of the thesis (Fernández-Baena 2015, section 5.3). Robots receive these places;
     # which of the three is shown depends on the valence alone (`next_label`).
     Word("neutral", 0.0, 0.0, "neutral", "thesis"),
@@ -70,14 +69,14 @@ TABLE: tuple[Word, ...] = (
     # The eight directions of the circumplex (Russell 1980), 45° apart; the
     # radius and some of the words are ours.
     Word("neutral", 0.0, 0.0, "neutral", "circumplex"),
-    Word("pleased", _RIM, 0.0, "happy", "circumplex"),
-    Word("excited", _SLANT, _SLANT, "happy", "circumplex"),
-    Word("alert", 0.0, _RIM, "surprised", "circumplex"),
-    Word("distressed", -_SLANT, _SLANT, "angry", "circumplex"),
-    Word("displeased", -_RIM, 0.0, "angry", "circumplex"),
-    Word("depressed", -_SLANT, -_SLANT, "sad", "circumplex"),
-    Word("sleepy", 0.0, -_RIM, "neutral", "circumplex"),
-    Word("relaxed", _SLANT, -_SLANT, "neutral", "circumplex"),
+    Word("pleased", _CIRCLE_RADIUS, 0.0, "happy", "circumplex"),
+    Word("excited", _DIAGONAL_OFFSET, _DIAGONAL_OFFSET, "happy", "circumplex"),
+    Word("alert", 0.0, _CIRCLE_RADIUS, "surprised", "circumplex"),
+    Word("distressed", -_DIAGONAL_OFFSET, _DIAGONAL_OFFSET, "angry", "circumplex"),
+    Word("displeased", -_CIRCLE_RADIUS, 0.0, "angry", "circumplex"),
+    Word("depressed", -_DIAGONAL_OFFSET, -_DIAGONAL_OFFSET, "sad", "circumplex"),
+    Word("sleepy", 0.0, -_CIRCLE_RADIUS, "neutral", "circumplex"),
+    Word("relaxed", _DIAGONAL_OFFSET, -_DIAGONAL_OFFSET, "neutral", "circumplex"),
     # Ekman's six basic emotions (1992). The plane hardly separates fear from anger (ALMA's places
     # are 0.13 apart; they differ in dominance), so ours are further apart: fear has more arousal.
     Word("neutral", 0.0, 0.0, "neutral", "ekman"),
@@ -135,7 +134,7 @@ class LabelSet:
     by_valence: bool = False
     """Whether valence alone decides, by the thresholds of the thesis."""
 
-    start: str = field(default="neutral")
+    start: str = "neutral"
     """The initial label."""
 
     def next(self, label: str, emotion: Emotion, hysteresis: float) -> str:
@@ -157,7 +156,7 @@ class LabelSet:
 
 
 def _label_set(name: str, hub: str | None = None, by_valence: bool = False) -> LabelSet:
-    places = {row.word: (row.valence, row.arousal) for row in TABLE if row.set == name}
+    places = {row.word: (row.valence, row.arousal) for row in WORD_TABLE if row.set == name}
     return LabelSet(name, MappingProxyType(places), hub, by_valence)
 
 

@@ -13,9 +13,9 @@ BUNDLED_FOLDER = Path(__file__).parent / "personalities"
 """Folder of the bundled personalities."""
 
 _AXES = ("valence", "arousal")
-_TEXTS = ("name", "description", "labels", "arousal")
-_NUMBERS = {"hysteresis": "hysteresis", "dwell_s": "dwell"}
-_TABLES = ("temperament", "half_life_s", "gains", "events", "movement", "ocean")
+_TEXT_KEYS = ("name", "description", "labels", "arousal")
+_NUMBER_FIELDS = {"hysteresis": "hysteresis", "dwell_s": "dwell"}
+_TABLE_KEYS = ("temperament", "half_life_s", "gains", "events", "movement", "ocean")
 
 
 def bundled() -> tuple[str, ...]:
@@ -37,10 +37,10 @@ def bundled_text(name: str) -> str:
 def fields_of(document: Mapping[str, Any], source: str) -> dict[str, Any]:
     """Return the fields of `Personality` in a TOML document; errors name it as `source`."""
     table = TomlTable(document, source)
-    table.only(*_TEXTS, *_NUMBERS, *_TABLES)
+    table.only(*_TEXT_KEYS, *_NUMBER_FIELDS, *_TABLE_KEYS)
     fields: dict[str, Any] = {"name": Path(source).stem}
-    fields |= {key: table.text(key) for key in _TEXTS if key in table}
-    fields |= {field: table.number(key) for key, field in _NUMBERS.items() if key in table}
+    fields |= {key: table.text(key) for key in _TEXT_KEYS if key in table}
+    fields |= {field: table.number(key) for key, field in _NUMBER_FIELDS.items() if key in table}
     if "ocean" in table:
         traits = table.table("ocean", *vars(Ocean()))
         fields["ocean"] = Ocean(**{key: traits.number(key, 0.0, 1.0) for key in traits.names()})

@@ -13,7 +13,7 @@ import numpy as np
 from rich.console import Console
 
 from affect import Emotion
-from affect.words import PLACES, closest_word
+from affect.words import WORD_PLACES, closest_word
 from app.ui.contact_sheets import ContactSheets, Image, save, stacked
 from characters import (
     ActionIntent,
@@ -97,9 +97,9 @@ def draw_moods(sheets: ContactSheets, cast: Iterable[Character]) -> Image:
 def _mood_pose(character: Character, label: str) -> Pose:
     """Return a character's pose in a settled mood, with its eyes open."""
     animator = Animator(character, place=RootDelta())
-    emotion = Emotion(*PLACES[label], label)
+    emotion = Emotion(*WORD_PLACES[label], label)
     known = closest_word(animator.actions, emotion)
-    action = known if known in PLACES and known is not None else "idle"
+    action = known if known in WORD_PLACES and known is not None else "idle"
     gaze = np.array([0.1, 0.16, 1.0])
     first, last = (round(time * 30) for time in SETTLED_S)
     poses = [

@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from affect import Emotion
-from affect.words import PLACES
+from affect.words import WORD_PLACES
 from robot import Robot, RobotError, Telemetry, connect
 
 POLL_INTERVAL_S = 0.05
@@ -67,7 +67,7 @@ def _describe(robot: Robot) -> str:
 
 def _try_mood(robot: Robot, word: str, seconds: float, console: Console) -> str:
     """Request a mood, watch the telemetry, and return the result in a line."""
-    emotion = Emotion(*PLACES.get(word, (0.0, 0.0)), word)
+    emotion = Emotion(*WORD_PLACES.get(word, (0.0, 0.0)), word)
     began = time.monotonic()
     robot.express(emotion)
     acknowledged_s = shown_s = math.nan

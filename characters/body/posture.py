@@ -29,12 +29,12 @@ AMPLITUDE_OCTAVES = 0.7
 MAX_HEAD_DROP_RAD = math.radians(16.0)
 """How far a head drops at most [rad]; it is raised by less."""
 
-NEGLIGIBLE = 1e-4
+NEGLIGIBLE_AFFECT = 1e-4
 """Valence and arousal, and their rates, below which a body is neutral again."""
 
 # Turns of joints about the body's axes [degrees]: of a fully erect body, and of a fully tense one.
 # A slumped body is the opposite of an erect one.
-_ERECT: dict[str, Degrees] = {
+_ERECT_DEG: dict[str, Degrees] = {
     "spine": (-4.0, 0.0, 0.0),
     "chest": (-7.0, 0.0, 0.0),
     "upperChest": (-4.0, 0.0, 0.0),
@@ -43,7 +43,7 @@ _ERECT: dict[str, Degrees] = {
     "leftUpperArm": (-2.0, 0.0, 3.0),
     "rightUpperArm": (-2.0, 0.0, -3.0),
 }
-_TENSE: dict[str, Degrees] = {
+_TENSE_DEG: dict[str, Degrees] = {
     "spine": (3.0, 0.0, 0.0),
     "chest": (3.0, 0.0, 0.0),
     "neck": (4.0, 0.0, 0.0),
@@ -53,13 +53,13 @@ _TENSE: dict[str, Degrees] = {
     "rightUpperArm": (0.0, 0.0, -9.0),
 }
 # The trunk of a quadruped carries the forelegs too, so only neck, head and tail turn.
-_ERECT_QUADRUPED: dict[str, Degrees] = {
+_QUADRUPED_ERECT_DEG: dict[str, Degrees] = {
     "neck": (-15.0, 0.0, 0.0),
     "head": (5.0, 0.0, 0.0),
     "tail1": (14.0, 0.0, 0.0),
     "tail2": (8.0, 0.0, 0.0),
 }
-_TENSE_QUADRUPED: dict[str, Degrees] = {
+_QUADRUPED_TENSE_DEG: dict[str, Degrees] = {
     "neck": (12.0, 0.0, 0.0),
     "head": (-3.0, 0.0, 0.0),
     "tail1": (10.0, 0.0, 0.0),
@@ -126,7 +126,7 @@ class ExpressivityFilter:
             return NEUTRAL_EXPRESSIVITY
         self._valence = damped_spring(*self._valence, valence, elapsed, EXPRESSIVITY_LAG_S)
         self._arousal = damped_spring(*self._arousal, arousal, elapsed, EXPRESSIVITY_LAG_S)
-        if neutral and max(map(abs, (*self._valence, *self._arousal))) < NEGLIGIBLE:
+        if neutral and max(map(abs, (*self._valence, *self._arousal))) < NEGLIGIBLE_AFFECT:
             self._valence = self._arousal = (0.0, 0.0)
             self.value = NEUTRAL_EXPRESSIVITY
         else:
@@ -142,8 +142,8 @@ class Posture:
 
     def __init__(self, skeleton: Skeleton, anatomy: Anatomy, moving: NDArray[np.intp]) -> None:
         quadruped = anatomy.kind == "quadruped"
-        erect = _joints(_ERECT_QUADRUPED if quadruped else _ERECT, anatomy)
-        tense = _joints(_TENSE_QUADRUPED if quadruped else _TENSE, anatomy)
+        erect = _joints(_QUADRUPED_ERECT_DEG if quadruped else _ERECT_DEG, anatomy)
+        tense = _joints(_QUADRUPED_TENSE_DEG if quadruped else _TENSE_DEG, anatomy)
         joints = list(dict.fromkeys([*moving.tolist(), *erect, *tense]))
         self.joints = np.array(joints, np.intp)
         """The joints that turn, (n,): first those that turn anyway."""

@@ -21,7 +21,7 @@ EFFORT_LAG_S = 6.0
 
 # Turns of joints by a full breath [degrees]. The chest opens; neck and head compensate, so that the
 # eyes stay level; the arms stay vertical.
-_BREATH: dict[str, Degrees] = {
+_BREATH_DEG: dict[str, Degrees] = {
     "spine": (-0.7, 0.0, 0.0),
     "chest": (-1.3, 0.0, 0.0),
     "upperChest": (-0.8, 0.0, 0.0),
@@ -33,9 +33,12 @@ _BREATH: dict[str, Degrees] = {
     "rightUpperArm": (0.0, 0.0, 1.2),
 }
 # The trunk of a quadruped carries the forelegs too: only neck and head move.
-_BREATH_QUADRUPED: dict[str, Degrees] = {"neck": (-1.2, 0.0, 0.0), "head": (0.8, 0.0, 0.0)}
+_QUADRUPED_BREATH_DEG: dict[str, Degrees] = {
+    "neck": (-1.2, 0.0, 0.0),
+    "head": (0.8, 0.0, 0.0),
+}
 # Amplitudes of the sway of joints about the same axes [degrees]; each has waves of its own.
-_SWAY: dict[str, Degrees] = {
+_SWAY_DEG: dict[str, Degrees] = {
     "spine": (0.35, 0.5, 0.45),
     "chest": (0.3, 0.5, 0.3),
     "neck": (0.5, 0.8, 0.5),
@@ -45,7 +48,7 @@ _SWAY: dict[str, Degrees] = {
     "leftUpperArm": (0.9, 0.5, 0.5),
     "rightUpperArm": (0.9, 0.5, 0.5),
 }
-_WAVES = 3  # sines in each sway
+_WAVE_COUNT = 3  # sines in each sway
 _MIN_WAVE_HZ, _MAX_WAVE_HZ = 0.05, 0.33
 
 
@@ -57,9 +60,9 @@ class BodySway:
 
     def __init__(self, skeleton: Skeleton, anatomy: Anatomy, seed: int) -> None:
         quadruped = anatomy.kind == "quadruped"
-        breath = _BREATH_QUADRUPED if quadruped else _BREATH
-        above = ("neck", "head") if quadruped else tuple(_SWAY)
-        names = [n for n in {**breath, **_SWAY} if n in breath or n in above]
+        breath = _QUADRUPED_BREATH_DEG if quadruped else _BREATH_DEG
+        above = ("neck", "head") if quadruped else tuple(_SWAY_DEG)
+        names = [n for n in {**breath, **_SWAY_DEG} if n in breath or n in above]
         found = [(name, anatomy.joint(name)) for name in names]
         there = [(name, joint) for name, joint in found if joint is not None]
         self.joints = np.array([joint for _, joint in there], np.intp)
@@ -67,11 +70,11 @@ class BodySway:
         axes = body_axes(skeleton, self.joints)
         none = (0.0, 0.0, 0.0)
         self._breath = rotation_vectors(axes, [breath.get(name, none) for name, _ in there])
-        sway = np.array([_SWAY.get(name, none) for name, _ in there]).reshape(-1, 3)
+        sway = np.array([_SWAY_DEG.get(name, none) for name, _ in there]).reshape(-1, 3)
         # One wave for each axis of each joint: (n, 3 axes, 3).
         self._sway = np.radians(sway)[..., None] * np.swapaxes(axes, -1, -2)
         rng = np.random.default_rng(seed)
-        self._rates = rng.uniform(_MIN_WAVE_HZ, _MAX_WAVE_HZ, (_WAVES, *sway.shape)) * math.tau
+        self._rates = rng.uniform(_MIN_WAVE_HZ, _MAX_WAVE_HZ, (_WAVE_COUNT, *sway.shape)) * math.tau
         self._phases = rng.uniform(0.0, math.tau, self._rates.shape)
         self._time, self._phase, self._effort = 0.0, float(rng.uniform()), 0.0
         self.breath = 0.0
@@ -102,7 +105,7 @@ class BodySway:
         vectors = self._breath * (depth * expressivity.amplitude)
         if calm > 1e-3:
             waves = np.sin(self._rates * self._time + self._phases).sum(0)
-            waves *= calm * expressivity.amplitude / math.sqrt(_WAVES)
+            waves *= calm * expressivity.amplitude / math.sqrt(_WAVE_COUNT)
             vectors += np.einsum("ja,jak->jk", waves, self._sway)
         if posture is not None:
             posture[: len(vectors)] += vectors

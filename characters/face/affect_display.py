@@ -12,7 +12,7 @@ from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from characters.skeleton.pose import Array
 from characters.smoothing import damped_spring, low_pass
 
-RECIPES: dict[str, tuple[float, ...]] = {
+FACE_RECIPES: dict[str, tuple[float, ...]] = {
     #            happy angry  sad  surprised relaxed lids
     "happy":     (1.00, 0.00, 0.00, 0.00, 0.00, 0.00),
     "excited":   (0.90, 0.00, 0.00, 0.30, 0.00, 0.00),
@@ -45,9 +45,9 @@ _SYNONYMS = {
     "distress": "sad",
     "pity": "sad",
 }
-RECIPES.update((word, RECIPES[synonym]) for word, synonym in _SYNONYMS.items())
+FACE_RECIPES.update((word, FACE_RECIPES[synonym]) for word, synonym in _SYNONYMS.items())
 
-EMOTIONAL_WORDS = frozenset(RECIPES)
+EMOTIONAL_WORDS = frozenset(FACE_RECIPES)
 """Words with an expression of their own; an action named so shows the emotion by its clip."""
 
 NEUTRAL_SHARE = 0.6
@@ -71,22 +71,22 @@ FULL_EXPRESSION = 0.5
 YIELD_LAG_S, RETURN_LAG_S = 0.15, 0.7
 """Lags with which the emotion's face yields to an action, and returns [s]."""
 
-NEGLIGIBLE = 1e-4
+NEGLIGIBLE_WEIGHT = 1e-4
 """Weight below which an expression is not visible."""
 
-_CHANNELS = len(EXPRESSIONS) + 1  # and the lids
-_NONE = (0.0,) * _CHANNELS
-_SURPRISED = EXPRESSIONS.index("surprised")
+_CHANNEL_COUNT = len(EXPRESSIONS) + 1  # and the lids
+_ZERO_WEIGHTS = (0.0,) * _CHANNEL_COUNT
+_SURPRISED_CHANNEL = EXPRESSIONS.index("surprised")
 
 
 def expression_weights(emotion: Emotion) -> tuple[float, ...]:
     """Return the weights of `EXPRESSIONS`, and the closure of the lids, for an emotion, (6,).
 
-    A word of `RECIPES` has a face of its own. "neutral" shows a share of what the place in the
+    A word of `FACE_RECIPES` has a face of its own. "neutral" shows a share of what the place in the
     plane of valence and arousal gives; another word, or none, all of it.
     """
     place = emotion.valence, emotion.arousal
-    recipe = RECIPES.get(emotion.word or "")
+    recipe = FACE_RECIPES.get(emotion.word or "")
     if recipe is not None:
         strength = min(max(math.hypot(*place) / FULL_DISTANCE, MIN_STRENGTH), 1.0)
         return tuple(strength * part for part in recipe)
@@ -127,7 +127,7 @@ class AffectDisplay:
             for number, row in zip(found.numbers.tolist(), found.weights.tolist(), strict=True)
         ]
         self._closing: list[float] = (blinks[found.numbers] @ found.weights).tolist()
-        self._weights, self._rates = [0.0] * _CHANNELS, [0.0] * _CHANNELS
+        self._weights, self._rates = [0.0] * _CHANNEL_COUNT, [0.0] * _CHANNEL_COUNT
         self._room = 1.0
         self._visible = False
 
@@ -138,7 +138,7 @@ class AffectDisplay:
 
     def update(self, elapsed: float, emotion: Emotion | None) -> None:
         """Advance by a time [s] towards the face of an emotion; None for that of the clips."""
-        targets = _NONE if emotion is None else expression_weights(emotion)
+        targets = _ZERO_WEIGHTS if emotion is None else expression_weights(emotion)
         asked = any(targets)
         if not self._visible and not asked:
             return
@@ -147,9 +147,9 @@ class AffectDisplay:
                 self._weights[channel], self._rates[channel], target, elapsed, FACE_LAG_S
             )
         largest = max(map(abs, (*self._weights, *self._rates)))
-        self._visible = asked or largest > NEGLIGIBLE
+        self._visible = asked or largest > NEGLIGIBLE_WEIGHT
         if not self._visible:
-            self._weights, self._rates = [0.0] * _CHANNELS, [0.0] * _CHANNELS
+            self._weights, self._rates = [0.0] * _CHANNEL_COUNT, [0.0] * _CHANNEL_COUNT
 
     def apply(
         self, weights: Array, elapsed: float, closed: float, acting: float
@@ -171,7 +171,7 @@ class AffectDisplay:
         *shown, lowered = [min(max(value * room, 0.0), 1.0) for value in self._weights]
         left = 1.0 - min(sum(shown), 1.0)
         closing = sum(map(mul, shown, self._closing))
-        shown[_SURPRISED] *= 1.0 - closed  # wide eyes would not close
+        shown[_SURPRISED_CHANNEL] *= 1.0 - closed  # wide eyes would not close
         for number, parts in self._parts:
             values[number] *= left
             for column, weight in parts:

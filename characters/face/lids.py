@@ -12,10 +12,10 @@ from characters.skeleton.pose import Array
 
 # Normalised names of VRM, ARKit and Mixamo, Ready Player Me, VRoid, Character Creator and
 # MikuMikuDance (whose names are Japanese).
-_BOTH = ("blink", "eyeblink", "eyesblink", "eyesclosed", "eyeclosed", "eyesclose", "eyeclose",
-         "closeeyes", "fcleyeclose", "まばたき")  # fmt: skip
-_PAIRS = (*_BOTH, "blinkeye", "closeeye")
-_SIDES = (("left", "right"), ("l", "r"))
+_BOTH_EYES = ("blink", "eyeblink", "eyesblink", "eyesclosed", "eyeclosed", "eyesclose", "eyeclose",
+              "closeeyes", "fcleyeclose", "まばたき")  # fmt: skip
+_ONE_EYE_STEMS = (*_BOTH_EYES, "blinkeye", "closeeye")
+_SIDE_SUFFIXES = (("left", "right"), ("l", "r"))
 
 _MIN_CLOSED_QUANTILE = 0.1  # part of the lids that may be closed less than `blink_shares` says
 
@@ -38,11 +38,11 @@ class Lids:
         [1, 2]
         """
         found = numbers_by_name(morphs)
-        both = next((found[name] for name in _BOTH if name in found), None)
+        both = next((found[name] for name in _BOTH_EYES if name in found), None)
         pairs = (
             (found[stem + left], found[stem + right])
-            for stem in _PAIRS
-            for left, right in _SIDES
+            for stem in _ONE_EYE_STEMS
+            for left, right in _SIDE_SUFFIXES
             if stem + left in found and stem + right in found
         )
         return Lids(both, np.array(next(pairs, ()), np.intp))

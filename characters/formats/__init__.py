@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import Any
 
 from characters.formats.loading import MOTION_READERS, Performance, is_motion_only, load_motion
-from characters.model.character import READERS, WRITERS
+from characters.model.character import CHARACTER_READERS, CHARACTER_WRITERS
 
 
 def _deferred(module: str, function: str) -> Callable[..., Any]:
@@ -17,9 +17,11 @@ def _deferred(module: str, function: str) -> Callable[..., Any]:
     return lambda *arguments: getattr(import_module(f"{__name__}.{module}"), function)(*arguments)
 
 
-READERS |= dict.fromkeys((".glb", ".gltf", ".vrm"), _deferred("gltf.reading", "load_character"))
-WRITERS[".glb"] = _deferred("gltf.writing", "save")
-MOTION_READERS |= dict.fromkeys(READERS, _deferred("gltf.reading", "load_motion"))
+CHARACTER_READERS |= dict.fromkeys(
+    (".glb", ".gltf", ".vrm"), _deferred("gltf.reading", "load_character")
+)
+CHARACTER_WRITERS[".glb"] = _deferred("gltf.writing", "save")
+MOTION_READERS |= dict.fromkeys(CHARACTER_READERS, _deferred("gltf.reading", "load_motion"))
 MOTION_READERS |= {
     ".bvh": _deferred("mocap.bvh", "load_motion"),
     ".amc": _deferred("mocap.amc", "load_motion"),

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from characters.errors import CharacterError
-from characters.model.character import READERS
+from characters.model.character import CHARACTER_READERS
 from characters.motion.clip import Clip
 from characters.skeleton.pose import Skeleton
 
@@ -98,4 +98,4 @@ def load_motion(
 def is_motion_only(path: "str | Path") -> bool:
     """Return whether files of this suffix hold motions and no characters."""
     suffix = Path(path).suffix.lower()
-    return suffix in MOTION_READERS and suffix not in READERS
+    return suffix in MOTION_READERS and suffix not in CHARACTER_READERS

@@ -21,7 +21,7 @@ _ANGULAR_PER_ERROR = 2.0  # Angular for each radian of heading error
 _RADIUS_MARGIN = 1.4  # the circle to the target is so many times the turning circle
 # Speeds at which turning circles are measured; at the first the walker stops.
 _RADIUS_SPEEDS: list[float] = np.linspace(1.0, TOP_SPEED, 17).tolist()
-_SPEEDS = [IDLE_SPEED, *_RADIUS_SPEEDS]
+_CIRCLE_SPEEDS = [IDLE_SPEED, *_RADIUS_SPEEDS]
 # A turn to a target farther behind continues in the direction in which it started.
 _MAX_REVERSING_ERROR = math.radians(150)
 
@@ -64,7 +64,7 @@ class Steering:
     def __init__(self, gaits: Gaits, scale: float) -> None:
         self._gaits = gaits
         self._scale = scale
-        self._circles = [gaits.radius(speed) * scale for speed in _SPEEDS]
+        self._circles = [gaits.radius(speed) * scale for speed in _CIRCLE_SPEEDS]
         self._radii = list(accumulate(self._circles[1:], max))
         self._arrived = False
         self._side = 1.0
@@ -92,7 +92,7 @@ class Steering:
         if stop:
             speed = min(speed, self._fastest_before(distance - ARRIVAL_DISTANCE_M))
         speed = max(speed, IDLE_SPEED)
-        circle = interpolate(speed, _SPEEDS, self._circles)
+        circle = interpolate(speed, _CIRCLE_SPEEDS, self._circles)
         stride = min(1.0, needed / (_RADIUS_MARGIN * circle))
         angular = min(max(_ANGULAR_PER_ERROR * error, -MAX_ANGULAR_RAD), MAX_ANGULAR_RAD)
         return SteeringOutput(speed, angular, stride)

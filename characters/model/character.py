@@ -16,10 +16,10 @@ from characters.motion.trees.plan import Plan
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Skeleton
 
-READERS: "dict[str, Callable[[Path], Character]]" = {}
+CHARACTER_READERS: "dict[str, Callable[[Path], Character]]" = {}
 """Readers of a character by the suffix of the file; `characters.formats` registers its own."""
 
-WRITERS: "dict[str, Callable[[Character, Path], None]]" = {}
+CHARACTER_WRITERS: "dict[str, Callable[[Character, Path], None]]" = {}
 """Writers of a character by the suffix of the file."""
 
 
@@ -65,7 +65,7 @@ class Character:
             If there is no such character or file, or it is not a skinned glTF.
         """
         path, bundled = Path(name_or_path), Character.bundled()
-        reader = READERS.get(path.suffix.lower())
+        reader = CHARACTER_READERS.get(path.suffix.lower())
         if reader is not None:
             return _with_sidecar(reader(path), path)
         if path.suffix or len(path.parts) > 1:
@@ -80,7 +80,7 @@ class Character:
             )
         asset = resources.files("characters") / "assets" / f"{name_or_path}.glb"
         with resources.as_file(asset) as file:
-            return _with_sidecar(READERS[".glb"](file), file)
+            return _with_sidecar(CHARACTER_READERS[".glb"](file), file)
 
     @staticmethod
     def bundled() -> tuple[str, ...]:
@@ -98,7 +98,7 @@ class Character:
         CharacterError
             If its arrays do not fit together or the file cannot be written.
         """
-        WRITERS[".glb"](self, Path(path))
+        CHARACTER_WRITERS[".glb"](self, Path(path))
 
     @cached_property
     def bounds(self) -> Array:
@@ -123,7 +123,7 @@ class Character:
 
 
 def _known_suffixes() -> str:
-    *others, last = READERS
+    *others, last = CHARACTER_READERS
     return f"{', '.join(others)} or {last}"
 
 

@@ -1,20 +1,17 @@
 """The mirror of a character."""
 
 from collections.abc import Mapping
-from types import MappingProxyType
 
 import numpy as np
 
 from characters.model.bind_pose import bind_placements
 from characters.model.character import Character
-from characters.motion.mirror import LENGTH_TOLERANCE, Mirror
+from characters.motion.mirror import LENGTH_TOLERANCE, NO_PAIRS, Mirror
 from characters.skeleton.pose import Pose
-
-_NO_PAIRS: Mapping[str, str] = MappingProxyType({})
 
 
 def mirror_of(
-    character: Character, pairs: Mapping[str, str] = _NO_PAIRS, symmetric: Pose | None = None
+    character: Character, pairs: Mapping[str, str] = NO_PAIRS, symmetric: Pose | None = None
 ) -> Mirror:
     """Return the mirror of a character, by a pose in which its skin is symmetric.
 

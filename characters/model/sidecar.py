@@ -10,8 +10,8 @@ from typing import Any
 from characters.errors import CharacterError
 from characters.model.files import read_file
 from characters.motion.trees.plan import Plan
-from characters.motion.trees.reading import TABLES, read_plan
-from characters.skeleton.anatomy import PARTS
+from characters.motion.trees.reading import PLAN_TABLES, read_plan
+from characters.skeleton.anatomy import BODY_PARTS
 
 _MAX_BYTES = 1_000_000  # larger files are not written by hand
 
@@ -23,16 +23,16 @@ def read_sidecar(path: Path, clips: Collection[str]) -> tuple[Mapping[str, str],
     """
     document = _document(path)
     for key in document:
-        if key not in ("joints", *TABLES):
+        if key not in ("joints", *PLAN_TABLES):
             raise CharacterError(
-                f"{path}: [{key}] is not a known table; there are joints, {', '.join(TABLES)}"
+                f"{path}: [{key}] is not a known table; there are joints, {', '.join(PLAN_TABLES)}"
             )
     joints = document.get("joints", {})
     if not isinstance(joints, dict) or not all(isinstance(j, str) for j in joints.values()):
         raise CharacterError(f'{path}: joints: write part = "name of a joint"')
     for part in joints:
-        if part not in PARTS:
-            near = difflib.get_close_matches(part, PARTS, 1)
+        if part not in BODY_PARTS:
+            near = difflib.get_close_matches(part, BODY_PARTS, 1)
             hint = f"; did you mean {near[0]!r}?" if near else ""
             raise CharacterError(f"{path}: joints.{part}: not a body part{hint}")
     return joints, read_plan(document, str(path), clips)

@@ -25,7 +25,8 @@ _QUATERNION_REFLECTION = np.array([1.0, -1.0, -1.0, 1.0])
 LENGTH_TOLERANCE = 1e-5
 """Relative difference below which two lengths count as equal."""
 
-_NONE: Mapping[str, str] = MappingProxyType({})
+NO_PAIRS: Mapping[str, str] = MappingProxyType({})
+"""No partners that are given by name."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Mirror:
 
     @staticmethod
     def of(
-        skeleton: Skeleton, morphs: tuple[str, ...] = (), pairs: Mapping[str, str] = _NONE
+        skeleton: Skeleton, morphs: tuple[str, ...] = (), pairs: Mapping[str, str] = NO_PAIRS
     ) -> "Mirror":
         """Return the mirror of a skeleton, with pairs found by positions and names.
 

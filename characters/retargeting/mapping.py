@@ -20,7 +20,7 @@ _LIMB_BONES = (
     (("UpperArm", "LowerArm"), ("LowerArm", "Hand")),
     (("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot")),
 )
-_TRUNK = ("hips", "spine", "chest", "upperChest", "neck", "head")
+_TRUNK_PARTS = ("hips", "spine", "chest", "upperChest", "neck", "head")
 
 Links = dict[int, tuple[int, int, float]]
 """Two joints of the source, and how far from the first to the second, by joint of the target."""
@@ -89,7 +89,9 @@ def _pairs(source: Rig, target: Rig) -> list[tuple[int, int]]:
     return unnamed_parts + [
         (joint, source.anatomy.joints[part])
         for part, joint in target.anatomy.joints.items()
-        if part in source.anatomy.joints and part not in _TRUNK and not part.startswith("tail")
+        if part in source.anatomy.joints
+        and part not in _TRUNK_PARTS
+        and not part.startswith("tail")
     ]
 
 
@@ -130,14 +132,14 @@ def _trunk_segments(*rigs: Rig) -> tuple[list[list[int]], ...]:
 
 def _trunk(rig: Rig) -> list[int]:
     """Return the joints from the hips to the head, or as far up as there are any."""
-    present = [j for part in _TRUNK if (j := rig.anatomy.joint(part)) is not None]
+    present = [j for part in _TRUNK_PARTS if (j := rig.anatomy.joint(part)) is not None]
     chain = rig.chain_to(max(present, key=lambda joint: len(rig.chain_to(joint))))
     hips = rig.anatomy.joints["hips"]
     return chain[chain.index(hips) :] if hips in chain else [hips]
 
 
 def _top_of_spine(rig: Rig) -> int | None:
-    present = [j for part in _TRUNK[1:4] if (j := rig.anatomy.joint(part)) is not None]
+    present = [j for part in _TRUNK_PARTS[1:4] if (j := rig.anatomy.joint(part)) is not None]
     return present[-1] if present else None
 
 

@@ -20,8 +20,8 @@ Kind = Literal["humanoid", "quadruped", "other"]
 SIDES = ("left", "right")
 """Both sides, as part names begin."""
 
-_TRUNK = ("hips", "spine", "chest", "upperChest", "neck", "head", "jaw")
-_SIDED = (
+_TRUNK_PARTS = ("hips", "spine", "chest", "upperChest", "neck", "head", "jaw")
+_SIDED_PARTS = (
     *("Eye", "Shoulder", "UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot", "Toes"),
     *(f"Front{part}" for part in ("Shoulder", "UpperLeg", "LowerLeg", "Foot", "Toes")),
     *(f"Thumb{part}" for part in ("Metacarpal", "Proximal", "Distal")),
@@ -32,21 +32,21 @@ _SIDED = (
     ),
 )
 
-PARTS = (
-    *_TRUNK,
-    *(side + part for side in SIDES for part in _SIDED),
+BODY_PARTS = (
+    *_TRUNK_PARTS,
+    *(side + part for side in SIDES for part in _SIDED_PARTS),
     *(f"tail{number}" for number in range(1, 33)),
 )
 """All part names."""
 
-_LEGS = tuple(side + part for side in SIDES for part in ("UpperLeg", "LowerLeg", "Foot"))
-_ARMS = tuple(side + part for side in SIDES for part in ("UpperArm", "LowerArm", "Hand"))
-_FORELEGS = tuple(
+_LEG_PARTS = tuple(side + part for side in SIDES for part in ("UpperLeg", "LowerLeg", "Foot"))
+_ARM_PARTS = tuple(side + part for side in SIDES for part in ("UpperArm", "LowerArm", "Hand"))
+_FORELEG_PARTS = tuple(
     side + part for side in SIDES for part in ("FrontUpperLeg", "FrontLowerLeg", "FrontFoot")
 )
-_NEEDED: dict[Kind, tuple[str, ...]] = {
-    "humanoid": ("hips", "spine", "head", *_LEGS, *_ARMS),
-    "quadruped": ("hips", "spine", "head", *_LEGS, *_FORELEGS),
+_NEEDED_PARTS: dict[Kind, tuple[str, ...]] = {
+    "humanoid": ("hips", "spine", "head", *_LEG_PARTS, *_ARM_PARTS),
+    "quadruped": ("hips", "spine", "head", *_LEG_PARTS, *_FORELEG_PARTS),
     "other": (),
 }
 
@@ -59,7 +59,7 @@ class Anatomy:
     """The kind of body."""
 
     joints: Mapping[str, int]
-    """Joint number by part, one of `PARTS`."""
+    """Joint number by part, one of `BODY_PARTS`."""
 
     @staticmethod
     def guess(skeleton: Skeleton, semantics: Mapping[str, str] | None = None) -> "Anatomy":
@@ -93,7 +93,7 @@ class Anatomy:
             for part, joint in guessed.items()
             if part not in known and joint not in fixed.values()
         } | fixed
-        ordered = {part: joints[part] for part in PARTS if part in joints}
+        ordered = {part: joints[part] for part in BODY_PARTS if part in joints}
         return Anatomy(_kind(ordered), ordered)
 
     def joint(self, part: str) -> int | None:
@@ -103,7 +103,7 @@ class Anatomy:
     @cached_property
     def missing(self) -> tuple[str, ...]:
         """Parts that a body of this kind should have and that were not found."""
-        return tuple(part for part in _NEEDED[self.kind] if part not in self.joints)
+        return tuple(part for part in _NEEDED_PARTS[self.kind] if part not in self.joints)
 
     @cached_property
     def parts(self) -> Mapping[int, str]:
@@ -118,18 +118,18 @@ class Anatomy:
 
 
 def _kind(joints: Mapping[str, int]) -> Kind:
-    if any(part in joints for part in _FORELEGS):
+    if any(part in joints for part in _FORELEG_PARTS):
         return "quadruped"
     legs = all(part in joints for part in ("hips", "leftUpperLeg", "rightUpperLeg"))
-    upper = any(part in joints for part in ("spine", "head", *_ARMS))
+    upper = any(part in joints for part in ("spine", "head", *_ARM_PARTS))
     return "humanoid" if legs and upper else "other"
 
 
 def _declared_joint(part: str, name: str, skeleton: Skeleton) -> int | None:
     """Return the joint that is declared as a part; refuse unknown parts and joints."""
-    if part not in PARTS:
+    if part not in BODY_PARTS:
         raise CharacterError(
-            f"joints: no body part is named {part!r}{_near(part, PARTS)}; parts are named "
+            f"joints: no body part is named {part!r}{_near(part, BODY_PARTS)}; parts are named "
             "as in VRM 1.0, see docs/your-own-character.md"
         )
     if not name:

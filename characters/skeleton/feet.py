@@ -12,8 +12,8 @@ from characters.skeleton.pose import Skeleton
 Feet = Sequence[Sequence[int]]
 """The joints of each foot, from the ankle on; a paw may have one joint only."""
 
-_EXTREMITY = re.compile(r"(?i:foot|toe|paw|hoof|hand)")
-_FINGER = re.compile(r"(?i:thumb|finger|index|middle|ring|pinky|palm)")
+_EXTREMITY_NAME = re.compile(r"(?i:foot|toe|paw|hoof|hand)")
+_FINGER_NAME = re.compile(r"(?i:thumb|finger|index|middle|ring|pinky|palm)")
 _MAX_FOOT_HEIGHT = 0.15  # body heights above the lowest foot: what is higher is a hand
 
 
@@ -26,11 +26,11 @@ def find_feet(skeleton: Skeleton) -> tuple[tuple[int, ...], ...]:
     named = [
         joint
         for joint, name in enumerate(skeleton.names)
-        if _EXTREMITY.search(name) and not _FINGER.search(name)
+        if _EXTREMITY_NAME.search(name) and not _FINGER_NAME.search(name)
     ]
     if not named:
         parts = Anatomy.guess(skeleton).joints
-        named = sorted(joint for part, joint in parts.items() if _EXTREMITY.search(part))
+        named = sorted(joint for part, joint in parts.items() if _EXTREMITY_NAME.search(part))
     feet: dict[int, list[int]] = {}
     for joint in named:
         parent = skeleton.parents[joint]

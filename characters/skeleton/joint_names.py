@@ -13,19 +13,19 @@ def _words(line: str) -> frozenset[str]:
     return frozenset(line.split())
 
 
-_WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
-_SIDES = {"left": "left", "l": "left", "right": "right", "r": "right"}
-_FILLERS = _words(
+_NAME_WORD = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|\d+")
+_SIDE_OF = {"left": "left", "l": "left", "right": "right", "r": "right"}
+_FILLER_WORDS = _words(
     "mixamorig bip bip01 bone bones b j jnt joint jt armature skeleton def org c center centre m "
     "valve valvebiped biped character rig sk humanoid bn cc base bend"
 )
 # Helper joints: ends, twists, IK targets, cloth, meshes.
-_AUXILIARY = _words(
+_AUXILIARY_WORDS = _words(
     "end nub site tip ik fk pole target twist roll helper socket prop weapon ctrl control "
     "effector mch sec adj offset mesh geo hair skirt bust breast cloth top lid eyelid brow "
     "eyebrow lash corner inhand vis tweak"
 )
-_FRONT, _HIND = frozenset({"front", "fore"}), frozenset({"back", "hind", "rear"})
+_FRONT_WORDS, _HIND_WORDS = frozenset({"front", "fore"}), frozenset({"back", "hind", "rear"})
 
 LEG_ROLES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 """Joints of a leg from the hip down."""
@@ -33,7 +33,7 @@ LEG_ROLES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 ARM_ROLES = ("Shoulder", "UpperArm", "LowerArm", "Hand")
 """Joints of an arm from the collarbone down."""
 
-_FINGERS = {
+_FINGER_OF = {
     "thumb": "Thumb",
     "index": "Index",
     "pointer": "Index",
@@ -89,8 +89,8 @@ LEG_FIT = _by_word(_LEG_WORDS)
 ARM_FIT = _by_word(_ARM_WORDS)
 """How well a word fits each of `ARM_ROLES`, 0…1."""
 
-_TRUNK = {word: part for words, part in _TRUNK_WORDS.items() for word in words.split()}
-_KNOWN = frozenset({*LEG_FIT, *ARM_FIT, *_TRUNK, *_FINGERS, "hipjoint", "fingers"})
+_TRUNK_OF = {word: part for words, part in _TRUNK_WORDS.items() for word in words.split()}
+_KNOWN_WORDS = frozenset({*LEG_FIT, *ARM_FIT, *_TRUNK_OF, *_FINGER_OF, "hipjoint", "fingers"})
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ class JointName:
     @property
     def trunk(self) -> str:
         """The part of the trunk or head, "" if none."""
-        return "" if self.auxiliary else _TRUNK.get(self.word, "")
+        return "" if self.auxiliary else _TRUNK_OF.get(self.word, "")
 
     @property
     def finger(self) -> str:
@@ -130,7 +130,7 @@ class JointName:
         if self.auxiliary:
             return ""
         word = self.word.removeprefix("hand").removeprefix("finger").removesuffix("finger")
-        return _FINGERS.get(re.sub(r"(proximal|intermediate|distal|metacarpal)$", "", word), "")
+        return _FINGER_OF.get(re.sub(r"(proximal|intermediate|distal|metacarpal)$", "", word), "")
 
 
 @cache
@@ -143,16 +143,16 @@ def read_name(name: str) -> JointName:
     True
     """
     own = re.split(r"[:|]", name)[-1]
-    words = [word.lower() for word in _WORD.findall(own) if not word.isdigit()]
+    words = [word.lower() for word in _NAME_WORD.findall(own) if not word.isdigit()]
     words = [piece for word in words for piece in _split_side(word)]
-    sides = [_SIDES[word] for word in words if word in _SIDES]
-    auxiliary = not _AUXILIARY.isdisjoint(words)
-    rest = [word for word in words if word not in _SIDES and word not in _FILLERS]
+    sides = [_SIDE_OF[word] for word in words if word in _SIDE_OF]
+    auxiliary = not _AUXILIARY_WORDS.isdisjoint(words)
+    rest = [word for word in words if word not in _SIDE_OF and word not in _FILLER_WORDS]
     front = False
-    if len(rest) > 1 and "".join(rest) not in _KNOWN and "".join(rest[1:]) in _KNOWN:
+    if len(rest) > 1 and "".join(rest) not in _KNOWN_WORDS and "".join(rest[1:]) in _KNOWN_WORDS:
         # "BackLeg" is a hind leg, but "Back" alone and "ForeArm" are not.
-        front = rest[0] in _FRONT
-        rest = rest[1:] if front or rest[0] in _HIND else rest
+        front = rest[0] in _FRONT_WORDS
+        rest = rest[1:] if front or rest[0] in _HIND_WORDS else rest
     return JointName("".join(rest), sides[0] if sides else "", front, auxiliary)
 
 
@@ -162,9 +162,9 @@ def _split_side(word: str) -> list[str]:
         inner = word.removeprefix(side)
         if inner == word:
             inner = word.removesuffix(side)
-        if inner != word and inner in _KNOWN and word not in _KNOWN:
+        if inner != word and inner in _KNOWN_WORDS and word not in _KNOWN_WORDS:
             return [side, inner]
     for pair in ("front", "hind", "back"):
-        if word.startswith(pair) and word[len(pair) :] in _KNOWN:
+        if word.startswith(pair) and word[len(pair) :] in _KNOWN_WORDS:
             return [pair, word[len(pair) :]]
     return [word]

@@ -12,15 +12,15 @@ from characters.skeleton.pose import Array, Skeleton
 Mask: TypeAlias = Array
 """Weight of each joint, (joints,), 0…1."""
 
-_NONE: Mapping[str, int] = MappingProxyType({})
+_NO_ENTRIES: Mapping[str, int] = MappingProxyType({})
 
 
 def mask_of(
     skeleton: Skeleton,
-    subtrees: Mapping[str, float] = _NONE,
-    joints: Mapping[str, float] = _NONE,
+    subtrees: Mapping[str, float] = _NO_ENTRIES,
+    joints: Mapping[str, float] = _NO_ENTRIES,
     default: float = 0.0,
-    semantics: Mapping[str, int] = _NONE,
+    semantics: Mapping[str, int] = _NO_ENTRIES,
 ) -> Mask:
     """Return the mask with these weights.
 

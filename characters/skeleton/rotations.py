@@ -46,8 +46,8 @@ def _matrix_table() -> Array:
     return table.reshape(16, 9)
 
 
-_PRODUCT = _multiplication_table()
-_MATRIX = _matrix_table()
+_PRODUCT_TABLE = _multiplication_table()
+_MATRIX_TABLE = _matrix_table()
 
 
 def _outer(a: Array, b: Array) -> Array:
@@ -63,7 +63,7 @@ def multiply(a: ArrayLike, b: ArrayLike) -> Array:
     >>> np.allclose(multiply(quarter, quarter), about("y", np.pi))
     True
     """
-    product: Array = _outer(np.asarray(a, float), np.asarray(b, float)) @ _PRODUCT
+    product: Array = _outer(np.asarray(a, float), np.asarray(b, float)) @ _PRODUCT_TABLE
     return product
 
 
@@ -74,11 +74,11 @@ def conjugate(q: ArrayLike) -> Array:
     >>> np.allclose(multiply(q, conjugate(q)), IDENTITY)
     True
     """
-    inverse: Array = np.asarray(q, float) * _CONJUGATE
+    inverse: Array = np.asarray(q, float) * _CONJUGATE_SIGNS
     return inverse
 
 
-_CONJUGATE = np.array([-1.0, -1.0, -1.0, 1.0])
+_CONJUGATE_SIGNS = np.array([-1.0, -1.0, -1.0, 1.0])
 
 
 def normalize(q: ArrayLike) -> Array:
@@ -167,11 +167,11 @@ def cross(a: ArrayLike, b: ArrayLike) -> Array:
     [0.0, 0.0, 1.0]
     """
     a, b = np.asarray(a, float), np.asarray(b, float)
-    product: Array = a[..., _NEXT] * b[..., _LAST] - a[..., _LAST] * b[..., _NEXT]
+    product: Array = a[..., _YZX] * b[..., _ZXY] - a[..., _ZXY] * b[..., _YZX]
     return product
 
 
-_NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
+_YZX, _ZXY = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
 def from_rotation_vector(vector: ArrayLike) -> Array:
@@ -211,7 +211,7 @@ def to_matrix(q: ArrayLike) -> Array:
     [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
     """
     q = np.asarray(q, float)
-    rows: Array = _outer(q, q) @ _MATRIX
+    rows: Array = _outer(q, q) @ _MATRIX_TABLE
     return rows.reshape((*q.shape[:-1], 3, 3))
 
 

@@ -17,11 +17,11 @@ _MAX_ASYMMETRY = 0.25  # median distance from symmetry over the distance from le
 # Penalties for names that do not match, in body sizes: another name, another number.
 _NAME_PENALTY, _NUMBER_PENALTY = 0.1, 0.01
 # "LeftFoot", "foot_l", "Foot.R.001", "FootL": a word, or a letter that is alone or ends a word.
-_SIDES = re.compile(
+_SIDE_IN_NAME = re.compile(
     r"[Ll]eft|LEFT|[Rr]ight|RIGHT|(?<![A-Za-z])[LRlr](?![A-Za-z])|(?<=[a-z])[LR](?![a-z])"
 )
-_OTHER = {"left": "right", "Left": "Right", "LEFT": "RIGHT", "l": "r", "L": "R"}
-_OTHER |= {right: left for left, right in _OTHER.items()}
+_OTHER_SIDE_OF = {"left": "right", "Left": "Right", "LEFT": "RIGHT", "l": "r", "L": "R"}
+_OTHER_SIDE_OF |= {right: left for left, right in _OTHER_SIDE_OF.items()}
 
 
 def paired_joints(
@@ -65,7 +65,7 @@ def _misfit(name: str, other: str) -> float:
     >>> _misfit("Palm2L", "Palm2R"), _misfit("LeftArm_06", "RightArm_09"), _misfit("ArmL", "LegR")
     (0.0, 0.01, 0.1)
     """
-    swapped = _SIDES.sub(_other_side, name)
+    swapped = _SIDE_IN_NAME.sub(_other_side, name)
     if swapped == other:
         return 0.0
     plain, plain_other = (re.sub(r"[_\s\d]+", "", each).lower() for each in (swapped, other))
@@ -92,9 +92,9 @@ def check_symmetry(skeleton: Skeleton, positions: Array, partners: NDArray[np.in
 
 def paired_names(names: tuple[str, ...]) -> NDArray[np.intp]:
     """Return for each name the index of its partner, or its own index if there is none."""
-    swapped = [_SIDES.sub(_other_side, name) for name in names]
+    swapped = [_SIDE_IN_NAME.sub(_other_side, name) for name in names]
     return np.array([names.index(n) if n in names else i for i, n in enumerate(swapped)], np.intp)
 
 
 def _other_side(match: re.Match[str]) -> str:
-    return _OTHER[match[0]]
+    return _OTHER_SIDE_OF[match[0]]

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from affect import LABEL_SETS, Emotion
 from affect.errors import AffectError
-from affect.labels import TABLE, label_set
-from affect.words import PLACES, SIMPLE, closest_word
+from affect.labels import WORD_TABLE, label_set
+from affect.words import WORD_LABELS, WORD_PLACES, closest_word
 
 THREE = ("neutral", "happy", "angry")
 
@@ -27,7 +27,7 @@ SHOWN = {
 
 def test_a_robot_with_three_moods_shows_the_sensible_one_for_every_word():
     expected = {word: mood for mood, words in SHOWN.items() for word in words.split()}
-    assert expected.keys() == {row.word for row in TABLE}
+    assert expected.keys() == {row.word for row in WORD_TABLE}
     for word, mood in expected.items():
         for robot in itertools.permutations(THREE):
             assert closest_word(robot, Emotion(0, 0, word)) == mood, word
@@ -53,7 +53,7 @@ def test_a_robot_with_other_moods_shows_the_closest(words, label, closest):
 @given(st.floats(-1, 1), st.floats(-1, 1), st.sampled_from([None, "snarky"]))
 def test_without_a_known_label_the_emotion_decides(valence, arousal, label):
     word = closest_word(THREE, Emotion(valence, arousal, label))
-    assert word == min(THREE, key=lambda each: math.dist(PLACES[each], (valence, arousal)))
+    assert word == min(THREE, key=lambda each: math.dist(WORD_PLACES[each], (valence, arousal)))
 
 
 def test_the_24_emotions_have_the_faces_of_table_5_2():
@@ -68,7 +68,7 @@ def test_the_24_emotions_have_the_faces_of_table_5_2():
         "neutral": "neutral",
     }
     expected = {word: face for face, words in faces.items() for word in words.split()}
-    assert {row.word: row.face for row in TABLE if row.set == "occ"} == expected
+    assert {row.word: row.face for row in WORD_TABLE if row.set == "occ"} == expected
 
 
 def test_the_sets_have_the_sizes_that_they_are_known_for():
@@ -77,14 +77,14 @@ def test_the_sets_have_the_sizes_that_they_are_known_for():
 
 
 def test_every_place_is_in_the_plane_and_no_set_says_a_word_twice():
-    for row in TABLE:
+    for row in WORD_TABLE:
         Emotion(row.valence, row.arousal)
-    for name in {row.set for row in TABLE}:
-        words = [row.word for row in TABLE if row.set == name]
+    for name in {row.set for row in WORD_TABLE}:
+        words = [row.word for row in WORD_TABLE if row.set == name]
         assert len(words) == len(set(words))
-    for word in PLACES:
-        assert len({row.face for row in TABLE if row.word == word}) == 1, word
-    assert PLACES.keys() == SIMPLE.keys()
+    for word in WORD_PLACES:
+        assert len({row.face for row in WORD_TABLE if row.word == word}) == 1, word
+    assert WORD_PLACES.keys() == WORD_LABELS.keys()
 
 
 @pytest.mark.parametrize("name", LABEL_SETS)

@@ -11,8 +11,8 @@ from characters.motion.clip import Clip
 from characters.motion.phase import PhasedMotion, RetimedMotion
 from characters.motion.state_machine import StateMachine
 
-INTENSITIES = (("head", -1.0), ("legs", 0.0), ("tail", 1.0))
-"""Suffixes of an action's clips and the weights that they stand for (thesis, section 5.3)."""
+WEIGHT_OF_SUFFIX = {"head": -1.0, "legs": 0.0, "tail": 1.0}
+"""Weights that the suffixes of an action's clips stand for (thesis, section 5.3)."""
 
 WEIGHT_LAG_S = 0.12
 """Time constant with which the intensity of an action follows the command [s]."""
@@ -77,11 +77,15 @@ def clips_of_actions(
     actions: dict[str, dict[float, str]] = {}
     for name in known:
         action, _, suffix = name.rpartition("_")
-        if not action or suffix not in dict(INTENSITIES):
+        if not action or suffix not in WEIGHT_OF_SUFFIX:
             action = name
         if action in actions or action in others or name in others:
             continue
-        found = {w: f"{action}_{e}" for e, w in INTENSITIES if f"{action}_{e}" in known}
+        found = {
+            weight: f"{action}_{suffix}"
+            for suffix, weight in WEIGHT_OF_SUFFIX.items()
+            if f"{action}_{suffix}" in known
+        }
         actions[action] = found or {0.0: name}
     return actions
 

@@ -6,7 +6,7 @@ from characters.control.layers.layer import FrameContext
 from characters.model.character import Character
 from characters.skeleton.pose import Pose
 
-MORPH = "breath"
+BREATH_MORPH = "breath"
 """The morph of a full chest."""
 
 
@@ -14,8 +14,9 @@ class BreathLayer:
     """Sets the morph of the chest; a character without one is left alone."""
 
     def __init__(self, character: Character, seed: int = 0) -> None:
-        self._count = len(character.morphs)
-        self._morph = character.morphs.index(MORPH) if MORPH in character.morphs else None
+        morphs = character.morphs
+        self._count = len(morphs)
+        self._morph = morphs.index(BREATH_MORPH) if BREATH_MORPH in morphs else None
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with the chest filled by the breath."""

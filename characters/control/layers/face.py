@@ -9,7 +9,7 @@ from characters.face.lids import Lids, blink_shares
 from characters.model.character import Character
 from characters.skeleton.pose import Pose
 
-WIDE_EYES = "surprised"
+WIDE_EYES_MORPH = "surprised"
 """A morph that opens the eyes wide, and keeps them from closing."""
 
 
@@ -22,7 +22,7 @@ class FaceLayer:
         self._lids = Lids.of(morphs)
         self._blinks = BlinkTimer(seed)
         self._display = AffectDisplay(morphs, blink_shares(morphs, character.meshes, self._lids))
-        self._wide = morphs.index(WIDE_EYES) if WIDE_EYES in morphs else None
+        self._wide = morphs.index(WIDE_EYES_MORPH) if WIDE_EYES_MORPH in morphs else None
 
     def update(self, pose: Pose, context: FrameContext) -> Pose:
         """Return the pose with lids and expression."""

@@ -19,7 +19,7 @@ _MAX_LOOP_GAP = 0.1  # [rad] between the last and the first frame of a loop
 _MAX_RATE_HZ = 1000.0
 _MAX_CLIPS = 4096
 _MAX_DURATION_S = 3600.0  # of valid files; longer ones would fill the memory
-_COMPONENTS = {"translation": 3, "rotation": 4, "scale": 3}
+_COMPONENT_COUNTS = {"translation": 3, "rotation": 4, "scale": 3}
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,7 @@ def _target(
         columns = list(morphs.columns.get(-1 if node is None else node, ()))
         return (columns or None), len(columns)
     joint = tree.joint_of_node.get(-1 if node is None else node)
-    return (joint, _COMPONENTS[path]) if path in _COMPONENTS else (None, 0)
+    return (joint, _COMPONENT_COUNTS[path]) if path in _COMPONENT_COUNTS else (None, 0)
 
 
 def _key_times(file: GltfFile, accessor: int) -> Array:

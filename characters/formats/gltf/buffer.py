@@ -7,13 +7,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from characters.formats.gltf.document import Json
-from characters.formats.gltf.file import BIN_CHUNK, COMPONENTS, JSON_CHUNK, MAGIC, WIDTHS
+from characters.formats.gltf.file import BIN_CHUNK, COMPONENT_TYPES, JSON_CHUNK, MAGIC, TYPE_WIDTHS
 
 ARRAY_BUFFER, ELEMENT_BUFFER = 34962, 34963
 """Target of a buffer view: vertex attributes, or vertex indices."""
 
-_TYPES = {width: name for name, width in WIDTHS.items() if name not in ("MAT2", "MAT3")}
-_COMPONENT_OF = {np.dtype(dtype): code for code, dtype in COMPONENTS.items()}
+_TYPE_OF = {width: name for name, width in TYPE_WIDTHS.items() if name not in ("MAT2", "MAT3")}
+_COMPONENT_OF = {np.dtype(dtype): code for code, dtype in COMPONENT_TYPES.items()}
 
 
 class GlbBuilder:
@@ -89,7 +89,7 @@ class GlbBuilder:
 
 def _accessor(count: int, width: int, dtype: type[np.generic]) -> Json:
     component = _COMPONENT_OF[np.dtype(dtype)]
-    return {"componentType": component, "count": count, "type": _TYPES[width]}
+    return {"componentType": component, "count": count, "type": _TYPE_OF[width]}
 
 
 def _rows(values: ArrayLike, dtype: type[np.generic]) -> NDArray[np.generic]:

@@ -17,8 +17,8 @@ class DamagedFileError(ValueError):
 
 _INVALID_DATA = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, struct.error)
 TEXT, REAL, COUNT, FLAG = "text", "a number", "a count", "true or false"
-_REALS = {n: f"{n} numbers" for n in (2, 3, 4, 16)}
-_NUMBERS = "numbers"
+_NUMBER_LISTS = {n: f"{n} numbers" for n in (2, 3, 4, 16)}
+_ANY_NUMBER_LIST = "numbers"
 
 _TEXTURE = {
     "index!": "textures",
@@ -26,9 +26,9 @@ _TEXTURE = {
     "scale": REAL,
     "extensions": {
         "KHR_texture_transform": {
-            "offset": _REALS[2],
+            "offset": _NUMBER_LISTS[2],
             "rotation": REAL,
-            "scale": _REALS[2],
+            "scale": _NUMBER_LISTS[2],
             "texCoord": COUNT,
         }
     },
@@ -45,18 +45,18 @@ SCHEMA: Json = {
             "children": ["nodes"],
             "mesh": "meshes",
             "skin": "skins",
-            "translation": _REALS[3],
-            "rotation": _REALS[4],
-            "scale": _REALS[3],
-            "matrix": _REALS[16],
-            "weights": _NUMBERS,
+            "translation": _NUMBER_LISTS[3],
+            "rotation": _NUMBER_LISTS[4],
+            "scale": _NUMBER_LISTS[3],
+            "matrix": _NUMBER_LISTS[16],
+            "weights": _ANY_NUMBER_LIST,
         }
     ],
     "skins": [{"joints!": ["nodes"], "inverseBindMatrices": "accessors"}],
     "meshes": [
         {
             "name": TEXT,
-            "weights": _NUMBERS,
+            "weights": _ANY_NUMBER_LIST,
             "primitives!": [
                 {
                     "attributes!": {"*": "accessors"},
@@ -93,7 +93,7 @@ SCHEMA: Json = {
         {
             "name": TEXT,
             "pbrMetallicRoughness": {
-                "baseColorFactor": _REALS[4],
+                "baseColorFactor": _NUMBER_LISTS[4],
                 "baseColorTexture": _TEXTURE,
                 "metallicFactor": REAL,
                 "roughnessFactor": REAL,
@@ -101,7 +101,7 @@ SCHEMA: Json = {
             },
             "normalTexture": _TEXTURE,
             "emissiveTexture": _TEXTURE,
-            "emissiveFactor": _REALS[3],
+            "emissiveFactor": _NUMBER_LISTS[3],
             "alphaMode": TEXT,
             "alphaCutoff": REAL,
             "doubleSided": FLAG,
@@ -178,7 +178,7 @@ def _check(value: object, kind: Any, place: str, sizes: dict[str, int]) -> None:
         count = sizes.get(kind, 0)
         if type(value) is not int or not 0 <= value < count:
             raise DamagedFileError(f"{place} is {value!r:.40}, but there are {count} {kind}")
-    elif not _CHECKS[kind](value):
+    elif not _VALUE_CHECKS[kind](value):
         raise DamagedFileError(f"{place} is {value!r:.40}, not {kind}")
 
 
@@ -207,11 +207,11 @@ def _are_reals(value: object, count: int | None = None) -> bool:
     return count is None or len(value) == count
 
 
-_CHECKS: dict[str, Callable[[object], bool]] = {
+_VALUE_CHECKS: dict[str, Callable[[object], bool]] = {
     TEXT: lambda value: isinstance(value, str),
     FLAG: lambda value: isinstance(value, bool),
     COUNT: lambda value: type(value) is int and value >= 0,
     REAL: _is_real,
-    _NUMBERS: _are_reals,
-    **{name: partial(_are_reals, count=count) for count, name in _REALS.items()},
+    _ANY_NUMBER_LIST: _are_reals,
+    **{name: partial(_are_reals, count=count) for count, name in _NUMBER_LISTS.items()},
 }

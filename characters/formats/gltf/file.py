@@ -28,7 +28,7 @@ _SUPPORTED_EXTENSIONS = {
     "VRM",
 }
 
-COMPONENTS: dict[int, type[np.generic]] = {
+COMPONENT_TYPES: dict[int, type[np.generic]] = {
     5120: np.int8,
     5121: np.uint8,
     5122: np.int16,
@@ -38,7 +38,7 @@ COMPONENTS: dict[int, type[np.generic]] = {
 }
 """NumPy type of an accessor's componentType."""
 
-WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
+TYPE_WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4, "MAT2": 4, "MAT3": 9, "MAT4": 16}
 """Number of components of an accessor's type."""
 
 
@@ -119,9 +119,9 @@ class GltfFile:
     def width(self, index: int) -> int:
         """Return the number of components of an accessor."""
         kind = self.document["accessors"][index]["type"]
-        if kind not in WIDTHS:
+        if kind not in TYPE_WIDTHS:
             raise DamagedFileError(f"accessor {index} is of type {kind!r:.20}")
-        return WIDTHS[kind]
+        return TYPE_WIDTHS[kind]
 
     def view(self, index: int) -> memoryview:
         """Return the bytes of a buffer view."""
@@ -196,9 +196,9 @@ class GltfFile:
 def _component(holder: Json) -> "np.dtype[np.generic]":
     """Return the type of an accessor's numbers, or of its sparse indices."""
     code = holder["componentType"]
-    if code not in COMPONENTS:
+    if code not in COMPONENT_TYPES:
         raise DamagedFileError(f"component type {code!r:.20} does not exist")
-    return np.dtype(COMPONENTS[code]).newbyteorder("<")
+    return np.dtype(COMPONENT_TYPES[code]).newbyteorder("<")
 
 
 def open_gltf(path: Path) -> GltfFile:

@@ -13,7 +13,7 @@ import numpy as np
 
 from characters.errors import CharacterError
 from characters.formats.loading import MotionOptions, Performance
-from characters.formats.mocap.asf_bones import Bone, Line, read_bones, read_sections
+from characters.formats.mocap.asf_bones import AsfBone, Line, read_bones, read_sections
 from characters.formats.mocap.channels import AxisChannel, ChannelLayout
 from characters.formats.mocap.text import TextFile, quoted
 from characters.skeleton import rotations
@@ -33,7 +33,7 @@ class AcclaimSkeleton:
     """In the file's axes and units: a joint at the start of every bone, with the bone's name,
     and one at the end of every last bone, such as ``ltoes_end``."""
 
-    bones: tuple[Bone, ...]
+    bones: tuple[AsfBone, ...]
     """The root and the bones, parents first: bone i is joint i."""
 
     unit: float

@@ -18,7 +18,7 @@ Line: TypeAlias = tuple[int, list[str]]
 
 
 @dataclass(frozen=True)
-class Bone:
+class AsfBone:
     """A bone, or the root."""
 
     name: str
@@ -93,13 +93,13 @@ def _blocks(file: TextFile, lines: list[Line]) -> Iterator[tuple[int, list[Line]
         raise file.error(start, "this begin has no end", CUT_OFF)
 
 
-def read_bones(file: TextFile, sections: dict[str, list[Line]]) -> tuple[list[Bone], list[int]]:
+def read_bones(file: TextFile, sections: dict[str, list[Line]]) -> tuple[list[AsfBone], list[int]]:
     """Return root and bones, parents first, and the number of each one's parent."""
     for name in ("root", "bonedata", "hierarchy"):
         if name not in sections:
             raise CharacterError(f"{file.path}: has no :{name}; is this a whole .asf?")
     root = _root(file, sections["root"])
-    bones: dict[str, Bone] = {root.name: root}
+    bones: dict[str, AsfBone] = {root.name: root}
     for start, lines in _blocks(file, sections["bonedata"]):
         bone = _bone(file, start, lines)
         if bone.name in bones:
@@ -123,7 +123,7 @@ def read_bones(file: TextFile, sections: dict[str, list[Line]]) -> tuple[list[Bo
     return [bones[name] for name in order], parents
 
 
-def _children(file: TextFile, lines: list[Line], bones: dict[str, Bone]) -> dict[str, list[str]]:
+def _children(file: TextFile, lines: list[Line], bones: dict[str, AsfBone]) -> dict[str, list[str]]:
     """Return every bone's children; every child has one parent."""
     children: dict[str, list[str]] = {}
     placed = {"root"}
@@ -141,10 +141,10 @@ def _children(file: TextFile, lines: list[Line], bones: dict[str, Bone]) -> dict
     return children
 
 
-def _root(file: TextFile, lines: list[Line]) -> Bone:
+def _root(file: TextFile, lines: list[Line]) -> AsfBone:
     """Read the root: it starts at `position` and rotates about the axes of `orientation`."""
     up, zero = np.array([0.0, 1.0, 0.0]), np.zeros(3)
-    bone = Bone("root", up, 0.0, zero, "xyz", ("tx", "ty", "tz", "rx", "ry", "rz"), zero)
+    bone = AsfBone("root", up, 0.0, zero, "xyz", ("tx", "ty", "tz", "rx", "ry", "rz"), zero)
     for line, (key, *words) in lines:
         match key.lower():
             case "order":
@@ -158,9 +158,9 @@ def _root(file: TextFile, lines: list[Line]) -> Bone:
     return bone
 
 
-def _bone(file: TextFile, start: int, lines: list[Line]) -> Bone:
+def _bone(file: TextFile, start: int, lines: list[Line]) -> AsfBone:
     """Read one bone; its joint limits are not kept: recorded motions stay within them."""
-    bone = Bone("", np.zeros(3), 0.0, np.zeros(3), "xyz", (), np.zeros(3))
+    bone = AsfBone("", np.zeros(3), 0.0, np.zeros(3), "xyz", (), np.zeros(3))
     for line, (key, *words) in lines:
         match key.lower():
             case "name":

@@ -40,9 +40,9 @@ _Y_UP_FROM = {
     "+x": np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
     "-x": np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]),
 }
-_HEAD = re.compile(r"head|skull", re.IGNORECASE)
-_NECK = re.compile(r"neck", re.IGNORECASE)
-_FOOT = re.compile(r"foot|ankle|toe|paw|hoof", re.IGNORECASE)
+_HEAD_NAME = re.compile(r"head|skull", re.IGNORECASE)
+_NECK_NAME = re.compile(r"neck", re.IGNORECASE)
+_FOOT_NAME = re.compile(r"foot|ankle|toe|paw|hoof", re.IGNORECASE)
 
 
 def metric_performance(
@@ -101,9 +101,9 @@ def _stated_up(path: Path, up: str) -> str:
 def _recognised_up(skeleton: Skeleton, positions: Array) -> tuple[str, tuple[str, ...]]:
     """Return the axis from feet to body in the frames, else in the rest pose, else +y."""
     names = skeleton.names
-    heads = [j for j, name in enumerate(names) if _HEAD.search(name)]
-    heads = heads or [j for j, name in enumerate(names) if _NECK.search(name)] or [0]
-    feet = [j for j, name in enumerate(names) if _FOOT.search(name)]
+    heads = [j for j, name in enumerate(names) if _HEAD_NAME.search(name)]
+    heads = heads or [j for j, name in enumerate(names) if _NECK_NAME.search(name)] or [0]
+    feet = [j for j, name in enumerate(names) if _FOOT_NAME.search(name)]
     if not feet:
         return "+y", ("no foot found by name: +y is taken as up; give up= if it is not",)
 

@@ -97,10 +97,10 @@ class Builder:
         if id(node) in self._constant:
             return self._constant[id(node)]
         try:
-            if node.kind in _MODIFIERS:
-                motion = _MODIFIERS[node.kind](self._of(node, values), node.fields)
+            if node.kind in _MODIFIER_BUILDERS:
+                motion = _MODIFIER_BUILDERS[node.kind](self._of(node, values), node.fields)
             else:
-                motion = _BUILDERS[node.kind](self, node, values)
+                motion = _NODE_BUILDERS[node.kind](self, node, values)
             if not node.parametric:
                 self._constant[id(node)] = motion
             return motion
@@ -208,7 +208,7 @@ class Builder:
         raise CharacterError(f"{self._plan.source}: {node.path}: {what}")
 
 
-_MODIFIERS: Mapping[str, Callable[[Motion, Mapping[str, Any]], Motion]] = {
+_MODIFIER_BUILDERS: Mapping[str, Callable[[Motion, Mapping[str, Any]], Motion]] = {
     "hold": lambda motion, fields: StaticPose(motion.sample(fields["at"]), 1.0),
     "stretch": lambda motion, fields: Stretch(motion, fields["seconds"]),
     "window": lambda motion, fields: Window(motion, fields["start"], fields["end"]),
@@ -217,7 +217,7 @@ _MODIFIERS: Mapping[str, Callable[[Motion, Mapping[str, Any]], Motion]] = {
 }
 """Builders of the kinds that depend on one motion and their own fields only."""
 
-_BUILDERS: Mapping[str, Callable[[Builder, Node, Values], Motion]] = {
+_NODE_BUILDERS: Mapping[str, Callable[[Builder, Node, Values], Motion]] = {
     "clip": Builder._clip,
     "mirror": Builder._mirrored,
     "displace": Builder._root_offset,

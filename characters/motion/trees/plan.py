@@ -43,13 +43,13 @@ class NodeKind:
     """What it does with its motions."""
 
 
-_LAYER = NodeKind(
+_LAYER_KIND = NodeKind(
     {"base": "motion", "over": "motion", "mask": "mask", "weight": "weight"},
     optional={"mask": "", "weight": 1.0},
     group="layer",
 )
 
-KINDS: Mapping[str, NodeKind] = {
+NODE_KINDS: Mapping[str, NodeKind] = {
     "clip": NodeKind({"clip": "name"}, group="clip"),
     "hold": NodeKind({"of": "motion", "at": "number"}, optional={"at": 0.0}),
     "stretch": NodeKind({"of": "motion", "seconds": "number"}),
@@ -70,8 +70,8 @@ KINDS: Mapping[str, NodeKind] = {
     "blend": NodeKind({}, "of", {"weight": "number"}, group="mix"),
     "space": NodeKind({"by": "name"}, "at", {"value": "number"}, group="mix"),
     "plane": NodeKind({"by": "names"}, "at", {"value": "numbers"}, group="mix"),
-    "layer": _LAYER,
-    "add": _LAYER,
+    "layer": _LAYER_KIND,
+    "add": _LAYER_KIND,
     "crossfade": NodeKind(
         {
             "first": "motion",
@@ -126,7 +126,7 @@ class Node:
     """A motion in a plan."""
 
     kind: str
-    """One of `KINDS`."""
+    """One of `NODE_KINDS`."""
 
     path: str
     """Its place in the file, such as "motions.walk.at[2].motion"."""
@@ -159,7 +159,7 @@ class Node:
     @property
     def group(self) -> Group:
         """What it does with its motions."""
-        return KINDS[self.kind].group
+        return NODE_KINDS[self.kind].group
 
     @property
     def description(self) -> str:
@@ -169,7 +169,7 @@ class Node:
             return "over " + (by if isinstance(by, str) else " and ".join(by))
         if self.kind == "clip":
             return "clip"
-        defaults = KINDS[self.kind].optional
+        defaults = NODE_KINDS[self.kind].optional
         fields = [
             f"{key.removesuffix('_deg')} {_formatted(value)}"
             for key, value in self.fields.items()

@@ -10,7 +10,7 @@ from characters.errors import CharacterError
 from characters.motion.curves import Ease
 from characters.motion.trees.conditions import Condition, ConditionError
 from characters.motion.trees.plan import (
-    KINDS,
+    NODE_KINDS,
     PARAMETERS,
     Field,
     MaskPlan,
@@ -30,7 +30,7 @@ MAX_MOTIONS, MAX_DEPTH = 1000, 30
 
 Without them a few lines that use each other twice could exhaust the memory."""
 
-TABLES = ("masks", "parameters", "motions", "machine", "play")
+PLAN_TABLES = ("masks", "parameters", "motions", "machine", "play")
 """The tables of a plan in a file."""
 
 
@@ -46,10 +46,10 @@ def read_plan(document: Mapping[str, Any], source: str, clips: Collection[str]) 
     """
     if not any(key in document for key in ("motions", "machine", "play")):
         return None
-    return _Reader(document, source, clips).plan()
+    return _PlanReader(document, source, clips).plan()
 
 
-class _Reader:
+class _PlanReader:
     def __init__(self, document: Mapping[str, Any], source: str, clips: Collection[str]) -> None:
         self._document = document
         self._source = source
@@ -175,9 +175,9 @@ class _Reader:
     def _node(self, table: Mapping[str, Any], path: str, name: str) -> Node:
         kind_name = table.get("kind")
         if kind_name is None:
-            self._refuse(path, f"lacks kind; choose one of {', '.join(KINDS)}")
-        self._check_choice(kind_name, KINDS, f"{path}.kind", "kind")
-        kind = KINDS[kind_name]
+            self._refuse(path, f"lacks kind; choose one of {', '.join(NODE_KINDS)}")
+        self._check_choice(kind_name, NODE_KINDS, f"{path}.kind", "kind")
+        kind = NODE_KINDS[kind_name]
         self._check_keys(table, ("kind", *kind.fields, *([kind.rows] if kind.rows else [])), path)
         fields, motions = self._fields(table, kind.fields, kind.optional, path)
         rows = self._rows(table, kind, path) if kind.rows else ()

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from affect.settings import TomlTable, read, shown
-from affect.words import PLACES
+from affect.words import WORD_PLACES
 from robot.contract.catalogue import MAX_NAME_BYTES, Catalogue
 from robot.drivers.opencat import tokens
 from robot.drivers.opencat.models import MODELS
@@ -146,8 +146,8 @@ def _behaviour(table: TomlTable, model: str) -> Behaviour:
     listed = table.table("moods")
     moods = {}
     for word in sorted(listed.names(), key=lambda word: (word != "neutral", word)):
-        if word not in PLACES:
-            raise listed.wrong(word, f"no mood is called that; there are {', '.join(PLACES)}")
+        if word not in WORD_PLACES:
+            raise listed.wrong(word, f"no mood is called that; there are {', '.join(WORD_PLACES)}")
         moods[word] = _mood(listed.table(word), model, sounds)
     if "neutral" not in moods:
         raise listed.unlike("neutral", "there, for every robot shows it")

@@ -5,7 +5,7 @@ from math import hypot
 import numpy as np
 
 from affect import Emotion
-from affect.hysteresis import LABELS, next_label
+from affect.hysteresis import THESIS_LABELS, next_label
 from robot.contract.motions import Array, SineMotion
 from robot.protocol import messages as m
 from robot.simulators.cubeling import dinosaur
@@ -65,7 +65,7 @@ class DinosaurBody:
         self._target = np.zeros(2)
         self._emotion = np.zeros(2)
         self._commanded_mood = m.NOTHING
-        self.label = LABELS[0]
+        self.label = THESIS_LABELS[0]
         """The mood that it shows."""
         self._angles = np.zeros(len(dinosaur.MIN_ANGLES_RAD))
         self._motion: SineMotion = dinosaur.MOOD_LOOPS[0]
@@ -99,7 +99,7 @@ class DinosaurBody:
         """Return to the neutral emotion and end motion and sound; after `stop` it remains still."""
         self._target = np.zeros(2)
         if self._commanded_mood != m.NOTHING:
-            self._commanded_mood = LABELS.index("neutral")
+            self._commanded_mood = THESIS_LABELS.index("neutral")
         self._sound, self._sound_left = None, 0.0
         self._start_motion(self._loop)
 
@@ -130,7 +130,7 @@ class DinosaurBody:
         if self._commanded_mood == m.NOTHING:
             self.label = next_label(before, float(self._emotion[0]))
         else:
-            self.label = LABELS[self._commanded_mood]
+            self.label = THESIS_LABELS[self._commanded_mood]
         if self.label != before:
             if not self._plays_once:
                 self._start_motion(self._loop)
@@ -162,7 +162,7 @@ class DinosaurBody:
             valence=emotion.valence,
             arousal=emotion.arousal,
             battery=self._battery.level,
-            mood=LABELS.index(self.label),
+            mood=THESIS_LABELS.index(self.label),
             motion=m.NOTHING if self._still else dinosaur.MOTIONS.index(self._motion),
             sound=self.catalogue.sounds.index(self._sound) if self._sound else m.NOTHING,
             joints=(*measured.tolist(), *[0.0] * (m.JOINTS_MAX - measured.size)),
@@ -187,7 +187,7 @@ class DinosaurBody:
 
     @property
     def _loop(self) -> SineMotion:
-        return dinosaur.MOOD_LOOPS[LABELS.index(self.label)]
+        return dinosaur.MOOD_LOOPS[THESIS_LABELS.index(self.label)]
 
     def _start_motion(self, motion: SineMotion, once: bool = False) -> None:
         self._motion, self._motion_time, self._plays_once = motion, 0.0, once

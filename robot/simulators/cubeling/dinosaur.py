@@ -60,7 +60,7 @@ MOOD_LOOPS = (
         "growl",
     ),
 )
-"""A looping motion with a sound for each mood, in the order of `affect.hysteresis.LABELS`."""
+"""A looping motion with a sound for each mood, in the order of `THESIS_LABELS`."""
 
 ACTIONS = (
     SineMotion("nod", 2.0, {"neck up": JointSine(0, 6, 2), "eyes and mouth": JointSine(50)}),

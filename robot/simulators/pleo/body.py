@@ -7,7 +7,7 @@ from zlib import crc32
 
 import numpy as np
 
-from affect.words import PLACES
+from affect.words import WORD_PLACES
 from robot.drivers.pleo.joints import JOINTS, PleoJoint
 
 MOTION_LENGTH_RANGE_S = (2.0, 5.0)
@@ -106,7 +106,7 @@ class PleoBody:
         for number, joint in enumerate(JOINTS):
             self.move(number, random.uniform(joint.low, joint.high))
         word = name.partition(":")[2].partition(".")[0].casefold()
-        if word in PLACES:
+        if word in WORD_PLACES:
             self.mood = word
 
     def play_sound(self, name: str) -> None:

@@ -5,7 +5,7 @@ from collections import deque
 
 import numpy as np
 
-from affect.words import PLACES
+from affect.words import WORD_PLACES
 from robot.simulators.pleo.body import PleoBody
 from robot.simulators.pleo.monitor import Monitor
 
@@ -129,7 +129,7 @@ class PleoSimulator:
     def portrait(self) -> tuple[float, str]:
         """Return the mood that it shows, from −1, angry, to 1, happy, and its word."""
         word = self.body.mood
-        return PLACES[word][0], word
+        return WORD_PLACES[word][0], word
 
     @property
     def busy(self) -> bool:

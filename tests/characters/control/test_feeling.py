@@ -10,7 +10,7 @@ from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
 from affect import Emotion
-from affect.words import PLACES
+from affect.words import WORD_PLACES
 from characters import (
     ActionIntent,
     Animator,
@@ -25,7 +25,7 @@ from characters.body.posture import (
     expressivity_of,
 )
 from characters.control.controllers.in_place import InPlaceController
-from characters.face.affect_display import RECIPES, AffectDisplay, expression_weights
+from characters.face.affect_display import FACE_RECIPES, AffectDisplay, expression_weights
 from characters.face.blink import BlinkTimer
 from characters.face.expressions import EXPRESSIONS, ExpressionMorphs
 from characters.face.lids import Lids, blink_shares
@@ -58,7 +58,7 @@ def lived(character, feelings, action="idle", seed=2):
 
 
 def felt(word, seconds):
-    return [(*PLACES[word], word)] * round(seconds / STEP)
+    return [(*WORD_PLACES[word], word)] * round(seconds / STEP)
 
 
 def face(character, pose):
@@ -127,13 +127,13 @@ def test_without_a_word_or_with_an_unknown_one_the_place_tells(valence):
 
 
 def test_every_word_that_pleases_smiles_and_none_that_hurts():
-    for word, place in PLACES.items():
+    for word, place in WORD_PLACES.items():
         happy, angry, sad, surprised, relaxed, _ = expression_weights(Emotion(*place, word))
         if place[0] > 0.2:
             assert happy + relaxed > angry + sad, word
         if place[0] < -0.2 and place[1] > -0.5:
             assert angry + sad > happy + relaxed, word
-        if word in RECIPES:
+        if word in FACE_RECIPES:
             assert max(happy, angry, sad, surprised, relaxed) > 0.2, word
 
 
@@ -142,7 +142,7 @@ def test_who_is_called_angry_looks_angry_from_the_first(someone):
     assert shown[EXPRESSIONS.index("angry")] > 0.35
 
 
-words = st.sampled_from(["", "neutral", "unheard of", *RECIPES])
+words = st.sampled_from(["", "neutral", "unheard of", *FACE_RECIPES])
 moods = st.tuples(st.floats(-1, 1), st.floats(-1, 1), words)
 
 
@@ -185,13 +185,13 @@ def test_a_bearing_changes_without_a_jolt():
         last = now
 
 
-@pytest.mark.parametrize("word", sorted(RECIPES.keys() & PLACES.keys()))
+@pytest.mark.parametrize("word", sorted(FACE_RECIPES.keys() & WORD_PLACES.keys()))
 def test_a_blink_closes_the_eyes_whatever_is_felt(someone, word):
     lids = Lids.of(someone.morphs)
     blinks = blink_shares(someone.morphs, someone.meshes, lids)
     own = AffectDisplay(someone.morphs, blinks)
     for _ in range(150):
-        own.update(STEP, Emotion(*PLACES[word], word))
+        own.update(STEP, Emotion(*WORD_PLACES[word], word))
     weights = np.zeros(len(someone.morphs))
     shut, _ = own.apply(weights, STEP, 1.0, 0.0)
     lids.close(weights, 1.0)
@@ -225,7 +225,7 @@ def test_an_action_that_speaks_wins_and_the_mood_comes_back():
         command = CharacterCommand(
             number * STEP,
             action=ActionIntent(action),
-            emotion=Emotion(*PLACES["sad"], "sad"),
+            emotion=Emotion(*WORD_PLACES["sad"], "sad"),
         )
         pose = animator.update(command).pose
     assert face(vleo, pose)[EXPRESSIONS.index("sad")] > 0.6
@@ -245,7 +245,7 @@ def test_a_smile_of_the_clip_does_not_stay_on_an_angry_face():
         command = CharacterCommand(
             number * STEP,
             LocomotionIntent(5.0, np.array([0.0, 99.0])),
-            emotion=Emotion(*PLACES["angry"], "angry"),
+            emotion=Emotion(*WORD_PLACES["angry"], "angry"),
         )
         posed = animator.update(command)
     assert posed.state == "run"
@@ -277,7 +277,7 @@ def test_a_calm_animal_idles_more_slowly():
         other = quick.update(CharacterCommand(0.0), 0.04, tempo=1.5).pose
     np.testing.assert_allclose(one.rotations, other.rotations, atol=1e-9)
     calm, plain, excited = (
-        expressivity_of(*PLACES[word]).tempo for word in ("sleepy", "neutral", "excited")
+        expressivity_of(*WORD_PLACES[word]).tempo for word in ("sleepy", "neutral", "excited")
     )
     assert calm < 0.81
     assert plain == 1.0
@@ -307,7 +307,7 @@ def test_a_body_without_a_face_shows_it_in_its_bearing():
     sad, plain = Animator(faceless), Animator(faceless)
     for number in range(90):
         bowed = sad.update(
-            CharacterCommand(number * STEP, emotion=Emotion(*PLACES["sad"], "sad"))
+            CharacterCommand(number * STEP, emotion=Emotion(*WORD_PLACES["sad"], "sad"))
         ).pose
         straight = plain.update(CharacterCommand(number * STEP)).pose
     assert pitch(human, bowed) < pitch(human, straight) - math.radians(4)

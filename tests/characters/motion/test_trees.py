@@ -15,7 +15,7 @@ from characters.model.sidecar import read_sidecar
 from characters.motion.trees.building import Builder
 from characters.motion.trees.conditions import Condition, ConditionError
 from characters.motion.trees.dot import to_dot
-from characters.motion.trees.plan import KINDS, PARAMETERS
+from characters.motion.trees.plan import NODE_KINDS, PARAMETERS
 from characters.motion.trees.reading import read_plan
 
 HUMAN_TOML = """
@@ -136,7 +136,7 @@ def test_every_kind_of_motion_plays(human):
     assert read.root is not None
     motion, bindings = made.build(read.root, dict.fromkeys(PARAMETERS, 0.0))
     named = tomllib.loads(EVERY_KIND)["motions"]
-    assert {table["kind"] for table in named.values()} | {"clip", "add", "space"} == set(KINDS)
+    assert {table["kind"] for table in named.values()} | {"clip", "add", "space"} == set(NODE_KINDS)
     for time in (0.0, 0.4, 0.9, 3.0):
         pose = motion.sample(time)
         assert np.allclose(np.linalg.norm(pose.rotations, axis=-1), 1.0)
@@ -335,5 +335,5 @@ def test_the_documented_example_is_a_valid_plan():
     example = page.split("```toml")[1].split("```")[0]
     read = plan(example, ["idle", "Walk", "WalkLeft", "Run", "Wave"])
     assert read is not None
-    assert {kind for kind in KINDS if f"`{kind}`" in page} | {"clip"} == set(KINDS)
+    assert {kind for kind in NODE_KINDS if f"`{kind}`" in page} | {"clip"} == set(NODE_KINDS)
     assert all(f"`{name}`" in page for name in PARAMETERS)

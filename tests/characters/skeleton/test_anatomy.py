@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from characters import Character, CharacterError, Pose, Skeleton
 from characters.skeleton import rotations
-from characters.skeleton.anatomy import PARTS, Anatomy
+from characters.skeleton.anatomy import BODY_PARTS, Anatomy
 from characters.skeleton.joint_names import read_name
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "gltf"
@@ -189,5 +189,5 @@ def test_any_tree_gets_an_anatomy_of_known_parts_and_distinct_joints(data):
     seed = np.random.default_rng(data.draw(st.integers(0, 1000)))
     rest = Pose(seed.normal(size=(count, 3)), np.tile(rotations.IDENTITY, (count, 1)))
     anatomy = Anatomy.guess(Skeleton(names, parents, rest))
-    assert set(anatomy.joints) <= set(PARTS)
+    assert set(anatomy.joints) <= set(BODY_PARTS)
     assert len(set(anatomy.joints.values())) == len(anatomy.joints)
