@@ -15,7 +15,7 @@ from affect.personality_file import bundled
 from affect.traits import AffectImpulse
 from affect.words import closest_word
 
-FRAME = 1 / 30
+FRAME_S = 1 / 30
 
 axis = st.floats(-1, 1)
 half_lives = st.one_of(st.floats(0.05, 200), st.just(math.inf))
@@ -139,8 +139,8 @@ def test_a_very_long_half_life_comes_to_the_same_as_none():
         for time in (1e12, math.inf)
     )
     for frame in range(60):
-        one = slow.update("kiss", 0.3, frame * FRAME)
-        other = never.update("kiss", 0.3, frame * FRAME)
+        one = slow.update("kiss", 0.3, frame * FRAME_S)
+        other = never.update("kiss", 0.3, frame * FRAME_S)
     assert one.valence == pytest.approx(other.valence, abs=1e-10)
     assert one.arousal == pytest.approx(other.arousal, abs=1e-10)
 
@@ -149,7 +149,7 @@ def test_movement_moves_the_home_of_the_arousal_and_nothing_else():
     who = Personality("w", "", Emotion(0.1, -0.2), 5.0, 0.2, movement=0.5)
     feelings = Feelings(who)
     for frame in range(120):
-        mood = feelings.update("move", 0.0, frame * FRAME, speed=2.5)
+        mood = feelings.update("move", 0.0, frame * FRAME_S, speed=2.5)
     assert mood.arousal == pytest.approx(-0.2 + 0.25, abs=1e-4)
     assert mood.valence == pytest.approx(0.1)
 
@@ -158,7 +158,7 @@ def test_movement_moves_the_home_of_the_arousal_and_nothing_else():
 def test_the_thesis_personality_walks_as_awake_as_the_follow_scenario_has_it(speeds):
     feelings = Feelings("thesis")
     for frame, speed in enumerate(speeds):
-        mood = feelings.update("move", 0.0, frame * FRAME, speed)
+        mood = feelings.update("move", 0.0, frame * FRAME_S, speed)
         assert (mood.valence, mood.arousal) == (0.0, min(max(speed / 5.0, 0.0), 1.0))
         assert mood.label == "neutral"
 
@@ -192,7 +192,7 @@ def test_noise_smaller_than_the_hysteresis_brings_back_no_label_that_was_left(
         radius = amplitude * size
         point = (centre[0] + radius * math.cos(way), centre[1] + radius * math.sin(way))
         put(feelings, *(min(max(each, -1.0), 1.0) for each in point))
-        shown.append(feelings.update("idle", 0, frame * FRAME).label)
+        shown.append(feelings.update("idle", 0, frame * FRAME_S).label)
     hub = who.label_set.hub
     visits = [label for label, _ in itertools.groupby(shown) if label != hub]
     assert len(visits) == len(set(visits))
@@ -204,7 +204,7 @@ def test_without_hysteresis_the_same_noise_chatters():
     shown = []
     for frame in range(20):
         put(feelings, 0.4 + (0.01 if frame % 2 else -0.01), 0.0)
-        shown.append(feelings.update("idle", 0, frame * FRAME).label)
+        shown.append(feelings.update("idle", 0, frame * FRAME_S).label)
     assert len(list(itertools.groupby(shown))) == 20
 
 
@@ -257,14 +257,14 @@ def test_no_label_is_left_before_its_time(who, done):
 def test_everyone_can_be_pleased_and_angered_and_comes_home(name, action, mood):
     feelings = Feelings(name)
     reached = None
-    for frame in range(round(30 / FRAME)):
-        now = feelings.update(action, 1.0, frame * FRAME)
+    for frame in range(round(30 / FRAME_S)):
+        now = feelings.update(action, 1.0, frame * FRAME_S)
         if reached is None and closest_word(("neutral", "happy", "angry"), now) == mood:
-            reached = frame * FRAME
+            reached = frame * FRAME_S
     assert reached is not None
     assert 3.0 <= reached <= 20.0
-    for frame in range(round(30 / FRAME), round(400 / FRAME)):
-        now = feelings.update("idle", 0.0, frame * FRAME)
+    for frame in range(round(30 / FRAME_S), round(400 / FRAME_S)):
+        now = feelings.update("idle", 0.0, frame * FRAME_S)
     if name == "thesis":
         assert (now.valence, now.label) == ((1.0, "happy") if mood == "happy" else (-1.0, "angry"))
     else:
@@ -279,9 +279,9 @@ def test_the_bundled_personalities_differ_to_see():
     paths = {}
     for name in bundled():
         feelings, path = Feelings(name), []
-        for frame in range(round(30 / FRAME)):
-            action = ("idle", "kiss", "idle", "shout", "idle")[int(frame * FRAME / 6)]
-            mood = feelings.update(action, 0.5, frame * FRAME)
+        for frame in range(round(30 / FRAME_S)):
+            action = ("idle", "kiss", "idle", "shout", "idle")[int(frame * FRAME_S / 6)]
+            mood = feelings.update(action, 0.5, frame * FRAME_S)
             path.append((mood.valence, mood.arousal))
         paths[name] = path
     for one, other in itertools.combinations(paths, 2):

@@ -12,9 +12,9 @@ from affect.errors import AffectError
 from affect.labels import WORD_TABLE, label_set
 from affect.words import WORD_LABELS, WORD_PLACES, closest_word
 
-THREE = ("neutral", "happy", "angry")
+THREE_WORDS = ("neutral", "happy", "angry")
 
-SHOWN = {
+WORDS_OF_MOOD = {
     "neutral": "neutral sad surprised calm sleepy bored alert depressed relaxed distress pity "
     "disappointment shame remorse resentment surprise",
     "happy": "happy excited content pleased joy happy-for gratitude gratification admiration pride "
@@ -26,10 +26,10 @@ SHOWN = {
 
 
 def test_a_robot_with_three_moods_shows_the_sensible_one_for_every_word():
-    expected = {word: mood for mood, words in SHOWN.items() for word in words.split()}
+    expected = {word: mood for mood, words in WORDS_OF_MOOD.items() for word in words.split()}
     assert expected.keys() == {row.word for row in WORD_TABLE}
     for word, mood in expected.items():
-        for robot in itertools.permutations(THREE):
+        for robot in itertools.permutations(THREE_WORDS):
             assert closest_word(robot, Emotion(0, 0, word)) == mood, word
 
 
@@ -52,8 +52,10 @@ def test_a_robot_with_other_moods_shows_the_closest(words, label, closest):
 
 @given(st.floats(-1, 1), st.floats(-1, 1), st.sampled_from([None, "snarky"]))
 def test_without_a_known_label_the_emotion_decides(valence, arousal, label):
-    word = closest_word(THREE, Emotion(valence, arousal, label))
-    assert word == min(THREE, key=lambda each: math.dist(WORD_PLACES[each], (valence, arousal)))
+    word = closest_word(THREE_WORDS, Emotion(valence, arousal, label))
+    assert word == min(
+        THREE_WORDS, key=lambda each: math.dist(WORD_PLACES[each], (valence, arousal))
+    )
 
 
 def test_the_24_emotions_have_the_faces_of_table_5_2():

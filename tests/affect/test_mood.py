@@ -13,15 +13,15 @@ from affect.errors import AffectError
 from affect.hysteresis import Label, next_label
 from affect.traits import AffectImpulse
 
-FRAME = 1 / 30
+FRAME_S = 1 / 30
 
 
 def time_until(line: Feelings, label: Label, action, weight: float, start: float = 0.0) -> float:
     """Frames of one action until the label is reached [s]; infinite after two minutes."""
-    for frame in range(int(120 / FRAME)):
-        mood = line.update(action, weight, start + frame * FRAME)
+    for frame in range(int(120 / FRAME_S)):
+        mood = line.update(action, weight, start + frame * FRAME_S)
         if mood.label == label:
-            return frame * FRAME
+            return frame * FRAME_S
     return math.inf
 
 
@@ -37,17 +37,17 @@ def time_until(line: Feelings, label: Label, action, weight: float, start: float
 )
 def test_the_way_from_neutral_takes_as_long_as_specified(action, label, weight, seconds):
     assert time_until(Feelings("thesis"), label, action, weight) == pytest.approx(
-        seconds, abs=2 * FRAME
+        seconds, abs=2 * FRAME_S
     )
 
 
 def test_the_way_from_the_angry_extreme_to_happy_takes_13_3_seconds():
     line = Feelings("thesis")
     for frame in range(15 * 30):
-        mood = line.update("shout", 1.0, frame * FRAME)
+        mood = line.update("shout", 1.0, frame * FRAME_S)
     assert mood.valence == -1.0
     start = 15.0
-    assert time_until(line, "happy", "kiss", 1.0, start) == pytest.approx(13.3, abs=2 * FRAME)
+    assert time_until(line, "happy", "kiss", 1.0, start) == pytest.approx(13.3, abs=2 * FRAME_S)
 
 
 @pytest.mark.parametrize("start", ["happy", "neutral", "angry"])
@@ -58,12 +58,12 @@ def test_three_actions_in_three_moods(start, action, reaches):
     line = Feelings("thesis")
     ways: dict[str, str] = {"happy": "kiss", "angry": "shout", "neutral": "idle"}
     towards = ways[start]
-    mood = [line.update(towards, 1.0, frame * FRAME) for frame in range(150)][-1]
+    mood = [line.update(towards, 1.0, frame * FRAME_S) for frame in range(150)][-1]
     assert mood.label == start
     labels = [mood.label]
     values = [mood.valence]
     for frame in range(150, 1000):
-        mood = line.update(action, 1.0, frame * FRAME)
+        mood = line.update(action, 1.0, frame * FRAME_S)
         labels.append(mood.label)
         values.append(mood.valence)
     assert labels[-1] == (reaches or start)

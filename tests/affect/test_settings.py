@@ -93,7 +93,7 @@ def test_any_text_is_toml_or_is_refused_in_one_line(text):
 
 # --- The table ------------------------------------------------------------------------------------
 
-ASKED = {
+READER_OF_KIND = {
     "text": lambda one: one.text("key"),
     "texts": lambda one: one.texts("key"),
     "number": lambda one: one.number("key", -1, 1),
@@ -138,7 +138,7 @@ ASKED = {
     ],
 )
 def test_a_value_of_another_kind_is_refused_with_file_key_and_what_is_allowed(kind, value, says):
-    line = refusal(ASKED[kind], table(key=value))
+    line = refusal(READER_OF_KIND[kind], table(key=value))
     assert line.startswith("my.toml: moods.key")
     assert says in line
 
@@ -166,7 +166,7 @@ def test_what_is_left_out_is_the_default_or_is_missed():
     assert (one.whole("a", 0, 9, 3), one.truth("a", True), one.list("a", "pairs")) == (3, True, [])
     assert one.table("a", "b").names() == []
     for kind in ("text", "number", "whole"):
-        assert "moods.key is missing; it must be a" in refusal(ASKED[kind], one)
+        assert "moods.key is missing; it must be a" in refusal(READER_OF_KIND[kind], one)
 
 
 def test_a_key_that_means_nothing_is_refused_with_those_that_do():
@@ -181,7 +181,7 @@ values = st.recursive(
 )
 
 
-@given(st.sampled_from(sorted(ASKED)), values)
+@given(st.sampled_from(sorted(READER_OF_KIND)), values)
 def test_a_value_of_any_kind_is_given_or_refused_in_one_short_line(kind, value):
-    line = outcome(ASKED[kind], table(key=value))
+    line = outcome(READER_OF_KIND[kind], table(key=value))
     assert line is None or line.startswith("my.toml: moods.key")

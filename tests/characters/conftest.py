@@ -15,7 +15,7 @@ from characters.skeleton import rotations
 settings.register_profile("suite", derandomize=True, deadline=None)
 settings.load_profile("suite")
 
-STANCE = 0.6
+STANCE_SHARE = 0.6
 SIDES = (("Left", 0.1, 0.0), ("Right", -0.1, 0.5))
 NAMES = ("root", "hips", "head", "LeftFoot", "RightFoot")
 
@@ -30,16 +30,16 @@ def _foot(speed: float, yaw_rate: float, cycle: float, side: float, own: float) 
     """Where a foot is in the root's frame, so long after it landed (part of the cycle)."""
 
     def planted(part: float) -> tuple[float, float]:
-        back = _arc(speed, yaw_rate, (STANCE / 2 - part) * cycle)
+        back = _arc(speed, yaw_rate, (STANCE_SHARE / 2 - part) * cycle)
         at = back.then(RootDelta(side, 0.0))
         return at.x, at.z
 
-    if own <= STANCE:
+    if own <= STANCE_SHARE:
         x, z = planted(own)
         return [x, 0.05, z]
-    u = (own - STANCE) / (1 - STANCE)
+    u = (own - STANCE_SHARE) / (1 - STANCE_SHARE)
     ease = u * u * (3 - 2 * u)
-    (x0, z0), (x1, z1) = planted(STANCE), planted(0.0)
+    (x0, z0), (x1, z1) = planted(STANCE_SHARE), planted(0.0)
     return [x0 + (x1 - x0) * ease, 0.05 + 0.1 * math.sin(math.pi * u), z0 + (z1 - z0) * ease]
 
 

@@ -21,7 +21,7 @@ from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from tests.characters.commands import command
 
-RATE = 30
+RATE_HZ = 30
 
 
 def heading(posed):
@@ -33,7 +33,7 @@ def place(posed):
     return posed.table_from_character[[0, 2], 3]
 
 
-def play(animator, seconds, start=0.0, rate=RATE, **asked):
+def play(animator, seconds, start=0.0, rate=RATE_HZ, **asked):
     """Give one command for a while and return every frame."""
     times = start + np.arange(round(seconds * rate)) / rate
     return [animator.update(command(float(t), **asked)) for t in times]
@@ -41,11 +41,11 @@ def play(animator, seconds, start=0.0, rate=RATE, **asked):
 
 def arrival(character, speed, target, place=None, seconds=40):
     animator = Animator(character, place=place)
-    for number in range(seconds * RATE):
-        posed = animator.update(CharacterCommand(number / RATE, LocomotionIntent(speed, target)))
+    for number in range(seconds * RATE_HZ):
+        posed = animator.update(CharacterCommand(number / RATE_HZ, LocomotionIntent(speed, target)))
         if number and posed.state == "idle":
             assert np.hypot(*(posed.table_from_character[[0, 2], 3] - target)) < ARRIVAL_DISTANCE_M
-            return number / RATE
+            return number / RATE_HZ
     return math.inf
 
 
@@ -249,7 +249,7 @@ def test_an_action_plays_and_says_its_name(performer):
 def test_each_intensity_is_its_clip(performer, weight, ending):
     frames = play(Animator(performer, layers=FOOT_LAYERS), 1.0, activity="shout", weight=weight)
     clip = performer.clips[f"shout_{ending}"]
-    expected = clip.sample(29 / RATE)
+    expected = clip.sample(29 / RATE_HZ)
     shown = rotations.align(frames[-1].pose.rotations, expected.rotations)
     assert np.allclose(shown, expected.rotations, atol=1e-3)
 
@@ -257,7 +257,7 @@ def test_each_intensity_is_its_clip(performer, weight, ending):
 def test_more_weight_moves_more(performer):
     def liveliness(weight):
         frames = play(Animator(performer), 2.0, activity="kiss", weight=weight)
-        return np.abs(velocities(frames[15:], RATE)).sum()
+        return np.abs(velocities(frames[15:], RATE_HZ)).sum()
 
     effort = [liveliness(weight) for weight in (-1.0, -0.5, 0.0, 0.5, 1.0)]
     assert (np.diff(effort) > 0).all()
@@ -333,7 +333,7 @@ def test_a_walker_does_what_its_other_clips_are_once(human):
     frames = play(animator, 6.0, activity="jump")
     states = [frame.state for frame in frames]
     ended = states.index("jump") + states.count("jump")
-    assert states.count("jump") / RATE == pytest.approx(human.clips["jump"].duration, abs=0.1)
+    assert states.count("jump") / RATE_HZ == pytest.approx(human.clips["jump"].duration, abs=0.1)
     assert set(states[ended:]) == {"idle"}
     toes = human.skeleton.index("LeftToe")
     heights = [frame.pose.globals(human.skeleton)[toes, 1, 3] for frame in frames]

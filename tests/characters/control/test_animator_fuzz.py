@@ -15,8 +15,8 @@ from tests.characters.commands import command
 
 DATA = Path(__file__).parents[3].parent / "shared" / "data" / "gltf"
 CAST = ("human", "vleo", "robot", "RobotExpressive.glb", "Fox.glb")
-FASTEST = 75.0  # [rad/s]: eyes jump at 25, the fastest punch of the cast has 54
-SWIFTEST = 0.6  # [m/s] on the table: a walker of 17 cm
+MAX_JOINT_SPEED = 75.0  # [rad/s]: eyes jump at 25, the fastest punch of the cast has 54
+MAX_TABLE_SPEED = 0.6  # [m/s] on the table: a walker of 17 cm
 
 
 def points(count, reach):
@@ -88,9 +88,9 @@ def test_no_command_breaks_a_character(someone, story):
         if before is not None:
             cosine = np.abs((pose.rotations * before.pose.rotations).sum(-1))
             turned = 2 * np.arccos(np.minimum(cosine, 1.0)).max()
-            assert turned < FASTEST * seconds + 0.1
+            assert turned < MAX_JOINT_SPEED * seconds + 0.1
             went = np.linalg.norm((placed - before.table_from_character)[:3, 3])
-            assert went < SWIFTEST * seconds + 1e-3
+            assert went < MAX_TABLE_SPEED * seconds + 1e-3
         before = posed
 
 

@@ -32,8 +32,8 @@ from characters.face.lids import Lids, blink_shares
 from characters.model.character import skin
 from tests.characters.commands import command
 
-STEP = 1 / 30
-FASTEST = 8.0
+STEP_S = 1 / 30
+MAX_WEIGHT_RATE = 8.0
 """What a morph of a face may change by at most [1/s]; a lid that falls is faster."""
 
 CAST = {name: Character.load(name) for name in ("human", "vleo", "robot")}
@@ -52,13 +52,13 @@ def lived(character, feelings, action="idle", seed=2):
     poses = []
     for number, felt in enumerate(feelings):
         emotion = None if felt is None else Emotion(*felt)
-        asked = command(number * STEP, action, gaze=GAZE, emotion=emotion)
+        asked = command(number * STEP_S, action, gaze=GAZE, emotion=emotion)
         poses.append(animator.update(asked).pose)
     return poses
 
 
 def felt(word, seconds):
-    return [(*WORD_PLACES[word], word)] * round(seconds / STEP)
+    return [(*WORD_PLACES[word], word)] * round(seconds / STEP_S)
 
 
 def face(character, pose):
@@ -88,8 +88,8 @@ def test_a_feeling_that_is_over_leaves_nothing_behind(someone):
     own = AffectDisplay(someone.morphs, np.zeros(len(someone.morphs)))
     for number in range(900):
         emotion = Emotion(-0.7, 0.6, "angry") if number < 60 else None
-        expressivity.update(STEP, emotion)
-        own.update(STEP, emotion)
+        expressivity.update(STEP_S, emotion)
+        own.update(STEP_S, emotion)
     assert expressivity.value is NEUTRAL_EXPRESSIVITY
     assert not own.active
 
@@ -166,9 +166,9 @@ def test_no_morph_leaves_its_range_and_none_pops(name, plan, action):
     assert np.isfinite(weights).all()
     assert weights.min() >= 0.0
     assert weights.max() <= max(1.0, clips.max()) + 1e-9
-    allowed = np.abs(np.diff(clips[:, numbers], axis=0)) + FASTEST * STEP
+    allowed = np.abs(np.diff(clips[:, numbers], axis=0)) + MAX_WEIGHT_RATE * STEP_S
     surprised = EXPRESSIONS.index("surprised")  # falls with the lids
-    allowed[:, surprised] += 12.0 * STEP
+    allowed[:, surprised] += 12.0 * STEP_S
     assert (np.abs(np.diff(weights[:, numbers], axis=0)) <= allowed).all()
 
 
@@ -178,10 +178,10 @@ def test_a_bearing_changes_without_a_jolt():
     last = posture.rotation_vectors(expressivity.value, 1.0)
     for number in range(300):
         expressivity.update(
-            STEP, (Emotion(-1, -1), Emotion(1, 1), Emotion(-1, 1))[number // 20 % 3]
+            STEP_S, (Emotion(-1, -1), Emotion(1, 1), Emotion(-1, 1))[number // 20 % 3]
         )
         now = posture.rotation_vectors(expressivity.value, 1.0)
-        assert np.abs(now - last).max() < math.radians(45) * STEP
+        assert np.abs(now - last).max() < math.radians(45) * STEP_S
         last = now
 
 
@@ -191,9 +191,9 @@ def test_a_blink_closes_the_eyes_whatever_is_felt(someone, word):
     blinks = blink_shares(someone.morphs, someone.meshes, lids)
     own = AffectDisplay(someone.morphs, blinks)
     for _ in range(150):
-        own.update(STEP, Emotion(*WORD_PLACES[word], word))
+        own.update(STEP_S, Emotion(*WORD_PLACES[word], word))
     weights = np.zeros(len(someone.morphs))
-    shut, _ = own.apply(weights, STEP, 1.0, 0.0)
+    shut, _ = own.apply(weights, STEP_S, 1.0, 0.0)
     lids.close(weights, 1.0)
     lids.limit(weights, 1.0 - shut)
     blink = {"blink": 1.0}
@@ -223,7 +223,7 @@ def test_an_action_that_speaks_wins_and_the_mood_comes_back():
     for number in range(270):
         action = "kiss" if number < 120 else "idle"
         command = CharacterCommand(
-            number * STEP,
+            number * STEP_S,
             action=ActionIntent(action),
             emotion=Emotion(*WORD_PLACES["sad"], "sad"),
         )
@@ -243,7 +243,7 @@ def test_a_smile_of_the_clip_does_not_stay_on_an_angry_face():
     animator = Animator(human)
     for number in range(120):
         command = CharacterCommand(
-            number * STEP,
+            number * STEP_S,
             LocomotionIntent(5.0, np.array([0.0, 99.0])),
             emotion=Emotion(*WORD_PLACES["angry"], "angry"),
         )
@@ -307,7 +307,7 @@ def test_a_body_without_a_face_shows_it_in_its_bearing():
     sad, plain = Animator(faceless), Animator(faceless)
     for number in range(90):
         bowed = sad.update(
-            CharacterCommand(number * STEP, emotion=Emotion(*WORD_PLACES["sad"], "sad"))
+            CharacterCommand(number * STEP_S, emotion=Emotion(*WORD_PLACES["sad"], "sad"))
         ).pose
-        straight = plain.update(CharacterCommand(number * STEP)).pose
+        straight = plain.update(CharacterCommand(number * STEP_S)).pose
     assert pitch(human, bowed) < pitch(human, straight) - math.radians(4)

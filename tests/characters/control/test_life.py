@@ -20,7 +20,7 @@ from characters.skeleton import rotations
 from characters.skeleton.anatomy import Anatomy
 from tests.characters.layers import AppliedLayers
 
-STEP = 1 / 60
+STEP_S = 1 / 60
 NAMES = ("hips", "spine", "chest", "neck", "head", "LeftEye", "RightEye", "LeftFoot")
 PARENTS = (-1, 0, 1, 2, 3, 4, 4, 0)
 PLACES = np.array(
@@ -66,7 +66,7 @@ def test_eyes_end_on_what_they_look_at(seed, yaw, pitch, distance):
     way = np.array([math.sin(yaw) * math.cos(pitch), math.sin(pitch), math.cos(yaw)])
     target = middle + distance * way / np.linalg.norm(way)
     for _ in range(240):
-        pose = gaze.update(skeleton.rest, target, STEP)
+        pose = gaze.update(skeleton.rest, target, STEP_S)
     world = pose.globals(skeleton)
     for joint in (5, 6):
         to = target - world[joint, :3, 3]
@@ -80,7 +80,7 @@ def test_nothing_turns_farther_than_a_body_can(seed, target):
     skeleton, anatomy = bust(seed)
     gaze = Gaze(skeleton, anatomy)
     for _ in range(90):
-        pose = gaze.update(skeleton.rest, np.array(target), STEP)
+        pose = gaze.update(skeleton.rest, np.array(target), STEP_S)
         head = looking(skeleton, pose, 4)
         assert abs(math.atan2(head[0], head[2])) < MAX_HEAD_YAW_RAD + math.radians(1)
         assert -MAX_HEAD_DOWN_RAD - 0.02 < math.asin(head[1]) < MAX_HEAD_UP_RAD + 0.02
@@ -95,10 +95,10 @@ def test_the_head_turns_without_a_jump_and_the_eyes_are_there_first():
     target = np.array([2.0, 1.7, 2.0])
     heads, eyes = [], []
     for _ in range(90):
-        pose = gaze.update(skeleton.rest, target, STEP)
+        pose = gaze.update(skeleton.rest, target, STEP_S)
         heads.append(angle(looking(skeleton, pose, 4), [0, 0, 1]))
         eyes.append(angle(looking(skeleton, pose, 5), [0, 0, 1]))
-    assert np.abs(np.diff(heads)).max() < math.radians(400) * STEP
+    assert np.abs(np.diff(heads)).max() < math.radians(400) * STEP_S
     assert eyes[6] > math.radians(25) > 3 * heads[3]
 
 
@@ -106,9 +106,9 @@ def test_what_is_behind_is_not_looked_at_and_the_head_comes_back():
     skeleton, anatomy = bust(0)
     gaze = Gaze(skeleton, anatomy)
     for _ in range(60):
-        gaze.update(skeleton.rest, np.array([1.0, 1.7, 1.0]), STEP)
+        gaze.update(skeleton.rest, np.array([1.0, 1.7, 1.0]), STEP_S)
     for _ in range(240):
-        pose = gaze.update(skeleton.rest, np.array([0.1, 1.7, -2.0]), STEP)
+        pose = gaze.update(skeleton.rest, np.array([0.1, 1.7, -2.0]), STEP_S)
     assert angle(looking(skeleton, pose, 4), [0, 0, 1]) < math.radians(1)
 
 
@@ -116,14 +116,14 @@ def test_a_body_without_a_head_is_left_alone():
     rest = Pose(np.zeros((1, 3)), np.array([[0.0, 0, 0, 1]]))
     skeleton = Skeleton(("box",), (-1,), rest)
     box = Character("box", skeleton, {}, ())
-    pose = AppliedLayers(box).update(rest, STEP, target=np.ones(3))
+    pose = AppliedLayers(box).update(rest, STEP_S, target=np.ones(3))
     assert np.array_equal(pose.rotations, rest.rotations)
 
 
 def test_blinks_come_as_often_as_peoples_and_never_in_step():
     blinking, other = BlinkTimer(1), BlinkTimer(2)
-    lids = np.array([blinking.update(STEP) for _ in range(60 * 600)])
-    others = np.array([other.update(STEP) for _ in range(60 * 600)])
+    lids = np.array([blinking.update(STEP_S) for _ in range(60 * 600)])
+    others = np.array([other.update(STEP_S) for _ in range(60 * 600)])
     shut = (lids[1:] > 0.95) & (lids[:-1] <= 0.95)
     assert 12 <= shut.sum() / 10 <= 22
     starts = np.flatnonzero(shut)
@@ -135,9 +135,9 @@ def test_blinks_come_as_often_as_peoples_and_never_in_step():
 
 def test_a_great_turn_of_the_gaze_brings_a_blink():
     blinking = BlinkTimer(5)
-    assert blinking.update(STEP) == 0.0
-    blinking.update(STEP, gaze_shift=1.0)
-    assert max(blinking.update(STEP) for _ in range(12)) == 1.0
+    assert blinking.update(STEP_S) == 0.0
+    blinking.update(STEP_S, gaze_shift=1.0)
+    assert max(blinking.update(STEP_S) for _ in range(12)) == 1.0
 
 
 @given(st.floats(-1, 1))
@@ -164,7 +164,7 @@ def test_eyes_blink_whatever_their_morphs_are_called(names):
     morphs = ("jawOpen", *names, "eyeSquintLeft")
     skeleton, _ = bust(0)
     life = AppliedLayers(Character("bust", skeleton, {}, (), morphs, SEMANTICS))
-    weights = np.array([life.update(skeleton.rest, STEP).morphs for _ in range(900)])
+    weights = np.array([life.update(skeleton.rest, STEP_S).morphs for _ in range(900)])
     shut = weights[:, 1:-1].max(axis=1) > 0.99
     assert shut.any()
     assert not weights[:, [0, -1]].any()
@@ -195,7 +195,7 @@ def test_standing_still_is_never_quite_still_and_the_feet_stay(someone):
     feet = [anatomy.joints["leftFoot"], anatomy.joints["rightFoot"]]
     heads, soles = [], []
     for _ in range(240):
-        world = life.update(still, STEP).globals(someone.skeleton)[:, :3, 3]
+        world = life.update(still, STEP_S).globals(someone.skeleton)[:, :3, 3]
         heads.append(world[anatomy.joints["head"]])
         soles.append(world[feet])
     assert np.ptp(heads, axis=0).max() > 0.001 * someone.height
@@ -210,7 +210,7 @@ def test_breath_quickens_with_effort_and_calms_down_later(someone):
     def breaths(seconds, effort):
         full = []
         for _ in range(seconds * 60):
-            life.update(pose, STEP, effort=effort)
+            life.update(pose, STEP_S, effort=effort)
             full.append(life.context.breath)
         crossed = np.diff((np.array(full) > 0.5).astype(int)) > 0
         return crossed.sum() / seconds

@@ -10,8 +10,8 @@ import pytest
 from characters import Character
 from tests.characters.formats.built_gltf import SAMPLES
 
-KINDS = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
-WIDE = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
+DTYPE_OF_COMPONENT = {5120: "i1", 5121: "u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", 5126: "<f4"}
+TYPE_WIDTHS = {"SCALAR": 1, "VEC3": 3, "VEC4": 4}
 
 
 @cache
@@ -26,8 +26,8 @@ def numbers(path, index):
     document, blob = contents(path)
     accessor = document["accessors"][index]
     view = document["bufferViews"][accessor["bufferView"]]
-    wide = WIDE[accessor["type"]]
-    kind = np.dtype(KINDS[accessor["componentType"]])
+    wide = TYPE_WIDTHS[accessor["type"]]
+    kind = np.dtype(DTYPE_OF_COMPONENT[accessor["componentType"]])
     start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
     step = view.get("byteStride", wide * kind.itemsize)
     rows = [np.frombuffer(blob, kind, wide, start + row * step) for row in range(accessor["count"])]
