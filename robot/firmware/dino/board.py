@@ -2,7 +2,10 @@
 
 
 class RobotBoard:
-    """A serial line, a clock, servos and a buzzer. Only `wait` blocks."""
+    """A serial line, a clock, servos and a buzzer. Only `wait` blocks.
+
+    MicroPython has no `abc`: a board without one of the first six methods fails when it is used.
+    """
 
     def elapsed(self) -> int:
         """Return the time since the last call [whole ms]; 0 at the first."""
