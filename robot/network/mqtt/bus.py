@@ -74,7 +74,9 @@ class MqttBus(Bus):
         self._address = address
         self._answered = threading.Event()
         self._closing = False
-        self._topics: dict[int, str] = {}
+        self._confirming = threading.Lock()  # guards the next two; never held during a call of paho
+        self._topics: dict[int, str] = {}  # of the messages without confirmation, by their id
+        self._early_reasons: dict[int, ReasonCode] = {}  # confirmed before `publish` knew the id
         self._last_sent: paho.MQTTMessageInfo | None = None
         client = paho.Client(CallbackAPIVersion.VERSION2, client_id, protocol=paho.MQTTv5)
         client.connect_timeout = CONNECT_TIMEOUT_S
@@ -126,8 +128,13 @@ class MqttBus(Bus):
         info = self._client.publish(message.topic, message.payload, QOS, message.retain)
         if info.rc == MQTTErrorCode.MQTT_ERR_QUEUE_SIZE:
             return False
-        self._topics[info.mid] = message.topic
         self._last_sent = info
+        with self._confirming:
+            reason = self._early_reasons.pop(info.mid, None)
+            if reason is None:
+                self._topics[info.mid] = message.topic
+        if reason is not None:
+            self._note_confirmation(message.topic, reason)
         return True
 
     def close(self, closing_messages: tuple[Message, ...] = ()) -> None:
@@ -196,8 +203,15 @@ class MqttBus(Bus):
                 return  # overlapping filters deliver it once
 
     def _on_publish(self, client: Any, _: Any, mid: int, reason: ReasonCode, *__: Any) -> None:
-        # In theory the confirmation can arrive before `publish` has noted the topic.
-        topic = self._topics.pop(mid, "a topic")
+        with self._confirming:
+            topic = self._topics.pop(mid, None)
+            if topic is None:
+                self._early_reasons[mid] = reason
+        if topic is not None:
+            self._note_confirmation(topic, reason)
+
+    def _note_confirmation(self, topic: str, reason: ReasonCode) -> None:
+        """Report a message that the broker refused."""
         if reason.is_failure:
             problem = f"{self._address} does not let us publish to {topic}: {reason}"
             if problem != self._problem:

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from paho.mqtt.client import Client, MQTTMessageInfo
 
 import robot
 from affect import Emotion
@@ -221,7 +222,18 @@ def test_a_wrong_password_is_refused_in_one_line_that_does_not_show_it(mosquitto
         MqttBus(Address.of(broker.url), "ann").open()
 
 
-def test_a_forbidden_topic_is_reported(mosquitto, tmp_path, soon):
+@pytest.mark.parametrize("early", [False, True])
+def test_a_forbidden_topic_is_reported(mosquitto, tmp_path, monkeypatch, soon, early):
+    """Also if the broker's answer comes before `publish` has returned."""
+    publish = Client.publish
+
+    def publish_and_wait(client: Client, *message: Any) -> MQTTMessageInfo:
+        info = publish(client, *message)
+        info.wait_for_publish(5.0)
+        return info
+
+    if early:
+        monkeypatch.setattr(Client, "publish", publish_and_wait)
     rules = tmp_path / "acl"
     rules.write_text("topic read #\ntopic write cubeling/1/hall/player/ann/#\n")
     broker = mosquitto(f"acl_file {rules}")
