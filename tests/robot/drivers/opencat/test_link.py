@@ -6,15 +6,13 @@ from itertools import pairwise
 
 import pytest
 
-from affect import Emotion
 from robot.drivers.opencat.echo import MAX_QUESTION_TRIES, QUESTION_TIMEOUT_S
-from robot.drivers.opencat.host import REST_INTERVAL_S, OpenCatHost
+from robot.drivers.opencat.host import REST_INTERVAL_S
 from robot.drivers.opencat.settings import load_settings, parse_settings
 from robot.protocol import messages as m
 from robot.simulators.opencat.quirks import BoardQuirks
-from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
-
-HAPPY = Emotion(0.7, 0.6, "happy")
+from robot.simulators.opencat.simulator import OpenCatSimulator
+from tests.robot.drivers.opencat.boards import HeldBackBoard, UnheardBoard, introduced_host
 
 
 def test_a_whole_session_line_by_line(desk):
@@ -42,79 +40,6 @@ def test_a_whole_session_line_by_line(desk):
     assert not d.robot.forbidden
 
 
-def test_nothing_is_sent_while_the_board_starts_and_then_its_model_is_known(desk):
-    d = desk()
-    d.until(lambda: d.sent != [], 30.0)
-    assert len(d.robot.log) == 0
-    d.ready()
-    assert d.host.catalogue.name == "Bittle X"
-    assert d.host.catalogue.firmware == "OpenCat B10_241013"
-    assert len(d.host.catalogue.joints) == 9
-    assert d.host.catalogue.moods[0] == "neutral"
-    assert d.telemetry.limp, "a board that has just started has let go of its servos"
-
-
-def test_nybble_is_recognised_with_its_eleven_joints(desk):
-    d = desk(nybble(3)).ready()
-    assert d.host.catalogue.name == "Nybble"
-    names = [joint.name for joint in d.host.catalogue.joints]
-    assert len(names) == 11
-    assert names[:3] == ["head", "head tilt", "tail"]
-    d.feel("happy")
-    d.settle()
-    assert "i1 20 2 30" in d.lines
-
-
-@pytest.mark.parametrize("model", ["", "bittle"])
-def test_an_old_board_that_reports_no_model_shows_moods_too(model, desk, quiet):
-    robot = OpenCatSimulator(1, quirks=replace(quiet, answers_query=False))
-    d = desk(robot, parse_settings({"opencat": {"model": model}}, "mine.toml")).ready()
-    assert d.host.catalogue.name == "OpenCat"
-    assert len(d.host.catalogue.joints) == (9 if model else 0)
-    d.feel("happy")
-    d.settle()
-    assert d.shown == "happy"
-
-
-def test_another_robot_shows_moods_by_postures_alone(desk):
-    d = desk(OpenCatSimulator(1, "DoF16", "C01_250101")).ready()
-    assert d.host.catalogue.name == "DoF16"
-    assert d.host.catalogue.joints == ()
-    d.feel("sad")
-    d.settle()
-    assert not any(line.startswith("i") for line in d.lines)
-
-
-def test_a_board_that_asks_whether_to_erase_its_calibration_gets_no_byte(desk, quiet):
-    robot = OpenCatSimulator(2, quirks=quiet, new_board=True)
-    d = desk(robot)
-    d.feel("happy")
-    d.run(120.0)
-    assert d.sent == []
-    assert d.state == "connecting"
-    robot.receive(b"n", d.now)  # its owner answers, in Petoi's own program
-    d.ready()
-    d.settle()
-    assert not robot.forbidden
-    d.host.close()
-
-
-def test_a_board_that_asks_gets_no_rest_command_at_close(desk, quiet):
-    d = desk(OpenCatSimulator(2, quirks=quiet, new_board=True))
-    d.run(30.0)
-    d.host.close()
-    assert d.host.bytes_to_send() == b""
-
-
-def test_a_board_that_did_not_restart_is_asked_after_a_second(desk):
-    d = desk()
-    d.robot.advance(90.0)
-    d.robot.advance(99.0)
-    d.robot.bytes_to_send()
-    assert d.until(lambda: d.state == "ready", 5.0) < 1.2
-    assert not d.telemetry.limp
-
-
 def test_the_last_of_many_moods_wins(desk):
     d = desk().ready()
     for index in range(500):
@@ -129,101 +54,10 @@ def test_the_last_of_many_moods_wins(desk):
     assert min(gaps) >= load_settings().dwell
 
 
-def test_the_same_mood_again_is_not_sent_again_but_counts_as_taken(desk):
-    d = desk().ready()
-    d.feel("happy")
-    d.settle()
-    d.run(1.0)
-    before = len(d.sent)
-    d.host.express(Emotion(0.8, 0.7, "happy"))
-    assert d.telemetry.acknowledged == Emotion(0.8, 0.7, "happy")
-    d.run(2.0)
-    assert len(d.sent) == before
-
-
-def test_nothing_is_acknowledged_before_the_robot_is_there(desk):
-    d = desk().ready()
-    d.feel("sad")
-    while d.telemetry.acknowledged is None:
-        assert d.telemetry.commanded is not None
-        d.turn()
-    assert d.shown == "sad"
-    assert d.telemetry.observed is None
-    assert d.telemetry.label is None
-    assert d.telemetry.battery is None
-
-
-def test_what_is_acknowledged_stays_until_the_next_mood_is(desk):
-    d = desk().ready()
-    d.feel("happy")
-    d.settle()
-    d.host.express(Emotion(0.8, 0.7, "happy"))
-    d.feel("sad")  # a posture, and then a pose
-    while d.telemetry.acknowledged != Emotion(-0.6, -0.4, "sad"):
-        assert d.telemetry.acknowledged == Emotion(0.8, 0.7, "happy")
-        d.turn()
-    assert "i0 -40" in d.lines
-    d.host.stop()
-    d.until(lambda: d.telemetry.stopped, 10.0)
-    assert d.telemetry.acknowledged is None
-
-
-def test_an_emotion_is_not_acknowledged_while_another_posture_is_pending(desk):
-    d = desk().ready()
-    d.feel("happy")
-    d.settle()
-    d.feel("neutral")
-    d.until(lambda: d.lines[-1] == "kbalance", 5.0)
-    for valence in (0.8, 0.9):  # happy again, but it has left that posture
-        d.host.express(Emotion(valence, 0.6, "happy"))
-        assert d.telemetry.acknowledged == HAPPY
-    d.until(lambda: d.telemetry.acknowledged != HAPPY, 5.0)
-    assert d.telemetry.acknowledged == Emotion(0.0, 0.0, "neutral"), (
-        "its echo came, displaced or not"
-    )
-    d.settle()
-    assert d.telemetry.acknowledged == Emotion(0.9, 0.6, "happy")
-
-
-def test_the_last_emotion_of_a_displaced_mood_is_acknowledged_with_its_echo(desk):
-    d = desk().ready()
-    d.feel("happy")
-    d.until(lambda: d.lines[-1] == "kbuttUp", 5.0)
-    d.host.express(Emotion(0.9, 0.7, "happy"))
-    d.feel("neutral")
-    d.until(lambda: d.telemetry.acknowledged is not None, 5.0)
-    assert d.telemetry.acknowledged == Emotion(0.9, 0.7, "happy")
-
-
-def test_half_of_a_displaced_mood_is_not_acknowledged(desk):
-    d = desk().ready()
-    d.feel("happy")
-    d.settle()
-    d.feel("sad")
-    d.until(lambda: d.lines[-1] == "ksit", 5.0)
-    d.feel("angry")
-    while d.telemetry.acknowledged == HAPPY:
-        d.turn()
-    assert d.telemetry.acknowledged == Emotion(-0.7, 0.6, "angry")
-    assert "i0 -40" not in d.lines
-
-
 def test_an_error_message_survives_a_restart_of_the_board():
-    host = _introduced()
+    host = introduced_host()
     host.receive(b"Low power: 6.71V. The robot won't move.\r\n* Start *\r\nReady!\r\n", 3.0)
     assert host.telemetry(3.0).complaint == "Low power: 6.71V. The robot won't move."
-
-
-def test_a_fall_clears_what_is_acknowledged():
-    host = _introduced()
-    host.express(HAPPY)
-    host.tick(3.0)
-    host.bytes_to_send()
-    host.receive(b"k\r\n", 3.5)
-    assert host.telemetry(3.5).acknowledged == HAPPY
-    host.receive(b"EXCEPTION: Fall over\r\n", 3.6)
-    known = host.telemetry(3.6)
-    assert (known.acknowledged, known.complaint) == (None, "EXCEPTION: Fall over")
 
 
 def test_a_stopped_robot_that_plays_a_skill_is_not_called_still(desk):
@@ -234,81 +68,6 @@ def test_a_stopped_robot_that_plays_a_skill_is_not_called_still(desk):
     d.until(lambda: d.lines[-1] == "kpu", 5.0)
     assert not d.telemetry.stopped
     d.until(lambda: d.telemetry.stopped, 15.0)
-
-
-class Deaf(OpenCatSimulator):
-    """A board whose echoes can be held back, as if it were busy."""
-
-    held = False
-
-    def bytes_to_send(self) -> bytes:
-        return b"" if self.held else super().bytes_to_send()
-
-
-def test_a_late_echo_counts_for_its_own_command_and_for_no_later_one(desk, quiet):
-    robot = Deaf(4, quirks=quiet)
-    d = desk(robot).ready()
-    d.feel("happy")
-    d.run(0.3)
-    robot.held = True  # the echo of "kbuttUp" is kept back
-    d.feel("sad")
-    d.run(5.0)
-    assert d.state == "degraded"
-    assert d.lines[-2:] == ["kbuttUp", "j"]
-    robot.held = False
-    d.until(lambda: "ksit" in d.lines, 5.0)
-    assert d.telemetry.acknowledged == HAPPY, "the late echo was the happy posture's"
-    d.settle()
-    assert d.telemetry.acknowledged == Emotion(-0.6, -0.4, "sad")
-    assert d.lines.count("kbuttUp") == 1
-
-
-def test_an_echo_after_the_questions_is_not_the_given_up_commands(desk, quiet):
-    host = OpenCatHost()
-    host.port_opened(0.0)
-    host.tick(2.0)
-    assert host.bytes_to_send() == b"?\n"
-    host.receive(b"Bittle\r\nN11_230101\r\n?\r\n", 2.1)
-    host.express(HAPPY)
-    host.tick(3.0)
-    assert host.bytes_to_send() == b"kbuttUp\n"
-    host.tick(8.5)
-    assert host.bytes_to_send() == b"j\n", "its echo is late"
-    host.tick(8.5 + QUESTION_TIMEOUT_S)
-    assert host.bytes_to_send() == b"j\n", "a question is repeated with the same token"
-    host.receive(b"?\r\n", 10.6)  # the late echo of some earlier question settles nothing
-    host.tick(10.7)
-    assert host.bytes_to_send() == b""
-    host.receive(b"j\r\n", 10.8)  # now the command is known to be lost
-    assert host.telemetry(10.8).acknowledged is None
-    host.tick(13.0)
-    assert host.bytes_to_send() == b"kbuttUp\n"
-    host.receive(b"j\r\n", 13.1)  # the echo of the repeated question: late, and harmless
-    assert host.telemetry(13.1).acknowledged is None
-    host.receive(b"k\r\n", 13.2)
-    assert host.telemetry(13.2).acknowledged == HAPPY
-
-
-def test_the_echo_of_a_skill_after_a_fall_is_ignored():
-    host = OpenCatHost()
-    host.port_opened(0.0)
-    host.tick(2.0)
-    host.receive(b"Bittle X\r\nB10_241013\r\n?\r\n", 2.1)
-    host.express(HAPPY)
-    host.tick(3.0)
-    host.bytes_to_send()
-    host.receive(
-        b"EXCEPTION: Fall over\r\nk\r\n", 3.1
-    )  # it was on its way already: its own skill's
-    assert host.telemetry(3.1).acknowledged is None
-    host.tick(3.4)
-    assert host.bytes_to_send() == b"j\n"
-    host.receive(b"k\r\nj\r\n", 4.0)
-    assert host.telemetry(4.0).acknowledged is None
-    host.tick(6.0)
-    assert host.bytes_to_send() == b"kbuttUp\n"
-    host.receive(b"k\r\n", 6.5)
-    assert host.telemetry(6.5).acknowledged == HAPPY
 
 
 def test_a_reboot_in_the_middle_is_noticed_and_the_mood_is_taken_again(desk):
@@ -323,17 +82,6 @@ def test_a_reboot_in_the_middle_is_noticed_and_the_mood_is_taken_again(desk):
     assert d.shown == "happy"
     assert d.telemetry.counts.sessions == 2
     assert d.lines.count("b14 8 18 8 21 8") == 1, "the mood has not begun anew"
-
-
-def test_the_k_of_a_starting_board_is_no_echo(desk):
-    d = desk().ready()
-    d.feel("happy")
-    d.until(lambda: "kbuttUp" in d.lines, 5.0)
-    d.robot.reboot()  # a brown-out, as the servos begin to move
-    d.run(1.5)
-    assert d.telemetry.acknowledged is None
-    d.settle()
-    assert d.lines.count("kbuttUp") == 2
 
 
 def test_unplugging_and_plugging_is_recovered_from(desk):
@@ -351,7 +99,7 @@ def test_unplugging_and_plugging_is_recovered_from(desk):
 
 
 def test_a_silent_board_is_lost_within_the_stated_time_and_found_again(desk, quiet):
-    robot = Deaf(4, quirks=quiet)
+    robot = HeldBackBoard(4, quirks=quiet)
     d = desk(robot).ready()
     d.feel("happy")
     d.settle()
@@ -494,70 +242,8 @@ def test_lines_are_never_sent_so_close_that_the_board_merges_them(desk):
     assert d.shown == "happy"
 
 
-def _introduced(at: float = 2.0) -> OpenCatHost:
-    """Make a host whose board has introduced itself, and that was asked nothing since."""
-    host = OpenCatHost()
-    host.port_opened(at - 2.0)
-    host.tick(at)
-    assert host.bytes_to_send() == b"?\n"
-    host.receive(b"Bittle X\r\nB10_241013\r\n?\r\n", at)
-    return host
-
-
-def test_a_question_asked_before_a_fall_does_not_end_the_doubt():
-    host = _introduced()
-    host.tick(13.0)
-    assert host.bytes_to_send() == b"j\n"
-    host.express(HAPPY)
-    host.receive(b"EXCEPTION: Fall over\r\nj\r\n", 13.1)
-    host.tick(14.0)
-    assert host.bytes_to_send() == b"?\n", "not the posture yet: another echo is to come"
-    host.receive(b"k\r\nBittle X\r\nB10_241013\r\n?\r\n", 15.0)
-    host.tick(16.0)
-    assert host.bytes_to_send() == b"kbuttUp\n"
-
-
-def test_an_echo_from_a_board_without_power_is_no_acknowledgement():
-    host = _introduced()
-    host.express(HAPPY)
-    host.tick(3.0)
-    assert host.bytes_to_send() == b"kbuttUp\n"
-    host.receive(b"Low power: 6.71V. The robot won't move.\r\nk\r\n", 3.5)
-    assert host.telemetry(3.5).acknowledged is None
-    assert host.telemetry(3.5).limp
-    assert host.telemetry(3.5).complaint == "Low power: 6.71V. The robot won't move."
-    host.receive(b"Got 7.9 V power\r\n", 6.0)
-    assert host.telemetry(6.0).complaint is None
-    host.tick(6.0)
-    assert host.bytes_to_send() == b"kbuttUp\n"
-
-
-def test_an_answer_to_a_question_before_the_unplugging_is_ignored():
-    host = _introduced()
-    host.tick(13.0)
-    assert host.bytes_to_send() == b"j\n"
-    host.port_lost()
-    host.port_opened(14.0)
-    host.tick(15.5)
-    assert host.bytes_to_send() == b"?\n"
-    host.receive(b"j\r\n", 15.6)
-    assert host.state(15.6) == "lost"
-    host.receive(b"Bittle X\r\nB10_241013\r\n?\r\n", 15.7)
-    assert host.state(15.7) == "ready"
-
-
-class Unheard(OpenCatSimulator):
-    """A board whose words can be lost on the way."""
-
-    held = False
-
-    def bytes_to_send(self) -> bytes:
-        said = super().bytes_to_send()
-        return b"" if self.held else said
-
-
 def test_a_resting_robot_stays_at_rest_when_its_sign_of_life_is_lost(desk, quiet):
-    robot = Unheard(4, quirks=quiet)
+    robot = UnheardBoard(4, quirks=quiet)
     d = desk(robot).ready()
     d.feel("happy")
     d.settle()
