@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from robot.drivers.pleo.driver import PleoDriver
 from robot.drivers.pleo.settings import load_settings
 from robot.simulators.pleo.simulator import PleoSimulator
 
-STEP = 0.005
+STEP_S = 0.005
 """The link's thread turns this often [s]."""
 
 NAME = r"[!-~¡-ÿ]{1,64}"
@@ -23,19 +24,52 @@ ALLOWED = re.compile(
 """Every command that the driver may ever send."""
 
 
-class Script:
+POSES = """
+[moods.neutral]
+joints = {}
+[moods.angry]
+joints = { torso = -9.2, "tail up" = 45, "left hip" = -45, "left shoulder" = 45 }
+[moods.sad]
+joints = { torso = 8, "left shoulder" = -30 }
+[moods.happy]
+motion = "a:happy.umf"
+length_s = 3
+loop = false
+"""
+"""Moods that are poses, and one that is a motion without a loop."""
+
+
+class DriverOnClock:
+    """A driver on a virtual clock."""
+
+    def __init__(self, now: float, path=None) -> None:
+        self.now = now
+        self.driver = PleoDriver(load_settings(path))
+        self.driver.port_opened(now)
+
+    def express(self, label: str) -> None:
+        self.driver.express(Emotion(0.0, 0.0, label))
+
+    @property
+    def state(self) -> str:
+        return self.driver.state(self.now)
+
+    @property
+    def telemetry(self):
+        return self.driver.telemetry(self.now)
+
+
+class Script(DriverOnClock):
     """A driver, and a console whose every byte the test says."""
 
     def __init__(self, path=None) -> None:
-        self.now = 50.0
-        self.driver = PleoDriver(load_settings(path))
-        self.driver.port_opened(self.now)
+        super().__init__(50.0, path)
 
     def run(self, seconds: float) -> bytes:
         """Let time pass; return what the driver sent meanwhile."""
         sent = b""
-        for _ in range(max(round(seconds / STEP), 1)):
-            self.now += STEP
+        for _ in range(max(round(seconds / STEP_S), 1)):
+            self.now += STEP_S
             self.driver.tick(self.now)
             sent += self.driver.bytes_to_send()
         return sent
@@ -52,8 +86,8 @@ class Script:
         """
         sent: list[str] = []
         answers = [self.now] if self.driver.console.pending else []
-        for _ in range(round(seconds / STEP)):
-            lines = self.run(STEP).decode("latin-1").split("\n")[:-1]
+        for _ in range(round(seconds / STEP_S)):
+            lines = self.run(STEP_S).decode("latin-1").split("\n")[:-1]
             sent += [line for line in lines if line]
             answers += [self.now + 0.020 for _ in lines]
             if answers and self.now >= answers[0]:
@@ -63,7 +97,7 @@ class Script:
 
     def started(self) -> "Script":
         """Go through the start, and the first question for the battery."""
-        assert self.run(STEP) == b"\n"
+        assert self.run(STEP_S) == b"\n"
         assert self.say("> ") == b"APP UNLOAD\n"
         assert self.say("\r\n> ") == b"JOINT NEUTRAL\n"
         assert self.say("> ") == b"SOUND VOLUME 70\n"
@@ -72,36 +106,29 @@ class Script:
         assert self.state == "ready"
         return self
 
-    def express(self, label: str) -> None:
-        self.driver.express(Emotion(0.0, 0.0, label))
-
-    @property
-    def state(self) -> str:
-        return self.driver.state(self.now)
-
-    @property
-    def telemetry(self):
-        return self.driver.telemetry(self.now)
+    def show(self, label: str) -> "Script":
+        """Request a mood, and let the console answer everything for a second."""
+        self.express(label)
+        self.auto(1.0)
+        return self
 
 
-class PleoWorld:
+class PleoWorld(DriverOnClock):
     """A driver and a simulated Pleo on one virtual clock."""
 
     def __init__(self, seed: int = 0, cut_reads: bool = False, path=None) -> None:
+        super().__init__(100.0, path)
         self.random = np.random.default_rng(seed + 1000)
-        self.now = 100.0
-        self.driver = PleoDriver(load_settings(path))
         self.robot = PleoSimulator(seed)
         self.cut_reads = cut_reads
         self.unplugged = self.silent = False
         self.sent: list[tuple[float, str]] = []
         self.heard_at = self.now
         self._late = b""
-        self.driver.port_opened(self.now)
 
     def run(self, seconds: float, each: Callable[[], None] = lambda: None) -> None:
-        for _ in range(round(seconds / STEP)):
-            self.now += STEP
+        for _ in range(round(seconds / STEP_S)):
+            self.now += STEP_S
             self._turn()
             each()
 
@@ -109,19 +136,8 @@ class PleoWorld:
         start = self.now
         while not condition():
             assert self.now - start < within, f"not within {within} s of virtual time"
-            self.run(STEP)
+            self.run(STEP_S)
         return self.now - start
-
-    def express(self, label: str) -> None:
-        self.driver.express(Emotion(0.0, 0.0, label))
-
-    @property
-    def state(self) -> str:
-        return self.driver.state(self.now)
-
-    @property
-    def telemetry(self):
-        return self.driver.telemetry(self.now)
 
     def playing(self, label: str) -> bool:
         """Whether this mood's motion is what was last begun, and it still runs or just ended."""
@@ -163,3 +179,21 @@ def pleo_world() -> Callable[..., PleoWorld]:
 def allowed() -> re.Pattern[str]:
     """Give the pattern of all commands that may be sent."""
     return ALLOWED
+
+
+@pytest.fixture
+def settings_file(tmp_path) -> Callable[[str], Path]:
+    """Write a person's own settings: `settings_file(text)`."""
+
+    def write(text: str) -> Path:
+        path: Path = tmp_path / "mine.toml"
+        path.write_text(text)
+        return path
+
+    return write
+
+
+@pytest.fixture
+def poses(settings_file) -> Script:
+    """Make a console that has started, with the moods in `POSES`."""
+    return Script(settings_file(POSES)).started()
