@@ -31,17 +31,24 @@ class Playground:
     Parameters
     ----------
     scenario
-        A scenario, or the name of one.
+        A scenario, or the name of one: "companion", "follow", "sketch".
     intrinsics
-        The camera.
+        Of the camera; the pictures have their size.
     cube
         The cube in the player's hand; None for the scenario's own.
     character
         The character; None for the scenario's own.
     context
-        Where to draw; None for no pictures.
+        Where to draw, from `create_context`; the caller releases it. None for no pictures.
     look
         What the character's eyes follow: one of `LOOK_CHOICES`.
+
+    Raises
+    ------
+    AppError
+        No scenario has that name, or `look` is not one of `LOOK_CHOICES`.
+    CharacterError
+        The character cannot be animated, or pictures of this size cannot be drawn.
     """
 
     def __init__(
@@ -75,11 +82,16 @@ class Playground:
         Parameters
         ----------
         frame
-            The camera's picture.
+            The camera's picture, with its timestamp [s].
         inputs
-            The other inputs of the frame.
+            The other inputs of the frame; None if there are none.
         replay
-            Recorded messages to use instead of computing them.
+            Recorded messages to use instead of computing them; None to compute all.
+
+        Returns
+        -------
+        Step
+            Every message of the frame, and the picture if there is a graphics context.
         """
         replay = replay or ReplayInputs()
         state = replay.state or self.track(frame)

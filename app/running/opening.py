@@ -76,8 +76,28 @@ def open_session(
     """Open all that a session needs, and close it in reverse order at the end.
 
     Checks that cost nothing come first, so that a misspelt name does not open a camera.
-    A source or a screen takes the place of the one that `options` names; the caller closes them and
-    the player. Raises the error of the room in which something is missing or cannot be used.
+
+    Parameters
+    ----------
+    options
+        What the user asks for.
+    source
+        Frames to use instead of those that `options` names; the caller closes it.
+    screen
+        Where the steps go, instead of a window or a file; they have no pictures then. The caller
+        closes it.
+    player
+        Publishes the character's actions and emotions; the caller closes its network.
+
+    Yields
+    ------
+    OpenedSession
+        What `run` takes.
+
+    Raises
+    ------
+    TrackingError, CharacterError, AffectError, RobotError, AppError
+        Something that `options` names is missing or cannot be used.
     """
     cube = CubeModel.load(options.cube or scenario_cube(options.scenario))
     scenario = make_scenario(

@@ -33,8 +33,23 @@ CAMERA_BACK = "camera back"
 def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
     """Run a session to its end, until the player closes the window, or until Ctrl-C.
 
-    Raises TrackingError, RobotError or AppError if the source, the robot or the disk failed; what
-    was recorded until then is complete.
+    Parameters
+    ----------
+    session
+        From `open_session`.
+    progress
+        Called after every frame with its step.
+
+    Returns
+    -------
+    Summary
+        The figures of the session. Its `check` raises the error of a robot or a live camera that
+        was lost.
+
+    Raises
+    ------
+    TrackingError, RobotError, AppError
+        The source, the robot or the disk failed; what was recorded until then is complete.
     """
     summary = Summary(session.playground.scenario.name)
     try:

@@ -25,11 +25,24 @@ KEYFRAME_INTERVAL_S = 5
 
 
 def frame_encoder(codec: str, size: tuple[int, int], rate: float) -> FrameEncoder:
-    """Return the function that encodes frames of a size [px] and rate [1/s] for a recording.
+    """Return the function that encodes the frames of a recording.
 
     A replay sees the decoded picture, so the tracker must see that picture too. Every message
-    after it is then the same, live and replayed. The codec "jpeg" keeps the camera's own bytes
-    where it gives them; "h264" is ten times smaller. Raises AppError for another one.
+    after it is then the same, live and replayed.
+
+    Parameters
+    ----------
+    codec
+        "jpeg" keeps the camera's own bytes where it gives them; "h264" is ten times smaller.
+    size
+        Width and height of the frames [px].
+    rate
+        Frames a second.
+
+    Raises
+    ------
+    AppError
+        There is no such codec.
     """
     if codec == "jpeg":
         return encode_jpeg

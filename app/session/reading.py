@@ -43,9 +43,19 @@ class SessionInfo:
 
 
 def session_info(path: Path, *, salvage: bool = False) -> SessionInfo:
-    """Read what a session says of itself; with `salvage` also of one that was cut off.
+    """Read what a session says of itself.
 
-    Raises AppError if the file cannot be read, is no session, or was cut off.
+    Parameters
+    ----------
+    path
+        The .mcap file.
+    salvage
+        Whether to count the intact frames of a session that was cut off, instead of refusing it.
+
+    Raises
+    ------
+    AppError
+        The file cannot be read, is no session, or was cut off.
     """
     _check_magic(path)
     if salvage:

@@ -45,9 +45,19 @@ class Recorder(Closeable):
     """Records one session to one .mcap file.
 
     Open it before the first frame, `write` every step, and `close` it at the end; a second `close`
-    does nothing. If the program is killed, all but the last half second can be read. `metadata` is
-    what a replay needs: the scenario, its options, the cube … Raises AppError if the file cannot be
-    written.
+    does nothing. If the program is killed, all but the last half second can be read.
+
+    Parameters
+    ----------
+    path
+        The .mcap file to write; an existing one is overwritten.
+    metadata
+        What a replay needs: the scenario, its options, the cube …, see `SessionOptions.metadata`.
+
+    Raises
+    ------
+    AppError
+        The file cannot be written.
     """
 
     def __init__(self, path: Path, metadata: dict[str, str]) -> None:

@@ -40,6 +40,11 @@ class Stage:
         From `create_context`; the stage does not release it.
     size
         Of the picture, (width, height) [px]. A camera frame of another size is scaled to fit.
+
+    Raises
+    ------
+    CharacterError
+        The graphics card cannot draw a picture of this size.
     """
 
     def __init__(self, context: moderngl.Context, size: tuple[int, int]) -> None:
@@ -72,6 +77,16 @@ class Stage:
         self, view: View, characters: Sequence[SceneCharacter], floor: Sequence[FloorPath] = ()
     ) -> Image:
         """Return the picture, (height, width, 3) uint8 BGR.
+
+        Parameters
+        ----------
+        view
+            The camera's frame, its pinhole matrix and distortion, the pose of the table, and the
+            real cubes that hide what is behind them. Without a table, nothing is drawn.
+        characters
+            The posed characters on the table.
+        floor
+            Paths that are painted on the table, below the characters and their shadows.
 
         Raises
         ------
