@@ -43,11 +43,17 @@ def decode(kind: type[T], document: bytes) -> T:
 
 
 def upgraded(topic: str, document: bytes) -> bytes:
-    """Return a channel's document as this version writes it, whichever version wrote it."""
+    """Return a channel's document as this version writes it, whichever version wrote it.
+
+    A document that no version wrote is returned as it is.
+    """
     kind = MESSAGE_TYPES[topic]
-    content = json.loads(document)
-    newer = _upgraded(kind, content)
-    return document if newer is content else encode(_typed(kind, newer))
+    try:
+        content = json.loads(document)
+        newer = _upgraded(kind, content)
+        return document if newer is content else encode(_typed(kind, newer))
+    except (ValueError, KeyError, TypeError, AttributeError):
+        return document
 
 
 def schema(kind: type[Any]) -> bytes:
@@ -58,8 +64,9 @@ def schema(kind: type[Any]) -> bytes:
 def _upgraded(kind: type[Any], content: Any) -> Any:
     """Return the content of a document in today's fields.
 
-    Before `affect.Emotion` held its word, an emotion had a label beside it, and the intents of a
-    command were single fields, of which the oldest sessions lack some.
+    Before `affect.Emotion` held its word, an emotion had a label next to it, and the intents of a
+    command were single fields, of which the oldest sessions lack some. Sessions do not hold the
+    version of the program that recorded them: these fields tell the versions apart.
     """
     if kind is EmotionTarget and "label" in content:
         emotion = {**content["emotion"], "word": content["label"]}

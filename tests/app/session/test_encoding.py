@@ -101,3 +101,9 @@ def test_an_older_document_becomes_todays_and_todays_stays():
     today = encode(EmotionTarget(Emotion(0.5, 0.1, "happy"), 2.0))
     assert upgraded("/robot/emotion", old.encode()) == today
     assert upgraded("/robot/emotion", today) == today
+
+
+@pytest.mark.parametrize("topic", ["/robot/emotion", "/character/command"])
+@pytest.mark.parametrize("document", [b"{", b"[]", b"3", b'{"label":1}', b'{"action":""}'])
+def test_a_document_that_no_version_wrote_is_compared_as_it_is(topic, document):
+    assert upgraded(topic, document) == document
