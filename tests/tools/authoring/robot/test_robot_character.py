@@ -4,8 +4,15 @@ import numpy as np
 import pytest
 
 from characters.model.character import Character, skin
-from characters.motion.blend import mix
 from characters.skeleton import rotations
+from tests.tools.authoring.clip_checks import (
+    blend_slide,
+    check_ends_meet,
+    check_leg_stretch,
+    check_same_clips,
+    check_vertices,
+    moving,
+)
 from tools.authoring.robot.character import build_robot
 from tools.authoring.robot.expressions import EXPRESSIONS
 from tools.authoring.robot.rig import FEET, LAMPS, MOODS, skeleton
@@ -26,12 +33,6 @@ def robot() -> Character:
     return Character.load("robot")
 
 
-def moving(robot: Character, name: str, joint: str) -> float:
-    """Return how far a joint gets from where it is in the first frame of a clip [m]."""
-    places = robot.clips[name].poses.globals(robot.skeleton)[:, robot.skeleton.index(joint), :3, 3]
-    return float(np.ptp(places, axis=0).max())
-
-
 def pitch(robot: Character, name: str, joint: str) -> np.ndarray:
     """Return how far up a joint faces in each frame of a clip, (frames,) [degrees]."""
     posed = robot.clips[name].poses.globals(robot.skeleton)[:, robot.skeleton.index(joint), :3, 2]
@@ -41,16 +42,8 @@ def pitch(robot: Character, name: str, joint: str) -> np.ndarray:
 def test_the_asset_is_what_the_code_makes(robot: Character) -> None:
     made = build_robot()
     assert robot.skeleton.names == made.skeleton.names
-    assert sorted(robot.clips) == sorted(made.clips)
     assert robot.morphs == made.morphs
-    for name, clip in made.clips.items():
-        shipped = robot.clips[name].poses
-        assert np.allclose(shipped.translations, clip.poses.translations, atol=1e-5), name
-        same = rotations.align(shipped.rotations, clip.poses.rotations)
-        assert np.allclose(same, clip.poses.rotations, atol=1e-4), name
-        assert shipped.scales is not None
-        assert clip.poses.scales is not None
-        assert np.allclose(shipped.scales, clip.poses.scales, atol=1e-5), name
+    check_same_clips(robot, made)
     lit = skeleton().rest.globals(made.skeleton)
     for shipped_mesh, mesh in zip(robot.meshes, made.meshes, strict=True):
         assert np.array_equal(shipped_mesh.triangles, mesh.triangles)
@@ -75,9 +68,7 @@ def test_its_size_and_its_share_of_triangles(robot: Character) -> None:
 
 
 def test_every_vertex_is_held_wholly_by_its_joints(robot: Character) -> None:
-    for mesh in robot.meshes:
-        assert np.allclose(mesh.weights.sum(axis=1), 1.0, atol=1e-5)
-        assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-3)
+    check_vertices(robot)
 
 
 def test_triangles_face_outward(robot: Character) -> None:
@@ -98,13 +89,8 @@ def test_every_mood_has_three_intensities_in_step(robot: Character) -> None:
 
 @pytest.mark.parametrize("name", CLIPS)
 def test_loops_close_without_a_jump(robot: Character, name: str) -> None:
-    poses = robot.clips[name].poses
     assert robot.clips[name].loop
-    assert np.allclose(poses.translations[0], poses.translations[-1], atol=1e-6)
-    assert np.allclose(rotations.align(poses.rotations[-1], poses.rotations[0]), poses.rotations[0])
-    head = poses.globals(robot.skeleton)[:, robot.skeleton.index("head"), :3, 3]
-    steps = np.linalg.norm(np.diff(head, axis=0), axis=1)
-    assert abs(steps[0] - steps[-1]) < 0.4 * steps.max()
+    check_ends_meet(robot, name)
 
 
 @pytest.mark.parametrize("name", PLANTED)
@@ -118,12 +104,9 @@ def test_soles_that_stand_do_not_slide(robot: Character, name: str) -> None:
 
 @pytest.mark.parametrize("name", CLIPS)
 def test_nothing_sinks_into_the_table_and_legs_hardly_stretch(robot: Character, name: str) -> None:
-    poses = robot.clips[name].poses
-    posed = poses.globals(robot.skeleton)[::5]
+    posed = robot.clips[name].poses.globals(robot.skeleton)[::5]
     assert min(skin(robot.meshes[0], globals_)[:, 1].min() for globals_ in posed) > -0.003
-    for foot in FEET:
-        lengths = np.linalg.norm(poses.translations[:, robot.skeleton.index(foot)], axis=1)
-        assert lengths.max() < 1.2 * lengths.min()
+    check_leg_stretch(robot, name, FEET)
 
 
 def test_the_body_joins_in_as_the_intensity_rises(robot: Character) -> None:
@@ -170,10 +153,7 @@ def test_a_mix_of_two_intensities_keeps_feet_that_stand_where_they_are(robot: Ch
         clips = [robot.clips[f"{mood}_{level}"] for level in ("head", "legs")]
         times = np.arange(0, clips[0].duration, 1 / 10)
         for foot in FEET[2:]:
-            joint = robot.skeleton.index(foot)
-            half = [mix([clip.sample(time) for clip in clips], [0.5, 0.5]) for time in times]
-            places = np.array([pose.globals(robot.skeleton)[joint, :3, 3] for pose in half])
-            assert np.ptp(places, axis=0).max() < 0.004, foot
+            assert blend_slide(robot, clips, foot, times).max() < 0.004, foot
 
 
 def test_expressions_move_the_face_and_nothing_else(robot: Character) -> None:

@@ -4,9 +4,16 @@ import numpy as np
 import pytest
 
 from characters.model.character import Character, skin
-from characters.motion.blend import mix
 from characters.skeleton import rotations
 from characters.skeleton.pose import Pose
+from tests.tools.authoring.clip_checks import (
+    blend_slide,
+    check_ends_meet,
+    check_leg_stretch,
+    check_same_clips,
+    check_vertices,
+    moving,
+)
 from tools.authoring.vleo.character import build_vleo
 from tools.authoring.vleo.head import EYE_RADIUS_M, REST_GAZE
 from tools.authoring.vleo.rig import BURSTS, EYE_CENTRE_M, FEET, HEARTS
@@ -38,12 +45,6 @@ def vleo() -> Character:
     return Character.load("vleo")
 
 
-def moving(vleo: Character, name: str, joint: str) -> float:
-    """Return how far a joint gets from where it is in the first frame of a clip [m]."""
-    places = vleo.clips[name].poses.globals(vleo.skeleton)[:, vleo.skeleton.index(joint), :3, 3]
-    return float(np.ptp(places, axis=0).max())
-
-
 def shown(vleo: Character, name: str, joints: tuple[str, ...]) -> np.ndarray:
     """Return the scales of effects, (frames, joints)."""
     scales = vleo.clips[name].poses.scales
@@ -55,15 +56,7 @@ def test_the_asset_is_what_the_code_makes(vleo: Character) -> None:
     made = build_vleo()
     assert vleo.skeleton.names == made.skeleton.names
     assert vleo.skeleton.parents == made.skeleton.parents
-    assert sorted(vleo.clips) == sorted(made.clips)
-    for name, clip in made.clips.items():
-        shipped = vleo.clips[name].poses
-        assert np.allclose(shipped.translations, clip.poses.translations, atol=1e-5), name
-        same = rotations.align(shipped.rotations, clip.poses.rotations)
-        assert np.allclose(same, clip.poses.rotations, atol=1e-4), name
-        assert shipped.scales is not None
-        assert clip.poses.scales is not None
-        assert np.allclose(shipped.scales, clip.poses.scales, atol=1e-5), name
+    check_same_clips(vleo, made)
     for shipped_mesh, mesh in zip(vleo.meshes, made.meshes, strict=True):
         assert np.array_equal(shipped_mesh.triangles, mesh.triangles)
         assert np.allclose(shipped_mesh.positions, mesh.positions, atol=1e-5)
@@ -79,9 +72,7 @@ def test_is_a_baby_sauropod_of_its_size(vleo: Character) -> None:
 
 
 def test_every_vertex_is_held_wholly_by_its_joints(vleo: Character) -> None:
-    for mesh in vleo.meshes:
-        assert np.allclose(mesh.weights.sum(axis=1), 1.0, atol=1e-5)
-        assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-3)
+    check_vertices(vleo)
 
 
 def test_triangles_face_outward(vleo: Character) -> None:
@@ -100,14 +91,8 @@ def test_knows_to_idle_and_two_actions_at_three_intensities(vleo: Character) -> 
 
 @pytest.mark.parametrize("name", CLIPS)
 def test_loops_close_without_a_jump(vleo: Character, name: str) -> None:
-    clip = vleo.clips[name]
-    poses = clip.poses
-    assert clip.loop == (name not in GESTURES)
-    assert np.allclose(poses.translations[0], poses.translations[-1], atol=1e-6)
-    assert np.allclose(rotations.align(poses.rotations[-1], poses.rotations[0]), poses.rotations[0])
-    spine = poses.globals(vleo.skeleton)[:, vleo.skeleton.index("head"), :3, 3]
-    steps = np.linalg.norm(np.diff(spine, axis=0), axis=1)
-    assert abs(steps[0] - steps[-1]) < 0.4 * steps.max()
+    assert vleo.clips[name].loop == (name not in GESTURES)
+    check_ends_meet(vleo, name)
 
 
 @pytest.mark.parametrize("name", PLANTED)
@@ -130,18 +115,12 @@ def test_feet_that_stand_hardly_slide_in_a_blend_at_equal_phase(
     clips = [vleo.clips[f"{action}_{name}"] for name in (less, more)]
     times = np.arange(0, clips[0].duration, 1 / 30)
     for foot in PLANTED.get(clips[1].name, ()):
-        joint = vleo.skeleton.index(foot)
-        half = [mix([clip.sample(time) for clip in clips], [0.5, 0.5]) for time in times]
-        places = np.array([pose.globals(vleo.skeleton)[joint, :3, 3] for pose in half])
-        assert np.ptp(places, axis=0).max() < 0.004, foot
+        assert blend_slide(vleo, clips, foot, times).max() < 0.004, foot
 
 
 @pytest.mark.parametrize("name", CLIPS)
 def test_legs_stretch_only_a_little(vleo: Character, name: str) -> None:
-    for foot in FEET:
-        shin = vleo.skeleton.index(foot)
-        lengths = np.linalg.norm(vleo.clips[name].poses.translations[:, shin], axis=1)
-        assert lengths.max() < 1.2 * lengths.min()
+    check_leg_stretch(vleo, name, FEET)
 
 
 @pytest.mark.parametrize("name", CLIPS)
