@@ -9,7 +9,7 @@ import numpy as np
 
 from tracking.cube.marker import marker_loops
 from tracking.cube.model import aruco_dictionary
-from tracking.cube.printing.layout import PAPERS
+from tracking.cube.printing.layout import PAPER_SIZES_MM
 from tracking.cube.printing.pdf_page import PdfPage
 from tracking.errors import TrackingError
 from tracking.files import write_whole
@@ -88,9 +88,9 @@ def write_board(path: str | Path, paper: str = "a4") -> Board:
     TrackingError
         The paper is unknown, or the file cannot be written.
     """
-    if paper not in PAPERS:
-        raise TrackingError(f"unknown paper '{paper}': choose {', '.join(PAPERS)}")
-    height, width = PAPERS[paper]  # the page is upright
+    if paper not in PAPER_SIZES_MM:
+        raise TrackingError(f"unknown paper '{paper}': choose {', '.join(PAPER_SIZES_MM)}")
+    height, width = PAPER_SIZES_MM[paper]  # the page is upright
     room = min((width - 2 * MARGIN_MM) / 5, (height - 2 * MARGIN_MM - 14) / 7)
     board = Board(square=float(np.floor(room)) / 1000)
     pen = PdfPage(width, height, "ChArUco board")

@@ -31,11 +31,11 @@ TILT_DIRECTIONS = {
 }
 """Where a tilted plate faces in the image: x right, y down."""
 
-CORNERS = ("top left", "top right", "bottom left", "bottom right")
+CORNER_KINDS = ("top left", "top right", "bottom left", "bottom right")
 
 VIEWS_NEEDED = {
     **dict.fromkeys(TILT_DIRECTIONS, 3),
-    **dict.fromkeys(CORNERS, 2),
+    **dict.fromkeys(CORNER_KINDS, 2),
     "middle": 2,
     "near": 4,
     "far": 2,
@@ -46,7 +46,7 @@ VIEWS_NEEDED_PER_PLATE = 3
 """Number of views needed of each plate together with another one."""
 
 REQUEST_ORDER = (
-    "tilt up", "tilt left", "tilt down", "tilt right", "near", *CORNERS, "middle", "far"
+    "tilt up", "tilt left", "tilt down", "tilt right", "near", *CORNER_KINDS, "middle", "far"
 )  # fmt: skip
 """Kinds in the order in which they are asked for."""
 

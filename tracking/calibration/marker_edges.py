@@ -31,7 +31,7 @@ MAX_REACH_PX, MAX_REACH_CELLS = 3.5, 0.45
 MIN_CELL_PX = 4.0
 """Smallest cell, measured across the edge, that is used."""
 
-SAMPLES = 13
+SAMPLES_PER_PROFILE = 13
 """Number of samples in a profile."""
 
 STEP_WIDTHS_PX = (2.0, 1.3, 1.0, 1.0)
@@ -185,7 +185,7 @@ def _fit_steps(
     patch: Patch, pixels: Array, normals: Array, reach: Array, width: float
 ) -> tuple[Array, Array]:
     """Fit a blurred step across each edge, as `edge_refinement` does: offset [px], contrast."""
-    positions = np.linspace(-1, 1, SAMPLES)[None] * reach[:, None]
+    positions = np.linspace(-1, 1, SAMPLES_PER_PROFILE)[None] * reach[:, None]
     places = pixels[:, None] + positions[..., None] * normals[:, None]
     values = patch.sample(places).astype(np.float64)
     softness = np.minimum(width, reach * 0.45)[:, None]

@@ -104,7 +104,7 @@ class CubeModel:
         """
         path = Path(name_or_path)
         if path.suffix != ".toml":
-            path = CUBES / f"{name_or_path}.toml"
+            path = CUBES_FOLDER / f"{name_or_path}.toml"
             if not path.is_file():
                 known = ", ".join(bundled())
                 raise TrackingError(
@@ -183,12 +183,12 @@ class CubeModel:
         raise KeyError(name)
 
 
-CUBES = Path(__file__).parents[1] / "cubes"
+CUBES_FOLDER = Path(__file__).parents[1] / "cubes"
 
 
 def bundled() -> tuple[str, ...]:
     """Names of the bundled cubes."""
-    return tuple(sorted(path.stem for path in CUBES.glob("*.toml")))
+    return tuple(sorted(path.stem for path in CUBES_FOLDER.glob("*.toml")))
 
 
 def aruco_dictionary(name: str) -> cv2.aruco.Dictionary:

@@ -11,7 +11,7 @@ from tracking.geometry.arrays import Array
 from tracking.geometry.state import CubeControls, CubeState
 from tracking.gestures.shaking import ShakeDetector
 from tracking.gestures.stillness import StillnessDetector
-from tracking.gestures.table import DIRECTIONS, Table, TableEstimator
+from tracking.gestures.table import SIDE_NORMALS, Table, TableEstimator
 from tracking.gestures.turning import TurnCounter, clockwise_angle, clockwise_angle_of, wrap_angle
 
 MAX_REST_TILT = np.deg2rad(10.0)
@@ -155,7 +155,7 @@ class CubeGestures:
         table_from_camera = se3.inverse(table.camera_from_table)
         table_from_cube = table_from_camera @ pose
         up = table_from_cube[1, :3]
-        tilts = {name: _angle(float(up @ normal)) for name, normal in DIRECTIONS.items()}
+        tilts = {name: _angle(float(up @ normal)) for name, normal in SIDE_NORMALS.items()}
         top = min(tilts, key=lambda name: tilts[name])
         tilt = tilts[top]
         if last_top is not None and tilt > MAX_TOP_TILT:

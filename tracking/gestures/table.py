@@ -21,7 +21,7 @@ from tracking.geometry.arrays import Array
 PRIOR_UP = np.array([0.0, -np.cos(np.deg2rad(35)), -np.sin(np.deg2rad(35))])
 """Up in the camera frame for an upright camera that looks down by 35°."""
 
-SIGMAS = np.array([0.001, np.deg2rad(1.0), np.deg2rad(1.0)])
+REST_SIGMAS = np.array([0.001, np.deg2rad(1.0), np.deg2rad(1.0)])
 """Errors of the foot's height [m] and of both slopes [rad] of a folded cube at rest."""
 
 SETTLING_TIME_S = 0.5
@@ -54,7 +54,7 @@ class Rest:
     """Normal of the face that looks up, (3,)."""
 
 
-DIRECTIONS = {name: np.cross(*axes).astype(np.float64) for name, axes in FACE_AXES.items()}
+SIDE_NORMALS = {name: np.cross(*axes).astype(np.float64) for name, axes in FACE_AXES.items()}
 """Outward normals of the six sides in the cube frame, whether or not they carry a marker."""
 
 
@@ -64,7 +64,7 @@ def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Re
     Without a table (`up` is None) only sides that face the camera can be up.
     """
     rotation, centre = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
-    normals = np.stack(list(DIRECTIONS.values())) @ rotation.T
+    normals = np.stack(list(SIDE_NORMALS.values())) @ rotation.T
     cosines = normals @ (PRIOR_UP if up is None else up)
     if up is None:
         tops = centre + normals * (edge / 2)
@@ -85,7 +85,7 @@ class Table:
     def __init__(self, rest: Rest) -> None:
         self._start = _frame(rest.foot, rest.up)
         self._plane = np.zeros(3)
-        self._information = np.diag(1 / SIGMAS**2)
+        self._information = np.diag(1 / REST_SIGMAS**2)
         self._place = rest.foot
         self._rest_time = SETTLING_TIME_S
         self.camera_from_table = self._start
@@ -102,7 +102,7 @@ class Table:
         normal = self._start[:3, :3].T @ rest.up
         a, b = -normal[0] / normal[1], -normal[2] / normal[1]
         rows = np.array([[1, x, z], [0, 1, 0], [0, 0, 1]])
-        weights = share / SIGMAS**2
+        weights = share / REST_SIGMAS**2
         self._information = self._information + (rows.T * weights) @ rows
         error = np.array([y, a, b]) - rows @ self._plane
         self._plane = self._plane + np.linalg.solve(self._information, rows.T @ (weights * error))

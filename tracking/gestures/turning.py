@@ -3,7 +3,7 @@
 import numpy as np
 
 from tracking.geometry.arrays import Array
-from tracking.gestures.table import DIRECTIONS
+from tracking.gestures.table import SIDE_NORMALS
 
 
 def wrap_angle(angle: float) -> float:
@@ -26,7 +26,7 @@ def forward_side(top_face: str) -> str:
 
 def clockwise_angle(table_from_cube: Array, top_face: str) -> float:
     """Direction of the forward side from +z of the table [rad], clockwise seen from above."""
-    forward = table_from_cube[:3, :3] @ DIRECTIONS[forward_side(top_face)]
+    forward = table_from_cube[:3, :3] @ SIDE_NORMALS[forward_side(top_face)]
     return float(np.arctan2(-forward[0], forward[2]))
 
 

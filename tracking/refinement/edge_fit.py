@@ -13,7 +13,7 @@ BLOOM_PX, BLOOM_PER_BLUR = 0.3, 0.15
 """How far white grows over black, one standard deviation: gamma, ink and overexposure; and more for
 each pixel of blur: gamma again."""
 
-PRIOR = np.diag([1e-3] * 6 + [1 / BLOOM_PX**2, 1 / BLOOM_PER_BLUR**2])
+PRIOR_INFORMATION = np.diag([1e-3] * 6 + [1 / BLOOM_PX**2, 1 / BLOOM_PER_BLUR**2])
 """Information of the priors of the blooms, and a little that keeps the pose delta solvable."""
 
 MIN_CONTRAST_SHARE = 0.4
@@ -86,7 +86,7 @@ def fit_edges(
     weights, robust = information, np.ones(count)
     for _ in range(2 if shifts is None else 3):
         weighted = rows * weights[:, None]
-        normal = np.asarray(weighted.T @ rows + PRIOR, np.float64)
+        normal = np.asarray(weighted.T @ rows + PRIOR_INFORMATION, np.float64)
         solution = np.asarray(np.linalg.solve(normal, weighted.T @ offset), np.float64)
         residual = np.asarray(offset - rows @ solution, np.float64)
         scale = 1.4826 * quantile(np.abs(residual), 0.5)

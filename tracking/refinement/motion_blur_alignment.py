@@ -45,7 +45,7 @@ MIN_MOMENTS, MAX_MOMENTS, MOMENT_STEP_CELLS = 5, 15, 0.22
 """Number of moments of the exposure whose mean is rendered, and how far an edge may move from one
 to the next: less than it is blurred anyway."""
 
-STAGES = ((0.5, COARSE_SAMPLES, 4), (0.15, FINE_SAMPLES, 4))
+SEARCH_STAGES = ((0.5, COARSE_SAMPLES, 4), (0.15, FINE_SAMPLES, 4))
 """Of the coarse search and of the fine one: blur of rendering and image [cells], samples, steps."""
 
 MIN_FACING_COSINE = 0.12
@@ -70,7 +70,7 @@ class MotionBlurAligner:
         side = round(cube.edge / self._cell * TEXELS_PER_CELL)
         self._side = side
         self._textures = FaceTextures(cube, side)
-        self._grids = {count: _grid(count, cube.edge) for _, count, _ in STAGES}
+        self._grids = {count: _grid(count, cube.edge) for _, count, _ in SEARCH_STAGES}
 
     def align(
         self, patch: Patch, start: Array, blur_motion: Array, prior: Array, coarse: bool = True
@@ -82,7 +82,7 @@ class MotionBlurAligner:
         """
         pose, motion = start, blur_motion
         last: tuple[_Samples, PhotometricFit, Array, Array] | None = None
-        for blur, count, steps in STAGES if coarse else STAGES[1:]:
+        for blur, count, steps in SEARCH_STAGES if coarse else SEARCH_STAGES[1:]:
             samples = self._sampled(patch, pose, blur, count)
             if samples is None:
                 return None

@@ -21,13 +21,13 @@ REACH_PX = 3.5
 WIDE_REACH_PX, WIDE_REACH_CELLS = 14.0, 0.9
 """The same in the wide search, the smaller of the two: outlines have a cell of paper around."""
 
-TAPS = 9
+TAPS_PER_PROFILE = 9
 """Samples in a profile."""
 
 MODEL_ERROR_PX = 0.04
 """Error of a single edge position that is not noise: neighbouring cells, sampling."""
 
-UNIT_TAPS = np.linspace(-1, 1, TAPS, dtype=np.float32)[None]
+UNIT_TAPS = np.linspace(-1, 1, TAPS_PER_PROFILE, dtype=np.float32)[None]
 
 
 @dataclass(frozen=True)
@@ -155,7 +155,7 @@ def measure_profiles(
     safe = np.where(np.abs(contrast) > 1, contrast, 1)
     # Two grey levels of noise; its true size follows from the residuals.
     variance = 4 / (safe * safe * energy) + MODEL_ERROR_PX**2
-    half = TAPS // 2
+    half = TAPS_PER_PROFILE // 2
     rise = (values[:, half + 1] - values[:, half - 1]).astype(np.float64)
     fitted = contrast * (step[:, half + 1] - step[:, half - 1])
     level = values.mean(axis=1).astype(np.float64)

@@ -1,8 +1,8 @@
 """Frame sources: `open_source` turns a URI into a `FrameSource`.
 
 A new kind of source is one module with a function `open_uri(uri, size, clock)` and one line in
-`SCHEMES` or `SUFFIXES`. The module is imported when the first such source is opened, so a camera
-starts without loading the video libraries.
+`SCHEME_MODULES` or `SUFFIX_MODULES`. The module is imported when the first such source is opened,
+so a camera starts without loading the video libraries.
 """
 
 import time
@@ -13,7 +13,7 @@ from tracking.errors import TrackingError
 from tracking.sources.base import FrameSource, LiveFrames
 from tracking.sources.device import Clock, Health
 
-SCHEMES = {
+SCHEME_MODULES = {
     "camera": "tracking.sources.camera",
     "http": "tracking.sources.http",
     "https": "tracking.sources.http",
@@ -21,10 +21,10 @@ SCHEMES = {
 }
 """Module that opens the URIs of a scheme."""
 
-SUFFIXES = {".mcap": "tracking.sources.session"}
+SUFFIX_MODULES = {".mcap": "tracking.sources.session"}
 """Module that opens files with a suffix."""
 
-OTHER_FILES = "tracking.sources.video"
+OTHER_FILES_MODULE = "tracking.sources.video"
 """Module that opens all other files."""
 
 
@@ -49,9 +49,13 @@ def open_source(
         The source cannot be opened.
     """
     scheme = uri.partition(":")[0]
-    if scheme not in SCHEMES and "://" in uri:
-        raise TrackingError(f"cannot open '{uri}': use {', '.join(SCHEMES)} or a file's path")
-    module = SCHEMES.get(scheme) or SUFFIXES.get(PurePath(uri).suffix, OTHER_FILES)
+    if scheme not in SCHEME_MODULES and "://" in uri:
+        raise TrackingError(
+            f"cannot open '{uri}': use {', '.join(SCHEME_MODULES)} or a file's path"
+        )
+    module = SCHEME_MODULES.get(scheme) or SUFFIX_MODULES.get(
+        PurePath(uri).suffix, OTHER_FILES_MODULE
+    )
     source: FrameSource = import_module(module).open_uri(uri, size, clock)
     return source
 

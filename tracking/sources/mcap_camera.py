@@ -25,7 +25,8 @@ IMAGE_SCHEMAS: dict[str, type[CompressedImage] | type[CompressedVideo]] = {
     "foxglove.CompressedImage": CompressedImage,
     "foxglove.CompressedVideo": CompressedVideo,
 }
-ENCODINGS = {"jpeg": "jpeg", "jpg": "jpeg", "h264": "h264"}
+ENCODING_OF_FORMAT = {"jpeg": "jpeg", "jpg": "jpeg", "h264": "h264"}
+"""`Frame.encoding` of each format that Foxglove names."""
 
 
 class CameraChannels:
@@ -117,11 +118,11 @@ def _image(message: Message, schema: str) -> EncodedImage:
         image = IMAGE_SCHEMAS[schema].FromString(message.data)
     except DecodeError as error:
         raise BrokenFileError("is damaged") from error
-    if image.format not in ENCODINGS:
+    if image.format not in ENCODING_OF_FORMAT:
         raise BrokenFileError(f"has images in '{image.format}', not jpeg or h264")
     stamped = image.HasField("timestamp")
     time = image.timestamp.ToNanoseconds() if stamped else message.log_time
-    return EncodedImage(image.data, ENCODINGS[image.format], seconds_of(time))
+    return EncodedImage(image.data, ENCODING_OF_FORMAT[image.format], seconds_of(time))
 
 
 def _intrinsics(message: Message) -> Intrinsics | None:

@@ -13,7 +13,7 @@ Color = tuple[float, float, float]
 HALF_WIDTH_M = 1.3
 """Half the side of the desk's square texture."""
 
-TEXELS = 2600
+DESK_TEXELS = 2600
 """Texels along a side of the texture: one per millimetre."""
 
 FAR_EDGE_M = -0.62
@@ -30,7 +30,7 @@ MUG_X_M, MUG_Z_M, MUG_RADIUS_M, MUG_HEIGHT_M = -0.36, -0.30, 0.041, 0.095
 
 
 def desk_texture(random: np.random.Generator, clutter: bool) -> Floats:
-    """Draw the desk from above, (TEXELS, TEXELS, 3) BGR; rows along z, columns along x."""
+    """Draw the desk from above, (DESK_TEXELS, DESK_TEXELS, 3) BGR; rows along z, columns x."""
     texture = _planks(random)
     if clutter:
         _draw_paper(texture, random)
@@ -42,7 +42,7 @@ def desk_texture(random: np.random.Generator, clutter: bool) -> Floats:
 def render_desk(camera: CameraRays, texture: Floats) -> Floats:
     """Return the image of the desk and the wall behind it, (H, W, 3)."""
     x, z, _ = _desk_points(camera, 2)
-    scale = TEXELS / (2 * HALF_WIDTH_M)
+    scale = DESK_TEXELS / (2 * HALF_WIDTH_M)
     desk = cv2.remap(
         texture,
         (x + HALF_WIDTH_M) * scale - 0.5,
@@ -85,12 +85,12 @@ def _with_wall(image: Floats, behind: Flags, x: Floats, z: Floats) -> Floats:
 
 
 def _planks(random: np.random.Generator) -> Floats:
-    width = TEXELS // 13
-    texture = np.empty((TEXELS, TEXELS, 3), np.float32)
+    width = DESK_TEXELS // 13
+    texture = np.empty((DESK_TEXELS, DESK_TEXELS, 3), np.float32)
     grain = _grain(random)
-    for number, top in enumerate(range(0, TEXELS, width)):
-        rows = slice(top, min(top + width, TEXELS))
-        shift = int(random.integers(TEXELS))
+    for number, top in enumerate(range(0, DESK_TEXELS, width)):
+        rows = slice(top, min(top + width, DESK_TEXELS))
+        shift = int(random.integers(DESK_TEXELS))
         figure = np.roll(grain, shift, axis=1)[rows]
         color = WOOD_BGR[int(random.integers(len(WOOD_BGR)))] * random.uniform(0.95, 1.04)
         texture[rows] = color * (1.0 + 0.075 * figure[..., None] * (1.15, 1.0, 0.9))
@@ -102,20 +102,22 @@ def _planks(random: np.random.Generator) -> Floats:
 
 def _grain(random: np.random.Generator) -> Floats:
     """Return wood grain along x: fibres and wavy rings; about −2…2."""
-    bands = np.zeros((TEXELS, TEXELS), np.float32)
+    bands = np.zeros((DESK_TEXELS, DESK_TEXELS), np.float32)
     for along, across, weight in ((6, 160, 0.8), (20, 500, 0.5), (60, 1300, 0.35)):
         noise = random.standard_normal((across, along)).astype(np.float32)
-        bands += weight * cv2.resize(noise, (TEXELS, TEXELS), interpolation=cv2.INTER_CUBIC)
+        bands += weight * cv2.resize(
+            noise, (DESK_TEXELS, DESK_TEXELS), interpolation=cv2.INTER_CUBIC
+        )
     noise = random.standard_normal((26, 8)).astype(np.float32)
-    waves = cv2.resize(noise, (TEXELS, TEXELS), interpolation=cv2.INTER_CUBIC)
-    rows = np.arange(TEXELS, dtype=np.float32)[:, None]
+    waves = cv2.resize(noise, (DESK_TEXELS, DESK_TEXELS), interpolation=cv2.INTER_CUBIC)
+    rows = np.arange(DESK_TEXELS, dtype=np.float32)[:, None]
     rings = np.sin(rows / 9.0 + 3.4 * waves) * 0.55
     return np.asarray(bands + rings, np.float32)
 
 
 def _texel(x: float, z: float) -> tuple[int, int]:
     """Return the texel (column, row) of a point on the desk [m], in 1/16."""
-    scale = TEXELS / (2 * HALF_WIDTH_M) * 16
+    scale = DESK_TEXELS / (2 * HALF_WIDTH_M) * 16
     return round((x + HALF_WIDTH_M) * scale), round((z + HALF_WIDTH_M) * scale)
 
 

@@ -10,7 +10,7 @@ from tracking.geometry.arrays import Array, Floats
 from tracking.synthetic.camera_rays import CameraRays, PixelRegion, averaged
 from tracking.synthetic.folding import face_poses
 
-TEXELS = 640
+FACE_TEXELS = 640
 """Texels along the edge of a face's texture."""
 
 MIPMAP_LEVELS = 4
@@ -110,7 +110,7 @@ class PaperCube:
         """
         focal = self._camera.intrinsics.matrix[0, 0] * samples
         along_edge = focal * self.cube.edge / float(np.linalg.norm(centre))
-        level = int(np.clip(np.ceil(np.log2(TEXELS / along_edge)), 0, MIPMAP_LEVELS - 1))
+        level = int(np.clip(np.ceil(np.log2(FACE_TEXELS / along_edge)), 0, MIPMAP_LEVELS - 1))
         return self._textures[name][level]
 
     def _face(
@@ -142,16 +142,18 @@ class PaperCube:
 
 
 def _face_texture(cube: CubeModel, face: Face | None, random: np.random.Generator) -> Floats:
-    """Draw the print of a face, (TEXELS, TEXELS, 3) BGR; None is blank paper."""
-    grain = random.standard_normal((TEXELS // 8, TEXELS // 8)).astype(np.float32)
-    paper = cv2.resize(grain, (TEXELS, TEXELS), interpolation=cv2.INTER_CUBIC) * 1.2 + WHITE
+    """Draw the print of a face, (FACE_TEXELS, FACE_TEXELS, 3) BGR; None is blank paper."""
+    grain = random.standard_normal((FACE_TEXELS // 8, FACE_TEXELS // 8)).astype(np.float32)
+    paper = (
+        cv2.resize(grain, (FACE_TEXELS, FACE_TEXELS), interpolation=cv2.INTER_CUBIC) * 1.2 + WHITE
+    )
     tint = np.array([0.985, 0.995, 1.0], np.float32)
     texture = np.asarray(np.asarray(paper)[..., None] * tint, np.float32)
     if face is not None:
         _print_marker(texture, cube, face)
         _print_icon(texture, cube, face)
     # Folded edges look darker: a thin rim.
-    rim = max(1, TEXELS // 160)
+    rim = max(1, FACE_TEXELS // 160)
     for side in (np.s_[:rim], np.s_[-rim:], np.s_[:, :rim], np.s_[:, -rim:]):
         texture[side] *= 0.90
     return texture
@@ -160,23 +162,23 @@ def _face_texture(cube: CubeModel, face: Face | None, random: np.random.Generato
 def _mipmaps(texture: Floats) -> list[Floats]:
     levels = [texture]
     for level in range(1, MIPMAP_LEVELS):
-        size = (TEXELS >> level, TEXELS >> level)
+        size = (FACE_TEXELS >> level, FACE_TEXELS >> level)
         levels.append(cv2.resize(texture, size, interpolation=cv2.INTER_AREA).astype(np.float32))
     return levels
 
 
 def _print_marker(texture: Floats, cube: CubeModel, face: Face) -> None:
     cells = np.rot90(marker_cells(cube.dictionary, face.marker_id), -(face.roll_deg // 90))
-    texture[black_texels(cube, cells, TEXELS)] = BLACK
+    texture[black_texels(cube, cells, FACE_TEXELS)] = BLACK
 
 
 def _print_icon(texture: Floats, cube: CubeModel, face: Face) -> None:
-    margin = (cube.edge - cube.marker_size) / 2 / cube.edge * TEXELS
+    margin = (cube.edge - cube.marker_size) / 2 / cube.edge * FACE_TEXELS
     size = int(0.72 * margin)
     if face.icon not in icons() or size < 8:
         return
     ink = np.array(ICON_COLOURS.get(face.icon, (60, 60, 60))[::-1], np.float32)
     mask = icon_mask(face.icon, size).astype(np.float32)[..., None] / 255
-    top, left = TEXELS - int((margin + size) / 2), (TEXELS - size) // 2
+    top, left = FACE_TEXELS - int((margin + size) / 2), (FACE_TEXELS - size) // 2
     part = texture[top : top + size, left : left + size]
     part += (ink - part) * mask

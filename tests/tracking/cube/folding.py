@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.cube.printing.unfolding import HINGES, SIDES, Tab, Unfolding
+from tracking.cube.printing.unfolding import HINGES, SIDE_DIRECTIONS, Tab, Unfolding
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ def cube_from_tab(net: Unfolding, tab: Tab) -> Array:
 
 def over(net: Unfolding, side: str, angle: float, beyond: float) -> Array:
     """Pose, in the frame of a face, of a part `beyond` the fold over one of its sides."""
-    x, y = SIDES[side]
+    x, y = SIDE_DIRECTIONS[side]
     half = net.edge / 2
     return shift(x * half, y * half, 0) @ bend(x, y, angle) @ shift(x * beyond, y * beyond, 0)
 

@@ -12,7 +12,7 @@ from tracking import CubeModel, TrackingError, icon_mask, icon_paths, write_shee
 from tracking.cube.icons import ICON_COLOURS, icons, signed_area
 from tracking.cube.marker import marker_cells, marker_loops
 from tracking.cube.model import aruco_dictionary, bundled
-from tracking.cube.printing.layout import PAPERS, largest_edge_mm
+from tracking.cube.printing.layout import PAPER_SIZES_MM, largest_edge_mm
 from tracking.cube.printing.unfolding import Unfolding
 
 DPI = 254
@@ -123,7 +123,9 @@ def test_another_edge_scales_the_markers_with_it(tmp_path, edge_mm, paper):
     document = pypdfium2.PdfDocument(path)
     width, height = document[0].get_size()
     document.close()
-    assert (width * 25.4 / 72, height * 25.4 / 72) == pytest.approx(PAPERS[paper.lower()], abs=0.01)
+    assert (width * 25.4 / 72, height * 25.4 / 72) == pytest.approx(
+        PAPER_SIZES_MM[paper.lower()], abs=0.01
+    )
 
 
 def test_turned_markers_and_missing_faces_are_drawn_as_the_file_says(tmp_path):
@@ -178,7 +180,7 @@ def test_a_cube_that_does_not_fit_is_refused_and_leaves_no_file(tmp_path, edge_m
 
 
 def test_the_largest_edge_that_is_offered_does_fit(tmp_path):
-    for paper in PAPERS:
+    for paper in PAPER_SIZES_MM:
         cube = CubeModel.load("companion")
         write_sheet(cube, tmp_path / "cube.pdf", edge_mm=largest_edge_mm(paper), paper=paper)
 

@@ -17,7 +17,7 @@ from mcap.writer import CompressionType
 from mcap_protobuf.writer import Writer
 
 from tracking import FrameSource, Intrinsics, TrackingError, open_source
-from tracking.sources import SCHEMES
+from tracking.sources import SCHEME_MODULES
 from tracking.sources.base import Timeline, nanoseconds_of, seconds_of
 
 SIZE = (160, 120)
@@ -256,7 +256,7 @@ def test_a_new_source_is_a_module_and_one_line_of_the_table(monkeypatch, session
     module = ModuleType("brand_new")
     module.open_uri = lambda uri, size, clock: open_source(str(session))  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "brand_new", module)
-    monkeypatch.setitem(SCHEMES, "new", "brand_new")
+    monkeypatch.setitem(SCHEME_MODULES, "new", "brand_new")
     with open_source("new://anything") as source:
         assert source.size == SIZE
 

@@ -15,7 +15,7 @@ from tracking.geometry import se3
 from tracking.geometry.frame import Frame
 from tracking.geometry.state import CubeState
 from tracking.gestures.gestures import CubeGestures
-from tracking.gestures.table import DIRECTIONS
+from tracking.gestures.table import SIDE_NORMALS
 from tracking.synthetic import open_synthetic
 from tracking.tracker.tracker import CubeTracker
 
@@ -179,7 +179,7 @@ def true_states(name: str) -> Iterator[tuple[CubeState, str]]:
         covariance = np.diag(spread**2)
         yield (
             CubeState(True, pose, np.zeros(6), covariance, "markers", (), 0.1, source.time(index)),
-            max(DIRECTIONS, key=lambda side: float(up @ DIRECTIONS[side])),
+            max(SIDE_NORMALS, key=lambda side: float(up @ SIDE_NORMALS[side])),
         )
 
 

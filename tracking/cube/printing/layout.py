@@ -10,7 +10,7 @@ from tracking.cube.printing.unfolding import TAB_DEPTH, Unfolding
 from tracking.errors import TrackingError
 from tracking.geometry.arrays import Array
 
-PAPERS = {"a4": (297.0, 210.0), "letter": (279.4, 215.9), "a3": (420.0, 297.0)}
+PAPER_SIZES_MM = {"a4": (297.0, 210.0), "letter": (279.4, 215.9), "a3": (420.0, 297.0)}
 """Width and height in landscape [mm]."""
 
 PRINTER_MARGIN_MM = 5.0
@@ -38,8 +38,8 @@ class SheetLayout:
     """Layout of the page; the only place that converts metres to millimetres."""
 
     def __init__(self, cube: CubeModel, paper: str) -> None:
-        if paper not in PAPERS:
-            raise TrackingError(f"paper '{paper}' is not known; use {', '.join(PAPERS)}")
+        if paper not in PAPER_SIZES_MM:
+            raise TrackingError(f"paper '{paper}' is not known; use {', '.join(PAPER_SIZES_MM)}")
         if cube.marker_size >= cube.edge:
             raise TrackingError(
                 f"the markers of the {cube.name} cube ({cube.marker_size * 1000:g} mm) "
@@ -47,7 +47,7 @@ class SheetLayout:
             )
         self.cube = cube
         self.net = Unfolding(cube.edge)
-        self.page_size = PAPERS[paper]
+        self.page_size = PAPER_SIZES_MM[paper]
         _check_fits(cube.edge, paper)
         corners = self.net.outline() * (1000, -1000)
         middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
@@ -78,7 +78,7 @@ def _check_fits(edge: float, paper: str) -> None:
         return
     bigger = [
         f"--paper {name} takes {largest_edge_mm(name):g} mm"
-        for name in PAPERS
+        for name in PAPER_SIZES_MM
         if largest_edge_mm(name) >= max(edge * 1000, largest_edge_mm(paper) + 1)
     ]
     raise TrackingError(
@@ -89,5 +89,5 @@ def _check_fits(edge: float, paper: str) -> None:
 
 def largest_edge_mm(paper: str) -> float:
     """Edge of the largest cube whose net fits a paper, in whole millimetres."""
-    room = np.array(PAPERS[paper]) - 2 * PRINTER_MARGIN_MM
+    room = np.array(PAPER_SIZES_MM[paper]) - 2 * PRINTER_MARGIN_MM
     return float(np.floor(np.min(room / Unfolding(1.0).size()) + 1e-9))

@@ -13,7 +13,7 @@ TEXT_COLOUR: Colour = (96, 102, 118)
 WHITE: Colour = (255, 255, 255)
 MASCOT_COLOUR: Colour = (205, 230, 210)
 
-STEPS: tuple[tuple[str, str, Colour], ...] = (
+ASSEMBLY_STEPS: tuple[tuple[str, str, Colour], ...] = (
     ("cut", "Cut along the thick line, around all the tabs.", (231, 96, 70)),
     ("fold", "Fold every dashed line away from you, and sharply.", (42, 157, 143)),
     ("glue", "Glue the tabs inside. Press each and count to ten.", (142, 118, 200)),
@@ -77,9 +77,9 @@ def _draw_cube_view(page: PdfPage, sheet: SheetLayout, box: PageArea) -> None:
 
 
 def _draw_steps(page: PdfPage, box: PageArea) -> None:
-    column = (box.right - box.left) / len(STEPS)
+    column = (box.right - box.left) / len(ASSEMBLY_STEPS)
     radius, size = 6.0, 3.4
-    for number, (icon, words, colour) in enumerate(STEPS):
+    for number, (icon, words, colour) in enumerate(ASSEMBLY_STEPS):
         x, y = box.left + number * column, box.top
         turn = np.linspace(0, 2 * np.pi, 60, endpoint=False)
         disc = np.column_stack([np.cos(turn), np.sin(turn)]) * radius + (x + radius, y + radius)

@@ -10,7 +10,7 @@ import numpy as np
 
 from tracking.geometry.arrays import Array
 
-SIDES = {"right": (1, 0), "up": (0, 1), "left": (-1, 0), "down": (0, -1)}
+SIDE_DIRECTIONS = {"right": (1, 0), "up": (0, 1), "left": (-1, 0), "down": (0, -1)}
 """The sides of a square on paper, counter-clockwise, with their outward directions."""
 
 HINGES = {
@@ -54,7 +54,7 @@ class Tab:
     """The face that it is joined to."""
 
     side: str
-    """The side of that face, one of `SIDES`."""
+    """The side of that face, one of `SIDE_DIRECTIONS`."""
 
     under: str
     """The face it is glued under."""
@@ -75,7 +75,7 @@ class Unfolding:
         if face == "front":
             return np.zeros(2)
         parent, side = HINGES[face]
-        return self.centre(parent) + self.edge * np.array(SIDES[side])
+        return self.centre(parent) + self.edge * np.array(SIDE_DIRECTIONS[side])
 
     def square(self, face: str) -> Array:
         """Corners of a face on paper, counter-clockwise from the bottom right, (4, 2) [m]."""
@@ -101,7 +101,7 @@ class Unfolding:
         }
         following: dict[tuple[int, int], Array] = {}
         for face in ("front", *HINGES):
-            for side in SIDES:
+            for side in SIDE_DIRECTIONS:
                 if (face, side) in hinged:
                     continue
                 tab = tabs.get((face, side))
@@ -121,13 +121,13 @@ class Unfolding:
 
     def _side(self, face: str, side: str) -> tuple[Array, Array]:
         """Return the ends of a face's side in counter-clockwise order."""
-        square, number = self.square(face), list(SIDES).index(side)
+        square, number = self.square(face), list(SIDE_DIRECTIONS).index(side)
         return square[number], square[(number + 1) % 4]
 
     def _tab(self, face: str, side: str) -> Array:
         first, last = self._side(face, side)
         depth = TAB_DEPTH * self.edge
-        outwards = depth * np.array(SIDES[side])
+        outwards = depth * np.array(SIDE_DIRECTIONS[side])
         along = TAB_SLANT * depth * (last - first) / self.edge
         return np.array([first, first + outwards + along, last + outwards - along, last])
 
