@@ -11,7 +11,7 @@ from tracking.geometry.arrays import Array
 from tracking.geometry.state import CubeControls, CubeState
 from tracking.gestures.shaking import ShakeDetector
 from tracking.gestures.stillness import StillnessDetector
-from tracking.gestures.table import SIDE_NORMALS, Table, TableEstimator
+from tracking.gestures.table import SIDE_NORMALS, TableEstimator, TablePlane
 from tracking.gestures.turning import TurnCounter, clockwise_angle, clockwise_angle_of, wrap_angle
 
 MAX_REST_TILT = np.deg2rad(10.0)
@@ -76,7 +76,7 @@ class CubeGestures:
     def __init__(self, cube: CubeModel) -> None:
         self._edge = cube.edge
         self._table_estimator = TableEstimator(cube.edge)
-        self._table: Table | None = None
+        self._table: TablePlane | None = None
         self._stillness = StillnessDetector()
         self._shake = ShakeDetector()
         self._turns = TurnCounter()
@@ -123,7 +123,7 @@ class CubeGestures:
             self._handled = True
             self._lifted_since = None
 
-    def _on_table(self, before: CubeControls, table: Table, pose: Array) -> CubeControls:
+    def _on_table(self, before: CubeControls, table: TablePlane, pose: Array) -> CubeControls:
         place = self._table_pose(table, pose, before.top_face)
         now = before.timestamp
         lifted = self._is_lifted(now, place)
@@ -151,7 +151,7 @@ class CubeGestures:
             placements=before.placements + placed,
         )
 
-    def _table_pose(self, table: Table, pose: Array, last_top: str | None) -> _TablePose:
+    def _table_pose(self, table: TablePlane, pose: Array, last_top: str | None) -> _TablePose:
         table_from_camera = se3.inverse(table.camera_from_table)
         table_from_cube = table_from_camera @ pose
         up = table_from_cube[1, :3]

@@ -76,7 +76,7 @@ def rest_of(camera_from_cube: Array, edge: float, up: Array | None = None) -> Re
     return Rest(centre - normals[best] * (edge / 2), normals[best])
 
 
-class Table:
+class TablePlane:
     """A plane that every place of rest improves, by recursive least squares.
 
     It is the height above its first estimate, (x, z) ↦ d + a·x + b·z. Rests measure it and slopes.
@@ -136,9 +136,9 @@ class TableEstimator:
 
     def __init__(self, edge: float) -> None:
         self._edge = edge
-        self.table: Table | None = None
+        self.table: TablePlane | None = None
         self._provisional = False
-        self._alternative: Table | None = None
+        self._alternative: TablePlane | None = None
         self._firm_s = 0.0
         self._rest_s = 0.0
 
@@ -160,7 +160,7 @@ class TableEstimator:
             return
         if self._alternative is None or not self._alternative.agrees(rest):
             self._drop_alternative()
-            self._alternative = Table(rest)
+            self._alternative = TablePlane(rest)
             # The window of the stillness itself counts only for a first table.
             seconds = 0.0
         self._alternative.learn(rest, seconds)

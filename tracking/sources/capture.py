@@ -34,7 +34,7 @@ POLL_S = 0.02
 """How often a waiting thread checks the clock; a new image wakes it at once."""
 
 
-class _Reader:
+class _DeviceReader:
     """The device of one thread."""
 
     def __init__(self) -> None:
@@ -115,8 +115,8 @@ class CaptureThread:
         if self._thread is not threading.current_thread():
             self._thread.join(0.5)
 
-    def _start(self) -> _Reader:
-        reader = _Reader()
+    def _start(self) -> _DeviceReader:
+        reader = _DeviceReader()
         self._reader = reader
         # A daemon, as it may block in a driver when the program ends.
         self._thread = threading.Thread(
@@ -136,10 +136,10 @@ class CaptureThread:
             if device is not None:
                 device.interrupt()
 
-    def _is_current(self, reader: _Reader) -> bool:
+    def _is_current(self, reader: _DeviceReader) -> bool:
         return reader is self._reader and not self._stopped.is_set()
 
-    def _run(self, reader: _Reader) -> None:
+    def _run(self, reader: _DeviceReader) -> None:
         while self._is_current(reader):
             reader.blocked_since = self._clock()
             try:
@@ -158,7 +158,7 @@ class CaptureThread:
             while not self._stopped.wait(POLL_S) and self._clock() - began < RETRY_DELAY_S:
                 pass
 
-    def _set_open(self, reader: _Reader, device: Device) -> None:
+    def _set_open(self, reader: _DeviceReader, device: Device) -> None:
         with self._changed:
             reader.device = device
             if not self._is_current(reader):
@@ -170,7 +170,7 @@ class CaptureThread:
             else:
                 self.last_arrival = self._clock()
 
-    def _read(self, reader: _Reader, device: Device) -> None:
+    def _read(self, reader: _DeviceReader, device: Device) -> None:
         last_new, timeout, any_new = self._clock(), FIRST_IMAGE_TIMEOUT_S, False
         while self._is_current(reader):
             began = reader.blocked_since = self._clock()
@@ -192,7 +192,12 @@ class CaptureThread:
                 self._publish(reader, device, image, now, now - began)
 
     def _publish(
-        self, reader: _Reader, device: Device, image: Image | bytes, arrival: float, waited: float
+        self,
+        reader: _DeviceReader,
+        device: Device,
+        image: Image | bytes,
+        arrival: float,
+        waited: float,
     ) -> None:
         with self._changed:
             if not self._is_current(reader):
@@ -210,7 +215,7 @@ class CaptureThread:
             self._changed.notify_all()
 
     def _set_lost(
-        self, reader: _Reader, state: SourceState, problem: str, since: float | None = None
+        self, reader: _DeviceReader, state: SourceState, problem: str, since: float | None = None
     ) -> None:
         with self._changed:
             self._rejected = ""

@@ -88,13 +88,13 @@ class ExposureRenderer:
         dark = np.zeros((height, width), np.float32)
         away = TO_LIGHT / TO_LIGHT[1]
         focal = self._camera.intrinsics.matrix[0, 0]
-        for bone in hand.skin + hand.sleeve[:1]:
-            ends = np.linspace(bone.start, bone.end, 2)
+        for capsule in hand.skin + hand.sleeve[:1]:
+            ends = np.linspace(capsule.start, capsule.end, 2)
             foot = ends - away * ends[:, 1:2]
             in_camera = self._camera.from_table(foot)
             if (in_camera[:, 2] < 0.05).any():
                 continue
-            span = 2 * bone.radii[0] * focal / in_camera[0, 2] / coarse
+            span = 2 * capsule.radii[0] * focal / in_camera[0, 2] / coarse
             pixels = self._camera.pixels(in_camera) / coarse
             start, end = np.rint(pixels * 16).astype(int).tolist()
             cv2.line(dark, start, end, 1.0, max(1, round(float(span))), cv2.LINE_8, 4)

@@ -9,7 +9,7 @@ from tracking.geometry.arrays import Array, Floats
 from tracking.synthetic.camera_rays import CameraRays, PixelRegion
 
 Shader = Callable[[Floats, Floats, Floats, Floats], Floats]
-"""From light, slope towards the camera, blush and position along the bone to a BGR colour."""
+"""From light, slope towards the camera, blush and position along the capsule to a BGR colour."""
 
 SKIN_BGR = np.array([128.0, 162.0, 224.0], np.float32)
 """Colour of the skin."""
@@ -28,7 +28,7 @@ MIN_WEIGHT = np.float32(1e-36)
 
 
 @dataclass(frozen=True)
-class Bone:
+class Capsule:
     """A capsule between two points, with a radius at each end [m]."""
 
     start: Array
@@ -46,10 +46,10 @@ class Bone:
 class Hand:
     """Skin and sleeve, in the table frame."""
 
-    skin: tuple[Bone, ...]
+    skin: tuple[Capsule, ...]
     """Fingers, thumb, back and wrist."""
 
-    sleeve: tuple[Bone, ...]
+    sleeve: tuple[Capsule, ...]
     """Cuff and forearm, always drawn in front of the wrist."""
 
 
@@ -65,11 +65,11 @@ def hand_at(position: Array, edge: float, grip: float) -> Hand:
     wrist = knuckles + (0.080, 0.014, 0.006)
     elbow = wrist + (0.62, 0.10, 0.07)
     skin = [
-        Bone(knuckles + (0.004, -0.004, 0.020), wrist, (0.019, 0.024), blush=(0.25, 0.0)),
-        Bone(knuckles + (0, 0, 0.006), wrist, (0.021, 0.026), blush=(0.25, 0.0)),
-        Bone(knuckles + (0, -0.002, -0.010), wrist, (0.021, 0.025), blush=(0.25, 0.0)),
-        Bone(knuckles + (0.004, -0.008, -0.024), wrist, (0.018, 0.023), blush=(0.25, 0.0)),
-        Bone(wrist, wrist + (0.05, 0.008, 0.006), (0.025, 0.027)),
+        Capsule(knuckles + (0.004, -0.004, 0.020), wrist, (0.019, 0.024), blush=(0.25, 0.0)),
+        Capsule(knuckles + (0, 0, 0.006), wrist, (0.021, 0.026), blush=(0.25, 0.0)),
+        Capsule(knuckles + (0, -0.002, -0.010), wrist, (0.021, 0.025), blush=(0.25, 0.0)),
+        Capsule(knuckles + (0.004, -0.008, -0.024), wrist, (0.018, 0.023), blush=(0.25, 0.0)),
+        Capsule(wrist, wrist + (0.05, 0.008, 0.006), (0.025, 0.027)),
     ]
     # Fingers reach over the far edge of the top, the thumb is on the right face.
     for along, lift in ((0.62, 0.000), (0.22, 0.004), (-0.18, 0.003), (-0.54, -0.002)):
@@ -78,21 +78,21 @@ def hand_at(position: Array, edge: float, grip: float) -> Hand:
         bend = (tip + root) / 2 + (0.004, 0.026 + lift + open_hand, -0.008)
         last = 0.42 * bend + 0.58 * tip + (-0.002, 0.005, -0.004)
         skin += [
-            Bone(root, bend, (0.0112, 0.0096), blush=(0.3, 0.35)),
-            Bone(bend, last, (0.0096, 0.0086), blush=(0.35, 0.2)),
-            Bone(last, tip, (0.0086, 0.0072), blush=(0.2, 0.7)),
+            Capsule(root, bend, (0.0112, 0.0096), blush=(0.3, 0.35)),
+            Capsule(bend, last, (0.0096, 0.0086), blush=(0.35, 0.2)),
+            Capsule(last, tip, (0.0086, 0.0072), blush=(0.2, 0.7)),
         ]
     thumb = at + (half + 0.007 + open_hand, half * 0.42, half * 0.15)
     middle = thumb + (0.026, 0.016, 0.004)
     skin += [
-        Bone(wrist + (-0.026, -0.008, 0.016), middle, (0.019, 0.0125), blush=(0.0, 0.3)),
-        Bone(middle, thumb, (0.0125, 0.0088), blush=(0.3, 0.7)),
+        Capsule(wrist + (-0.026, -0.008, 0.016), middle, (0.019, 0.0125), blush=(0.0, 0.3)),
+        Capsule(middle, thumb, (0.0125, 0.0088), blush=(0.3, 0.7)),
     ]
     cuff = wrist + (0.012, 0.002, 0.001)
     hem = wrist + (0.036, 0.0058, 0.0041)
     sleeve = (
-        Bone(hem, elbow, (0.034, 0.054), cut=True),
-        Bone(cuff, hem, (0.0335, 0.0345), cut=True),
+        Capsule(hem, elbow, (0.034, 0.054), cut=True),
+        Capsule(cuff, hem, (0.0335, 0.0345), cut=True),
     )
     return Hand(tuple(skin), sleeve)
 
@@ -141,17 +141,17 @@ def _cloth_color(light: Floats, slope: Floats, blush: Floats, along: Floats) -> 
 class _CapsuleLayer:
     """Capsules that blend into each other: where they meet, their normals are mixed by depth."""
 
-    def __init__(self, camera: CameraRays, region: PixelRegion, parts: tuple[Bone, ...]) -> None:
+    def __init__(self, camera: CameraRays, region: PixelRegion, parts: tuple[Capsule, ...]) -> None:
         self._camera, self._region = camera, region
         self._rays = camera.rays(region, 1)
         self._focal = float(camera.intrinsics.matrix[0, 0])
         self.cover = np.zeros((region.height, region.width), np.float32)
-        # Weighted sums: normal x, y, slope; blush; position along the bone; depth; weight.
+        # Weighted sums: normal x, y, slope; blush; position along the capsule; depth; weight.
         self._sums = np.zeros((*self.cover.shape, 7), np.float32)
         for part in parts:
             self._add(part)
 
-    def _add(self, part: Bone) -> None:
+    def _add(self, part: Capsule) -> None:
         """Render one capsule as a cone of discs that face the camera."""
         ends = self._camera.from_table(np.array([part.start, part.end]))
         flat = (ends[:, :2] / ends[:, 2:]).astype(np.float32)
