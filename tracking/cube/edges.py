@@ -67,7 +67,7 @@ class EdgeModel:
         places = np.einsum("ij,ij->i", points, across)
         keys = np.column_stack([numbers, np.round(np.column_stack([across, places]), 9)])
         line = np.unique(keys, axis=0, return_inverse=True)[1].reshape(-1)
-        edges = EdgeModel(points, along, across, to_end, outline > 0, numbers, line)
+        edges = EdgeModel(points, along, across, to_end, outline, numbers, line)
         return edges._of(np.argsort(line, kind="stable"))
 
 

@@ -92,7 +92,6 @@ def fit_edges(
         scale = 1.4826 * quantile(np.abs(residual), 0.5)
         robust = tukey_weight(residual, max(4.685 * scale, 0.1))
         weights = information * robust
-    weights = np.asarray(information * robust, np.float64)
     return EdgeFit(measured, solution, strong, rows, weights, robust, residual, normal)
 
 

@@ -73,7 +73,7 @@ class CaptureThread:
         self.rate = 30.0
         self.settings: tuple[DeviceSetting, ...] = ()
         self.gauge, self.dropped, self.gaps = QueueGauge(self.rate), 0, 0
-        self._reader = self._start()
+        self._start()
 
     def newest(self, timeout: float) -> CapturedImage | None:
         """Wait for an image newer than the last one; None after `timeout` [s] or `stop`."""
@@ -115,7 +115,7 @@ class CaptureThread:
         if self._thread is not threading.current_thread():
             self._thread.join(0.5)
 
-    def _start(self) -> _DeviceReader:
+    def _start(self) -> None:
         reader = _DeviceReader()
         self._reader = reader
         # A daemon, as it may block in a driver when the program ends.
@@ -123,7 +123,6 @@ class CaptureThread:
             target=self._run, args=(reader,), name=f"capture {self._name}", daemon=True
         )
         self._thread.start()
-        return reader
 
     def _replace_stuck_thread(self) -> None:
         since = self._reader.blocked_since

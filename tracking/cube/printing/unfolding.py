@@ -90,8 +90,7 @@ class Unfolding:
 
     def folds(self) -> tuple[tuple[Array, Array], ...]:
         """Return the ends of every line to fold, on paper, two (2,) [m] each."""
-        hinged = [(parent, side) for parent, side in HINGES.values()]
-        return tuple(self._side(face, side) for face, side in (*hinged, *TABS))
+        return tuple(self._side(face, side) for face, side in (*HINGES.values(), *TABS))
 
     def outline(self) -> Array:
         """Return the line to cut along, closed and counter-clockwise, (N, 2) [m]."""
