@@ -31,6 +31,7 @@ class StillnessDetector:
 
     def __init__(self) -> None:
         self._samples: deque[_Sample] = deque()
+        self._deltas: Array | None = None
 
     def add(self, timestamp: float, camera_from_cube: Array, covariance: Array) -> None:
         """Add a pose, and drop those that are older than the window."""
@@ -40,32 +41,30 @@ class StillnessDetector:
         # One sample older than the window stays, so that the window is always covered.
         while len(self._samples) > 2 and timestamp - self._samples[1].timestamp >= WINDOW_S - 1e-9:
             self._samples.popleft()
+        self._deltas = self._deltas_from_first()
 
     @property
     def still(self) -> bool:
         """Whether the cube has neither moved nor turned for the whole window."""
-        if not self._window_is_covered:
+        if self._deltas is None:
             return False
-        deltas = self._deltas()
-        distance = np.linalg.norm(deltas.reshape(-1, 2, 3), axis=2).max(axis=0)
+        distance = np.linalg.norm(self._deltas.reshape(-1, 2, 3), axis=2).max(axis=0)
         return bool((distance < np.array(MAX_SPEED) * WINDOW_S).all())
 
     @property
     def firm(self) -> bool:
         """Whether the cube is `still` and does not tremble as in a hand."""
-        if not self.still:
+        if self._deltas is None or not self.still:
             return False
-        variance = self._deltas().var(axis=0).reshape(2, 3).sum(axis=1)
+        variance = self._deltas.var(axis=0).reshape(2, 3).sum(axis=1)
         expected = np.mean([np.diag(sample.covariance) for sample in self._samples], axis=0)
         allowed = np.square(MAX_TREMOR) + 4 * expected.reshape(2, 3).sum(axis=1)
         return bool((variance < allowed).all())
 
-    @property
-    def _window_is_covered(self) -> bool:
-        samples = self._samples
-        return len(samples) >= 3 and samples[-1].timestamp - samples[0].timestamp >= WINDOW_S - 1e-9
-
-    def _deltas(self) -> Array:
-        """Pose deltas from the first sample to each, (samples, 6)."""
-        first = self._samples[0].camera_from_cube
-        return np.stack([se3.delta(first, sample.camera_from_cube) for sample in self._samples])
+    def _deltas_from_first(self) -> Array | None:
+        """Pose deltas from the first sample to each, (N, 6); None before they cover the window."""
+        first, last = self._samples[0], self._samples[-1]
+        if len(self._samples) < 3 or last.timestamp - first.timestamp < WINDOW_S - 1e-9:
+            return None
+        start = first.camera_from_cube
+        return np.stack([se3.delta(start, each.camera_from_cube) for each in self._samples])
