@@ -9,6 +9,7 @@ from tracking.calibration import camera_vector
 from tracking.calibration.view import View
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array
+from tracking.geometry.projection import planar_poses
 
 FIELDS_OF_VIEW_RAD = np.deg2rad(np.linspace(30, 100, 15))
 """Horizontal fields of view to try: telephoto to action camera."""
@@ -47,16 +48,16 @@ def best_pose(view: View, camera: Array) -> Array | None:
 def _poses(view: View, camera: Array) -> Iterator[tuple[Array, float]]:
     """Propose poses of a view, each with its root mean square error [px].
 
-    The pose of a single plate is ambiguous (Collins and Bartoli, 2014): each plate proposes both of
-    its poses, and each proposal is refined on the points of all plates.
+    The pose of a single plate is ambiguous: each plate proposes both of its poses, and each
+    proposal is refined on the points of all plates.
     """
     intrinsics = camera_vector.to_intrinsics(camera, (1, 1))
     matrix, distortion = intrinsics.matrix, intrinsics.distortion
     rays = cv2.undistortPoints(view.pixels[:, None], matrix, distortion)[:, 0].astype(np.float64)
     starts = [
         pose
-        for number in np.unique(view.plates)
-        for pose in _plate_poses(view.points[view.plates == number], rays[view.plates == number])
+        for own in (view.plates == number for number in np.unique(view.plates))
+        for pose in planar_poses(view.points[own], rays[own], cv2.SOLVEPNP_IPPE)
     ]
     for start in starts:
         guess = se3.rotation_vector(start[:3, :3])[:, None], start[:3, 3:].copy()
@@ -67,13 +68,3 @@ def _poses(view: View, camera: Array) -> Iterator[tuple[Array, float]]:
             pixels = camera_vector.project(camera, points)[0]
             errors = np.einsum("ni,ni->n", view.normals, view.pixels - pixels)
             yield pose, float(np.sqrt((errors**2).mean()))
-
-
-def _plate_poses(points: Array, rays: Array) -> Iterator[Array]:
-    found, rotations, origins = cv2.solvePnPGeneric(
-        points, rays, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE
-    )[:3]
-    for rotation, origin in zip(rotations, origins, strict=True) if found else ():
-        vectors = np.array([rotation, origin], np.float64).reshape(2, 3)
-        if np.isfinite(vectors).all():
-            yield se3.pose(se3.rotation(vectors[0]), vectors[1])

@@ -10,7 +10,7 @@ from tracking.cube.model import CubeModel, Face
 from tracking.detection.markers import Observation
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array
-from tracking.geometry.projection import MIN_DEPTH, Projection
+from tracking.geometry.projection import MIN_DEPTH, Projection, planar_poses
 from tracking.geometry.robust_statistics import quantile
 
 MIN_FACING_COSINE = 0.05
@@ -111,19 +111,13 @@ class CornerPoseSolver:
         return float(np.sqrt((away**2).sum(axis=1).mean()))
 
     def _proposals(self, observations: Sequence[Observation]) -> Iterator[Array]:
-        """Poses of the cube from each marker alone: both of IPPE (Collins and Bartoli, 2014)."""
+        """Poses of the cube from each marker alone, two of each."""
         for seen in observations:
             geometry = self._geometry[seen.face.name]
             square = np.array([(-1, 1, 0), (1, 1, 0), (1, -1, 0), (-1, -1, 0)]) * geometry.side / 2
-            rays = self._projection.rays(seen.corners).reshape(-1, 1, 2)
-            found, turns, origins = cv2.solvePnPGeneric(
-                square, rays, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE_SQUARE
-            )[:3]
-            for turn, origin in zip(turns, origins, strict=True) if found else ():
-                vectors = np.array([turn, origin], np.float64).reshape(2, 3)
-                if np.isfinite(vectors).all():
-                    marker = se3.pose(se3.rotation(vectors[0]), vectors[1])
-                    yield marker @ geometry.marker_from_cube
+            rays = self._projection.rays(seen.corners)
+            for marker in planar_poses(square, rays, cv2.SOLVEPNP_IPPE_SQUARE):
+                yield marker @ geometry.marker_from_cube
 
     def _consensus(self, start: Array, observations: Sequence[Observation]) -> CornerPose | None:
         """Refine a proposal on all markers that agree with it, until these stay the same."""

@@ -1,8 +1,11 @@
 """Projection of points to pixels through the lens, and back."""
 
+from collections.abc import Iterator
+
 import cv2
 import numpy as np
 
+from tracking.geometry import se3
 from tracking.geometry.arrays import Array
 from tracking.geometry.intrinsics import Intrinsics
 
@@ -40,3 +43,17 @@ class Projection:
         return np.asarray(
             cv2.undistortPoints(points, self.matrix, self.distortion), np.float64
         ).reshape(-1, 2)
+
+
+def planar_poses(points: Array, rays: Array, method: int) -> Iterator[Array]:
+    """Yield the poses of flat points, (4, 4) each: two, as far as they are finite.
+
+    `points` are in the plane's frame, (N, 3) [m], `rays` where they are seen, at z = 1 of the
+    camera frame, (N, 2). `method` is OpenCV's: `SOLVEPNP_IPPE`, or `SOLVEPNP_IPPE_SQUARE` for the
+    corners of a square about the origin (Collins and Bartoli, 2014).
+    """
+    found, turns, origins = cv2.solvePnPGeneric(points, rays, np.eye(3), None, flags=method)[:3]
+    for turn, origin in zip(turns, origins, strict=True) if found else ():
+        vectors = np.array([turn, origin], np.float64).reshape(2, 3)
+        if np.isfinite(vectors).all():
+            yield se3.pose(se3.rotation(vectors[0]), vectors[1])
