@@ -1,4 +1,4 @@
-"""What goes wrong in this room, said in one line."""
+"""The error that this room raises."""
 
 
 class TrackingError(Exception):

@@ -1,6 +1,6 @@
-"""Pictures of cubes, at rest or in motion, drawn with nothing of the room but their description.
+"""Pictures of cubes, at rest or in motion, drawn without the tracker's own code.
 
-Light is mixed as a shutter mixes it, before the camera makes grey values of it.
+Light is mixed as during an exposure, before the camera converts it to grey values.
 """
 
 from collections.abc import Sequence
@@ -24,11 +24,11 @@ CAMERA = Intrinsics(
 WIDE = Intrinsics(
     np.array([[900.0, 0, 639.5], [0, 900.0, 359.5], [0, 0, 1]]), np.zeros(5), (1280, 720)
 )
-FINE, TEXELS = 3, 20
+SUBSAMPLES_PER_PIXEL, TEXELS_PER_CELL = 3, 20
 """Subsamples along a pixel, and texels along a cell."""
 
 BLACK, WHITE, DESK = 0.04, 0.75, 0.2
-"""Light that ink, paper and the desk throw back."""
+"""Share of the light that ink, paper and the desk reflect."""
 
 SHADE = {"front": 1.0, "back": 1.0, "left": 0.8, "right": 0.85, "top": 0.95, "bottom": 0.7}
 """Light that falls on each face."""
@@ -45,7 +45,7 @@ def held(
 def scene(
     *cubes: tuple[CubeModel, Array], camera: Intrinsics = CAMERA, sweep: Array | None = None
 ) -> Light:
-    """Light of cubes at their poses, all swept by one shift-turn, (H, W).
+    """Light of cubes at their poses, all moving by one pose delta, (H, W).
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def scene(
     camera
         It must have no distortion.
     sweep
-        Shift-turn while the shutter was open, (6,).
+        Pose delta of every cube during the exposure, (6,).
     """
     width, height = camera.size
     light = np.full((height, width), DESK, np.float32)
@@ -100,8 +100,16 @@ def _drawn(
 ) -> Light:
     """Draw a sharp cube over what is behind it in a window of the picture, (h, w)."""
     height, width = behind.shape
-    canvas = np.repeat(np.repeat(behind, FINE, axis=0), FINE, axis=1)
-    finer = np.array([[FINE, 0, (FINE - 1) / 2], [0, FINE, (FINE - 1) / 2], [0, 0, 1.0]])
+    canvas = np.repeat(
+        np.repeat(behind, SUBSAMPLES_PER_PIXEL, axis=0), SUBSAMPLES_PER_PIXEL, axis=1
+    )
+    finer = np.array(
+        [
+            [SUBSAMPLES_PER_PIXEL, 0, (SUBSAMPLES_PER_PIXEL - 1) / 2],
+            [0, SUBSAMPLES_PER_PIXEL, (SUBSAMPLES_PER_PIXEL - 1) / 2],
+            [0, 0, 1.0],
+        ]
+    )
     shifted = np.array([[1, 0, -origin[0]], [0, 1, -origin[1]], [0, 0, 1.0]])
     for face in cube.faces:
         centre = pose[:3, :3] @ face.corners.mean(axis=0) + pose[:3, 3]
@@ -109,7 +117,7 @@ def _drawn(
             continue
         texture = _paper(cube, face)
         homography = finer @ shifted @ camera.matrix @ _plane(cube, face, len(texture), pose)
-        size = (FINE * width, FINE * height)
+        size = (SUBSAMPLES_PER_PIXEL * width, SUBSAMPLES_PER_PIXEL * height)
         seen = cv2.warpPerspective(texture, homography, size, flags=cv2.INTER_LINEAR)
         solid = np.ones_like(texture)
         inside = cv2.warpPerspective(solid, homography, size, flags=cv2.INTER_NEAREST) > 0
@@ -119,7 +127,9 @@ def _drawn(
 
 def _paper(cube: CubeModel, face: Face) -> Light:
     """One face from outside, its white paper with it, square."""
-    cells = np.kron(marker_cells(cube.dictionary, face.marker_id), np.ones((TEXELS, TEXELS)))
+    cells = np.kron(
+        marker_cells(cube.dictionary, face.marker_id), np.ones((TEXELS_PER_CELL, TEXELS_PER_CELL))
+    )
     rim = round((cube.edge / cube.marker_size - 1) / 2 * len(cells))
     texture = WHITE + (BLACK - WHITE) * np.pad(cells, rim)
     return (SHADE[face.name] * texture).astype(np.float32)

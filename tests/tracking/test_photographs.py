@@ -1,4 +1,4 @@
-"""Real photographs: no cube where there is none, and edges on paper where they truly are.
+"""Real photographs: no cube where there is none, and correct edges on paper.
 
 The photographs are OpenCV's own samples; where they are absent these tests are skipped.
 """
@@ -42,7 +42,7 @@ def photograph(path: Path) -> Picture:
 
 @cache
 def camera(name: str) -> Intrinsics:
-    """Read one of the cameras that lie beside the photographs."""
+    """Read one of the camera files next to the photographs."""
     path = PHOTOGRAPHS / "aruco" / f"tutorial_camera_{name}.yml"
     storage = cv2.FileStorage(str(path), cv2.FILE_STORAGE_READ)
     matrix, distortion = (

@@ -1,6 +1,6 @@
-"""What looks like the cube and is not: it is refused, or told rightly, over several frames.
+"""What looks like the cube and is not is refused, or reported correctly, over several frames.
 
-All is drawn here, with nothing of the room but the cube's description.
+All pictures are drawn here, without the tracker's own code.
 """
 
 import cv2
@@ -26,15 +26,15 @@ CAMERA = Intrinsics(
     np.array([[600.0, 0, 319.5], [0, 600.0, 239.5], [0, 0, 1]]), np.zeros(5), (640, 480)
 )
 BLACK = {face.name: marker_cells(CUBE.dictionary, face.marker_id) for face in CUBE.faces}
-FINE, TEXEL = 4, 160
+SUBSAMPLES_PER_PIXEL, FACE_TEXELS = 4, 160
 """Subsamples along a pixel, and samples along an edge of the cube's face."""
 
 
 def paper(black: Cells) -> Picture:
-    """One face of the cube from outside, (TEXEL, TEXEL)."""
-    side = round(TEXEL * CUBE.marker_size / CUBE.edge)
+    """One face of the cube from outside, (FACE_TEXELS, FACE_TEXELS)."""
+    side = round(FACE_TEXELS * CUBE.marker_size / CUBE.edge)
     marker = cv2.resize(black.astype(np.uint8), (side, side), interpolation=cv2.INTER_NEAREST)
-    edge = (TEXEL - side) // 2
+    edge = (FACE_TEXELS - side) // 2
     return np.asarray(225 - 200 * np.pad(marker, edge), np.uint8)
 
 
@@ -44,7 +44,13 @@ def lay(canvas: Picture, texture: Picture, corners: Array) -> None:
     first, right, down = corners[0], corners[1] - corners[0], corners[2] - corners[0]
     # Texel (0, 0) has its centre half a texel inside.
     plane = np.stack([right / width, down / height, first + (right / width + down / height) / 2])
-    finer = np.array([[FINE, 0, (FINE - 1) / 2], [0, FINE, (FINE - 1) / 2], [0, 0, 1.0]])
+    finer = np.array(
+        [
+            [SUBSAMPLES_PER_PIXEL, 0, (SUBSAMPLES_PER_PIXEL - 1) / 2],
+            [0, SUBSAMPLES_PER_PIXEL, (SUBSAMPLES_PER_PIXEL - 1) / 2],
+            [0, 0, 1.0],
+        ]
+    )
     homography = finer @ CAMERA.matrix @ plane.T
     size = (canvas.shape[1], canvas.shape[0])
     drawn = cv2.warpPerspective(texture, homography, size, flags=cv2.INTER_LINEAR)
@@ -54,7 +60,7 @@ def lay(canvas: Picture, texture: Picture, corners: Array) -> None:
 
 
 def empty() -> Picture:
-    return np.full((480 * FINE, 640 * FINE), 110, np.uint8)
+    return np.full((480 * SUBSAMPLES_PER_PIXEL, 640 * SUBSAMPLES_PER_PIXEL), 110, np.uint8)
 
 
 def exposed(canvas: Picture, seed: int = 1) -> Picture:
@@ -97,9 +103,12 @@ def add_cube(
 def add_sheet(canvas: Picture, pose: Array, cells: dict[tuple[int, int], Cells]) -> Picture:
     """Draw faces side by side in a plane, at (column, row), the origin in their middle."""
     columns, rows = (max(place[axis] for place in cells) + 1 for axis in (0, 1))
-    sheet = np.full((rows * TEXEL, columns * TEXEL), 225, np.uint8)
+    sheet = np.full((rows * FACE_TEXELS, columns * FACE_TEXELS), 225, np.uint8)
     for (column, row), black in cells.items():
-        sheet[row * TEXEL : (row + 1) * TEXEL, column * TEXEL : (column + 1) * TEXEL] = paper(black)
+        sheet[
+            row * FACE_TEXELS : (row + 1) * FACE_TEXELS,
+            column * FACE_TEXELS : (column + 1) * FACE_TEXELS,
+        ] = paper(black)
     x, y = columns * CUBE.edge / 2, rows * CUBE.edge / 2
     corners = np.array([(-x, -y, 0), (x, -y, 0), (-x, y, 0)])
     lay(canvas, sheet, corners @ pose[:3, :3].T + pose[:3, 3])

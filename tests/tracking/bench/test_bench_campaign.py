@@ -1,4 +1,4 @@
-"""The search for silently wrong poses finds them, and goes on where it was broken off."""
+"""The search for silently wrong poses finds them, and resumes after an interruption."""
 
 import json
 import sys
@@ -14,10 +14,10 @@ FRAMES = 5
 
 @pytest.fixture
 def wrong_truth(monkeypatch):
-    """Let every truth lie 30 mm beside the picture."""
+    """Shift every true pose 30 mm away from the one in the picture."""
     right = Sequence.truth
-    beside = np.array([[0, 0, 0, 0.03], *np.zeros((3, 4))])
-    monkeypatch.setattr(Sequence, "truth", lambda drawn, index: right(drawn, index) + beside)
+    shift = np.array([[0, 0, 0, 0.03], *np.zeros((3, 4))])
+    monkeypatch.setattr(Sequence, "truth", lambda drawn, index: right(drawn, index) + shift)
 
 
 def test_every_seed_is_used_once_until_there_are_enough_frames():
@@ -31,7 +31,7 @@ def test_a_good_pose_is_right_and_none_is_wrong():
     assert result["wrong"] == []
 
 
-def test_a_pose_beside_the_truth_is_found_and_can_be_drawn_again(wrong_truth):
+def test_a_pose_away_from_the_truth_is_found_and_can_be_drawn_again(wrong_truth):
     result = campaign.evaluate(sequence("cluttered", 3, FRAMES))
     assert result["right"] == 0
     assert [wrong["index"] for wrong in result["wrong"]] == list(range(FRAMES))

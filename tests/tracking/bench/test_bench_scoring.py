@@ -1,4 +1,4 @@
-"""The benchmark's figures mean what they say."""
+"""The benchmark's figures are computed as their names say."""
 
 import numpy as np
 import pytest
@@ -105,7 +105,7 @@ def test_a_true_covariance_holds_the_truth_in_95_percent(overstated, share):
     assert found.understated == pytest.approx(overstated**-0.5, rel=0.03)
 
 
-def test_where_the_cube_will_be_is_taken_from_between_the_frames():
+def test_the_true_future_pose_is_interpolated_between_frames():
     time = np.arange(30) / RATE
     made = poses(30)
     made[:, 0, 3] = 0.05 * np.sin(2 * np.pi * 2 * time)
@@ -115,7 +115,7 @@ def test_where_the_cube_will_be_is_taken_from_between_the_frames():
     assert position_later(made, 28, 1.5) is None
 
 
-def test_prediction_is_held_against_what_is_to_come():
+def test_predictions_are_compared_with_the_true_future_poses():
     made = poses(40, speed=0.6)
     ahead = made.copy()
     ahead[:, 0, 3] += 0.6 * 0.05 + 0.002
@@ -128,13 +128,13 @@ def test_prediction_is_held_against_what_is_to_come():
     assert found.predicted == pytest.approx(0.002)
 
 
-def test_nothing_is_foreseen_where_every_frame_is_another_pose():
+def test_nothing_is_predicted_where_every_frame_is_an_unrelated_pose():
     made = poses(40, speed=0.6)
     found = score("x", truth(made, independent=True), answers(made))
     assert np.isnan([found.held, found.extrapolated, found.predicted]).all()
 
 
-def test_velocity_is_held_against_the_true_one():
+def test_velocity_is_compared_with_the_true_one():
     made = poses(10)
     said = (0.5, 0.0, 0.03, 0.0, 0.2, 0.0)
     found = score("x", truth(made, velocity=(0.5, 0.04, 0, 0, 0, 0)), answers(made, velocity=said))
@@ -154,7 +154,7 @@ def test_a_tracker_that_breaks_down_is_named():
 
 
 def scores_of(shift, milliseconds=2.0):
-    """Score Cubeling, off by `shift` [m] in each of 40 frames, beside OpenCV's."""
+    """Score Cubeling, off by `shift` [m] in each of 40 frames, next to OpenCV."""
     made = poses(40)
     ours = [answer | {"ms": milliseconds} for answer in answers([off(p, shift) for p in made])]
     theirs = answers(made, detection_ms=4.0)

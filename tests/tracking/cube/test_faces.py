@@ -1,4 +1,4 @@
-"""Which faces look at the camera, how they lie, and the other pose that one of them may have."""
+"""Which faces face the camera, their frames, and the other pose that a single one may have."""
 
 import numpy as np
 import pytest

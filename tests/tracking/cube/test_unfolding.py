@@ -1,4 +1,4 @@
-"""The net folds to the very cube that the tracker looks for."""
+"""The net folds to exactly the cube that the tracker looks for."""
 
 import math
 from itertools import combinations

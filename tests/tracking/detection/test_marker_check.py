@@ -66,8 +66,8 @@ def test_the_cells_disagree_one_cell_off(seen: tuple[Picture, Array]) -> None:
         right, down = (face.corners[to] - face.corners[0] for to in (1, 3))
         for way in (right, down, -right, -down):
             shift = pose[:3, :3] @ way / CUBE.marker_size * CELL
-            beside = se3.moved(pose, np.append(shift, np.zeros(3)))
-            shares.append(read(picture, beside).agreement[name])
+            shifted = se3.moved(pose, np.append(shift, np.zeros(3)))
+            shares.append(read(picture, shifted).agreement[name])
     assert max(shares) < 0.8
     assert np.mean(shares) < 0.65
 

@@ -1,4 +1,4 @@
-"""Rigid motions keep their promises for every rotation, near zero and near π too."""
+"""Rigid transforms are exact for every rotation, also near zero and near π."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Gestures from exact poses: what the hand does is known to the last digit."""
+"""Gestures from exact poses, so that what the hand does is known exactly."""
 
 from collections.abc import Callable, Iterable, Iterator
 from itertools import pairwise
@@ -45,7 +45,7 @@ def standing(top: str = "top", turn_deg: float = 0.0, x: float = 0.0, z: float =
 
 
 class Hand:
-    """Plays a cube to the gestures, frame after frame."""
+    """Gives poses of a cube to the gestures, frame after frame."""
 
     def __init__(self, pitch_deg: float = 35.0, noise: float = 0.0, seed: int = 0) -> None:
         self.gestures = CubeGestures(CubeModel.load("companion"))

@@ -45,7 +45,7 @@ class Desk:
     def rest(
         self, table_from_cube: Array, seconds: float, tremor: float = 0.0
     ) -> list[CubeControls]:
-        """Noise as the tracker's, and a tremor of so many metres at 9 Hz as a hand's."""
+        """Rest with noise like the tracker's, and with a hand's tremor of 9 Hz [m]."""
         seen = []
         for _ in range(round(seconds * RATE)):
             shake = np.zeros(6)

@@ -76,7 +76,7 @@ def test_an_implausible_exposure_is_clipped() -> None:
 
 
 def test_a_changed_exposure_is_found_within_the_samples_of_the_median() -> None:
-    """A camera that opens its estimator longer when the light goes."""
+    """A camera that exposes longer when the light fades."""
     estimator, random = ExposureEstimator(), np.random.default_rng(5)
     for exposure in (0.008, 0.025):
         for _ in range(EXPOSURE_SAMPLES):

@@ -60,7 +60,7 @@ def shot(pose: Array, motion: Array, cube: CubeModel = CUBE) -> Shot:
     )
 
 
-def beside(pose: Array, random: np.random.Generator) -> Array:
+def offset_pose(pose: Array, random: np.random.Generator) -> Array:
     """A pose 3 mm and 2° off."""
     step = random.normal(0, 1, (2, 3))
     step *= np.array([[0.003], [np.deg2rad(2)]]) / np.linalg.norm(step, axis=1, keepdims=True)
@@ -82,7 +82,7 @@ def shots() -> list[Shot]:
 @pytest.fixture(scope="module")
 def alignments(shots: list[Shot]) -> list[tuple[Shot, Alignment | None]]:
     random = np.random.default_rng(2)
-    return [(each, each.align(beside(each.pose, random))) for each in shots for _ in range(4)]
+    return [(each, each.align(offset_pose(each.pose, random))) for each in shots for _ in range(4)]
 
 
 def test_the_pose_is_found_from_three_millimetres_and_two_degrees_off(

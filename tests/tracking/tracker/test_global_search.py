@@ -104,7 +104,7 @@ def test_corners_found_at_half_size_are_those_of_the_whole_picture(
         for name, corners in large.items():
             apart = np.linalg.norm(small[name] - corners, axis=1)
             assert apart.max() < 1
-            # Nor are all of them off to one side, as they were if pixels were counted by corners.
+            # They have no common offset, which pixel corners at whole numbers would cause.
             assert np.linalg.norm((small[name] - corners).mean(axis=0)) < 0.35
 
 

@@ -46,7 +46,7 @@ def followed(
 def last_of(
     pose_at: Callable[[float], Array], times: tuple[float, ...], covariance: Array
 ) -> TrackedPose:
-    """Last of them."""
+    """The last pose of that track."""
     return followed(pose_at, times, covariance).poses[-1]
 
 
