@@ -63,7 +63,7 @@ class _TablePose:
 
 
 class CubeGestures:
-    """Recognizes what the hand does with one cube.
+    """Recognises what the hand does with one cube.
 
     It keeps no clock: all times come from `CubeState.timestamp`.
 

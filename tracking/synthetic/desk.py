@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from tracking.geometry.arrays import Array, Flags, Floats, Image
 from tracking.synthetic.camera_rays import CameraRays
 
-Color = tuple[float, float, float]
+Colour = tuple[float, float, float]
 """Blue, green, red, 0…255."""
 
 HALF_WIDTH_M = 1.3
@@ -92,8 +92,8 @@ def _planks(random: np.random.Generator) -> Floats:
         rows = slice(top, min(top + width, DESK_TEXELS))
         shift = int(random.integers(DESK_TEXELS))
         figure = np.roll(grain, shift, axis=1)[rows]
-        color = WOOD_BGR[int(random.integers(len(WOOD_BGR)))] * random.uniform(0.95, 1.04)
-        texture[rows] = color * (1.0 + 0.075 * figure[..., None] * (1.15, 1.0, 0.9))
+        colour = WOOD_BGR[int(random.integers(len(WOOD_BGR)))] * random.uniform(0.95, 1.04)
+        texture[rows] = colour * (1.0 + 0.075 * figure[..., None] * (1.15, 1.0, 0.9))
         if number:
             texture[top - 1 : top + 1] *= 0.62  # the gap between two planks
             texture[top + 1] *= 1.05
@@ -128,7 +128,7 @@ def _quad(x: float, z: float, width: float, depth: float, turn: float) -> NDArra
     return np.array([_texel(*corner) for corner in corners], np.int32)
 
 
-def _draw_flat(texture: Floats, outline: NDArray[np.int32], color: Color) -> None:
+def _draw_flat(texture: Floats, outline: NDArray[np.int32], colour: Colour) -> None:
     """Draw a flat object on the desk, with a soft shadow at its edge."""
     low = np.maximum(outline.min(axis=0) // 16 - 32, 0)
     high = outline.max(axis=0) // 16 + 32
@@ -138,7 +138,7 @@ def _draw_flat(texture: Floats, outline: NDArray[np.int32], color: Color) -> Non
     shadow = cv2.GaussianBlur(np.roll(mask, (5, 6), (0, 1)), (0, 0), 6.0)
     texture *= (1.0 - 0.34 * shadow * (1.0 - mask))[..., None]
     edge = cv2.GaussianBlur(mask, (0, 0), 0.7)[..., None]
-    texture += (np.array(color, np.float32) - texture) * edge
+    texture += (np.array(colour, np.float32) - texture) * edge
 
 
 def _draw_paper(texture: Floats, random: np.random.Generator) -> None:
@@ -198,8 +198,8 @@ def _draw_mug(image: Image, camera: CameraRays) -> None:
             continue
         strip = np.vstack([foot + pair, (rim + pair)[::-1]])
         light = 0.55 + 0.45 * max(0.0, float(-0.75 * circle[start, 0] + 0.5 * circle[start, 2]))
-        color = tuple(float(c * light) for c in (88, 108, 236))
-        cv2.fillConvexPoly(image, _project(camera, strip), color, cv2.LINE_AA, 4)
+        colour = tuple(float(c * light) for c in (88, 108, 236))
+        cv2.fillConvexPoly(image, _project(camera, strip), colour, cv2.LINE_AA, 4)
     outer = _project(camera, rim + circle * MUG_RADIUS_M)
     inner = _project(camera, rim + circle * MUG_RADIUS_M * 0.88)
     coffee = _project(camera, rim + circle * MUG_RADIUS_M * 0.84 - (0, 0.012, 0))
@@ -209,13 +209,13 @@ def _draw_mug(image: Image, camera: CameraRays) -> None:
 
 
 def _draw_pencil(
-    image: Image, camera: CameraRays, x: float, z: float, turn: float, color: Color
+    image: Image, camera: CameraRays, x: float, z: float, turn: float, colour: Colour
 ) -> None:
     along = np.array([np.cos(turn), 0.0, np.sin(turn)])
     aside = np.array([-np.sin(turn), 0.0, np.cos(turn)]) * 0.0037
     middle = np.array([x, 0.004, z])
 
-    def band(start: float, end: float, taper: float, shade: Color) -> None:
+    def band(start: float, end: float, taper: float, shade: Colour) -> None:
         quad = [
             middle + start * along + aside,
             middle + end * along + aside * taper,
@@ -231,7 +231,7 @@ def _draw_pencil(
     cv2.polylines(dark, [line], False, 1.0, 8, cv2.LINE_AA, 4)
     _shade(image, 0.45 * cv2.GaussianBlur(dark, (0, 0), 2.5))
     band(-0.088, -0.076, 1.0, (150, 140, 235))
-    band(-0.076, 0.068, 1.0, color)
+    band(-0.076, 0.068, 1.0, colour)
     band(0.068, 0.084, 0.35, (150, 190, 222))
     band(0.084, 0.090, 0.1, (50, 50, 50))
 

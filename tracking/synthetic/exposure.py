@@ -65,21 +65,21 @@ class ExposureRenderer:
             return
         region = _union(regions)
         samples = 4 if len(poses) == 1 else 3 if len(poses) < 6 else 2  # blur hides coarse sampling
-        color, cover = self._cube.draw(region, poses, self._to_light, samples)
+        colour, cover = self._cube.draw(region, poses, self._to_light, samples)
         part = image[region.index]
         part *= 1.0 - cover
-        part += color
+        part += colour
 
     def _add_hand(self, image: Floats, hand: Hand, camera_from_cube: Array) -> None:
         region = hand_region(self._camera, hand)
         if region.empty:
             return
-        color, cover, depth = draw_hand(self._camera, region, hand, self._to_light)
+        colour, cover, depth = draw_hand(self._camera, region, hand, self._to_light)
         # The cube hides fingertips behind it.
         behind = depth - self._cube.depth(region, camera_from_cube)
         cover *= 1.0 - np.clip(behind / 0.0015, 0.0, 1.0)
         part = image[region.index]
-        part += (color - part) * cover[..., None]
+        part += (colour - part) * cover[..., None]
 
     def _hand_shadow(self, image: Floats, hand: Hand) -> None:
         """Cast the hand's shadow on the desk: wide strokes at low resolution, blurred."""

@@ -116,22 +116,22 @@ def draw_hand(
     skin = _CapsuleLayer(camera, region, hand.skin)
     cloth = _CapsuleLayer(camera, region, hand.sleeve)
     over = cloth.cover[..., None]
-    color = skin.shaded(_skin_color, to_light) * (1 - over)
-    color += cloth.shaded(_cloth_color, to_light) * over
+    colour = skin.shaded(_skin_colour, to_light) * (1 - over)
+    colour += cloth.shaded(_cloth_colour, to_light) * over
     depth = np.where(cloth.cover > 0.5, cloth.depth(), skin.depth())
-    return color, np.maximum(skin.cover, cloth.cover), depth
+    return colour, np.maximum(skin.cover, cloth.cover), depth
 
 
-def _skin_color(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
+def _skin_colour(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
     """Shade skin: light scatters round it, and its rims are redder, not only darker."""
     rim = np.clip(1.0 - slope, 0.0, 1.0) ** 2
-    color = SKIN_BGR * (0.40 + 0.62 * light)[..., None]
-    color *= 1.0 - rim[..., None] * np.array([0.34, 0.28, 0.12], np.float32)
-    color *= 1.0 - blush[..., None] * np.array([0.15, 0.11, 0.0], np.float32)
-    return np.asarray(color + 16.0 * (light**6)[..., None], np.float32)
+    colour = SKIN_BGR * (0.40 + 0.62 * light)[..., None]
+    colour *= 1.0 - rim[..., None] * np.array([0.34, 0.28, 0.12], np.float32)
+    colour *= 1.0 - blush[..., None] * np.array([0.15, 0.11, 0.0], np.float32)
+    return np.asarray(colour + 16.0 * (light**6)[..., None], np.float32)
 
 
-def _cloth_color(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
+def _cloth_colour(light: Floats, slope: Floats, blush: Floats, along: Floats) -> Floats:
     """Shade wool: soft folds across the arm, and no gloss."""
     folds = 0.05 * np.sin(34 * along + 3.0 * slope) + 0.035 * np.sin(81 * along - 5.0 * slope)
     shade = 0.42 + 0.60 * light + folds * slope
@@ -187,7 +187,7 @@ class _CapsuleLayer:
         weight = np.maximum(self._sums[..., 6], MIN_WEIGHT)
         return np.asarray(self._sums[..., 5] / weight, np.float32)
 
-    def shaded(self, color: Shader, to_light: Array) -> Floats:
+    def shaded(self, colour: Shader, to_light: Array) -> Floats:
         """Return the colour (h, w, 3) BGR; black where there is nothing."""
         shown = np.zeros((*self.cover.shape, 3), np.float32)
         covered = self.cover > 0
@@ -201,7 +201,7 @@ class _CapsuleLayer:
         light = np.float32(to_light[0]) * x + np.float32(to_light[1]) * y
         light = 0.25 + 0.75 * (light - np.float32(to_light[2]) * slope)
         light = np.asarray(np.clip(light, 0.0, 1.0), np.float32)
-        shown[box] = color(light, slope, blush, along)
+        shown[box] = colour(light, slope, blush, along)
         return shown
 
     def _box(self, ends: Array, radii: tuple[float, float]) -> tuple[slice, slice]:
