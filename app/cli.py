@@ -27,7 +27,7 @@ COMMANDS = {
     "bridge": "Let robots follow players on other computers, over an MQTT broker; "
     "see docs/many.md.",
     "cube": "Write a cube as a sheet to print, cut, fold and glue.",
-    "calibrate": "Find the camera's lens by waving the cube before it for about 20 seconds.",
+    "calibrate": "Find the camera's lens by waving the cube in front of it for about 20 seconds.",
     "character": "Look at characters and motions.",
     "robot": "Simulated robots and real ports.",
     "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",

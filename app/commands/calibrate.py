@@ -42,7 +42,7 @@ Source = Annotated[
 Output = Annotated[Path, typer.Option("--output", "-o", help="The camera file, for --intrinsics.")]
 SaveCube = Annotated[
     Path | None,
-    typer.Option(help="Keep the cube as it really is, folds and all, in this .toml file."),
+    typer.Option(help="Write the cube as it was measured to this .toml file."),
 ]
 BoardKind = Annotated[str, typer.Option(help="charuco: use a printed board, not the cube.")]
 PrintBoard = Annotated[Path | None, typer.Option(help="Write that board as a PDF, and end.")]
@@ -52,7 +52,7 @@ Checked = Annotated[
 ]
 Coverage = Annotated[Path | None, typer.Option(help="Draw where the views were: .png or .jpg.")]
 Seconds = Annotated[
-    float, typer.Option(min=5, max=600, help="A live camera is watched no longer than this.")
+    float, typer.Option(min=5, max=600, help="A live camera is watched for this time at most.")
 ]
 Shown = Annotated[bool, typer.Option("--window/--no-window", help="Open a window, or print lines.")]
 
@@ -70,7 +70,7 @@ def calibrate(
     seconds: Seconds = 120.0,
     window: Shown = True,
 ) -> None:
-    """Find the camera's lens by waving the cube before it for about 20 seconds.
+    """Find the camera's lens by waving the cube in front of it for about 20 seconds.
 
     Follow the coach: tip the cube every way, take it to every corner of the picture, near and far,
     and hold it still for a moment each time. Without a cube at hand print a board.
@@ -83,7 +83,7 @@ def calibrate(
         write_board(print_board, paper)
         console.print(f"[bold]{print_board}[/] is ready. Print it, and keep it flat.")
         return
-    finders = finders_of(cube, board)
+    finders = target_finders(cube, board)
     saved = None if checked is None else Intrinsics.load(checked)
     _check_paths(output, save_cube, coverage)
     shown = window and has_display()
@@ -91,20 +91,20 @@ def calibrate(
         frames = closing.enter_context(open_source(source))
         if saved is not None:
             saved = intrinsics_for(saved, frames.size)
-        session = _coached(finders, frames, "board" if board else "cube", shown, seconds)
+        session = _collect_views(finders, frames, "board" if board else "cube", shown, seconds)
     if coverage is not None:
         write_coverage(coverage, session)
     if checked is not None and saved is not None:
-        raise typer.Exit(_judge(session, checked, saved, frames.size, console))
+        raise typer.Exit(_report_check(session, checked, saved, frames.size, console))
     found = session.calibrated()
     found.intrinsics.save(output)
-    console.print(told_camera(output, found))
+    console.print(calibration_line(output, found))
     if isinstance(session.finder, CubeFinder):
-        _tell_cube(session.finder.cube, found, output, save_cube, console)
+        _report_cube(session.finder.cube, found, output, save_cube, console)
 
 
-def finders_of(cube: str | None, board: str) -> list[TargetFinder]:
-    """Return what may be held up: the named cube, either bundled one, or the board."""
+def target_finders(cube: str | None, board: str) -> list[TargetFinder]:
+    """Return the finders of what may be held up: the named cube, any bundled one, or the board."""
     if board not in ("", "charuco"):
         raise AppError(f"no board is called '{board}': there is only charuco")
     if board:
@@ -112,21 +112,21 @@ def finders_of(cube: str | None, board: str) -> list[TargetFinder]:
     return [CubeFinder(CubeModel.load(name)) for name in ([cube] if cube else bundled())]
 
 
-def told_camera(path: Path, found: Calibration) -> str:
-    """One line that says what was found, and how sure it is."""
+def calibration_line(path: Path, found: Calibration) -> str:
+    """Return the camera that was found, and its uncertainty, in one line."""
     focal = found.intrinsics.matrix[0, 0]
-    sure = "" if found.good else " (tilt more for a better one)"
+    advice = "" if found.good else " (tilt more for a better one)"
     return (
         f"[bold]{path}[/] is ready: focal length {focal:.1f} px ± "
-        f"{200 * found.focal_spread:.2f} %{sure}, edges lie within {found.residual:.2f} px, "
+        f"{200 * found.focal_spread:.2f} %{advice}, edges lie within {found.residual:.2f} px, "
         f"from {found.views} views"
     )
 
 
-def _coached(
+def _collect_views(
     finders: list[TargetFinder], frames: FrameSource, target: str, shown: bool, seconds: float
 ) -> CalibrationSession:
-    """Teach in a window or on the terminal; Ctrl-C ends the session, not the program."""
+    """Run the coach in a window or on the terminal; Ctrl-C ends the session, not the program."""
     session = CalibrationSession(finders, frames.size)
     with ExitStack() as closing, suppress(KeyboardInterrupt):
         coach: Coach = CoachLines(Console(soft_wrap=True, highlight=False), target)
@@ -138,14 +138,14 @@ def _coached(
     return session
 
 
-def _judge(
+def _report_check(
     session: CalibrationSession,
     path: Path,
     saved: Intrinsics,
     size: tuple[int, int],
     console: Console,
 ) -> int:
-    """Hold a saved camera against the views; gives the exit code."""
+    """Compare a saved camera with the views, print the result, and return the exit code."""
     session.check_seen()
     verdict = check(session.collector.views, saved, session.finder.target(size))
     color, word = ("red", "DEGRADED") if verdict.degraded else ("green", "OK")
@@ -161,31 +161,33 @@ def _judge(
     return int(verdict.degraded)
 
 
-def _tell_cube(
+def _report_cube(
     ideal: CubeModel, found: Calibration, camera: Path, path: Path | None, console: Console
 ) -> None:
-    """Say how crooked the cube is, keep it if asked to, and say how to go on."""
+    """Print how far the cube is from its design, save it if asked to, and print the next command."""
     cube = measured_cube(ideal, found.plates)
     worst = 0.0
     for face in cube.faces:
-        right = face_corners(face.name, face.roll_deg, cube.marker_size, cube.edge)
-        worst = max(worst, float(np.linalg.norm(face.corners - right, axis=1).max()))
+        designed = face_corners(face.name, face.roll_deg, cube.marker_size, cube.edge)
+        worst = max(worst, float(np.linalg.norm(face.corners - designed, axis=1).max()))
     if path is not None:
         write_cube(cube, path)
-        console.print(f"[bold]{path}[/] keeps the cube: its sides are off by {worst * 1e3:.1f} mm")
+        console.print(f"[bold]{path}[/] holds the cube: its sides are off by {worst * 1e3:.1f} mm")
     else:
-        told = f"The cube's sides are off by up to {worst * 1e3:.1f} mm"
-        console.print(f"{told}; --save-cube my-cube.toml would keep that.")
+        console.print(
+            f"The cube's sides are off by up to {worst * 1e3:.1f} mm; "
+            "--save-cube my-cube.toml saves that."
+        )
     option = "" if path is None else f" --cube {path}"
     console.print(f"Now: [cyan]cubeling play companion --intrinsics {camera}{option}[/]")
 
 
 def _check_paths(output: Path, save_cube: Path | None, coverage: Path | None) -> None:
-    """Refuse what cannot be written before anybody waves a cube."""
+    """Refuse files that cannot be written, before the user waves a cube."""
     for path in (output, save_cube, coverage):
         if path is not None and not path.parent.is_dir():
             raise AppError(f"there is no folder '{path.parent}' for '{path.name}'")
     if coverage is not None and coverage.suffix not in COVERAGE_SUFFIXES:
         raise AppError(f"the picture '{coverage}' must be a .png or a .jpg file")
     if save_cube is not None and save_cube.suffix != ".toml":
-        raise AppError(f"a cube is kept in a .toml file, not in '{save_cube}'")
+        raise AppError(f"a cube is saved in a .toml file, not in '{save_cube}'")

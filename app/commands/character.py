@@ -28,7 +28,7 @@ app = typer.Typer(
 )
 
 MIN_FOLDED_JOINTS = 4
-"""Branches of at least so many unrecognised joints are shown as one line."""
+"""Branches of at least this number of unrecognised joints are shown as one line."""
 
 
 @app.command("inspect")
@@ -51,7 +51,8 @@ def inspect_command(
         float | None, typer.Option(help="Unit of a motion in metres, if it is recognised wrongly.")
     ] = None,
     up: Annotated[
-        str | None, typer.Option(help="Vertical axis of a motion: y, z, -y …, likewise.")
+        str | None,
+        typer.Option(help="Vertical axis of a motion (y, z, -y …), if it is recognised wrongly."),
     ] = None,
 ) -> None:
     """Show the skeleton, size, clips and problems of a character, and draw it from all sides.

@@ -185,7 +185,7 @@ def _camera() -> Finding:
 
 
 def read_for(source: FrameSource, seconds: float) -> None:
-    """Read frames until their timestamps have advanced by so many seconds."""
+    """Read frames until their timestamps have advanced by `seconds`."""
     start: float | None = None
     for frame in source:
         start = frame.timestamp if start is None else start

@@ -52,7 +52,7 @@ class Outcome:
     """Paths that are painted on the table."""
 
 
-SPEED_MAPS = ("corrected", "legacy")
+SPEED_MAP_NAMES = ("corrected", "legacy")
 """Names of AvatAR's Speed maps: corrected, and as printed in the thesis."""
 
 
@@ -61,7 +61,7 @@ class ScenarioSettings:
     """What the user may choose for a scenario; raises AppError if a setting is out of its range."""
 
     speed_map: str = "corrected"
-    """One of `SPEED_MAPS`."""
+    """One of `SPEED_MAP_NAMES`."""
 
     turns: float = 2.0
     """Full turns of the cube from the least to the greatest intensity."""
@@ -70,9 +70,9 @@ class ScenarioSettings:
     """How events change the mood; None for the scenario's own personality."""
 
     def __post_init__(self) -> None:
-        if self.speed_map not in SPEED_MAPS:
+        if self.speed_map not in SPEED_MAP_NAMES:
             raise AppError(
-                f"no speed map is called '{self.speed_map}': choose one of {', '.join(SPEED_MAPS)}"
+                f"no speed map is called '{self.speed_map}': choose one of {', '.join(SPEED_MAP_NAMES)}"
             )
         if not 0.1 <= self.turns <= 20:
             raise AppError(f"the turns from end to end must be from 0.1 to 20, not {self.turns:g}")

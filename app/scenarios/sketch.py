@@ -34,7 +34,7 @@ LOOK_AHEAD_M = 0.07
 """How far ahead of the character its target is along the path."""
 
 PATH_COLOR = (0.10, 0.45, 0.95)
-"""Color of the path on the table, linear RGB."""
+"""Colour of the path on the table, sRGB."""
 
 
 class Sketch:

@@ -51,7 +51,7 @@ def legacy(angle: float) -> float:
     return 0.0 if angle <= IDLE_MAX_ANGLE else 1.55 + 4.0 * angle / math.pi
 
 
-SPEED_MAPS_BY_NAME: dict[str, SpeedMap] = {"corrected": corrected, "legacy": legacy}
+SPEED_MAPS: dict[str, SpeedMap] = {"corrected": corrected, "legacy": legacy}
 """The maps by name."""
 
 
@@ -63,7 +63,7 @@ class SpeedDial:
     """
 
     def __init__(self, name: str = "corrected") -> None:
-        self._map = SPEED_MAPS_BY_NAME[name]
+        self._map = SPEED_MAPS[name]
         self._moving = False
         self._speed = 0.0
         self._last: float | None = None

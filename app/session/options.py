@@ -26,7 +26,7 @@ class SessionOptions:
     """The camera's calibration file; None to take the source's intrinsics or to guess them."""
 
     speed_map: str = "corrected"
-    """One of `SPEED_MAPS`, for `follow` and `sketch`."""
+    """One of `SPEED_MAP_NAMES`, for `follow` and `sketch`."""
 
     turns: float = 2.0
     """Full turns of the cube from the least to the greatest intensity, for `companion`."""

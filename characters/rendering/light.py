@@ -79,7 +79,7 @@ class LightEstimator:
     """Share of the picture's colour cast that is ascribed to the light, not to the surfaces."""
 
     PAPER_CAST_SHARE = 0.8
-    """The same share for the colour cast of paper."""
+    """Share of the paper's colour cast that is ascribed to the light, not to the paper."""
 
     SMOOTHING_SHARE = 0.08
     """Share of the way to the new estimate in each picture: half of it after eight pictures."""

@@ -48,6 +48,7 @@ REQUEST_SENTENCES = {
     "bottom right": "Move it to the bottom right corner",
     "middle": "Move it to the middle",
 }
+"""What the coach says for each request; {} is the target."""
 
 TILT_DIRECTIONS = {
     "tilt up": (0, -1),
@@ -64,6 +65,7 @@ PICTURE_PLACES = {
     "bottom right": (1, 1),
     "middle": (0, 0),
 }
+"""Where to hold the target, from the middle of the picture (x right, y down)."""
 
 
 def words_of(request: str, target: str) -> str:

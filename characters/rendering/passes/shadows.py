@@ -30,7 +30,7 @@ KEY_BLUR = (0.010, 0.022, 0.05, 0.10)
 a light of about 25° across, as a window or a ceiling light is from a desk."""
 
 SKY_BLUR = (0.022, 0.05, 0.11, 0.13)
-"""The same for ambient light."""
+"""Standard deviation of the ambient light's blur at each level, as a share of the height."""
 
 SKY_OCCLUSION = (0.78, 0.7, 0.48, 0.2)
 """Share of the ambient light that a surface at each level keeps from the table below it."""

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.scenarios.speed import IDLE_MAX_ANGLE, SPEED_MAPS_BY_NAME, SpeedDial, corrected, legacy
+from app.scenarios.speed import IDLE_MAX_ANGLE, SPEED_MAPS, SpeedDial, corrected, legacy
 
 DEGREES = [d / 4 for d in range(0, 721)]
 
@@ -33,7 +33,7 @@ def test_legacy_map_is_as_printed():
     assert legacy(IDLE_MAX_ANGLE) == 0.0
 
 
-@pytest.mark.parametrize("name", SPEED_MAPS_BY_NAME)
+@pytest.mark.parametrize("name", SPEED_MAPS)
 def test_one_turn_reads_idle_walk_run_walk_idle(name, hand):
     dial = SpeedDial(name)
     gaits: list[str] = []

@@ -7,7 +7,7 @@ import pytest
 
 from app.pipeline.playground import Playground
 from app.running.opening import intrinsics_for
-from app.scenarios.speed import SPEED_MAPS_BY_NAME
+from app.scenarios.speed import SPEED_MAPS
 from tracking import open_source
 from tracking.synthetic import open_synthetic
 
@@ -22,9 +22,9 @@ def whole_turn():
         return [(playground.gesture(playground.track(frame)), frame.timestamp) for frame in source]
 
 
-@pytest.mark.parametrize("name", SPEED_MAPS_BY_NAME)
+@pytest.mark.parametrize("name", SPEED_MAPS)
 def test_speed_over_a_whole_turn_goes_idle_walk_run_walk_idle(whole_turn, name):
-    speeds = [SPEED_MAPS_BY_NAME[name](controls.camera_angle) for controls, _ in whole_turn]
+    speeds = [SPEED_MAPS[name](controls.camera_angle) for controls, _ in whole_turn]
     gaits = ["idle" if s <= 0.5 else "walk" if s <= 3 else "run" for s in speeds]
     passed = [gait for gait, _ in itertools.groupby(gaits)]
     once = ["idle", "walk", "run", "walk"]
