@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from characters.control.controllers.actions import clips_of_actions
+from characters.control.controllers.in_place import idle_clip
 from characters.control.controllers.walk import NOT_ACTIONS, WalkController
 from characters.locomotion.gaits import IDLE_SPEED, RUN_CLIPS, WALK_CLIPS, WALK_RUN_SPEEDS
 from characters.model.character import Character
@@ -38,8 +39,10 @@ def _walking(character: Character) -> dict[str, Node]:
 
 
 def _in_place(character: Character) -> dict[str, Node]:
-    idle = [name for name in character.clips if "idle" in name.lower()] or [*character.clips][:1]
-    return {**({"idle": _clip(idle[0])} if idle else {}), **_actions(character, idle[:1])}
+    idle = idle_clip(character.clips)
+    if idle is None:
+        return {}
+    return {"idle": _clip(idle), **_actions(character, [idle])}
 
 
 def _actions(character: Character, besides: Iterable[str]) -> dict[str, Node]:

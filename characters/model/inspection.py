@@ -21,8 +21,8 @@ PLAUSIBLE_HEIGHT_M = 0.05, 30.0
 
 _MAX_LOOP_GAP = 0.03  # body heights
 _MIN_SPEED = 0.15  # body heights per second; slower bodies stand
-_LOOP_NAME = re.compile(r"(?i)walk|run|jog|trot|gallop|stroll|idle|loop|cycle")
-_GAIT_NAME = re.compile(r"(?i)walk|run|jog|trot|gallop|stroll")
+_GAIT_NAME = re.compile("walk|run|jog|trot|gallop|stroll", re.IGNORECASE)
+_LOOP_NAME = re.compile(f"{_GAIT_NAME.pattern}|idle|loop|cycle", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -117,8 +117,14 @@ class Inspection:
 def inspect(character: Character, notes: Sequence[str] = (), body: bool = True) -> Inspection:
     """Return statistics and problems of a character.
 
-    The problems begin with `notes` on repairs and guesses while it was read. The meshes of a stick
-    figure have no problems: `body` is false.
+    Parameters
+    ----------
+    character
+        The character.
+    notes
+        Repairs and guesses while it was read; they come first among the problems.
+    body
+        Whether its meshes are its own; those of a stick figure have no problems.
     """
     feet = _foot_joints(character)
     clips = tuple(_clip_stats(character, clip, feet) for clip in character.clips.values())
@@ -193,15 +199,15 @@ def _problems_of_clips(character: Character, clips: Sequence[ClipStats]) -> Iter
     if static:
         yield f"{_named(static)} only one frame long and does not move."
     height = max(character.height, 1e-9)
-    open_ = [
+    unclosed = [
         f"{stats.clip.name!r} ({100 * stats.loop_gap / height:.0f} % of its height)"
         for stats in clips
         if _LOOP_NAME.search(stats.clip.name) and stats.loop_gap > _MAX_LOOP_GAP * height
     ]
-    if open_:
+    if unclosed:
         yield (
-            f"{'This clip does' if len(open_) == 1 else 'These clips do'} not loop: the last "
-            f"frame differs from the first: {', '.join(open_)}."
+            f"{'This clip does' if len(unclosed) == 1 else 'These clips do'} not loop: the last "
+            f"frame differs from the first: {', '.join(unclosed)}."
         )
     without_contacts = [
         stats.clip.name

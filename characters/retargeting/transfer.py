@@ -13,6 +13,7 @@ from characters.motion.clip import Clip
 from characters.motion.contacts import find_contacts
 from characters.retargeting.mapping import JointMapping
 from characters.retargeting.rig import LegJoints, Rig, global_rotations
+from characters.retargeting.root import ground_positions
 from characters.skeleton import rotations
 from characters.skeleton.pose import Array, Pose
 
@@ -114,7 +115,7 @@ def build_poses(rig: Rig, turns: Array, hips: Array, root: Array | None) -> Pose
         scales = np.tile(scales, (frames, 1, 1))
     if root is not None:
         own[:, 0] = rotations.multiply(rotations.about("y", root[:, 2]), skeleton.rest.rotations[0])
-        translations[:, 0] = np.stack([root[:, 0], 0 * root[:, 0], root[:, 1]], axis=-1)
+        translations[:, 0] = ground_positions(root)
     pose = Pose(translations, _local_rotations(own, skeleton.parents), scales)
     set_joint_positions(
         pose, rig, rig.anatomy.joints["hips"], rotations.rotate(skeleton_from_common, hips)

@@ -1,6 +1,7 @@
 """A character that acts in place, and hops to where it is wanted."""
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from characters.control.command import CharacterCommand, LocomotionIntent
@@ -140,11 +141,17 @@ def _bearing(place: RootDelta, going: LocomotionIntent) -> float:
     return wrap(place.bearing(float(x), float(z)))
 
 
+def idle_clip(clips: Iterable[str]) -> str | None:
+    """Return the name of the clip to stand with: without an idle clip, the first one.
+
+    >>> idle_clip(["nod", "Idle"]), idle_clip(["nod", "kiss"]), idle_clip([])
+    ('Idle', 'nod', None)
+    """
+    names = list(clips)
+    return next((name for name in names if "idle" in name.lower()), next(iter(names), None))
+
+
 def _idle(character: Character) -> Motion:
-    """Return the idle clip; without one, the first clip, or the rest pose."""
-    for name, clip in character.clips.items():
-        if "idle" in name.lower():
-            return clip
-    if character.clips:
-        return next(iter(character.clips.values()))
-    return StaticPose(character.skeleton.rest, 1.0)
+    """Return the idle clip, or the rest pose of a character without clips."""
+    name = idle_clip(character.clips)
+    return StaticPose(character.skeleton.rest, 1.0) if name is None else character.clips[name]
