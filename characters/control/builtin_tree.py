@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 from characters.control.controllers.actions import clips_of_actions
 from characters.control.controllers.in_place import idle_clip
 from characters.control.controllers.walk import NOT_ACTIONS, WalkController
+from characters.errors import CharacterError
 from characters.locomotion.gaits import IDLE_SPEED, RUN_CLIPS, WALK_CLIPS, WALK_RUN_SPEEDS
 from characters.model.character import Character
 from characters.motion.trees.conditions import Condition
@@ -15,6 +16,11 @@ def built_in(character: Character) -> Plan:
     """Return the plan that corresponds to the built-in controller of a character.
 
     The controllers also steer, plant feet and hop; played from a file, this plan does less.
+
+    Raises
+    ------
+    CharacterError
+        If the character has no clips.
     """
     states = _walking(character) if WalkController.suits(character) else _in_place(character)
     start, *others = states
@@ -41,7 +47,7 @@ def _walking(character: Character) -> dict[str, Node]:
 def _in_place(character: Character) -> dict[str, Node]:
     idle = idle_clip(character.clips)
     if idle is None:
-        return {}
+        raise CharacterError(f"{character.name}: has no clips, so there is no plan to show")
     return {"idle": _clip(idle), **_actions(character, [idle])}
 
 

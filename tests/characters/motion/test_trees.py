@@ -305,6 +305,12 @@ def test_a_graph_shows_every_clip_that_a_character_plays(name):
         assert f'"{each}\\nclip"' in graph
 
 
+def test_a_character_without_clips_has_no_graph():
+    still = replace(Character.load("robot"), clips={})
+    with pytest.raises(CharacterError, match="robot: has no clips"):
+        built_in(still)
+
+
 def test_a_motion_that_is_used_twice_is_one_box_with_two_edges():
     text = "play = {kind = 'blend', of = [{motion = 'a', weight = 1}, {motion = 'a', weight = 1}]}"
     read = plan(text + "\n[motions]\na = {kind = 'loop', of = 'Walk'}")
