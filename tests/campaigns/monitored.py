@@ -16,24 +16,24 @@ NEUTRAL = Emotion(0.0, 0.0)
 
 
 class MonitoredReader(FrameReader):
-    """Notices a frame that is taken for whole and was never sent."""
+    """Counts the frames that pass the check and were never sent."""
 
     def __init__(self, monitor: InvariantMonitor, way: str) -> None:
         super().__init__()
-        self._witness, self._sent = monitor, monitor.frames[way]
+        self._monitor, self._sent = monitor, monitor.frames[way]
 
     def _finish(self) -> bytes | None:
         frame = bytes(self._pending)
         body = super()._finish()
         if body is None:
-            self._witness.counts["detected"] += 1
+            self._monitor.counts["detected"] += 1
         elif frame not in self._sent:
-            self._witness.counts["undetected"] += 1
+            self._monitor.counts["undetected"] += 1
         return body
 
 
 class MonitoredScheduler(CommandScheduler):
-    """Tells which command is sent, and which has been acknowledged."""
+    """Reports which command is sent, and counts those that are acknowledged."""
 
     def __init__(self, monitor: InvariantMonitor, host: int) -> None:
         super().__init__()
@@ -69,9 +69,9 @@ class MonitoredRoundTrip(RoundTrip):
 
 
 def monitored_host(monitor: InvariantMonitor, host: int) -> HostLink:
-    """Make a host's end whose commands, heartbeats and frames are seen.
+    """Make the host side of a link whose commands, heartbeats and frames are monitored.
 
-    It is made as `connect` makes it, so that a restart begins as that of the program does.
+    It is made as `connect` makes it, so that a restart is like that of the program.
     """
     link = DRIVERS["cubeling"].make(host, None)
     assert isinstance(link, HostLink)
@@ -113,7 +113,7 @@ class LightBody:
 
 
 class MonitoredLink(DeviceLink):
-    """A robot's end that tells what takes effect, and when it last heard of its host."""
+    """The robot side of a link, which reports what takes effect and when it last heard its host."""
 
     def __init__(self, monitor: InvariantMonitor) -> None:
         self.light = LightBody(monitor)

@@ -29,7 +29,7 @@ from robot.simulators import SIMULATORS
 from robot.simulators.faults import Faults, Outage
 from robot.simulators.faulty import FaultyRobot
 
-FAULTS = Faults(
+SOAK_FAULTS = Faults(
     drop=0.005, flip=0.0001, dup=0.005, delay=0.002, jitter=0.001,
     stall=Outage(1.0, 600.0), unplug=Outage(2.0, 600.0), reboot=7200.0,
 )  # fmt: skip
@@ -114,7 +114,7 @@ class SoakRun:
 
     def __init__(self, name: str, seed: int) -> None:
         self.driver: Driver = DRIVERS[name].make(7, None)
-        self.robot = FaultyRobot(SIMULATORS[name](seed), FAULTS, seed)
+        self.robot = FaultyRobot(SIMULATORS[name](seed), SOAK_FAULTS, seed)
         self.random = np.random.default_rng((seed, 4))
         self.result = SoakResult(name, 0.0)
         self.now = self.request_at = self.tick_at = self.reopen_at = 0.0

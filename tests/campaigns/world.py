@@ -23,7 +23,7 @@ MAX_SIMULTANEOUS_EVENTS = 1000
 """Most events at one moment of virtual time; more are an endless loop."""
 
 MEAN_QUIET_S = 0.3
-"""Mean length of a stretch in which nothing is asked for [s]."""
+"""Mean length of a stretch without requests [s]."""
 
 NEVER = float("inf")
 
@@ -45,7 +45,7 @@ class Outcome:
     """Exchanges, heartbeats, faults and so on, by name."""
 
     recoveries: int
-    """How often the last request came true, at first or again, in a quiet stretch."""
+    """How often the last request took effect, at first or again, in a quiet stretch."""
 
     worst_recovery: float
     """Longest of them [s]."""
@@ -135,7 +135,7 @@ class CampaignWorld:
             self.faulty.receive(out, now)
 
     def _watch_plug(self) -> None:
-        """Be to the host what its pump is when the port vanishes and comes back."""
+        """Do what the link's thread does when the port vanishes and comes back."""
         if self.port_open and self.faulty.unplug_count != self.unplug_count:
             self.host.port_lost()
             self.port_open, self.reopen_at = False, self.now + REOPEN_INTERVAL_S
@@ -170,10 +170,10 @@ class CampaignWorld:
         if self.quiet:
             self._fall_quiet()  # the new program knows nothing of the last request
 
-    # --- What the host is asked for --------------------------------------------------------------
+    # --- Requests to the host --------------------------------------------------------------------
 
     def _begin_stretch(self) -> None:
-        """Ask for a while: always the next when the last has landed, or at any moment."""
+        """Request for a while: the next when the last is acknowledged, or at any time."""
         self.quiet = False
         self.chasing = bool(self.random.random() < 0.8)
         self.stretch_ends = self.now + float(self.random.uniform(0.5, 5.0))
@@ -192,12 +192,12 @@ class CampaignWorld:
             for _ in range(3):
                 self.host.express(self.monitor.asks())
         self.host.express(self.monitor.asks())
-        # Whoever chases is woken by the acknowledgement; this is for when none comes.
+        # While it chases, an acknowledgement triggers the next request; this is for a lost one.
         gap = 0.2 if self.chasing else 0.08
         self.request_at = self.now + float(self.random.uniform(0.0, gap))
 
     def _fall_quiet(self) -> None:
-        """Ask for one last thing, and then for nothing."""
+        """Make one last request, and then none."""
         self.chasing = False
         self.host.express(self.monitor.asks())
         self.last = self.host.scheduler.state.commanded
@@ -206,7 +206,7 @@ class CampaignWorld:
         self.untrue_since = self.now
 
     def _watch_quiet(self) -> None:
-        """See that the last request comes true, and again whenever the robot has lost it."""
+        """Check that the last request takes effect, and again whenever the robot has lost it."""
         if self.light.link.light.target == self.last == self.scheduler.state.acknowledged:
             if self.untrue_since < NEVER:
                 self.recoveries += 1

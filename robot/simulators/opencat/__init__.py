@@ -1,1 +1,1 @@
-"""A simulated Bittle or Nybble, with the habits of its board."""
+"""A simulated Bittle or Nybble, with the quirks of its board."""

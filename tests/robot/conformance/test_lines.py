@@ -9,7 +9,7 @@ from robot.conformance.suite import MAX_DURATION_S
 from robot.protocol.timing import BAUD
 from robot.simulators.cubeling.simulator import Simulator
 
-STEP = 0.001
+STEP_S = 0.001
 
 
 @dataclass
@@ -50,7 +50,7 @@ class SlowLine:
 
     def read(self, until: float) -> bytes:
         while True:
-            self.time += STEP
+            self.time += STEP_S
             if self.time - self.looked >= self.looks_every:
                 self.looked = self.time
                 self.robot.receive(self.there.take(self.time), self.time)

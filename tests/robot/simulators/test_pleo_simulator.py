@@ -1,4 +1,4 @@
-"""The simulated Pleo behaves as the facts say, the ugly parts included."""
+"""The simulated Pleo behaves as the sources describe, its quirks included."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from robot.simulators.pleo.simulator import MAX_UNREAD_BYTES, PleoSimulator
 
 
 class Terminal:
-    """Somebody who types at the simulated console, in virtual time."""
+    """A person who types at the simulated console, in virtual time."""
 
     def __init__(self, seed: int = 0) -> None:
         self.robot = PleoSimulator(seed)

@@ -39,9 +39,9 @@ def body_at(seed: int = 0) -> DinosaurBody:
         max_size=6,
     )
 )
-def test_no_joint_leaves_its_limits_or_turns_faster_than_it_can(wishes):
+def test_no_joint_leaves_its_limits_or_turns_faster_than_it_can(requests):
     body, now, before = body_at(), 0.0, np.zeros(14)
-    for name, value in wishes:
+    for name, value in requests:
         match name:
             case "express":
                 body.express(Emotion(*value))

@@ -23,7 +23,7 @@ def crc(data: bytes) -> int:
     return register
 
 
-LENGTH = 1.0
+MOTION_LENGTH_S = 1.0
 """How long its motions take [s]."""
 
 MAX_EMOTION_SPEED = 8000
@@ -167,7 +167,11 @@ class IndependentRobot:
                 self.neutral()
                 self.in_force, self.stopped = True, True
             elif body[7:9] in (b"\1\0", b"\1\1"):
-                self.motion, self.motion_ends, self.stopped = body[8], self.now + LENGTH, False
+                self.motion, self.motion_ends, self.stopped = (
+                    body[8],
+                    self.now + MOTION_LENGTH_S,
+                    False,
+                )
                 self.played.append(body[8])
             else:
                 self.result = 1

@@ -13,12 +13,14 @@ from robot.simulators.opencat.quirks import BoardQuirks
 from robot.simulators.opencat.simulator import OpenCatSimulator
 
 QUIET = BoardQuirks(slow=0.0, mangled=0.0, brown_outs=0.0, restless=0.0, battery_lasts=1e9)
-"""A board without any ugliness."""
+"""A board without quirks."""
 
-POLITE = re.compile(rb"(?:[?jd]|k[a-z][A-Za-z]+|i\d+ -?\d+(?: \d+ -?\d+)*|b\d+ \d+(?: \d+ \d+)*)\n")
-"""What a line may look like, said a second time and simpler than in the driver."""
+ALLOWED_LINE = re.compile(
+    rb"(?:[?jd]|k[a-z][A-Za-z]+|i\d+ -?\d+(?: \d+ -?\d+)*|b\d+ \d+(?: \d+ \d+)*)\n"
+)
+"""The form of every line; simpler than in the driver, and independent of it."""
 
-FEELINGS = {
+EMOTIONS = {
     "neutral": Emotion(0.0, 0.0, "neutral"),
     "happy": Emotion(0.7, 0.6, "happy"),
     "angry": Emotion(-0.7, 0.6, "angry"),
@@ -87,7 +89,7 @@ class Desk:
         return self
 
     def feel(self, word: str) -> None:
-        self.host.express(FEELINGS[word])
+        self.host.express(EMOTIONS[word])
 
     def settle(self, within: float = 20.0) -> float:
         """Run until the robot has confirmed what was last asked for."""
@@ -147,7 +149,7 @@ class Desk:
         if not data:
             return
         assert data.count(b"\n") == 1, f"two lines at once: {data!r}"
-        assert POLITE.fullmatch(data), f"not to be sent: {data!r}"
+        assert ALLOWED_LINE.fullmatch(data), f"not to be sent: {data!r}"
         line = data.decode().strip()
         if self.sent:
             gap = self.now - self.sent[-1][0]
@@ -167,5 +169,5 @@ def desk() -> Callable[..., Desk]:
 
 @pytest.fixture
 def quiet() -> BoardQuirks:
-    """A board without any ugliness."""
+    """A board without quirks."""
     return QUIET

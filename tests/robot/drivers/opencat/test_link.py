@@ -81,7 +81,7 @@ def test_a_reboot_in_the_middle_is_noticed_and_the_mood_is_taken_again(desk):
     d.settle()
     assert d.shown == "happy"
     assert d.telemetry.counts.sessions == 2
-    assert d.lines.count("b14 8 18 8 21 8") == 1, "the mood has not begun anew"
+    assert d.lines.count("b14 8 18 8 21 8") == 1, "the mood has not begun again"
 
 
 def test_unplugging_and_plugging_is_recovered_from(desk):

@@ -1,4 +1,4 @@
-"""What holds over long, ugly sessions: drawn from seeds, on virtual time."""
+"""What holds over long sessions with a quirky board: random by seed, in virtual time."""
 
 import itertools
 import pickle
@@ -22,22 +22,22 @@ from robot.protocol import messages as m
 from robot.simulators.opencat.quirks import BoardQuirks
 from robot.simulators.opencat.simulator import OpenCatSimulator, nybble
 
-UGLY = BoardQuirks(slow=0.1, mangled=0.03, brown_outs=0.05, restless=8.0, battery_lasts=900.0)
+QUIRKY = BoardQuirks(slow=0.1, mangled=0.03, brown_outs=0.05, restless=8.0, battery_lasts=900.0)
 BOARDS = {
-    "bittle": lambda seed: OpenCatSimulator(seed, quirks=UGLY),
+    "bittle": lambda seed: OpenCatSimulator(seed, quirks=QUIRKY),
     "nybble": lambda seed: OpenCatSimulator(
-        seed, "Nybble", "N12_230306", replace(UGLY, merges=False, buffer=64)
+        seed, "Nybble", "N12_230306", replace(QUIRKY, merges=False, buffer=64)
     ),
 }
 WORDS = ("neutral", "happy", "angry", "sad")
 
 SETTLED_WITHIN = 45.0
-"""A board as ugly as these, with power and without a broken line, shows the last mood within this
+"""A board as quirky as these, with power and without a broken line, shows the last mood within this
 [s]: a skill of 5 s, a start of 5 s, a question of 2 s asked three times, two falls, and dwells."""
 
 
 class Watch:
-    """Looks on at a desk, and says if the telemetry claims what is not so."""
+    """Watches a desk, and fails if the telemetry reports what is not true."""
 
     def __init__(self, desk) -> None:
         self.desk = desk
@@ -103,8 +103,8 @@ def _word(emotion) -> str:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_lost_and_flipped_bytes_only_delay(seed, desk):
-    d = desk(OpenCatSimulator(seed, quirks=replace(UGLY, battery_lasts=1e9)), step=0.05, seed=seed,
-             flip=0.005, drop=0.005)  # fmt: skip
+    robot = OpenCatSimulator(seed, quirks=replace(QUIRKY, battery_lasts=1e9))
+    d = desk(robot, step=0.05, seed=seed, flip=0.005, drop=0.005)
     d.ready()
     random = np.random.default_rng(seed)
     for _ in range(20):

@@ -152,7 +152,7 @@ def test_a_motion_that_is_no_loop_and_refused_is_tried_a_few_times(poses):
     assert poses.state == "ready"
 
 
-def test_an_error_while_idle_is_kept_and_begins_nothing_anew(script):
+def test_an_error_while_idle_is_kept_and_restarts_nothing(script):
     pleo = script().started().show("happy")
     assert b"APP" not in pleo.say("MC_GetMotorStatus Failed: joint 14\r\n")
     assert pleo.telemetry.complaint == "MC_GetMotorStatus Failed: joint 14"
@@ -160,7 +160,7 @@ def test_an_error_while_idle_is_kept_and_begins_nothing_anew(script):
 
 
 @pytest.mark.parametrize("text", ["\r\nPleo Monitor v1.1\r\n> ", "\r\nhello\r\nready\r\n> "])
-def test_a_console_that_starts_anew_while_idle_is_begun_with_anew(script, text):
+def test_a_console_that_restarts_while_idle_is_started_again(script, text):
     pleo = script().started().show("happy")
     pleo.say(text, 0.1)
     assert pleo.state == "lost"
@@ -170,7 +170,7 @@ def test_a_console_that_starts_anew_while_idle_is_begun_with_anew(script, text):
     assert pleo.telemetry.counts.sessions == 2
 
 
-def test_a_console_that_starts_anew_inside_an_answer_is_begun_with_anew(script):
+def test_a_console_that_restarts_inside_an_answer_is_started_again(script):
     pleo = script().started()
     pleo.express("happy")
     pleo.run(0.1)

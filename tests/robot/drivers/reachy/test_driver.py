@@ -60,9 +60,9 @@ def test_targets_are_sent_at_most_at_their_rate():
 
 @settings(max_examples=25)
 @given(st.lists(st.tuples(st.sampled_from(MOODS), st.floats(0.05, 2.0)), min_size=1, max_size=6))
-def test_no_joint_leaves_its_limits_or_is_faster_than_allowed(wishes):
+def test_no_joint_leaves_its_limits_or_is_faster_than_allowed(moods):
     desk = Desk()
-    for word, seconds in wishes:
+    for word, seconds in moods:
         desk.driver.express(replace(HAPPY, word=word))
         desk.driver.play(m.ITEM_MOTION, len(desk.asked) % len(motions.MOTIONS))
         desk.run(seconds)
