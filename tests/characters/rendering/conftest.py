@@ -27,9 +27,13 @@ def _context() -> Iterator[moderngl.Context]:
 
 @pytest.fixture
 def ctx(_context: moderngl.Context) -> Iterator[moderngl.Context]:
-    """Yield the one context of all tests; a test that leaves a pending GL error behind fails."""
-    yield _context
-    assert _context.error == "GL_NO_ERROR"
+    """Yield the one context of all tests; a test that leaves a pending GL error behind fails.
+
+    It is made current, as tests elsewhere create contexts of their own in the same process.
+    """
+    with _context:
+        yield _context
+        assert _context.error == "GL_NO_ERROR"
 
 
 @pytest.fixture
