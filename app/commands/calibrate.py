@@ -164,7 +164,7 @@ def _report_check(
 def _report_cube(
     ideal: CubeModel, found: Calibration, camera: Path, path: Path | None, console: Console
 ) -> None:
-    """Print how far the cube is from its design, save it if asked to, and print the next command."""
+    """Print how far the cube is from its design, save it if asked to, and say what comes next."""
     cube = measured_cube(ideal, found.plates)
     worst = 0.0
     for face in cube.faces:

@@ -71,9 +71,8 @@ class ScenarioSettings:
 
     def __post_init__(self) -> None:
         if self.speed_map not in SPEED_MAP_NAMES:
-            raise AppError(
-                f"no speed map is called '{self.speed_map}': choose one of {', '.join(SPEED_MAP_NAMES)}"
-            )
+            choices = ", ".join(SPEED_MAP_NAMES)
+            raise AppError(f"no speed map is called '{self.speed_map}': choose one of {choices}")
         if not 0.1 <= self.turns <= 20:
             raise AppError(f"the turns from end to end must be from 0.1 to 20, not {self.turns:g}")
 

@@ -94,7 +94,7 @@ class CharacterVertices:
         )._moved_first()
 
     def _moved_first(self) -> Self:
-        """Return a copy in which the vertices that morphs move come first, for one upload of them."""
+        """Return a copy with the vertices that morphs move first, for one upload of them."""
         if not self.morphs:
             return self
         moved = np.unique(np.concatenate([morph.vertices for morph in self.morphs]))
