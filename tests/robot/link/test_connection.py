@@ -111,6 +111,8 @@ def test_a_silent_robot_blocks_nothing_and_is_found_again(soon):
         assert dino.telemetry.counts.sessions == 2
 
 
+# pySerial 3.5 does not close a socket that the other side has reset; the garbage collector does.
+@pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning")
 def test_a_port_that_is_unplugged_is_lost_and_when_it_is_back_so_is_the_robot(soon):
     first = SimulatedPort(kind="tcp")
     number = int(first.url.rpartition(":")[2])
