@@ -37,6 +37,11 @@ class SendBuffer:
     def __init__(self) -> None:
         self._out = bytearray()
 
+    @property
+    def unsent(self) -> int:
+        """Number of bytes that wait for `bytes_to_send`."""
+        return len(self._out)
+
     def bytes_to_send(self) -> bytes:
         """Return the bytes to write, once."""
         data = bytes(self._out)

@@ -8,7 +8,7 @@ from robot.drivers import DRIVERS
 from robot.drivers.cubeling.host import HostLink
 from robot.drivers.cubeling.scheduler import Command, CommandScheduler, RoundTrip
 from robot.protocol import messages as m
-from robot.protocol.wire import FrameReader
+from robot.protocol.wire import FrameReader, encode_frame
 from robot.simulators.cubeling.device import DeviceLink
 from tests.campaigns.monitor import InvariantMonitor, InvariantViolationError
 
@@ -22,14 +22,13 @@ class MonitoredReader(FrameReader):
         super().__init__()
         self._monitor, self._sent = monitor, monitor.frames[way]
 
-    def _finish(self) -> bytes | None:
-        frame = bytes(self._pending)
-        body = super()._finish()
-        if body is None:
-            self._monitor.counts["detected"] += 1
-        elif frame not in self._sent:
-            self._monitor.counts["undetected"] += 1
-        return body
+    def feed(self, data: bytes) -> list[bytes]:
+        errors_before = self.errors
+        bodies = super().feed(data)
+        frames = [encode_frame(body).strip(b"\0") for body in bodies]
+        self._monitor.counts["detected"] += self.errors - errors_before
+        self._monitor.counts["undetected"] += sum(frame not in self._sent for frame in frames)
+        return bodies
 
 
 class MonitoredScheduler(CommandScheduler):
@@ -130,14 +129,14 @@ class MonitoredLink(DeviceLink):
             if self.light.target != NEUTRAL:
                 raise InvariantViolationError("the failsafe does not lead to neutral")
 
-    def _take(self, session: int, message: Any, now: float) -> None:
+    def process(self, session: int, message: Any, now: float) -> None:
         if isinstance(message, m.Hello) or (session and session == self.session):
             self.heard = now
-        super()._take(session, message, now)
+        super().process(session, message, now)
 
-    def _carry_out(self, command: m.Express | m.Play | m.Stop) -> int:
-        self.monitor.carries_out(self._host, command)
-        return super()._carry_out(command)
+    def execute(self, command: m.Express | m.Play | m.Stop) -> int:
+        self.monitor.carries_out(self.host, command)
+        return super().execute(command)
 
 
 class LightRobot:

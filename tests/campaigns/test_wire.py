@@ -38,12 +38,13 @@ def test_the_exchanges_are_divided_among_all_mixes():
 
 
 def test_a_robot_that_takes_a_command_twice_is_found(monkeypatch):
-    def obey(self, command):
-        self.last_command, self._in_force = command.number, True
-        self._result = self._carry_out(command)
-        self._send(m.Ack(command.number, self._result))
+    obey = DeviceLink.obey
 
-    monkeypatch.setattr(DeviceLink, "_obey", obey)
+    def obey_again(self, command):
+        self.last_command = 0
+        obey(self, command)
+
+    monkeypatch.setattr(DeviceLink, "obey", obey_again)
     assert "takes effect after number" in (violation("dup") or "")
 
 
@@ -63,17 +64,17 @@ def test_an_emotion_that_is_not_sent_again_is_found(monkeypatch):
 
 
 def test_a_host_that_sends_an_old_emotion_late_is_found(monkeypatch):
-    send_state, first = CommandScheduler._send_state, emotion_of(1)
+    next_command, first = CommandScheduler.next, emotion_of(1)
 
-    def stale(self, now, tries=1):
-        command = send_state(self, now, tries)
-        if command.number % 50 == 0 and isinstance(command, m.Express):
+    def stale(self, now, retry_after):
+        command = next_command(self, now, retry_after)
+        if isinstance(command, m.Express) and command.number % 50 == 0:
             old = m.Express(command.number, first.valence, first.arousal)
             self.pending.command = old
             return old
         return command
 
-    monkeypatch.setattr(CommandScheduler, "_send_state", stale)
+    monkeypatch.setattr(CommandScheduler, "next", stale)
     assert "takes effect after" in (violation("clean", 30_000) or "")
 
 

@@ -238,7 +238,7 @@ class CampaignWorld:
                 max(faulty.to_robot.in_flight, faulty.from_robot.in_flight),
                 MAX_IN_FLIGHT_BYTES,
             ),
-            "unsent": (len(host._out) + len(link._out), 0),
+            "unsent": (host.unsent + link.unsent, 0),
         }
         for name, (size, most) in sizes.items():
             self.largest[name] = max(size, self.largest.get(name, 0))

@@ -43,7 +43,8 @@ class DeviceLink(SendBuffer):
         self.body = body
         self.session = 0
         """The open session; 0 when none is."""
-        self._host = 0
+        self.host = 0
+        """Number of the host that was heard last; 0 before the first."""
         self.last_command = 0
         """Number of the last command; it survives the sessions of the same host."""
         self.last_received = 0.0
@@ -67,7 +68,7 @@ class DeviceLink(SendBuffer):
             except MessageError:
                 continue
             if message is not None:
-                self._take(session, message, now)
+                self.process(session, message, now)
 
     def tick(self, now: float) -> None:
         """Do what is due at time `now` [s]: the failsafe and STATE."""
@@ -76,7 +77,8 @@ class DeviceLink(SendBuffer):
         if self.session and now - self._state_sent >= timing.STATE_EVERY:
             self._send_state(now)
 
-    def _take(self, session: int, message: Any, now: float) -> None:
+    def process(self, session: int, message: Any, now: float) -> None:
+        """Process one message of a session at time `now` [s]."""
         if isinstance(message, m.Hello):
             if session:
                 self._greet(session, message, now)
@@ -94,13 +96,13 @@ class DeviceLink(SendBuffer):
             case m.Bye():
                 self._end_session()
             case m.Express() | m.Play() | m.Stop():
-                self._obey(message)
+                self.obey(message)
 
     def _greet(self, session: int, hello: m.Hello, now: float) -> None:
-        if hello.host != self._host:
+        if hello.host != self.host:
             if self._in_force:
                 self.body.neutral()
-            self._host, self.last_command, self._in_force = hello.host, 0, False
+            self.host, self.last_command, self._in_force = hello.host, 0, False
         if session != self.session:
             self.session, self._beat, self._state_sent = session, 0, now
         self.last_received = now
@@ -130,14 +132,15 @@ class DeviceLink(SendBuffer):
         if ask.index < len(names):
             self._send(m.Name(ask.item, ask.index, names[ask.index]))
 
-    def _obey(self, command: m.Express | m.Play | m.Stop) -> None:
+    def obey(self, command: m.Express | m.Play | m.Stop) -> None:
         """Execute a command once, and acknowledge it each time that it arrives."""
         if command.number > self.last_command:
             self.last_command, self._in_force = command.number, True
-            self._result = self._carry_out(command)
+            self._result = self.execute(command)
         self._send(m.Ack(command.number, self._result))
 
-    def _carry_out(self, command: m.Express | m.Play | m.Stop) -> int:
+    def execute(self, command: m.Express | m.Play | m.Stop) -> int:
+        """Command the body, and return the result for the acknowledgement."""
         match command:
             case m.Express():
                 moods = len(self.body.catalogue.moods)

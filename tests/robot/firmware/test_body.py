@@ -257,6 +257,9 @@ def test_hysteresis_is_that_of_the_moods(value):
         shown = Dino().robot.body
         shown.mood = shown.moods.index(label)
         shown.valence = round(1e4 * value)
-        assert shown.moods[shown._next_mood()] == next_label(label, value)
+        shown.express(shown.valence, 0, m.NOTHING)
+        for now in (0, body.STEP_MS):
+            shown.advance(now, attended=True)
+        assert shown.moods[shown.mood] == next_label(label, value)
     assert body.STEP_MS == 20
     assert motions.HYSTERESIS == 500
