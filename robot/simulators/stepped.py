@@ -77,7 +77,7 @@ class SteppedRobot(Robot):
         port, protocol = protocol_of(url, None)
         if not port.startswith("sim:"):
             raise RobotError(
-                f"{url!r} is no simulated robot, whose time could be told: say sim:cubeling"
+                f"{url!r} is no simulated robot, and only those can be stepped: say sim:cubeling"
             )
         kind = DRIVERS[protocol]
         self.now = 0.0

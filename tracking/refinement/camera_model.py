@@ -25,7 +25,7 @@ MIN_EXPONENT_STEP = 0.15
 """The exponent changes only by more than this: a new table moves poses by hundredths of a mm."""
 
 MIN_BLUR_CELLS, MIN_BLUR_PX = 0.2, 3.5
-"""Blur extent from which on an edge tells of the camera: below, an unknown lens blurs as much."""
+"""Least blur of an edge that is used to estimate the camera: an unknown lens blurs as much."""
 
 MAX_STUDIES = 60
 """Sharp frames that are aligned as blurred ones at most, only to learn the camera from them."""
@@ -102,7 +102,7 @@ class CameraModelEstimator:
 class ExposureEstimator:
     """The exposure time τ of one camera: a cube with velocity v moves by v·τ during it.
 
-    Each direction is weighted by what the blur tells of it.
+    Each direction is weighted by how well the blur determines it.
     """
 
     def __init__(self) -> None:

@@ -66,7 +66,7 @@ class CubeTracker:
         # Predict where the cube should be, by its last poses.
         prediction = past.track.predict(now)
 
-        # Search there, by the edges or else by the blurred image, which also tells of the camera.
+        # Search there, by the edges or else by the blurred image; both help to estimate the camera.
         match = LocalMatch()
         if prediction is not None:
             match = self._local_tracker.search(image, past.track, prediction, self._camera.model)

@@ -55,7 +55,7 @@ def verdicts(scores: Rows[Score]) -> Iterator[TargetVerdict]:
         "time ÷ full-frame cv2 SUBPIX ≤ 0.5, followed", followed, lambda s: ratio(scores, s), 0.5
     )
     yield _at_most(
-        "time ÷ full-frame cv2 SUBPIX ≤ 0.5, each pose found anew",
+        "time ÷ full-frame cv2 SUBPIX ≤ 0.5, each pose without a past",
         [score for score in ours if score.sequence == "poses"],
         lambda s: ratio(scores, s),
         0.5,

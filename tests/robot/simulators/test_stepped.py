@@ -1,4 +1,4 @@
-"""A simulated robot whose time is told: the same every time, and no wall clock in it."""
+"""A simulated robot in virtual time: the same in every run, without a wall clock."""
 
 import pytest
 

@@ -1,1 +1,1 @@
-"""The robot's bundled likeness."""
+"""Makes the bundled character `robot`, which the virtual robot shows."""
