@@ -126,8 +126,8 @@ class _FrameLoop:
         recorder.write(step)
         if step.controls.placed:
             recorder.event(f"placed {step.controls.top_face}", now)
-        if step.controls.shaken:
-            recorder.event("shaken", now)
+        for gesture in step.controls.gestures:
+            recorder.event(gesture, now)
         if recorder.problem is not None:
             raise AppError(recorder.problem)
 

@@ -29,8 +29,8 @@ class MoodController:
         The action is "idle" for nothing that changes the mood; `weight` is its intensity, −1…1, and
         `speed` AvatAR's Speed of the character, 0…5.
         """
-        if controls.shaken:
-            self._feelings.apply_event("shaken")
+        for gesture in controls.gestures:
+            self._feelings.apply_event(gesture)
         if controls.lifted and not self._lifted:
             self._feelings.apply_event("lifted")
         self._lifted = controls.lifted

@@ -65,9 +65,13 @@ def _upgraded(kind: type[Any], content: Any) -> Any:
     """Return the content of a document in today's fields.
 
     Before `affect.Emotion` held its word, an emotion had a label next to it, and the intents of a
-    command were single fields, of which the oldest sessions lack some. Sessions do not hold the
-    version of the program that recorded them: these fields tell the versions apart.
+    command were single fields, of which the oldest sessions lack some. A shake was a field of its
+    own among the controls. Sessions do not hold the version of the program that recorded them:
+    these fields tell the versions apart.
     """
+    if kind is CubeControls and "shaken" in content:
+        controls = {key: value for key, value in content.items() if key != "shaken"}
+        return {**controls, "gestures": ["shaken"] if content["shaken"] else []}
     if kind is EmotionTarget and "label" in content:
         emotion = {**content["emotion"], "word": content["label"]}
         return {"emotion": emotion, "timestamp": content["timestamp"]}

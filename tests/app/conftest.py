@@ -35,7 +35,6 @@ class Hand:
             resting=True,
             placed=True,
             lifted=False,
-            shaken=False,
             position=np.zeros(2),
             timestamp=0.0,
             camera_from_table=np.eye(4),
@@ -46,7 +45,7 @@ class Hand:
     def frame(self, **changes: Any) -> CubeControls:
         """Return the next frame: without events, otherwise unchanged unless `changes` says so."""
         now = round(self.frames * FRAME, 9)
-        events = {"placed": False, "shaken": False} if self.frames else {}
+        events = {"placed": False, "gestures": ()} if self.frames else {}
         fields: dict[str, Any] = {**events, **changes, "timestamp": now}
         self.controls = dataclasses.replace(self.controls, **fields)
         self.frames += 1

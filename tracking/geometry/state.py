@@ -55,7 +55,7 @@ class CubeControls:
 
     visible: bool
     """Whether the cube is seen now. Where it is not, the other fields keep their last values,
-    except the events `placed` and `shaken`, which are False."""
+    except the events: `placed` is False and `gestures` is empty."""
 
     top_face: str | None
     """Name of the face that points up; None before the table is known."""
@@ -86,9 +86,6 @@ class CubeControls:
     lifted: bool
     """Whether the cube is off the table or tipped on its way to another face."""
 
-    shaken: bool
-    """True in the one frame in which a shake is recognised."""
-
     position: Array | None
     """Position of the cube's centre on the table, (x, z) [m]; None before the table is known."""
 
@@ -101,3 +98,12 @@ class CubeControls:
 
     placements: int = 0
     """How often the cube has been placed so far."""
+
+    gestures: tuple[str, ...] = ()
+    """Gestures that are recognised in this one frame, by name: "shaken" and any others that
+    `tracking.gestures.detectors` registers."""
+
+    @property
+    def shaken(self) -> bool:
+        """True in the one frame in which a shake is recognised."""
+        return "shaken" in self.gestures

@@ -9,7 +9,7 @@ from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array
 from tracking.geometry.state import CubeControls, CubeState
-from tracking.gestures.shaking import ShakeDetector
+from tracking.gestures.detectors import DETECTORS
 from tracking.gestures.stillness import StillnessDetector
 from tracking.gestures.table import SIDE_NORMALS, TableEstimator, TablePlane
 from tracking.gestures.turning import TurnCounter, clockwise_angle, clockwise_angle_of, wrap_angle
@@ -78,31 +78,30 @@ class CubeGestures:
         self._table_estimator = TableEstimator(cube.edge)
         self._table: TablePlane | None = None
         self._stillness = StillnessDetector()
-        self._shake = ShakeDetector()
+        self._detectors = {name: make() for name, make in DETECTORS.items()}
         self._turns = TurnCounter()
         self._positions: deque[tuple[float, Array]] = deque()
         self._last: tuple[float, Array] | None = None
         self._lifted_since: float | None = None
         self._handled = True
         self._placed_top: str | None = None
-        self._controls = CubeControls(
-            False, None, 0.0, 0.0, 0.0, False, False, False, False, None, 0.0
-        )
+        self._controls = CubeControls(False, None, 0.0, 0.0, 0.0, False, False, False, None, 0.0)
 
     def update(self, state: CubeState) -> CubeControls:
         """Return what the hand does, given the next state."""
         pose, now = state.camera_from_cube, state.timestamp
         before = replace(
-            self._controls, visible=state.visible, placed=False, shaken=False, timestamp=now
+            self._controls, visible=state.visible, placed=False, gestures=(), timestamp=now
         )
         if not state.visible or pose is None:
             self._controls = before
             return before
-        shaken = self._shake.update(now, self._velocity(now, pose))
+        velocity = self._velocity(now, pose)
+        made = [name for name, each in self._detectors.items() if each.update(now, pose, velocity)]
         self._learn(state, pose)
         self._remember(now, pose[:3, 3])
         self._last = (now, pose)
-        before = replace(before, shaken=shaken)
+        before = replace(before, gestures=tuple(made))
         table = self._table_estimator.table
         self._controls = before if table is None else self._on_table(before, table, pose)
         return self._controls

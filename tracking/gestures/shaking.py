@@ -24,8 +24,8 @@ class ShakeDetector:
         self._reversals: tuple[deque[float], deque[float]] = (deque(), deque())
         self._dead_until = -np.inf
 
-    def update(self, timestamp: float, velocity: Array) -> bool:
-        """Return whether a velocity, (6,), completes a shake."""
+    def update(self, timestamp: float, pose: Array, velocity: Array) -> bool:
+        """Return whether the velocity completes a shake."""
         for kind, limit in enumerate(MIN_SPEED):
             part = velocity[3 * kind : 3 * kind + 3]
             if float(np.linalg.norm(part)) < limit:

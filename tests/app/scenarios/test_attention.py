@@ -27,9 +27,7 @@ def state(place, speed=0.0):
 
 
 def controls(time, **fields):
-    plain = CubeControls(
-        True, "top", 0.0, 0.0, 0.0, True, False, False, False, np.zeros(2), time, TABLE
-    )
+    plain = CubeControls(True, "top", 0.0, 0.0, 0.0, True, False, False, np.zeros(2), time, TABLE)
     return replace(plain, **fields)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from affect import LABEL_SETS, Emotion, Personality
+from affect.traits import AffectImpulse
 from affect.words import closest_word
 from app.pipeline.playground import Playground
 from app.pipeline.scenario import EmotionTarget, Inputs
@@ -63,7 +64,7 @@ def session(name, hand):
             yield from hand.wait(seconds)
         if name == "follow":
             for _ in range(2):
-                yield hand.frame(shaken=True)
+                yield hand.frame(gestures=("shaken",))
                 yield from hand.wait(3)
     yield hand.frame(visible=False)
     yield from hand.wait(3)
@@ -154,7 +155,7 @@ def test_character_likeness_and_robot_show_one_mood(name, personality, hand, vir
 def follow(hand, *parts):
     """Return what is felt at the end of each part: seconds, and what changes at its start."""
     scenario, posed = make_scenario("follow"), None
-    animator = Animator(Character.load("human")) if any("shaken" in f for _, f in parts) else None
+    animator = Animator(Character.load("human")) if any("gestures" in f for _, f in parts) else None
     known = Inputs(actions=animator.actions if animator else ())
     felt = []
     for seconds, first in parts:
@@ -182,11 +183,20 @@ def test_running_stirs_more_than_walking_and_standing_calms(hand):
 
 
 def test_a_shaken_cube_pleases_and_a_lost_one_lets_it_fade(hand):
-    shaken = (3, {"shaken": True})
+    shaken = (3, {"gestures": ("shaken",)})
     before, *_, after, lost = follow(hand, (1, {}), shaken, shaken, (40, {"visible": False}))
     assert after.emotion.valence > before.emotion.valence + 0.2
     assert after.emotion.label != before.emotion.label == lost.emotion.label
     assert lost.emotion.valence == pytest.approx(before.emotion.valence, abs=0.05)
+
+
+def test_a_gesture_of_ones_own_has_the_effect_that_the_personality_gives_it(hand):
+    proud = Personality("proud", events={"raised": AffectImpulse(valence=0.4)})
+    for personality, gain in ((proud, 0.4), (Personality.load("lively"), 0.0)):
+        mood = MoodController(personality)
+        before = mood.update(hand.frame(), "idle")
+        after = mood.update(hand.frame(gestures=("raised",)), "idle")
+        assert after.emotion.valence == pytest.approx(before.emotion.valence + gain, abs=0.02)
 
 
 def test_time_that_runs_backwards_moves_nothing(hand):
@@ -209,7 +219,7 @@ def test_starting_over_forgets_what_was_felt(hand):
     for name in SCENARIOS:
         scenario = make_scenario(name)
         home = scenario.update(hand.frame(), None, Inputs()).emotion
-        for controls in [hand.frame(shaken=True), *hand.tip("front"), *hand.wait(3)]:
+        for controls in [hand.frame(gestures=("shaken",)), *hand.tip("front"), *hand.wait(3)]:
             target = scenario.update(controls, None, Inputs()).emotion
         again = scenario.update(hand.frame(), None, Inputs(clear=True)).emotion
         assert target.emotion != home.emotion

@@ -32,7 +32,7 @@ def test_each_shake_starts_the_next_action(hand):
     play = Play(hand)
     play.on(0.2)
     for action in (*SHAKE_ACTIONS, SHAKE_ACTIONS[0]):
-        asked, done = play.on(4.0, shaken=True)
+        asked, done = play.on(4.0, gestures=("shaken",))
         assert action in done
         assert set(done) <= {action, "idle"}
         assert asked[-1] == "idle"
@@ -40,16 +40,16 @@ def test_each_shake_starts_the_next_action(hand):
 
 def test_a_shake_during_an_action_changes_nothing(hand):
     play = Play(hand)
-    play.on(0.5, shaken=True)
-    asked, _ = play.on(0.5, shaken=True)
+    play.on(0.5, gestures=("shaken",))
+    asked, _ = play.on(0.5, gestures=("shaken",))
     assert set(asked) == {SHAKE_ACTIONS[0]}
 
 
 def test_a_character_without_these_actions_ignores_a_shake(hand):
     follow = make_scenario("follow")
-    outcome = follow.update(hand.frame(shaken=True), None, Inputs(actions=("kiss",)))
+    outcome = follow.update(hand.frame(gestures=("shaken",)), None, Inputs(actions=("kiss",)))
     assert outcome.command.activity == "idle"
-    turned = hand.frame(shaken=True, camera_angle=np.pi / 2)
+    turned = hand.frame(gestures=("shaken",), camera_angle=np.pi / 2)
     for _ in range(30):
         outcome = follow.update(turned, None, Inputs())
         turned = hand.frame()

@@ -55,7 +55,7 @@ def test_lifting_the_cube_closes_a_shorter_loop(sketch, hand):
 
 def test_a_shake_starts_over(sketch, hand):
     draw(sketch, hand, MAX_POINTS)
-    outcome = sketch.update(hand.frame(shaken=True, resting=False), None, Inputs())
+    outcome = sketch.update(hand.frame(gestures=("shaken",), resting=False), None, Inputs())
     assert outcome.floor == ()
 
 

@@ -13,7 +13,7 @@ from affect import Emotion
 from app.pipeline.scenario import EmotionTarget
 from app.session.encoding import MESSAGE_TYPES, decode, encode, schema, upgraded
 from characters import ActionIntent, CharacterCommand, LocomotionIntent
-from tracking import CubeState
+from tracking import CubeControls, CubeState
 
 NUMBERS = st.floats(-1e3, 1e3)
 
@@ -101,6 +101,16 @@ def test_an_older_document_becomes_todays_and_todays_stays():
     today = encode(EmotionTarget(Emotion(0.5, 0.1, "happy"), 2.0))
     assert upgraded("/robot/emotion", old.encode()) == today
     assert upgraded("/robot/emotion", today) == today
+
+
+@pytest.mark.parametrize(("shaken", "gestures"), [(True, ("shaken",)), (False, ())])
+def test_a_shake_of_an_older_session_is_decoded_into_a_gesture(hand, shaken, gestures):
+    today = encode(hand.frame(gestures=gestures))
+    fields = json.loads(today)
+    assert fields.pop("gestures") == list(gestures)
+    old = json.dumps({**fields, "shaken": shaken}).encode()
+    assert decode(CubeControls, old).shaken is shaken
+    assert upgraded("/cube/controls", old) == today
 
 
 @pytest.mark.parametrize("topic", ["/robot/emotion", "/character/command"])

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.state import CubeControls, CubeState
+from tracking.gestures.detectors import DETECTORS
 from tracking.gestures.gestures import CubeGestures
 
 Array = NDArray[np.float64]
@@ -257,6 +258,29 @@ def test_a_shake_is_recognised_once_a_second(hand: Hand, axis: int, amplitude: f
     hand.hold(standing(), 1)
     hand.play(shaking(4, amplitude, 0.95, axis))
     assert hand.events("shaken") == 1
+
+
+class RaiseDetector:
+    """Recognises a cube that begins to rise in the picture: the example of the room's README."""
+
+    def __init__(self) -> None:
+        self._rising = False
+
+    def update(self, timestamp: float, pose: Array, velocity: Array) -> bool:
+        before, self._rising = self._rising, bool(velocity[1] < -0.3)  # y points down
+        return self._rising and not before
+
+
+def test_a_registered_gesture_is_reported_once_beside_the_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(DETECTORS, "raised", RaiseDetector)
+    hand = Hand()
+    hand.hold(standing(), 1)
+    hand.play(between(standing(), se3.moved(standing(), 0.3 * np.eye(6)[1]), 0.5))
+    hand.hold(None, 0.1)
+    made = [name for controls in hand.all for name in controls.gestures]
+    assert made == ["raised"]
 
 
 def carrying() -> Iterator[Array]:
