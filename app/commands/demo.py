@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.play import DEFAULT_CAMERA, PersonalityOption
+from app.commands.play import DEFAULT_CAMERA, PersonalityOption, ScenarioArgument
 from app.commands.progress import play_session
 from app.scenarios import scenario_cube
 from app.session import SessionOptions, session_info
@@ -20,7 +20,7 @@ DEFAULT_VIDEO = Path("demo.mp4")
 
 
 def demo(
-    scenario: Annotated[str, typer.Argument(help="follow, sketch or companion.")] = "companion",
+    scenario: ScenarioArgument = "companion",
     recording: Annotated[
         bool,
         typer.Option("--recording", help="Play the bundled recording even if there is a camera."),

@@ -9,12 +9,18 @@ from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publ
 from app.commands.progress import play_session
 from app.errors import AppError
 from app.running.network import DEFAULT_SITE
-from app.scenarios import scenario_cube
+from app.scenarios import SCENARIOS, scenario_cube
 from app.session import SessionOptions
 from app.ui.display import has_display
 
 DEFAULT_CAMERA = "camera:0"
 
+ScenarioArgument = Annotated[
+    str,
+    typer.Argument(
+        help="\n\n".join(f"[bold]{each.name}[/]: {each.summary}." for each in SCENARIOS.values())
+    ),
+]
 SourceOption = Annotated[
     str,
     typer.Option(
@@ -60,7 +66,7 @@ PicturesOption = Annotated[
 
 
 def play(
-    scenario: Annotated[str, typer.Argument(help="follow, sketch or companion.")],
+    scenario: ScenarioArgument,
     source: SourceOption = DEFAULT_CAMERA,
     cube: CubeOption = None,
     character: CharacterOption = None,
@@ -86,10 +92,6 @@ def play(
     ca: Ca = None,
 ) -> None:
     """Play with the cube in front of a camera.
-
-    [bold]follow[/]     the character follows the cube; turn the cube to make it walk or run
-    [bold]sketch[/]     the cube draws a path of up to eight points, the character walks it
-    [bold]companion[/]  Vleo kisses or shouts, and changes the robot's mood
 
     Example: [cyan]cubeling play companion --source camera:0 --robot /dev/ttyACM0[/]
     """

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from affect import Personality
 from app.errors import AppError
 from app.pipeline.scenario import EmotionTarget
+from app.scenarios import SCENARIOS
 from app.scenarios.follow import gait
 from app.scenarios.mood import MoodController
 from app.session import SessionInfo, messages, session_info, start_over_times
@@ -71,6 +72,12 @@ class MoodHistory:
         """The character's action in each frame, named as its icon; "" while it is not visible."""
         return tuple(_action(command) for command in self.commands)
 
+    @property
+    def has_intensity(self) -> bool:
+        """Whether the actions of the session's scenario have an intensity."""
+        scenario = SCENARIOS.get(self.info.options.scenario)
+        return scenario is not None and scenario.has_intensity
+
 
 def _action(command: CharacterCommand) -> str:
     if not command.visible:
@@ -113,8 +120,6 @@ def read_history(path: Path, *, salvage: bool = False) -> MoodHistory:
 def replay_with(history: MoodHistory, personality: Personality) -> EmotionTrack:
     """Return the emotion that another personality would have had in a session."""
     mood = MoodController(personality)
-    # Only the companion scenario has an intensity; in others, an action counts fully.
-    has_intensity = history.info.options.scenario == "companion"
     targets = []
     for controls, command in zip(history.controls, history.commands, strict=True):
         if controls.timestamp in history.start_over_times:
@@ -122,7 +127,7 @@ def replay_with(history: MoodHistory, personality: Personality) -> EmotionTrack:
         action, weight, speed = "idle", 0.0, 0.0
         if command.visible:
             action, speed = command.activity, command.speed
-            weight = command.weight if has_intensity else 1.0
+            weight = command.weight if history.has_intensity else 1.0
         targets.append(mood.update(controls, action, weight, speed))
     return _track(personality.name, targets)
 

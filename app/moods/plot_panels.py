@@ -82,7 +82,7 @@ def draw_actions(axes: Axes, history: MoodHistory) -> None:
     for name, start, end in found:
         if fits(axes, name, start, end):
             axes.text((start + end) / 2, 1.72, name, ha="center", va="center", fontweight="bold")
-    if history.info.options.scenario == "companion":
+    if history.has_intensity:
         label, ends = "intensity", ("−1", "+1")
         values = np.array([command.weight for command in history.commands])
     else:

@@ -31,7 +31,7 @@ class Playground:
     Parameters
     ----------
     scenario
-        A scenario, or the name of one: "companion", "follow", "sketch".
+        A scenario, or the name of one in `app.scenarios.SCENARIOS`.
     intrinsics
         Of the camera; the pictures have their size.
     cube

@@ -83,6 +83,9 @@ class Scenario(Protocol):
     name: str
     """Its name on the command line."""
 
+    summary: str
+    """What happens in it, for the help of the command line: one line, no full stop."""
+
     cube: str
     """Name of the bundled cube that it is made for."""
 
@@ -94,6 +97,9 @@ class Scenario(Protocol):
 
     start: RootDelta
     """Where the character stands at first on the table [m], and its heading [rad]."""
+
+    has_intensity: bool
+    """Whether its actions have an intensity, `ActionIntent.weight`; without it they count fully."""
 
     def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None: ...
 

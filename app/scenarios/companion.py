@@ -35,10 +35,12 @@ class Companion:
     """
 
     name = "companion"
+    summary = "Vleo kisses or shouts, and changes the robot's mood"
     cube = "companion"
     character = "vleo"
     personality = "thesis"
     start = RootDelta(float(OFFSET_FROM_CUBE[0]), float(OFFSET_FROM_CUBE[1]), 0.2)
+    has_intensity = True
 
     def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
         self._roles = {face.name: face.role for face in cube.faces}

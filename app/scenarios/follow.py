@@ -39,10 +39,12 @@ class Follow:
     """
 
     name = "follow"
+    summary = "the character follows the cube; turn the cube to make it walk or run"
     cube = "locomotion"
     character = "human"
     personality = "lively"
     start = RootDelta(-0.15, 0.03, 0.0)
+    has_intensity = False
 
     def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
         self._dial = SpeedDial(settings.speed_map)

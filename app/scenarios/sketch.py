@@ -45,10 +45,12 @@ class Sketch:
     """
 
     name = "sketch"
+    summary = "the cube draws a path of up to eight points, the character walks it"
     cube = "locomotion"
     character = "human"
     personality = "lively"
     start = RootDelta(0.14, 0.0, 0.0)
+    has_intensity = False
 
     def __init__(self, cube: CubeModel, settings: ScenarioSettings) -> None:
         self._dial = SpeedDial(settings.speed_map)
