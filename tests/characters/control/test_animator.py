@@ -1,3 +1,5 @@
+"""Characters that walk: arrival, gaits, feet that hold, and commands that are refused."""
+
 import math
 from dataclasses import replace
 
@@ -20,23 +22,7 @@ from characters.locomotion.steering import ARRIVAL_DISTANCE_M
 from characters.motion.motion import RootDelta
 from characters.skeleton import rotations
 from tests.characters.commands import command
-
-RATE_HZ = 30
-
-
-def heading(posed):
-    forward = posed.table_from_character[:3, 2]
-    return math.atan2(forward[0], forward[2])
-
-
-def place(posed):
-    return posed.table_from_character[[0, 2], 3]
-
-
-def play(animator, seconds, start=0.0, rate=RATE_HZ, **asked):
-    """Give one command for a while and return every frame."""
-    times = start + np.arange(round(seconds * rate)) / rate
-    return [animator.update(command(float(t), **asked)) for t in times]
+from tests.characters.control.played import RATE_HZ, heading, place, play, velocities
 
 
 def arrival(character, speed, target, place=None, seconds=40):
@@ -148,12 +134,6 @@ def test_planted_feet_do_not_slide(human):
     assert np.median(slowest[standing]) < 0.02  # [m/s] of a person 1.7 m tall
 
 
-def velocities(frames, rate):
-    turns = np.stack([frame.pose.rotations for frame in frames])
-    steps = rotations.multiply(turns[1:], rotations.conjugate(turns[:-1]))
-    return rotations.to_rotation_vector(steps) * rate
-
-
 def test_no_joint_jumps_whatever_is_asked(human):
     rng = np.random.default_rng(3)
     rate, animator, frames, time = 60, Animator(human), [], 0.0
@@ -230,78 +210,6 @@ def test_a_point_that_runs_ahead_is_not_stopped_at(walker):
         )
     assert posed.state == "walk"
     assert posed.speed == pytest.approx(2.0, abs=0.01)
-
-
-@pytest.fixture(scope="module", params=["actor", "vleo"])
-def performer(request, actor):
-    return actor if request.param == "actor" else Character.load("vleo")
-
-
-def test_an_action_plays_and_says_its_name(performer):
-    animator = Animator(performer)
-    frames = play(animator, 1.0, activity="kiss", weight=1.0)
-    assert frames[-1].state == "kiss"
-    assert frames[-1].weight == pytest.approx(1.0)
-    assert play(animator, 1.0, 1.0, activity="idle")[-1].state == "idle"
-
-
-@pytest.mark.parametrize(("weight", "ending"), [(-1.0, "head"), (0.0, "legs"), (1.0, "tail")])
-def test_each_intensity_is_its_clip(performer, weight, ending):
-    frames = play(Animator(performer, layers=FOOT_LAYERS), 1.0, activity="shout", weight=weight)
-    clip = performer.clips[f"shout_{ending}"]
-    expected = clip.sample(29 / RATE_HZ)
-    shown = rotations.align(frames[-1].pose.rotations, expected.rotations)
-    assert np.allclose(shown, expected.rotations, atol=1e-3)
-
-
-def test_more_weight_moves_more(performer):
-    def liveliness(weight):
-        frames = play(Animator(performer), 2.0, activity="kiss", weight=weight)
-        return np.abs(velocities(frames[15:], RATE_HZ)).sum()
-
-    effort = [liveliness(weight) for weight in (-1.0, -0.5, 0.0, 0.5, 1.0)]
-    assert (np.diff(effort) > 0).all()
-
-
-def test_no_joint_jumps_between_actions(performer):
-    rng = np.random.default_rng(8)
-    rate, animator, frames, time = 60, Animator(performer), [], 0.0
-    for _ in range(20):
-        length, weight = rng.uniform(0.1, 1.2), rng.uniform(-1, 1)
-        action = rng.choice(["idle", "kiss", "shout"])
-        frames += play(animator, length, time, rate, activity=str(action), weight=weight)
-        time += round(length * rate) / rate
-    fastest = 0.0
-    for clip in performer.clips.values():
-        turns = clip.in_place.rotations
-        steps = rotations.multiply(turns[1:], rotations.conjugate(turns[:-1]))
-        speed = np.linalg.norm(rotations.to_rotation_vector(steps), axis=-1).max() * clip.rate
-        fastest = max(fastest, float(speed))
-    assert np.linalg.norm(velocities(frames, rate), axis=-1).max() < 2.0 * fastest + 3.0
-
-
-def test_it_starts_on_its_target_and_hops_to_another(performer):
-    animator = Animator(performer)
-    first = animator.update(CharacterCommand(0.0, LocomotionIntent(target=np.array([0.2, 0.1]))))
-    assert np.allclose(place(first), [0.2, 0.1])
-    frames = play(animator, 3.0, 0.1, target=np.array([0.0, 0.0]))
-    ways = np.array([place(frame) for frame in frames])
-    heights = np.array([frame.table_from_character[1, 3] for frame in frames])
-    assert np.linalg.norm(ways[-1]) < 0.016
-    assert heights.max() > 0.005
-    assert heights[-1] == 0.0
-    assert (heights >= 0).all()
-    assert np.linalg.norm(np.diff(ways, axis=0), axis=1).max() < 0.02
-
-
-def test_it_turns_to_what_it_is_to_look_at(performer):
-    frames = play(Animator(performer), 5.0, facing=np.array([1.0, 0.0]))
-    assert heading(frames[-1]) == pytest.approx(math.pi / 2, abs=0.05)
-
-
-def test_an_action_that_it_does_not_know_is_refused(performer):
-    with pytest.raises(CharacterError, match="does not know 'sing'; it knows idle, kiss, shout"):
-        Animator(performer).update(CharacterCommand(0.0, action=ActionIntent("sing")))
 
 
 def test_a_walker_knows_no_actions(anyone):
