@@ -44,6 +44,7 @@ def test_the_asset_is_what_the_code_makes(robot: Character) -> None:
     assert robot.skeleton.names == made.skeleton.names
     assert robot.morphs == made.morphs
     check_same_clips(robot, made)
+    assert all(clip.poses.scales is not None for clip in made.clips.values())
     lit = skeleton().rest.globals(made.skeleton)
     for shipped_mesh, mesh in zip(robot.meshes, made.meshes, strict=True):
         assert np.array_equal(shipped_mesh.triangles, mesh.triangles)

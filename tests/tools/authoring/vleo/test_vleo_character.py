@@ -57,6 +57,7 @@ def test_the_asset_is_what_the_code_makes(vleo: Character) -> None:
     assert vleo.skeleton.names == made.skeleton.names
     assert vleo.skeleton.parents == made.skeleton.parents
     check_same_clips(vleo, made)
+    assert all(clip.poses.scales is not None for clip in made.clips.values())
     for shipped_mesh, mesh in zip(vleo.meshes, made.meshes, strict=True):
         assert np.array_equal(shipped_mesh.triangles, mesh.triangles)
         assert np.allclose(shipped_mesh.positions, mesh.positions, atol=1e-5)
