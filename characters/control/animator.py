@@ -8,7 +8,7 @@ import numpy as np
 from characters.body.posture import ExpressivityFilter
 from characters.control.command import CharacterCommand, LocomotionIntent, PosedCharacter
 from characters.control.controllers import CONTROLLERS, default_height
-from characters.control.layers import LAYERS, FrameContext, LayerFactory
+from characters.control.layers import DEFAULT_LAYERS, FrameContext, LayerFactory
 from characters.errors import CharacterError
 from characters.model.character import Character
 from characters.motion.motion import RootDelta
@@ -54,7 +54,7 @@ class Animator:
         scale: float | None = None,
         place: RootDelta | None = None,
         seed: int = 0,
-        layers: Sequence[LayerFactory] = LAYERS,
+        layers: Sequence[LayerFactory] = DEFAULT_LAYERS,
     ) -> None:
         if scale is None:
             scale = default_height(character) / max(character.height, 1e-9)

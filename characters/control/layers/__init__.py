@@ -13,12 +13,12 @@ FOOT_LAYERS: tuple[LayerFactory, ...] = (FootLockLayer,)
 LIVELINESS_LAYERS: tuple[LayerFactory, ...] = (PostureLayer, GazeLayer, FaceLayer, BreathLayer)
 """What makes it look alive: it sways, looks, blinks, breathes and shows its emotion."""
 
-LAYERS: tuple[LayerFactory, ...] = (*FOOT_LAYERS, *LIVELINESS_LAYERS)
+DEFAULT_LAYERS: tuple[LayerFactory, ...] = (*FOOT_LAYERS, *LIVELINESS_LAYERS)
 """The layers of an `Animator` by default."""
 
 __all__ = [
+    "DEFAULT_LAYERS",
     "FOOT_LAYERS",
-    "LAYERS",
     "LIVELINESS_LAYERS",
     "FootLockLayer",
     "FrameContext",

@@ -7,7 +7,7 @@ import pytest
 
 from affect import Emotion
 from characters import Animator, Character, CharacterCommand, Pose, Skeleton
-from characters.control.layers import LAYERS, FrameContext
+from characters.control.layers import DEFAULT_LAYERS, FrameContext
 from characters.skeleton import rotations
 
 
@@ -29,7 +29,7 @@ class HeadTilt:
 
 def test_a_layer_of_ones_own_is_applied_after_the_others():
     human = Character.load("human")
-    plain, tilted = Animator(human), Animator(human, layers=(*LAYERS, HeadTilt))
+    plain, tilted = Animator(human), Animator(human, layers=(*DEFAULT_LAYERS, HeadTilt))
     command = CharacterCommand(0.0, emotion=Emotion(1.0, 0.0))
     one, other = plain.update(command).pose.rotations, tilted.update(command).pose.rotations
     head = human.anatomy.joint("head")
@@ -42,7 +42,7 @@ def test_a_layer_of_ones_own_is_applied_after_the_others():
 def test_every_layer_leaves_a_body_without_joints_for_it_alone():
     rest = Pose(np.zeros((1, 3)), np.array([[0.0, 0.0, 0.0, 1.0]]))
     box = Character("box", Skeleton(("box",), (-1,), rest), {}, ())
-    for layer in LAYERS:
+    for layer in DEFAULT_LAYERS:
         animator = Animator(box, layers=(layer,))
         posed = animator.update(CharacterCommand(0.0, gaze=np.array([1.0, 1.0, 1.0])))
         assert np.array_equal(posed.pose.rotations, box.skeleton.rest.rotations)
