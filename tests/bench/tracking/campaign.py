@@ -45,7 +45,7 @@ def plan(names: tuple[str, ...], frames: int, length: int, seed: int) -> Iterato
 
 def track(drawn: Sequence) -> Iterator[tuple[int, CubeState]]:
     """Track one sequence; with a new tracker for each frame if the poses are independent."""
-    camera = Intrinsics(drawn.matrix, drawn.distortion, drawn.size)
+    camera = Intrinsics(drawn.told.matrix, drawn.told.distortion, drawn.size)
     cube = CubeModel.load(drawn.cube)
     tracker = CubeTracker(cube, camera)
     for index in range(drawn.count):

@@ -121,8 +121,8 @@ def job_of(sequence: Sequence) -> dict[str, Any]:
         "timestamps": [sequence.timestamp(index) for index in range(sequence.count)],
         "independent": sequence.independent,
         "camera": {
-            "matrix": np.asarray(sequence.matrix).tolist(),
-            "distortion": np.asarray(sequence.distortion).tolist(),
+            "matrix": sequence.told.matrix.tolist(),
+            "distortion": sequence.told.distortion.tolist(),
             "size": list(sequence.size),
         },
         "cube": {

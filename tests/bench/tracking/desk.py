@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tests.bench.tracking.light import UP, Light
-from tests.bench.tracking.optics import LensModel, point_spread, sampled
+from tests.bench.tracking.optics import LensModel, sampled
 from tests.bench.tracking.paper import marker_cells
 
 HEIGHT = 0.62
@@ -51,7 +51,7 @@ def desk(
     grid = np.asarray(cv2.perspectiveTransform(rays, np.linalg.inv(place)), np.float32)
     fine = sampled(np.asarray(linear, np.float32), grid, smooth=True)
     fine = fine * light.on(up, place, grid)[..., None]
-    blurred = cv2.filter2D(fine, cv2.CV_32F, point_spread())
+    blurred = cv2.filter2D(fine, cv2.CV_32F, lens.spread(float(middle[2])))
     picture = cv2.resize(blurred, lens.size, interpolation=cv2.INTER_AREA)
     return np.asarray(picture * lens.vignette[..., None], np.float32)
 

@@ -65,13 +65,15 @@ def lay_fingers(
 def _finger(
     cube: BenchmarkCube, side: Side, hand: NDArray[np.float64], random: np.random.Generator
 ) -> Finger:
-    radius = random.uniform(0.0075, 0.0095)
+    # A small cube is held by the tips of fingers: they reach less far in, and are thinner there.
+    size = cube.edge / 0.06
+    radius = random.uniform(0.0075, 0.0095) * (0.6 + 0.4 * size)
     flat = hand - (hand @ side.normal) * side.normal
     away = flat / np.linalg.norm(flat)
     corner = side.corners[np.argmax(side.corners @ hand)]
     lift = side.normal * radius * 0.9
     # The tip reaches past the corner, so that skin covers the corner and some of the cells by it.
-    tip = corner - away * random.uniform(0.002, 0.010) + lift
+    tip = corner - away * random.uniform(0.002, 0.010) * size + lift
     root = corner + away * (cube.edge * 0.9) + lift - side.normal * 0.35 * cube.edge
     knuckle = corner + away * (cube.edge / 3) + lift
     return Finger(side.name, side.normal, 0.4 * root + 0.6 * knuckle, tip, radius)

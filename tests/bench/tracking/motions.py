@@ -16,19 +16,12 @@ from tests.bench.tracking.paths import (
 )
 from tests.bench.tracking.plans import SequencePlan
 
-LENS = LensModel(
-    np.array([[902.3, 0.0, 645.2], [0.0, 900.8, 355.7], [0.0, 0.0, 1.0]]),
-    np.array([-0.11, 0.06, 0.0006, -0.0004, -0.01]),
-    (1280, 720),
-)
-"""The camera of all sequences: 71° from left to right, a barrel of a few pixels."""
 
-
-def in_view(cube: BenchmarkCube, poses: NDArray[np.float64]) -> NDArray[np.bool_]:
+def in_view(lens: LensModel, cube: BenchmarkCube, poses: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Whether the whole cube is in the picture at each pose (n, 4, 4), (n,)."""
     there = np.einsum("nij,kj->nki", poses[:, :3, :3], cube.vertices) + poses[:, None, :3, 3]
-    pixels = LENS.project(there)
-    inside = (pixels >= 0) & (pixels <= np.array(LENS.size) - 1)
+    pixels = lens.project(there)
+    inside = (pixels >= 0) & (pixels <= np.array(lens.size) - 1)
     return np.asarray((inside.all(-1) & (there[..., 2] > 0.1)).all(-1))
 
 
@@ -36,8 +29,9 @@ def _start(plan: SequencePlan, point: NDArray[np.float64]) -> NDArray[np.float64
     """Pose (4, 4) of a Halton point (6,)."""
     depth = plan.depth[0] + point[0] * (plan.depth[1] - plan.depth[0])
     spread = 0.12 if plan.facing == "frontal" else 0.9 if plan.independent else 0.5
-    pixel = (point[1:3] - 0.5) * spread * np.array(LENS.size) + LENS.matrix[:2, 2]
-    ray = np.append(LENS.directions(pixel), 1.0)
+    lens = plan.camera.lens
+    pixel = (point[1:3] - 0.5) * spread * np.array(lens.size) + lens.matrix[:2, 2]
+    ray = np.append(lens.directions(pixel), 1.0)
     rotation = uniform_rotation(point[3:])
     if plan.facing == "frontal":
         roll = Rotation.from_rotvec([0, 0, 2 * np.pi * point[3]])
@@ -49,20 +43,40 @@ def _start(plan: SequencePlan, point: NDArray[np.float64]) -> NDArray[np.float64
 
 def static_poses(
     plan: SequencePlan, cube: BenchmarkCube, first: int, count: int, shift: NDArray[np.float64]
-) -> list[Poses]:
-    """`count` poses at rest, the whole cube in view: Halton points from number `first` on."""
-    found: list[Poses] = []
+) -> list[NDArray[np.float64]]:
+    """`count` poses (4, 4), the whole cube in view: Halton points from number `first` on."""
+    found: list[NDArray[np.float64]] = []
     index = first
     while len(found) < count:
         pose = _start(plan, halton(index, shift))
-        if in_view(cube, pose[None])[0]:
-            found.append(_still(pose))
+        held = plan.facing != "one" or _faces_in_view(cube, pose[None], MIN_SLANT_OF_SLIVER)[0] == 1
+        if held and in_view(plan.camera.lens, cube, pose[None])[0]:
+            found.append(pose)
         index += 1
     return found
 
 
-def _still(pose: NDArray[np.float64]) -> Poses:
-    return lambda times: np.repeat(pose[None], len(times), axis=0)
+def drifting(
+    pose: NDArray[np.float64], velocity: NDArray[np.float64] | None = None, middle: float = 0.0
+) -> Poses:
+    """Be at `pose` (4, 4) at the time `middle` [s], with a constant velocity (3,) [m/s]."""
+
+    def path(times: NDArray[np.float64]) -> NDArray[np.float64]:
+        poses = np.repeat(pose[None], len(times), axis=0)
+        if velocity is not None:
+            poses[:, :3, 3] += np.outer(times - middle, velocity)
+        return poses
+
+    return path
+
+
+def smearing(
+    plan: SequencePlan, pose: NDArray[np.float64], random: np.random.Generator
+) -> NDArray[np.float64]:
+    """Velocity (3,) [m/s] in a random direction that smears the cube as long as the plan says."""
+    angle = random.uniform(0, 2 * np.pi)
+    speed = plan.smear / plan.exposure * pose[2, 3] / plan.camera.lens.matrix[0, 0]
+    return np.array([speed * np.cos(angle), speed * np.sin(angle), 0.0])
 
 
 def random_motion(
@@ -90,7 +104,7 @@ def random_motion(
     for more in range(60):
         start = _start(plan, halton(index + 97 * more, shift))
         path = _moved(plan, start, float(times[-1]), random)
-        share = float(in_view(cube, path(times)).mean())
+        share = float(in_view(plan.camera.lens, cube, path(times)).mean())
         if plan.facing == "corner":
             share *= float((_faces_in_view(cube, path(times)) >= 2).mean())
         if share > most:
@@ -101,14 +115,20 @@ def random_motion(
     return best
 
 
-def _faces_in_view(cube: BenchmarkCube, poses: NDArray[np.float64]) -> NDArray[np.int64]:
+MIN_SLANT_OF_SLIVER = 0.2
+"""Least cosine between a face's normal and the line to the camera at which its marker is read."""
+
+
+def _faces_in_view(
+    cube: BenchmarkCube, poses: NDArray[np.float64], least: float = 0.35
+) -> NDArray[np.int64]:
     """How many faces look at the camera, and not just past it, at each pose (n, 4, 4)."""
     normals = np.stack([side.normal for side in cube.sides])
     middles = normals * cube.edge / 2
     there = np.einsum("nij,kj->nki", poses[:, :3, :3], middles) + poses[:, None, :3, 3]
     out = np.einsum("nij,kj->nki", poses[:, :3, :3], normals)
     slant = -(there * out).sum(-1) / np.linalg.norm(there, axis=-1)
-    return np.asarray((slant > 0.35).sum(-1))
+    return np.asarray((slant > least).sum(-1))
 
 
 def _moved(

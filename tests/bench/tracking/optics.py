@@ -4,7 +4,7 @@ The lens model is Brown's (1971) with OpenCV's order of coefficients, inverted b
 Light is linear until `develop` adds noise and applies the sRGB curve.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import cv2
@@ -27,6 +27,33 @@ class LensModel:
 
     size: tuple[int, int]
     """Width and height [px]."""
+
+    gauss: float = 0.55
+    """Standard deviation of diffraction, aberrations and the sensor's filter [px]."""
+
+    disk: float = 0.87
+    """Radius of the circle of confusion at the distance of focus [px]."""
+
+    focus: float = 0.5
+    """Distance of focus along the optical axis [m]."""
+
+    aperture: float = 0.0
+    """How fast the circle grows: its radius by the difference of 1 ÷ distance [px m].
+
+    Focal length [px] times the radius of the aperture [m]; 0 where all depths are equally sharp.
+    """
+
+    def spread(self, depth: float) -> NDArray[np.float32]:
+        """Blur of what lies `depth` [m] away along the optical axis, on the sub-pixels."""
+        circle = self.disk + self.aperture * abs(1 / self.focus - 1 / depth)
+        return point_spread(self.gauss, circle)
+
+    def halved(self) -> "LensModel":
+        """Return the lens of the same pictures at half size; draws nothing itself."""
+        matrix = self.matrix / np.array([[2], [2], [1]])
+        matrix[:2, 2] -= 0.25  # pixel centres are at integers
+        width, height = self.size
+        return replace(self, matrix=matrix, size=(width // 2, height // 2))
 
     def bend(self, ideal: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Distort ideal image coordinates (..., 2) at depth 1; also give the Jacobian (…, 2, 2).
@@ -101,7 +128,7 @@ def point_spread(gauss: float = 0.55, disk: float = 0.87) -> NDArray[np.float32]
     disk
         Radius of the circle of confusion [px]. Together with `gauss`: 0.70 px per axis.
     """
-    reach, dense = 5, 9
+    reach, dense = int(np.ceil(SUBPIXELS * (disk + 2.5 * gauss))), 9
     grid = (np.arange((2 * reach + 1) * dense) + 0.5) / dense - reach - 0.5
     inside = (grid[None] ** 2 + grid[:, None] ** 2 <= (disk * SUBPIXELS) ** 2).astype(np.float64)
     cells = inside.reshape(2 * reach + 1, dense, 2 * reach + 1, dense).mean((1, 3))
@@ -120,6 +147,12 @@ class Sensor:
     read_noise: float = 5.0
     """Noise of reading a pixel [electrons]."""
 
+    halved: bool = False
+    """Whether the camera gives pictures of half the size: means of 2 by 2 pixels."""
+
+    quality: int | None = None
+    """JPEG quality of the pictures, 0…100; None if they are not compressed."""
+
     def develop(self, light: NDArray[np.float32], random: np.random.Generator) -> NDArray[np.uint8]:
         """Picture (H, W, 3) BGR of linear light (H, W, 3), 1 being white; overwrites `light`.
 
@@ -130,7 +163,19 @@ class Sensor:
         spread *= random.standard_normal(mean.shape, np.float32)
         light += spread[..., None]
         levels = (SRGB_TABLE.size - 1) * np.clip(light, 0, 1, out=light)
-        return np.take(SRGB_TABLE, levels.astype(np.uint16))
+        picture = np.take(SRGB_TABLE, levels.astype(np.uint16))
+        if self.halved:
+            picture = _picture(
+                cv2.resize(picture, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+            )
+        if self.quality is not None:
+            _, file = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, self.quality])
+            picture = _picture(cv2.imdecode(file, cv2.IMREAD_COLOR))
+        return picture
+
+
+def _picture(picture: cv2.typing.MatLike) -> NDArray[np.uint8]:
+    return np.asarray(picture, np.uint8)
 
 
 def srgb_encoded(light: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 CUBES = Path(__file__).resolve().parents[3] / "tracking" / "cubes"
 
+SMALL_CUBE = str(Path(__file__).with_name("small.toml"))
+"""File of `locomotion` with an edge of 30 mm."""
+
 PAPER_ALBEDO, INK_ALBEDO = 0.85, 0.06
 """Reflected share of light."""
 
@@ -24,6 +27,46 @@ AXES = {
     "bottom": (_X, _Z, -_Y),
 }
 """Of each face as one looks at it: what points right, what points up, and its normal."""
+
+
+@dataclass(frozen=True, eq=False)
+class Relief:
+    """How a face strays from a flat parallelogram.
+
+    u and v run from -1 to 1 along its columns and rows.
+    """
+
+    twist: NDArray[np.float64]
+    """Shift of the face by u · v along columns and rows, and along its normal [m], (3,)."""
+
+    bulge: float
+    """Height of its middle [m]; 0 at the edges."""
+
+    lean: tuple[float, float]
+    """How much more it bulges towards its right and lower edge, each -1…1."""
+
+    def met(
+        self, grid: NDArray[np.float32], slope: NDArray[np.float32], count: int
+    ) -> NDArray[np.float32]:
+        """Columns and rows (h, w, 2) where rays meet the face of `count` squares a side.
+
+        Parameters
+        ----------
+        grid
+            Where they meet the parallelogram.
+        slope
+            How far they go along columns and rows while they rise by 1 m.
+        """
+        found = grid
+        for _ in range(3):  # The face is nearly flat: each round makes the error ten times less.
+            at = (found + np.float32(0.5)) * np.float32(2 / count) - 1
+            u, v = np.clip(at[..., 0], -1.1, 1.1), np.clip(at[..., 1], -1.1, 1.1)
+            height = self.bulge * (1 - u * u) * (1 - v * v)
+            height *= 1 + self.lean[0] * u + self.lean[1] * v
+            height += self.twist[2] * u * v
+            found = grid + height[..., None] * slope
+            found -= (u * v)[..., None] * self.twist[:2].astype(np.float32)
+        return np.asarray(found, np.float32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +94,12 @@ class Side:
     corners: NDArray[np.float64]
     """Corners of the black square [m], (4, 3), from the marker's own top left on clockwise."""
 
+    relief: Relief | None = None
+    """How it strays from a flat square; None if it does not."""
+
+    patch: NDArray[np.float32] | None = None
+    """Share of each square that is covered by a hand or a sticker, (n, n); None if none is."""
+
 
 @dataclass(frozen=True, eq=False)
 class BenchmarkCube:
@@ -67,8 +116,9 @@ class BenchmarkCube:
 
     @classmethod
     def load(cls, name: str) -> "BenchmarkCube":
-        """Read the bundled cube `name`."""
-        document = tomllib.loads((CUBES / f"{name}.toml").read_text(encoding="utf-8"))
+        """Read the bundled cube `name`, or the file of another."""
+        path = Path(name) if name.endswith(".toml") else CUBES / f"{name}.toml"
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
         edge, marker = document["edge_mm"] / 1000, document["marker_mm"] / 1000
         sides = tuple(
             _side(table, document["dictionary"], edge, marker) for table in document["face"]

@@ -1,6 +1,9 @@
 """Parameters of each sequence of the benchmark."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+from tests.bench.tracking.cameras import WEBCAM, WEBCAM_HALF, WIDE, Camera
+from tests.bench.tracking.paper import SMALL_CUBE
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,9 @@ class SequencePlan:
     """Bounds of the slowest wave's angular frequency [rad/s]."""
 
     facing: str = "any"
-    """How the cube is held: "any" way, "frontal" with one face seen, "corner" with two or three."""
+    """How the cube is held: "any" way, "frontal" with one face square on, "one" with one marker in
+    view, "corner" with two or three faces.
+    """
 
     fingers: str = ""
     """When fingers are laid on the cube: "" never, "later" within ten frames, "start"."""
@@ -46,12 +51,41 @@ class SequencePlan:
     independent: bool = False
     """Whether each frame shows another pose."""
 
+    camera: Camera = WIDE
+    """What takes the pictures."""
+
+    nominal: bool = False
+    """Whether the trackers are told that the lens does not distort."""
+
+    cube: str = "locomotion"
+    """Name of a bundled cube, or path of a cube's file."""
+
+    worn: bool = False
+    """Whether paper bends, with tape beside the markers; each pose with its own paper and light."""
+
+    smear: float = 0.0
+    """Length of the motion blur in independent frames [px]."""
+
+    covered: float = 0.0
+    """Edge of the patch on a corner of every marker, as a share of the marker's edge."""
+
     count: int = 90
     """Default number of frames."""
 
 
 INDOOR_EXPOSURE_S = 1 / 60
 """Exposure of a webcam in lamp light."""
+
+WEBCAM_PLAN = SequencePlan(
+    depth=(0.2, 0.6),
+    shadows=True,
+    independent=True,
+    count=60,
+    camera=WEBCAM,
+    cube=SMALL_CUBE,
+    worn=True,
+)
+"""A webcam of 640×480 looks at a cube of 30 mm."""
 
 SEQUENCE_PLANS: dict[str, SequencePlan] = {
     "static": SequencePlan(count=60, facing="corner"),
@@ -74,5 +108,23 @@ SEQUENCE_PLANS: dict[str, SequencePlan] = {
     "shaded": SequencePlan(speed=0.15, turning=0.6, shadows=True),
     "cluttered": SequencePlan(speed=0.25, turning=1.0, foreign=10),
     "poses": SequencePlan(depth=(0.3, 0.7), independent=True, count=60),
+    "webcam": WEBCAM_PLAN,
+    "webcam-one": replace(WEBCAM_PLAN, facing="one"),
+    "webcam-half": replace(WEBCAM_PLAN, camera=WEBCAM_HALF),
+    "webcam-blurred": replace(WEBCAM_PLAN, smear=10.0, exposure=INDOOR_EXPOSURE_S),
+    "webcam-covered": replace(WEBCAM_PLAN, covered=0.3),
+    "webcam-fingers": replace(WEBCAM_PLAN, fingers="start"),
+    "webcam-nominal": replace(WEBCAM_PLAN, nominal=True),
+    "webcam-held": replace(
+        WEBCAM_PLAN,
+        speed=0.25,
+        turning=0.8,
+        exposure=INDOOR_EXPOSURE_S,
+        depth=(0.25, 0.45),
+        facing="corner",
+        fingers="start",
+        independent=False,
+        count=90,
+    ),
 }
 """Each sequence by its name."""

@@ -6,7 +6,7 @@ linear up to the sensor.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from tests.bench.tracking.hand import SKIN_ALBEDO_BGR, Finger, draw_fingers
 from tests.bench.tracking.light import Light
-from tests.bench.tracking.optics import SUBPIXELS, LensModel, point_spread, sampled
+from tests.bench.tracking.optics import SUBPIXELS, LensModel, sampled
 from tests.bench.tracking.paper import BenchmarkCube, Side
 from tests.bench.tracking.paths import Poses
 
@@ -59,6 +59,9 @@ class Scene:
 
     brightness: float = 1.0
     """How bright the picture is: gain and light together."""
+
+    skin: NDArray[np.float32] = field(default_factory=lambda: SKIN_ALBEDO_BGR)
+    """Share of the light that the fingers and patches on the cube throw back, (3,) BGR."""
 
 
 @dataclass(frozen=True)
@@ -112,14 +115,15 @@ def expose(
     if window is None:
         return picture * np.float32(scene.brightness)
     layers = _gather(scene, window, poses, fingers, random)
-    blurred = cv2.filter2D(layers, cv2.CV_32F, LENS_BLUR, borderType=cv2.BORDER_REPLICATE)
+    spread = scene.lens.spread(float(ends[1, 2, 3]))
+    blurred = cv2.filter2D(layers, cv2.CV_32F, spread, borderType=cv2.BORDER_REPLICATE)
     share, paper, hand, skin = cv2.split(
         cv2.resize(blurred, None, fx=1 / SUBPIXELS, fy=1 / SUBPIXELS, interpolation=cv2.INTER_AREA)
     )
     fall = scene.lens.vignette[window.pixels] * np.float32(WHITE_LEVEL)
     part = picture[window.pixels]
     part *= (1 - share - hand)[..., None]
-    part += (paper * fall)[..., None] * PAPER_TINT_BGR + (skin * fall)[..., None] * SKIN_ALBEDO_BGR
+    part += (paper * fall)[..., None] * PAPER_TINT_BGR + (skin * fall)[..., None] * scene.skin
     return picture * np.float32(scene.brightness)
 
 
@@ -156,6 +160,7 @@ def _gather(
     spacing = np.float32(1 / (SUBPIXELS * scene.lens.matrix[0, 0]))
     jitter = random.random(rays.shape, np.float32)
     total = np.zeros((4, *rays.shape[:2]), np.float32)
+    covered = bool(fingers) or any(side.patch is not None for side in scene.cube.sides)
 
     def box_of(points: NDArray[np.float64]) -> tuple[slice, slice]:
         return _box(scene.lens.project(points), window)
@@ -167,11 +172,12 @@ def _gather(
         aim -= np.float32(0.5)
         aim *= spacing
         aim += rays
-        seen = np.zeros(rays.shape[:2], np.float32)
+        seen, skin = np.zeros((2, *rays.shape[:2]), np.float32)
         for side in scene.cube.sides:
-            _draw_side(scene, side, pose, aim, seen, box_of)
+            _draw_side(scene, side, pose, aim, seen, skin, box_of)
         if fingers:
-            skin = draw_fingers(fingers, pose, aim, scene.light, box_of)
+            np.maximum(skin, draw_fingers(fingers, pose, aim, scene.light, box_of), out=skin)
+        if covered:
             hand = _hit(skin)
             seen *= 1 - hand
             total[2] += hand
@@ -190,9 +196,6 @@ def _hit(seen: NDArray[np.float32]) -> NDArray[np.float32]:
 R2_STEPS = np.array([0.7548776662466927, 0.5698402909980532])
 """Steps of the R2 sequence (Roberts 2018): points in a square that keep apart."""
 
-LENS_BLUR = point_spread()
-"""Blur of the lens on the sub-pixels."""
-
 
 def _draw_side(
     scene: Scene,
@@ -200,9 +203,13 @@ def _draw_side(
     pose: NDArray[np.float64],
     aim: NDArray[np.float32],
     seen: NDArray[np.float32],
+    skin: NDArray[np.float32],
     box_of: Callable[[NDArray[np.float64]], tuple[slice, slice]],
 ) -> None:
-    """Write the light that `side` throws back into `seen` (h, w), where the rays `aim` hit it."""
+    """Write the light of `side` into `seen` (h, w), where the rays `aim` hit it.
+
+    What falls on the patch that covers it goes into `skin` (h, w).
+    """
     place = pose[:3, :3] @ side.place
     place[:, 2] += pose[:3, 3]
     normal = pose[:3, :3] @ side.normal
@@ -214,12 +221,20 @@ def _draw_side(
     box = box_of(corners)
     # A ray (x, y, 1) meets the plane where place @ (column, row, 1) is parallel to it.
     grid = np.asarray(cv2.perspectiveTransform(aim[box], np.linalg.inv(place)), np.float32)
-    value = sampled(side.albedo, grid, smooth=False)
+    if side.relief is not None:
+        upright = np.c_[place[:, :2], normal]
+        slope = np.asarray(cv2.perspectiveTransform(aim[box], np.linalg.inv(upright)), np.float32)
+        grid = side.relief.met(grid, slope, count)
+    light: NDArray[np.float32] | np.float32
     if scene.light.is_even:
-        value = value * np.float32(sum(scene.light.even(normal)))
+        light = np.float32(sum(scene.light.even(normal)))
     else:
-        value = value * scene.light.on(normal, place, grid)
+        light = scene.light.on(normal, place, grid)
+    value = sampled(side.albedo, grid, smooth=False) * light
     np.maximum(seen[box], value, out=seen[box])
+    if side.patch is not None:
+        laid = sampled(side.patch, grid, smooth=False) * light
+        np.maximum(skin[box], laid, out=skin[box])
 
 
 def _box(pixels: NDArray[np.float64], window: ImageWindow) -> tuple[slice, slice]:

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from tests.bench.tracking.hand import Finger
 from tests.bench.tracking.light import Light
-from tests.bench.tracking.motions import LENS
+from tests.bench.tracking.cameras import LENS
 from tests.bench.tracking.optics import LensModel, Sensor, srgb_encoded
 from tests.bench.tracking.paper import AXES, INK_ALBEDO, PAPER_ALBEDO, BenchmarkCube
 from tests.bench.tracking.paths import matrices
