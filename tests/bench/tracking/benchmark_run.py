@@ -57,7 +57,7 @@ class BenchmarkRun:
         """Return the circumstances in one line."""
         return (
             f"{self.date}, {self.machine} (load {self.load:.1f} before), one tracker at a time, "
-            f"{self.threads} threads; {self.frames} frames of 1280×720 a sequence, seed {self.seed}"
+            f"{self.threads} threads; {self.frames} frames a sequence, seed {self.seed}"
         )
 
 

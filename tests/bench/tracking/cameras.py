@@ -37,9 +37,13 @@ WEBCAM_LENS = LensModel(
     gauss=0.65,
     disk=0.0,
     focus=0.4,
-    aperture=0.45,
+    aperture=0.4,
 )
-"""56° from left to right, a cushion of 20 px in the corners; f/2 with a focal length of 3 mm."""
+"""56° from left to right, a cushion of 20 px in the corners; f/2.2 with a focal length of 3 mm.
+
+The sensor's curve brightens the middle of a blurred edge, so white grows over black: by 0.31 px in
+focus, and by 0.41 px at 0.2 m.
+"""
 
 WIDE = Camera(LENS)
 WEBCAM = Camera(WEBCAM_LENS, Sensor(electrons=3000.0, quality=85))

@@ -1,17 +1,22 @@
 """Searches many frames of many seeds for silently wrong poses of Cubeling.
 
-Run `python -m tests.bench.tracking.campaign --frames 10000 --seed 7 [--log FILE]`. Every wrong
-frame is printed with the call that renders it again; the exit code is 1 if there is any. An
-interrupted run with `--log` continues where it stopped.
+Run `python -m tests.bench.tracking.campaign --frames 10000 --seed 7 [--processes 2]
+[--log FILE]`. Every wrong frame is printed with the call that renders it again; the exit code is 1
+if there is any. An interrupted run with `--log` continues where it stopped.
 """
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -94,21 +99,45 @@ def main() -> None:
     """Track, count, print."""
     options = _options()
     progress = Console(stderr=True, width=120)
-    done = _read(options.log)
     results: list[Result] = []
-    names = tuple(options.sequences)
-    for name, seed in plan(names, options.frames, options.length, options.seed):
-        result = done.get((name, seed, options.length))
-        if result is None:
-            result = evaluate(sequence(name, seed, options.length))
-            _append(options.log, result)
+    for result in _evaluated(options):
         results.append(result)
         for wrong in result["wrong"]:
             progress.print(f"wrong: {_where(result, wrong)}: {_described(wrong)}")
         frames, found = (sum(each) for each in zip(*_counts(results), strict=True))
+        name, seed = result["sequence"], result["seed"]
         progress.print(f"{frames} of {options.frames} frames, {found} wrong: {name} seed {seed}")
     _print(Console(width=120), results)
     sys.exit(any(result["wrong"] for result in results))
+
+
+def _evaluated(options: argparse.Namespace) -> Iterator[Result]:
+    """Evaluate all sequences of a campaign, in order; what the log holds is not done again."""
+    names, length = tuple(options.sequences), options.length
+    wanted = [(*each, length) for each in plan(names, options.frames, length, options.seed)]
+    done = _read(options.log)
+    missing = [job for job in wanted if job not in done]
+    with ExitStack() as stack:
+        fresh: Iterator[Result] = map(_evaluated_job, missing)
+        if options.processes > 1:
+            pool = ProcessPoolExecutor(
+                options.processes,
+                get_context("spawn"),  # OpenCV's threads do not survive a fork
+                cv2.setNumThreads,
+                (max((os.cpu_count() or 1) // options.processes, 1),),
+            )
+            stack.callback(pool.shutdown, cancel_futures=True)
+            fresh = pool.map(_evaluated_job, missing)
+        for job in wanted:
+            result = done.get(job)
+            if result is None:
+                result = next(fresh)
+                _append(options.log, result)
+            yield result
+
+
+def _evaluated_job(job: tuple[str, int, int]) -> Result:
+    return evaluate(sequence(*job))
 
 
 def _counts(results: list[Result]) -> Iterator[tuple[int, int]]:
@@ -176,6 +205,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=7, help="the first; each round takes the next")
     parser.add_argument("--sequences", nargs="+", choices=NAMES, default=moving, metavar="NAME",
                         help=", ".join(NAMES))  # fmt: skip
+    parser.add_argument("--processes", type=int, default=1, help="sequences at the same time")
     parser.add_argument("--log", type=Path, metavar="FILE",
                         help="note what is finished there, and do not do it again")  # fmt: skip
     return parser.parse_args()

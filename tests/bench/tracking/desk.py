@@ -8,9 +8,6 @@ from tests.bench.tracking.light import UP, Light
 from tests.bench.tracking.optics import LensModel, sampled
 from tests.bench.tracking.paper import marker_cells
 
-HEIGHT = 0.62
-"""Height of the camera above the table [m]."""
-
 DENSITY, LONG, WIDE = 900, 3600, 2700
 """Grain of the drawing [1/m], and its size: 4 m by 3 m."""
 
@@ -19,6 +16,7 @@ Picture = NDArray[np.uint8]
 
 def desk(
     lens: LensModel,
+    height: float,
     light: Light,
     random: np.random.Generator,
     dictionary: str = "",
@@ -28,8 +26,12 @@ def desk(
 
     Parameters
     ----------
-    lens, light
-        The camera and what falls on the table; shadows fall on it too.
+    lens
+        The camera.
+    height
+        How far above the table it is [m].
+    light
+        What falls on the table; shadows fall on it too.
     random
         What lies there.
     dictionary, foreign
@@ -44,7 +46,7 @@ def desk(
     up = UP / np.linalg.norm(UP)
     right, front = np.array([1.0, 0, 0]), np.cross(up, [1.0, 0, 0])
     # The point of the table on the optical axis lies in the drawing's lower half.
-    middle = np.array([0, 0, -HEIGHT / up[2]])
+    middle = np.array([0, 0, -height / up[2]])
     place = np.stack([right, -front, middle * DENSITY - right * LONG / 2 + front * WIDE * 0.7], 1)
     place /= DENSITY
     rays = lens.rays

@@ -4,8 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from tests.bench.tracking.light import UP
 from tests.bench.tracking.optics import LensModel
-from tests.bench.tracking.paper import BenchmarkCube
+from tests.bench.tracking.paper import AXES, BenchmarkCube
 from tests.bench.tracking.paths import (
     Poses,
     halton,
@@ -41,6 +42,23 @@ def _start(plan: SequencePlan, point: NDArray[np.float64]) -> NDArray[np.float64
     return np.asarray(matrices(Rotation.concatenate([rotation]), (ray * depth)[None])[0])
 
 
+def _rested(
+    plan: SequencePlan, cube: BenchmarkCube, point: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Pose (4, 4) of a Halton point (6,), on the table; it may be out of view."""
+    up = UP / np.linalg.norm(UP)
+    depth = plan.depth[0] + point[0] * (plan.depth[1] - plan.depth[0])
+    x = plan.camera.lens.size[0] / plan.camera.lens.matrix[0, 0] * (point[1] - 0.5)
+    # The cube's middle is half its edge above the table.
+    y = ((cube.edge / 2 - plan.height) / depth - up[2]) / up[1]
+    yaw = Rotation.from_rotvec(2 * np.pi * point[3] * up)
+    across = yaw.apply([1.0, 0.0, 0.0])
+    table = np.stack([across, np.cross(up, across), up], axis=1)
+    upper = tuple(AXES.values())[int(point[4] * len(AXES))]
+    rotation = Rotation.from_matrix((table @ np.stack(upper))[None])
+    return np.asarray(matrices(rotation, np.array([[x, y, 1.0]]) * depth)[0])
+
+
 def static_poses(
     plan: SequencePlan, cube: BenchmarkCube, first: int, count: int, shift: NDArray[np.float64]
 ) -> list[NDArray[np.float64]]:
@@ -48,7 +66,8 @@ def static_poses(
     found: list[NDArray[np.float64]] = []
     index = first
     while len(found) < count:
-        pose = _start(plan, halton(index, shift))
+        point = halton(index, shift)
+        pose = _rested(plan, cube, point) if plan.resting and index % 2 else _start(plan, point)
         held = plan.facing != "one" or _faces_in_view(cube, pose[None], MIN_SLANT_OF_SLIVER)[0] == 1
         if held and in_view(plan.camera.lens, cube, pose[None])[0]:
             found.append(pose)

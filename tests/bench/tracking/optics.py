@@ -165,17 +165,17 @@ class Sensor:
         levels = (SRGB_TABLE.size - 1) * np.clip(light, 0, 1, out=light)
         picture = np.take(SRGB_TABLE, levels.astype(np.uint16))
         if self.halved:
-            picture = _picture(
-                cv2.resize(picture, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
-            )
-        if self.quality is not None:
-            _, file = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, self.quality])
-            picture = _picture(cv2.imdecode(file, cv2.IMREAD_COLOR))
-        return picture
+            half = cv2.resize(picture, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+            picture = np.asarray(half, np.uint8)
+        return picture if self.quality is None else compressed(picture, self.quality)
 
 
-def _picture(picture: cv2.typing.MatLike) -> NDArray[np.uint8]:
-    return np.asarray(picture, np.uint8)
+def compressed(picture: NDArray[np.uint8], quality: int) -> NDArray[np.uint8]:
+    """Return what is left of a picture after JPEG compression, `quality` being 0…100."""
+    _, file = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, quality])
+    opened = cv2.imdecode(file, cv2.IMREAD_COLOR)
+    assert opened is not None
+    return np.asarray(opened, np.uint8)
 
 
 def srgb_encoded(light: NDArray[np.float64]) -> NDArray[np.float64]:

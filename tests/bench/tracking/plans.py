@@ -54,6 +54,12 @@ class SequencePlan:
     camera: Camera = WIDE
     """What takes the pictures."""
 
+    height: float = 0.62
+    """Height of the camera above the table [m]."""
+
+    resting: bool = False
+    """Whether the cube lies on the table in about half of the independent frames."""
+
     nominal: bool = False
     """Whether the trackers are told that the lens does not distort."""
 
@@ -82,6 +88,7 @@ WEBCAM_PLAN = SequencePlan(
     independent=True,
     count=60,
     camera=WEBCAM,
+    height=0.25,
     cube=SMALL_CUBE,
     worn=True,
 )
@@ -108,13 +115,13 @@ SEQUENCE_PLANS: dict[str, SequencePlan] = {
     "shaded": SequencePlan(speed=0.15, turning=0.6, shadows=True),
     "cluttered": SequencePlan(speed=0.25, turning=1.0, foreign=10),
     "poses": SequencePlan(depth=(0.3, 0.7), independent=True, count=60),
-    "webcam": WEBCAM_PLAN,
+    "webcam": replace(WEBCAM_PLAN, resting=True),
     "webcam-one": replace(WEBCAM_PLAN, facing="one"),
-    "webcam-half": replace(WEBCAM_PLAN, camera=WEBCAM_HALF),
+    "webcam-half": replace(WEBCAM_PLAN, resting=True, camera=WEBCAM_HALF),
     "webcam-blurred": replace(WEBCAM_PLAN, smear=10.0, exposure=INDOOR_EXPOSURE_S),
-    "webcam-covered": replace(WEBCAM_PLAN, covered=0.3),
+    "webcam-covered": replace(WEBCAM_PLAN, resting=True, covered=0.3),
     "webcam-fingers": replace(WEBCAM_PLAN, fingers="start"),
-    "webcam-nominal": replace(WEBCAM_PLAN, nominal=True),
+    "webcam-nominal": replace(WEBCAM_PLAN, resting=True, nominal=True),
     "webcam-held": replace(
         WEBCAM_PLAN,
         speed=0.25,

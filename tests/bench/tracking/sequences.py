@@ -139,7 +139,7 @@ def sequence(name: str, seed: int = 1, count: int | None = None) -> Sequence:
     hold = _hold(plan, cube, first, random)
     brightness = GAIN * plan.light if plan.light < 1 else 1.0
     lens, sensor = plan.camera.lens, plan.camera.sensor
-    table = desk(lens, light, random, cube.dictionary, _foreign(plan, cube, random))
+    table = desk(lens, plan.height, light, random, cube.dictionary, _foreign(plan, cube, random))
     scenes = tuple(Scene(lens, cube, light, table, path, hold, brightness) for path in paths)
     if plan.worn:
         scenes = tuple(_worn(plan, scene, time, each)
@@ -171,7 +171,7 @@ def _worn(plan: SequencePlan, scene: Scene, time: float, random: np.random.Gener
     scene = replace(
         scene,
         cube=cube,
-        brightness=scene.brightness * random.uniform(0.8, 1.3),
+        brightness=scene.brightness * random.uniform(0.8, 1.4),
         skin=_cover_albedo(random) if plan.covered else SKIN_ALBEDO_BGR,
     )
     if not plan.independent:
