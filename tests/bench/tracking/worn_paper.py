@@ -14,7 +14,7 @@ FOLD_M = 0.0002
 BULGE_M = (0.0002, 0.0005)
 """Bounds of how far the middle of a face stands out or in."""
 
-FINE = 10
+FINE = 20
 """Squares into which a square of a face is cut, so that tape can be drawn."""
 
 

@@ -52,3 +52,13 @@ def test_what_was_finished_is_not_done_again(tmp_path, monkeypatch, capsys):
         campaign.main()
     assert not ended.value.code
     assert "98.0" in capsys.readouterr().out
+
+
+def test_two_processes_find_what_one_finds(tmp_path, monkeypatch):
+    log = tmp_path / "log.jsonl"
+    arguments = ["--sequences", "webcam", "--frames", "2", "--length", "1", "--log", str(log)]
+    monkeypatch.setattr(sys, "argv", ["campaign", *arguments, "--processes", "2"])
+    with pytest.raises(SystemExit):
+        campaign.main()
+    found = [json.loads(line) for line in log.read_text(encoding="utf-8").split("\n") if line]
+    assert found == [campaign.evaluate(sequence("webcam", seed, 1)) for seed in (7, 8)]

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from tests.bench.tracking.cameras import LENS, WEBCAM_LENS
 from tests.bench.tracking.hand import Finger
 from tests.bench.tracking.light import Light
-from tests.bench.tracking.cameras import LENS
 from tests.bench.tracking.optics import LensModel, Sensor, srgb_encoded
 from tests.bench.tracking.paper import AXES, INK_ALBEDO, PAPER_ALBEDO, BenchmarkCube
 from tests.bench.tracking.paths import matrices
@@ -59,7 +59,7 @@ def fingers() -> Sequence:
 
 def test_lens_agrees_with_opencv_and_is_its_own_inverse() -> None:
     random = np.random.default_rng(1)
-    for lens in (LENS, SMALL):
+    for lens in (LENS, SMALL, WEBCAM_LENS):
         pixels = random.uniform(0, lens.size, (500, 2))
         rays = lens.directions(pixels)
         points = np.c_[rays, np.ones(500)] * random.uniform(0.3, 2, (500, 1))
