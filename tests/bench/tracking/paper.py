@@ -31,13 +31,13 @@ AXES = {
 
 @dataclass(frozen=True, eq=False)
 class Relief:
-    """How a face strays from a flat parallelogram.
+    """How a face strays from a flat square.
 
     u and v run from -1 to 1 along its columns and rows.
     """
 
-    twist: NDArray[np.float64]
-    """Shift of the face by u · v along columns and rows, and along its normal [m], (3,)."""
+    twist: float
+    """Height at u = v = 1 of its twist, which is u · v times that [m]."""
 
     bulge: float
     """Height of its middle [m]; 0 at the edges."""
@@ -53,7 +53,7 @@ class Relief:
         Parameters
         ----------
         grid
-            Where they meet the parallelogram.
+            Where they meet the flat square.
         slope
             How far they go along columns and rows while they rise by 1 m.
         """
@@ -63,9 +63,8 @@ class Relief:
             u, v = np.clip(at[..., 0], -1.1, 1.1), np.clip(at[..., 1], -1.1, 1.1)
             height = self.bulge * (1 - u * u) * (1 - v * v)
             height *= 1 + self.lean[0] * u + self.lean[1] * v
-            height += self.twist[2] * u * v
+            height += self.twist * u * v
             found = grid + height[..., None] * slope
-            found -= (u * v)[..., None] * self.twist[:2].astype(np.float32)
         return np.asarray(found, np.float32)
 
 

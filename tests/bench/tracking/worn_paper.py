@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from tests.bench.tracking.paper import AXES, BenchmarkCube, Relief, Side
 
-FOLD_M = 0.0002
+FOLD_M = 0.00015
 """Standard deviation of each corner of the cube along each axis: faces tilt by about 0.4°."""
 
-BULGE_M = (0.0002, 0.0005)
+BULGE_M = (0.0001, 0.0003)
 """Bounds of how far the middle of a face stands out or in."""
 
 FINE = 20
@@ -35,7 +35,7 @@ def patched(cube: BenchmarkCube, share: float, random: np.random.Generator) -> B
 def _bent(
     side: Side, edge: float, shifts: NDArray[np.float64], random: np.random.Generator
 ) -> Side:
-    """Span the face between the shifted corners of the cube, so that all faces stay joined."""
+    """Lay the face along the shifted corners of the cube; paper bends, but does not stretch."""
     right, up, normal = AXES[side.name]
     u, v = np.array([-1, 1, 1, -1]), np.array([-1, -1, 1, 1])
     signs = normal + u[:, None] * right - v[:, None] * up
@@ -43,14 +43,16 @@ def _bent(
     corners = signs * edge / 2 + shifts[x, y, z]
     # The corners are middle + u · along + v · down + u · v · twist.
     middle, along, down, twist = np.stack([np.ones(4), u, v, u * v]) @ corners / 4
+    out = np.cross(down, along)
+    out /= np.linalg.norm(out)
+    along *= edge / 2 / np.linalg.norm(along)
+    down = np.cross(along, out)
     count = len(side.albedo)
     first = middle + (along + down) * (1 / count - 1)
     place = np.stack([along * 2 / count, down * 2 / count, first], axis=1)
-    out = np.cross(down, along)
-    out /= np.linalg.norm(out)
     bulge = random.uniform(*BULGE_M) * random.choice([-1, 1])
     lean = (float(random.uniform(-0.7, 0.7)), float(random.uniform(-0.7, 0.7)))
-    relief = Relief(np.linalg.solve(np.c_[place[:, :2], out], twist), float(bulge), lean)
+    relief = Relief(float(twist @ out), float(bulge), lean)
     return replace(side, place=place, normal=out, relief=relief)
 
 
