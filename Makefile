@@ -8,7 +8,7 @@ endif
 INSTALL := $(BIN)/python -m pip install --disable-pip-version-check --quiet --constraint constraints.txt
 
 .DEFAULT_GOAL := demo
-.PHONY: demo test campaign campaign-tenth check bench bench-tracking recordings assets pictures cast clean
+.PHONY: demo test campaign campaign-tenth check bench bench-tracking bench-photographs recordings assets pictures cast clean
 
 demo: .venv/ready  ## set everything up and play
 	$(BIN)/cubeling demo
@@ -53,6 +53,9 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 
 bench-tracking: .venv/ready-dev  ## compare the cube's tracker with others on the same frames
 	$(BIN)/python -m tests.bench.tracking --readme tracking/README.md
+
+bench-photographs: .venv/ready-dev  ## compare the cube's tracker with OpenCV on photographs
+	$(BIN)/python -m tests.bench.photographs
 
 recordings: .venv/ready-dev  ## record the bundled sessions again
 	$(BIN)/python -m tools.recordings

@@ -1,0 +1,1 @@
+"""The tracker on photographs that we did not make, beside OpenCV."""
