@@ -10,6 +10,7 @@ from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
 from tracking.geometry.state import CubeControls, CubeState
 from tracking.gestures.gestures import CubeGestures
+from tracking.refinement.lens_estimate import LensEstimate
 from tracking.sources import FrameSource, Health, LiveFrames, open_source
 from tracking.tracker.several import CubesTracker
 from tracking.tracker.tracker import CubeTracker
@@ -27,6 +28,7 @@ __all__ = [
     "FrameSource",
     "Health",
     "Intrinsics",
+    "LensEstimate",
     "LiveFrames",
     "TrackingError",
     "calibrate_camera",

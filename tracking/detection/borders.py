@@ -7,7 +7,7 @@ import numpy as np
 
 from tracking.geometry.arrays import Array, Flags, Image, Indices
 
-THRESHOLD_WINDOW_PX, THRESHOLD_OFFSET = 25, 5
+THRESHOLD_WINDOW_PX, THRESHOLD_OFFSET = 17, 5
 """A dark pixel is this many grey levels below the mean of this window. Larger dark cells become
 hollow but keep their borders; dark rooms need a small offset, noise a larger one."""
 
@@ -32,8 +32,9 @@ MAX_SEGMENTS = 80
 MIN_CORNER_SINE = 0.25
 """Least sine of the angle between neighbouring sides of a quadrilateral."""
 
-MAX_OVERLAP_PX = 3.0
-"""How far a segment may extend beyond a corner: blur rounds outlines."""
+MAX_OVERLAP_PX, MAX_OVERLAP_SHARE = 3.0, 0.25
+"""How far a segment may extend beyond a corner, as blur rounds outlines, or which share of it, as
+what covers the corner may be dark too."""
 
 
 @dataclass(frozen=True)
@@ -64,8 +65,11 @@ class BorderSegments:
 
 def find_border_segments(grey: Image) -> BorderSegments:
     """Find the straight borders of the dark blobs in a grey image, (H, W), slightly blurred."""
-    method, kind = cv2.ADAPTIVE_THRESH_MEAN_C, cv2.THRESH_BINARY_INV
-    dark = cv2.adaptiveThreshold(grey, 255, method, kind, THRESHOLD_WINDOW_PX, THRESHOLD_OFFSET)
+    window = (THRESHOLD_WINDOW_PX, THRESHOLD_WINDOW_PX)
+    mean = cv2.blur(grey, window, borderType=cv2.BORDER_REPLICATE)
+    # The same as cv2.adaptiveThreshold, which is not vectorized.
+    darker = cv2.subtract(mean, grey)
+    dark = cv2.threshold(darker, THRESHOLD_OFFSET - 1, 255, cv2.THRESH_BINARY)[1]
     outlines = cv2.findContours(dark, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)[0]
     loops = [
         cv2.approxPolyDP(outline, MAX_DEVIATION_PX, True)[:, 0]
@@ -88,18 +92,16 @@ def find_border_segments(grey: Image) -> BorderSegments:
 def _has_contrast(segments: BorderSegments, grey: Image) -> Flags:
     """Whether there is a step from dark to bright across the middle of each segment."""
     height, width = grey.shape
-    direction = (segments.end - segments.start) / segments.length[:, None]
-    across = np.stack([direction[:, 1], -direction[:, 0]], axis=1)  # to the bright side
-    values = []
-    for share in (0.3, 0.5, 0.7):
-        middle = segments.start + share * (segments.end - segments.start)
-        for reach in (-2.0, 3.0):
-            x, y = np.rint(middle + reach * across).astype(np.intp).T
-            seen = (x >= 0) & (x < width) & (y >= 0) & (y < height)
-            value = grey[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)]
-            values.append(np.where(seen, value, np.nan))
-    table = np.asarray(values, np.float64)
-    return np.asarray(np.median(table[1::2] - table[::2], axis=0) > MIN_CONTRAST)
+    ahead = segments.end - segments.start
+    across = ahead[:, ::-1] * (1.0, -1.0) / segments.length[:, None]  # to the bright side
+    middle = segments.start + np.array([0.3, 0.5, 0.7])[:, None, None] * ahead
+    places = middle + np.array([-2.0, 3.0])[:, None, None, None] * across
+    x, y = np.rint(np.moveaxis(places, -1, 0)).astype(np.intp)
+    seen = ((x >= 0) & (x < width) & (y >= 0) & (y < height)).all(axis=(0, 1))
+    inner, outer = grey[np.clip(y, 0, height - 1), np.clip(x, 0, width - 1)].astype(np.float64)
+    one, two, three = outer - inner
+    median = np.maximum(np.minimum(one, two), np.minimum(np.maximum(one, two), three))
+    return np.asarray(seen & (median > MIN_CONTRAST))
 
 
 def _longest(segments: BorderSegments) -> BorderSegments:
@@ -143,19 +145,26 @@ def _neighbours(segments: BorderSegments) -> tuple[Indices, Indices, Array]:
     b = np.arange(len(a)) - np.repeat(np.cumsum(count) - count, count) + np.repeat(begin, count)
     length = segments.length
     direction = (segments.end - segments.start) / length[:, None]
-    sine = direction[a, 0] * direction[b, 1] - direction[a, 1] * direction[b, 0]
-    keep = sine > MIN_CORNER_SINE
+    dx, dy = np.ascontiguousarray(direction.T)
+    sine = dx[a] * dy[b] - dy[a] * dx[b]
+    keep = np.flatnonzero(sine > MIN_CORNER_SINE)
     a, b, sine = a[keep], b[keep], sine[keep]
-    offset = segments.start[b] - segments.start[a]
+    x, y = (segments.start[b] - segments.start[a]).T
     # start_a + s direction_a = start_b + t direction_b
-    s = (offset[:, 0] * direction[b, 1] - offset[:, 1] * direction[b, 0]) / sine
-    t = (offset[:, 0] * direction[a, 1] - offset[:, 1] * direction[a, 0]) / sine
+    s = (x * dy[b] - y * dx[b]) / sine
+    t = (x * dy[a] - y * dx[a]) / sine
+    overlap, most = _overlap(length), 3 * length
     ahead, behind = s - length[a], -t
     # At most three quarters of a side are hidden at one end.
-    keep = (ahead > -MAX_OVERLAP_PX) & (behind > -MAX_OVERLAP_PX)
-    keep &= (ahead < 3 * length[a]) & (behind < 3 * length[b])
+    keep = np.flatnonzero(
+        (ahead > -overlap[a]) & (behind > -overlap[b]) & (ahead < most[a]) & (behind < most[b])
+    )
     a, b, s = a[keep], b[keep], s[keep]
     return a, b, segments.start[a] + s[:, None] * direction[a]
+
+
+def _overlap(length: Array) -> Array:
+    return np.asarray(np.maximum(MAX_OVERLAP_PX, MAX_OVERLAP_SHARE * length), np.float64)
 
 
 def _extended(

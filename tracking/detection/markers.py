@@ -37,32 +37,53 @@ class Marker:
     """As in `Observation.corners`, (4, 2) [px]."""
 
 
+FIRST_WINDOW_PX, OTHER_WINDOWS_PX = 13, (3, 23)
+"""Windows of the local thresholds: the one that finds most markers, and those that find others, of
+small markers and in light from one side."""
+
+
 class MarkerDetector:
-    """Detects all markers of one dictionary of OpenCV, such as "DICT_4X4_50"."""
+    """Detects all markers of one dictionary of OpenCV, such as "DICT_4X4_50".
+
+    A few wrong bits are accepted, by fingers, glare and blur; OpenCV finds markers in clutter then
+    (opencv#28953). What it finds is a proposal, to be proved by all cells of the cube.
+    """
 
     def __init__(self, dictionary: str) -> None:
-        parameters = cv2.aruco.DetectorParameters()
-        # No wrong bit is accepted: OpenCV's default of 0.6 finds markers in clutter (opencv#28953).
-        parameters.errorCorrectionRate = 0.0
-        parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
-        # The search window must not reach the next edge of a small marker: 0.3 cells, at most 5 px.
-        parameters.cornerRefinementWinSize = 5
-        parameters.relativeCornerRefinmentWinSize = 0.3
-        # Local thresholds over 3, 13 and 23 px cope with light from one side.
-        parameters.adaptiveThreshWinSizeMin = 3
-        parameters.adaptiveThreshWinSizeMax = 23
-        parameters.adaptiveThreshWinSizeStep = 10
-        self._detector = cv2.aruco.ArucoDetector(aruco_dictionary(dictionary), parameters)
+        pattern = aruco_dictionary(dictionary)
+        first, last = OTHER_WINDOWS_PX
+        self._first = cv2.aruco.ArucoDetector(pattern, _parameters(*[FIRST_WINDOW_PX] * 2))
+        self._others = cv2.aruco.ArucoDetector(pattern, _parameters(first, last))
 
     def detect(self, grey: Image) -> list[Marker]:
-        """Detect markers in a grey image, (H, W)."""
-        quads, ids = self._detector.detectMarkers(grey)[:2]
-        # None where there is no marker; (N,) in OpenCV 5, (N, 1) in OpenCV 4.
-        marker_ids = [] if ids is None else [int(number) for number in np.ravel(ids)]
-        return [
-            Marker(marker_id, np.reshape(quad, (4, 2)).astype(np.float64))
-            for marker_id, quad in zip(marker_ids, quads, strict=True)
-        ]
+        """Detect markers in a grey image, (H, W), with the window that finds most."""
+        return _detected(self._first, grey)
+
+    def detect_others(self, grey: Image) -> list[Marker]:
+        """Detect markers with the other windows, some of them again."""
+        return _detected(self._others, grey)
+
+
+def _parameters(first: int, last: int) -> cv2.aruco.DetectorParameters:
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.adaptiveThreshWinSizeMin = first
+    parameters.adaptiveThreshWinSizeMax = last
+    parameters.adaptiveThreshWinSizeStep = max(last - first, 1)
+    parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
+    # The search window must not reach the next edge of a small marker: 0.3 cells, at most 5 px.
+    parameters.cornerRefinementWinSize = 5
+    parameters.relativeCornerRefinmentWinSize = 0.3
+    return parameters
+
+
+def _detected(detector: cv2.aruco.ArucoDetector, grey: Image) -> list[Marker]:
+    quads, ids = detector.detectMarkers(grey)[:2]
+    # None where there is no marker; (N,) in OpenCV 5, (N, 1) in OpenCV 4.
+    marker_ids = [] if ids is None else [int(number) for number in np.ravel(ids)]
+    return [
+        Marker(marker_id, np.reshape(quad, (4, 2)).astype(np.float64))
+        for marker_id, quad in zip(marker_ids, quads, strict=True)
+    ]
 
 
 def markers_of(cube: CubeModel, markers: Sequence[Marker]) -> list[Observation]:

@@ -7,6 +7,7 @@ from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import Observation
 from tracking.detection.quads import Quads, find_quads, sampled
+from tracking.detection.smeared_patterns import SmearedPatterns
 from tracking.geometry.arrays import Array, Flags, Image, Indices
 from tracking.geometry.image_region import Region
 
@@ -28,6 +29,12 @@ MAX_WRONG_SHARE = 0.07
 MAX_GAP_CELLS = 0.7
 """Cells of a side that may be missing at a corner that counts as visible."""
 
+CLEAR_SHARE = 0.85
+"""A quad of which more cells than this share are read, and that is no marker, is something else."""
+
+UNREAD, OTHER = -1, -2
+"""Instead of the number of a marker: cells that cannot be read, and those of something else."""
+
 MIN_LEAD_SHARE = 0.12
 """Share of the cells by which the best marker must fit better than the second."""
 
@@ -44,6 +51,7 @@ class PartlyHiddenMarkerDetector:
 
     def __init__(self, cube: CubeModel) -> None:
         self._faces = cube.faces
+        self._smeared = SmearedPatterns(cube)
         patterns = [marker_cells(cube.dictionary, face.marker_id) for face in cube.faces]
         self._count = count = len(patterns[0])
         # Every marker in four rotations: rotated k times, its corner 0 is corner −k of the quad.
@@ -57,33 +65,44 @@ class PartlyHiddenMarkerDetector:
         depth = np.minimum(np.minimum(x, y), count - np.maximum(x, y))
         self._paper, self._border, self._bits = depth < 0, (depth > 0) & (depth < 1), depth > 1
 
-    def detect(self, grey: Image, region: Region | None = None) -> list[Observation]:
-        """Detect markers in a grey image, (H, W), or in a region of it.
+    def detect(
+        self, grey: Image, region: Region | None = None, doubled: bool = False
+    ) -> list[Observation]:
+        """Detect markers in a grey image, (H, W), or in a region of it; `doubled` finds small ones.
 
         Returns
         -------
         Markers, the most certain first, whole ones among them. A marker can occur twice.
         """
         left, top, right, bottom = region or (0, 0, grey.shape[1], grey.shape[0])
-        soft = np.asarray(cv2.GaussianBlur(grey[top:bottom, left:right], (5, 5), 0), np.uint8)
+        part = grey[top:bottom, left:right]
+        if doubled:
+            larger = cv2.resize(part, None, fx=2, fy=2, interpolation=cv2.INTER_CUBIC)
+            part = np.asarray(larger, np.uint8)
+        soft = np.asarray(cv2.GaussianBlur(part, (5, 5), 0), np.uint8)
         quads = find_quads(soft)
         if not len(quads):
             return []
         number, fit = self._read(soft, quads)
+        unread = number == UNREAD
+        if unread.any():
+            number[unread], fit[unread] = self._smeared.match(soft, quads.select(unread))
         # Of quads that fit alike, the most visible one has the best corners.
         order = np.argsort(-(fit + 0.5 * quads.visible), kind="stable")
         origin = np.array([left, top], np.float64)
         found: list[Observation] = []
         for each in order[number[order] >= 0].tolist():
             face, turn = divmod(int(number[each]), 4)
-            corners = np.roll(quads.corners[each], turn, axis=0) + origin
+            corners = np.roll(quads.corners[each], turn, axis=0)
+            # Pixel centres lie at whole numbers.
+            corners = (corners - 0.5) / 2 + origin if doubled else corners + origin
             seen = Observation(self._faces[face], corners)
             if not any(_same(seen, other) for other in found):
                 found.append(seen)
         return found
 
     def _read(self, soft: Image, quads: Quads) -> tuple[Indices, Array]:
-        """Identify the marker in each quad: 4 × index of its face + rotation, or −1; its fit."""
+        """Identify the marker in each quad: 4 × index of its face + rotation, or below 0."""
         places = quads.map(self._places)
         values = sampled(soft, places)
         seen = self._uncovered(quads) & _inside(places, soft.shape)
@@ -110,7 +129,8 @@ class PartlyHiddenMarkerDetector:
         cells = sign.shape[1]
         good = framed & (right >= MIN_RIGHT_SHARE * cells) & (wrong <= wrong_share * read)
         good &= most - next_most > MIN_LEAD_SHARE * cells
-        return np.where(good, best, -1), np.asarray(most / cells, np.float64)
+        unknown = np.where(read > CLEAR_SHARE * cells, OTHER, UNREAD)
+        return np.where(good, best, unknown), np.asarray(most / cells, np.float64)
 
     def _uncovered(self, quads: Quads) -> Flags:
         """Whether each place is away from corners whose sides are hidden, (N, places)."""

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 
 from tracking.detection.borders import BorderSegments, find_border_segments, quadrilaterals
-from tracking.geometry.arrays import Array, Image
+from tracking.geometry.arrays import Array, Flags, Image
 
 MIN_SIDE_PX = 14.0
 """Shortest side of a quad."""
@@ -37,6 +37,10 @@ class Quads:
     def __len__(self) -> int:
         return len(self.corners)
 
+    def select(self, chosen: Flags) -> "Quads":
+        """Return some of them."""
+        return Quads(self.corners[chosen], self.gaps[chosen], self.visible[chosen])
+
     def map(self, places: Array) -> Array:
         """Map places in the unit square, (M, 2), to the image, (N, M, 2) [px].
 
@@ -64,11 +68,14 @@ def find_quads(grey: Image) -> Quads:
     keep &= share.mean(axis=1) > MIN_VISIBLE_OUTLINE
     keep &= (share.min(axis=1, initial=1.0) > MIN_VISIBLE_SIDE) & (share < 1.3).all(axis=1)
     keep &= (length < MAX_SIDE_RATIO * length[:, [2, 3, 0, 1]]).all(axis=1)
-    used = sides.select(chosen[keep].ravel())
-    if not len(used):
+    if not keep.any():
         return Quads(np.zeros((0, 4, 2)), np.zeros((0, 4)), np.zeros(0))
-    corners = _refined_corners(grey, used)
-    return Quads(corners, _gaps(used, corners), share[keep].mean(axis=1))
+    # Many quads share their sides: move each side once.
+    used, of_quad = np.unique(chosen[keep], return_inverse=True)
+    start, end = _moved_to_edge(grey, sides.select(used))
+    corners = _intersections(start[of_quad], end[of_quad])
+    gaps = _gaps(sides.start[chosen[keep]], sides.end[chosen[keep]], corners)
+    return Quads(corners, gaps, share[keep].mean(axis=1))
 
 
 def sampled(grey: Image, places: Array) -> Array:
@@ -88,8 +95,8 @@ def _side_lengths(corners: Array) -> Array:
     return np.asarray(np.hypot(edges[..., 0], edges[..., 1]), np.float64)
 
 
-def _refined_corners(grey: Image, used: BorderSegments) -> Array:
-    """Move sides, four for each quad, to the greatest gradient of the image; return the corners."""
+def _moved_to_edge(grey: Image, used: BorderSegments) -> tuple[Array, Array]:
+    """Move sides to the greatest gradient of the image; return their starts and ends, (N, 2)."""
     direction = (used.end - used.start) / used.length[:, None]
     across = np.stack([direction[:, 1], -direction[:, 0]], axis=1)  # towards the bright side
     along = np.linspace(0.1, 0.9, 13)
@@ -97,12 +104,12 @@ def _refined_corners(grey: Image, used: BorderSegments) -> Array:
     middle = used.start[:, None] + along[:, None] * (used.end - used.start)[:, None]
     places = middle[:, :, None] + reach[:, None] * across[:, None, None]
     values = sampled(grey, places.reshape(-1, len(reach), 2)).reshape(places.shape[:-1])
-    slope = np.maximum(values[..., 2:] - values[..., :-2], 0.0) ** 2 + 1e-3
-    offset = (slope * reach[1:-1]).sum(axis=-1) / slope.sum(axis=-1)
+    slope = np.square(np.maximum(values[..., 2:] - values[..., :-2], 0.0)) + 1e-3
+    offset = (slope @ reach[1:-1]) / slope.sum(axis=-1)
     shift, slant = _fit_lines(along - 0.5, offset)
     start = used.start + (shift - slant / 2)[:, None] * across
     end = used.end + (shift + slant / 2)[:, None] * across
-    return _intersections(start.reshape(-1, 4, 2), end.reshape(-1, 4, 2))
+    return start, end
 
 
 def _fit_lines(x: Array, y: Array) -> tuple[Array, Array]:
@@ -110,9 +117,10 @@ def _fit_lines(x: Array, y: Array) -> tuple[Array, Array]:
     weight = np.ones_like(y)
     for _ in range(2):
         total = weight.sum(axis=1)
-        mean_x, mean_y = (weight @ x) / total, (weight * y).sum(axis=1) / total
+        mean_x, mean_y = (weight @ x) / total, np.vecdot(weight, y) / total
         dx, dy = x - mean_x[:, None], y - mean_y[:, None]
-        slope = (weight * dx * dy).sum(axis=1) / (weight * dx * dx).sum(axis=1)
+        weighted = weight * dx
+        slope = np.vecdot(weighted, dy) / np.vecdot(weighted, dx)
         miss = np.abs(dy - slope[:, None] * dx)
         # The second fit leaves out the outliers of the first.
         weight = (miss <= 2.0 * np.median(miss, axis=1)[:, None] + 0.05).astype(np.float64)
@@ -127,9 +135,8 @@ def _intersections(start: Array, end: Array) -> Array:
     return np.asarray(before + share[..., None] * previous, np.float64)
 
 
-def _gaps(used: BorderSegments, corners: Array) -> Array:
+def _gaps(start: Array, end: Array, corners: Array) -> Array:
     """Return the hidden share of the two sides at each corner, the greater of the two."""
-    start, end = used.start.reshape(-1, 4, 2), used.end.reshape(-1, 4, 2)
     length = _side_lengths(corners)
     after = np.linalg.norm(start - corners, axis=-1) / length
     before = np.linalg.norm(end - np.roll(corners, -1, axis=1), axis=-1) / length

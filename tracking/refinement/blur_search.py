@@ -97,6 +97,7 @@ class BlurSearch:
             residual=aligned.residual,
             certain=True,
             blur_motion=aligned.blur_motion,
+            measurements=8,
         )
 
 

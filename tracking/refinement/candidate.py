@@ -7,9 +7,14 @@ import numpy as np
 
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array
+from tracking.refinement.edge_fit import FittedEdges
 
-MIN_LOG_LIKELIHOOD_RATIO = 8.0
-"""Twice the logarithm of a likelihood ratio from which on the better of two poses is right."""
+MIN_LOG_LIKELIHOOD_RATIO, MIN_EVIDENCE_LEAD = 8.0, 5.0
+"""Twice the logarithm of a likelihood ratio from which on the better of two poses is right: by the
+residuals of edges, and by the cells of all faces in view."""
+
+LEAST_RESIDUAL = 0.05
+"""Residual that paper and lens leave at the right pose, too."""
 
 SAME_POSE = (0.004, np.deg2rad(4))
 """Two poses closer than this are the same for all purposes [m, rad]."""
@@ -23,7 +28,7 @@ class Candidate:
     """Pose of the cube, (4, 4) [m]."""
 
     covariance: Array
-    """Of a pose delta, (6, 6)."""
+    """Of a pose delta, (6, 6), by the residuals: what differs from frame to frame."""
 
     source: Literal["markers", "image"]
     """As in `CubeState.source`."""
@@ -46,8 +51,14 @@ class Candidate:
     blur_motion: Array | None = None
     """Pose delta of the cube during the exposure, (6,), where it was measured."""
 
-    measurements: int = 8
-    """Roughly how many independent measurements the residual rests on."""
+    measurements: int = 0
+    """Roughly how many independent measurements the residual rests on; 0 if it tells nothing."""
+
+    evidence: float = np.nan
+    """As in `CellMatch.evidence`; NaN where the cells were not compared."""
+
+    edges: FittedEdges | None = None
+    """The edges that the pose rests on; None where it rests on others."""
 
     def same_pose(self, other: "Candidate") -> bool:
         """Whether two candidates are the same pose for all purposes."""
@@ -57,10 +68,17 @@ class Candidate:
         )
 
     def clearly_better_than(self, other: "Candidate") -> bool:
-        """Whether the residuals tell that this pose is right, by their likelihood ratio."""
-        ratio = max(other.residual, 1e-6) / max(self.residual, 1e-6)
+        """Whether cells, or else the residuals, tell that this pose is right."""
+        lead = self.evidence - other.evidence
+        if abs(lead) > MIN_EVIDENCE_LEAD:
+            return bool(lead > 0)
+        ratio = (other.residual + LEAST_RESIDUAL) / (self.residual + LEAST_RESIDUAL)
         measurements = min(self.measurements, other.measurements)
         return bool(measurements * 2 * np.log(ratio) > MIN_LOG_LIKELIHOOD_RATIO)
+
+    def rivalled_by(self, other: "Candidate") -> bool:
+        """Whether another pose may be the right one as well."""
+        return not self.same_pose(other) and not self.clearly_better_than(other)
 
     def widened_to(self, other: "Candidate") -> "Candidate":
         """Return this pose with a covariance that covers another possible pose too."""

@@ -62,6 +62,17 @@ class EdgeFit:
     """Normal matrix with its priors, (8, 8)."""
 
 
+@dataclass(frozen=True)
+class FittedEdges:
+    """The last step of a refinement, for what else its residuals tell."""
+
+    profiles: EdgeProfiles
+    """Where the edges were measured."""
+
+    fit: EdgeFit
+    """What was found there."""
+
+
 def fit_edges(
     patch: Patch, profiles: EdgeProfiles, shifts: Array | None, blur: float
 ) -> EdgeFit | None:

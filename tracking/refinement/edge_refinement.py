@@ -17,7 +17,13 @@ from tracking.geometry.arrays import Array, Indices
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.geometry.robust_statistics import quantile
-from tracking.refinement.edge_fit import MIN_EDGE_POINTS, EdgeFit, covariance, fit_edges
+from tracking.refinement.edge_fit import (
+    MIN_EDGE_POINTS,
+    EdgeFit,
+    FittedEdges,
+    covariance,
+    fit_edges,
+)
 from tracking.refinement.profiles import EdgeMeasurements, EdgeProfiles, place_profiles
 
 MIN_FACING_COSINE = 0.15
@@ -68,6 +74,9 @@ class EdgeRefinement:
 
     sharpness: float
     """Median steepness of the edges relative to the expected blur; 1 in a sharp image."""
+
+    edges: FittedEdges
+    """The edges that the pose rests on."""
 
 
 class EdgeRefiner:
@@ -143,6 +152,7 @@ class EdgeRefiner:
                 for number in np.flatnonzero(wanted > 10).tolist()
             },
             *_sharpness(step.measured, kept, model.line[numbers[kept]]),
+            FittedEdges(profiles, step),
         )
 
 

@@ -54,6 +54,9 @@ class EdgeMatch:
     reading: CellReading
     """What the cells say at this pose; nothing where too few edges were found."""
 
+    rigid: bool
+    """Whether the edges lie as those of one rigid cube, and not as on a picture of one."""
+
     proved: bool
     """Whether edges and cells prove that this is the cube."""
 
@@ -78,8 +81,8 @@ class EdgeSearch:
         if found.support >= MIN_EDGE_SUPPORT_WITH_MARKERS:
             reading = self._reader.read(patch, found.camera_from_cube)
         covariance = self._inflate_covariance(found, blur_motion)
-        proved = self._is_rigid(found) and _prove(found, reading)
-        return EdgeMatch(found, covariance, reading, proved)
+        rigid = self._is_rigid(found)
+        return EdgeMatch(found, covariance, reading, rigid, rigid and _prove(found, reading))
 
     def search(
         self, patch: Patch, start: Array, blur_motion: Array | None = None
@@ -103,6 +106,7 @@ class EdgeSearch:
             residual=found.residual / found.support,
             certain=True,
             measurements=found.line_count,
+            edges=found.edges,
         )
 
     def mirrored_pose(self, candidate: Candidate) -> Array:

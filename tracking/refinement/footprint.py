@@ -22,7 +22,10 @@ class Footprint:
         self._projection = projection
         self._focal_px = float(projection.matrix[0, 0])
         signs = [(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
-        self._corners = np.array(signs, np.float64) * cube.edge / 2
+        corners = np.array(signs, np.float64) * cube.edge / 2
+        markers = [face.corners for face in cube.faces]
+        outside = np.abs(np.concatenate(markers)).max() > cube.edge / 2
+        self._corners = np.concatenate([corners, *markers]) if outside else corners
         self.half_edge = cube.edge / 2
         """Half the edge of the cube [m]."""
         self.cell = cell_size(cube)

@@ -4,12 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tracking.geometry.arrays import Array, Indices
+from tracking.geometry.arrays import Array, Flags, Indices
 from tracking.geometry.robust_statistics import quantile
 
 MAX_RESIDUAL_SIGMAS, MIN_CUT_SHARE = 2.0, 0.2
 """Residuals beyond this many standard deviations lose their weight (fingers, glare, shadows), but
 not below this share of the contrast, which an edge leaves that is not yet in place."""
+
+WRONG_SHARE = 0.5
+"""A cell that is brighter or darker than rendered by this share of the contrast is wrong."""
 
 MIN_FACE_SAMPLES = 30
 """A face with fewer samples has no correlation of its own."""
@@ -32,7 +35,8 @@ class PhotometricSamples:
     """Share of white in the rendered mixture, 0…1, (N,)."""
 
     jacobian: Array
-    """Derivative of `rendered` by a pose delta and by the blur motion, (N, 12)."""
+    """Derivative of `rendered` by a pose delta and by K properties of the image: blur motion, or
+    blur and bloom, (N, 6 + K)."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,7 @@ class PhotometricFit:
     """The fitted samples."""
 
     rows: Array
-    """Jacobian of the residual: pose, blur motion, then the tones, (N, 12 + tones)."""
+    """Jacobian of the residual: pose, the K others, then the tones, (N, 6 + K + tones)."""
 
     normal: Array
     """Their normal matrix without priors."""
@@ -51,8 +55,15 @@ class PhotometricFit:
     right_side: Array
     """The right-hand side of the normal equations."""
 
+    faces: int
+    """Number of faces in view."""
+
     tones: Array
-    """Black of each face, white minus black of each face, and the bend of mixtures."""
+    """Black of each face, white minus black of each face, the bend of mixtures, and the slopes of
+    the light across each face, if they were fitted."""
+
+    even: Array
+    """Light in the image without those slopes, (N,)."""
 
     residual: Array
     """Residuals, (N,)."""
@@ -64,26 +75,27 @@ class PhotometricFit:
     """Standard deviation of the residual."""
 
     def step(self, expected: Array, prior: Array) -> Array:
-        """Solve for the step of pose and blur motion, (12,).
+        """Solve for the step of the pose and of the K others, (6 + K,).
 
-        That of the motion is expected to be `expected` with standard deviations `prior`, (6,) each.
+        That of the others is expected to be `expected` with standard deviations `prior`, (K,) each.
         """
         normal, right_side = self._with(prior), self.right_side.copy()
-        right_side[6:12] += expected / prior**2
-        return np.asarray(np.linalg.solve(normal, right_side)[:12], np.float64)
+        count = 6 + len(prior)
+        right_side[6:count] += expected / prior**2
+        return np.asarray(np.linalg.solve(normal, right_side)[:count], np.float64)
 
     def covariance(self, prior: Array) -> Array:
-        """Covariance of pose and blur motion, (12, 12), with each block as one measurement."""
-        inverse = np.linalg.inv(self._with(prior))
+        """Covariance of pose and others, (6 + K, 6 + K), with each block as one measurement."""
+        inverse, end = np.linalg.inv(self._with(prior)), 6 + len(prior)
         order = np.argsort(self.samples.block, kind="stable")
         starts = np.flatnonzero(np.diff(self.samples.block[order], prepend=-1))
-        weighted = self.rows * (self.weights * self.residual)[:, None]
-        scores = np.add.reduceat(weighted[order], starts) @ inverse[:, :12]
+        weighted = self.rows.T * (self.weights * self.residual)
+        scores = np.add.reduceat(weighted[:, order], starts, axis=1).T @ inverse[:, :end]
         count, used = len(starts), self.rows.shape[1] / 2
         spread = scores.T @ scores * (count / max(count - used, 1.0))
-        own = inverse[:12, 6:12] / prior
+        own = inverse[:end, 6:end] / prior
         # A few blocks cannot span all directions: add a share of the independent covariance.
-        return np.asarray(spread + own @ own.T + 0.2 * inverse[:12, :12], np.float64)
+        return np.asarray(spread + own @ own.T + 0.2 * inverse[:end, :end], np.float64)
 
     def motion_information(self, motion: Array, step: Array, prior: Array) -> tuple[Array, Array]:
         """Information times blur motion, (6,), and information, (6, 6), without the prior.
@@ -97,35 +109,67 @@ class PhotometricFit:
     @property
     def contrast(self) -> float:
         """White minus black of the face where it is greatest."""
-        return float(self.tones[self._faces : 2 * self._faces].max())
+        return float(self.tones[self.faces : 2 * self.faces].max())
 
     @property
     def mixture_tones(self) -> tuple[float, float]:
         """Bend of mixtures, and black over white, as `ToneCurve.learn` takes them."""
-        best = int(np.argmax(self.tones[self._faces : 2 * self._faces]))
+        best = int(np.argmax(self.tones[self.faces : 2 * self.faces]))
         black, contrast = float(self.tones[best]), max(self.contrast, 1e-3)
-        return float(self.tones[-1]) / contrast, black / (black + contrast)
+        return float(self.tones[2 * self.faces]) / contrast, black / (black + contrast)
+
+    @property
+    def visible_correlations(self) -> Array:
+        """Correlation over the samples that fit, and their share, for each face, (faces, 2).
+
+        A finger covers the others.
+        """
+        weight = self.light * (self.weights * self.scale**2)
+        count = self.light.sum(axis=1)
+        return np.stack([self._alike(weight), weight.sum(axis=1) / np.maximum(count, 1)], axis=1)
+
+    def correlations_within(self, chosen: Flags) -> Array:
+        """Correlation of rendering and image over some samples, (N,), for each face, (faces,)."""
+        return self._alike(self.light * chosen)
+
+    def wrong_cells(self, cells: Indices, count: int) -> Array:
+        """Count the cells of each face, (faces,), that are not as bright as they are rendered.
+
+        `cells` is the cell of each sample on its face, 0 to `count` − 1, or −1 for none, (N,).
+        """
+        found = np.zeros(self.faces)
+        for face, contrast in enumerate(self.tones[self.faces : 2 * self.faces]):
+            of = np.flatnonzero((self.light[face] > 0) & (cells >= 0))
+            samples = np.bincount(cells[of], minlength=count)
+            off = np.bincount(cells[of], self.residual[of], count) / np.maximum(samples, 1)
+            found[face] = np.count_nonzero(np.abs(off) > WRONG_SHARE * abs(contrast))
+        return found
 
     @property
     def correlations(self) -> Array:
         """Correlation of rendering and image, over all and for each face; NaN if not in view."""
-        fitted = self.samples.seen - self.residual
-        whole = [_correlation(self.samples.seen, fitted)]
-        for face in range(self._faces):
-            of = self.samples.face == face
-            enough = np.count_nonzero(of) > MIN_FACE_SAMPLES
-            whole.append(_correlation(self.samples.seen[of], fitted[of]) if enough else np.nan)
-        return np.array(whole)
+        overall = _correlations(self.even, self.even - self.residual, np.ones((1, len(self.even))))
+        each = self._alike(self.light)
+        each[self.light.sum(axis=1) <= MIN_FACE_SAMPLES] = np.nan
+        return np.concatenate([overall, each])
+
+    def _alike(self, weights: Array) -> Array:
+        """Correlation with weights, (faces, N), for each face: negative where black is brighter."""
+        found = _correlations(self.even, self.even - self.residual, weights)
+        found[self.tones[self.faces : 2 * self.faces] < 0] *= -1
+        found[np.count_nonzero(weights, axis=1) <= MIN_FACE_SAMPLES] = 0.0
+        return found
 
     @property
-    def _faces(self) -> int:
-        return len(self.tones) // 2
+    def light(self) -> Array:
+        """Which samples lie on each face: 1 or 0, (faces, N)."""
+        return self.rows.T[-len(self.tones) :][: self.faces]
 
     def _with(self, prior: Array) -> Array:
         normal = self.normal.copy()
         diagonal = np.full(len(normal), 1e-3)
-        diagonal[6:12] = 1 / prior**2
-        normal[np.diag_indices_from(normal)] += diagonal
+        diagonal[6 : 6 + len(prior)] = 1 / prior**2
+        normal.flat[:: len(normal) + 1] += diagonal
         return normal
 
 
@@ -167,32 +211,56 @@ class Alignment:
         return min(self.correlation, *self.face_correlations.values())
 
 
-def fit_tones(samples: PhotometricSamples, faces: int) -> PhotometricFit:
-    """Fit the tones of all faces in view with robust weights: each face has its own light."""
-    face, rendered, seen = samples.face, samples.rendered, samples.seen
-    light = (face[:, None] == np.arange(faces)).astype(np.float64)
-    mixed = (rendered * (1 - rendered))[:, None]
-    rows_of_tones = np.concatenate([light, light * rendered[:, None], mixed], axis=1)
-    robust, scale = np.ones(len(seen)), 1.0
-    regularization = np.eye(rows_of_tones.shape[1]) * 1e-3
-    for _ in range(2):
-        weighted = rows_of_tones * robust[:, None]
-        normal = weighted.T @ rows_of_tones + regularization
-        tones = np.linalg.solve(normal, weighted.T @ seen)
-        residual = seen - rows_of_tones @ tones
+def fit_tones(
+    samples: PhotometricSamples, faces: int, places: Array | None = None
+) -> PhotometricFit:
+    """Fit the tones of all faces in view with robust weights: each face has its own light.
+
+    `places` are those of the samples on their faces, −1…1, (N, 2), if the light of a face may
+    have a slope.
+    """
+    rendered, seen = samples.rendered, samples.seen
+    count, flat = samples.jacobian.shape[1], 2 * faces + 1
+    slopes = 0 if places is None else 2 * faces
+    # One property of all samples after the other is faster than one sample after the other.
+    rows = np.empty((count + flat + slopes, len(seen)))
+    rows_of_tones, used = rows[count:], rows[count : count + flat]
+    light = rows_of_tones[:faces]
+    light[:] = samples.face == np.arange(faces)[:, None]
+    np.multiply(light, rendered, out=used[faces : 2 * faces])
+    np.multiply(rendered, 1 - rendered, out=used[-1])
+    weighted, scale = used, 1.0
+    for last in (False, True):
+        normal = weighted @ used.T
+        normal.flat[:: len(normal) + 1] += 1e-3
+        tones = np.linalg.solve(normal, weighted @ seen)
+        residual = seen - tones @ used
         scale = 1.4826 * quantile(np.abs(residual), 0.5) + 0.3
         contrast = float(tones[faces : 2 * faces].max())
         cut = max(MAX_RESIDUAL_SIGMAS * scale, MIN_CUT_SHARE * contrast)
         robust = 1 / np.square(1 + np.square(residual / cut))
-    strength = tones[faces : 2 * faces][face] + tones[-1] * (1 - 2 * rendered)
-    rows = np.concatenate([samples.jacobian * strength[:, None], rows_of_tones], axis=1)
+        if last:
+            break
+        if places is not None:
+            # A slope of the light changes black and white by the same share.
+            sloping = (seen - residual) * places.T
+            np.multiply(light, sloping[:, None], out=rows_of_tones[flat:].reshape(2, faces, -1))
+            used = rows_of_tones
+        weighted = used * robust
+    even = seen - tones[flat:] @ rows_of_tones[flat:]
+    strength = tones[faces : 2 * faces] @ light + tones[2 * faces] * (1 - 2 * rendered)
+    np.multiply(samples.jacobian.T, strength, out=rows[:count])
     weights = robust / scale**2
-    weighted = rows * weights[:, None]
+    weighted = rows * weights
     return PhotometricFit(
-        samples, rows, weighted.T @ rows, weighted.T @ residual, tones, residual, weights, scale
-    )
+        samples, rows.T, weighted @ rows.T, weighted @ residual, faces, tones, even, residual,
+        weights, scale,
+    )  # fmt: skip
 
 
-def _correlation(a: Array, b: Array) -> float:
-    a, b = a - a.mean(), b - b.mean()
-    return float(a @ b / np.sqrt(max(float((a @ a) * (b @ b)), 1e-12)))
+def _correlations(a: Array, b: Array, weights: Array) -> Array:
+    """Correlation of a and b, (N,) each, with each row of weights, (M, N), (M,)."""
+    share = weights / np.maximum(weights.sum(axis=1), 1e-9)[:, None]
+    a, b = a - (share @ a)[:, None], b - (share @ b)[:, None]
+    across, one, two = ((share * x * y).sum(axis=1) for x, y in ((a, b), (a, a), (b, b)))
+    return np.asarray(across / np.sqrt(np.maximum(one * two, 1e-12)), np.float64)

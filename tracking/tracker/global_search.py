@@ -1,7 +1,8 @@
 """The search for a cube anywhere in an image: cheap methods first, thorough ones last."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
+from typing import Literal
 
 import cv2
 import numpy as np
@@ -11,16 +12,31 @@ from tracking.detection.markers import Marker, MarkerDetector, Observation, mark
 from tracking.detection.partly_hidden_markers import PartlyHiddenMarkerDetector
 from tracking.geometry.arrays import Array, Floats, Image
 from tracking.geometry.frame import Frame
-from tracking.geometry.image_region import Patch
+from tracking.geometry.image_region import Region
 from tracking.geometry.projection import Projection
 from tracking.refinement.blur_search import BlurSearch
 from tracking.refinement.candidate import Candidate
+from tracking.refinement.cell_search import CellSearch
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
 from tracking.tracker.marker_poses import MarkerPoses
+from tracking.tracker.verdict import is_unambiguous
 
-MIN_HALVED_HEIGHT_PX = 480
+MIN_HALVED_HEIGHT_PX = 600
 """Images of at least this height are searched at half their size first."""
+
+MIN_SINGLE_HEIGHT_PX = 400
+"""Lower images are searched for partly hidden markers at twice their size."""
+
+MAX_NEIGHBOURS, NEIGHBOURHOOD_SIDES = 3, 2.0
+"""Around so many markers, the last ones, those of the same cube are searched, within so many of
+their sides."""
+
+SAME_CORNER_PX = 8.0
+"""Corners of one marker that two passes found are this close to each other."""
+
+Pass = Literal["half size", "first window", "other windows"]
+"""The passes of OpenCV's detector over an image."""
 
 
 class FrameMarkers:
@@ -29,23 +45,28 @@ class FrameMarkers:
     def __init__(self, frame: Frame, detectors: Mapping[str, MarkerDetector]) -> None:
         self._image = frame.image
         self._detectors = detectors
-        self._read: dict[tuple[str, bool], list[Marker]] = {}
+        self._read: dict[tuple[str, Pass], list[Marker]] = {}
 
     @cached_property
     def grey(self) -> Image:
         """The image in grey, (H, W)."""
         return np.asarray(cv2.cvtColor(self._image, cv2.COLOR_BGR2GRAY), np.uint8)
 
-    def read(self, dictionary: str, halved: bool) -> list[Marker]:
-        """Read all markers of a dictionary, in the image or in one of half its size."""
-        key = (dictionary, halved)
+    def read(self, dictionary: str, by: Pass) -> list[Marker]:
+        """Read all markers of a dictionary in one pass; the last two add to each other."""
+        key = (dictionary, by)
         if key not in self._read:
-            self._read[key] = self._detect(self._detectors[dictionary], halved)
+            self._read[key] = self._detect(dictionary, by)
         return self._read[key]
 
-    def _detect(self, detector: MarkerDetector, halved: bool) -> list[Marker]:
-        if not halved:
+    def _detect(self, dictionary: str, by: Pass) -> list[Marker]:
+        detector = self._detectors[dictionary]
+        if by == "first window":
             return detector.detect(self.grey)
+        if by == "other windows":
+            known = self.read(dictionary, "first window")
+            others = detector.detect_others(self.grey)
+            return [*known, *(new for new in others if not any(_same(new, old) for old in known))]
         height, width = self.grey.shape
         small = cv2.resize(self.grey, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
         # Pixel centres lie at whole numbers: the first small one is at 0.5 of the large ones.
@@ -55,15 +76,25 @@ class FrameMarkers:
         ]
 
 
+def _same(new: Marker, old: Marker) -> bool:
+    apart = np.abs(new.corners - old.corners).max()
+    return new.marker_id == old.marker_id and bool(apart < SAME_CORNER_PX)
+
+
 class GlobalDetector:
     """Finds one cube without a past: by its markers and `edges`, or by its blurred image."""
 
     def __init__(
-        self, cube: CubeModel, projection: Projection, edges: EdgeSearch, blur: BlurSearch
+        self,
+        cube: CubeModel,
+        projection: Projection,
+        edges: EdgeSearch,
+        cells: CellSearch,
+        blur: BlurSearch,
     ) -> None:
         self._cube = cube
         self._footprint = Footprint(cube, projection)
-        self._poses = MarkerPoses(cube, projection, edges)
+        self._poses = MarkerPoses(cube, projection, edges, cells)
         self._hidden = PartlyHiddenMarkerDetector(cube)
         self._blur = blur
 
@@ -80,28 +111,32 @@ class GlobalDetector:
         These are the first that edges prove and that leave no choice, else those of the last
         search; `thorough` looks for partly hidden markers too. `expected` is the predicted pose.
         """
-        patch = Patch.crop(markers.grey, None, tone)
         found: list[Candidate] = []
-        for observations in self._observations(markers, thorough):
-            candidates = self._poses.find(patch, observations, expected) if observations else []
-            if any(each.certain for each in candidates):
-                if _is_unambiguous(candidates):
-                    return candidates
-                found = candidates
-            elif not any(each.certain for each in found):
-                found = candidates or found
+        seen: list[Observation] = []
+        for observations in self._observations(markers, thorough, seen):
+            seen += observations
+            if observations:
+                poses = self._poses.find(markers.grey, observations, expected, tone)
+                found = _merged(found, poses)
+                if is_unambiguous(found):
+                    return found
         if any(each.certain for each in found):
             return found
         return self._align_blurred(image, tone, found)
 
-    def _observations(self, markers: FrameMarkers, thorough: bool) -> Iterator[list[Observation]]:
-        """Read markers at half the size, at full size, and then partly hidden ones."""
-        dictionary = self._cube.dictionary
-        if len(markers.grey) >= MIN_HALVED_HEIGHT_PX:
-            yield markers_of(self._cube, markers.read(dictionary, halved=True))
-        yield markers_of(self._cube, markers.read(dictionary, halved=False))
-        if thorough:
-            yield self._hidden.detect(markers.grey)
+    def _observations(
+        self, markers: FrameMarkers, thorough: bool, seen: Sequence[Observation]
+    ) -> Iterator[list[Observation]]:
+        """Read markers in ever more costly passes; `thorough` ends with partly hidden ones."""
+        passes: tuple[Pass, ...] = ("half size", "first window", "other windows")
+        for by in passes[len(markers.grey) < MIN_HALVED_HEIGHT_PX :]:
+            yield markers_of(self._cube, markers.read(self._cube.dictionary, by))
+        if not thorough:
+            return
+        small = len(markers.grey) < MIN_SINGLE_HEIGHT_PX
+        yield self._hidden.detect(markers.grey, doubled=small)
+        if seen and not small:
+            yield self._hidden.detect(markers.grey, _around(seen, markers.grey), doubled=True)
 
     def _align_blurred(
         self, image: Image, tone: Floats, candidates: list[Candidate]
@@ -116,7 +151,19 @@ class GlobalDetector:
         return [each for each in found if each] or candidates
 
 
-def _is_unambiguous(candidates: list[Candidate]) -> bool:
-    """Whether there is one pose, or one that is clearly better than the others."""
-    best, *others = sorted(candidates, key=lambda each: each.residual)
-    return all(best.same_pose(other) or best.clearly_better_than(other) for other in others)
+def _around(seen: Sequence[Observation], grey: Image) -> Region:
+    """Return the region around the latest markers in which their cube lies."""
+    corners = np.concatenate([each.corners for each in seen[-MAX_NEIGHBOURS:]])
+    reach = NEIGHBOURHOOD_SIDES * max(each.size for each in seen[-MAX_NEIGHBOURS:])
+    left, top = np.maximum(corners.min(axis=0) - reach, 0).astype(int).tolist()
+    right, bottom = np.minimum(corners.max(axis=0) + reach, grey.shape[::-1]).astype(int).tolist()
+    return left, top, right, bottom
+
+
+def _merged(one: list[Candidate], other: list[Candidate]) -> list[Candidate]:
+    """Join two lists; of poses that are the same, keep the better one. The best comes first."""
+    kept: list[Candidate] = []
+    for each in sorted([*one, *other], key=lambda each: (-each.certain, -each.evidence)):
+        if not any(each.same_pose(better) for better in kept):
+            kept.append(each)
+    return kept

@@ -9,6 +9,7 @@ from tracking.geometry.projection import Projection
 from tracking.refinement.blur_search import MAX_EDGE_BLUR_CELLS, MIN_CORRELATION_ALONE, BlurSearch
 from tracking.refinement.camera_model import BlurObservation, CameraModel, shows_exposure
 from tracking.refinement.candidate import Candidate
+from tracking.refinement.cell_search import CellSearch
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
 from tracking.refinement.photometric_fit import Alignment
@@ -16,6 +17,10 @@ from tracking.tracker.prediction import Prediction, Track
 
 MAX_MOTION_SURPRISE_CELLS = 0.07
 """The edges are measured again where the measured blur motion differs by more from the expected."""
+
+
+MIN_EDGE_CELL_PX = 3.0
+"""Smaller cells have no single edges to measure, and are compared as a whole."""
 
 
 @dataclass(frozen=True)
@@ -36,9 +41,15 @@ class LocalTracker:
     """Finds one cube near its predicted pose, by `edges` or by `blur`."""
 
     def __init__(
-        self, cube: CubeModel, projection: Projection, edges: EdgeSearch, blur: BlurSearch
+        self,
+        cube: CubeModel,
+        projection: Projection,
+        edges: EdgeSearch,
+        cells: CellSearch,
+        blur: BlurSearch,
     ) -> None:
         self._footprint = Footprint(cube, projection)
+        self._cells = cells
         self._edges = edges
         self._blur = blur
 
@@ -52,6 +63,10 @@ class LocalTracker:
         found = self._by_edges(patch, track, prediction, camera)
         if found is not None:
             return self._studied(patch, found, track, prediction.timestamp, camera)
+        if self._footprint.pixels_per_cell(prediction.camera_from_cube) < MIN_EDGE_CELL_PX:
+            match = self._cells.search(image, prediction.camera_from_cube, camera.tone)
+            if match is not None and match.proved:
+                return LocalMatch(match.candidate)
         return self._by_blur(patch, track, prediction, camera)
 
     def _by_edges(

@@ -1,120 +1,218 @@
-"""Candidate poses from the markers of one frame, refined on the edges."""
+"""Candidate poses from the markers of one frame, weighed by all faces in view."""
 
+from dataclasses import replace
+
+import numpy as np
+
+from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import Observation
 from tracking.detection.pose_from_points import CornerPose, CornerPoseSolver
 from tracking.geometry import se3
-from tracking.geometry.arrays import Array
-from tracking.geometry.image_region import Patch
+from tracking.geometry.arrays import Array, Floats, Image
 from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
-from tracking.refinement.edge_search import EdgeMatch, EdgeSearch
+from tracking.refinement.cell_search import CellMatch, CellSearch
+from tracking.refinement.edge_search import EdgeSearch
+from tracking.refinement.footprint import Footprint
 
-MAX_CORNER_DISTANCE_CELLS, MAX_LONE_CORNER_DISTANCE_PX = 1.0, 1.15
-"""Edges and corners must agree to this, the second where only one marker was read: blur moves its
-corners away from the edges, and would put the cube centimetres too near or too far."""
+MIN_EDGE_CELL_PX = 6.0
+"""From this size of a cell on, single edges are more precise than whole cells, whose blur and light
+differ from their model."""
 
-MIN_EDGE_SUPPORT = 0.3
-"""Share of the edges in view that must be found where markers were read; fingers cover the rest."""
+MIN_AGREED_CELL_PX = 3.0
+"""Size of a cell from which on edges alone prove a pose that several faces agree on."""
 
-MIN_FACE_SUPPORT, MIN_LONE_FACE_SUPPORT = 0.6, 0.85
-"""The same for the best of the faces whose markers were read, and for the only one: blur that hides
-the other faces leaves less of it, fingers that do so leave all of it."""
+MIN_FACE_SUPPORT = 0.6
+"""Share of the edges of a marker that was read that must be found, of two markers at least."""
+
+MIN_AGREEMENT, MIN_BEST_AGREEMENT = 0.85, 0.95
+"""Share of the cells of such a face that must be as expected, and of the best of them: half of the
+cells are alike on all markers."""
 
 MIN_SHARPNESS = 0.75
-"""Edges that are duller than this show a blurred image, which is aligned as one."""
+"""Edges that are duller than this show a blurred image."""
+
+MAX_EDGE_STEP_CELLS = 0.5
+"""Edges may move a pose that the cells have found by this much."""
 
 MIN_FINE_CELL_PX = 4.0
 """Cells larger than this have edges that a sharp image shows."""
+
+MAX_CORNER_DISTANCE = 0.1
+"""A marker that was read lies where a pose puts it, to this share of its side; by most of its
+corners, as one of them may be hidden."""
+
+NEAR_ANGLE = np.deg2rad(8)
+"""A pose that is found this near to where a search would start is its result [rad]."""
+
+MAX_OWN_DISTANCE = 1.0
+"""A marker this near to where a pose puts it, in sides, is that of the same cube."""
 
 CELLS_PER_MARKER = 6
 """Cells along a marker of 4×4 bits and its border."""
 
 
 class MarkerPoses:
-    """Proposes poses of one cube from the corners of its markers, refined and proved by `edges`."""
+    """Proposes poses of one cube from its markers, aligned and weighed by `cells`."""
 
-    def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
+    def __init__(
+        self, cube: CubeModel, projection: Projection, edges: EdgeSearch, cells: CellSearch
+    ) -> None:
         self._solver = CornerPoseSolver(cube, projection)
+        self._projection = projection
+        self._faces = FacePlanes(cube)
+        self._footprint = Footprint(cube, projection)
         self._edges = edges
+        self._cells = cells
 
     def find(
-        self, patch: Patch, observations: list[Observation], expected: Array | None
+        self, image: Image, observations: list[Observation], expected: Array | None, tone: Floats
     ) -> list[Candidate]:
-        """Propose up to two poses for the markers of an image; `expected` is the predicted one."""
+        """Propose up to two poses for the markers of an image, (H, W) grey.
+
+        `expected` is the predicted pose, `tone` the light for each grey value, (256,).
+        """
+        found: list[Candidate] = []
         solutions = self._solver.solve(observations, expected)
-        solutions = [each for each in solutions if not _is_contradicted(each, observations)]
-        if expected is not None:
-            solutions.sort(key=lambda each: se3.angle_between(each.camera_from_cube, expected))
-        matches = [self._edges.match(patch, each.camera_from_cube) for each in solutions]
-        found = [self._candidate(*each) for each in zip(solutions, matches, strict=True)]
-        if any(each.certain for each in found):
-            return self._with_mirrored(patch, found)
-        return [
-            self._candidate(solution, self._widely_matched(patch, solution, match))
-            for solution, match in zip(solutions, matches, strict=True)
-        ]
+        for solution in solutions:
+            agreed = self._agreed(image, solution, observations, tone)
+            if agreed is not None:
+                return [agreed]
+        for solution in solutions:
+            read = tuple(each.face.name for each in solution.observations)
+            match = self._cells.search(image, solution.camera_from_cube, tone, read)
+            found += self._candidates(image, solution, match, observations, tone)
+        best = max(found, key=lambda each: each.evidence, default=None)
+        if best is not None and best.certain and len(best.faces) == 1:
+            # The face may lean the other way, whether or not the corners proposed that.
+            start = self._edges.mirrored_pose(best)
+            if any(_near(each.camera_from_cube, start) for each in found):
+                return found
+            match = self._cells.search(image, start, tone, best.faces)
+            solution = replace(solution, camera_from_cube=start)
+            found += self._candidates(image, solution, match, observations, tone)
+        return found
 
-    def _with_mirrored(self, patch: Patch, found: list[Candidate]) -> list[Candidate]:
-        """Add the other pose of a single face, where the corners alone did not propose it."""
-        if len(found) > 1 or len(found[0].faces) > 1:
-            return found
-        other = self._edges.search(patch, self._edges.mirrored_pose(found[0]))
-        return [*found, other] if other and not found[0].same_pose(other) else found
-
-    def _widely_matched(
-        self, patch: Patch, solution: CornerPose, precise: EdgeMatch | None
-    ) -> EdgeMatch | None:
-        """Search widely where the precise search found too few of the edges."""
-        support = precise.refinement.support if precise else 0.0
-        if support >= MIN_FACE_SUPPORT:
-            return precise
-        wide = self._edges.match(patch, solution.camera_from_cube, wide=True)
-        return wide if wide and wide.refinement.support > support else precise
-
-    def _candidate(self, solution: CornerPose, match: EdgeMatch | None) -> Candidate:
-        """Take the pose of the edges where they agree with the corners, else the corners' own."""
-        seen = solution.observations
-        faces = tuple(each.face.name for each in seen)
-        if match is None or not self._agree(solution, match):
-            fine = min(each.size for each in seen) / CELLS_PER_MARKER > MIN_FINE_CELL_PX
-            return Candidate(
-                camera_from_cube=solution.camera_from_cube,
-                covariance=solution.covariance,
-                source="markers",
-                faces=faces,
-                error=solution.error,
-                residual=max(solution.error, 0.5),
-                certain=False,
-                blurred=fine or len(seen) == 1,
-            )
+    def _agreed(
+        self,
+        image: Image,
+        solution: CornerPose,
+        observations: list[Observation],
+        tone: Floats,
+    ) -> Candidate | None:
+        """Take the pose of the edges where several faces agree on it: no other can be right."""
+        seen, pose = solution.observations, solution.camera_from_cube
+        if self._footprint.pixels_per_cell(pose) < MIN_AGREED_CELL_PX:
+            return None
+        patch = self._footprint.crop(image, pose, tone)
+        match = self._edges.match(patch, pose) if patch else None
+        if match is None or not match.proved:
+            return None
         refined = match.refinement
+        faces = tuple(
+            face
+            for face, share in refined.face_support.items()
+            if share > MIN_FACE_SUPPORT and match.reading.agreement.get(face, 0.0) > MIN_AGREEMENT
+        )
+        if len(faces) < 2 or refined.sharpness < MIN_SHARPNESS:
+            return None
+        if match.reading.best < MIN_BEST_AGREEMENT:
+            return None
+        if self._is_contradicted(refined.camera_from_cube, faces, observations):
+            return None
         return Candidate(
             camera_from_cube=refined.camera_from_cube,
             covariance=match.covariance,
             source="markers",
             faces=faces,
             error=self._solver.error(refined.camera_from_cube, seen),
-            residual=refined.residual / refined.support,
-            certain=refined.sharpness > MIN_SHARPNESS and match.proved,
-            measurements=refined.line_count,
+            residual=refined.residual,
+            certain=True,
+            evidence=np.inf,
         )
 
-    def _agree(self, solution: CornerPose, match: EdgeMatch) -> bool:
-        """Whether the edges moved the pose by less than the corners allow."""
-        refined, seen = match.refinement, solution.observations
-        pose = refined.camera_from_cube
-        if not all(self._solver.looks_at_camera(each.face.name, pose) for each in seen):
-            return False
-        alone = len(seen) == 1
-        cell = min(each.size for each in seen) / CELLS_PER_MARKER
-        limit = solution.error + MAX_CORNER_DISTANCE_CELLS * cell
-        far = self._solver.error(pose, seen) > (MAX_LONE_CORNER_DISTANCE_PX if alone else limit)
-        best = max(refined.face_support.get(each.face.name, 0.0) for each in seen)
-        supported = best > (MIN_LONE_FACE_SUPPORT if alone else MIN_FACE_SUPPORT)
-        return refined.support > MIN_EDGE_SUPPORT and supported and not far
+    def _candidates(
+        self,
+        image: Image,
+        solution: CornerPose,
+        match: CellMatch | None,
+        observations: list[Observation],
+        tone: Floats,
+    ) -> list[Candidate]:
+        """Take the pose of cells or edges where they show the cube, else that of the corners.
+
+        There is none where other markers contradict a pose that rests on one.
+        """
+        if match is None or not match.proved:
+            seen = solution.observations
+            fine = min(each.size for each in seen) / CELLS_PER_MARKER > MIN_FINE_CELL_PX
+            if len(seen) == 1 < len({each.face.name for each in observations}):
+                return []
+            corners = Candidate(
+                camera_from_cube=solution.camera_from_cube,
+                covariance=solution.covariance,
+                source="markers",
+                faces=tuple(each.face.name for each in seen),
+                error=solution.error,
+                residual=max(solution.error, 0.5),
+                certain=False,
+                blurred=fine or len(seen) == 1,
+                evidence=match.evidence if match else 0.0,
+            )
+            return [corners]
+        pose = match.alignment.camera_from_cube
+        if self._is_contradicted(pose, match.found, observations):
+            return []
+        error = self._solver.error(pose, solution.observations)
+        candidate = replace(match.candidate, error=error)
+        return [self._on_edges(image, candidate, tone)]
+
+    def _on_edges(self, image: Image, candidate: Candidate, tone: Floats) -> Candidate:
+        """Refine a pose on the edges where these are far enough apart; they tell screens, too."""
+        pose = candidate.camera_from_cube
+        cell = self._footprint.pixels_per_cell(pose)
+        if cell < MIN_AGREED_CELL_PX or not candidate.certain:
+            return candidate
+        patch = self._footprint.crop(image, pose, tone)
+        match = self._edges.match(patch, pose) if patch else None
+        if match is None:
+            return candidate
+        if not match.rigid or (cell > MIN_EDGE_CELL_PX and not match.proved):
+            return replace(candidate, certain=False)
+        refined = match.refinement.camera_from_cube
+        step = self._footprint.blur_extent(se3.delta(pose, refined))
+        if cell < MIN_EDGE_CELL_PX or step > MAX_EDGE_STEP_CELLS:
+            return candidate
+        return replace(
+            candidate,
+            camera_from_cube=refined,
+            covariance=match.covariance,
+            residual=match.refinement.residual / match.refinement.support,
+            measurements=match.refinement.line_count,
+        )
+
+    def _is_contradicted(
+        self, pose: Array, faces: tuple[str, ...], observations: list[Observation]
+    ) -> bool:
+        """Whether a marker was read where the cube has none: that of a flat sheet, of a picture.
+
+        Beside two faces that are found only a near one contradicts: a far one is another cube's.
+        """
+        far = np.inf if len(faces) == 1 else MAX_OWN_DISTANCE
+        distances = [
+            self._distance(pose, each) for each in observations if each.face.name not in faces
+        ]
+        return any(MAX_CORNER_DISTANCE < each <= far for each in distances)
+
+    def _distance(self, pose: Array, seen: Observation) -> float:
+        """How far most corners of a marker are from where a pose puts them, by its side."""
+        if not self._solver.looks_at_camera(seen.face.name, pose):
+            return np.inf
+        points = seen.face.corners @ pose[:3, :3].T + pose[:3, 3]
+        away = np.linalg.norm(self._projection.project(points) - seen.corners, axis=1)
+        return float(np.median(away)) / seen.size
 
 
-def _is_contradicted(solution: CornerPose, observations: list[Observation]) -> bool:
-    """Whether other markers contradict a pose that rests on one: those of a flat sheet do."""
-    return len(solution.observations) == 1 < len({each.face.name for each in observations})
+def _near(pose: Array, other: Array) -> bool:
+    return bool(se3.angle_between(pose, other) < NEAR_ANGLE)

@@ -34,13 +34,16 @@ class TrackedPose:
     """As in `CubeState.velocity`, (6,)."""
 
     covariance: Array
-    """As in `CubeState.covariance`, (6, 6)."""
+    """As in `Candidate.covariance`, (6, 6): what differs from frame to frame."""
 
     timestamp: float
     """When [s]."""
 
     acceleration: Array = field(default_factory=lambda: np.zeros(6))
     """Estimated change of the velocity, (6,) [m/s², rad/s²]."""
+
+    systematic: Array = field(default_factory=lambda: np.zeros((6, 6)))
+    """Covariance of the errors that all frames have in common, (6, 6)."""
 
     def reaches(self, camera_from_cube: Array, timestamp: float) -> bool:
         """Whether a hand can have moved the cube from here to another pose by `timestamp`."""
@@ -68,6 +71,9 @@ class Prediction:
 
     timestamp: float
     """The moment [s]."""
+
+    systematic: Array
+    """As in `TrackedPose.systematic`, of the last pose, (6, 6)."""
 
     def covers(self, camera_from_cube: Array) -> bool:
         """Whether a pose lies within three standard deviations, along each axis."""
@@ -102,6 +108,7 @@ class Track:
             np.asarray(last.velocity + last.acceleration * accelerated, np.float64),
             last.covariance * (1 + ahead / MAX_PREDICTION_S) ** 2 + np.diag(spread**2),
             timestamp,
+            last.systematic,
         )
 
     def motion(

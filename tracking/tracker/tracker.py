@@ -13,11 +13,14 @@ from tracking.geometry.projection import Projection
 from tracking.geometry.state import CubeState
 from tracking.refinement.blur_search import BlurSearch
 from tracking.refinement.camera_model import CameraModelEstimator
+from tracking.refinement.cell_search import CellSearch
 from tracking.refinement.edge_search import EdgeSearch
+from tracking.refinement.lens_estimate import LensEstimate, LensEstimator
+from tracking.refinement.systematic_error import SystematicError
 from tracking.tracker.global_search import FrameMarkers, GlobalDetector
 from tracking.tracker.local_search import LocalMatch, LocalTracker
 from tracking.tracker.prediction import TrackedPose
-from tracking.tracker.verdict import FollowedPoseJudge, Past, judge_detected
+from tracking.tracker.verdict import FollowedPoseJudge, Past, is_uncertain, judge_detected
 
 MAX_THOROUGH_FRAMES, THOROUGH_INTERVAL = 30, 5
 """Frames without the cube in which partly hidden markers are detected, then the interval."""
@@ -45,12 +48,20 @@ class CubeTracker:
         projection = Projection(intrinsics)
         edges = EdgeSearch(cube, projection)
         blur = BlurSearch(cube, projection, edges)
-        self._local_tracker = LocalTracker(cube, projection, edges, blur)
-        self._followed_pose_judge = FollowedPoseJudge(cube, projection, edges)
-        self._global_detector = GlobalDetector(cube, projection, edges, blur)
+        cells = CellSearch(cube, projection)
+        self._local_tracker = LocalTracker(cube, projection, edges, cells, blur)
+        self._followed_pose_judge = FollowedPoseJudge(cube, projection, edges, cells)
+        self._global_detector = GlobalDetector(cube, projection, edges, cells, blur)
         self._detectors = {cube.dictionary: MarkerDetector(cube.dictionary)}
+        self._systematic_error = SystematicError(cube, projection)
         self._camera = CameraModelEstimator()
+        self._lens = LensEstimator(cube, projection)
         self._past = Past()
+
+    @property
+    def lens(self) -> LensEstimate:
+        """What the poses so far tell of the lens, besides what the intrinsics claim."""
+        return self._lens.estimate
 
     def update(self, frame: Frame, markers: FrameMarkers | None = None) -> CubeState:
         """Find the cube in the next frame, whose `markers` several trackers may share.
@@ -92,15 +103,23 @@ class CubeTracker:
         found, track = verdict.candidate, verdict.past.track
         if found is None or verdict.refused:
             return self._predicted(now, verdict.refused)
-        pose, covariance = found.camera_from_cube, found.covariance
-        velocity, acceleration = track.motion(pose, covariance, now)
-        track = track.add(TrackedPose(pose, velocity, covariance, now, acceleration))
+        pose, noise = found.camera_from_cube, found.covariance
+        by_corners, by_lens = self._systematic_error.covariance(
+            pose, found.faces, self._lens.k1_error
+        )
+        if is_uncertain(noise + by_corners):
+            return self._predicted(now, "unsure")
+        if found.edges is not None:
+            self._lens.learn(pose, found.edges)
+        velocity, acceleration = track.motion(pose, noise, now)
+        systematic = by_corners + by_lens
+        track = track.add(TrackedPose(pose, velocity, noise, now, acceleration, systematic))
         self._past = replace(verdict.past, track=track, jump=None, frames_lost=0)
         return CubeState(
             visible=True,
             camera_from_cube=pose,
             velocity=velocity,
-            covariance=covariance,
+            covariance=noise + systematic,
             source=found.source,
             faces=found.faces,
             reprojection_error=found.error,
@@ -110,11 +129,14 @@ class CubeTracker:
     def _predicted(self, now: float, refused: str) -> CubeState:
         """Return the state of a cube that is not seen, with a covariance that grows."""
         prediction = self._past.track.predict(now)
+        covariance = np.full((6, 6), np.nan)
+        if prediction:
+            covariance = prediction.covariance + prediction.systematic
         return CubeState(
             visible=False,
             camera_from_cube=prediction.camera_from_cube if prediction else None,
             velocity=prediction.velocity if prediction else np.zeros(6),
-            covariance=prediction.covariance if prediction else np.full((6, 6), np.nan),
+            covariance=covariance,
             source="predicted",
             faces=(),
             reprojection_error=np.nan,

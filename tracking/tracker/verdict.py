@@ -7,9 +7,10 @@ import numpy as np
 
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
-from tracking.geometry.arrays import Floats, Image
+from tracking.geometry.arrays import Array, Floats, Image
 from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
+from tracking.refinement.cell_search import CellSearch
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
 from tracking.tracker.prediction import MAX_PREDICTION_S, Prediction, Track, TrackedPose
@@ -18,7 +19,7 @@ MIN_DISTINCT_ANGLE, MIN_HARMFUL_ANGLE, MIN_LASTING_ANGLE = np.deg2rad((3, 7, 10)
 """Angle between the two poses of one face [rad]: below the first they need not be told apart, below
 the second both are accurate enough, below the third one can become the other unnoticed."""
 
-MAX_POSE_SPREAD = (0.006, np.deg2rad(3.0))
+MAX_POSE_SPREAD = (0.006, np.deg2rad(4.0))
 """A pose with a greater standard deviation than this is not trusted [m, rad]."""
 
 MAX_LONE_FACE_SPEED = 0.65
@@ -66,9 +67,12 @@ class Verdict:
 class FollowedPoseJudge:
     """Judges poses found near the predicted one: a single face may tilt to the camera or away."""
 
-    def __init__(self, cube: CubeModel, projection: Projection, edges: EdgeSearch) -> None:
+    def __init__(
+        self, cube: CubeModel, projection: Projection, edges: EdgeSearch, cells: CellSearch
+    ) -> None:
         self._footprint = Footprint(cube, projection)
         self._edges = edges
+        self._cells = cells
 
     def judge(self, candidate: Candidate, image: Image, tone: Floats, past: Past) -> Verdict:
         """Tell which way a face tilts: by its edges, else by its past, else not at all.
@@ -79,27 +83,54 @@ class FollowedPoseJudge:
         settled, unsettled = (replace(past, tilt_settled=known) for known in (True, False))
         ambiguous = Verdict(candidate, "ambiguous", past)
         if len(candidate.faces) != 1:
-            return _unless_uncertain(candidate, settled)
+            return Verdict(candidate, "", settled)
         if candidate.blur_motion is not None:
-            return _unless_uncertain(candidate, past) if past.tilt_settled else ambiguous
+            return Verdict(candidate, "", past) if past.tilt_settled else ambiguous
         mirrored = self._edges.mirrored_pose(candidate)
         planar_ambiguity_angle = se3.angle_between(candidate.camera_from_cube, mirrored)
         if planar_ambiguity_angle < MIN_DISTINCT_ANGLE:
-            return _unless_uncertain(candidate, unsettled)
+            return Verdict(candidate, "", unsettled)
         if past.tilt_settled and planar_ambiguity_angle > MIN_LASTING_ANGLE:
-            return _unless_uncertain(candidate, past)
+            return Verdict(candidate, "", past)
         patch = self._footprint.crop(image, candidate.camera_from_cube, tone)
         other = self._edges.search(patch, mirrored) if patch else None
         if other is None:
-            return _unless_uncertain(candidate, past)
+            return Verdict(candidate, "", past)
         if candidate.same_pose(other):
-            return _unless_uncertain(candidate, unsettled)
-        best, worse = sorted((candidate, other), key=lambda each: each.residual)
-        if best.clearly_better_than(worse):
-            return _unless_uncertain(best, settled)
+            return Verdict(candidate, "", unsettled)
+        for first, second in ((candidate, other), self._weighed(candidate, other, image, tone)):
+            for better, worse in ((first, second), (second, first)):
+                if better.clearly_better_than(worse):
+                    return Verdict(better, "", settled)
         if planar_ambiguity_angle < MIN_HARMFUL_ANGLE:
-            return _unless_uncertain(candidate.widened_to(other), past)
+            return Verdict(candidate.widened_to(other), "", past)
         return ambiguous
+
+    def _weighed(
+        self, one: Candidate, other: Candidate, image: Image, tone: Floats
+    ) -> tuple[Candidate, Candidate]:
+        """Weigh two poses by all cells in view."""
+        matches = [
+            self._cells.search(image, each.camera_from_cube, tone, each.faces)
+            for each in (one, other)
+        ]
+        first, second = (match.evidence if match else np.nan for match in matches)
+        return replace(one, evidence=first), replace(other, evidence=second)
+
+
+def is_uncertain(covariance: Array) -> bool:
+    """Whether a pose may be off by more than a person would accept."""
+    shift = np.linalg.eigvalsh(covariance[:3, :3])[-1]
+    turn = np.linalg.eigvalsh(covariance[3:, 3:])[-1]
+    return bool(shift > MAX_POSE_SPREAD[0] ** 2 or turn > MAX_POSE_SPREAD[1] ** 2)
+
+
+def is_unambiguous(candidates: Sequence[Candidate]) -> bool:
+    """Whether the first pose is proved and no other comes close to it."""
+    if not candidates:
+        return False
+    best, *others = candidates
+    return best.certain and not any(best.rivalled_by(other) for other in others)
 
 
 def judge_detected(
@@ -116,7 +147,7 @@ def judge_detected(
     if track is None:
         jump = TrackedPose(best.camera_from_cube, np.zeros(6), best.covariance, now)
         return Verdict(best, "jump", replace(past, jump=jump))
-    return _unless_uncertain(best, replace(past, track=track))
+    return Verdict(best, "", replace(past, track=track))
 
 
 def _fits(candidate: Candidate, prediction: Prediction | None) -> bool:
@@ -133,14 +164,15 @@ def _choose(
     candidates: Sequence[Candidate], prediction: Prediction | None, track: Track, now: float
 ) -> tuple[Candidate, str]:
     """Choose a pose; say why it is not trusted where the image does not prove it."""
-    best, *others = sorted(candidates, key=lambda each: each.residual)
+    best, *others = sorted(candidates, key=lambda each: (-each.certain, -each.evidence))
     if not best.certain:
         return best, "blurred" if best.blurred else "unproved"
     if len(best.faces) == 1:
         velocity = track.motion(best.camera_from_cube, best.covariance, now)[0]
         if np.linalg.norm(velocity[:3]) > MAX_LONE_FACE_SPEED:
             return best, "blurred"
-    if not others or best.same_pose(others[0]) or best.clearly_better_than(others[0]):
+    others = [each for each in others if best.rivalled_by(each)]
+    if not others:
         return best, ""
     if prediction is not None and now - track.poses[-1].timestamp < MAX_CHOICE_AGE_S:
         near, far = sorted(
@@ -162,11 +194,3 @@ def _continued_track(candidate: Candidate, past: Past, now: float) -> Track | No
     if jump and now - jump.timestamp <= MAX_PREDICTION_S and jump.reaches(pose, now):
         return Track((jump,))
     return past.track if last.reaches(pose, now) else None
-
-
-def _unless_uncertain(candidate: Candidate, past: Past) -> Verdict:
-    """Trust a pose, unless it may be off by more than a person would accept."""
-    shift = np.linalg.eigvalsh(candidate.covariance[:3, :3])[-1]
-    turn = np.linalg.eigvalsh(candidate.covariance[3:, 3:])[-1]
-    uncertain = shift > MAX_POSE_SPREAD[0] ** 2 or turn > MAX_POSE_SPREAD[1] ** 2
-    return Verdict(candidate, "unsure" if uncertain else "", past)

@@ -1,32 +1,27 @@
 """The benchmark's trackers answer from processes of their own."""
 
-import cv2
 import numpy as np
 import pytest
 
 from tests.bench.tracking.rivals.environments import ENTRIES, Entry, UnavailableError
 from tests.bench.tracking.rivals.worker import Worker
-from tracking import CubeModel
+from tests.tracking.drawn import held, photograph, scene
+from tracking import CubeModel, Intrinsics
 
 MATRIX = np.array([[900.0, 0, 641.5], [0, 902.0, 357.0], [0, 0, 1]])
-POSE = np.array([[1.0, 0, 0, 0.02], [0, -1, 0, -0.01], [0, 0, -1, 0.45], [0, 0, 0, 1]])
-"""The front face looks straight at the camera."""
+POSE = held(at=(0.02, -0.01, 0.45))
+"""Three faces are seen: of a single one, square on, the tracker would be unsure."""
 
 
 @pytest.fixture
 def job(tmp_path):
-    """Draw the front of the cube in two frames, and an empty third; return file and message."""
+    """Draw the cube in two frames, and an empty third; return file and message."""
     cube = CubeModel.load("locomotion")
-    face = cube.face("front")
-    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
-    marker = cv2.aruco.generateImageMarker(dictionary, face.marker_id, 240)
-    corners, _ = cv2.projectPoints(face.corners, cv2.Rodrigues(POSE[:3, :3])[0], POSE[:3, 3],
-                                   MATRIX, np.zeros(5))  # fmt: skip
-    square = np.array([(-0.5, -0.5), (239.5, -0.5), (239.5, 239.5), (-0.5, 239.5)], np.float32)
-    plane = cv2.getPerspectiveTransform(square, corners.reshape(4, 2).astype(np.float32))
-    picture = cv2.warpPerspective(marker, plane, (1280, 720), borderValue=200, flags=cv2.INTER_AREA)
+    camera = Intrinsics(MATRIX, np.zeros(5), (1280, 720))
+    # In linear grey values white does not grow over black, which would move the corners of cv2.
+    picture = photograph(scene((cube, POSE), camera=camera), exponent=1.0)
     frames = np.full((3, 720, 1280, 3), 200, np.uint8)
-    frames[:2] = cv2.GaussianBlur(picture, (0, 0), 0.7)[..., None]
+    frames[:2] = picture
     np.save(tmp_path / "frames.npy", frames)
     faces = [
         {"id": each.marker_id, "name": each.name, "corners": each.corners.tolist()}

@@ -14,6 +14,7 @@ from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.blur_search import MIN_CORRELATION, BlurSearch
 from tracking.refinement.camera_model import MIN_BLUR_PX, CameraModelEstimator, ToneCurve
+from tracking.refinement.cell_search import CellSearch
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.motion_blur_alignment import MotionBlurAligner
 from tracking.refinement.photometric_fit import Alignment
@@ -201,7 +202,8 @@ def test_a_finger_over_one_face_does_not_hide_two_others_in_motion() -> None:
         past = se3.moved(pose, time * across)
         track = track.add(TrackedPose(past, across, 1e-8 * np.eye(6), time))
     edges = EdgeSearch(CUBE, projection)
-    tracker = LocalTracker(CUBE, projection, edges, BlurSearch(CUBE, projection, edges))
+    cells, blur = CellSearch(CUBE, projection), BlurSearch(CUBE, projection, edges)
+    tracker = LocalTracker(CUBE, projection, edges, cells, blur)
     prediction, camera = track.predict(0.0), CameraModelEstimator().model
     assert prediction is not None
     found = tracker.search(photograph(light), track, prediction, camera).candidate

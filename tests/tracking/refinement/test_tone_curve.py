@@ -19,6 +19,7 @@ from tracking.refinement.camera_model import (
     CameraModelEstimator,
     ToneCurve,
 )
+from tracking.refinement.cell_search import CellSearch
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.photometric_fit import PhotometricSamples, fit_tones
 from tracking.synthetic import open_synthetic
@@ -130,7 +131,8 @@ class Clip:
         """Follow the cube through the clip, each time with its true past."""
         edges = EdgeSearch(self.cube, self.projection)
         blur = BlurSearch(self.cube, self.projection, edges)
-        tracker = LocalTracker(self.cube, self.projection, edges, blur)
+        cells = CellSearch(self.cube, self.projection)
+        tracker = LocalTracker(self.cube, self.projection, edges, cells, blur)
         for picture, times, poses in self.shots:
             track = track_of(poses[:2], times[:2])
             prediction = track.predict(times[2])

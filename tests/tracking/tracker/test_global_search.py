@@ -15,9 +15,10 @@ from tracking.geometry.projection import Projection
 from tracking.refinement.blur_search import BlurSearch
 from tracking.refinement.camera_model import CameraModelEstimator
 from tracking.refinement.candidate import Candidate
+from tracking.refinement.cell_search import CellSearch
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.synthetic import open_synthetic
-from tracking.tracker.global_search import FrameMarkers, GlobalDetector
+from tracking.tracker.global_search import FrameMarkers, GlobalDetector, Pass
 from tracking.tracker.tracker import CubeTracker
 
 Array = NDArray[np.float64]
@@ -25,19 +26,25 @@ Picture = NDArray[np.uint8]
 
 CUBE = CubeModel.load("locomotion")
 DETECTORS = {CUBE.dictionary: MarkerDetector(CUBE.dictionary)}
+PASSES: tuple[Pass, ...] = ("half size", "first window", "other windows")
 SKIN = (105, 135, 185)
 
 
 class Counting(MarkerDetector):
-    """Counts how often a picture is read, by its number of rows."""
+    """Counts how often a picture is read, by its number of rows; with other windows apart."""
 
     def __init__(self, dictionary: str) -> None:
         super().__init__(dictionary)
         self.rows: list[int] = []
+        self.others: list[int] = []
 
     def detect(self, grey: Picture):
         self.rows.append(len(grey))
         return super().detect(grey)
+
+    def detect_others(self, grey: Picture):
+        self.others.append(len(grey))
+        return super().detect_others(grey)
 
 
 def detect(
@@ -53,7 +60,7 @@ def detect(
     blur = BlurSearch(cube, projection, edges)
     markers = FrameMarkers(frame, {cube.dictionary: detector})
     tone = CameraModelEstimator().model.tone
-    search = GlobalDetector(cube, projection, edges, blur)
+    search = GlobalDetector(cube, projection, edges, CellSearch(cube, projection), blur)
     return search.detect(frame.image, markers, None, tone, thorough)
 
 
@@ -66,15 +73,15 @@ def corners_of(cube: CubeModel, pose: Array, camera: Intrinsics) -> dict[str, Ar
     }
 
 
-def patched(image: Picture, markers: dict[str, Array], seed: int) -> Picture:
-    """Lay a round patch over one corner of every marker."""
+def patched(image: Picture, markers: dict[str, Array], seed: int, share: float = 0.23) -> Picture:
+    """Lay a round patch over one corner of every marker, by default too large for OpenCV."""
     random = np.random.default_rng(seed)
     picture = image.copy()
     for corners in markers.values():
         x, y = corners[int(random.integers(4))]
         side = np.sqrt(cv2.contourArea(corners.astype(np.float32)))
         place = (round(16 * x), round(16 * y))
-        cv2.circle(picture, place, round(16 * 0.17 * side), SKIN, -1, cv2.LINE_AA, 4)
+        cv2.circle(picture, place, round(16 * share * side), SKIN, -1, cv2.LINE_AA, 4)
     return picture
 
 
@@ -95,8 +102,8 @@ def test_corners_found_at_half_size_are_those_of_the_whole_picture(
         large, small = (
             {each.face.name: each.corners for each in markers_of(CUBE, read)}
             for read in (
-                markers.read(CUBE.dictionary, halved=False),
-                markers.read(CUBE.dictionary, halved=True),
+                markers.read(CUBE.dictionary, "other windows"),
+                markers.read(CUBE.dictionary, "half size"),
             )
         )
         assert len(large) >= 2
@@ -113,9 +120,23 @@ def test_a_picture_is_read_once_for_all_cubes(
 ) -> None:
     detector = Counting(CUBE.dictionary)
     markers = FrameMarkers(static[0], {CUBE.dictionary: detector})
-    for halved in (True, False, True, False):
-        markers.read(CUBE.dictionary, halved)
+    for by in (*PASSES, *PASSES):
+        markers.read(CUBE.dictionary, by)
     assert detector.rows == [360, 720]
+    assert detector.others == [720]
+
+
+def test_other_windows_add_to_the_first_and_no_marker_is_listed_twice(
+    static: tuple[Frame, Array, CubeModel, Intrinsics],
+) -> None:
+    for seed in range(4):
+        picture = patched(static[0].image, corners_of(CUBE, static[1], static[3]), seed, share=0.17)
+        markers = FrameMarkers(Frame(picture, 0.0, 0), DETECTORS)
+        first, both = (
+            [each.marker_id for each in markers.read(CUBE.dictionary, by)] for by in PASSES[1:]
+        )
+        assert both[: len(first)] == first
+        assert len(set(both)) == len(both)
 
 
 def test_half_size_is_enough_where_the_cube_is_near(
@@ -125,6 +146,7 @@ def test_half_size_is_enough_where_the_cube_is_near(
     detector = Counting(cube.dictionary)
     found = detect(cube, camera, frame, detector)
     assert detector.rows == [360]
+    assert detector.others == []
     assert any(each.certain and off(each.camera_from_cube, truth)[0] < 0.2 for each in found)
 
 
@@ -146,9 +168,9 @@ def test_a_cube_with_a_covered_corner_on_every_marker_is_found(
     picture = patched(frame.image, corners_of(cube, truth, camera), seed)
     covered = Frame(picture, 0.0, 0)
     markers = FrameMarkers(covered, DETECTORS)
-    for halved in (True, False):
+    for by in PASSES:
         # Or the patches would prove nothing.
-        assert markers_of(cube, markers.read(cube.dictionary, halved)) == []
+        assert markers_of(cube, markers.read(cube.dictionary, by)) == []
     state = CubeTracker(cube, camera).update(covered)
     assert state.visible
     millimetres, degrees = off(state.camera_from_cube, truth)

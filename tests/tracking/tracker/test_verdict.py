@@ -8,7 +8,7 @@ from tests.tracking.drawn import held
 from tracking.geometry import se3
 from tracking.refinement.candidate import Candidate
 from tracking.tracker.prediction import Track, TrackedPose
-from tracking.tracker.verdict import Past, judge_detected
+from tracking.tracker.verdict import Past, is_unambiguous, is_uncertain, judge_detected
 
 HERE, THERE = held(), held(at=(0.3, 0.0, 0.5))
 SURE = np.eye(6) * 1e-8
@@ -32,10 +32,36 @@ def test_an_unproved_pose_is_refused() -> None:
         assert judge_detected([candidate], None, Past(), 0.0).refused == refused
 
 
-def test_an_uncertain_pose_is_refused() -> None:
-    assert judge_detected([FOUND], None, Past(), 0.0).refused == ""
-    vague = replace(FOUND, covariance=np.eye(6) * 1e-4)
-    assert judge_detected([vague], None, Past(), 0.0).refused == "unsure"
+def test_a_pose_that_may_be_off_by_a_centimetre_is_uncertain() -> None:
+    """By a standard deviation of more than 6 mm or 4° along its worst axis, whichever that is."""
+    good = np.repeat([0.0059, np.deg2rad(3.9)], 3)
+    assert not is_uncertain(np.diag(good**2))
+    turn = se3.rotation(np.array([0.5, 0.6, 0.1]))
+    for number, much in enumerate(np.repeat([0.0061, np.deg2rad(4.1)], 3)):
+        spread = np.zeros(6)
+        spread[number] = much
+        for basis in (np.eye(3), turn):
+            both = np.kron(np.eye(2), basis)
+            assert is_uncertain(both @ np.diag(spread**2) @ both.T)
+
+
+def test_the_evidence_of_the_cells_tells_two_poses_apart() -> None:
+    """And only a clear lead of it does."""
+    tilted = se3.moved(HERE, np.array([0, 0, 0, np.deg2rad(40), 0, 0]))
+    right = replace(FOUND, faces=("front",), evidence=30.0)
+    for lead, refused in ((2.0, "ambiguous"), (20.0, "")):
+        wrong = replace(right, camera_from_cube=tilted, evidence=30.0 - lead)
+        verdict = judge_detected([wrong, right], None, Past(), 0.0)
+        assert verdict.refused == refused
+        assert verdict.candidate == right
+        assert is_unambiguous([right, wrong]) == (refused == "")
+        assert not is_unambiguous([wrong, right])
+
+
+def test_only_proved_poses_are_unambiguous() -> None:
+    assert not is_unambiguous([])
+    assert is_unambiguous([FOUND])
+    assert not is_unambiguous([replace(FOUND, certain=False)])
 
 
 def test_a_jump_is_refused_until_a_second_pose_confirms_it() -> None:

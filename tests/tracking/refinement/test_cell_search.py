@@ -1,0 +1,151 @@
+"""All faces in view say together how likely a pose is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tests.tracking.drawn import held
+from tests.tracking.refinement.seen_softly import CAMERA, Cover, corners_off, drawn, patch
+from tracking.cube.faces import FacePlanes
+from tracking.cube.model import CubeModel
+from tracking.geometry import se3
+from tracking.geometry.projection import Projection
+from tracking.refinement.candidate import MIN_EVIDENCE_LEAD
+from tracking.refinement.cell_search import CellMatch, CellSearch
+
+Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+
+CUBE, OTHER = CubeModel.load("locomotion"), CubeModel.load("companion")
+TONE = np.arange(256, dtype=np.float32)
+"""The pictures hold light."""
+
+
+def picture(light: NDArray[np.float32]) -> Picture:
+    return np.clip(np.rint(patch(light).grey), 0, 255).astype(np.uint8)
+
+
+def with_faces(*names: str) -> CubeModel:
+    return replace(CUBE, faces=tuple(CUBE.face(name) for name in names))
+
+
+def search(
+    seen: Picture, start: Array, read: tuple[str, ...] = ("front",), cube: CubeModel = CUBE
+) -> CellMatch:
+    match = CellSearch(cube, Projection(CAMERA)).search(seen, start, TONE, read)
+    assert match is not None
+    return match
+
+
+def mirrored(pose: Array) -> Array:
+    """The pose in which the front tilts the other way."""
+    planes = FacePlanes(CUBE)
+    return planes.mirrored(pose, planes.names.index("front"))
+
+
+@pytest.mark.parametrize("lean", [0.3, 0.5, 0.8])
+@pytest.mark.parametrize("distance", [0.6, 1.5, 2.2])
+def test_the_true_lean_has_more_evidence_than_the_mirrored_one(
+    lean: float, distance: float
+) -> None:
+    pose = held(lean, 0.1, 0.2, at=(0.02, 0.01, distance))
+    seen = picture(drawn(CUBE, pose))
+    right, wrong = search(seen, pose), search(seen, mirrored(pose))
+    assert right.proved
+    assert right.evidence > wrong.evidence + MIN_EVIDENCE_LEAD
+    assert se3.angle_between(right.alignment.camera_from_cube, pose) < np.deg2rad(2)
+
+
+@pytest.mark.parametrize("lean", [0.5, 0.8])
+def test_a_lone_face_near_by_tells_its_lean_by_perspective(lean: float) -> None:
+    pose = held(lean, 0.1, 0.2, at=(0.02, 0.01, 0.6))
+    seen = picture(drawn(with_faces("front"), pose))
+    right, wrong = search(seen, pose), search(seen, mirrored(pose))
+    assert right.evidence > wrong.evidence + MIN_EVIDENCE_LEAD
+
+
+@pytest.mark.parametrize("distance", [0.9, 1.5, 2.2])
+def test_the_mirrored_lean_of_a_lone_face_is_never_clearly_better(distance: float) -> None:
+    for lean in (0.3, 0.5, 0.8):
+        pose = held(lean, 0.1, 0.2, at=(0.02, 0.01, distance))
+        seen = picture(drawn(with_faces("front"), pose))
+        right, wrong = search(seen, pose), search(seen, mirrored(pose))
+        assert wrong.evidence < right.evidence + MIN_EVIDENCE_LEAD
+
+
+def test_every_face_that_is_found_is_evidence() -> None:
+    pose = held(at=(0.0, 0.0, 0.9))
+    seen = picture(drawn(CUBE, pose))
+    evidence = [
+        search(seen, pose, cube=with_faces(*names)).evidence
+        for names in (("front",), ("front", "right"), ("front", "right", "top"))
+    ]
+    assert (np.diff(evidence) > 20).all()
+
+
+def test_a_face_that_joins_in_makes_the_pose_more_precise() -> None:
+    pose = held(at=(0.0, 0.0, 2.0))
+    seen = picture(drawn(CUBE, pose))
+    found = search(seen, pose).alignment
+    alone = search(seen, pose, cube=with_faces("front")).alignment
+    assert len(found.correlations) == 3
+    assert len(alone.correlations) == 1
+    assert np.trace(found.covariance[3:, 3:]) < np.trace(alone.covariance[3:, 3:]) / 2
+    assert corners_off(CUBE, found.camera_from_cube, pose, ("front", "right", "top")) < 0.2
+
+
+@pytest.mark.parametrize(
+    "hidden",
+    [
+        "a desk",
+        pytest.param(
+            "white paper",
+        ),
+    ],
+)
+def test_a_missing_face_is_evidence_against_the_pose(hidden: str) -> None:
+    """There is less of it than if the cube had no such face."""
+    pose = held(at=(0.0, 0.0, 0.9))
+    two = with_faces("front", "right")
+    light = drawn(two if hidden == "a desk" else CUBE, pose, blank=("top",))
+    whole, without = (search(picture(light), pose, cube=cube) for cube in (CUBE, two))
+    assert "top" not in whole.found
+    assert whole.proved
+    assert whole.evidence < without.evidence - 1
+
+
+def test_two_partly_covered_faces_prove_the_cube_and_one_does_not() -> None:
+    """Skin nearly as bright as paper, so that neither marker would be found as a whole."""
+    pose = held(at=(0.0, 0.0, 0.9))
+    third: Cover = (-0.1, -0.1, 0.3, 1.1)
+    for faces, proved in ((("front", "right"), True), (("front",), False)):
+        cube = with_faces(*faces)
+        light = drawn(cube, pose, covers=dict.fromkeys(faces, third), skin=0.7)
+        match = search(picture(light), pose, faces, cube)
+        assert match.found == faces
+        assert max(match.alignment.correlations.values()) < 0.85
+        assert match.proved == proved
+
+
+def test_a_start_a_cell_away_is_found_coarsely_first() -> None:
+    pose = held(at=(0.0, 0.0, 0.7))
+    start = se3.moved(pose, np.array([0.9 * CUBE.marker_size / 6, 0, 0, 0.05, 0.0, 0.0]))
+    match = search(picture(drawn(CUBE, pose)), start)
+    assert corners_off(CUBE, match.alignment.camera_from_cube, pose, ("front",)) < 0.2
+
+
+def test_where_there_is_no_cube_nothing_is_proved() -> None:
+    random = np.random.default_rng(1)
+    noise = np.clip(random.normal(120, 30, (240, 320)), 0, 255).astype(np.uint8)
+    match = CellSearch(CUBE, Projection(CAMERA)).search(noise, held(), TONE, ("front",))
+    assert match is None or not match.proved
+
+
+@pytest.mark.parametrize("distance", [0.5, 0.9, 1.5])
+def test_another_cube_in_the_same_place_is_not_proved(distance: float) -> None:
+    """The border is the same, and more than half of the bits; six and more differ."""
+    pose = held(at=(0.0, 0.0, distance))
+    assert search(picture(drawn(OTHER, pose)), pose, cube=OTHER).proved
+    assert not search(picture(drawn(OTHER, pose)), pose).proved

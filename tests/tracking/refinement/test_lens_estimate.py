@@ -1,0 +1,103 @@
+"""A cube shown all over the picture tells how the lens bends it; an honest lens is believed."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from tests.tracking.drawn import CAMERA, held, photograph, scene
+from tracking.cube.model import CubeModel
+from tracking.geometry.frame import Frame
+from tracking.geometry.projection import Projection
+from tracking.refinement.lens_estimate import CLAIMED_K1, MEASURED_K1, LensEstimate, LensEstimator
+from tracking.refinement.systematic_error import SystematicError
+from tracking.tracker.tracker import CubeTracker
+
+CUBE = CubeModel.load("locomotion")
+K1 = 0.13
+
+
+def bent(picture: NDArray[np.float32], k1: float) -> NDArray[np.float32]:
+    """What a lens with this k1 shows of a pinhole's picture."""
+    lens = np.array([k1, 0, 0, 0, 0])
+    columns, rows = np.meshgrid(*(np.arange(size, dtype=np.float64) for size in CAMERA.size))
+    pixels = np.stack([columns, rows], axis=-1).reshape(-1, 1, 2)
+    straight = cv2.undistortPoints(pixels, CAMERA.matrix, lens, None, None, CAMERA.matrix)
+    places = straight.reshape(*columns.shape, 2).astype(np.float32)
+    return np.asarray(
+        cv2.remap(picture, places, np.empty(0, np.float32), cv2.INTER_CUBIC), np.float32
+    )
+
+
+def shown(k1: float, count: int) -> Iterator[Frame]:
+    """Frames of a cube at rest in many places; each twice, so that the second one is followed."""
+    random = np.random.default_rng(3)
+    for index in range(count):
+        turn = random.uniform((0.4, 0.4, -0.5), (0.8, 0.8, 0.5))
+        depth = float(random.uniform(0.3, 0.45))
+        sides = depth * random.uniform(-1, 1, 2) * (0.36, 0.24)
+        x, y, z = turn.tolist()
+        pose = held(x, y, z, at=(float(sides[0]), float(sides[1]), depth))
+        picture = photograph(bent(scene((CUBE, pose)), k1), seed=index)
+        for again in range(2):
+            yield Frame(picture, 2.0 * index + again / 30, 2 * index + again)
+
+
+def watched(claimed: float, k1: float, count: int = 30) -> CubeTracker:
+    """Return a tracker that was told of a k1 and has seen frames with another."""
+    tracker = CubeTracker(CUBE, replace(CAMERA, distortion=np.array([claimed, 0, 0, 0, 0])))
+    for frame in shown(k1, count):
+        tracker.update(frame)
+    return tracker
+
+
+@pytest.mark.parametrize("k1", [K1, -0.1])
+def test_a_lens_that_claims_zero_is_measured_in_play(k1: float) -> None:
+    lens = watched(0.0, k1).lens
+    assert abs(lens.k1 - k1) < 2 * lens.deviation
+    assert lens.off
+
+
+@pytest.mark.parametrize("k1", [0.0, K1])
+def test_an_honest_lens_is_believed(k1: float) -> None:
+    lens = watched(k1, k1).lens
+    assert abs(lens.k1) < 2 * lens.deviation
+    assert lens.known
+    assert not lens.off
+
+
+def test_a_cube_at_rest_counts_once() -> None:
+    tracker, still = CubeTracker(CUBE, CAMERA), next(shown(K1, 1))
+    deviations = set()
+    for index in range(8):
+        tracker.update(replace(still, timestamp=index / 30, index=index))
+        deviations.add(tracker.lens.deviation)
+    assert len(deviations) == 2  # before and after
+    assert not tracker.lens.known
+
+
+def test_what_was_measured_replaces_what_is_assumed_of_a_lens() -> None:
+    claimed, measured = (
+        LensEstimator(CUBE, Projection(replace(CAMERA, distortion=np.array([k1, 0, 0, 0, 0]))))
+        for k1 in (0.0, K1)
+    )
+    assert (claimed.k1_error, measured.k1_error) == (CLAIMED_K1, MEASURED_K1)
+    for estimator in (claimed, measured):
+        estimator.estimate = LensEstimate(0.03, 0.04)
+    assert (claimed.k1_error, measured.k1_error) == (CLAIMED_K1, MEASURED_K1)
+    for estimator in (claimed, measured):
+        estimator.estimate = LensEstimate(0.03, 0.02)
+    assert claimed.k1_error == pytest.approx(np.hypot(0.03, 0.02))
+    assert measured.k1_error == MEASURED_K1
+    for estimator in (claimed, measured):
+        estimator.estimate = LensEstimate(0.12, 0.02)
+        assert estimator.k1_error == pytest.approx(np.hypot(0.12, 0.02))
+
+
+def test_a_lens_that_is_known_leaves_less_doubt_of_a_pose() -> None:
+    error, pose = SystematicError(CUBE, Projection(CAMERA)), held(at=(0.1, 0.05, 0.4))
+    before, after = (error.covariance(pose, ("front", "top"), k1)[1] for k1 in (0.1, 0.02))
+    assert np.trace(after) < np.trace(before) / 2

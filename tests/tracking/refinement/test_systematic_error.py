@@ -1,0 +1,172 @@
+"""The stated systematic errors are the spread of the poses that such corners and lenses lead to."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from tests.tracking.drawn import CAMERA, held
+from tracking.cube.model import CubeModel
+from tracking.geometry import se3
+from tracking.geometry.intrinsics import Intrinsics
+from tracking.geometry.projection import Projection
+from tracking.refinement.systematic_error import (
+    CLAIMED_FOCAL,
+    COMMON_SHIFT_PX,
+    CORNER_ERROR_M,
+    CORNER_ERROR_PX,
+    MEASURED_FOCAL,
+    SystematicError,
+)
+
+Array = NDArray[np.float64]
+Faces = tuple[str, ...]
+
+CUBE = CubeModel.load("locomotion")
+MEASURED = replace(CAMERA, distortion=np.array([-0.1, 0.05, 0.001, -0.001, 0.0]))
+THREE: Faces = ("front", "right", "top")
+"""The faces that `held()` shows."""
+
+
+def corners_of(faces: Faces) -> Array:
+    return np.concatenate([CUBE.face(name).corners for name in faces])
+
+
+def shown(points: Array, pose: Array, camera: Intrinsics) -> Array:
+    """Where a camera shows points of the cube, (N, 2) [px]."""
+    turn, shift = cv2.Rodrigues(pose[:3, :3])[0], pose[:3, 3]
+    pixels = cv2.projectPoints(points, turn, shift, camera.matrix, camera.distortion)[0]
+    return np.asarray(pixels, np.float64).reshape(-1, 2)
+
+
+def solved(points: Array, pixels: Array, start: Array, camera: Intrinsics) -> Array:
+    """Pose delta from a pose to the one that least squares find for pixels, (6,)."""
+    first = cv2.Rodrigues(start[:3, :3])[0], start[:3, 3:].copy()
+    turn, shift = (
+        np.asarray(each, np.float64).ravel()
+        for each in cv2.solvePnPRefineLM(points, pixels, camera.matrix, camera.distortion, *first)
+    )
+    return se3.delta(start, se3.pose(se3.rotation(turn), shift))
+
+
+CLAIMED_LENS, MEASURED_LENS = (0.1, CLAIMED_FOCAL), (0.005, MEASURED_FOCAL)
+"""Errors of k1 and of the focal length of a lens that claims none, and of one that was measured."""
+
+
+def stated(pose: Array, faces: Faces, camera: Intrinsics = CAMERA) -> tuple[Array, Array]:
+    k1_error = (MEASURED_LENS if camera.distortion.any() else CLAIMED_LENS)[0]
+    return SystematicError(CUBE, Projection(camera)).covariance(pose, faces, k1_error)
+
+
+def ratios(one: Array, other: Array) -> Array:
+    """Variances of one covariance along the principal axes of the other, over those, (6,)."""
+    root = np.linalg.inv(np.linalg.cholesky(other))
+    return np.asarray(np.linalg.eigvalsh(root @ one @ root.T), np.float64)
+
+
+def corner_error_px(pose: Array) -> float:
+    paper = CORNER_ERROR_M * CAMERA.matrix[0, 0] / pose[2, 3]
+    return float(np.hypot(CORNER_ERROR_PX, paper))
+
+
+def displaced(exact: Array, pose: Array, random: np.random.Generator) -> Array:
+    """Corners in the image, each displaced by itself, and all together, (N, 2) [px]."""
+    alone = random.normal(0, corner_error_px(pose), exact.shape)
+    return exact + alone + random.normal(0, COMMON_SHIFT_PX, 2)
+
+
+@pytest.mark.parametrize("distance", [0.25, 0.5, 1.5])
+@pytest.mark.parametrize("faces", [THREE, ("front", "top")])
+def test_the_covariance_is_the_spread_of_poses_of_bent_markers(
+    distance: float, faces: Faces
+) -> None:
+    pose, random = held(at=(0.03, -0.02, distance)), np.random.default_rng(1)
+    points = corners_of(faces)
+    exact = shown(points, pose, CAMERA)
+    deltas = [solved(points, displaced(exact, pose, random), pose, CAMERA) for _ in range(800)]
+    spread = np.cov(np.array(deltas).T)
+    along = ratios(stated(pose, faces)[0], spread)
+    # Of 800 draws, the spread along an axis is known to a tenth; perspective is curved, too.
+    assert along.min() > 0.7
+    assert along.max() < 1.4
+
+
+def test_a_lone_face_square_on_is_as_uncertain_as_its_tilt() -> None:
+    """Least squares then find either lean, which the linear covariance alone would not tell."""
+    pose, random = held(0.0, 0.0, 0.0, at=(0.0, 0.0, 0.7)), np.random.default_rng(2)
+    points = corners_of(("front",))
+    exact = shown(points, pose, CAMERA)
+    tilts = [solved(points, displaced(exact, pose, random), pose, CAMERA)[3:5] for _ in range(400)]
+    found, claimed = (
+        np.sqrt(np.diag(each)[:2])
+        for each in (np.cov(np.array(tilts).T), stated(pose, ("front",))[0][3:5, 3:5])
+    )
+    assert (claimed > found / 2).all()
+    assert (claimed < found * 2).all()
+
+
+@pytest.mark.parametrize(("camera", "lens"), [(CAMERA, CLAIMED_LENS), (MEASURED, MEASURED_LENS)])
+def test_the_lens_moves_a_pose_as_stated(camera: Intrinsics, lens: tuple[float, float]) -> None:
+    """Both of its errors move the corners of one picture together, and so the pose."""
+    pose, points = held(at=(0.08, 0.05, 0.4)), corners_of(THREE)
+    bent = camera.distortion + lens[0] * np.eye(len(camera.distortion))[0]
+    longer = camera.matrix * np.array([[1 + lens[1]], [1 + lens[1]], [1.0]])
+    longer[:2, 2] = camera.matrix[:2, 2]
+    moves = np.array(
+        [
+            solved(points, shown(points, pose, other), pose, camera)
+            for other in (replace(camera, distortion=bent), replace(camera, matrix=longer))
+        ]
+    )
+    spread, claimed = moves.T @ moves, stated(pose, THREE, camera)[1]
+    assert np.linalg.matrix_rank(claimed, tol=1e-6 * np.linalg.norm(claimed)) <= 2
+    # As a share of what the axis varies by itself.
+    scale = np.sqrt(np.diag(spread))
+    assert np.abs((claimed - spread) / np.outer(scale, scale)).max() < 0.3
+
+
+def test_a_longer_lens_is_a_cube_farther_away() -> None:
+    """In the middle of the picture nothing else moves; where k1 hardly bends it either."""
+    pose = held(at=(0.0, 0.0, 1.0))
+    by_lens = stated(pose, THREE)[1]
+    assert np.sqrt(by_lens[2, 2]) == pytest.approx(CLAIMED_LENS[1] * 1.0, rel=0.1)
+    assert np.sqrt(np.diag(by_lens)[:2]).max() < 1e-4
+
+
+def test_a_measured_lens_is_surer_than_one_that_claims_no_distortion() -> None:
+    pose = held(at=(0.08, 0.05, 0.4))
+    claimed, measured = (np.trace(stated(pose, THREE, each)[1]) for each in (CAMERA, MEASURED))
+    assert measured < claimed / 4
+    # The corners are seen alike.
+    by_corners = [stated(pose, THREE, each)[0] for each in (CAMERA, MEASURED)]
+    assert np.allclose(ratios(*by_corners), 1, atol=0.1)
+
+
+poses = st.builds(
+    lambda x, y, z, distance: held(x, y, z, at=(0.02, 0.01, distance)),
+    st.floats(0.3, 0.8), st.floats(0.3, 0.9), st.floats(-3, 3), st.floats(0.15, 2.5),
+)  # fmt: skip
+
+
+@settings(deadline=None, max_examples=60)
+@given(poses, st.permutations(THREE))
+def test_fewer_faces_are_less_sure_in_every_direction(pose: Array, faces: list[str]) -> None:
+    for count in (1, 2):
+        fewer, more = (tuple(faces[:number]) for number in (count, count + 1))
+        wider, narrower = stated(pose, fewer)[0], stated(pose, more)[0]
+        assert ratios(wider, narrower).min() > 1 - 1e-6
+
+
+@settings(deadline=None, max_examples=60)
+@given(poses)
+def test_both_covariances_are_ones(pose: Array) -> None:
+    for camera in (CAMERA, MEASURED):
+        by_corners, by_lens = stated(pose, THREE, camera)
+        for each in (by_corners, by_lens):
+            assert np.allclose(each, each.T, rtol=1e-6, atol=1e-15)
+        assert np.linalg.eigvalsh(by_corners).min() > 0
+        assert np.linalg.eigvalsh(by_lens).min() > -1e-9 * np.trace(by_lens)

@@ -1,0 +1,91 @@
+"""Markers whose cells are smeared by motion or defocus, told by their likeness to such patterns."""
+
+import cv2
+import numpy as np
+
+from tracking.cube.marker import marker_cells
+from tracking.cube.model import CubeModel
+from tracking.detection.quads import Quads, sampled
+from tracking.geometry.arrays import Array, Flags, Floats, Image, Indices
+
+SMEARS_CELLS, DIRECTIONS = (0.0, 1.0, 1.75, 2.5), 8
+"""Lengths of the blur that are compared, and directions, evenly spread over half a turn."""
+
+SAMPLES_PER_CELL, TEXELS_PER_SAMPLE = 2, 4
+"""Samples along a cell of a quad, and texels along a sample when the patterns are smeared."""
+
+PAPER_CELLS = 0.5
+"""How far around a marker its white paper is compared."""
+
+MIN_CORRELATION, MIN_LEAD = 0.7, 0.05
+"""Correlation of a quad with its most similar pattern, and its lead over the next marker."""
+
+MIN_VISIBLE_SHARE = 0.6
+"""Share of a quad's outline that must be seen."""
+
+
+class SmearedPatterns:
+    """The patterns of all markers of one cube, smeared in every direction.
+
+    What they find is a proposal for the alignment of the blurred image, which proves or refuses it.
+    """
+
+    def __init__(self, cube: CubeModel) -> None:
+        patterns = [marker_cells(cube.dictionary, face.marker_id) for face in cube.faces]
+        cells = len(patterns[0])
+        span = cells + 2 * PAPER_CELLS
+        count = round(span * SAMPLES_PER_CELL)
+        steps = ((np.arange(count) + 0.5) / count * span - PAPER_CELLS) / cells
+        x, y = np.meshgrid(steps, steps)
+        self._places = np.stack([x.ravel(), y.ravel()], axis=1)
+        turned = [np.rot90(pattern, turn) for pattern in patterns for turn in range(4)]
+        # Every marker in four rotations, (markers · 4, smears, samples).
+        self._patterns = _normalized(np.stack([_smeared(each, count) for each in turned]))
+
+    def match(self, soft: Image, quads: Quads) -> tuple[Indices, Array]:
+        """Find the marker that each quad of an image, (H, W), is most like.
+
+        Return 4 × index of its face + rotation, or −1, and the correlation, (N,) each.
+        """
+        values = _normalized(sampled(soft, quads.map(self._places)))
+        alike = np.tensordot(values, self._patterns, axes=([1], [2])).max(axis=2)
+        order = np.argsort(alike, axis=1, kind="stable")
+        best, next_best = np.take_along_axis(alike, order[:, :-3:-1], axis=1).T
+        good = (best > MIN_CORRELATION) & (best - next_best > MIN_LEAD)
+        good &= quads.visible > MIN_VISIBLE_SHARE
+        return np.where(good, order[:, -1], -1), np.asarray(best, np.float64)
+
+
+def _smeared(black: Flags, count: int) -> Floats:
+    """Draw a marker with every blur, (smears, count²)."""
+    cell = SAMPLES_PER_CELL * TEXELS_PER_SAMPLE
+    white = np.kron((~black).astype(np.float32), np.ones((cell, cell), np.float32))
+    margin = round((count * TEXELS_PER_SAMPLE - len(white)) / 2)
+    fine = np.asarray(np.pad(white, margin, constant_values=1.0), np.float32)
+    drawn = []
+    for length in SMEARS_CELLS:
+        for angle in np.arange(DIRECTIONS) * np.pi / DIRECTIONS:
+            blurred = cv2.filter2D(fine, cv2.CV_32F, _kernel(length * cell, angle),
+                                   borderType=cv2.BORDER_REPLICATE)  # fmt: skip
+            drawn.append(cv2.resize(blurred, (count, count), interpolation=cv2.INTER_AREA).ravel())
+    return np.asarray(drawn, np.float32)
+
+
+def _kernel(length: float, angle: float) -> Floats:
+    """Smear by a line of a length and direction [texels, rad], softened as the detector's image."""
+    reach = int(length / 2) + 3
+    kernel = np.zeros((2 * reach + 1, 2 * reach + 1), np.float32)
+    for share in np.linspace(-0.5, 0.5, 4 * reach):
+        x, y = np.rint(reach + share * length * np.array([np.cos(angle), np.sin(angle)])).astype(
+            int
+        )
+        kernel[y, x] += 1
+    soft = np.asarray(cv2.GaussianBlur(kernel, (0, 0), TEXELS_PER_SAMPLE / 2), np.float32)
+    return np.asarray(soft / soft.sum(), np.float32)
+
+
+def _normalized(values: Array) -> Floats:
+    """Shift and scale each row to mean 0 and length 1, (…, N)."""
+    centred = values - values.mean(axis=-1, keepdims=True)
+    length = np.sqrt((centred * centred).sum(axis=-1, keepdims=True))
+    return np.asarray(centred / np.maximum(length, 1e-6), np.float32)

@@ -1,0 +1,157 @@
+"""A cube at rest near an expected pose, found by all cells of its markers, and how sure that is."""
+
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tracking.cube.faces import FacePlanes
+from tracking.cube.model import CubeModel
+from tracking.geometry.arrays import Array, Floats, Image
+from tracking.geometry.image_region import Patch
+from tracking.geometry.projection import Projection
+from tracking.refinement.candidate import Candidate
+from tracking.refinement.footprint import Footprint
+from tracking.refinement.still_alignment import EXPECTED_BLUR_PX, StillAligner, StillAlignment
+
+MIN_CORRELATION = 0.85
+"""Correlation of a marker with the image from which on it is found."""
+
+MIN_VISIBLE_CORRELATION, MIN_VISIBLE_SHARE = 0.93, 0.55
+"""The same for the visible part of a covered marker, and the least such part. It proves nothing
+alone: a part of a marker is like many things."""
+
+MIN_INNER_CORRELATION, MIN_PARTIAL_CORRELATION = 0.7, 0.45
+"""Correlation of the cells inside the border of a whole marker, which tell it from others, and of
+all and of these of a covered one."""
+
+MAX_MISSING_CORRELATION, MISSING_EVIDENCE = 0.4, 4.0
+"""Below this correlation a marker in view is missing, and how much one or more of them speak
+against the pose: twice the logarithm of how seldom a hand covers faces."""
+
+MIN_JOINING = 0.3
+"""Correlation from which on another face may join the alignment."""
+
+MIN_SEEN_COSINE = 0.35
+"""Cosine of the viewing angle from which on a marker that is not found is missing."""
+
+COARSE_BLUR_CELLS = 0.45
+"""Blur of image and rendering with which a pose is searched that is off by up to a cell [cells]."""
+
+
+@dataclass(frozen=True)
+class CellMatch:
+    """A pose at which the cells match the image, and the evidence for it."""
+
+    alignment: StillAlignment
+    """The pose."""
+
+    found: tuple[str, ...]
+    """Names of the faces that are found there."""
+
+    proved: bool
+    """Whether one of them is found whole, with every cell right, or two in part."""
+
+    evidence: float
+    """Twice the logarithm of how much likelier this pose is than no cube, over all faces in view:
+    those found speak for it, those missing against it."""
+
+    @property
+    def candidate(self) -> Candidate:
+        """The pose as a candidate."""
+        aligned = self.alignment
+        return Candidate(
+            camera_from_cube=aligned.camera_from_cube,
+            covariance=aligned.covariance,
+            source="markers",
+            faces=self.found,
+            error=np.nan,
+            residual=aligned.residual,
+            certain=self.proved,
+            evidence=self.evidence,
+        )
+
+
+class CellSearch:
+    """Searches one cube seen by one camera."""
+
+    def __init__(self, cube: CubeModel, projection: Projection) -> None:
+        self._aligner = StillAligner(cube, projection)
+        self._footprint = Footprint(cube, projection)
+        self._faces = FacePlanes(cube)
+
+    def search(
+        self, image: Image, start: Array, tone: Floats, read: Collection[str] | None = None
+    ) -> CellMatch | None:
+        """Align the cube in an image, (H, W) grey or (H, W, 3) BGR, near a pose.
+
+        `tone` is the light for each grey value, (256,), `read` names the faces whose markers were
+        read; the others join in afterwards, where they are seen. None compares all from the start.
+        """
+        patch = self._footprint.crop(image, start, tone)
+        if patch is None:
+            return None
+        lone = self._read_aligned(patch, start, read)
+        if lone is None:
+            return None
+        best = self._weighed(patch, lone)
+        if best is None:
+            return None
+        seen = {face for face, share in best.alignment.correlations.items() if share > MIN_JOINING}
+        if len(seen) > len(lone.correlations):
+            joint = self._aligner.align(patch, lone.camera_from_cube, seen, lone.blur)
+            again = self._weighed(patch, joint) if joint else None
+            if joint and again and again.evidence > best.evidence:
+                return replace(again, alignment=joint)
+        return replace(best, alignment=lone)
+
+    def _weighed(self, patch: Patch, aligned: StillAlignment) -> CellMatch | None:
+        """Weigh a pose by all faces that it shows."""
+        pose = aligned.camera_from_cube
+        return self._match(self._aligner.align(patch, pose, blur=aligned.blur, steps=1))
+
+    def _read_aligned(
+        self, patch: Patch, start: Array, read: Collection[str] | None
+    ) -> StillAlignment | None:
+        """Align the faces that were read; coarsely first where that fails."""
+        found = self._aligner.align(patch, start, read)
+        if found and max(found.correlations.values()) > MIN_CORRELATION:
+            return found
+        blur = COARSE_BLUR_CELLS * self._footprint.pixels_per_cell(start)
+        coarse = self._aligner.align(
+            patch.smoothed(blur), start, read, float(np.hypot(blur, EXPECTED_BLUR_PX))
+        )
+        again = self._aligner.align(patch, coarse.camera_from_cube, read) if coarse else None
+        if again and not (found and sum(found.evidence.values()) > sum(again.evidence.values())):
+            return again
+        return found
+
+    def _match(self, aligned: StillAlignment | None) -> CellMatch | None:
+        if aligned is None:
+            return None
+        cosines = dict(
+            zip(self._faces.names, self._faces.cosines(aligned.camera_from_cube), strict=True)
+        )
+        alike = aligned.correlations
+        missing = any(
+            share < MAX_MISSING_CORRELATION and cosines[face] > MIN_SEEN_COSINE
+            for face, share in alike.items()
+        )
+        found = tuple(face for face in alike if _is_found(aligned, face))
+        whole = any(alike[face] > MIN_CORRELATION and not aligned.wrong[face] for face in found)
+        return CellMatch(
+            aligned,
+            found,
+            whole or len(found) > 1,
+            sum(aligned.evidence.values()) - MISSING_EVIDENCE * missing,
+        )
+
+
+def _is_found(aligned: StillAlignment, face: str) -> bool:
+    """Whether a marker is found, whole or in part, and is not another one."""
+    alike, inner = aligned.correlations[face], aligned.inner[face]
+    if alike > MIN_CORRELATION:
+        return inner > MIN_INNER_CORRELATION
+    visible, share = aligned.visible[face]
+    seen = visible > MIN_VISIBLE_CORRELATION and share > MIN_VISIBLE_SHARE
+    return seen and min(alike, inner) > MIN_PARTIAL_CORRELATION

@@ -1,0 +1,168 @@
+"""How far the lens bends the picture beyond what its intrinsics claim, measured in play.
+
+A pose explains where a face is seen, but not that a face at the edge of the picture is stretched.
+So every frame tells a little of the radial distortion k1. What else could stretch faces is unknown
+as well: the focal length, and how the cube was folded. All of these are solved together as in a
+bundle adjustment, of which only the normal equations are kept (Triggs et al., 2000, section 6.1).
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from tracking.cube.model import CubeModel
+from tracking.geometry.arrays import Array, Indices
+from tracking.geometry.projection import Projection
+from tracking.geometry.robust_statistics import quantile
+from tracking.refinement.edge_fit import PRIOR_INFORMATION, FittedEdges
+from tracking.refinement.profiles import EdgeProfiles
+from tracking.refinement.systematic_error import CORNER_ERROR_M, CORNER_ERROR_PX
+
+K1_SPREAD, FOCAL_SPREAD, FOLD_SPREAD = 0.5, 0.2, (0.0005, np.deg2rad(0.6))
+"""Standard deviations before anything is measured: of k1, of the focal length as a share of it, and
+of where a face was glued [m, rad]."""
+
+MEASURED_K1, CLAIMED_K1 = 0.005, 0.1
+"""Error of k1 of a lens that was measured, and of one that claims no distortion: hardly any has
+none. One standard deviation, as it is before play tells more."""
+
+CORNERS = 8
+"""Numbers that its corners give a bent marker: so many independent errors have all its edges."""
+
+BLUR_ERROR_SHARE, MAX_BLUR_PX = 0.1, 3.0
+"""Error of an edge as a share of its motion blur, and median blur [px] above which a frame tells
+nothing: a rolling shutter slants a moving cube, too."""
+
+POINT_STEP = 3
+"""Every so many points of the edges are enough: those between are bent alike."""
+
+NEW_POSE = (0.02, np.deg2rad(10))
+"""Only a pose that differs by so much from all that were counted tells anything new [m, rad]."""
+
+MAX_FRAMES = 200
+"""Frames that are counted at most."""
+
+KNOWN_DEVIATION, MAX_K1, MAX_DEVIATIONS = 0.03, 0.05, 3.0
+"""Standard deviation from which on k1 is known, and the k1 that an honest lens may have, absolute
+and in standard deviations."""
+
+
+@dataclass(frozen=True)
+class LensEstimate:
+    """What was measured of a lens beyond what its intrinsics claim."""
+
+    k1: float = 0.0
+    """Radial distortion in OpenCV's model, besides that of the intrinsics."""
+
+    deviation: float = K1_SPREAD
+    """Its standard deviation."""
+
+    @property
+    def known(self) -> bool:
+        """Whether it was measured well enough."""
+        return self.deviation < KNOWN_DEVIATION
+
+    @property
+    def off(self) -> bool:
+        """Whether the lens surely is not as its intrinsics claim.
+
+        >>> LensEstimate(0.1, 0.01).off, LensEstimate(0.1, 0.04).off, LensEstimate(0.03, 0.005).off
+        (True, False, False)
+        """
+        return self.known and abs(self.k1) > max(MAX_K1, MAX_DEVIATIONS * self.deviation)
+
+
+class LensEstimator:
+    """Collects what the edges of one cube say of the lens of one camera."""
+
+    def __init__(self, cube: CubeModel, projection: Projection) -> None:
+        self._projection = projection
+        self._marker = cube.marker_size
+        self._faces = len(cube.faces)
+        spreads = [K1_SPREAD, FOCAL_SPREAD, *np.repeat(FOLD_SPREAD, 3).tolist() * self._faces]
+        self._information = np.diag(1 / np.square(spreads))
+        self._score = np.zeros(len(spreads))
+        self._square, self._freedom = 0.0, 0.0
+        self._counted = np.empty((0, 12))
+        self._claims_none = not np.any(projection.distortion)
+        self.estimate = LensEstimate()
+        """The best estimate."""
+
+    @property
+    def k1_error(self) -> float:
+        """How far k1 is from what the intrinsics claim, one standard deviation."""
+        found = self.estimate
+        if found.off or (found.known and self._claims_none):
+            return float(np.hypot(found.k1, found.deviation))
+        return CLAIMED_K1 if self._claims_none else MEASURED_K1
+
+    def learn(self, camera_from_cube: Array, edges: FittedEdges) -> None:
+        """Learn from the edges of a trusted pose, (4, 4), that differs from all before."""
+        face = edges.profiles.face[edges.fit.strong]
+        one_face = face[0] == face[-1]
+        if one_face or len(self._counted) >= MAX_FRAMES or not self._is_new(camera_from_cube):
+            return
+        blur = quantile(edges.profiles.blur, 0.5)
+        if blur > MAX_BLUR_PX:
+            return
+        self._counted = np.vstack([self._counted, _flat(camera_from_cube)])
+        self._add(camera_from_cube, edges, blur)
+        inverse = np.linalg.inv(self._information)
+        found = inverse @ self._score
+        # Where edges scatter more than paper does, so does k1.
+        chi = (self._square - float(self._score @ found)) / max(self._freedom, 1.0)
+        deviation = np.sqrt(inverse[0, 0] * max(1.0, chi))
+        self.estimate = LensEstimate(float(found[0]), float(deviation))
+
+    def _is_new(self, pose: Array) -> bool:
+        shift, angle = NEW_POSE
+        flat = _flat(pose)
+        apart = np.square(self._counted[:, 9:] - flat[9:]).sum(axis=1)
+        traces = self._counted[:, :9] @ flat[:9]
+        return bool(((apart > shift**2) | (traces < 1 + 2 * np.cos(angle))).all())
+
+    def _add(self, pose: Array, edges: FittedEdges, blur: float) -> None:
+        """Add the equations of one frame, less what its pose and its blooms explain."""
+        fit = edges.fit
+        used = np.flatnonzero(fit.robust > 0)[::POINT_STEP]
+        points = fit.strong[used]
+        face = edges.profiles.face[points]
+        pixels = float(self._projection.matrix[0, 0]) / float(pose[2, 3])
+        errors = (CORNER_ERROR_PX, CORNER_ERROR_M * pixels, BLUR_ERROR_SHARE * blur)
+        # Without the robust weights: a wrong lens is no outlier.
+        weights = fit.measured.information[points]
+        totals = np.bincount(face, weights, self._faces)
+        weights = weights * CORNERS / (totals[face] * np.square(errors).sum())
+        own, shared = fit.rows[used], self._shared_rows(pose, edges.profiles, points)
+        residual = fit.residual[used]
+        weighted, own_weighted = shared * weights[:, None], own * weights[:, None]
+        cross = own_weighted.T @ shared
+        explained = np.linalg.solve(own_weighted.T @ own + PRIOR_INFORMATION, cross)
+        self._information += weighted.T @ shared - cross.T @ explained
+        self._score += weighted.T @ residual - explained.T @ (own_weighted.T @ residual)
+        self._square += float(weights @ residual**2)
+        self._freedom += CORNERS * np.count_nonzero(totals) - own.shape[1]
+
+    def _shared_rows(self, pose: Array, profiles: EdgeProfiles, points: Indices) -> Array:
+        """Jacobian of edge positions by what all frames share, (M, 2 + 6 faces) [px].
+
+        `points` are indices of profiles, (M,).
+        """
+        rotation, camera, zero = pose[:3, :3], self._projection, np.zeros(3)
+        places = profiles.model.points[profiles.numbers[points]] @ rotation.T + pose[:3, 3]
+        by_all = cv2.projectPoints(places, zero, zero, camera.matrix, camera.distortion)[1]
+        # OpenCV's columns: turn (3), shift (3), fx, fy, cx, cy, k1 …
+        by_focal = by_all[:, 6] * camera.matrix[0, 0] + by_all[:, 7] * camera.matrix[1, 1]
+        by_lens = np.stack([by_all[:, 10], by_focal], axis=1).reshape(-1, 2, 2)
+        lens = np.einsum("ni,nij->nj", profiles.normals[points], by_lens)
+        # A fold moves its face along the axes of the cube.
+        slopes = (profiles.slopes[points].reshape(-1, 2, 3) @ rotation).reshape(-1, 1, 6)
+        own_face = profiles.face[points, None] == np.arange(self._faces)
+        folds = (own_face[:, :, None] * slopes).reshape(len(points), -1)
+        return np.concatenate([lens, folds], axis=1)
+
+
+def _flat(pose: Array) -> Array:
+    """Rotation and position of a pose, (4, 4) → (12,)."""
+    return np.concatenate([pose[:3, :3].ravel(), pose[:3, 3]])

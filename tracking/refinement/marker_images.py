@@ -1,0 +1,73 @@
+"""The markers as textures, as a lens out of focus and a bright sensor show them."""
+
+import numpy as np
+
+from tracking.cube.marker import marker_cells
+from tracking.cube.model import CubeModel
+from tracking.geometry.arrays import Array, Floats, Indices
+
+TEXELS_PER_CELL = 8
+"""Texels along a cell."""
+
+PAPER_CELLS = 2
+"""Cells of white paper around a marker, which let the blur wrap around."""
+
+
+class MarkerTextures:
+    """Textures of the markers of all faces, from black 0 to white 1, and how they change."""
+
+    def __init__(self, cube: CubeModel) -> None:
+        cells = [marker_cells(cube.dictionary, face.marker_id) for face in cube.faces]
+        white = np.pad(~np.stack(cells), ((0, 0), *[(PAPER_CELLS, PAPER_CELLS)] * 2),
+                       constant_values=True)  # fmt: skip
+        ones = np.ones((1, TEXELS_PER_CELL, TEXELS_PER_CELL), np.float32)
+        textures = np.kron(white.astype(np.float32), ones)
+        self.side = textures.shape[1]
+        """Texels along each side of a texture."""
+        self.texel = cube.marker_size / len(cells[0]) / TEXELS_PER_CELL
+        """Size of a texel [m]."""
+        self._spectra = _spectrum(textures)
+        # By how much the texture brightens where every border moves by a texel into the black.
+        self._borders = [
+            _spectrum(np.abs(np.roll(textures, 1, axis) - np.roll(textures, -1, axis)) / 2)
+            for axis in (2, 1)
+        ]
+        across, down = np.fft.rfftfreq(self.side), np.fft.fftfreq(self.side)
+        x, y = np.meshgrid(2 * np.pi * across, 2 * np.pi * down)
+        self._powers = np.stack([x * x, 2 * x * y, y * y]).astype(np.float32)
+        # The gradient has no Nyquist frequency: half a turn per texel has no sign.
+        self._slopes = [np.where(np.abs(each) < 3.14, 1j * each, 0).astype(np.complex64)
+                        for each in (x, y)]  # fmt: skip
+
+    def seen(self, faces: Indices, texels_to_pixels: Array, variance: float) -> Floats:
+        """Blur the markers of faces by a Gaussian that is round in the camera's image.
+
+        `texels_to_pixels` is the Jacobian of the image by the texels of each face, (faces, 2, 2),
+        and `variance` that of the blur [px²].
+
+        Return the markers below each other, and their derivatives to the right, down, by the
+        variance, and by the bloom, which is how far white has grown over black in the image [px],
+        (5, faces · side, side).
+        """
+        spread = np.linalg.inv(texels_to_pixels)
+        spread = (spread @ spread.transpose(0, 2, 1)).astype(np.float32)
+        parts = spread[:, [0, 0, 1], [0, 1, 1]]
+        power = np.tensordot(parts, self._powers, 1) / 2
+        gauss = np.exp(-variance * power)
+        # One pixel across a border is this many texels.
+        area = np.abs(np.linalg.det(texels_to_pixels))
+        columns = np.linalg.norm(texels_to_pixels, axis=1) / area[:, None]
+        columns = columns.astype(np.float32)[:, :, None, None]
+        spectra = np.empty((5, len(faces), *gauss.shape[1:]), np.complex64)
+        soft = np.multiply(self._spectra[faces], gauss, out=spectra[0])
+        np.multiply(soft, self._slopes[0], out=spectra[1])
+        np.multiply(soft, self._slopes[1], out=spectra[2])
+        np.multiply(soft, -power, out=spectra[3])
+        borders = self._borders[0][faces] * columns[:, 1] + self._borders[1][faces] * columns[:, 0]
+        np.multiply(borders, gauss, out=spectra[4])
+        textures = np.fft.irfft2(spectra, s=(self.side, self.side))
+        return np.asarray(textures.reshape(5, -1, self.side), np.float32)
+
+
+def _spectrum(textures: Floats) -> Array:
+    return np.fft.rfft2(textures).astype(np.complex64)

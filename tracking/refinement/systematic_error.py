@@ -1,0 +1,67 @@
+"""What no residual shows: how far paper, light and lens may have moved a pose.
+
+Every marker is taken to be bent a little: each of its corners is displaced in the image, by blur
+and light, and on the paper, by print and folds. A lens that was never measured has another
+distortion and another focal length than it says. All edges of a face move together then, so the
+pose moves and the residuals stay small.
+"""
+
+import numpy as np
+
+from tracking.cube.faces import FacePlanes
+from tracking.cube.model import CubeModel
+from tracking.geometry import se3
+from tracking.geometry.arrays import Array
+from tracking.geometry.projection import Projection
+
+CORNER_ERROR_PX, CORNER_ERROR_M = 0.1, 0.00012
+"""Displacement of a marker's corner along each axis, one standard deviation: by light, blur and
+pixels, and by print, folds and a moving hand. Measured on photographs of one object at two sizes,
+which `make bench-photographs` shows."""
+
+COMMON_SHIFT_PX = 0.15
+"""Displacement of the whole cube in the image, along each axis, one standard deviation."""
+
+MEASURED_FOCAL, CLAIMED_FOCAL = 0.002, 0.005
+"""Standard deviation of the focal length, as a share of it, of a lens that was measured, and of one
+that claims no distortion."""
+
+
+class SystematicError:
+    """Such errors of the poses of one cube seen by one camera."""
+
+    def __init__(self, cube: CubeModel, projection: Projection) -> None:
+        self._projection = projection
+        self._faces = FacePlanes(cube)
+        self._corners = {face.name: face.corners for face in cube.faces}
+        self._half = cube.marker_size / 2
+        claims_none = not np.any(projection.distortion)
+        self._focal = CLAIMED_FOCAL if claims_none else MEASURED_FOCAL
+
+    def covariance(
+        self, camera_from_cube: Array, faces: tuple[str, ...], k1_error: float
+    ) -> tuple[Array, Array]:
+        """Covariances of a pose delta, (6, 6): by the corners of `faces`, and by the lens.
+
+        `k1_error` is how far the radial distortion is off, one standard deviation.
+        """
+        rotation, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
+        arms = np.concatenate([self._corners[name] for name in faces]) @ rotation.T
+        points = arms + origin
+        _, by_point = self._projection.project_with_jacobian(points)
+        rows = np.concatenate([by_point, -by_point @ se3.hat(arms)], axis=2).reshape(-1, 6)
+        focal = float(self._projection.matrix[0, 0])
+        pixels = focal / float(origin[2])
+        error = float(np.hypot(CORNER_ERROR_PX, CORNER_ERROR_M * pixels))
+        # Square on, a tilt shows only by its cosine.
+        tilt = np.sqrt(2 * error / (self._half * pixels))
+        information = rows.T @ rows / error**2
+        information[3:, 3:] += np.eye(3) / tilt**2
+        inverse = np.linalg.inv(information)
+        shift = np.diag([1, 1, 0, 0, 0, 0]) * (COMMON_SHIFT_PX / pixels) ** 2
+        # Where a lens with a larger k1, and with a longer focal length, shows the corners.
+        flat = points[:, :2] / points[:, 2:]
+        square = (flat**2).sum(axis=1, keepdims=True)
+        modes = np.stack([focal * flat * square, focal * flat], axis=2).reshape(-1, 2)
+        moves = inverse @ (rows.T @ (modes * (k1_error, self._focal))) / error**2
+        return np.asarray(inverse + shift, np.float64), np.asarray(moves @ moves.T, np.float64)
