@@ -10,6 +10,7 @@ from app.running.players import PlayerPublisher
 from app.running.runner import run
 from app.running.summary import Summary
 from app.session import SessionOptions
+from app.ui.notice import lens_notice
 from tracking import FrameSource
 
 
@@ -39,8 +40,9 @@ def play_session(
 def run_with_progress(session: OpenedSession, console: Console, title: str) -> Summary:
     """Run a session, with a progress bar if its length is known; Ctrl-C discards a video."""
     duration = session.source.duration
+    say_lens = _LensLine(session, console)
     if duration is None or session.paced or not console.is_terminal:
-        summary = run(session)
+        summary = run(session, say_lens)
     else:
         columns = (
             TextColumn("{task.description}"),
@@ -56,6 +58,7 @@ def run_with_progress(session: OpenedSession, console: Console, title: str) -> S
                 now = step.frame.timestamp
                 start = now if start is None else start
                 bar.update(task, completed=now - start)
+                say_lens(step)
 
             summary = run(session, progress)
     writes_video = session.options.pictures and session.options.output is not None
@@ -64,3 +67,19 @@ def run_with_progress(session: OpenedSession, console: Console, title: str) -> S
     if summary.frames == 0 and not summary.interrupted:
         raise AppError("the source gave no picture at all")
     return summary
+
+
+class _LensLine:
+    """Prints once, as soon as the cube has shown it, that the lens is not as it claims."""
+
+    def __init__(self, session: OpenedSession, console: Console) -> None:
+        self._playground, self._console = session.playground, console
+        self._said = False
+
+    def __call__(self, step: Step) -> None:
+        if self._said:
+            return
+        words = lens_notice(self._playground.lens, self._playground.intrinsics)
+        if words is not None:
+            self._console.print(words)
+            self._said = True

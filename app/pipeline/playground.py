@@ -19,6 +19,7 @@ from tracking import (
     CubeTracker,
     Frame,
     Intrinsics,
+    LensEstimate,
 )
 
 
@@ -103,6 +104,11 @@ class Playground:
         self._posed = posed
         picture = self.draw(frame, state, controls, outcome, posed)
         return Step(frame, state, controls, outcome, posed, picture)
+
+    @property
+    def lens(self) -> LensEstimate:
+        """What the cube has shown of the camera's lens so far, besides what its intrinsics say."""
+        return self._tracker.lens
 
     def track(self, frame: Frame) -> CubeState:
         """Find the cube."""

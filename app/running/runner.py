@@ -9,7 +9,7 @@ from app.pipeline.step import Step
 from app.running.opening import OpenedSession
 from app.running.summary import Summary
 from app.session import START_OVER_EVENT, Recorder, frame_encoder
-from app.ui.notice import notice
+from app.ui.notice import lens_notice, notice
 from robot import RobotError
 from tracking import Frame, Health, LiveFrames, TrackingError
 
@@ -77,6 +77,7 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
             summary.lost = summary.lost or error
     except KeyboardInterrupt:
         summary.interrupted = True
+    summary.lens = lens_notice(session.playground.lens, session.playground.intrinsics)
     if isinstance(session.source, LiveFrames):
         summary.camera = session.source.health
     return summary

@@ -57,6 +57,9 @@ class Summary:
     camera: Health | None = None
     """State of the camera at the end; None for a source that is not live."""
 
+    lens: str | None = None
+    """What to say of the camera's lens; None if it is as claimed, or not known."""
+
     interrupted: bool = False
     """Whether Ctrl-C ended the session."""
 
@@ -126,6 +129,8 @@ class Summary:
             lost = sum(seconds for _, seconds in self.gaps)
             count = "once" if len(self.gaps) == 1 else f"{len(self.gaps)} times"
             table.add_row("camera lost", f"{count}, {lost:.1f} s in all")
+        if self.lens is not None:
+            table.add_row("lens", self.lens)
         return Panel(Group(table), title=f"[bold]{self.scenario}", title_align="left", expand=False)
 
     def _curve(self) -> str:

@@ -1,8 +1,8 @@
-"""Notices for the player while the camera delivers no new frames."""
+"""Notices for the player: the camera delivers no new frames, or its lens is not as it claims."""
 
 from dataclasses import dataclass
 
-from tracking import Health
+from tracking import Health, Intrinsics, LensEstimate
 
 
 @dataclass(frozen=True)
@@ -29,3 +29,25 @@ def notice(health: Health) -> Notice | None:
     if health.frozen:
         return Notice("The picture stands still", "Uncover the camera, or plug it in again.")
     return Notice("Camera lost: plug it in again", "The play goes on by itself.")
+
+
+def lens_notice(lens: LensEstimate, intrinsics: Intrinsics) -> str | None:
+    """Return what to say of a lens, in Rich's markup; None where nothing is surely wrong with it.
+
+    The pixels are how far a line along the top of the picture is bent from its middle to its ends.
+
+    >>> camera = Intrinsics.guess((1280, 720))
+    >>> (lens_notice(LensEstimate(0.1, 0.01), camera) or "")[:52]
+    "This camera's lens bends straight lines by 12 pixels"
+    >>> lens_notice(LensEstimate(0.1, 0.04), camera)
+    """
+    if not lens.off:
+        return None
+    focal = float(intrinsics.matrix[0, 0])
+    right, top = (side / 2 / focal for side in intrinsics.size)
+    bend = focal * abs(lens.k1) * top * right**2
+    more = " more than its calibration says" if intrinsics.distortion.any() else ""
+    return (
+        f"This camera's lens bends straight lines by {bend:.0f} pixels{more} "
+        "at the edge of the picture: [cyan]cubeling calibrate[/] would place the character better."
+    )

@@ -9,11 +9,13 @@ from rich.console import Console
 
 from app.commands import demo
 from app.errors import AppError
+from app.pipeline.playground import Playground
 from app.pipeline.step import RobotView
 from app.running.summary import Summary
 from app.ui.canvas import Canvas, rounded_rectangle
 from app.ui.overlay import overlay
 from app.ui.screen import VideoFile
+from tracking import LensEstimate
 
 ROBOT = RobotView("ready", 0.4, "happy")
 
@@ -128,3 +130,16 @@ def test_what_is_whole_of_a_cut_session_can_be_played(cubeling, short_session):
     code, out, err = cubeling("replay", "cut.mcap", "--no-pictures", "--salvage")
     assert (code, err) == (0, "")
     assert "cube found" in out
+
+
+def test_a_lens_that_is_not_as_it_claims_is_named_once_in_play_and_in_the_summary(
+    cubeling, short_session, monkeypatch
+):
+    _, out, _ = cubeling("replay", short_session, "--no-pictures")
+    assert "This camera's lens" not in out
+    monkeypatch.setattr(Playground, "lens", LensEstimate(0.1, 0.01))
+    code, out, err = cubeling("replay", short_session, "--no-pictures")
+    assert (code, err) == (0, "")
+    line, row = out.split("This camera's lens")[1:]
+    assert "cubeling calibrate" in " ".join(line.split())
+    assert "cubeling calibrate" in " ".join(row.replace("│", "").split())
