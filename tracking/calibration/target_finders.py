@@ -67,7 +67,7 @@ class CubeFinder:
     def find(self, grey: Image, timestamp: float) -> TargetDetection | None:
         """Detect the markers; the larger one of two with the same id counts."""
         largest: dict[str, Observation] = {}
-        for seen in markers_of(self.cube, self._detector.detect(grey)):
+        for seen in markers_of(self.cube, self._detector.detect_strictly(grey)):
             other = largest.get(seen.face.name)
             if other is None or seen.size > other.size:
                 largest[seen.face.name] = seen

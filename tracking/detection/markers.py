@@ -54,6 +54,10 @@ class MarkerDetector:
         first, last = OTHER_WINDOWS_PX
         self._first = cv2.aruco.ArucoDetector(pattern, _parameters(*[FIRST_WINDOW_PX] * 2))
         self._others = cv2.aruco.ArucoDetector(pattern, _parameters(first, last))
+        strict = _parameters(first, last)
+        strict.adaptiveThreshWinSizeStep = FIRST_WINDOW_PX - first
+        strict.errorCorrectionRate = 0.0
+        self._strict = cv2.aruco.ArucoDetector(pattern, strict)
 
     def detect(self, grey: Image) -> list[Marker]:
         """Detect markers in a grey image, (H, W), with the window that finds most."""
@@ -62,6 +66,10 @@ class MarkerDetector:
     def detect_others(self, grey: Image) -> list[Marker]:
         """Detect markers with the other windows, some of them again."""
         return _detected(self._others, grey)
+
+    def detect_strictly(self, grey: Image) -> list[Marker]:
+        """Detect markers with all windows, and none with a wrong bit: nothing else proves them."""
+        return _detected(self._strict, grey)
 
 
 def _parameters(first: int, last: int) -> cv2.aruco.DetectorParameters:

@@ -17,7 +17,7 @@ SAMPLES_PER_CELL, TEXELS_PER_SAMPLE = 2, 4
 PAPER_CELLS = 0.5
 """How far around a marker its white paper is compared."""
 
-MIN_CORRELATION, MIN_LEAD = 0.7, 0.05
+MIN_CORRELATION, MIN_LEAD = 0.8, 0.06
 """Correlation of a quad with its most similar pattern, and its lead over the next marker."""
 
 MIN_VISIBLE_SHARE = 0.6
