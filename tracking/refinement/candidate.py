@@ -8,10 +8,11 @@ import numpy as np
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array
 from tracking.refinement.edge_fit import FittedEdges
+from tracking.refinement.evidence import Evidence
 
-MIN_LOG_LIKELIHOOD_RATIO, MIN_EVIDENCE_LEAD = 8.0, 5.0
-"""Twice the logarithm of a likelihood ratio from which on the better of two poses is right: by the
-residuals of edges, and by the cells of all faces in view."""
+MIN_LOG_LIKELIHOOD_RATIO = 8.0
+"""Twice the logarithm of a likelihood ratio, by the residuals of edges, from which on the better of
+two poses is right."""
 
 LEAST_RESIDUAL = 0.05
 """Residual that paper and lens leave at the right pose, too."""
@@ -54,11 +55,20 @@ class Candidate:
     measurements: int = 0
     """Roughly how many independent measurements the residual rests on; 0 if it tells nothing."""
 
-    evidence: float = np.nan
-    """As in `CellMatch.evidence`; NaN where the cells were not compared."""
+    evidence: Evidence | None = None
+    """As in `CellMatch.evidence`; None where the cells were not compared."""
+
+    agreed: bool = False
+    """Whether several faces agree on it, so that no other pose can be right."""
 
     edges: FittedEdges | None = None
     """The edges that the pose rests on; None where it rests on others."""
+
+    @property
+    def rank(self) -> tuple[bool, bool, float, float]:
+        """Sorts the better ones first."""
+        evidence = self.evidence.total if self.evidence else 0.0
+        return not self.certain, not self.agreed, -evidence, self.residual
 
     def same_pose(self, other: "Candidate") -> bool:
         """Whether two candidates are the same pose for all purposes."""
@@ -69,9 +79,13 @@ class Candidate:
 
     def clearly_better_than(self, other: "Candidate") -> bool:
         """Whether cells, or else the residuals, tell that this pose is right."""
-        lead = self.evidence - other.evidence
-        if abs(lead) > MIN_EVIDENCE_LEAD:
-            return bool(lead > 0)
+        if self.agreed != other.agreed:
+            return self.agreed
+        if self.evidence and other.evidence:
+            if self.evidence.clearly_exceeds(other.evidence):
+                return True
+            if other.evidence.clearly_exceeds(self.evidence):
+                return False
         ratio = (other.residual + LEAST_RESIDUAL) / (self.residual + LEAST_RESIDUAL)
         measurements = min(self.measurements, other.measurements)
         return bool(measurements * 2 * np.log(ratio) > MIN_LOG_LIKELIHOOD_RATIO)

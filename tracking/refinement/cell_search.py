@@ -11,6 +11,7 @@ from tracking.geometry.arrays import Array, Floats, Image
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
+from tracking.refinement.evidence import Evidence
 from tracking.refinement.footprint import Footprint
 from tracking.refinement.still_alignment import EXPECTED_BLUR_PX, StillAligner, StillAlignment
 
@@ -28,6 +29,10 @@ all and of these of a covered one."""
 MAX_MISSING_CORRELATION, MISSING_EVIDENCE = 0.4, 4.0
 """Below this correlation a marker in view is missing, and how much one or more of them speak
 against the pose: twice the logarithm of how seldom a hand covers faces."""
+
+MIN_SPEAKING = 0.6
+"""Correlation from which on a marker that is not found speaks for the pose, too: little at first.
+White paper and clutter fit any marker by chance."""
 
 MIN_JOINING = 0.3
 """Correlation from which on another face may join the alignment."""
@@ -52,9 +57,8 @@ class CellMatch:
     proved: bool
     """Whether one of them is found whole, with every cell right, or two in part."""
 
-    evidence: float
-    """Twice the logarithm of how much likelier this pose is than no cube, over all faces in view:
-    those found speak for it, those missing against it."""
+    evidence: Evidence
+    """How much the image speaks for the pose: by faces that are found, less those missing."""
 
     @property
     def candidate(self) -> Candidate:
@@ -91,24 +95,29 @@ class CellSearch:
         patch = self._footprint.crop(image, start, tone)
         if patch is None:
             return None
-        lone = self._read_aligned(patch, start, read)
-        if lone is None:
-            return None
-        best = self._weighed(patch, lone)
-        if best is None:
-            return None
-        seen = {face for face, share in best.alignment.correlations.items() if share > MIN_JOINING}
-        if len(seen) > len(lone.correlations):
-            joint = self._aligner.align(patch, lone.camera_from_cube, seen, lone.blur)
+        aligned = self._read_aligned(patch, start, read)
+        match = self._weighed(patch, aligned) if aligned else None
+        if not aligned or not match or not match.found:
+            return match
+        alike = match.alignment.correlations
+        seen = {face for face, share in alike.items() if share > MIN_JOINING}
+        if len(seen) > len(aligned.correlations):
+            joint = self._aligner.align(patch, aligned.camera_from_cube, seen, aligned.blur)
             again = self._weighed(patch, joint) if joint else None
-            if joint and again and again.evidence > best.evidence:
-                return replace(again, alignment=joint)
-        return replace(best, alignment=lone)
+            if joint and again and again.evidence.total > match.evidence.total:
+                aligned = joint
+        # What was found coarsely is measured with more samples.
+        pose, faces = aligned.camera_from_cube, aligned.correlations
+        aligned = self._aligner.align(patch, pose, faces, aligned.blur, fine=True) or aligned
+        match = self._weighed(patch, aligned, fine=True)
+        return match and replace(match, alignment=aligned)
 
-    def _weighed(self, patch: Patch, aligned: StillAlignment) -> CellMatch | None:
+    def _weighed(
+        self, patch: Patch, aligned: StillAlignment, fine: bool = False
+    ) -> CellMatch | None:
         """Weigh a pose by all faces that it shows."""
         pose = aligned.camera_from_cube
-        return self._match(self._aligner.align(patch, pose, blur=aligned.blur, steps=1))
+        return self._match(self._aligner.align(patch, pose, None, aligned.blur, 1, fine))
 
     def _read_aligned(
         self, patch: Patch, start: Array, read: Collection[str] | None
@@ -122,7 +131,7 @@ class CellSearch:
             patch.smoothed(blur), start, read, float(np.hypot(blur, EXPECTED_BLUR_PX))
         )
         again = self._aligner.align(patch, coarse.camera_from_cube, read) if coarse else None
-        if again and not (found and sum(found.evidence.values()) > sum(again.evidence.values())):
+        if again and not (found and found.evidence.total > again.evidence.total):
             return again
         return found
 
@@ -133,18 +142,20 @@ class CellSearch:
             zip(self._faces.names, self._faces.cosines(aligned.camera_from_cube), strict=True)
         )
         alike = aligned.correlations
-        missing = any(
-            share < MAX_MISSING_CORRELATION and cosines[face] > MIN_SEEN_COSINE
-            for face, share in alike.items()
-        )
         found = tuple(face for face in alike if _is_found(aligned, face))
+        missing = [
+            self._faces.names.index(face)
+            for face, share in alike.items()
+            if share < MAX_MISSING_CORRELATION and cosines[face] > MIN_SEEN_COSINE
+        ]
+        blocks = aligned.evidence.blocks.copy()
+        for face, share in alike.items():
+            if face not in found:
+                share = (share - MIN_SPEAKING) / (MIN_CORRELATION - MIN_SPEAKING)
+                blocks[self._faces.names.index(face)] *= np.clip(share, 0, 1)
+        blocks[missing] -= MISSING_EVIDENCE / max(blocks[missing].size, 1)
         whole = any(alike[face] > MIN_CORRELATION and not aligned.wrong[face] for face in found)
-        return CellMatch(
-            aligned,
-            found,
-            whole or len(found) > 1,
-            sum(aligned.evidence.values()) - MISSING_EVIDENCE * missing,
-        )
+        return CellMatch(aligned, found, whole or len(found) > 1, Evidence(blocks))
 
 
 def _is_found(aligned: StillAlignment, face: str) -> bool:

@@ -7,12 +7,16 @@ import numpy as np
 from tracking.geometry.arrays import Array, Flags, Indices
 from tracking.geometry.robust_statistics import quantile
 
-MAX_RESIDUAL_SIGMAS, MIN_CUT_SHARE = 2.0, 0.2
+MAX_RESIDUAL_SIGMAS, MIN_CUT_SHARE = 2.0, 0.3
 """Residuals beyond this many standard deviations lose their weight (fingers, glare, shadows), but
 not below this share of the contrast, which an edge leaves that is not yet in place."""
 
 WRONG_SHARE = 0.5
 """A cell that is brighter or darker than rendered by this share of the contrast is wrong."""
+
+TYPICAL_ERROR, LEAST_CONTRAST, LEAST_ERROR = 0.08, 0.3, 1.0
+"""Typical error of a sample as a share of its face's contrast, which is taken to be at least this
+share of the greatest one, and in grey levels at least."""
 
 MIN_FACE_SAMPLES = 30
 """A face with fewer samples has no correlation of its own."""
@@ -131,6 +135,21 @@ class PhotometricFit:
     def correlations_within(self, chosen: Flags) -> Array:
         """Correlation of rendering and image over some samples, (N,), for each face, (faces,)."""
         return self._alike(self.light * chosen)
+
+    def explained(self, blocks: int) -> Array:
+        """How well the rendering explains each block of each face, (faces, blocks).
+
+        Twice the logarithm of the likelihood ratio to an even surface, mean of the samples, with
+        Cauchy's distribution, as fingers and dirt are no errors of light; 0 where they cover it.
+        """
+        face = self.samples.face
+        contrast = self.tones[self.faces : 2 * self.faces]
+        contrast = np.maximum(contrast, LEAST_CONTRAST * self.contrast)
+        error = np.hypot(TYPICAL_ERROR, LEAST_ERROR / np.maximum(contrast, LEAST_ERROR))[face] ** 2
+        gain = 2 * np.log((error + 0.25) / (error + (self.residual / contrast[face]) ** 2))
+        samples = np.bincount(self.samples.block, minlength=self.faces * blocks)
+        means = np.bincount(self.samples.block, gain, len(samples)) / np.maximum(samples, 1)
+        return np.maximum(means.reshape(self.faces, blocks), 0)
 
     def wrong_cells(self, cells: Indices, count: int) -> Array:
         """Count the cells of each face, (faces,), that are not as bright as they are rendered.

@@ -17,14 +17,16 @@ from tracking.geometry import se3
 from tracking.geometry.arrays import Array, Floats, Indices
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import MIN_DEPTH, Projection
+from tracking.refinement.evidence import Evidence
 from tracking.refinement.marker_images import TEXELS_PER_CELL, MarkerTextures
 from tracking.refinement.photometric_fit import PhotometricFit, PhotometricSamples, fit_tones
 
 MARGIN_CELLS, PAPER_SHARE = 1.0, 0.8
 """How far around a marker its paper is compared [cells], and at most which share of the paper."""
 
-SAMPLES_PER_SIDE, BLOCKS_PER_SIDE = 24, 6
-"""Samples along each side of a marker with that paper, and blocks, each one measurement."""
+COARSE_SAMPLES, FINE_SAMPLES, BLOCKS_PER_SIDE = 24, 48, 6
+"""Samples along each side of a marker with that paper, in a search and to measure, and blocks, each
+one measurement."""
 
 MIN_SAMPLES = 60
 """Fewer samples in view than this do not determine a pose."""
@@ -41,7 +43,7 @@ BLUR_SPREAD_PX2, MIN_BLUR_PX2 = 1.5, 0.15
 BLOOM_SPREAD_PX = 0.3
 """How far white grows over black, one standard deviation."""
 
-MAX_STEPS, CONVERGED_PX, MAX_SLIDE_PX = 12, 0.03, 1.5
+MAX_STEPS, CONVERGED_PX, MAX_SLIDE_PX = 12, 0.01, 1.5
 """Steps at most, the length of the last, and from which length on the samples are placed again."""
 
 REDRAW_RATIO = 1.6
@@ -49,10 +51,6 @@ REDRAW_RATIO = 1.6
 
 PIXELS_PER_MEASUREMENT, CELLS_PER_MEASUREMENT = 20.0, 2.0
 """How many pixels and how many cells make one independent measurement, whichever are fewer."""
-
-MIN_DISSIMILARITY = 0.01
-"""Even a perfect match leaves this share of the image unexplained: paper bends, lenses are unlike
-their models."""
 
 
 @dataclass(frozen=True)
@@ -81,14 +79,28 @@ class StillAlignment:
     """How many of these cells are not as bright as they should be."""
 
     visible: dict[str, tuple[float, float]]
-    """The same over the samples that fit, and their share."""
+    """Correlation over the samples that fit, and their share."""
 
-    evidence: dict[str, float]
-    """Twice the logarithm of how much likelier the marker is than an even surface, for each face in
-    view; 0 where nothing is alike."""
+    evidence: Evidence
+    """How much the image speaks for the pose."""
 
     residual: float
     """Standard deviation of the samples that fit, as a share of the contrast."""
+
+
+class _Grid:
+    """Samples on a face, `count` along each side, as far as `reach` from its middle [m]."""
+
+    def __init__(self, count: int, reach: float) -> None:
+        steps = ((np.arange(count) + 0.5) / count - 0.5) * 2
+        x, y = (axis.ravel() for axis in np.meshgrid(steps, steps))
+        self.places = np.stack([x, y], axis=1)
+        """Place of each sample on its face, −1…1, (N, 2)."""
+        self.points = np.stack([x * reach, y * reach, np.zeros(count**2), np.ones(count**2)])
+        """The same as columns of (x, y, 0, 1) [m], (4, N)."""
+        blocks = np.arange(count) * BLOCKS_PER_SIDE // count
+        self.block = (blocks[:, None] * BLOCKS_PER_SIDE + blocks).ravel()
+        """Index of the block of each sample, (N,)."""
 
 
 @dataclass(frozen=True)
@@ -137,15 +149,12 @@ class StillAligner:
         # The cells inside the border, as a share of the reach.
         self._inner = (cube.marker_size / 2 - cell) / self._reach
         self._cells = round(cube.marker_size / cell) ** 2
-        count = SAMPLES_PER_SIDE
-        steps = ((np.arange(count) + 0.5) / count - 0.5) * 2 * self._reach
-        x, y = (axis.ravel() for axis in np.meshgrid(steps, steps))
+        self._coarse, self._fine = (
+            _Grid(count, self._reach) for count in (COARSE_SAMPLES, FINE_SAMPLES)
+        )
         middle = (self._textures.side - 1) / 2
         self._texels_of_places = np.array([[1, 0, middle], [0, 1, middle], [0, 0, 1]])
         self._texels_of_places[:2, :2] /= self._textures.texel
-        self._grid = np.stack([x, y, np.zeros(count**2), np.ones(count**2)])
-        blocks = np.arange(count) * BLOCKS_PER_SIDE // count
-        self._block = (blocks[:, None] * BLOCKS_PER_SIDE + blocks).ravel()
 
     def align(
         self,
@@ -154,12 +163,15 @@ class StillAligner:
         faces: Collection[str] | None = None,
         blur: float = EXPECTED_BLUR_PX,
         steps: int = MAX_STEPS,
+        fine: bool = False,
     ) -> StillAlignment | None:
         """Align from a pose, (4, 4), that is right to about half a cell; None if not in view.
 
         `faces` are those that are compared with the image, None for all that face the camera, and
-        `blur` the expected blur of the patch, one standard deviation [px].
+        `blur` the expected blur of the patch, one standard deviation [px]. `fine` takes more
+        samples: slower, and more precise.
         """
+        grid = self._fine if fine else self._coarse
         expected = np.array([blur**2, 0.0])
         prior = np.array([BLUR_SPREAD_PX2 + blur**2 / 4, BLOOM_SPREAD_PX])
         optics, drawn, pose, moved = expected, np.inf, start, np.inf
@@ -167,7 +179,7 @@ class StillAligner:
         layers: Floats | None = None
         for _ in range(steps):
             if placed is None or moved > MAX_SLIDE_PX:
-                placed = self._place(patch, pose, faces)
+                placed = self._place(patch, pose, faces, grid)
                 if placed is None:
                     return None
             if layers is None or not 1 / REDRAW_RATIO < optics[0] / drawn < REDRAW_RATIO:
@@ -187,7 +199,9 @@ class StillAligner:
         far = float(np.linalg.norm(step[:3])) + self._reach * float(np.linalg.norm(step[3:6]))
         return far * float(self._projection.matrix[0, 0] / pose[2, 3])
 
-    def _place(self, patch: Patch, pose: Array, faces: Collection[str] | None) -> _Placed | None:
+    def _place(
+        self, patch: Patch, pose: Array, faces: Collection[str] | None, grid: _Grid
+    ) -> _Placed | None:
         names = self._faces.names
         facing = np.array(
             [
@@ -198,7 +212,7 @@ class StillAligner:
             np.intp,
         )
         frames = pose @ self._frames[facing]
-        points = frames[:, :3] @ self._grid
+        points = frames[:, :3] @ grid.points
         if not len(facing) or points[:, 2].min() < MIN_DEPTH:
             return None
         pixels = self._projection.project(points.transpose(0, 2, 1).reshape(-1, 3))
@@ -211,13 +225,13 @@ class StillAligner:
         centres = np.ascontiguousarray(frames[:, :3, 3])
         by_point = self._projection.project_with_jacobian(centres)[1]
         to_pixels = by_point @ frames[:, :3, :2] * texel
-        face, place = np.divmod(used, len(self._block))
-        block = face * BLOCKS_PER_SIDE**2 + self._block[place]
-        places = self._grid[:2, place].T / self._reach
+        face, place = np.divmod(used, len(grid.block))
+        block = face * BLOCKS_PER_SIDE**2 + grid.block[place]
         chosen = slice(None) if len(used) == len(pixels) else used
         return _Placed(
-            facing, chosen, values, rays, slides[..., chosen], to_pixels, face, block, places
-        )
+            facing, chosen, values, rays, slides[..., chosen], to_pixels, face, block,
+            grid.places[place],
+        )  # fmt: skip
 
     def _fit(self, placed: _Placed, layers: Floats, pose: Array, optics: Array) -> PhotometricFit:
         """Render the markers at a pose, with small changes of blur and bloom, and fit the light."""
@@ -243,21 +257,23 @@ class StillAligner:
     ) -> StillAlignment:
         names = [self._faces.names[number] for number in placed.facing]
         alike = np.nan_to_num(fit.correlations[1:])
-        inside = np.abs(placed.places).max(axis=1) < self._inner
+        cells, inner = self._inner_cells(placed)
         side = 2 * self._reach / self._textures.texel
         area = np.abs(np.linalg.det(placed.texels_to_pixels)) * side**2
         count = np.minimum(self._cells / CELLS_PER_MEASUREMENT, area / PIXELS_PER_MEASUREMENT)
-        unlike = np.maximum(1 - np.maximum(alike, 0) ** 2, MIN_DISSIMILARITY)
+        evidence = np.zeros((len(self._frames), BLOCKS_PER_SIDE**2))
+        evidence[placed.facing] = fit.explained(evidence.shape[1]) * count[:, None]
+        evidence /= evidence.shape[1]
         return StillAlignment(
             pose,
             fit.covariance(prior)[:6, :6],
             float(np.sqrt(optics[0])),
             float(optics[1]),
             dict(zip(names, alike.tolist(), strict=True)),
-            dict(zip(names, fit.correlations_within(inside).tolist(), strict=True)),
-            dict(zip(names, map(int, fit.wrong_cells(*self._inner_cells(placed))), strict=True)),
+            dict(zip(names, fit.correlations_within(cells >= 0).tolist(), strict=True)),
+            dict(zip(names, map(int, fit.wrong_cells(cells, inner)), strict=True)),
             dict(zip(names, map(tuple, fit.visible_correlations.tolist()), strict=True)),
-            dict(zip(names, (-count * np.log(unlike)).tolist(), strict=True)),
+            Evidence(evidence),
             fit.scale / max(fit.contrast, 1.0),
         )
 

@@ -163,7 +163,7 @@ def _around(seen: Sequence[Observation], grey: Image) -> Region:
 def _merged(one: list[Candidate], other: list[Candidate]) -> list[Candidate]:
     """Join two lists; of poses that are the same, keep the better one. The best comes first."""
     kept: list[Candidate] = []
-    for each in sorted([*one, *other], key=lambda each: (-each.certain, -each.evidence)):
+    for each in sorted([*one, *other], key=lambda each: each.rank):
         if not any(each.same_pose(better) for better in kept):
             kept.append(each)
     return kept

@@ -83,7 +83,7 @@ class MarkerPoses:
             read = tuple(each.face.name for each in solution.observations)
             match = self._cells.search(image, solution.camera_from_cube, tone, read)
             found += self._candidates(image, solution, match, observations, tone)
-        best = max(found, key=lambda each: each.evidence, default=None)
+        best = min(found, key=lambda each: each.rank, default=None)
         if best is not None and best.certain and len(best.faces) == 1:
             # The face may lean the other way, whether or not the corners proposed that.
             start = self._edges.mirrored_pose(best)
@@ -129,7 +129,7 @@ class MarkerPoses:
             error=self._solver.error(refined.camera_from_cube, seen),
             residual=refined.residual,
             certain=True,
-            evidence=np.inf,
+            agreed=True,
         )
 
     def _candidates(
@@ -158,7 +158,7 @@ class MarkerPoses:
                 residual=max(solution.error, 0.5),
                 certain=False,
                 blurred=fine or len(seen) == 1,
-                evidence=match.evidence if match else 0.0,
+                evidence=match.evidence if match else None,
             )
             return [corners]
         pose = match.alignment.camera_from_cube

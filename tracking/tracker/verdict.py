@@ -98,10 +98,9 @@ class FollowedPoseJudge:
             return Verdict(candidate, "", past)
         if candidate.same_pose(other):
             return Verdict(candidate, "", unsettled)
-        for first, second in ((candidate, other), self._weighed(candidate, other, image, tone)):
-            for better, worse in ((first, second), (second, first)):
-                if better.clearly_better_than(worse):
-                    return Verdict(better, "", settled)
+        better = _better(candidate, other) or _better(*self._weighed(candidate, other, image, tone))
+        if better:
+            return Verdict(better, "", settled)
         if planar_ambiguity_angle < MIN_HARMFUL_ANGLE:
             return Verdict(candidate.widened_to(other), "", past)
         return ambiguous
@@ -114,8 +113,15 @@ class FollowedPoseJudge:
             self._cells.search(image, each.camera_from_cube, tone, each.faces)
             for each in (one, other)
         ]
-        first, second = (match.evidence if match else np.nan for match in matches)
+        first, second = (match.evidence if match else None for match in matches)
         return replace(one, evidence=first), replace(other, evidence=second)
+
+
+def _better(one: Candidate, other: Candidate) -> Candidate | None:
+    """Return the pose that is clearly better, if any."""
+    if one.clearly_better_than(other):
+        return one
+    return other if other.clearly_better_than(one) else None
 
 
 def is_uncertain(covariance: Array) -> bool:
@@ -164,7 +170,7 @@ def _choose(
     candidates: Sequence[Candidate], prediction: Prediction | None, track: Track, now: float
 ) -> tuple[Candidate, str]:
     """Choose a pose; say why it is not trusted where the image does not prove it."""
-    best, *others = sorted(candidates, key=lambda each: (-each.certain, -each.evidence))
+    best, *others = sorted(candidates, key=lambda each: each.rank)
     if not best.certain:
         return best, "blurred" if best.blurred else "unproved"
     if len(best.faces) == 1:
