@@ -7,7 +7,7 @@ import numpy as np
 
 from tracking.geometry.arrays import Array, Flags, Image, Indices
 
-THRESHOLD_WINDOW_PX, THRESHOLD_OFFSET = 17, 5
+THRESHOLD_WINDOW_PX, THRESHOLD_OFFSET = 25, 5
 """A dark pixel is this many grey levels below the mean of this window. Larger dark cells become
 hollow but keep their borders; dark rooms need a small offset, noise a larger one."""
 

@@ -37,7 +37,7 @@ class Marker:
     """As in `Observation.corners`, (4, 2) [px]."""
 
 
-FIRST_WINDOW_PX, OTHER_WINDOWS_PX = 13, (3, 23)
+FIRST_WINDOW_PX, OTHER_WINDOWS_PX = 7, (3, 23)
 """Windows of the local thresholds: the one that finds most markers, and those that find others, of
 small markers and in light from one side."""
 
@@ -55,7 +55,7 @@ class MarkerDetector:
         self._first = cv2.aruco.ArucoDetector(pattern, _parameters(*[FIRST_WINDOW_PX] * 2))
         self._others = cv2.aruco.ArucoDetector(pattern, _parameters(first, last))
         strict = _parameters(first, last)
-        strict.adaptiveThreshWinSizeStep = FIRST_WINDOW_PX - first
+        strict.adaptiveThreshWinSizeStep = (last - first) // 2
         strict.errorCorrectionRate = 0.0
         self._strict = cv2.aruco.ArucoDetector(pattern, strict)
 

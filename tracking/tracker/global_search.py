@@ -127,11 +127,15 @@ class GlobalDetector:
     def _observations(
         self, markers: FrameMarkers, thorough: bool, seen: Sequence[Observation]
     ) -> Iterator[list[Observation]]:
-        """Read markers in ever more costly passes; `thorough` ends with partly hidden ones."""
-        passes: tuple[Pass, ...] = ("half size", "first window", "other windows")
+        """Read markers in ever more costly passes; `thorough` ends with partly hidden ones.
+
+        Else others that OpenCV finds with more effort are the last: each frame has one of the two.
+        """
+        passes: tuple[Pass, ...] = ("half size", "first window")
         for by in passes[len(markers.grey) < MIN_HALVED_HEIGHT_PX :]:
             yield markers_of(self._cube, markers.read(self._cube.dictionary, by))
         if not thorough:
+            yield markers_of(self._cube, markers.read(self._cube.dictionary, "other windows"))
             return
         small = len(markers.grey) < MIN_SINGLE_HEIGHT_PX
         yield self._hidden.detect(markers.grey, doubled=small)
