@@ -47,10 +47,13 @@ class Candidate:
     """Whether the edges or the blurred image prove that this is the cube."""
 
     blurred: bool = False
-    """Whether the edges, which a sharp image would show, were not found."""
+    """Whether the image is too blurred to prove it."""
 
     blur_motion: Array | None = None
     """Pose delta of the cube during the exposure, (6,), where it was measured."""
+
+    blur: float = 0.0
+    """Blur of the image, one standard deviation [px]; 0 where it was not measured."""
 
     measurements: int = 0
     """Roughly how many independent measurements the residual rests on; 0 if it tells nothing."""

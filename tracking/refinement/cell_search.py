@@ -34,6 +34,9 @@ MIN_SPEAKING = 0.6
 """Correlation from which on a marker that is not found speaks for the pose, too: little at first.
 White paper and clutter fit any marker by chance."""
 
+MAX_FINE_FACES = 2
+"""More faces than this determine a pose well enough with few samples."""
+
 MIN_JOINING = 0.3
 """Correlation from which on another face may join the alignment."""
 
@@ -73,6 +76,7 @@ class CellMatch:
             residual=aligned.residual,
             certain=self.proved,
             evidence=self.evidence,
+            blur=aligned.blur,
         )
 
 
@@ -105,9 +109,11 @@ class CellSearch:
             joint = self._aligner.align(patch, aligned.camera_from_cube, seen, aligned.blur)
             again = self._weighed(patch, joint) if joint else None
             if joint and again and again.evidence.total > match.evidence.total:
-                aligned = joint
-        # What was found coarsely is measured with more samples.
+                aligned, match = joint, again
         pose, faces = aligned.camera_from_cube, aligned.correlations
+        if len(faces) > MAX_FINE_FACES:
+            return replace(match, alignment=aligned)
+        # What was found coarsely is measured with more samples.
         aligned = self._aligner.align(patch, pose, faces, aligned.blur, fine=True) or aligned
         match = self._weighed(patch, aligned, fine=True)
         return match and replace(match, alignment=aligned)

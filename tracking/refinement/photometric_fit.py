@@ -7,7 +7,7 @@ import numpy as np
 from tracking.geometry.arrays import Array, Flags, Indices
 from tracking.geometry.robust_statistics import quantile
 
-MAX_RESIDUAL_SIGMAS, MIN_CUT_SHARE = 2.0, 0.3
+MAX_RESIDUAL_SIGMAS, MIN_CUT_SHARE = 2.0, 0.25
 """Residuals beyond this many standard deviations lose their weight (fingers, glare, shadows), but
 not below this share of the contrast, which an edge leaves that is not yet in place."""
 

@@ -8,7 +8,6 @@ pose moves and the residuals stay small.
 
 import numpy as np
 
-from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array
@@ -18,6 +17,10 @@ CORNER_ERROR_PX, CORNER_ERROR_M = 0.1, 0.00012
 """Displacement of a marker's corner along each axis, one standard deviation: by light, blur and
 pixels, and by print, folds and a moving hand. Measured on photographs of one object at two sizes,
 which `make bench-photographs` shows."""
+
+BLUR_SHARE, SHARP_PX = 0.3, 0.7
+"""Displacement of a corner as a share of the blur beyond that of a focused lens [px]: what blurs is
+not a round lens alone."""
 
 COMMON_SHIFT_PX = 0.15
 """Displacement of the whole cube in the image, along each axis, one standard deviation."""
@@ -32,18 +35,18 @@ class SystematicError:
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._projection = projection
-        self._faces = FacePlanes(cube)
         self._corners = {face.name: face.corners for face in cube.faces}
         self._half = cube.marker_size / 2
         claims_none = not np.any(projection.distortion)
         self._focal = CLAIMED_FOCAL if claims_none else MEASURED_FOCAL
 
     def covariance(
-        self, camera_from_cube: Array, faces: tuple[str, ...], k1_error: float
+        self, camera_from_cube: Array, faces: tuple[str, ...], k1_error: float, blur: float = 0.0
     ) -> tuple[Array, Array]:
         """Covariances of a pose delta, (6, 6): by the corners of `faces`, and by the lens.
 
-        `k1_error` is how far the radial distortion is off, one standard deviation.
+        `k1_error` is how far the radial distortion is off, and `blur` the blur of the image [px],
+        one standard deviation each.
         """
         rotation, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
         arms = np.concatenate([self._corners[name] for name in faces]) @ rotation.T
@@ -52,7 +55,8 @@ class SystematicError:
         rows = np.concatenate([by_point, -by_point @ se3.hat(arms)], axis=2).reshape(-1, 6)
         focal = float(self._projection.matrix[0, 0])
         pixels = focal / float(origin[2])
-        error = float(np.hypot(CORNER_ERROR_PX, CORNER_ERROR_M * pixels))
+        by_light = CORNER_ERROR_PX + BLUR_SHARE * max(blur - SHARP_PX, 0.0)
+        error = float(np.hypot(by_light, CORNER_ERROR_M * pixels))
         # Square on, a tilt shows only by its cosine.
         tilt = np.sqrt(2 * error / (self._half * pixels))
         information = rows.T @ rows / error**2

@@ -39,6 +39,10 @@ MAX_EDGE_STEP_CELLS = 0.5
 MIN_FINE_CELL_PX = 4.0
 """Cells larger than this have edges that a sharp image shows."""
 
+MAX_LONE_BLUR_PX, MAX_LONE_BLUR_CELLS = 1.5, 0.22
+"""A single face whose image is blurred by more than both, one standard deviation, does not tell its
+lean: motion blurs in one direction, a lens in all."""
+
 MAX_CORNER_DISTANCE = 0.1
 """A marker that was read lies where a pose puts it, to this share of its side; by most of its
 corners, as one of them may be hidden."""
@@ -166,6 +170,9 @@ class MarkerPoses:
             return []
         error = self._solver.error(pose, solution.observations)
         candidate = replace(match.candidate, error=error)
+        smeared = MAX_LONE_BLUR_CELLS * self._footprint.pixels_per_cell(pose)
+        if len(candidate.faces) == 1 and candidate.blur > max(MAX_LONE_BLUR_PX, smeared):
+            return [replace(candidate, certain=False, blurred=True)]
         return [self._on_edges(image, candidate, tone)]
 
     def _on_edges(self, image: Image, candidate: Candidate, tone: Floats) -> Candidate:

@@ -105,7 +105,7 @@ class CubeTracker:
             return self._predicted(now, verdict.refused)
         pose, noise = found.camera_from_cube, found.covariance
         by_corners, by_lens = self._systematic_error.covariance(
-            pose, found.faces, self._lens.k1_error
+            pose, found.faces, self._lens.k1_error, found.blur
         )
         if is_uncertain(noise + by_corners):
             return self._predicted(now, "unsure")

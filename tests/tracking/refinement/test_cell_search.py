@@ -12,7 +12,6 @@ from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.projection import Projection
-from tracking.refinement.candidate import MIN_EVIDENCE_LEAD
 from tracking.refinement.cell_search import CellMatch, CellSearch
 
 Array = NDArray[np.float64]
@@ -54,7 +53,7 @@ def test_the_true_lean_has_more_evidence_than_the_mirrored_one(
     seen = picture(drawn(CUBE, pose))
     right, wrong = search(seen, pose), search(seen, mirrored(pose))
     assert right.proved
-    assert right.evidence > wrong.evidence + MIN_EVIDENCE_LEAD
+    assert right.evidence.clearly_exceeds(wrong.evidence)
     assert se3.angle_between(right.alignment.camera_from_cube, pose) < np.deg2rad(2)
 
 
@@ -63,7 +62,7 @@ def test_a_lone_face_near_by_tells_its_lean_by_perspective(lean: float) -> None:
     pose = held(lean, 0.1, 0.2, at=(0.02, 0.01, 0.6))
     seen = picture(drawn(with_faces("front"), pose))
     right, wrong = search(seen, pose), search(seen, mirrored(pose))
-    assert right.evidence > wrong.evidence + MIN_EVIDENCE_LEAD
+    assert right.evidence.clearly_exceeds(wrong.evidence)
 
 
 @pytest.mark.parametrize("distance", [0.9, 1.5, 2.2])
@@ -72,14 +71,14 @@ def test_the_mirrored_lean_of_a_lone_face_is_never_clearly_better(distance: floa
         pose = held(lean, 0.1, 0.2, at=(0.02, 0.01, distance))
         seen = picture(drawn(with_faces("front"), pose))
         right, wrong = search(seen, pose), search(seen, mirrored(pose))
-        assert wrong.evidence < right.evidence + MIN_EVIDENCE_LEAD
+        assert not wrong.evidence.clearly_exceeds(right.evidence)
 
 
 def test_every_face_that_is_found_is_evidence() -> None:
     pose = held(at=(0.0, 0.0, 0.9))
     seen = picture(drawn(CUBE, pose))
     evidence = [
-        search(seen, pose, cube=with_faces(*names)).evidence
+        search(seen, pose, cube=with_faces(*names)).evidence.total
         for names in (("front",), ("front", "right"), ("front", "right", "top"))
     ]
     assert (np.diff(evidence) > 20).all()
@@ -113,7 +112,7 @@ def test_a_missing_face_is_evidence_against_the_pose(hidden: str) -> None:
     whole, without = (search(picture(light), pose, cube=cube) for cube in (CUBE, two))
     assert "top" not in whole.found
     assert whole.proved
-    assert whole.evidence < without.evidence - 1
+    assert whole.evidence.total < without.evidence.total - 1
 
 
 def test_two_partly_covered_faces_prove_the_cube_and_one_does_not() -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from tests.tracking.drawn import held
 from tracking.geometry import se3
 from tracking.refinement.candidate import Candidate
+from tracking.refinement.evidence import Evidence
 from tracking.tracker.prediction import Track, TrackedPose
 from tracking.tracker.verdict import Past, is_unambiguous, is_uncertain, judge_detected
 
@@ -48,14 +49,25 @@ def test_a_pose_that_may_be_off_by_a_centimetre_is_uncertain() -> None:
 def test_the_evidence_of_the_cells_tells_two_poses_apart() -> None:
     """And only a clear lead of it does."""
     tilted = se3.moved(HERE, np.array([0, 0, 0, np.deg2rad(40), 0, 0]))
-    right = replace(FOUND, faces=("front",), evidence=30.0)
-    for lead, refused in ((2.0, "ambiguous"), (20.0, "")):
-        wrong = replace(right, camera_from_cube=tilted, evidence=30.0 - lead)
+    blocks = np.ones((1, 30))
+    right = replace(FOUND, faces=("front",), evidence=Evidence(blocks))
+    for lead, refused in ((1.0, "ambiguous"), (10.0, "")):
+        less = Evidence(blocks - lead / blocks.size)
+        wrong = replace(right, camera_from_cube=tilted, evidence=less)
         verdict = judge_detected([wrong, right], None, Past(), 0.0)
         assert verdict.refused == refused
         assert verdict.candidate == right
         assert is_unambiguous([right, wrong]) == (refused == "")
         assert not is_unambiguous([wrong, right])
+
+
+def test_a_few_blocks_however_loud_do_not_tell_two_poses_apart() -> None:
+    """A marker whose edge is cut off speaks loudly there, and for any lean."""
+    plain, cut = np.ones((1, 36)), np.ones((1, 36))
+    cut[0, :2] += 10.0
+    assert not Evidence(cut).clearly_exceeds(Evidence(plain))
+    assert Evidence(plain + 20 / 36).clearly_exceeds(Evidence(plain))
+    assert not Evidence(plain + 1 / 36).clearly_exceeds(Evidence(plain))
 
 
 def test_only_proved_poses_are_unambiguous() -> None:
