@@ -27,8 +27,8 @@ MEASURED_K1, CLAIMED_K1 = 0.005, 0.1
 """Error of k1 of a lens that was measured, and of one that claims no distortion: hardly any has
 none. One standard deviation, as it is before play tells more."""
 
-CORNERS = 8
-"""Numbers that its corners give a bent marker: so many independent errors have all its edges."""
+MEASUREMENTS_PER_FACE = 8
+"""Independent errors of all edges of a bent marker: those of its four corners along two axes."""
 
 BLUR_ERROR_SHARE, MAX_BLUR_PX = 0.1, 3.0
 """Error of an edge as a share of its motion blur, and median blur [px] above which a frame tells
@@ -78,7 +78,6 @@ class LensEstimator:
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._projection = projection
-        self._marker = cube.marker_size
         self._faces = len(cube.faces)
         spreads = [K1_SPREAD, FOCAL_SPREAD, *np.repeat(FOLD_SPREAD, 3).tolist() * self._faces]
         self._information = np.diag(1 / np.square(spreads))
@@ -133,7 +132,7 @@ class LensEstimator:
         # Without the robust weights: a wrong lens is no outlier.
         weights = fit.measured.information[points]
         totals = np.bincount(face, weights, self._faces)
-        weights = weights * CORNERS / (totals[face] * np.square(errors).sum())
+        weights = weights * MEASUREMENTS_PER_FACE / (totals[face] * np.square(errors).sum())
         own, shared = fit.rows[used], self._shared_rows(pose, edges.profiles, points)
         residual = fit.residual[used]
         weighted, own_weighted = shared * weights[:, None], own * weights[:, None]
@@ -142,7 +141,7 @@ class LensEstimator:
         self._information += weighted.T @ shared - cross.T @ explained
         self._score += weighted.T @ residual - explained.T @ (own_weighted.T @ residual)
         self._square += float(weights @ residual**2)
-        self._freedom += CORNERS * np.count_nonzero(totals) - own.shape[1]
+        self._freedom += MEASUREMENTS_PER_FACE * np.count_nonzero(totals) - own.shape[1]
 
     def _shared_rows(self, pose: Array, profiles: EdgeProfiles, points: Indices) -> Array:
         """Jacobian of edge positions by what all frames share, (M, 2 + 6 faces) [px].

@@ -25,6 +25,7 @@ from tracking.refinement.photometric_fit import (
     PhotometricSamples,
     fit_tones,
 )
+from tracking.refinement.texels import texel_slides, texels_to_pixels
 
 TEXELS_PER_CELL = 8
 """Texels of a face texture along a cell of its marker."""
@@ -136,18 +137,14 @@ class MotionBlurAligner:
         seen = patch.smoothed(sigma) if smooth else patch
         values = seen.sample(pixels[:, None])[:, 0].astype(np.float64)
         blurred = np.hypot(sigma if smooth else 0.0, LENS_BLUR_PX)
-        layers, widest = self._textures.blurred(facing, self._texels_to_pixels(frames), blurred)
+        texel = 2 * self._half / self._side
+        to_pixels = texels_to_pixels(self._projection, frames, texel)
+        layers, widest = self._textures.blurred(facing, to_pixels, blurred)
         rays = points / points[:, 2:]
-        slides = self._slides(frames[:, :3, :2], points - pose[:3, 3, None], rays)
+        slides = texel_slides(frames, points - pose[:3, 3, None], rays, texel)
         inside = patch.border_distance(pixels) > 1
         border = MIN_BORDER_BLURS * widest
         return _Samples(facing, rays, slides, values, inside, layers, border, count)
-
-    def _texels_to_pixels(self, frames: Array) -> Array:
-        """Jacobian of the image of each face by its texels, at its centre, (faces, 2, 2) [px]."""
-        centres = frames[:, :3, 3]
-        _, jacobian = self._projection.project_with_jacobian(np.ascontiguousarray(centres))
-        return np.asarray(jacobian @ frames[:, :3, :2] * (2 * self._half / self._side), np.float64)
 
     def _fit(self, samples: "_Samples", pose: Array, motion: Array) -> PhotometricFit | None:
         """Render the cube along its motion, and fit the tones of the rendering to the image."""
@@ -160,16 +157,14 @@ class MotionBlurAligner:
         # The mean over time, and the mean weighted by time, each with its derivatives.
         weights = np.stack([np.ones(len(when)), when]).astype(np.float32) / len(when)
         means = (weights @ texture.reshape(len(when), -1)).reshape(2, -1, 3)[:, use]
-        slides = samples.slides[use]
-        jacobian = [
-            mean[:, 1, None] * slides[:, 0] + mean[:, 2, None] * slides[:, 1] for mean in means
-        ]
+        right, down = samples.slides[..., use]
+        jacobian = [mean[:, 1] * right + mean[:, 2] * down for mean in means]
         number, place = np.divmod(use, samples.count**2)
         row, column = np.divmod(place, samples.count)
         down, across = (at * BLOCKS_PER_SIDE // samples.count for at in (row, column))
         block = (number * BLOCKS_PER_SIDE + down) * BLOCKS_PER_SIDE + across
         rendered = means[0, :, 0].astype(np.float64)
-        values, by_motion = samples.values[use], np.concatenate(jacobian, axis=1)
+        values, by_motion = samples.values[use], np.concatenate(jacobian).T
         mixture = PhotometricSamples(number, block, values, rendered, by_motion)
         return fit_tones(mixture, len(samples.facing))
 
@@ -199,25 +194,6 @@ class MotionBlurAligner:
         read = cv2.remap(samples.layers, x, y, cv2.INTER_LINEAR)
         return np.asarray(read, np.float32), inside
 
-    def _slides(self, axes: Array, arm: Array, rays: Array) -> Array:
-        """Jacobian of the texel under each sample's ray by a pose delta, (faces · N, 2, 6).
-
-        A point X = (x Z, y Z, Z) of the face moves by Ẋ; the point under the ray then moves by
-        u̇ = −B⁻¹ ẋ on the face, with ẋ = (Ẋ − x Ż)/Z and B the Jacobian of x by u. `axes` are those
-        of the faces, (faces, 3, 2), `arm` leads from the cube's origin to the samples, as `rays`
-        (faces, 3, N) [m].
-        """
-        x, y = rays[:, 0], rays[:, 1]
-        a, b = (axes[:, 0, n, None] - x * axes[:, 2, n, None] for n in (0, 1))
-        c, d = (axes[:, 1, n, None] - y * axes[:, 2, n, None] for n in (0, 1))
-        scale = -(self._side / (2 * self._half)) / (a * d - b * c)
-        by_shift = np.stack(
-            [d * scale, -b * scale, (b * y - d * x) * scale,
-             -c * scale, a * scale, (c * x - a * y) * scale], axis=2
-        ).reshape(-1, 2, 3)  # fmt: skip
-        arms = arm.transpose(0, 2, 1).reshape(-1, 1, 3)
-        return np.concatenate([by_shift, np.cross(arms, by_shift)], axis=2)
-
 
 @dataclass(frozen=True)
 class _Samples:
@@ -230,7 +206,7 @@ class _Samples:
     """Rays of the samples at z = 1, (faces, 3, N)."""
 
     slides: Array
-    """As `_slides` returns them, (faces · N, 2, 6)."""
+    """As `texel_slides` returns them, (2, 6, faces · N)."""
 
     values: Array
     """Light of the image, (faces · N,)."""

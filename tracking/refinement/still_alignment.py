@@ -20,6 +20,7 @@ from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.refinement.evidence import Evidence
 from tracking.refinement.marker_images import TEXELS_PER_CELL, MarkerTextures
 from tracking.refinement.photometric_fit import PhotometricFit, PhotometricSamples, fit_tones
+from tracking.refinement.texels import texel_slides, texels_to_pixels
 
 MARGIN_CELLS, PAPER_SHARE = 1.0, 0.8
 """How far around a marker its paper is compared [cells], and at most which share of the paper."""
@@ -47,7 +48,8 @@ MAX_STEPS, CONVERGED_PX, MAX_SLIDE_PX = 12, 0.01, 1.5
 """Steps at most, the length of the last, and from which length on the samples are placed again."""
 
 REDRAW_RATIO = 1.6
-"""The markers are blurred anew where the variance has changed by more than this factor."""
+"""The markers are drawn again, with the blur found so far, where its variance has changed by more
+than this factor."""
 
 PIXELS_PER_MEASUREMENT, CELLS_PER_MEASUREMENT = 20.0, 2.0
 """How many pixels and how many cells make one independent measurement, whichever are fewer."""
@@ -221,10 +223,8 @@ class StillAligner:
             return None
         values = patch.sample(pixels[used, None])[:, 0].astype(np.float64)
         rays, texel = points / points[:, 2:], self._textures.texel
-        slides = face_slides(frames[:, :3, :2], points - pose[:3, 3, None], rays, texel)
-        centres = np.ascontiguousarray(frames[:, :3, 3])
-        by_point = self._projection.project_with_jacobian(centres)[1]
-        to_pixels = by_point @ frames[:, :3, :2] * texel
+        slides = texel_slides(frames, points - pose[:3, 3, None], rays, texel)
+        to_pixels = texels_to_pixels(self._projection, frames, texel)
         face, place = np.divmod(used, len(grid.block))
         block = face * BLOCKS_PER_SIDE**2 + grid.block[place]
         chosen = slice(None) if len(used) == len(pixels) else used
@@ -283,24 +283,3 @@ class StillAligner:
         column, row = np.floor((placed.places.T / self._inner + 1) / 2 * side).astype(np.intp)
         inside = (np.minimum(column, row) >= 0) & (np.maximum(column, row) < side)
         return np.where(inside, row * side + column, -1), side**2
-
-
-def face_slides(axes: Array, arm: Array, rays: Array, texel: float) -> Array:
-    """Jacobian of the texel under each ray by a pose delta, (2, 6, faces · N).
-
-    A point X = (x Z, y Z, Z) of the face moves by Ẋ; the point under the ray then moves by
-    u̇ = −B⁻¹ ẋ on the face, with ẋ = (Ẋ − x Ż)/Z and B the Jacobian of x by u. `axes` are those
-    of the faces, (faces, 3, 2), `arm` leads from the cube's origin to the samples, as `rays`
-    (faces, 3, N) [m], and `texel` is the size of one [m].
-    """
-    x, y = rays[:, 0], rays[:, 1]
-    a, b = (axes[:, 0, n, None] - x * axes[:, 2, n, None] for n in (0, 1))
-    c, d = (axes[:, 1, n, None] - y * axes[:, 2, n, None] for n in (0, 1))
-    scale = -1 / texel / (a * d - b * c)
-    a, b, c, d = (each * scale for each in (a, b, c, d))
-    slides = np.empty((2, 6, *x.shape))
-    slides[0, :3] = d, -b, b * y - d * x
-    slides[1, :3] = -c, a, c * x - a * y
-    for turned, (one, two) in enumerate(((1, 2), (2, 0), (0, 1)), start=3):
-        slides[:, turned] = arm[:, one] * slides[:, two] - arm[:, two] * slides[:, one]
-    return slides.reshape(2, 6, -1)

@@ -108,7 +108,7 @@ class GlobalDetector:
     ) -> list[Candidate]:
         """Propose up to two poses for an image, (H, W, 3) BGR, with its markers.
 
-        These are the first that edges prove and that leave no choice, else those of the last
+        These are the first that are proved and that leave no choice, else those of the last
         search; `thorough` looks for partly hidden markers too. `expected` is the predicted pose.
         """
         found: list[Candidate] = []

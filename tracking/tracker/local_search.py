@@ -18,8 +18,7 @@ from tracking.tracker.prediction import Prediction, Track
 MAX_MOTION_SURPRISE_CELLS = 0.07
 """The edges are measured again where the measured blur motion differs by more from the expected."""
 
-
-MIN_EDGE_CELL_PX = 3.0
+MAX_WHOLE_CELL_PX = 3.0
 """Smaller cells have no single edges to measure, and are compared as a whole."""
 
 
@@ -63,7 +62,7 @@ class LocalTracker:
         found = self._by_edges(patch, track, prediction, camera)
         if found is not None:
             return self._studied(patch, found, track, prediction.timestamp, camera)
-        if self._footprint.pixels_per_cell(prediction.camera_from_cube) < MIN_EDGE_CELL_PX:
+        if self._footprint.pixels_per_cell(prediction.camera_from_cube) < MAX_WHOLE_CELL_PX:
             match = self._cells.search(image, prediction.camera_from_cube, camera.tone)
             if match is not None and match.proved:
                 return LocalMatch(match.candidate)

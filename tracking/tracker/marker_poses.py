@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from tracking.cube.faces import FacePlanes
 from tracking.cube.model import CubeModel
 from tracking.detection.markers import Observation
 from tracking.detection.pose_from_points import CornerPose, CornerPoseSolver
@@ -53,9 +52,6 @@ NEAR_ANGLE = np.deg2rad(8)
 MAX_OWN_DISTANCE = 1.0
 """A marker this near to where a pose puts it, in sides, is that of the same cube."""
 
-CELLS_PER_MARKER = 6
-"""Cells along a marker of 4×4 bits and its border."""
-
 
 class MarkerPoses:
     """Proposes poses of one cube from its markers, aligned and weighed by `cells`."""
@@ -65,8 +61,8 @@ class MarkerPoses:
     ) -> None:
         self._solver = CornerPoseSolver(cube, projection)
         self._projection = projection
-        self._faces = FacePlanes(cube)
         self._footprint = Footprint(cube, projection)
+        self._cells_per_side = round(cube.marker_size / self._footprint.cell)
         self._edges = edges
         self._cells = cells
 
@@ -150,7 +146,7 @@ class MarkerPoses:
         """
         if match is None or not match.proved:
             seen = solution.observations
-            fine = min(each.size for each in seen) / CELLS_PER_MARKER > MIN_FINE_CELL_PX
+            fine = min(each.size for each in seen) / self._cells_per_side > MIN_FINE_CELL_PX
             if len(seen) == 1 < len({each.face.name for each in observations}):
                 return []
             corners = Candidate(
