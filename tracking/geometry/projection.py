@@ -25,6 +25,11 @@ class Projection:
         self._coefficients[: len(self.distortion)] = self.distortion
         self._zero = np.zeros(3)
 
+    @property
+    def claims_no_distortion(self) -> bool:
+        """Whether the lens was never measured, for hardly any bends nothing."""
+        return not np.any(self.distortion)
+
     def project(self, points: Array) -> Array:
         """Project points of the camera frame, (N, 3) [m] → (N, 2) [px].
 

@@ -85,10 +85,7 @@ class Candidate:
         if self.agreed != other.agreed:
             return self.agreed
         if self.evidence and other.evidence:
-            if self.evidence.clearly_exceeds(other.evidence):
-                return True
-            if other.evidence.clearly_exceeds(self.evidence):
-                return False
+            return self.evidence.clearly_exceeds(other.evidence)
         ratio = (other.residual + LEAST_RESIDUAL) / (self.residual + LEAST_RESIDUAL)
         measurements = min(self.measurements, other.measurements)
         return bool(measurements * 2 * np.log(ratio) > MIN_LOG_LIKELIHOOD_RATIO)

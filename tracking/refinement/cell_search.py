@@ -106,7 +106,8 @@ class CellSearch:
         alike = match.alignment.correlations
         seen = {face for face, share in alike.items() if share > MIN_JOINING}
         if len(seen) > len(aligned.correlations):
-            joint = self._aligner.align(patch, aligned.camera_from_cube, seen, aligned.blur)
+            start, k1 = aligned.camera_from_cube, aligned.k1
+            joint = self._aligner.align(patch, start, seen, aligned.blur, k1=k1)
             again = self._weighed(patch, joint) if joint else None
             if joint and again and again.evidence.total > match.evidence.total:
                 aligned, match = joint, again
@@ -114,7 +115,8 @@ class CellSearch:
         if len(faces) > MAX_FINE_FACES:
             return replace(match, alignment=aligned)
         # What was found coarsely is measured with more samples.
-        aligned = self._aligner.align(patch, pose, faces, aligned.blur, fine=True) or aligned
+        blur, k1 = aligned.blur, aligned.k1
+        aligned = self._aligner.align(patch, pose, faces, blur, fine=True, k1=k1) or aligned
         match = self._weighed(patch, aligned, fine=True)
         return match and replace(match, alignment=aligned)
 
@@ -123,7 +125,8 @@ class CellSearch:
     ) -> CellMatch | None:
         """Weigh a pose by all faces that it shows."""
         pose = aligned.camera_from_cube
-        return self._match(self._aligner.align(patch, pose, None, aligned.blur, 1, fine))
+        blur, k1 = aligned.blur, aligned.k1
+        return self._match(self._aligner.align(patch, pose, None, blur, 1, fine, k1))
 
     def _read_aligned(
         self, patch: Patch, start: Array, read: Collection[str] | None

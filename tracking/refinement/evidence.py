@@ -6,7 +6,7 @@ import numpy as np
 
 from tracking.geometry.arrays import Array
 
-MIN_LEAD, MIN_DEVIATIONS = 2.0, 1.5
+MIN_LEAD, MIN_DEVIATIONS = 2.0, 1.75
 """Lead in total evidence, and the same in its own standard deviations, from which on the better of
 two poses is right. Measured on markers by themselves: no wrong lean led by half of either, see
 `make bench-photographs`."""

@@ -17,15 +17,11 @@ from tracking.geometry.projection import Projection
 from tracking.geometry.robust_statistics import quantile
 from tracking.refinement.edge_fit import PRIOR_INFORMATION, FittedEdges
 from tracking.refinement.profiles import EdgeProfiles
-from tracking.refinement.systematic_error import CORNER_ERROR_M, CORNER_ERROR_PX
+from tracking.refinement.systematic_error import CORNER_ERROR_M, CORNER_ERROR_PX, stated_k1_error
 
 K1_SPREAD, FOCAL_SPREAD, FOLD_SPREAD = 0.5, 0.2, (0.0005, np.deg2rad(0.6))
 """Standard deviations before anything is measured: of k1, of the focal length as a share of it, and
 of where a face was glued [m, rad]."""
-
-MEASURED_K1, CLAIMED_K1 = 0.005, 0.1
-"""Error of k1 of a lens that was measured, and of one that claims no distortion: hardly any has
-none. One standard deviation, as it is before play tells more."""
 
 MEASUREMENTS_PER_FACE = 8
 """Independent errors of all edges of a bent marker: those of its four corners along two axes."""
@@ -77,14 +73,13 @@ class LensEstimator:
     """Collects what the edges of one cube say of the lens of one camera."""
 
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
-        self._projection = projection
         self._faces = len(cube.faces)
         spreads = [K1_SPREAD, FOCAL_SPREAD, *np.repeat(FOLD_SPREAD, 3).tolist() * self._faces]
         self._information = np.diag(1 / np.square(spreads))
         self._score = np.zeros(len(spreads))
         self._square, self._freedom = 0.0, 0.0
         self._counted = np.empty((0, 12))
-        self._claims_none = not np.any(projection.distortion)
+        self._projection = projection
         self.estimate = LensEstimate()
         """The best estimate."""
 
@@ -92,9 +87,9 @@ class LensEstimator:
     def k1_error(self) -> float:
         """How far k1 is from what the intrinsics claim, one standard deviation."""
         found = self.estimate
-        if found.off or (found.known and self._claims_none):
+        if found.off or (found.known and self._projection.claims_no_distortion):
             return float(np.hypot(found.k1, found.deviation))
-        return CLAIMED_K1 if self._claims_none else MEASURED_K1
+        return stated_k1_error(self._projection)
 
     def learn(self, camera_from_cube: Array, edges: FittedEdges) -> None:
         """Learn from the edges of a trusted pose, (4, 4), that differs from all before."""

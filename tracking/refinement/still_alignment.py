@@ -20,6 +20,7 @@ from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.refinement.evidence import Evidence
 from tracking.refinement.marker_images import TEXELS_PER_CELL, MarkerTextures
 from tracking.refinement.photometric_fit import PhotometricFit, PhotometricSamples, fit_tones
+from tracking.refinement.systematic_error import stated_k1_error
 from tracking.refinement.texels import texel_slides, texels_to_pixels
 
 MARGIN_CELLS, PAPER_SHARE = 1.0, 0.8
@@ -70,6 +71,9 @@ class StillAlignment:
 
     bloom: float
     """How far white has grown over black [px]."""
+
+    k1: float
+    """Radial distortion beyond that of the intrinsics, as far as this image tells it."""
 
     correlations: dict[str, float]
     """Correlation of rendering and image on each face in view, −1…1."""
@@ -124,6 +128,9 @@ class _Placed:
     slides: Array
     """How the texel under each ray moves by a pose delta, (2, 6, N) [texels]."""
 
+    bends: Array
+    """How it moves by the radial distortion k1, (2, N) [texels]."""
+
     texels_to_pixels: Array
     """Jacobian of the image by the texels of each face, (faces, 2, 2)."""
 
@@ -143,6 +150,7 @@ class StillAligner:
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._faces = FacePlanes(cube)
         self._projection = projection
+        self._k1_error = stated_k1_error(projection)
         self._frames = np.stack([face_frame(face) for face in cube.faces])
         self._textures = MarkerTextures(cube)
         cell = self._textures.texel * TEXELS_PER_CELL
@@ -166,17 +174,18 @@ class StillAligner:
         blur: float = EXPECTED_BLUR_PX,
         steps: int = MAX_STEPS,
         fine: bool = False,
+        k1: float = 0.0,
     ) -> StillAlignment | None:
         """Align from a pose, (4, 4), that is right to about half a cell; None if not in view.
 
-        `faces` are those that are compared with the image, None for all that face the camera, and
-        `blur` the expected blur of the patch, one standard deviation [px]. `fine` takes more
-        samples: slower, and more precise.
+        `faces` are those that are compared with the image, None for all that face the camera,
+        `blur` the expected blur of the patch, one standard deviation [px], and `k1` where its
+        search starts. `fine` takes more samples: slower, and more precise.
         """
         grid = self._fine if fine else self._coarse
-        expected = np.array([blur**2, 0.0])
-        prior = np.array([BLUR_SPREAD_PX2 + blur**2 / 4, BLOOM_SPREAD_PX])
-        optics, drawn, pose, moved = expected, np.inf, start, np.inf
+        expected, optics = np.array([blur**2, 0.0, 0.0]), np.array([blur**2, 0.0, k1])
+        prior = np.array([BLUR_SPREAD_PX2 + blur**2 / 4, BLOOM_SPREAD_PX, self._k1_error])
+        drawn, pose, moved = np.inf, start, np.inf
         placed: _Placed | None = None
         layers: Floats | None = None
         for _ in range(steps):
@@ -187,7 +196,7 @@ class StillAligner:
             if layers is None or not 1 / REDRAW_RATIO < optics[0] / drawn < REDRAW_RATIO:
                 drawn = float(optics[0])
                 layers = self._textures.seen(placed.facing, placed.texels_to_pixels, drawn)
-            fit = self._fit(placed, layers, pose, optics - (drawn, 0.0))
+            fit = self._fit(placed, layers, pose, optics - (drawn, 0.0, 0.0))
             step = fit.step(expected - optics, prior)
             pose, moved = se3.moved(pose, step[:6]), self._slide_px(pose, step)
             optics = optics + step[6:]
@@ -224,31 +233,36 @@ class StillAligner:
         values = patch.sample(pixels[used, None])[:, 0].astype(np.float64)
         rays, texel = points / points[:, 2:], self._textures.texel
         slides = texel_slides(frames, points - pose[:3, 3, None], rays, texel)
+        x, y, depth = rays[:, 0].ravel(), rays[:, 1].ravel(), points[:, 2].ravel()
+        bends = depth * (x * x + y * y) * (x * slides[:, 0] + y * slides[:, 1])
         to_pixels = texels_to_pixels(self._projection, frames, texel)
         face, place = np.divmod(used, len(grid.block))
         block = face * BLOCKS_PER_SIDE**2 + grid.block[place]
         chosen = slice(None) if len(used) == len(pixels) else used
         return _Placed(
-            facing, chosen, values, rays, slides[..., chosen], to_pixels, face, block,
-            grid.places[place],
+            facing, chosen, values, rays, slides[..., chosen], bends[:, chosen], to_pixels, face,
+            block, grid.places[place],
         )  # fmt: skip
 
     def _fit(self, placed: _Placed, layers: Floats, pose: Array, optics: Array) -> PhotometricFit:
         """Render the markers at a pose, with small changes of blur and bloom, and fit the light."""
         planes = (pose @ self._frames[placed.facing])[:, :3, [0, 1, 3]]
-        side = self._textures.side
-        met = self._texels_of_places @ np.linalg.inv(planes) @ placed.rays
+        side, rays = self._textures.side, placed.rays
+        if optics[2]:
+            straight = 1 - optics[2] * np.square(rays[:, :2]).sum(axis=1)
+            rays = np.stack([rays[:, 0] * straight, rays[:, 1] * straight, rays[:, 2]], axis=1)
+        met = self._texels_of_places @ np.linalg.inv(planes) @ rays
         places = np.clip(met[:, :2] / met[:, 2:], 0, side - 1)
         places[:, 1] += (np.arange(len(placed.facing)) * side)[:, None]
         x, y = places.astype(np.float32).transpose(1, 0, 2)
         texel, right, down, by_blur, by_bloom = (
             cv2.remap(each, x, y, cv2.INTER_LINEAR).ravel()[placed.used] for each in layers
         )
-        jacobian = np.empty((8, len(texel)))
+        jacobian = np.empty((9, len(texel)))
         np.multiply(placed.slides[0], right, out=jacobian[:6])
         jacobian[:6] += placed.slides[1] * down
-        jacobian[6:] = by_blur, by_bloom
-        rendered = texel + optics @ jacobian[6:]
+        jacobian[6:] = by_blur, by_bloom, placed.bends[0] * right + placed.bends[1] * down
+        rendered = texel + optics[:2] @ jacobian[6:8]
         samples = PhotometricSamples(placed.face, placed.block, placed.values, rendered, jacobian.T)
         return fit_tones(samples, len(placed.facing), placed.places)
 
@@ -269,6 +283,7 @@ class StillAligner:
             fit.covariance(prior)[:6, :6],
             float(np.sqrt(optics[0])),
             float(optics[1]),
+            float(optics[2]),
             dict(zip(names, alike.tolist(), strict=True)),
             dict(zip(names, fit.correlations_within(cells >= 0).tolist(), strict=True)),
             dict(zip(names, map(int, fit.wrong_cells(cells, inner)), strict=True)),

@@ -29,6 +29,15 @@ MEASURED_FOCAL, CLAIMED_FOCAL = 0.002, 0.005
 """Standard deviation of the focal length, as a share of it, of a lens that was measured, and of one
 that claims no distortion."""
 
+MEASURED_K1, CLAIMED_K1 = 0.005, 0.1
+"""Error of k1 of a lens that was measured, and of one that claims no distortion: hardly any has
+none. One standard deviation, as it is before play tells more."""
+
+
+def stated_k1_error(projection: Projection) -> float:
+    """Error of k1 before play tells more, one standard deviation."""
+    return CLAIMED_K1 if projection.claims_no_distortion else MEASURED_K1
+
 
 class SystematicError:
     """Such errors of the poses of one cube seen by one camera."""
@@ -37,8 +46,8 @@ class SystematicError:
         self._projection = projection
         self._corners = {face.name: face.corners for face in cube.faces}
         self._half = cube.marker_size / 2
-        claims_none = not np.any(projection.distortion)
-        self._focal = CLAIMED_FOCAL if claims_none else MEASURED_FOCAL
+        unknown = projection.claims_no_distortion
+        self._focal = CLAIMED_FOCAL if unknown else MEASURED_FOCAL
 
     def covariance(
         self, camera_from_cube: Array, faces: tuple[str, ...], k1_error: float, blur: float = 0.0

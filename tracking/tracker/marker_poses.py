@@ -42,6 +42,10 @@ MAX_LONE_BLUR_PX, MAX_LONE_BLUR_CELLS = 1.5, 0.22
 """A single face whose image is blurred by more than both, one standard deviation, does not tell its
 lean: motion blurs in one direction, a lens in all."""
 
+MIN_LONE_CORRELATION = 0.93
+"""Correlation of a single face from which on it tells its lean: what covers or shades a part of it
+tilts it."""
+
 MAX_CORNER_DISTANCE = 0.1
 """A marker that was read lies where a pose puts it, to this share of its side; by most of its
 corners, as one of them may be hidden."""
@@ -166,9 +170,12 @@ class MarkerPoses:
             return []
         error = self._solver.error(pose, solution.observations)
         candidate = replace(match.candidate, error=error)
-        smeared = MAX_LONE_BLUR_CELLS * self._footprint.pixels_per_cell(pose)
-        if len(candidate.faces) == 1 and candidate.blur > max(MAX_LONE_BLUR_PX, smeared):
-            return [replace(candidate, certain=False, blurred=True)]
+        if len(candidate.faces) == 1:
+            smeared = MAX_LONE_BLUR_CELLS * self._footprint.pixels_per_cell(pose)
+            blurred = candidate.blur > max(MAX_LONE_BLUR_PX, smeared)
+            unlike = match.alignment.correlations[candidate.faces[0]] < MIN_LONE_CORRELATION
+            if blurred or unlike:
+                return [replace(candidate, certain=False, blurred=blurred)]
         return [self._on_edges(image, candidate, tone)]
 
     def _on_edges(self, image: Image, candidate: Candidate, tone: Floats) -> Candidate:

@@ -73,6 +73,7 @@ class FollowedPoseJudge:
         self._footprint = Footprint(cube, projection)
         self._edges = edges
         self._cells = cells
+        self._unknown_lens = projection.claims_no_distortion
 
     def judge(self, candidate: Candidate, image: Image, tone: Floats, past: Past) -> Verdict:
         """Tell which way a face tilts: by its edges, else by its past, else not at all.
@@ -84,10 +85,13 @@ class FollowedPoseJudge:
         ambiguous = Verdict(candidate, "ambiguous", past)
         if len(candidate.faces) != 1:
             return Verdict(candidate, "", settled)
-        if candidate.blur_motion is not None:
-            return Verdict(candidate, "", past) if past.tilt_settled else ambiguous
         mirrored = self._edges.mirrored_pose(candidate)
         planar_ambiguity_angle = se3.angle_between(candidate.camera_from_cube, mirrored)
+        if candidate.blur_motion is not None:
+            if not past.tilt_settled:
+                return ambiguous
+            lasting = planar_ambiguity_angle > MIN_LASTING_ANGLE
+            return Verdict(candidate, "", past if lasting else unsettled)
         if planar_ambiguity_angle < MIN_DISTINCT_ANGLE:
             return Verdict(candidate, "", unsettled)
         if past.tilt_settled and planar_ambiguity_angle > MIN_LASTING_ANGLE:
@@ -98,7 +102,10 @@ class FollowedPoseJudge:
             return Verdict(candidate, "", past)
         if candidate.same_pose(other):
             return Verdict(candidate, "", unsettled)
-        better = _better(candidate, other) or _better(*self._weighed(candidate, other, image, tone))
+        better = _better(candidate, other)
+        if better is None or self._unknown_lens:
+            # A lens bends single edges as a lean does.
+            better = _better(*self._weighed(candidate, other, image, tone))
         if better:
             return Verdict(better, "", settled)
         if planar_ambiguity_angle < MIN_HARMFUL_ANGLE:

@@ -12,8 +12,8 @@ from tests.tracking.drawn import CAMERA, held, photograph, scene
 from tracking.cube.model import CubeModel
 from tracking.geometry.frame import Frame
 from tracking.geometry.projection import Projection
-from tracking.refinement.lens_estimate import CLAIMED_K1, MEASURED_K1, LensEstimate, LensEstimator
-from tracking.refinement.systematic_error import SystematicError
+from tracking.refinement.lens_estimate import LensEstimate, LensEstimator
+from tracking.refinement.systematic_error import CLAIMED_K1, MEASURED_K1, SystematicError
 from tracking.tracker.tracker import CubeTracker
 
 CUBE = CubeModel.load("locomotion")
