@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -72,6 +73,36 @@ def test_the_mirrored_lean_of_a_lone_face_is_never_clearly_better(distance: floa
         seen = picture(drawn(with_faces("front"), pose))
         right, wrong = search(seen, pose), search(seen, mirrored(pose))
         assert not wrong.evidence.clearly_exceeds(right.evidence)
+
+
+def bent(light: NDArray[np.float32], k1: float) -> NDArray[np.float32]:
+    """The same light behind a lens with that distortion."""
+    height, width = light.shape
+    matrix = CAMERA.matrix
+    v, u = np.mgrid[:height, :width].astype(np.float32)
+    pixels = np.stack([u.ravel(), v.ravel()], axis=1)[:, None]
+    straight = cv2.undistortPoints(pixels, matrix, np.array([k1, 0, 0, 0, 0]), P=matrix)
+    x, y = straight.reshape(height, width, 2).astype(np.float32).transpose(2, 0, 1)
+    return np.asarray(cv2.remap(light, x, y, cv2.INTER_CUBIC), np.float32)
+
+
+def test_a_lens_that_claims_no_distortion_is_not_believed() -> None:
+    """Three faces at the edge of the picture tell that it has some."""
+    pose = held(at=(-0.055, 0.03, 0.42))
+    for k1 in (0.0, 0.3):
+        match = search(picture(bent(drawn(CUBE, pose), k1)), pose)
+        assert len(match.found) == 3
+        assert match.alignment.k1 == pytest.approx(k1, abs=0.12)
+
+
+def test_a_measured_lens_is_believed() -> None:
+    pose = held(at=(-0.055, 0.03, 0.42))
+    lens = replace(CAMERA, distortion=np.array([0.3, 0.0, 0.0, 0.0, 0.0]))
+    seen = picture(bent(drawn(CUBE, pose), 0.3))
+    match = CellSearch(CUBE, Projection(lens)).search(seen, pose, TONE, ("front",))
+    assert match is not None
+    assert abs(match.alignment.k1) < 0.02
+    assert corners_off(CUBE, match.alignment.camera_from_cube, pose, ("front", "top")) < 0.2
 
 
 def test_every_face_that_is_found_is_evidence() -> None:

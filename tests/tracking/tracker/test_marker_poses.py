@@ -97,6 +97,20 @@ def test_both_leans_of_a_single_face_are_weighed() -> None:
     assert not any(each.clearly_better_than(right) for each in found)
 
 
+def test_a_single_face_that_is_covered_in_part_proves_nothing() -> None:
+    """What covers it would tilt it."""
+    pose = held(0.25, 0.1, 0.2, at=(0.0, 0.0, 0.6))
+    picture = drawn(pose, "front")
+    seen = at(pose, "front")
+    assert any(each.certain for each in find(picture, [seen])[0])
+    corners = seen.corners
+    strip = np.stack([corners[0], corners[1], *(0.75 * corners[1::-1] + 0.25 * corners[2:])])
+    covered = cv2.fillConvexPoly(picture.copy(), np.rint(strip).astype(np.int32), (170.0,))
+    found, _ = find(np.asarray(covered, np.uint8), [seen])
+    assert found
+    assert not any(each.certain for each in found)
+
+
 def sheet(lean: float) -> tuple[Picture, list[Observation]]:
     """Two faces of the cube side by side on flat paper, and their markers."""
     cells = [
