@@ -51,9 +51,10 @@ def test_the_evidence_of_the_cells_tells_two_poses_apart() -> None:
     tilted = se3.moved(HERE, np.array([0, 0, 0, np.deg2rad(40), 0, 0]))
     blocks = np.ones((1, 30))
     right = replace(FOUND, faces=("front",), evidence=Evidence(blocks))
-    for lead, refused in ((1.0, "ambiguous"), (10.0, "")):
-        less = Evidence(blocks - lead / blocks.size)
-        wrong = replace(right, camera_from_cube=tilted, evidence=less)
+    few, all_blocks = np.zeros((1, 30)), np.full((1, 30), 1 / 3)
+    few[0, :2] = 5.0
+    for lead, refused in ((few, "ambiguous"), (all_blocks, "")):
+        wrong = replace(right, camera_from_cube=tilted, evidence=Evidence(blocks - lead))
         verdict = judge_detected([wrong, right], None, Past(), 0.0)
         assert verdict.refused == refused
         assert verdict.candidate == right
@@ -62,12 +63,15 @@ def test_the_evidence_of_the_cells_tells_two_poses_apart() -> None:
 
 
 def test_a_few_blocks_however_loud_do_not_tell_two_poses_apart() -> None:
-    """A marker whose edge is cut off speaks loudly there, and for any lean."""
+    """A marker whose edge is cut off speaks loudly there, and for any lean; many do, if softly."""
     plain, cut = np.ones((1, 36)), np.ones((1, 36))
     cut[0, :2] += 10.0
     assert not Evidence(cut).clearly_exceeds(Evidence(plain))
     assert Evidence(plain + 20 / 36).clearly_exceeds(Evidence(plain))
-    assert not Evidence(plain + 1 / 36).clearly_exceeds(Evidence(plain))
+    assert Evidence(plain + 0.5 / 36).clearly_exceeds(Evidence(plain))
+    assert not Evidence(plain).clearly_exceeds(Evidence(plain))
+    scattered = plain + 1 / 36 + np.resize([0.1, -0.1], plain.shape)
+    assert not Evidence(scattered).clearly_exceeds(Evidence(plain))
 
 
 def test_only_proved_poses_are_unambiguous() -> None:
