@@ -20,7 +20,7 @@ from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.refinement.evidence import Evidence
 from tracking.refinement.marker_images import TEXELS_PER_CELL, MarkerTextures
 from tracking.refinement.photometric_fit import PhotometricFit, PhotometricSamples, fit_tones
-from tracking.refinement.systematic_error import stated_k1_error
+from tracking.refinement.systematic_error import CLAIMED_K1
 from tracking.refinement.texels import texel_slides, texels_to_pixels
 
 MARGIN_CELLS, PAPER_SHARE = 1.0, 0.8
@@ -44,6 +44,9 @@ BLUR_SPREAD_PX2, MIN_BLUR_PX2 = 1.5, 0.15
 
 BLOOM_SPREAD_PX = 0.3
 """How far white grows over black, one standard deviation."""
+
+NO_ERROR = 1e-6
+"""Standard deviation of what is known."""
 
 MAX_STEPS, CONVERGED_PX, MAX_SLIDE_PX = 12, 0.01, 1.5
 """Steps at most, the length of the last, and from which length on the samples are placed again."""
@@ -150,7 +153,7 @@ class StillAligner:
     def __init__(self, cube: CubeModel, projection: Projection) -> None:
         self._faces = FacePlanes(cube)
         self._projection = projection
-        self._k1_error = stated_k1_error(projection)
+        self._k1_error = CLAIMED_K1 if projection.claims_no_distortion else NO_ERROR
         self._frames = np.stack([face_frame(face) for face in cube.faces])
         self._textures = MarkerTextures(cube)
         cell = self._textures.texel * TEXELS_PER_CELL
