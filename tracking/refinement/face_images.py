@@ -6,6 +6,7 @@ import numpy as np
 from tracking.cube.marker import black_texels, marker_cells
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Floats, Indices
+from tracking.refinement.texels import frequencies
 
 
 class FaceTextures:
@@ -16,12 +17,8 @@ class FaceTextures:
         self._side = side
         textures = np.stack([_texture(cube, face, side) for face in range(len(cube.faces))])
         self._spectra = np.fft.rfft2(textures).astype(np.complex64)
-        across, down = np.fft.rfftfreq(side), np.fft.fftfreq(side)
-        self._x, self._y = (2 * np.pi * axis for axis in np.meshgrid(across, down))
-        # The gradient has no Nyquist frequency: half a turn per texel has no sign.
-        right = np.where(np.abs(self._x) < 3.14, 1j * self._x, 0)
-        below = np.where(np.abs(self._y) < 3.14, 1j * self._y, 0)
-        self._derivatives = np.stack([np.ones_like(right), right, below]).astype(np.complex64)
+        self._x, self._y, slopes = frequencies(side)
+        self._derivatives = np.stack([np.ones_like(slopes[0]), *slopes]).astype(np.complex64)
 
     def blurred(
         self, faces: Indices, texels_to_pixels: Array, sigma: float

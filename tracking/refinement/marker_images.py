@@ -5,6 +5,7 @@ import numpy as np
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Floats, Indices
+from tracking.refinement.texels import frequencies
 
 TEXELS_PER_CELL = 8
 """Texels along a cell."""
@@ -32,12 +33,9 @@ class MarkerTextures:
             _spectrum(np.abs(np.roll(textures, 1, axis) - np.roll(textures, -1, axis)) / 2)
             for axis in (2, 1)
         ]
-        across, down = np.fft.rfftfreq(self.side), np.fft.fftfreq(self.side)
-        x, y = np.meshgrid(2 * np.pi * across, 2 * np.pi * down)
+        x, y, slopes = frequencies(self.side)
         self._powers = np.stack([x * x, 2 * x * y, y * y]).astype(np.float32)
-        # The gradient has no Nyquist frequency: half a turn per texel has no sign.
-        self._slopes = [np.where(np.abs(each) < 3.14, 1j * each, 0).astype(np.complex64)
-                        for each in (x, y)]  # fmt: skip
+        self._slopes = [each.astype(np.complex64) for each in slopes]
 
     def seen(self, faces: Indices, texels_to_pixels: Array, variance: float) -> Floats:
         """Blur the markers of faces by a Gaussian that is round in the camera's image.

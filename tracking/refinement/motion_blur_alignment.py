@@ -25,7 +25,7 @@ from tracking.refinement.photometric_fit import (
     PhotometricSamples,
     fit_tones,
 )
-from tracking.refinement.texels import texel_slides, texels_to_pixels
+from tracking.refinement.texels import SampleGrid, texel_slides, texels_to_pixels
 
 TEXELS_PER_CELL = 8
 """Texels of a face texture along a cell of its marker."""
@@ -71,7 +71,9 @@ class MotionBlurAligner:
         side = round(cube.edge / self._cell * TEXELS_PER_CELL)
         self._side = side
         self._textures = FaceTextures(cube, side)
-        self._grids = {count: _grid(count, cube.edge) for _, count, _ in SEARCH_STAGES}
+        self._grids = {
+            count: SampleGrid(count, self._half, BLOCKS_PER_SIDE) for _, count, _ in SEARCH_STAGES
+        }
 
     def align(
         self, patch: Patch, start: Array, blur_motion: Array, prior: Array, coarse: bool = True
@@ -127,7 +129,7 @@ class MotionBlurAligner:
         if not len(facing):
             return None
         frames = pose @ self._frames[facing]
-        points = frames[:, :3] @ self._grids[count]
+        points = frames[:, :3] @ self._grids[count].points
         if points[:, 2].min() < MIN_DEPTH:
             return None
         flat = points.transpose(0, 2, 1).reshape(-1, 3)
@@ -159,13 +161,10 @@ class MotionBlurAligner:
         means = (weights @ texture.reshape(len(when), -1)).reshape(2, -1, 3)[:, use]
         right, down = samples.slides[..., use]
         jacobian = [mean[:, 1] * right + mean[:, 2] * down for mean in means]
-        number, place = np.divmod(use, samples.count**2)
-        row, column = np.divmod(place, samples.count)
-        down, across = (at * BLOCKS_PER_SIDE // samples.count for at in (row, column))
-        block = (number * BLOCKS_PER_SIDE + down) * BLOCKS_PER_SIDE + across
+        face, _, block = self._grids[samples.count].divided(use)
         rendered = means[0, :, 0].astype(np.float64)
         values, by_motion = samples.values[use], np.concatenate(jacobian).T
-        mixture = PhotometricSamples(number, block, values, rendered, by_motion)
+        mixture = PhotometricSamples(face, block, values, rendered, by_motion)
         return fit_tones(mixture, len(samples.facing))
 
     def _moments(self, motion: Array) -> Array:
@@ -222,10 +221,3 @@ class _Samples:
 
     count: int
     """Samples along each side of a face."""
-
-
-def _grid(count: int, edge: float) -> Array:
-    """Points on a face in its own frame, as columns of (x, y, 0, 1), (4, count²)."""
-    steps = ((np.arange(count) + 0.5) / count - 0.5) * edge
-    x, y = np.meshgrid(steps, steps)
-    return np.stack([x.ravel(), y.ravel(), np.zeros(count**2), np.ones(count**2)])

@@ -21,7 +21,7 @@ from tracking.refinement.evidence import Evidence
 from tracking.refinement.marker_images import TEXELS_PER_CELL, MarkerTextures
 from tracking.refinement.photometric_fit import PhotometricFit, PhotometricSamples, fit_tones
 from tracking.refinement.systematic_error import CLAIMED_K1
-from tracking.refinement.texels import texel_slides, texels_to_pixels
+from tracking.refinement.texels import SampleGrid, texel_slides, texels_to_pixels
 
 MARGIN_CELLS, PAPER_SHARE = 1.0, 0.8
 """How far around a marker its paper is compared [cells], and at most which share of the paper."""
@@ -97,21 +97,6 @@ class StillAlignment:
     """Standard deviation of the samples that fit, as a share of the contrast."""
 
 
-class _Grid:
-    """Samples on a face, `count` along each side, as far as `reach` from its middle [m]."""
-
-    def __init__(self, count: int, reach: float) -> None:
-        steps = ((np.arange(count) + 0.5) / count - 0.5) * 2
-        x, y = (axis.ravel() for axis in np.meshgrid(steps, steps))
-        self.places = np.stack([x, y], axis=1)
-        """Place of each sample on its face, −1…1, (N, 2)."""
-        self.points = np.stack([x * reach, y * reach, np.zeros(count**2), np.ones(count**2)])
-        """The same as columns of (x, y, 0, 1) [m], (4, N)."""
-        blocks = np.arange(count) * BLOCKS_PER_SIDE // count
-        self.block = (blocks[:, None] * BLOCKS_PER_SIDE + blocks).ravel()
-        """Index of the block of each sample, (N,)."""
-
-
 @dataclass(frozen=True)
 class _Placed:
     """Samples on the faces in view of one pose, and what the image shows there."""
@@ -163,7 +148,8 @@ class StillAligner:
         self._inner = (cube.marker_size / 2 - cell) / self._reach
         self._cells = round(cube.marker_size / cell) ** 2
         self._coarse, self._fine = (
-            _Grid(count, self._reach) for count in (COARSE_SAMPLES, FINE_SAMPLES)
+            SampleGrid(count, self._reach, BLOCKS_PER_SIDE)
+            for count in (COARSE_SAMPLES, FINE_SAMPLES)
         )
         middle = (self._textures.side - 1) / 2
         self._texels_of_places = np.array([[1, 0, middle], [0, 1, middle], [0, 0, 1]])
@@ -214,7 +200,7 @@ class StillAligner:
         return far * float(self._projection.matrix[0, 0] / pose[2, 3])
 
     def _place(
-        self, patch: Patch, pose: Array, faces: Collection[str] | None, grid: _Grid
+        self, patch: Patch, pose: Array, faces: Collection[str] | None, grid: SampleGrid
     ) -> _Placed | None:
         names = self._faces.names
         facing = np.array(
@@ -239,8 +225,7 @@ class StillAligner:
         x, y, depth = rays[:, 0].ravel(), rays[:, 1].ravel(), points[:, 2].ravel()
         bends = depth * (x * x + y * y) * (x * slides[:, 0] + y * slides[:, 1])
         to_pixels = texels_to_pixels(self._projection, frames, texel)
-        face, place = np.divmod(used, len(grid.block))
-        block = face * BLOCKS_PER_SIDE**2 + grid.block[place]
+        face, place, block = grid.divided(used)
         chosen = slice(None) if len(used) == len(pixels) else used
         return _Placed(
             facing, chosen, values, rays, slides[..., chosen], bends[:, chosen], to_pixels, face,

@@ -1,9 +1,43 @@
-"""How the texels of a cube's faces move in the image, and under its pixels."""
+"""Samples and texels on a cube's faces, and how these move in the image."""
 
 import numpy as np
 
-from tracking.geometry.arrays import Array
+from tracking.geometry.arrays import Array, Indices
 from tracking.geometry.projection import Projection
+
+
+class SampleGrid:
+    """Samples on a face, `count` along each side, as far as `reach` from its middle [m].
+
+    `blocks` of them along each side are one measurement: their errors are not independent.
+    """
+
+    def __init__(self, count: int, reach: float, blocks: int) -> None:
+        steps = ((np.arange(count) + 0.5) / count - 0.5) * 2
+        x, y = (axis.ravel() for axis in np.meshgrid(steps, steps))
+        self.places = np.stack([x, y], axis=1)
+        """Place of each sample on its face, −1…1, (N, 2)."""
+        self.points = np.stack([x * reach, y * reach, np.zeros(count**2), np.ones(count**2)])
+        """The same as columns of (x, y, 0, 1) [m], (4, N)."""
+        number = np.arange(count) * blocks // count
+        self._block = (number[:, None] * blocks + number).ravel()
+        self._blocks = blocks**2
+
+    def divided(self, samples: Indices) -> tuple[Indices, Indices, Indices]:
+        """Return the face, the sample on it, and the block of samples of several faces, (N,)."""
+        face, place = np.divmod(samples, len(self._block))
+        return face, place, face * self._blocks + self._block[place]
+
+
+def frequencies(side: int) -> tuple[Array, Array, list[Array]]:
+    """Frequencies of a texture's spectrum to the right and down, and its gradient's factors.
+
+    `side` is the number of texels, and all are (side, side // 2 + 1) [rad/texel].
+    """
+    across, down = np.fft.rfftfreq(side), np.fft.fftfreq(side)
+    x, y = (2 * np.pi * axis for axis in np.meshgrid(across, down))
+    # The gradient has no Nyquist frequency: half a turn per texel has no sign.
+    return x, y, [np.where(np.abs(axis) < 3.14, 1j * axis, 0) for axis in (x, y)]
 
 
 def texels_to_pixels(projection: Projection, frames: Array, texel: float) -> Array:
