@@ -13,7 +13,12 @@ from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.evidence import Evidence
 from tracking.refinement.footprint import Footprint
-from tracking.refinement.still_alignment import EXPECTED_BLUR_PX, StillAligner, StillAlignment
+from tracking.refinement.still_alignment import (
+    EXPECTED_BLUR_PX,
+    MAX_STEPS,
+    StillAligner,
+    StillAlignment,
+)
 
 MIN_CORRELATION = 0.85
 """Correlation of a marker with the image from which on it is found."""
@@ -106,17 +111,15 @@ class CellSearch:
         alike = match.alignment.correlations
         seen = {face for face, share in alike.items() if share > MIN_JOINING}
         if len(seen) > len(aligned.correlations):
-            start, k1 = aligned.camera_from_cube, aligned.k1
-            joint = self._aligner.align(patch, start, seen, aligned.blur, k1=k1)
+            joint = self._aligned_on(patch, aligned, seen)
             again = self._weighed(patch, joint) if joint else None
             if joint and again and again.evidence.total > match.evidence.total:
                 aligned, match = joint, again
-        pose, faces = aligned.camera_from_cube, aligned.correlations
+        faces = aligned.correlations
         if len(faces) > MAX_FINE_FACES:
             return replace(match, alignment=aligned)
         # What was found coarsely is measured with more samples.
-        blur, k1 = aligned.blur, aligned.k1
-        aligned = self._aligner.align(patch, pose, faces, blur, fine=True, k1=k1) or aligned
+        aligned = self._aligned_on(patch, aligned, faces, fine=True) or aligned
         match = self._weighed(patch, aligned, fine=True)
         return match and replace(match, alignment=aligned)
 
@@ -124,9 +127,19 @@ class CellSearch:
         self, patch: Patch, aligned: StillAlignment, fine: bool = False
     ) -> CellMatch | None:
         """Weigh a pose by all faces that it shows."""
-        pose = aligned.camera_from_cube
-        blur, k1 = aligned.blur, aligned.k1
-        return self._match(self._aligner.align(patch, pose, None, blur, 1, fine, k1))
+        return self._match(self._aligned_on(patch, aligned, None, steps=1, fine=fine))
+
+    def _aligned_on(
+        self,
+        patch: Patch,
+        last: StillAlignment,
+        faces: Collection[str] | None,
+        steps: int = MAX_STEPS,
+        fine: bool = False,
+    ) -> StillAlignment | None:
+        """Align from where another alignment ended."""
+        start, blur, k1 = last.camera_from_cube, last.blur, last.k1
+        return self._aligner.align(patch, start, faces, blur, steps, fine, k1)
 
     def _read_aligned(
         self, patch: Patch, start: Array, read: Collection[str] | None
@@ -147,21 +160,17 @@ class CellSearch:
     def _match(self, aligned: StillAlignment | None) -> CellMatch | None:
         if aligned is None:
             return None
-        cosines = dict(
-            zip(self._faces.names, self._faces.cosines(aligned.camera_from_cube), strict=True)
-        )
+        cosines = self._faces.cosines(aligned.camera_from_cube)
         alike = aligned.correlations
         found = tuple(face for face in alike if _is_found(aligned, face))
-        missing = [
-            self._faces.names.index(face)
-            for face, share in alike.items()
-            if share < MAX_MISSING_CORRELATION and cosines[face] > MIN_SEEN_COSINE
-        ]
-        blocks = aligned.evidence.blocks.copy()
-        for face, share in alike.items():
-            if face not in found:
-                share = (share - MIN_SPEAKING) / (MIN_CORRELATION - MIN_SPEAKING)
-                blocks[self._faces.names.index(face)] *= np.clip(share, 0, 1)
+        blocks, missing = aligned.evidence.blocks.copy(), []
+        for row, face in enumerate(self._faces.names):
+            if face in found or face not in alike:
+                continue
+            if alike[face] < MAX_MISSING_CORRELATION and cosines[row] > MIN_SEEN_COSINE:
+                missing.append(row)
+            share = (alike[face] - MIN_SPEAKING) / (MIN_CORRELATION - MIN_SPEAKING)
+            blocks[row] *= np.clip(share, 0, 1)
         blocks[missing] -= MISSING_EVIDENCE / max(blocks[missing].size, 1)
         whole = any(alike[face] > MIN_CORRELATION and not aligned.wrong[face] for face in found)
         return CellMatch(aligned, found, whole or len(found) > 1, Evidence(blocks))

@@ -112,9 +112,7 @@ class GlobalDetector:
         search; `thorough` looks for partly hidden markers too. `expected` is the predicted pose.
         """
         found: list[Candidate] = []
-        seen: list[Observation] = []
-        for observations in self._observations(markers, thorough, seen):
-            seen += observations
+        for observations in self._observations(markers, thorough):
             if observations:
                 poses = self._poses.find(markers.grey, observations, expected, tone)
                 found = _merged(found, poses)
@@ -124,21 +122,24 @@ class GlobalDetector:
             return found
         return self._align_blurred(image, tone, found)
 
-    def _observations(
-        self, markers: FrameMarkers, thorough: bool, seen: Sequence[Observation]
-    ) -> Iterator[list[Observation]]:
+    def _observations(self, markers: FrameMarkers, thorough: bool) -> Iterator[list[Observation]]:
         """Read markers in ever more costly passes; `thorough` ends with partly hidden ones.
 
         Else others that OpenCV finds with more effort are the last: each frame has one of the two.
         """
         passes: tuple[Pass, ...] = ("half size", "first window")
+        seen: list[Observation] = []
         for by in passes[len(markers.grey) < MIN_HALVED_HEIGHT_PX :]:
-            yield markers_of(self._cube, markers.read(self._cube.dictionary, by))
+            found = markers_of(self._cube, markers.read(self._cube.dictionary, by))
+            seen += found
+            yield found
         if not thorough:
             yield markers_of(self._cube, markers.read(self._cube.dictionary, "other windows"))
             return
         small = len(markers.grey) < MIN_SINGLE_HEIGHT_PX
-        yield self._hidden.detect(markers.grey, doubled=small)
+        found = self._hidden.detect(markers.grey, doubled=small)
+        seen += found
+        yield found
         if seen and not small:
             yield self._hidden.detect(markers.grey, _around(seen, markers.grey), doubled=True)
 
