@@ -1,5 +1,7 @@
 """Markers whose cells are smeared by motion or defocus, told by their likeness to such patterns."""
 
+from itertools import product
+
 import cv2
 import numpy as np
 
@@ -8,8 +10,9 @@ from tracking.cube.model import CubeModel
 from tracking.detection.quads import Quads, sampled
 from tracking.geometry.arrays import Array, Flags, Floats, Image, Indices
 
-SMEARS_CELLS, DIRECTIONS = (0.0, 1.0, 1.75, 2.5), 8
-"""Lengths of the blur that are compared, and directions, evenly spread over half a turn."""
+SMEARS_CELLS, DIRECTIONS = (1.0, 1.75, 2.5), 8
+"""Lengths of the blur that are compared beside none, and directions, evenly spread over half a
+turn."""
 
 SAMPLES_PER_CELL, TEXELS_PER_SAMPLE = 2, 4
 """Samples along a cell of a quad, and texels along a sample when the patterns are smeared."""
@@ -62,12 +65,11 @@ def _smeared(black: Flags, count: int) -> Floats:
     white = np.kron((~black).astype(np.float32), np.ones((cell, cell), np.float32))
     margin = round((count * TEXELS_PER_SAMPLE - len(white)) / 2)
     fine = np.asarray(np.pad(white, margin, constant_values=1.0), np.float32)
-    drawn = []
-    for length in SMEARS_CELLS:
-        for angle in np.arange(DIRECTIONS) * np.pi / DIRECTIONS:
-            blurred = cv2.filter2D(fine, cv2.CV_32F, _kernel(length * cell, angle),
-                                   borderType=cv2.BORDER_REPLICATE)  # fmt: skip
-            drawn.append(cv2.resize(blurred, (count, count), interpolation=cv2.INTER_AREA).ravel())
+    angles, drawn = np.arange(DIRECTIONS) * np.pi / DIRECTIONS, []
+    for length, angle in ((0.0, 0.0), *product(SMEARS_CELLS, angles)):
+        blurred = cv2.filter2D(fine, cv2.CV_32F, _kernel(length * cell, angle),
+                               borderType=cv2.BORDER_REPLICATE)  # fmt: skip
+        drawn.append(cv2.resize(blurred, (count, count), interpolation=cv2.INTER_AREA).ravel())
     return np.asarray(drawn, np.float32)
 
 
