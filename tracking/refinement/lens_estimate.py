@@ -17,7 +17,12 @@ from tracking.geometry.projection import Projection
 from tracking.geometry.robust_statistics import quantile
 from tracking.refinement.edge_fit import PRIOR_INFORMATION, FittedEdges
 from tracking.refinement.profiles import EdgeProfiles
-from tracking.refinement.systematic_error import CORNER_ERROR_M, CORNER_ERROR_PX, stated_k1_error
+from tracking.refinement.systematic_error import (
+    CLAIMED_K1,
+    CORNER_ERROR_M,
+    CORNER_ERROR_PX,
+    MEASURED_K1,
+)
 
 K1_SPREAD, FOCAL_SPREAD, FOLD_SPREAD = 0.5, 0.2, (0.0005, np.deg2rad(0.6))
 """Standard deviations before anything is measured: of k1, of the focal length as a share of it, and
@@ -89,7 +94,7 @@ class LensEstimator:
         found = self.estimate
         if found.off or (found.known and self._projection.claims_no_distortion):
             return float(np.hypot(found.k1, found.deviation))
-        return stated_k1_error(self._projection)
+        return CLAIMED_K1 if self._projection.claims_no_distortion else MEASURED_K1
 
     def learn(self, camera_from_cube: Array, edges: FittedEdges) -> None:
         """Learn from the edges of a trusted pose, (4, 4), that differs from all before."""

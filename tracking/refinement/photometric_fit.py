@@ -18,6 +18,9 @@ TYPICAL_ERROR, LEAST_CONTRAST, LEAST_ERROR = 0.08, 0.3, 1.0
 """Typical error of a sample as a share of its face's contrast, which is taken to be at least this
 share of the greatest one, and in grey levels at least."""
 
+EVEN_ERROR = 0.5
+"""Error of an even surface as a share of the contrast: it is half as bright as white paper."""
+
 MIN_FACE_SAMPLES = 30
 """A face with fewer samples has no correlation of its own."""
 
@@ -146,7 +149,7 @@ class PhotometricFit:
         contrast = self.tones[self.faces : 2 * self.faces]
         contrast = np.maximum(contrast, LEAST_CONTRAST * self.contrast)
         error = np.hypot(TYPICAL_ERROR, LEAST_ERROR / np.maximum(contrast, LEAST_ERROR))[face] ** 2
-        gain = 2 * np.log((error + 0.25) / (error + (self.residual / contrast[face]) ** 2))
+        gain = 2 * np.log((error + EVEN_ERROR**2) / (error + (self.residual / contrast[face]) ** 2))
         samples = np.bincount(self.samples.block, minlength=self.faces * blocks)
         means = np.bincount(self.samples.block, gain, len(samples)) / np.maximum(samples, 1)
         return np.maximum(means.reshape(self.faces, blocks), 0)

@@ -34,11 +34,6 @@ MEASURED_K1, CLAIMED_K1 = 0.005, 0.1
 none. One standard deviation, as it is before play tells more."""
 
 
-def stated_k1_error(projection: Projection) -> float:
-    """Error of k1 before play tells more, one standard deviation."""
-    return CLAIMED_K1 if projection.claims_no_distortion else MEASURED_K1
-
-
 class SystematicError:
     """Such errors of the poses of one cube seen by one camera."""
 
