@@ -1,8 +1,9 @@
 """Measuring the edges of one marker in an image whose lens is not known yet.
 
 OpenCV's corners are off by a few tenths of a pixel, through gamma and blur. Here every edge is
-measured across itself, as in `tracking.refinement.edge_refinement`; not a camera, but a homography
-plus a quadratic, which can follow any lens over so small a part of the image, predicts the edges.
+measured across itself, as in `tracking.refinement.edges.edge_refinement`; not a camera, but a
+homography plus a quadratic, which can follow any lens over so small a part of the image, predicts
+the edges.
 """
 
 from dataclasses import dataclass, replace

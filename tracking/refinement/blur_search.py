@@ -10,8 +10,8 @@ from tracking.refinement.camera_model import CameraModel
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
-from tracking.refinement.motion_blur_alignment import MotionBlurAligner
-from tracking.refinement.photometric_fit import Alignment
+from tracking.refinement.photometry.motion_blur_alignment import MotionBlurAligner
+from tracking.refinement.photometry.photometric_fit import Alignment
 
 MAX_EDGE_BLUR_CELLS, VISIBLE_EDGE_BLUR_CELLS = 0.6, 0.3
 """Blur extents up to which edges can be measured, and below which they must be found."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array
-from tracking.refinement.edge_fit import FittedEdges
+from tracking.refinement.edges.edge_fit import FittedEdges
 from tracking.refinement.evidence import Evidence
 
 MIN_LOG_LIKELIHOOD_RATIO = 8.0

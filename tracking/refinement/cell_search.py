@@ -13,7 +13,7 @@ from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
 from tracking.refinement.evidence import Evidence
 from tracking.refinement.footprint import Footprint
-from tracking.refinement.still_alignment import (
+from tracking.refinement.photometry.still_alignment import (
     EXPECTED_BLUR_PX,
     MAX_STEPS,
     StillAligner,

@@ -11,7 +11,7 @@ from tracking.geometry.arrays import Array
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.refinement.candidate import Candidate
-from tracking.refinement.edge_refinement import EdgeRefinement, EdgeRefiner
+from tracking.refinement.edges.edge_refinement import EdgeRefinement, EdgeRefiner
 from tracking.refinement.footprint import Footprint
 
 MIN_EDGE_SUPPORT, MIN_EDGE_SUPPORT_WITH_MARKERS = 0.55, 0.25

@@ -15,8 +15,8 @@ from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Indices
 from tracking.geometry.projection import Projection
 from tracking.geometry.robust_statistics import quantile
-from tracking.refinement.edge_fit import PRIOR_INFORMATION, FittedEdges
-from tracking.refinement.profiles import EdgeProfiles
+from tracking.refinement.edges.edge_fit import PRIOR_INFORMATION, FittedEdges
+from tracking.refinement.edges.profiles import EdgeProfiles
 from tracking.refinement.systematic_error import (
     CLAIMED_K1,
     CORNER_ERROR_M,

@@ -12,7 +12,7 @@ from tracking.refinement.candidate import Candidate
 from tracking.refinement.cell_search import CellSearch
 from tracking.refinement.edge_search import EdgeSearch
 from tracking.refinement.footprint import Footprint
-from tracking.refinement.photometric_fit import Alignment
+from tracking.refinement.photometry.photometric_fit import Alignment
 from tracking.tracker.prediction import Prediction, Track
 
 MAX_MOTION_SURPRISE_CELLS = 0.07

@@ -10,7 +10,7 @@ from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
-from tracking.refinement.edge_refinement import EdgeRefiner
+from tracking.refinement.edges.edge_refinement import EdgeRefiner
 from tracking.synthetic import open_synthetic
 
 Array = NDArray[np.float64]

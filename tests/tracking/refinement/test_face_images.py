@@ -6,7 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from tracking.cube.model import CubeModel
-from tracking.refinement.face_images import FaceTextures
+from tracking.refinement.photometry.face_images import FaceTextures
 
 Array = NDArray[np.float64]
 Image = NDArray[np.float32]

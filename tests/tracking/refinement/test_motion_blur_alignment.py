@@ -16,8 +16,8 @@ from tracking.refinement.blur_search import MIN_CORRELATION, BlurSearch
 from tracking.refinement.camera_model import MIN_BLUR_PX, CameraModelEstimator, ToneCurve
 from tracking.refinement.cell_search import CellSearch
 from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.motion_blur_alignment import MotionBlurAligner
-from tracking.refinement.photometric_fit import Alignment
+from tracking.refinement.photometry.motion_blur_alignment import MotionBlurAligner
+from tracking.refinement.photometry.photometric_fit import Alignment
 from tracking.tracker.local_search import LocalTracker
 from tracking.tracker.prediction import Track, TrackedPose
 

@@ -12,7 +12,7 @@ from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
-from tracking.refinement.still_alignment import StillAligner, StillAlignment
+from tracking.refinement.photometry.still_alignment import StillAligner, StillAlignment
 
 Array = NDArray[np.float64]
 

@@ -21,7 +21,7 @@ from tracking.refinement.camera_model import (
 )
 from tracking.refinement.cell_search import CellSearch
 from tracking.refinement.edge_search import EdgeSearch
-from tracking.refinement.photometric_fit import PhotometricSamples, fit_tones
+from tracking.refinement.photometry.photometric_fit import PhotometricSamples, fit_tones
 from tracking.synthetic import open_synthetic
 from tracking.tracker.local_search import LocalTracker
 from tracking.tracker.prediction import Track, TrackedPose

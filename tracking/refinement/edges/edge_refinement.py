@@ -17,14 +17,14 @@ from tracking.geometry.arrays import Array, Indices
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import Projection
 from tracking.geometry.robust_statistics import quantile
-from tracking.refinement.edge_fit import (
+from tracking.refinement.edges.edge_fit import (
     MIN_EDGE_POINTS,
     EdgeFit,
     FittedEdges,
     covariance,
     fit_edges,
 )
-from tracking.refinement.profiles import EdgeMeasurements, EdgeProfiles, place_profiles
+from tracking.refinement.edges.profiles import EdgeMeasurements, EdgeProfiles, place_profiles
 
 MIN_FACING_COSINE = 0.15
 """Cosine of the viewing angle below which the edges of a face are too foreshortened to help."""

@@ -7,7 +7,7 @@ import numpy as np
 from tracking.geometry.arrays import Array, Flags, Indices
 from tracking.geometry.image_region import Patch
 from tracking.geometry.robust_statistics import quantile, tukey_weight
-from tracking.refinement.profiles import EdgeMeasurements, EdgeProfiles, measure_profiles
+from tracking.refinement.edges.profiles import EdgeMeasurements, EdgeProfiles, measure_profiles
 
 BLOOM_PX, BLOOM_PER_BLUR = 0.3, 0.15
 """How far white grows over black, one standard deviation: gamma, ink and overexposure; and more for

@@ -6,7 +6,7 @@ import numpy as np
 from tracking.cube.marker import black_texels, marker_cells
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Floats, Indices
-from tracking.refinement.texels import frequencies
+from tracking.refinement.photometry.texels import frequencies
 
 
 class FaceTextures:

@@ -18,10 +18,14 @@ from tracking.geometry.arrays import Array, Floats, Indices
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import MIN_DEPTH, Projection
 from tracking.refinement.evidence import Evidence
-from tracking.refinement.marker_images import TEXELS_PER_CELL, MarkerTextures
-from tracking.refinement.photometric_fit import PhotometricFit, PhotometricSamples, fit_tones
+from tracking.refinement.photometry.marker_images import TEXELS_PER_CELL, MarkerTextures
+from tracking.refinement.photometry.photometric_fit import (
+    PhotometricFit,
+    PhotometricSamples,
+    fit_tones,
+)
+from tracking.refinement.photometry.texels import SampleGrid, texel_slides, texels_to_pixels
 from tracking.refinement.systematic_error import CLAIMED_K1
-from tracking.refinement.texels import SampleGrid, texel_slides, texels_to_pixels
 
 MARGIN_CELLS, PAPER_SHARE = 1.0, 0.8
 """How far around a marker its paper is compared [cells], and at most which share of the paper."""

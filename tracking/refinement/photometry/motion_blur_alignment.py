@@ -18,14 +18,14 @@ from tracking.geometry import se3
 from tracking.geometry.arrays import Array, Flags, Floats, Indices
 from tracking.geometry.image_region import Patch
 from tracking.geometry.projection import MIN_DEPTH, Projection
-from tracking.refinement.face_images import FaceTextures
-from tracking.refinement.photometric_fit import (
+from tracking.refinement.photometry.face_images import FaceTextures
+from tracking.refinement.photometry.photometric_fit import (
     Alignment,
     PhotometricFit,
     PhotometricSamples,
     fit_tones,
 )
-from tracking.refinement.texels import SampleGrid, texel_slides, texels_to_pixels
+from tracking.refinement.photometry.texels import SampleGrid, texel_slides, texels_to_pixels
 
 TEXELS_PER_CELL = 8
 """Texels of a face texture along a cell of its marker."""

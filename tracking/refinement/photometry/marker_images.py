@@ -5,7 +5,7 @@ import numpy as np
 from tracking.cube.marker import marker_cells
 from tracking.cube.model import CubeModel
 from tracking.geometry.arrays import Array, Floats, Indices
-from tracking.refinement.texels import frequencies
+from tracking.refinement.photometry.texels import frequencies
 
 TEXELS_PER_CELL = 8
 """Texels along a cell."""
