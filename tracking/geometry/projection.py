@@ -57,6 +57,16 @@ class Projection:
         by_point = np.asarray(jacobian, np.float64)[:, 3:6].reshape(-1, 2, 3)
         return np.asarray(projected, np.float64).reshape(-1, 2), by_point
 
+    def bends(self, points: Array, centre: Array) -> Array:
+        """How radial distortion k1 moves pixels beside that of another point, (N, 2) [px].
+
+        `points` are in the camera frame, (N, 3) [m], and so is `centre`, (3,), whose pixel stays.
+        """
+        flat, middle = points[:, :2] / points[:, 2:], centre[:2] / centre[2]
+        square = (flat * flat).sum(axis=1, keepdims=True)
+        bent = flat * square - middle * (middle @ middle)
+        return np.asarray(bent * self.matrix[[0, 1], [0, 1]], np.float64)
+
     def rays(self, pixels: Array) -> Array:
         """Undistort pixels, (N, 2), to points at z = 1 of the camera frame, (N, 2)."""
         points = np.ascontiguousarray(pixels, np.float64).reshape(-1, 1, 2)

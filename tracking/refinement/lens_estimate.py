@@ -133,13 +133,16 @@ class LensEstimator:
         weights = fit.measured.information[points]
         totals = np.bincount(face, weights, self._faces)
         weights = weights * MEASUREMENTS_PER_FACE / (totals[face] * np.square(errors).sum())
-        own, shared = fit.rows[used], self._shared_rows(pose, edges.profiles, points)
+        own, shared = fit.rows[used, :8], self._shared_rows(pose, edges.profiles, points)
         residual = fit.residual[used]
+        if edges.profiles.bends is not None:
+            residual = residual + edges.profiles.bends[points] * edges.k1
         weighted, own_weighted = shared * weights[:, None], own * weights[:, None]
+        normal = own_weighted.T @ own + PRIOR_INFORMATION[:8, :8]
         cross = own_weighted.T @ shared
-        explained = np.linalg.solve(own_weighted.T @ own + PRIOR_INFORMATION, cross)
-        self._information += weighted.T @ shared - cross.T @ explained
-        self._score += weighted.T @ residual - explained.T @ (own_weighted.T @ residual)
+        residual = residual - own @ np.linalg.solve(normal, own_weighted.T @ residual)
+        self._information += weighted.T @ shared - cross.T @ np.linalg.solve(normal, cross)
+        self._score += weighted.T @ residual
         self._square += float(weights @ residual**2)
         self._freedom += MEASUREMENTS_PER_FACE * np.count_nonzero(totals) - own.shape[1]
 

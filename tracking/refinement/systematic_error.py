@@ -50,13 +50,20 @@ class SystematicError:
         """Covariances of a pose delta, (6, 6): by the corners of `faces`, and by the lens.
 
         `k1_error` is how far the radial distortion is off, and `blur` the blur of the image [px],
-        one standard deviation each.
+        one standard deviation each. Where the lens was never measured, how k1 stretches the cube is
+        solved for with the pose, and its error is among those by the corners.
         """
         rotation, origin = camera_from_cube[:3, :3], camera_from_cube[:3, 3]
         arms = np.concatenate([self._corners[name] for name in faces]) @ rotation.T
         points = arms + origin
         _, by_point = self._projection.project_with_jacobian(points)
-        rows = np.concatenate([by_point, -by_point @ se3.hat(arms)], axis=2).reshape(-1, 6)
+        columns = [by_point, -by_point @ se3.hat(arms)]
+        flat, middle = points[:, :2] / points[:, 2:], origin[:2] / origin[2]
+        bends = self._projection.bends(points, origin)
+        solved = self._projection.claims_no_distortion
+        if solved:
+            columns.append(bends[:, :, None])
+        rows = np.concatenate(columns, axis=2).reshape(2 * len(points), -1)
         focal = float(self._projection.matrix[0, 0])
         pixels = focal / float(origin[2])
         by_light = CORNER_ERROR_PX + BLUR_SHARE * max(blur - SHARP_PX, 0.0)
@@ -64,12 +71,14 @@ class SystematicError:
         # Square on, a tilt shows only by its cosine.
         tilt = np.sqrt(2 * error / (self._half * pixels))
         information = rows.T @ rows / error**2
-        information[3:, 3:] += np.eye(3) / tilt**2
-        inverse = np.linalg.inv(information)
+        information[3:6, 3:6] += np.eye(3) / tilt**2
+        information[6:, 6:] += 1 / k1_error**2
+        inverse = np.linalg.inv(information)[:6]
         shift = np.diag([1, 1, 0, 0, 0, 0]) * (COMMON_SHIFT_PX / pixels) ** 2
         # Where a lens with a larger k1, and with a longer focal length, shows the corners.
-        flat = points[:, :2] / points[:, 2:]
-        square = (flat**2).sum(axis=1, keepdims=True)
-        modes = np.stack([focal * flat * square, focal * flat], axis=2).reshape(-1, 2)
+        moved = focal * middle * (middle @ middle) + bends * (not solved)
+        modes = np.stack([moved, focal * flat], axis=2).reshape(-1, 2)
         moves = inverse @ (rows.T @ (modes * (k1_error, self._focal))) / error**2
-        return np.asarray(inverse + shift, np.float64), np.asarray(moves @ moves.T, np.float64)
+        return np.asarray(inverse[:, :6] + shift, np.float64), np.asarray(
+            moves @ moves.T, np.float64
+        )

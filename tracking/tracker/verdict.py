@@ -73,7 +73,6 @@ class FollowedPoseJudge:
         self._footprint = Footprint(cube, projection)
         self._edges = edges
         self._cells = cells
-        self._unknown_lens = projection.claims_no_distortion
 
     def judge(self, candidate: Candidate, image: Image, tone: Floats, past: Past) -> Verdict:
         """Tell which way a face tilts: by its edges, else by its past, else not at all.
@@ -103,8 +102,7 @@ class FollowedPoseJudge:
         if candidate.same_pose(other):
             return Verdict(candidate, "", unsettled)
         better = _better(candidate, other)
-        if better is None or self._unknown_lens:
-            # A lens bends single edges as a lean does.
+        if better is None:
             better = _better(*self._weighed(candidate, other, image, tone))
         if better:
             return Verdict(better, "", settled)

@@ -8,13 +8,17 @@ from tracking.geometry.arrays import Array, Flags, Indices
 from tracking.geometry.image_region import Patch
 from tracking.geometry.robust_statistics import quantile, tukey_weight
 from tracking.refinement.edges.profiles import EdgeMeasurements, EdgeProfiles, measure_profiles
+from tracking.refinement.systematic_error import CLAIMED_K1
 
 BLOOM_PX, BLOOM_PER_BLUR = 0.3, 0.15
 """How far white grows over black, one standard deviation: gamma, ink and overexposure; and more for
 each pixel of blur: gamma again."""
 
-PRIOR_INFORMATION = np.diag([1e-3] * 6 + [1 / BLOOM_PX**2, 1 / BLOOM_PER_BLUR**2])
-"""Information of the priors of the blooms, and a little that keeps the pose delta solvable."""
+PRIOR_INFORMATION = np.diag(
+    [1e-3] * 6 + [1 / BLOOM_PX**2, 1 / BLOOM_PER_BLUR**2, 1 / CLAIMED_K1**2]
+)
+"""Information of the priors of the blooms and of k1, and a little that keeps the pose delta
+solvable."""
 
 MIN_CONTRAST_SHARE = 0.4
 """An edge with less than this share of the contrast of good edges is covered, or is no edge."""
@@ -41,13 +45,13 @@ class EdgeFit:
     """Measurements of all profiles."""
 
     solution: Array
-    """Pose delta from the pose of the profiles, then the two blooms, (8,)."""
+    """Changes from the profiles: pose delta, the two blooms, and k1 where it is unknown, (K,)."""
 
     strong: Indices
     """Numbers of the profiles in which an edge was seen, (M,)."""
 
     rows: Array
-    """Their linear equations, (M, 8)."""
+    """Their linear equations, (M, K)."""
 
     weights: Array
     """Information times robust weight, (M,)."""
@@ -59,7 +63,7 @@ class EdgeFit:
     """Residuals of the solution, (M,) [px]."""
 
     normal: Array
-    """Normal matrix with its priors, (8, 8)."""
+    """Normal matrix with its priors, (K, K)."""
 
 
 @dataclass(frozen=True)
@@ -72,11 +76,16 @@ class FittedEdges:
     fit: EdgeFit
     """What was found there."""
 
+    @property
+    def k1(self) -> float:
+        """Radial distortion beyond that of the intrinsics, as far as this image tells it."""
+        return self.profiles.k1 + float(self.fit.solution[8:].sum())
+
 
 def fit_edges(
     patch: Patch, profiles: EdgeProfiles, shifts: Array | None, blur: float
 ) -> EdgeFit | None:
-    """Measure all profiles, and solve for the pose delta and the blooms with robust weights.
+    """Measure all profiles, and solve for pose delta, blooms and k1 with robust weights.
 
     `shifts` is how far along their normals the edges have moved since the profiles were placed,
     (N,) [px], `blur` the width of an edge at rest [px]. None where too few edges are visible.
@@ -89,16 +98,21 @@ def fit_edges(
         return None
     offset = (measured.offset if shifts is None else measured.offset + shifts)[strong]
     count = len(strong)
-    rows = np.empty((count, 8))
+    unknowns = 8 if profiles.bends is None else 9
+    rows = np.empty((count, unknowns))
     rows[:, :6] = profiles.slopes[strong]
     rows[:, 6] = 1
     rows[:, 7] = profiles.blur[strong]
+    prior, pull = PRIOR_INFORMATION[:unknowns, :unknowns], np.zeros(unknowns)
+    if profiles.bends is not None:
+        rows[:, 8] = profiles.bends[strong]
+        pull[8] = -prior[8, 8] * profiles.k1
     information = measured.information[strong]
     weights, robust = information, np.ones(count)
     for _ in range(2 if shifts is None else 3):
         weighted = rows * weights[:, None]
-        normal = np.asarray(weighted.T @ rows + PRIOR_INFORMATION, np.float64)
-        solution = np.asarray(np.linalg.solve(normal, weighted.T @ offset), np.float64)
+        normal = np.asarray(weighted.T @ rows + prior, np.float64)
+        solution = np.asarray(np.linalg.solve(normal, weighted.T @ offset + pull), np.float64)
         residual = np.asarray(offset - rows @ solution, np.float64)
         scale = 1.4826 * quantile(np.abs(residual), 0.5)
         robust = tukey_weight(residual, max(4.685 * scale, 0.1))

@@ -104,26 +104,27 @@ class EdgeRefiner:
             if step is None:
                 return None
             current = se3.moved(current, step.solution[:6])
-        found, widths = None, PRECISE_STEPS_PX
+        found, widths, k1 = None, PRECISE_STEPS_PX, 0.0
         for _ in range(MAX_PLACEMENTS):
-            profiles = self._profiles(patch, current, blur_motion, False)
+            profiles = self._profiles(patch, current, blur_motion, False, k1)
             step = _fit_repeatedly(patch, profiles, widths) if profiles else None
             if profiles is None or step is None:
                 return None
             found, widths = (current, profiles, step), PRECISE_STEPS_PX[1:]
-            if np.abs(profiles.slopes @ step.solution[:6]).max() < MAX_SHIFT_PX:
+            if np.abs(profiles.shifts(step.solution)).max() < MAX_SHIFT_PX:
                 break
             current = se3.moved(current, step.solution[:6])
+            k1 += float(step.solution[8:].sum())
         return self._summary(*found) if found else None
 
     def _profiles(
-        self, patch: Patch, pose: Array, blur_motion: Array | None, wide: bool
+        self, patch: Patch, pose: Array, blur_motion: Array | None, wide: bool, k1: float = 0.0
     ) -> EdgeProfiles | None:
         facing = self._faces.facing(pose, MIN_FACING_COSINE)
         if facing not in self._parts:
             self._parts[facing] = self._model.of_faces(facing)
         profiles = place_profiles(
-            self._parts[facing], self._projection, pose, patch, blur_motion, wide
+            self._parts[facing], self._projection, pose, patch, blur_motion, wide, k1
         )
         return profiles if profiles and len(profiles.numbers) >= MIN_EDGE_POINTS else None
 
@@ -176,7 +177,7 @@ def _fit_repeatedly(
         step = fit_edges(patch, profiles, shifts, width)
         if step is None:
             return None
-        before, shifts = shifts, profiles.slopes @ step.solution[:6]
+        before, shifts = shifts, profiles.shifts(step.solution)
         if before is not None and np.abs(shifts - before).max() < CONVERGED_PX:
             break
     return step

@@ -49,6 +49,12 @@ class EdgeProfiles:
     slopes: Array
     """Jacobian of each edge position along its normal by a pose delta, (N, 6) [px]."""
 
+    bends: Array | None
+    """The same by a change of the radial distortion k1, (N,) [px]; None where it is known."""
+
+    k1: float
+    """The radial distortion, beyond that of the intrinsics, with which they are placed."""
+
     reach: Array
     """Half the length of each profile, (N,) [px]."""
 
@@ -59,6 +65,11 @@ class EdgeProfiles:
     def face(self) -> Indices:
         """Number of each point's face, (N,)."""
         return self.model.face[self.numbers]
+
+    def shifts(self, solution: Array) -> Array:
+        """How far `EdgeFit.solution` moves each edge along its normal, (N,) [px]."""
+        shifts = self.slopes @ solution[:6]
+        return shifts if self.bends is None else shifts + self.bends * float(solution[8])
 
 
 @dataclass(frozen=True)
@@ -91,10 +102,12 @@ def place_profiles(
     patch: Patch,
     blur_motion: Array | None,
     wide: bool,
+    k1: float = 0.0,
 ) -> EdgeProfiles | None:
     """Place profiles across the edges in view of a cube at a pose, as far as a patch shows them.
 
-    `blur_motion` and `wide` are as in `EdgeRefiner.refine`. None where the cube is too close.
+    `blur_motion` and `wide` are as in `EdgeRefiner.refine`, `k1` is as in `EdgeProfiles`. None
+    where the cube is too close.
     """
     rotation = camera_from_cube[:3, :3]
     rotated = model.points @ rotation.T
@@ -102,6 +115,10 @@ def place_profiles(
     if not len(points) or points[:, 2].min() < MIN_DEPTH:
         return None
     pixels, jacobian = projection.project_with_jacobian(points)
+    bends = None
+    if projection.claims_no_distortion:
+        bends = projection.bends(points, camera_from_cube[:3, 3])
+        pixels += k1 * bends
     along = _projected(jacobian, model.along @ rotation.T)
     across = _projected(jacobian, model.across @ rotation.T)
     length = np.sqrt((along * along).sum(axis=1))
@@ -122,7 +139,15 @@ def place_profiles(
         good &= model.outline
     found = np.flatnonzero(good)
     return EdgeProfiles(
-        model, found, pixels[found], normals[found], slopes[found], reach[found], blur[found]
+        model,
+        found,
+        pixels[found],
+        normals[found],
+        slopes[found],
+        None if bends is None else (normals[found] * bends[found]).sum(axis=1),
+        k1,
+        reach[found],
+        blur[found],
     )
 
 

@@ -117,6 +117,9 @@ class _Placed:
     rays: Array
     """Rays of all samples at z = 1, (faces, 3, samples)."""
 
+    bent: Array
+    """How k1 moves these rays beside that of the cube's centre, (faces, 2, samples)."""
+
     slides: Array
     """How the texel under each ray moves by a pose delta, (2, 6, N) [texels]."""
 
@@ -226,14 +229,17 @@ class StillAligner:
         values = patch.sample(pixels[used, None])[:, 0].astype(np.float64)
         rays, texel = points / points[:, 2:], self._textures.texel
         slides = texel_slides(frames, points - pose[:3, 3, None], rays, texel)
-        x, y, depth = rays[:, 0].ravel(), rays[:, 1].ravel(), points[:, 2].ravel()
-        bends = depth * (x * x + y * y) * (x * slides[:, 0] + y * slides[:, 1])
+        middle = pose[:2, 3] / pose[2, 3]
+        bent = rays[:, :2] * np.square(rays[:, :2]).sum(axis=1, keepdims=True)
+        bent -= (middle * (middle @ middle))[:, None]
+        x, y = (points[:, 2] * bent.transpose(1, 0, 2)).reshape(2, -1)
+        bends = x * slides[:, 0] + y * slides[:, 1]
         to_pixels = texels_to_pixels(self._projection, frames, texel)
         face, place, block = grid.divided(used)
         chosen = slice(None) if len(used) == len(pixels) else used
         return _Placed(
-            facing, chosen, values, rays, slides[..., chosen], bends[:, chosen], to_pixels, face,
-            block, grid.places[place],
+            facing, chosen, values, rays, bent, slides[..., chosen], bends[:, chosen], to_pixels,
+            face, block, grid.places[place],
         )  # fmt: skip
 
     def _fit(self, placed: _Placed, layers: Floats, pose: Array, optics: Array) -> PhotometricFit:
@@ -241,8 +247,7 @@ class StillAligner:
         planes = (pose @ self._frames[placed.facing])[:, :3, [0, 1, 3]]
         side, rays = self._textures.side, placed.rays
         if optics[2]:
-            straight = 1 - optics[2] * np.square(rays[:, :2]).sum(axis=1)
-            rays = np.stack([rays[:, 0] * straight, rays[:, 1] * straight, rays[:, 2]], axis=1)
+            rays = np.concatenate([rays[:, :2] - optics[2] * placed.bent, rays[:, 2:]], axis=1)
         met = self._texels_of_places @ np.linalg.inv(planes) @ rays
         places = np.clip(met[:, :2] / met[:, 2:], 0, side - 1)
         places[:, 1] += (np.arange(len(placed.facing)) * side)[:, None]
