@@ -6,7 +6,7 @@ import numpy as np
 
 from tracking.geometry.arrays import Array
 
-MIN_LEAD, MIN_DEVIATIONS, SURE_DEVIATIONS = 2.0, 1.75, 3.2
+MIN_LEAD, MIN_DEVIATIONS, SURE_DEVIATIONS = 2.0, 1.645, 3.2
 """Lead in total evidence, and the same in its own standard deviations, from which on the better of
 two poses is right; the third is enough alone. Measured on the lone markers of the dodecahedron, see
 `make bench-photographs`."""

@@ -42,7 +42,7 @@ MAX_LONE_BLUR_PX, MAX_LONE_BLUR_CELLS = 1.5, 0.22
 """A single face whose image is blurred by more than both, one standard deviation, does not tell its
 lean: motion blurs in one direction, a lens in all."""
 
-MIN_LONE_CORRELATION = 0.93
+MIN_LONE_CORRELATION = 0.95
 """Correlation of a single face from which on it tells its lean: what covers or shades a part of it
 tilts it."""
 
