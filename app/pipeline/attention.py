@@ -23,8 +23,10 @@ MIN_TURN_RAD_S = 0.4
 CUBE_INTEREST_S = 1.3
 """How long the character looks at a cube that has come to rest."""
 
-GLANCE_S = {"camera": (2.0, 5.0), "cube": (0.8, 2.2)}
-"""Shortest and longest duration of a glance, by what it looks at."""
+REST_GLANCE_S = {"camera": (2.0, 5.0), "cube": (0.8, 2.2)}
+BUSY_GLANCE_S = {"camera": (0.8, 1.4), "cube": (1.6, 3.0)}
+"""Shortest and longest duration of a glance at each, while the cube rests, and while it moves or
+the character goes after it: the player sees a face now and then."""
 
 HAND_OFFSET_EDGES = 0.6
 """Where the hand is, from the cube's center towards the player and up, in edges of the cube."""
@@ -33,9 +35,10 @@ HAND_OFFSET_EDGES = 0.6
 class Attention:
     """Chooses a point to look at, frame by frame.
 
-    With "auto" it watches a cube that moves, and the hand while it lifts the cube. When the cube
-    is still it looks at the player, with a glance at the cube now and then. `edge` is that of the
-    cube [m]. Raises AppError if `look` is not one of `LOOK_CHOICES`.
+    With "auto" it watches a cube that moves or that it goes after, with glances at the player, and
+    the hand while it lifts the cube. When the cube is still it looks at the player, with a glance
+    at the cube now and then. `edge` is that of the cube [m]. Raises AppError if `look` is not one
+    of `LOOK_CHOICES`.
     """
 
     def __init__(self, look: str, edge: float) -> None:
@@ -49,6 +52,7 @@ class Attention:
         self._last_moved = -math.inf
         self._rng = np.random.default_rng(1)
         self._glance, self._until = "camera", -math.inf
+        self._busy = False
 
     def update(
         self, state: CubeState, controls: CubeControls, command: CharacterCommand
@@ -75,17 +79,16 @@ class Attention:
     def _choose(self, controls: CubeControls, command: CharacterCommand) -> str:
         """Return what to look at with "auto"."""
         now = controls.timestamp
-        if command.activity == "move":
-            return "cube"
-        if controls.lifted:
+        if controls.lifted and command.activity != "move":
             return "hand"
-        if now - self._last_moved < CUBE_INTEREST_S:
-            self._until = now  # look at the player next
-            self._glance = "cube"
-            return "cube"
+        busy = command.activity == "move" or now - self._last_moved < CUBE_INTEREST_S
+        if busy != self._busy:
+            self._busy, self._until = busy, now
+            self._glance = "camera" if busy else "cube"  # the other one comes now
         if now >= self._until:
             self._glance = "cube" if self._glance == "camera" else "camera"
-            self._until = now + float(self._rng.uniform(*GLANCE_S[self._glance]))
+            durations = BUSY_GLANCE_S if busy else REST_GLANCE_S
+            self._until = now + float(self._rng.uniform(*durations[self._glance]))
         return self._glance
 
     def _hand(self, cube: Array, camera: Array) -> Array:

@@ -120,7 +120,13 @@ class Playground:
 
     def decide(self, controls: CubeControls, inputs: Inputs) -> Outcome:
         """Let the scenario decide."""
-        inputs = replace(inputs, actions=self._animator.actions)
+        animator = self._animator
+        inputs = replace(
+            inputs,
+            actions=animator.actions,
+            walks=animator.walks,
+            body_length=animator.length,
+        )
         return self.scenario.update(controls, self._posed, inputs)
 
     def attend(self, state: CubeState, controls: CubeControls, outcome: Outcome) -> Outcome:

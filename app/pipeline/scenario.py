@@ -20,6 +20,12 @@ class Inputs:
     actions: tuple[str, ...] = ()
     """Names of the actions that the character can perform."""
 
+    walks: bool = True
+    """Whether the character walks and runs; else it hops."""
+
+    body_length: float = 0.0
+    """Length of the character on the table, from front to back [m]."""
+
 
 @dataclass(frozen=True)
 class EmotionTarget:

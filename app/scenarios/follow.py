@@ -7,6 +7,7 @@ from affect import Personality
 from app.pipeline.scenario import Inputs, Outcome, ScenarioSettings
 from app.scenarios.mood import MoodController
 from app.scenarios.presence import Presence
+from app.scenarios.pursuit import Pursuit
 from app.scenarios.speed import SpeedDial
 from characters import (
     IDLE_SPEED,
@@ -21,9 +22,6 @@ from tracking import CubeControls, CubeModel
 
 Point = NDArray[np.float64]
 
-CUBE_CLEARANCE_M = 0.04
-"""Distance from the cube's centre at which the character stops."""
-
 SHAKE_ACTIONS = ("jump", "wave", "cheer")
 """What the character does when the cube is shaken, in turn, if it knows the action."""
 
@@ -34,8 +32,8 @@ PLAYER_POSITION = np.array([0.0, 2.0])
 class Follow:
     """The character goes to the cube; the cube's turn sets how fast (M10).
 
-    Shaking the cube is not in the thesis: the character then jumps, waves or cheers, if it can, and
-    its valence rises. Its arousal rises with its speed.
+    Beyond the thesis: shaken, the cube makes the character jump, wave or cheer, if it can; and it
+    feels something about a cube that is reached, that runs away, or that nobody moves (`Pursuit`).
     """
 
     name = "follow"
@@ -50,6 +48,8 @@ class Follow:
         self._dial = SpeedDial(settings.speed_map)
         self._mood = MoodController(settings.personality or Personality.load(self.personality))
         self._presence = Presence()
+        self._pursuit = Pursuit()
+        self._half_edge = cube.edge / 2
         self._shakes = 0
         self._shake_action: tuple[str, bool] | None = None  # its name, and whether it has begun
 
@@ -62,7 +62,11 @@ class Follow:
         speed = self._dial.update(controls.camera_angle, controls.timestamp)
         visible = self._presence.update(controls)
         shake_action = self._react_to_shake(controls, character, inputs)
-        target = _near_side(controls.position, character)
+        # As if cube and character were discs, so that the character does not enter the cube.
+        clearance = self._half_edge + inputs.body_length / 2
+        target = _near_side(controls.position, character, clearance)
+        if not inputs.walks and speed <= IDLE_SPEED:
+            target = None  # a character that hops does so at any speed
         command = CharacterCommand(
             timestamp=controls.timestamp,
             locomotion=LocomotionIntent(speed, target, facing=PLAYER_POSITION),
@@ -71,8 +75,10 @@ class Follow:
         )
         # A hidden character does nothing that changes the mood.
         action, mood_speed = (shake_action or "idle", speed) if visible else ("idle", 0.0)
-        emotion = self._mood.update(controls, action, speed=mood_speed)
-        return Outcome(command, emotion, _hint(controls, speed), gait(speed))
+        events = self._pursuit.update(controls, character, clearance, mood_speed > IDLE_SPEED)
+        emotion = self._mood.update(controls, action, speed=mood_speed, events=events)
+        icon = gait(speed, inputs.walks)
+        return Outcome(command, emotion, _hint(controls, icon), icon)
 
     def _react_to_shake(
         self, controls: CubeControls, character: PosedCharacter | None, inputs: Inputs
@@ -90,13 +96,15 @@ class Follow:
         return name if self._shake_action else ""
 
 
-def _near_side(cube: Point | None, character: PosedCharacter | None) -> Point | None:
-    """Return the point at the cube's near side, so that the character does not enter the cube."""
+def _near_side(
+    cube: Point | None, character: PosedCharacter | None, clearance: float
+) -> Point | None:
+    """Return the point on the way to the cube that is `clearance` [m] away from it."""
     if cube is None or character is None:
         return cube
     offset = character.table_from_character[[0, 2], 3] - cube
     distance = float(np.linalg.norm(offset))
-    return cube + offset * (min(CUBE_CLEARANCE_M, distance) / max(distance, 1e-9))
+    return cube + offset * (min(clearance, distance) / max(distance, 1e-9))
 
 
 def _action(shake_action: str, speed: float) -> ActionIntent | None:
@@ -106,18 +114,23 @@ def _action(shake_action: str, speed: float) -> ActionIntent | None:
     return None if speed > IDLE_SPEED else ActionIntent("idle")
 
 
-def gait(speed: float) -> str:
-    """Return the gait at a Speed, which is also its icon: "stand", "walk" or "run"."""
+def gait(speed: float, walks: bool = True) -> str:
+    """Return the gait at a Speed, which is also its icon: "stand", "walk", "run" or "hop"."""
     if speed <= IDLE_SPEED:
         return "stand"
+    if not walks:
+        return "hop"
     return "walk" if speed <= RUN_SPEED else "run"
 
 
-def _hint(controls: CubeControls, speed: float) -> str:
+def _hint(controls: CubeControls, gait: str) -> str:
     if not controls.visible:
         return "Show me the cube"
     if controls.position is None:
         return "Put the cube on the table"
-    if speed <= IDLE_SPEED:
-        return "Turn the cube to walk"
-    return "Move the cube: I follow you" if speed <= RUN_SPEED else "I run after you!"
+    return {
+        "stand": "Turn the cube, and I come",
+        "walk": "Move the cube: I follow you",
+        "run": "I run after you!",
+        "hop": "I cannot walk, so I hop after you",
+    }[gait]

@@ -1,5 +1,7 @@
 """The mood of a session: it changes with what the hand and the character do."""
 
+from collections.abc import Sequence
+
 from affect import Feelings, Personality
 from app.pipeline.scenario import EmotionTarget
 from tracking import CubeControls
@@ -22,15 +24,20 @@ class MoodController:
         self._lifted = False
 
     def update(
-        self, controls: CubeControls, action: str, weight: float = 1.0, speed: float = 0.0
+        self,
+        controls: CubeControls,
+        action: str,
+        weight: float = 1.0,
+        speed: float = 0.0,
+        events: Sequence[str] = (),
     ) -> EmotionTarget:
         """Advance by one frame and return the emotion to show.
 
         The action is "idle" for nothing that changes the mood; `weight` is its intensity, −1…1, and
-        `speed` AvatAR's Speed of the character, 0…5.
+        `speed` AvatAR's Speed of the character, 0…5. `events` happened besides the gestures.
         """
-        for gesture in controls.gestures:
-            self._feelings.apply_event(gesture)
+        for event in (*controls.gestures, *events):
+            self._feelings.apply_event(event)
         if controls.lifted and not self._lifted:
             self._feelings.apply_event("lifted")
         self._lifted = controls.lifted

@@ -41,7 +41,7 @@ class Sketch:
     """Move the cube to draw, lift it (or reach eight points), then turn it to walk the loop (M10).
 
     The cube sets a point wherever it rests at least 5 cm from the previous one. Shaking the cube
-    starts a new path.
+    starts a new path. Beyond the thesis: a lap that is finished pleases the character.
     """
 
     name = "sketch"
@@ -58,6 +58,8 @@ class Sketch:
         self._presence = Presence()
         self._points: list[NDArray[np.float64]] = []
         self._path: ClosedPath | None = None
+        self._along: float | None = None  # where the character last was on the path [m]
+        self._walked = 0.0
 
     @property
     def points(self) -> NDArray[np.float64]:
@@ -84,8 +86,11 @@ class Sketch:
             action=None if speed > IDLE_SPEED else ActionIntent("idle"),
             visible=visible,
         )
-        emotion = self._mood.update(controls, "idle", speed=speed if visible else 0.0)
-        return Outcome(command, emotion, self._hint(controls, speed), gait(speed), self._floor())
+        events = ("finished",) if visible and self._finishes_lap(character) else ()
+        mood_speed = speed if visible else 0.0
+        emotion = self._mood.update(controls, "idle", speed=mood_speed, events=events)
+        icon = gait(speed, inputs.walks)
+        return Outcome(command, emotion, self._hint(controls, speed), icon, self._floor())
 
     def _draw(self, controls: CubeControls) -> None:
         point = controls.position
@@ -101,6 +106,20 @@ class Sketch:
             return True
         distance = float(np.linalg.norm(point - self._points[-1]))
         return len(self._points) < MAX_POINTS and distance >= MIN_POINT_DISTANCE_M
+
+    def _finishes_lap(self, character: PosedCharacter | None) -> bool:
+        """Whether the character has just walked once around the path."""
+        if self._path is None or character is None:
+            self._along, self._walked = None, 0.0
+            return False
+        length, before = self._path.length, self._along
+        self._along = self._path.nearest(character.table_from_character[[0, 2], 3])
+        if before is not None:
+            self._walked += (self._along - before + length / 2) % length - length / 2
+        if self._walked < length:
+            return False
+        self._walked -= length
+        return True
 
     def _target(self, character: PosedCharacter | None) -> NDArray[np.float64] | None:
         if self._path is None or character is None:

@@ -99,7 +99,7 @@ def _hint(words: str, width: float, scale: float) -> Card:
 
 def _action(step: Step, scale: float) -> Card:
     name = step.outcome.icon
-    moves = step.command.activity == "move" or name in ("stand", "walk", "run")
+    moves = step.command.activity == "move" or name in ("stand", "walk", "run", "hop")
     canvas = _action_background(name, moves, scale).copy()
     if moves:
         _speed(canvas, step.command.speed, ACTION_COLORS.get(name, INK))

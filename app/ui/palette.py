@@ -33,6 +33,7 @@ ACTION_COLORS: dict[str, Color] = {
     "stand": bgr("#4aa3a2"),
     "walk": bgr("#3a7bd5"),
     "run": bgr("#8b5bd6"),
+    "hop": bgr("#3a7bd5"),
     "kiss": bgr("#e8557f"),
     "shout": bgr("#f0742b"),
 }

@@ -72,6 +72,16 @@ class Animator:
         """The actions that the character knows, besides standing, walking and running."""
         return self._controller.actions
 
+    @property
+    def walks(self) -> bool:
+        """Whether the character walks and runs; else it hops."""
+        return self._controller.walks
+
+    @property
+    def length(self) -> float:
+        """Length of the character on the table, from front to back [m]."""
+        return self.character.length * self.scale
+
     def update(self, command: CharacterCommand) -> PosedCharacter:
         """Advance to the command's time and return the character as it is to be drawn.
 

@@ -121,6 +121,11 @@ class Character:
         """Height of the rest pose above the ground [m]."""
         return float(self.bounds[1, 1] - min(self.bounds[0, 1], 0.0))
 
+    @property
+    def length(self) -> float:
+        """Length of the rest pose from front to back [m]."""
+        return float(self.bounds[1, 2] - self.bounds[0, 2])
+
 
 def _known_suffixes() -> str:
     *others, last = CHARACTER_READERS

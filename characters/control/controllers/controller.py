@@ -60,6 +60,9 @@ class CharacterController(Protocol):
     it is first sent.
     """
 
+    walks: bool
+    """Whether it walks and runs; else it hops."""
+
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None: ...
 
     @staticmethod

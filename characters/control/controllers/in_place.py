@@ -44,6 +44,8 @@ class InPlaceController:
     An action that ends is followed by idle until another is asked for.
     """
 
+    walks = False
+
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
         self._place = place or RootDelta()
         self._height = self._weight = 0.0

@@ -37,6 +37,8 @@ class TreeController:
     The root moves as the motions do. Steering sets parameters only; the plan turns them into steps.
     """
 
+    walks = True
+
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
         assert character.plan is not None  # it suits
         self._plan: Plan = character.plan

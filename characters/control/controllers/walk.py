@@ -48,6 +48,8 @@ class WalkController:
     faces in small steps. Its other clips are actions, for which it stands still.
     """
 
+    walks = True
+
     def __init__(self, character: Character, scale: float, place: RootDelta | None) -> None:
         clips, skeleton = character.clips, character.skeleton
         idle: Motion = clips.get("idle", clips["Walk"])

@@ -70,10 +70,15 @@ def test_quiet_it_glances_at_the_cube_and_mostly_at_the_person():
     assert 15 < np.abs(np.diff(seen)).sum() < 60
 
 
-def test_going_somewhere_it_looks_where_it_goes():
+@pytest.mark.parametrize(("activity", "speed"), [("move", 0.0), ("idle", 0.2)])
+def test_busy_with_the_cube_it_shows_its_face_every_few_seconds(activity, speed):
     attention = Attention("auto", EDGE)
-    for number in range(200):
-        assert look(attention, number / 30, activity="move")[1] == pytest.approx(0.03)
+    heights = [look(attention, n / 30, speed=speed, activity=activity)[1] for n in range(30 * 60)]
+    at_cube = np.isclose(heights, 0.03)
+    assert at_cube[0]
+    assert 0.55 < at_cube.mean() < 0.8
+    changes = np.flatnonzero(np.diff(at_cube)) / 30
+    assert np.diff(changes).max() < 3.1
 
 
 def test_it_looks_at_nothing_before_the_table_is_known_or_when_told_so():
