@@ -1,7 +1,6 @@
 """The model of a cube: its TOML file, and its markers in space."""
 
 import tomllib
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
@@ -11,6 +10,7 @@ import numpy as np
 
 from tracking.cube.icons import ICON_COLOURS
 from tracking.cube.measured_corners import measured_corners
+from tracking.cube.values import check_each_once, check_keys, length, text
 from tracking.errors import TrackingError
 from tracking.geometry.arrays import Array
 
@@ -120,7 +120,8 @@ class CubeModel:
     @classmethod
     def from_document(cls, document: dict[str, Any], where: str, name: str) -> Self:
         """Make a cube from the tables of its TOML file. `where` names the file in errors."""
-        edge_mm, marker_mm = (_length(document, key, where) for key in ("edge_mm", "marker_mm"))
+        check_keys(document, FILE_KEYS, where)
+        edge_mm, marker_mm = (length(document, key, where) for key in ("edge_mm", "marker_mm"))
         if marker_mm >= edge_mm:
             raise TrackingError(
                 f"{where}: the marker ({marker_mm:g} mm) does not fit its face ({edge_mm:g} mm); "
@@ -132,8 +133,8 @@ class CubeModel:
         if not isinstance(tables, list) or not tables:
             raise TrackingError(f"{where}: a cube needs at least one [[face]] table")
         faces = tuple(_face(table, marker_mm / 1000, edge_mm / 1000, where) for table in tables)
-        _check_each_once([face.name for face in faces], "name", where)
-        _check_each_once([face.marker_id for face in faces], "marker_id", where)
+        check_each_once([face.name for face in faces], "name", where)
+        check_each_once([face.marker_id for face in faces], "marker_id", where)
         for face in faces:
             if not 0 <= face.marker_id < capacity:
                 raise TrackingError(
@@ -141,12 +142,12 @@ class CubeModel:
                     f"but {dictionary} holds 0 to {capacity - 1}"
                 )
         return cls(
-            _text(document, "name", where) or name,
+            text(document, "name", where) or name,
             str(dictionary),
             edge_mm / 1000,
             marker_mm / 1000,
             faces,
-            _text(document, "hint", where),
+            text(document, "hint", where),
         )
 
     def scaled(self, edge: float) -> Self:
@@ -182,6 +183,12 @@ class CubeModel:
         raise KeyError(name)
 
 
+FILE_KEYS = ("name", "hint", "dictionary", "edge_mm", "marker_mm", "face")
+"""The keys of a cube's file."""
+
+FACE_KEYS = ("name", "marker_id", "roll_deg", "role", "icon", "corners_mm")
+"""The keys of each of its [[face]] tables."""
+
 CUBES_FOLDER = Path(__file__).parents[1] / "cubes"
 
 
@@ -211,26 +218,6 @@ def face_corners(name: str, roll_deg: int, marker: float, edge: float) -> Array:
     return np.asarray(corners, np.float64)
 
 
-def _length(document: dict[str, Any], key: str, where: str) -> float:
-    value = document.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not 1 <= value <= 1000:
-        raise TrackingError(f"{where}: '{key}' must be a length from 1 to 1000 mm, not {value!r}")
-    return float(value)
-
-
-def _text(document: dict[str, Any], key: str, where: str, owner: str = "") -> str:
-    value = document.get(key, "")
-    if not isinstance(value, str) or not value.isprintable():
-        raise TrackingError(f"{where}: {owner}'{key}' must be one line of text, not {value!r}")
-    return value
-
-
-def _check_each_once(values: Sequence[object], what: str, where: str) -> None:
-    twice = [value for value in values if values.count(value) > 1]
-    if twice:
-        raise TrackingError(f"{where}: two faces have the {what} {twice[0]!r}; each must differ")
-
-
 def _capacity(dictionary: object, where: str) -> int:
     if not isinstance(dictionary, str) or not dictionary.startswith("DICT_"):
         wanted = "a name such as DICT_4X4_50"
@@ -248,11 +235,12 @@ def _face(table: object, marker: float, edge: float, where: str) -> Face:
         known = ", ".join(FACE_AXES)
         raise TrackingError(f"{where}: a face is called {name!r}; use one of {known}")
     of_face = f"{where}: face '{name}'"
+    check_keys(table, FACE_KEYS, of_face)
     if not isinstance(marker_id, int) or isinstance(marker_id, bool):
         raise TrackingError(f"{of_face} needs a whole number as marker_id, not {marker_id!r}")
     if isinstance(roll, bool) or roll not in (0, 90, 180, 270):
         raise TrackingError(f"{of_face} has roll_deg {roll!r}; use 0, 90, 180 or 270")
-    role, icon = (_text(table, key, where, f"face '{name}': ") for key in ("role", "icon"))
+    role, icon = (text(table, key, where, f"face '{name}': ") for key in ("role", "icon"))
     if icon and icon not in ICON_COLOURS:
         known = ", ".join(ICON_COLOURS)
         raise TrackingError(f"{of_face} has the icon '{icon}'; use one of {known}")

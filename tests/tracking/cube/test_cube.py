@@ -136,7 +136,13 @@ def test_a_file_with_some_faces_is_a_cube(tmp_path):
         ("DICT_4X4_50", "DICT_3X3_50", "no dictionary DICT_3X3_50"),
         ("DICT_4X4_50", "Dictionary", "a name such as DICT_4X4_50"),
         ('"DICT_4X4_50"', "7", "a name such as DICT_4X4_50"),
-        ("[[face]]", "[[side]]", "at least one"),
+        ("[[face]]", "[[side]]", "the key 'side' is not known; use name, hint, dictionary"),
+        ("edge_mm = 60", "edge_mm = 60\nedge_cm = 6", "the key 'edge_cm' is not known"),
+        (
+            "marker_id = 4",
+            "marker_id = 4\nroll = 90",
+            "face 'top': the key 'roll' is not known; use",
+        ),
         ("edge_mm", "edge mm", "is not TOML"),
     ],
 )
