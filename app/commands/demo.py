@@ -10,7 +10,8 @@ from rich.console import Console
 
 from app.commands.play import DEFAULT_CAMERA, PersonalityOption, ScenarioArgument
 from app.commands.progress import play_session
-from app.scenarios import scenario_cube
+from app.errors import AppError
+from app.scenarios import SCENARIOS, scenario_cube
 from app.session import SessionOptions, session_info
 from app.session.bundled import bundled
 from app.ui.display import has_display
@@ -73,6 +74,11 @@ def render(scenario: str, output: Path, console: Console, personality: str | Non
 
 def _recording_options(scenario: str, personality: str | None) -> SessionOptions:
     scenario_cube(scenario)  # refuses a misspelt name
+    if scenario not in SCENARIOS:
+        raise AppError(
+            f"there is no recording of '{scenario}', which a package adds: take a camera, "
+            f"or cubeling play {scenario} --source synthetic:companion (or follow, or sketch)"
+        )
     return SessionOptions(scenario=scenario, source=str(bundled(scenario)), personality=personality)
 
 

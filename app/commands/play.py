@@ -4,23 +4,29 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.markup import escape
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.progress import play_session
 from app.errors import AppError
 from app.running.network import DEFAULT_SITE
-from app.scenarios import SCENARIOS, scenario_cube
+from app.scenarios import find_scenario, scenario_cube, scenario_names
 from app.session import SessionOptions
 from app.ui.display import has_display
 
 DEFAULT_CAMERA = "camera:0"
 
-ScenarioArgument = Annotated[
-    str,
-    typer.Argument(
-        help="\n\n".join(f"[bold]{each.name}[/]: {each.summary}." for each in SCENARIOS.values())
-    ),
-]
+
+def describe(scenario: str) -> str:
+    """Return what a scenario is, or what is wrong with the package that adds it, as markup."""
+    try:
+        text = f"{find_scenario(scenario).summary}."
+    except AppError as error:
+        text = str(error)
+    return f"[bold]{escape(scenario)}[/]: {escape(text)}"
+
+
+ScenarioArgument = Annotated[str, typer.Argument(help="\n\n".join(map(describe, scenario_names())))]
 SourceOption = Annotated[
     str,
     typer.Option(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from affect import Personality
 from app.errors import AppError
 from app.pipeline.scenario import EmotionTarget
-from app.scenarios import SCENARIOS
+from app.scenarios import find_scenario, scenario_names
 from app.scenarios.follow import gait
 from app.scenarios.mood import MoodController
 from app.session import SessionInfo, messages, session_info, start_over_times
@@ -75,8 +75,8 @@ class MoodHistory:
     @property
     def has_intensity(self) -> bool:
         """Whether the actions of the session's scenario have an intensity."""
-        scenario = SCENARIOS.get(self.info.options.scenario)
-        return scenario is not None and scenario.has_intensity
+        name = self.info.options.scenario  # that of a package may be uninstalled
+        return name in scenario_names() and find_scenario(name).has_intensity
 
 
 def _action(command: CharacterCommand) -> str:

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.pipeline.attention import Attention
-from app.pipeline.scenario import Inputs, Outcome, Scenario, make_scenario
+from app.pipeline.registry import make_scenario
+from app.pipeline.scenario import Inputs, Outcome, Scenario
 from app.pipeline.step import ReplayInputs, Step
 from characters import Animator, Character, CharacterCommand, PosedCharacter
 from characters.rendering import Box, SceneCharacter, Stage, View
@@ -32,7 +33,7 @@ class Playground:
     Parameters
     ----------
     scenario
-        A scenario, or the name of one in `app.scenarios.SCENARIOS`.
+        A scenario, or the name of one: bundled, or added by an installed package.
     intrinsics
         Of the camera; the pictures have their size.
     cube

@@ -1,4 +1,4 @@
-"""The interface of a scenario, and the registry of scenarios."""
+"""The interface of a scenario."""
 
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -52,7 +52,7 @@ class Outcome:
     """What the player can do now, in one short sentence."""
 
     icon: str = "idle"
-    """Name of the icon for the current action or gait."""
+    """The current action or gait: the title of its card, which shows its icon if it has one."""
 
     floor: tuple[FloorPath, ...] = field(default=())
     """Paths that are painted on the table."""
@@ -95,6 +95,9 @@ class Scenario(Protocol):
     cube: str
     """Name of the bundled cube that it is made for."""
 
+    roles: tuple[str, ...]
+    """Roles of faces that it reads: the cube must have them all. () if it reads none."""
+
     character: str
     """Name of its bundled character."""
 
@@ -114,33 +117,3 @@ class Scenario(Protocol):
     ) -> Outcome:
         """Decide on one frame; `character` is as after the previous frame, None in the first."""
         ...
-
-
-SCENARIOS: dict[str, type[Scenario]] = {}
-"""The scenarios by name; `app.scenarios` registers the bundled ones."""
-
-
-def scenario_cube(name: str) -> str:
-    """Return the name of the bundled cube that a scenario is made for."""
-    if name not in SCENARIOS:
-        raise AppError(f"no scenario is called '{name}': choose one of {', '.join(SCENARIOS)}")
-    return SCENARIOS[name].cube
-
-
-def make_scenario(
-    name: str,
-    cube: CubeModel | None = None,
-    *,
-    speed_map: str = "corrected",
-    turns: float = 2.0,
-    personality: str | None = None,
-) -> Scenario:
-    """Make a scenario by name; without a cube and a personality it has its own bundled ones.
-
-    Raises AppError if there is no scenario of that name or a setting is wrong, and AffectError if
-    the personality is missing or cannot be used.
-    """
-    loaded = None if personality is None else Personality.load(personality)
-    settings = ScenarioSettings(speed_map, turns, loaded)
-    model = cube or CubeModel.load(scenario_cube(name))
-    return SCENARIOS[name](model, settings)

@@ -1,11 +1,38 @@
-"""The ways to play, one file each; a new one is registered here."""
+"""The bundled scenarios, one file each, and what a scenario of one's own is made of."""
 
-from app.pipeline.scenario import SCENARIOS, Scenario, make_scenario, scenario_cube
+from app.pipeline.registry import (
+    ENTRY_POINT_GROUP,
+    SCENARIOS,
+    find_scenario,
+    make_scenario,
+    scenario_cube,
+    scenario_names,
+)
+from app.pipeline.scenario import EmotionTarget, Inputs, Outcome, Scenario, ScenarioSettings
 from app.scenarios.companion import Companion
 from app.scenarios.follow import Follow
+from app.scenarios.mood import MoodController
+from app.scenarios.presence import Presence
 from app.scenarios.sketch import Sketch
 
 _BUNDLED: tuple[type[Scenario], ...] = (Follow, Sketch, Companion)
 SCENARIOS |= {scenario.name: scenario for scenario in _BUNDLED}
 
-__all__ = ["SCENARIOS", "Companion", "Follow", "Sketch", "make_scenario", "scenario_cube"]
+__all__ = [
+    "ENTRY_POINT_GROUP",
+    "SCENARIOS",
+    "Companion",
+    "EmotionTarget",
+    "Follow",
+    "Inputs",
+    "MoodController",
+    "Outcome",
+    "Presence",
+    "Scenario",
+    "ScenarioSettings",
+    "Sketch",
+    "find_scenario",
+    "make_scenario",
+    "scenario_cube",
+    "scenario_names",
+]

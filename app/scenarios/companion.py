@@ -37,6 +37,7 @@ class Companion:
     name = "companion"
     summary = "Vleo kisses or shouts, and changes the robot's mood"
     cube = "companion"
+    roles: tuple[str, ...] = ("idle", "kiss", "shout")
     character = "vleo"
     personality = "thesis"
     start = RootDelta(float(OFFSET_FROM_CUBE[0]), float(OFFSET_FROM_CUBE[1]), 0.2)

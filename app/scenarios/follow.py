@@ -39,6 +39,7 @@ class Follow:
     name = "follow"
     summary = "the character follows the cube; turn the cube to make it walk or run"
     cube = "locomotion"
+    roles: tuple[str, ...] = ()
     character = "human"
     personality = "lively"
     start = RootDelta(-0.15, 0.03, 0.0)

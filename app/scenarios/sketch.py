@@ -47,6 +47,7 @@ class Sketch:
     name = "sketch"
     summary = "the cube draws a path of up to eight points, the character walks it"
     cube = "locomotion"
+    roles: tuple[str, ...] = ()
     character = "human"
     personality = "lively"
     start = RootDelta(0.14, 0.0, 0.0)

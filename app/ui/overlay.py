@@ -13,6 +13,7 @@ from app.ui.notice import Notice
 from app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
 from app.ui.robot_face import draw_face
 from app.ui.virtual_robot import VirtualRobot
+from tracking.cube.icons import ICON_COLOURS
 
 CARD_MARGIN = 24.0
 CARD_HEIGHT = 108.0
@@ -113,8 +114,9 @@ def _action_background(name: str, moves: bool, scale: float) -> Canvas:
     """Draw what does not change during an action."""
     canvas = Canvas(292, CARD_HEIGHT, scale)
     canvas.disc(54, 54, 38, ACTION_COLORS.get(name, INK))
-    canvas.icon(32, 32, 44, name, PAPER)
-    canvas.text(108, 42, name.title(), 28, INK)
+    if name in ICON_COLOURS:  # a scenario may name an action that has no icon
+        canvas.icon(32, 32, 44, name, PAPER)
+    canvas.text(108, 42, "Idle" if name == "stand" else name.title(), 28, INK)
     canvas.bar(ACTION_BAR_X, BAR_Y, ACTION_BAR_WIDTH, 10, RULE)
     if moves:
         canvas.text(ACTION_BAR_X, 95, "speed", 15, QUIET)

@@ -1,0 +1,85 @@
+"""The scenarios by name: the bundled ones, and those that other packages add."""
+
+from importlib.metadata import EntryPoint, entry_points
+
+from affect import Personality
+from app.errors import AppError
+from app.pipeline.scenario import Scenario, ScenarioSettings
+from tracking import CubeModel
+
+ENTRY_POINT_GROUP = "cubeling.scenarios"
+"""The group in which a package names its scenarios, one entry point each."""
+
+SCENARIOS: dict[str, type[Scenario]] = {}
+"""The bundled scenarios by name; `app.scenarios` registers them."""
+
+
+def scenario_names() -> tuple[str, ...]:
+    """Return the names of all scenarios: the bundled ones, then those of other packages."""
+    added = sorted(point.name for point in entry_points(group=ENTRY_POINT_GROUP))
+    return tuple(dict.fromkeys((*SCENARIOS, *added)))
+
+
+def find_scenario(name: str) -> type[Scenario]:
+    """Return the class of a scenario.
+
+    Raises AppError if there is none of that name, if two packages add one, or if the package that
+    adds it is broken.
+    """
+    points = sorted(entry_points(group=ENTRY_POINT_GROUP, name=name), key=_package)
+    packages = [*(["cubeling"] if name in SCENARIOS else []), *map(_package, points)]
+    if not packages:
+        known = ", ".join(scenario_names())
+        raise AppError(f"no scenario is called '{name}': choose one of {known}")
+    if len(packages) > 1:
+        raise AppError(
+            f"the packages {' and '.join(packages)} each have a scenario '{name}': "
+            "uninstall one, or rename its scenario"
+        )
+    return _load(points[0]) if points else SCENARIOS[name]
+
+
+def _package(point: EntryPoint) -> str:
+    return point.dist.name if point.dist is not None else "unknown"
+
+
+def _load(point: EntryPoint) -> type[Scenario]:
+    """Import the scenario of another package, which may fail in any way."""
+    broken = f"the scenario '{point.name}' of the package '{_package(point)}' cannot be used"
+    try:
+        scenario: type[Scenario] = point.load()
+    except Exception as error:
+        raise AppError(f"{broken}: {type(error).__name__}: {error}") from error
+    members = (*Scenario.__annotations__, "update")
+    missing = [member for member in members if not hasattr(scenario, member)]
+    if not isinstance(scenario, type) or missing:
+        raise AppError(
+            f"{broken}: {point.value} must be a class with {', '.join(missing or members)}"
+        )
+    if scenario.name != point.name:
+        raise AppError(f"{broken}: its class has the name '{scenario.name}'")
+    return scenario
+
+
+def scenario_cube(name: str) -> str:
+    """Return the name of the bundled cube that a scenario is made for."""
+    return find_scenario(name).cube
+
+
+def make_scenario(
+    name: str,
+    cube: CubeModel | None = None,
+    *,
+    speed_map: str = "corrected",
+    turns: float = 2.0,
+    personality: str | None = None,
+) -> Scenario:
+    """Make a scenario by name; without a cube and a personality it has its own bundled ones.
+
+    Raises AppError if the scenario cannot be used or a setting is wrong, and AffectError if the
+    personality is missing or cannot be used.
+    """
+    loaded = None if personality is None else Personality.load(personality)
+    settings = ScenarioSettings(speed_map, turns, loaded)
+    scenario = find_scenario(name)
+    return scenario(cube or CubeModel.load(scenario.cube), settings)

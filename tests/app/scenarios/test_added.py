@@ -1,0 +1,137 @@
+"""Scenarios that other packages add: the page's own example, and packages that are broken."""
+
+import importlib
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import app
+from app.pipeline.scenario import Inputs
+from app.scenarios import make_scenario, scenario_names
+from app.session import messages
+from app.session.bundled import bundled
+from app.session.encoding import decode
+from characters import CharacterCommand
+
+PAGE = Path(app.__file__).parents[1] / "docs" / "your-own-scenario.md"
+(TOML,) = re.findall(r"```toml\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+(PYTHON,) = re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
+
+COMMAND = "/character/command"
+
+
+@pytest.fixture
+def install(tmp_path_factory, monkeypatch):
+    """Install a package from the texts of its pyproject.toml and of its one module, as pip does."""
+
+    def install(pyproject, source):
+        site = tmp_path_factory.mktemp("site-packages")
+        table = tomllib.loads(pyproject)
+        project, (module,) = table["project"], table["tool"]["setuptools"]["py-modules"]
+        (site / f"{module}.py").write_text(source, "utf-8")
+        info = site / f"{project['name'].replace('-', '_')}-{project['version']}.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text(
+            f"Metadata-Version: 2.1\nName: {project['name']}\nVersion: {project['version']}\n"
+        )
+        lines = [
+            line
+            for group, points in project["entry-points"].items()
+            for line in (f"[{group}]", *(f"{name} = {value}" for name, value in points.items()))
+        ]
+        (info / "entry_points.txt").write_text("\n".join(lines))
+        monkeypatch.syspath_prepend(site)
+        monkeypatch.delitem(sys.modules, module, raising=False)
+        monkeypatch.delitem(sys.modules, "app.commands.play", raising=False)
+        monkeypatch.delitem(sys.modules, "app.commands.demo", raising=False)
+        importlib.invalidate_caches()
+
+    yield install
+    for module in [name for name in sys.modules if name.startswith("cubeling_")]:
+        del sys.modules[module]
+    for command in ("app.commands.play", "app.commands.demo"):
+        sys.modules.pop(command, None)  # their help lists what was installed
+
+
+def test_the_example_of_the_page_waves_and_cheers(install, hand):
+    install(TOML, PYTHON)
+    assert "greet" in scenario_names()
+    greet = make_scenario("greet")
+
+    def action(controls):
+        return greet.update(controls, None, Inputs()).command.activity
+
+    assert action(hand.frame()) == "idle"
+    assert action(hand.frame(resting=False, lifted=True)) == "wave"
+    assert action(hand.frame(resting=True, lifted=False)) == "wave"
+    assert [action(controls) for controls in hand.wait(3.0)][-1] == "idle"
+    assert action(hand.frame(gestures=("shaken",))) == "cheer"
+    assert action(hand.frame(gestures=())) == "cheer"
+    assert [action(controls) for controls in hand.wait(3.0)][-1] == "idle"
+
+
+def test_the_example_of_the_page_is_listed_and_plays(install, cubeling):
+    install(TOML, PYTHON)
+    code, out, _ = cubeling("play", "--help")
+    assert code == 0
+    assert "greet: lift the cube and the character waves" in " ".join(out.split())
+    session = ["-s", bundled("companion"), "--record", "greet.mcap", "--robot", "none"]
+    code, _, err = cubeling("play", "greet", *session, "--no-pictures")
+    assert (code, err) == (0, "")
+    recorded = (
+        decode(CharacterCommand, data) for _, _, data in messages(Path("greet.mcap"), COMMAND)
+    )
+    assert {command.activity for command in recorded} == {"idle", "wave"}
+
+
+BROKEN = {
+    "the module cannot be imported": (TOML, "import nowhere", "No module named 'nowhere'"),
+    "no such class": (TOML.replace(":Greet", ":Wave"), PYTHON, "has no attribute 'Wave'"),
+    "not a class": (TOML.replace(":Greet", ":ACTION_S"), PYTHON, "must be a class with name"),
+    "an attribute is missing": (
+        TOML,
+        PYTHON.replace("    roles = ()\n", ""),
+        "must be a class with roles",
+    ),
+    "another name": (
+        TOML,
+        PYTHON.replace('name = "greet"', 'name = "meet"'),
+        "its class has the name 'meet'",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BROKEN)
+def test_a_broken_package_is_one_line_that_names_it(install, cubeling, case):
+    pyproject, source, reason = BROKEN[case]
+    install(pyproject, source)
+    code, _, err = cubeling("play", "greet")
+    assert code == 2
+    assert err.startswith("cubeling: the scenario 'greet' of the package 'cubeling-greet' cannot")
+    assert reason in err
+    assert err.count("\n") == 1
+    code, out, _ = cubeling("play", "--help")
+    assert code == 0, "the other scenarios can still be played"
+    assert "cubeling-greet" in out
+
+
+@pytest.mark.parametrize("name", ["greet", "follow"])
+def test_two_scenarios_of_one_name_are_refused(install, cubeling, name):
+    pyproject = TOML.replace("greet = ", f"{name} = ")
+    install(pyproject, PYTHON)
+    install(pyproject.replace("cubeling-greet", "cubeling-other"), PYTHON)
+    code, _, err = cubeling("play", name)
+    assert code == 2
+    assert "cubeling-greet and cubeling-other each have a scenario" in err
+    assert ("cubeling and" in err) == (name == "follow")
+    assert err.count("\n") == 1
+
+
+def test_the_demo_has_no_recording_of_an_added_scenario(install, cubeling):
+    install(TOML, PYTHON)
+    code, _, err = cubeling("demo", "greet")
+    assert code == 2
+    assert "cubeling play greet --source synthetic:companion" in err
