@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from app.scenarios.roles import check_roles
 from tracking import CubeModel, write_sheet
 
 
@@ -25,6 +26,7 @@ def cube(
     Example: [cyan]cubeling cube companion --paper letter -o cube.pdf[/]
     """
     model = CubeModel.load(name)
+    check_roles(model, name)
     path = output or Path(f"{Path(name).stem}.pdf")
     write_sheet(model, path, edge_mm=edge_mm, paper=paper)
     Console().print(

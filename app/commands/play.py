@@ -10,7 +10,8 @@ from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publ
 from app.commands.progress import play_session
 from app.errors import AppError
 from app.running.network import DEFAULT_SITE
-from app.scenarios import find_scenario, scenario_cube, scenario_names
+from app.scenarios import find_scenario, scenario_names
+from app.scenarios.roles import check_cube
 from app.session import SessionOptions
 from app.ui.display import has_display
 
@@ -118,7 +119,7 @@ def play(
         output=output,
         pictures=pictures,
     )
-    scenario_cube(scenario)  # refuses a misspelt scenario before a missing display
+    check_cube(scenario, cube)  # before a display is missing
     if options.windowed and not has_display():
         raise AppError("there is no display here: write a video with --output FILE.mp4")
     with publisher(mqtt, player, site, password_file, ca) as line:
