@@ -8,6 +8,7 @@ import signal
 import sys
 import warnings
 from importlib import import_module
+from importlib.metadata import version as installed_version
 from typing import Annotated, Any, TextIO
 
 import typer
@@ -43,7 +44,21 @@ def load_command(name: str) -> Any:
     if group is None:
         group = typer.Typer(rich_markup_mode="rich", add_completion=False)
         group.command(name)(getattr(module, name))
-    return typer.main.get_command(group)
+    command = typer.main.get_command(group)
+    unwrap_help(command)
+    return command
+
+
+def unwrap_help(command: Any) -> None:
+    """Make each paragraph of a command's help one line, which the terminal wraps.
+
+    Typer does so with the first paragraph only: the others would be wrapped twice, first as in the
+    source and then by the terminal.
+    """
+    paragraphs = (command.help or "").split("\n\n")
+    command.help = "\n\n".join(" ".join(paragraph.splitlines()) for paragraph in paragraphs)
+    for each in getattr(command, "commands", {}).values():
+        unwrap_help(each)
 
 
 class LazyGroup(typer.core.TyperGroup):
@@ -64,7 +79,6 @@ app = typer.Typer(
     name="cubeling",
     cls=LazyGroup,
     no_args_is_help=True,
-    add_completion=False,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -72,10 +86,23 @@ app = typer.Typer(
 )
 
 
+def print_version(asked: bool) -> None:
+    """Print the version, and end."""
+    if asked:
+        Console(highlight=False).print(f"cubeling {installed_version('cubeling')}")
+        raise typer.Exit
+
+
 @app.callback()
 def common(
     debug: Annotated[
         bool, typer.Option("--debug", help="Show where in the program an error came from.")
+    ] = False,
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=print_version, is_eager=True, help="Print the version and exit."
+        ),
     ] = False,
 ) -> None:
     """Play with a paper cube, a character on your screen and a robot on your desk."""

@@ -24,7 +24,10 @@ from characters.model.stick_figure import stick_figure
 from characters.rendering import create_context
 
 app = typer.Typer(
-    help="Look at characters and motions.", no_args_is_help=True, rich_markup_mode="rich"
+    help="Look at characters and motions.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
 )
 
 MIN_FOLDED_JOINTS = 4

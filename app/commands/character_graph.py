@@ -26,8 +26,8 @@ def graph(
 ) -> None:
     """Show how a character's motions are composed: blend trees, layers, states.
 
-    They are described in the .toml file next to the character (docs/motion-files.md); without one,
-    the built-in motions for its clips are shown.
+    A .toml file next to the character describes them, see docs/motion-files.md. Without such a
+    file, the built-in motions for the character's clips are shown.
 
     Graphviz turns the .dot file into a picture: [cyan]dot -Tsvg human.dot -o human.svg[/]
 

@@ -16,6 +16,7 @@ from app.moods import read_history, read_robot_traces, replay_with, write_table
 app = typer.Typer(
     help="Plot and tabulate the moods of recorded sessions; print personalities.",
     no_args_is_help=True,
+    add_completion=False,
     rich_markup_mode="rich",
 )
 

@@ -27,7 +27,13 @@ def describe(scenario: str) -> str:
     return f"[bold]{escape(scenario)}[/]: {escape(text)}"
 
 
-ScenarioArgument = Annotated[str, typer.Argument(help="\n\n".join(map(describe, scenario_names())))]
+ScenarioArgument = Annotated[
+    str,
+    typer.Argument(
+        help="\n\n".join(map(describe, scenario_names())),
+        autocompletion=lambda: list(scenario_names()),
+    ),
+]
 SourceOption = Annotated[
     str,
     typer.Option(

@@ -17,7 +17,10 @@ from robot.simulators import Simulated
 from robot.simulators.memory import simulator_of
 
 app = typer.Typer(
-    help="Simulated robots and real ports.", no_args_is_help=True, rich_markup_mode="rich"
+    help="Simulated robots and real ports.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
 )
 
 app.command()(conform)

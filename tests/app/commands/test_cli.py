@@ -1,8 +1,10 @@
 """The command line: its help, and one line for every error that the user can correct."""
 
+import os
 import subprocess
 import sys
 import warnings
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -56,6 +58,42 @@ def test_the_help_imports_no_other_room_and_no_large_library():
 def test_the_list_of_commands_shows_the_first_sentence_of_their_help(name):
     first_paragraph = load_command(name).help.partition("\n\n")[0]
     assert COMMANDS[name] == " ".join(first_paragraph.split())
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_paragraph_of_a_help_is_left_to_the_terminal_to_wrap(name):
+    command = load_command(name)
+    for each in (command, *getattr(command, "commands", {}).values()):
+        assert "\n" not in each.help.replace("\n\n", "")
+
+
+def test_the_version_is_that_of_the_package(cubeling):
+    assert cubeling("--version") == (0, f"cubeling {version('cubeling')}\n", "")
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [
+        ("cubeling pl", "play"),
+        ("cubeling robot co", "conform"),
+        ("cubeling play --person", "--personality"),
+        ("cubeling play comp", "companion"),
+    ],
+)
+def test_the_shell_completes_commands_options_and_scenarios(words, completed):
+    asked = {
+        "_CUBELING_COMPLETE": "complete_bash",
+        "COMP_WORDS": words,
+        "COMP_CWORD": str(len(words.split()) - 1),
+    }
+    program = [sys.executable, "-c", "from app.entry import main; main()"]
+    run = subprocess.run(program, capture_output=True, text=True, env=os.environ | asked)
+    assert run.stdout.split() == [completed]
+
+
+def test_only_the_whole_command_installs_completion(cubeling):
+    assert "--install-completion" in cubeling("--help")[1]
+    assert "completion" not in cubeling("robot", "--help")[1]
 
 
 def test_an_unknown_command_is_one_line_that_suggests_a_known_one(cubeling):
@@ -136,8 +174,6 @@ def write_bare_glb(path):
 
 
 def test_a_silent_port_is_one_line(cubeling, bundled_session):
-    import os
-
     near, far = os.openpty()
     try:
         code, _, err = cubeling(
