@@ -4,7 +4,9 @@ from tracking.calibration import Calibration, calibrate_camera
 from tracking.cube.file import write_cube
 from tracking.cube.icons import icon_mask, icon_paths
 from tracking.cube.model import CubeModel, Face
+from tracking.cube.model import bundled as bundled_cubes
 from tracking.cube.printing.sheet import write_sheet
+from tracking.detection.recognition import CubeRecognizer
 from tracking.errors import TrackingError
 from tracking.geometry.frame import Frame
 from tracking.geometry.intrinsics import Intrinsics
@@ -20,6 +22,7 @@ __all__ = [
     "CubeControls",
     "CubeGestures",
     "CubeModel",
+    "CubeRecognizer",
     "CubeState",
     "CubeTracker",
     "CubesTracker",
@@ -31,6 +34,7 @@ __all__ = [
     "LensEstimate",
     "LiveFrames",
     "TrackingError",
+    "bundled_cubes",
     "calibrate_camera",
     "icon_mask",
     "icon_paths",

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.pipeline.attention import Attention
+from app.pipeline.other_cube import OtherCube, advice
 from app.pipeline.registry import make_scenario
 from app.pipeline.scenario import Inputs, Outcome, Scenario
 from app.pipeline.step import ReplayInputs, Step
@@ -44,6 +45,8 @@ class Playground:
         Where to draw, from `create_context`; the caller releases it. None for no pictures.
     look
         What the character's eyes follow: one of `LOOK_CHOICES`.
+    fixed
+        Whether the scenario cannot be changed, so that the player is not told how.
 
     Raises
     ------
@@ -62,19 +65,31 @@ class Playground:
         character: Character | None = None,
         context: moderngl.Context | None = None,
         look: str = "auto",
+        fixed: bool = False,
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
-        self.scenario = scenario
         self.intrinsics = intrinsics
+        self._look, self._fixed = look, fixed
+        self._stage = None if context is None else Stage(context, intrinsics.size)
+        self.play(scenario, cube, character)
+
+    def play(
+        self,
+        scenario: Scenario,
+        cube: CubeModel | None = None,
+        character: Character | None = None,
+    ) -> None:
+        """Change to a scenario, which begins anew; the parameters are those of the class."""
+        self.scenario = scenario
         self.cube = cube or CubeModel.load(scenario.cube)
         self.character = character or Character.load(scenario.character)
-        self._tracker = CubeTracker(self.cube, intrinsics)
+        self._tracker = CubeTracker(self.cube, self.intrinsics)
         self._gestures = CubeGestures(self.cube)
         self._animator = Animator(self.character, place=scenario.start)
-        self._stage = None if context is None else Stage(context, intrinsics.size)
         self._posed: PosedCharacter | None = None
-        self._attention = Attention(look, self.cube.edge)
+        self._attention = Attention(self._look, self.cube.edge)
+        self._other_cube = OtherCube(self.cube)
 
     def step(
         self, frame: Frame, inputs: Inputs | None = None, replay: ReplayInputs | None = None
@@ -99,6 +114,9 @@ class Playground:
         state = replay.state or self.track(frame)
         controls = replay.controls or self.gesture(state)
         outcome = self.attend(state, controls, self.decide(controls, inputs or Inputs()))
+        other = self._other_cube.update(frame, state)
+        if other:
+            outcome = replace(outcome, hint=advice(other, self._fixed))
         if replay.command is not None:
             outcome = replace(outcome, command=replay.command)
         posed = replay.posed or self.animate(outcome.command)

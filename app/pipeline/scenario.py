@@ -17,6 +17,9 @@ class Inputs:
     clear: bool = False
     """Whether the player asked to start over: forget the path, the mood …"""
 
+    scenario: str = ""
+    """Name of the scenario that the player asked for, "" for the present one."""
+
     actions: tuple[str, ...] = ()
     """Names of the actions that the character can perform."""
 

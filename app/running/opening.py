@@ -64,6 +64,24 @@ class OpenedSession:
     replay_inputs: Iterator[ReplayInputs] | None
     """In a replay that does not start from the camera, the recorded messages of each frame."""
 
+    def change_scenario(self, name: str) -> None:
+        """Play another bundled scenario; "" or the present one changes nothing.
+
+        A recording holds one scenario, and a replay the one that was recorded: neither changes.
+        """
+        fixed = self.recorder is not None or self.replay_inputs is not None
+        if not name or fixed or name == self.playground.scenario.name:
+            return
+        options = self.options
+        self.playground.play(
+            make_scenario(
+                name,
+                speed_map=options.speed_map,
+                turns=options.turns,
+                personality=options.personality,
+            )
+        )
+
 
 @contextmanager
 def open_session(
@@ -118,7 +136,13 @@ def open_session(
         if screen is None:
             screen, context = _open_screen(options, source, closing)
         playground = Playground(
-            scenario, intrinsics, cube=cube, character=character, context=context, look=options.look
+            scenario,
+            intrinsics,
+            cube=cube,
+            character=character,
+            context=context,
+            look=options.look,
+            fixed=options.record is not None or not options.windowed,
         )
         closing.callback(playground.close)
         is_session = options.source.endswith(".mcap")

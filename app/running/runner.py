@@ -100,6 +100,7 @@ class _FrameLoop:
         began = time.perf_counter()
         start_over = frame.timestamp in session.start_overs
         inputs = Inputs(clear=True) if start_over else self._inputs
+        session.change_scenario(inputs.scenario)
         replay = None if session.replay_inputs is None else next(session.replay_inputs, None)
         if self._encode is not None:
             frame = self._encode(frame)

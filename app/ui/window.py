@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.errors import AppError
+from app.pipeline.registry import SCENARIOS
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
 from app.ui.notice import Notice
@@ -39,7 +40,9 @@ out vec4 color;
 void main() { color = vec4(texture(picture, place).bgr, 1.0); }
 """
 
-KEY_HELP = "Esc  quit      F  full screen      C  start over      H  this panel"
+KEY_HELP = "Esc  quit      F  full screen      C  start over      H  this panel      "
+SCENARIO_KEYS = {glfw.KEY_1 + place: name for place, name in enumerate(SCENARIOS)}
+KEY_HELP += "   ".join(f"{place}  {name}" for place, name in enumerate(SCENARIOS, start=1))
 
 
 class Window:
@@ -89,6 +92,7 @@ class Window:
         self._shown_at: deque[float] = deque(maxlen=60)
         self._panel = False
         self._clear = False
+        self._scenario = ""
         self._last: NDArray[np.uint8] | None = None
         self._open = True
 
@@ -115,7 +119,8 @@ class Window:
         glfw.swap_buffers(self._window)
         glfw.poll_events()
         clear, self._clear = self._clear, False
-        return Inputs(clear=clear)
+        scenario, self._scenario = self._scenario, ""
+        return Inputs(clear=clear, scenario=scenario)
 
     def wait(self, notice: Notice | None) -> None:
         """Process events; show a notice over the last picture."""
@@ -207,6 +212,8 @@ class Window:
             self._panel = not self._panel
         elif key == glfw.KEY_C:
             self._clear = True
+        elif key in SCENARIO_KEYS:
+            self._scenario = SCENARIO_KEYS[key]
         elif key == glfw.KEY_F:
             self._toggle_full_screen()
 

@@ -42,6 +42,9 @@ def main(session: str) -> None:
             window.press(key)
         assert window.show(step, robot).clear
         assert not window.show(step, robot).clear
+        window.press(glfw.KEY_3)
+        assert window.show(step, robot).scenario == "companion"
+        assert window.show(step, robot).scenario == ""
         quits = [window.closed]
         window.press(glfw.KEY_ESCAPE)
         quits.append(window.closed)
