@@ -10,7 +10,8 @@ from app.pipeline.attention import Attention
 from app.pipeline.other_cube import OtherCube, advice
 from app.pipeline.registry import make_scenario
 from app.pipeline.scenario import Inputs, Outcome, Scenario
-from app.pipeline.step import ReplayInputs, Step
+from app.pipeline.step import Rect, ReplayInputs, Step
+from app.pipeline.subjects import character_region, cube_region
 from characters import Animator, Character, CharacterCommand, PosedCharacter
 from characters.rendering import Box, SceneCharacter, Stage, View
 from tracking import (
@@ -122,7 +123,8 @@ class Playground:
         posed = replay.posed or self.animate(outcome.command)
         self._posed = posed
         picture = self.draw(frame, state, controls, outcome, posed)
-        return Step(frame, state, controls, outcome, posed, picture)
+        subjects = self._subjects(state, controls, posed)
+        return Step(frame, state, controls, outcome, posed, picture, subjects)
 
     @property
     def lens(self) -> LensEstimate:
@@ -185,6 +187,18 @@ class Playground:
         seen = posed.visible and controls.camera_from_table is not None
         characters = (SceneCharacter(self.character, posed),) if seen else ()
         return self._stage.draw(view, characters, outcome.floor if seen else ())
+
+    def _subjects(
+        self, state: CubeState, controls: CubeControls, posed: PosedCharacter
+    ) -> tuple[Rect, ...]:
+        """Return where the cube and the character are seen."""
+        matrix, table = self.intrinsics.matrix, controls.camera_from_table
+        regions: list[Rect | None] = []
+        if state.camera_from_cube is not None:
+            regions.append(cube_region(state.camera_from_cube, self.cube.edge, matrix))
+        if posed.visible and table is not None:
+            regions.append(character_region(table, self.character, posed, matrix))
+        return tuple(region for region in regions if region is not None)
 
     def close(self) -> None:
         """Release the stage; a second call does nothing."""

@@ -9,6 +9,9 @@ from app.pipeline.scenario import EmotionTarget, Outcome
 from characters import CharacterCommand, PosedCharacter
 from tracking import CubeControls, CubeState, Frame
 
+Rect = tuple[float, float, float, float]
+"""Left, top, right and bottom of a rectangle in the picture."""
+
 
 @dataclass(frozen=True)
 class Step:
@@ -32,6 +35,9 @@ class Step:
     picture: NDArray[np.uint8] | None
     """The camera's picture with the character on the table, (height, width, 3) BGR;
     None without a graphics context."""
+
+    subjects: tuple[Rect, ...] = ()
+    """Where the cube with the hand, and the character are in the picture [px]."""
 
     @property
     def command(self) -> CharacterCommand:

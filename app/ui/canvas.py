@@ -63,6 +63,7 @@ class Canvas:
 
     def __init__(self, width: float, height: float, scale: float) -> None:
         self.scale = scale
+        self.size = (width, height)
         shape = (round(height * scale), round(width * scale))
         self.color = np.empty((*shape, 3), np.uint8)
         self.color[:] = PAPER

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from app.pipeline.step import RobotView, Step
 from app.ui.canvas import PICTURE_HEIGHT, Canvas, Card, text_width
+from app.ui.card_layout import CardLayout, Corner, card_place
 from app.ui.notice import Notice
 from app.ui.palette import ACTION_COLORS, ANGRY, INK, PAPER, QUIET, RULE, Color, between, mood_color
 from app.ui.robot_face import draw_face
 from app.ui.virtual_robot import VirtualRobot
 from tracking.cube.icons import ICON_COLOURS
 
-CARD_MARGIN = 24.0
 CARD_HEIGHT = 108.0
 BAR_Y = 70.0
 """Distance of a bar from its card's top edge."""
@@ -47,21 +47,32 @@ def overlay(
     step: Step,
     robot: RobotView,
     virtual_robot: VirtualRobot | None = None,
+    layout: CardLayout | None = None,
 ) -> NDArray[np.uint8]:
     """Return the picture (H, W, 3) with all cards blended over it, in place.
 
     Without a real robot, the virtual robot shows the mood; without both, a drawn face does.
+    `layout` remembers where the cards were in the pictures before; None for a single picture.
     """
     scale = picture.shape[0] / PICTURE_HEIGHT
     width = picture.shape[1] / scale
     _hint(step.outcome.hint, width, scale).blend_over(picture)
     if virtual_robot is None or robot.real:
-        card = _robot(robot, width, scale)
+        mood = _robot(robot, scale)
     else:
-        card = _virtual_robot(robot, virtual_robot.portrait(step.emotion), width, scale)
-    card.blend_over(picture)
+        mood = _virtual_robot(robot, virtual_robot.portrait(step.emotion), scale)
+    cards: dict[Corner, Canvas] = {"bottom right": mood}
     if step.controls.camera_from_table is not None:
-        _action(step, scale).blend_over(picture)
+        cards["bottom left"] = _action(step, scale)
+    sizes = {home: canvas.size for home, canvas in cards.items()}
+    subjects = [
+        (left / scale, top / scale, right / scale, bottom / scale)
+        for left, top, right, bottom in step.subjects
+    ]
+    corners = (layout or CardLayout()).update(sizes, subjects, width, step.frame.timestamp)
+    for home, corner in corners.items():
+        place = card_place(corner, sizes[home], width)
+        cards[home].card(*place).blend_over(picture)
     return picture
 
 
@@ -98,7 +109,7 @@ def _hint(words: str, width: float, scale: float) -> Card:
     return canvas.card((width - card_width) / 2, 22)
 
 
-def _action(step: Step, scale: float) -> Card:
+def _action(step: Step, scale: float) -> Canvas:
     name = step.outcome.icon
     moves = step.command.activity == "move" or name in ("stand", "walk", "run", "hop")
     canvas = _action_background(name, moves, scale).copy()
@@ -106,7 +117,7 @@ def _action(step: Step, scale: float) -> Card:
         _speed(canvas, step.command.speed, ACTION_COLORS.get(name, INK))
     elif name != "idle":
         _intensity(canvas, step.command.weight, ACTION_COLORS.get(name, INK))
-    return canvas.card(CARD_MARGIN, PICTURE_HEIGHT - CARD_HEIGHT - CARD_MARGIN)
+    return canvas
 
 
 @lru_cache(maxsize=16)
@@ -145,7 +156,7 @@ def _intensity(canvas: Canvas, weight: float, color: Color) -> None:
     canvas.disc(knob, BAR_Y, 8.5, color)
 
 
-def _robot(robot: RobotView, width: float, scale: float) -> Card:
+def _robot(robot: RobotView, scale: float) -> Canvas:
     words = {"none": "no robot", "ready": f"robot is {robot.label}"}.get(
         robot.link, f"robot {robot.link}"
     )
@@ -153,14 +164,10 @@ def _robot(robot: RobotView, width: float, scale: float) -> Card:
     mood = robot.mood if math.isfinite(robot.mood) else 0.0
     draw_face(canvas, 56, 54, 38, mood)
     _mood_knob(canvas, MOOD_BAR_X, BAR_Y, MOOD_BAR_WIDTH, mood)
-    return canvas.card(
-        width - ROBOT_CARD_WIDTH - CARD_MARGIN, PICTURE_HEIGHT - CARD_HEIGHT - CARD_MARGIN
-    )
+    return canvas
 
 
-def _virtual_robot(
-    robot: RobotView, portrait: NDArray[np.uint8], width: float, scale: float
-) -> Card:
+def _virtual_robot(robot: RobotView, portrait: NDArray[np.uint8], scale: float) -> Canvas:
     caption = {"none": "no robot connected", "ready": "simulated robot"}.get(
         robot.link, f"simulated robot {robot.link}"
     )
@@ -169,8 +176,7 @@ def _virtual_robot(
     canvas.picture(VIRTUAL_ROBOT_FRAME, VIRTUAL_ROBOT_FRAME, portrait, 12)
     mood = robot.mood if math.isfinite(robot.mood) else 0.0
     _mood_knob(canvas, *VIRTUAL_ROBOT_BAR, mood)
-    x, y = width - VIRTUAL_ROBOT_CARD_WIDTH, PICTURE_HEIGHT - VIRTUAL_ROBOT_CARD_HEIGHT
-    return canvas.card(x - CARD_MARGIN, y - CARD_MARGIN)
+    return canvas
 
 
 def _mood_knob(canvas: Canvas, x: float, y: float, length: float, mood: float) -> None:

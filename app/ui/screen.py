@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from app.errors import AppError
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
+from app.ui.card_layout import CardLayout
 from app.ui.notice import Notice
 from app.ui.overlay import overlay
 from app.ui.virtual_robot import VirtualRobot
@@ -84,6 +85,7 @@ class VideoFile:
         self._partial = path.with_name(path.name + ".partial")
         self._rate = rate
         self._virtual_robot = virtual_robot
+        self._layout = CardLayout()
         self._start: float | None = None
         self._last = -1
         try:
@@ -115,9 +117,8 @@ class VideoFile:
     def show(self, step: Step, robot: RobotView) -> Inputs:
         """Write the picture of a step, with the cards over it."""
         if step.picture is not None:
-            self.write(
-                overlay(step.picture, step, robot, self._virtual_robot), step.frame.timestamp
-            )
+            shown = overlay(step.picture, step, robot, self._virtual_robot, self._layout)
+            self.write(shown, step.frame.timestamp)
         return Inputs()
 
     def wait(self, notice: Notice | None) -> None:

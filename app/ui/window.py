@@ -17,6 +17,7 @@ from app.errors import AppError
 from app.pipeline.registry import SCENARIOS
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import RobotView, Step
+from app.ui.card_layout import CardLayout
 from app.ui.notice import Notice
 from app.ui.overlay import interrupted, overlay, virtual_robot_side
 from app.ui.virtual_robot import VirtualRobot
@@ -83,6 +84,7 @@ class Window:
         self.context = create_context(window=True)
         """Where a `Stage` for this window draws."""
         self._virtual_robot = VirtualRobot(self.context, virtual_robot_side(size[1]))
+        self._layout = CardLayout()
         self._start_panel()
         self._texture = self.context.texture(size, 3, alignment=1)
         self._program = self.context.program(
@@ -112,7 +114,7 @@ class Window:
         if self.closed:
             return Inputs()
         if step.picture is not None:
-            self._last = overlay(step.picture, step, robot, self._virtual_robot)
+            self._last = overlay(step.picture, step, robot, self._virtual_robot, self._layout)
             self.paint(self._last)
         self._shown_at.append(time.perf_counter())
         self._draw_panel(step, robot)

@@ -1,0 +1,39 @@
+"""What a picture is about, and where it is seen: the cube with the hand, and the character."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.pipeline.step import Rect
+from characters import Character, PosedCharacter
+
+HAND_EDGES = 0.6
+"""How far a hand reaches around the cube, in edges of it."""
+
+MIN_DEPTH_M = 0.05
+"""Points nearer to the camera than this are not projected."""
+
+Array = NDArray[np.float64]
+
+
+def cube_region(camera_from_cube: Array, edge: float, matrix: Array) -> Rect | None:
+    """Return where a cube and the hand that holds it are seen [px]; None behind the camera."""
+    reach = edge * (0.5 + HAND_EDGES)
+    return _region(camera_from_cube, np.array([[-reach] * 3, [reach] * 3]), matrix)
+
+
+def character_region(
+    camera_from_table: Array, character: Character, posed: PosedCharacter, matrix: Array
+) -> Rect | None:
+    """Return where a character is seen [px], by the box of its rest pose; None if it is not."""
+    return _region(camera_from_table @ posed.table_from_character, character.bounds, matrix)
+
+
+def _region(camera_from_box: Array, bounds: Array, matrix: Array) -> Rect | None:
+    """Return the rectangle around a box, lowest and highest corner (2, 3) [m], in the picture."""
+    corners = np.stack(np.meshgrid(*bounds.T, indexing="ij"), axis=-1).reshape(-1, 3)
+    points = corners @ camera_from_box[:3, :3].T + camera_from_box[:3, 3]
+    if points[:, 2].min() < MIN_DEPTH_M:
+        return None
+    pixels = (points @ matrix.T)[:, :2] / points[:, 2:]
+    (left, top), (right, bottom) = pixels.min(axis=0).tolist(), pixels.max(axis=0).tolist()
+    return left, top, right, bottom

@@ -1,0 +1,81 @@
+"""Cards leave corners in which they hide something, and come back."""
+
+import itertools
+
+import numpy as np
+
+from app.pipeline.playground import Playground
+from app.running.opening import intrinsics_for
+from app.session.bundled import bundled
+from app.ui.card_layout import MIN_STAY_S, CardLayout, Corner, card_place
+from tracking import open_source
+
+CARDS: dict[Corner, tuple[float, float]] = {
+    "bottom right": (196.0, 298.0),
+    "bottom left": (292.0, 108.0),
+}
+WIDTH = 1280.0
+CUBE = (1050.0, 500.0, 1250.0, 700.0)
+"""Bottom right."""
+
+
+def played(layout, subjects, start, seconds):
+    """Lay the cards out for some seconds; return the corners in the end."""
+    for number in range(round(seconds * 30)):
+        corners = layout.update(CARDS, subjects, WIDTH, start + number / 30)
+    return corners
+
+
+def test_nothing_in_the_way_leaves_the_cards_where_they_are():
+    middle = (500.0, 200.0, 700.0, 500.0)
+    corners = played(CardLayout(), [middle], 0.0, 5.0)
+    assert corners == {home: home for home in CARDS}
+
+
+def test_a_card_leaves_a_corner_with_the_cube_and_moves_again_only_if_it_must():
+    layout = CardLayout()
+    played(layout, [], 0.0, 3.0)
+    away = played(layout, [CUBE], 3.0, 2.0)["bottom right"]
+    assert away in ("top right", "top left")
+    assert played(layout, [], 5.0, 6.0)["bottom right"] == away  # there is no need to come back
+    other = (0.0, 0.0, 250.0, 320.0) if away == "top left" else (1030.0, 0.0, 1280.0, 320.0)
+    assert played(layout, [other], 11.0, 3.0)["bottom right"] != away
+
+
+def test_a_cube_that_passes_by_moves_no_card():
+    layout = CardLayout()
+    played(layout, [], 0.0, 3.0)
+    assert played(layout, [CUBE], 3.0, 0.03)["bottom right"] == "bottom right"
+
+
+def test_cards_do_not_flicker():
+    layout, random, changes, last = CardLayout(), np.random.default_rng(1), [], None
+    for number in range(30 * 60):
+        x, y = random.uniform((0, 0), (1100, 560))
+        corners = layout.update(CARDS, [(x, y, x + 180, y + 160)], WIDTH, number / 30)
+        assert len(set(corners.values())) == len(CARDS)
+        if corners["bottom right"] != last:
+            changes.append(number / 30)
+            last = corners["bottom right"]
+    assert np.diff(changes[1:]).min(initial=np.inf) >= MIN_STAY_S - 0.05
+
+
+def overlaps(corner, size, subjects):
+    x, y = card_place(corner, size, WIDTH)
+    return any(
+        left < x + size[0] and right > x and top < y + size[1] and bottom > y
+        for left, top, right, bottom in subjects
+    )
+
+
+def test_in_the_bundled_sketch_cube_and_character_are_seldom_behind_a_card():
+    layout, hidden, at_home = CardLayout(), [], []
+    with open_source(str(bundled("sketch"))) as source:
+        playground = Playground("sketch", intrinsics_for(source.intrinsics, source.size))
+        for frame in itertools.islice(source, 700):
+            subjects = playground.step(frame).subjects
+            corners = layout.update(CARDS, subjects, WIDTH, frame.timestamp)
+            hidden.append([overlaps(corners[home], CARDS[home], subjects) for home in CARDS])
+            at_home.append([overlaps(home, CARDS[home], subjects) for home in CARDS])
+    assert np.any(at_home, axis=1).mean() > 0.3  # cards that stay would hide something
+    assert np.any(hidden, axis=1).mean() < 0.1
