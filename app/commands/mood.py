@@ -48,7 +48,7 @@ def plot(
 ) -> None:
     """Plot the emotion of a session, its actions, and what the robot acknowledged and showed.
 
-    Needs matplotlib, which comes with the extra "plots" of cubeling.
+    Needs matplotlib: [cyan]pip install matplotlib[/]
 
     Example: [cyan]cubeling mood plot today.mcap --personality lively --personality shy[/]
     """
@@ -64,7 +64,7 @@ def plot(
     except ImportError as error:
         if (error.name or "").split(".")[0] != "matplotlib":
             raise
-        raise AppError('a plot needs matplotlib: pip install "cubeling[plots]"') from error
+        raise AppError("a plot needs matplotlib: pip install matplotlib") from error
     history = read_history(session, salvage=salvage)
     others = [replay_with(history, each) for each in personalities]
     fitting = fitting_label_set(history.recorded.labels)

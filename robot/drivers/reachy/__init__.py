@@ -1,1 +1,1 @@
-"""Reachy Mini, by way of its own SDK and daemon: `pip install "cubeling[reachy]"`."""
+"""Reachy Mini, by way of its own SDK and daemon: `pip install reachy-mini`."""

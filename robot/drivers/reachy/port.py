@@ -51,7 +51,7 @@ def open_reachy(url: str, _clock: Clock) -> Callable[[], Port]:
     except (ImportError, ValueError) as error:  # ValueError: a system library is missing
         reason = " ".join(str(error).split())
         raise RobotError(
-            f"Reachy Mini's SDK does not load ({reason}): pip install 'cubeling[reachy]', "
+            f"Reachy Mini's SDK does not load ({reason}): pip install reachy-mini, "
             "and see docs/reachy.md for the system's libraries that it needs"
         ) from None
     return lambda: ReachyPort(host or "localhost", int(number or DEFAULT_TCP_PORT))

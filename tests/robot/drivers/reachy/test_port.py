@@ -139,7 +139,7 @@ def test_a_wrong_address_is_refused_in_one_line(url, says):
 
 @pytest.mark.skipif(INSTALLED, reason="the SDK is installed")
 def test_without_the_sdk_the_line_says_what_to_install():
-    with pytest.raises(RobotError, match=r"pip install 'cubeling\[reachy\]'"):
+    with pytest.raises(RobotError, match="pip install reachy-mini"):
         robot.connect("reachy:localhost")
 
 
