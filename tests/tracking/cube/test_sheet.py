@@ -12,7 +12,7 @@ from tracking import CubeModel, TrackingError, icon_mask, icon_paths, write_shee
 from tracking.cube.icons import ICON_COLOURS, icons, signed_area
 from tracking.cube.marker import marker_cells, marker_loops
 from tracking.cube.model import aruco_dictionary, bundled
-from tracking.cube.printing.layout import PAPER_SIZES_MM, largest_edge_mm
+from tracking.cube.printing.layout import PAPER_SIZES_MM, SheetLayout, largest_edge_mm
 from tracking.cube.printing.unfolding import Unfolding
 
 DPI = 254
@@ -93,6 +93,28 @@ def test_the_page_says_how_to_print_it(printed):
         assert face.name in words
         assert face.role in words
     assert b"/PrintScaling /None" in path.read_bytes()
+
+
+def test_every_side_of_a_face_has_its_icon_upright(tmp_path):
+    """A child finds it however the cube lies, four fifths of the margin high."""
+    cube = CubeModel.load("companion")
+    write_sheet(cube, tmp_path / "cube.pdf")
+    document = pypdfium2.PdfDocument(tmp_path / "cube.pdf")
+    page = document[0].render(scale=DPI / 72).to_numpy().astype(int)
+    document.close()
+    coloured = np.ptp(page, axis=2) > 60
+    sheet = SheetLayout(cube, "a4")
+    half, margin = cube.edge * 500, (cube.edge - cube.marker_size) * 500
+    for face in cube.faces:
+        x, y = sheet.place(sheet.net.centre(face.name)) * PIXELS_PER_MM
+        side = round(half * PIXELS_PER_MM)
+        square = coloured[round(y) - side : round(y) + side, round(x) - side : round(x) + side]
+        icon = icon_mask(face.icon, round(0.8 * margin * PIXELS_PER_MM)) > 127
+        foot, left = 2 * side - round(0.04 * margin * PIXELS_PER_MM), side - len(icon) // 2
+        for quarter in range(4):
+            turned = np.rot90(square, quarter)
+            drawn = turned[foot - len(icon) : foot, left : left + len(icon)]
+            assert (drawn != icon).mean() < 0.1, (face.name, quarter)
 
 
 def test_captions_move_no_marker_corner_even_for_a_camera_far_away(tmp_path):

@@ -19,6 +19,18 @@ TAB_COLOUR = (246, 243, 236)
 CAPTION_COLOUR = (128, 134, 148)
 BLACK = (0, 0, 0)
 
+ICON_SHARE = 0.8
+"""Height of an icon as a share of the white margin of its face.
+
+Larger ones come so near to the marker that its edges are measured less well.
+"""
+
+FOLD_GAP_SHARE = 0.04
+"""Distance of an icon from the fold, as a share of the margin."""
+
+QUARTER_TURNS = tuple(np.array([[c, s], [-s, c]]) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1)))
+"""The four turns of a face on paper, by which every side gets its icon."""
+
 
 def write_sheet(
     cube: CubeModel, path: str | Path, *, edge_mm: float | None = None, paper: str = "a4"
@@ -79,23 +91,21 @@ def _draw_tab(page: PdfPage, sheet: SheetLayout, tab: Tab) -> None:
 
 
 def _draw_caption(page: PdfPage, sheet: SheetLayout, face: Face) -> None:
-    """Draw icon, role and name close to the fold; the gap to the marker is its quiet zone."""
+    """Draw the icon on all four sides, upright for who looks from there; role and name below.
+
+    They are close to the fold; the gap to the marker is its quiet zone.
+    """
     edge = sheet.cube.edge * 1000
     margin = (edge - sheet.cube.marker_size * 1000) / 2
-    height = 0.7 * margin
-    words = [word for word in (face.role, face.name) if word]
-    size, gap = 0.52 * height, 0.3 * height
-    widths = [page.text_width(word, size, bold=word is face.role) for word in words]
-    icon = height if face.icon else 0.0
-    x, middle = sheet.place(sheet.net.centre(face.name))
-    foot = middle + edge / 2 - 0.1 * margin
-    x -= (icon + sum(widths) + gap * (len(words) - 1 + bool(face.icon))) / 2
+    height, foot = ICON_SHARE * margin, edge / 2 - FOLD_GAP_SHARE * margin
+    middle = sheet.place(sheet.net.centre(face.name))
     if face.icon:
-        loops = [loop * height + (x, foot - height) for loop in icon_paths(face.icon)]
-        page.fill(loops, ICON_COLOURS[face.icon])
-        x += icon + gap
-    for word, width in zip(words, widths, strict=True):
-        role = word is face.role
-        colour = ICON_COLOURS.get(face.icon, CAPTION_COLOUR) if role else CAPTION_COLOUR
-        page.text(word, x, foot - 0.3 * height, size, colour, bold=role)
-        x += width + gap
+        paths = [loop * height + (-height / 2, foot - height) for loop in icon_paths(face.icon)]
+        for turn in QUARTER_TURNS:
+            page.fill([middle + loop @ turn for loop in paths], ICON_COLOURS[face.icon])
+    size, gap = 0.4 * margin, 0.25 * margin
+    baseline = middle[1] + foot - 0.35 * height
+    beside = (height / 2 if face.icon else 0.0) + gap
+    colour = ICON_COLOURS.get(face.icon, CAPTION_COLOUR)
+    page.text(face.role, middle[0] - beside, baseline, size, colour, bold=True, align=1.0)
+    page.text(face.name, middle[0] + beside, baseline, size, CAPTION_COLOUR)
