@@ -32,7 +32,7 @@ COMMANDS = {
     "character": "Look at characters and motions.",
     "robot": "Simulated robots and real ports.",
     "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
-    "doctor": "Say what this computer has, what is missing, and the command that puts it right.",
+    "doctor": "Check what this computer has, and show the commands that install what is missing.",
 }
 """The commands with the first sentence of their help. A new command is registered here."""
 

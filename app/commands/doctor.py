@@ -48,7 +48,7 @@ class Finding:
 def doctor(
     cameras: Annotated[bool, typer.Option(help="Look for a camera too (takes about 5 s).")] = True,
 ) -> None:
-    """Say what this computer has, what is missing, and the command that puts it right.
+    """Check what this computer has, and show the commands that install what is missing.
 
     Ends with exit code 2 if something is missing without which Cubeling cannot draw or track.
 

@@ -47,7 +47,7 @@ CubeOption = Annotated[str | None, typer.Option(help="A bundled cube, or your ow
 CharacterOption = Annotated[str | None, typer.Option(help="A bundled character, or a .glb file.")]
 PersonalityOption = Annotated[
     str | None,
-    typer.Option(help="A bundled personality, or the .toml file of your own."),
+    typer.Option(help="A bundled personality, or your own .toml file."),
 ]
 IntrinsicsOption = Annotated[
     Path | None,

@@ -27,8 +27,8 @@ def notice(health: Health) -> Notice | None:
     if health.name.startswith("http"):
         return Notice("No picture from the phone", "Is its camera app open, and in this network?")
     if health.frozen:
-        return Notice("The picture stands still", "Uncover the camera, or plug it in again.")
-    return Notice("Camera lost: plug it in again", "The play goes on by itself.")
+        return Notice("The picture is frozen", "Uncover the camera, or plug it in again.")
+    return Notice("Camera lost: plug it in again", "The session then continues.")
 
 
 def lens_notice(lens: LensEstimate, intrinsics: Intrinsics) -> str | None:

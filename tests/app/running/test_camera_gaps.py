@@ -133,7 +133,7 @@ def test_a_camera_that_does_not_come_back_ends_the_session_and_keeps_the_recordi
     [
         (LOST, "Camera lost"),
         (replace(LOST, state="recovering"), "Camera lost"),
-        (replace(LOST, state="frozen", frozen=True), "stands still"),
+        (replace(LOST, state="frozen", frozen=True), "is frozen"),
         (replace(LOST, name="http://phone:8080/video"), "phone"),
     ],
 )
