@@ -94,12 +94,13 @@ def joints_within_speed(probe: Probe) -> str:
         for index, joint in enumerate(joints):
             way = abs(after.joints[index] - before.joints[index])
             allowed = joint.speed * (now - then + TIMING_SLACK_S)
-            fastest = max(fastest, (way - SPEED_TOLERANCE_RAD) / allowed)
             if way > allowed + SPEED_TOLERANCE_RAD:
                 raise CheckFailed(
                     f"joint {index} ({joint.name}) at most {joint.speed} rad/s",
                     f"{way:.3f} rad in {1000 * (now - then):.0f} ms",
                 )
+            if allowed:
+                fastest = max(fastest, (way - SPEED_TOLERANCE_RAD) / allowed)
     return f"the fastest at {100 * max(fastest, 0.0):.0f} % of its own"
 
 

@@ -1,5 +1,7 @@
 """Whatever is at the other end, the suite comes to an end and says what it found."""
 
+from dataclasses import replace
+
 import pytest
 import serial
 
@@ -195,6 +197,20 @@ def test_a_port_that_is_pulled_out_ends_the_suite_in_one_line():
 def test_a_robot_that_does_not_read_its_line_is_given_up():
     with pytest.raises(RobotError, match="no robot of this protocol answers"):
         run_checks(PortChannel(DeadPort(reads=10**6, full=True), ticking()), all_checks(), 1)
+
+
+class HasAJointOfSpeedZero(Mutant):
+    def send_message(self, session, message):
+        if isinstance(message, m.Joint) and message.index == 3:
+            message = replace(message, speed=0.0)
+        super().send_message(session, message)
+
+
+def test_a_joint_of_speed_zero_is_a_failed_check():
+    report = run_checks(SimulatedChannel(HasAJointOfSpeedZero()), all_checks(), 1)
+    failed = {one.check.name: one.received for one in report.results if one.verdict == "failed"}
+    assert set(failed) == {"joint limits sensible", "joints within speed"}
+    assert "speed=0.0" in failed["joint limits sensible"]
 
 
 class Version1(Mutant):
