@@ -105,7 +105,6 @@ class Bridge(Closeable):
             """All members of the network."""
             for name, url in robots.items():
                 member = network.member("robot", name)
-                url = "sim:cubeling" if url == "sim" else url
                 robot = self._closing.enter_context(connect(url))
                 node = RobotNode(member, robot, network.session, follows, hold)
                 self.clients[f"robot {name}"] = network.join(node, f"{member.site}:robot:{name}")

@@ -71,8 +71,7 @@ class RobotLine(Closeable):
         simulated = url == "sim" or url.startswith("sim:")
         with ExitStack() as closing:
             if simulated and stepped:
-                name = "sim:cubeling" if url == "sim" else url
-                robot = SteppedRobot(name, on_bytes=on_bytes, settings=settings)
+                robot = SteppedRobot(url, on_bytes=on_bytes, settings=settings)
                 line = cls(robot, lambda: robot.now, stepped=robot)
                 closing.enter_context(robot)
             else:

@@ -34,7 +34,8 @@ def connect(
     ----------
     url
         Any pySerial URL ("/dev/ttyACM0", "COM3", "socket://localhost:5000"), or a simulated robot:
-        "sim:cubeling", "sim:pleo?seed=7". The protocol may be a prefix: "pleo:/dev/ttyACM0".
+        "sim" (which is "sim:cubeling"), "sim:pleo?seed=7". The protocol may be a prefix:
+        "pleo:/dev/ttyACM0".
     protocol
         One of `DRIVERS`; None for the one in the URL, or "cubeling".
     clock
@@ -95,12 +96,18 @@ def connect(
 
 
 def protocol_of(url: str, protocol: str | None) -> tuple[str, str]:
-    """Return the URL of the port without a protocol prefix, and the protocol."""
+    """Return the URL of the port without a protocol prefix, and the protocol.
+
+    >>> protocol_of("sim", None), protocol_of("pleo:COM3", None)
+    (('sim:cubeling', 'cubeling'), ('COM3', 'pleo'))
+    """
     named, colon, rest = url.partition(":")
     if colon and named in DRIVERS:
         if protocol not in (None, named):
             raise RobotError(f"{url!r} is to be spoken to in {protocol!r}: which of the two?")
         url, protocol = rest, named
+    if url == "sim":
+        url = f"sim:{protocol or 'cubeling'}"
     if protocol is None:
         simulated = url.removeprefix("sim:").partition("?")[0]
         known = url.startswith("sim:") and simulated in DRIVERS

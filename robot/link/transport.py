@@ -47,7 +47,7 @@ def opener(url: str, clock: Clock = time.monotonic, baud: int = timing.BAUD) -> 
     """
     if not url:
         raise RobotError("a port must be named; `cubeling robot list` shows those there are")
-    if url.partition("?")[0] == "sim":  # what `play --robot` calls one
+    if url.partition("?")[0] == "sim":
         raise RobotError(f"{url!r} names no simulated robot: say which, as in sim:cubeling")
     scheme, colon, _ = url.partition(":")
     if colon and scheme in SCHEMES:

@@ -73,6 +73,11 @@ def test_the_simulated_robot_is_behind_the_same_interface_without_a_port(soon):
         soon(lambda: dino.telemetry.label == "happy")
 
 
+def test_sim_is_the_simulated_robot_of_our_protocol():
+    with robot.connect("sim") as dino:
+        assert dino.url == "sim:cubeling"
+
+
 def test_a_client_may_leave_and_another_one_come(port, soon):
     for _ in range(3):
         with robot.connect(port.url) as dino:
@@ -200,7 +205,6 @@ def test_a_recorder_that_breaks_is_reported_and_not_taken_for_an_unplugged_robot
         ("sim:cubeling?fly=1", "'fly' is no option of a simulator"),
         ("sim:cubeling?seed=x", "the seed must be a whole number"),
         (__file__, "cannot open the port"),
-        ("sim", "'sim' names no simulated robot: say which, as in sim:cubeling"),
         ("sim?drop=0.1", "say which, as in sim:cubeling"),
         ("loop://?x", "cannot open the port loop://?x"),  # pySerial trips over its own message
         ("hwgrep://(", "cannot open the port hwgrep://("),
