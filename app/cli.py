@@ -17,6 +17,8 @@ import typer.exceptions
 import typer.main
 from rich.console import Console
 
+from app.ui.literal_text import literal_text
+
 BAD_INPUT_EXIT_CODE = 2
 """Exit code for every error that the user can correct."""
 
@@ -214,6 +216,6 @@ class WarningPrinter:
 def print_message(message: str) -> None:
     """Print a message as one line on standard error; print nothing if it is empty."""
     if message:
-        Console(stderr=True, soft_wrap=True, highlight=False, markup=False).print(
-            "cubeling: " + " ".join(message.split())
+        Console(stderr=True, soft_wrap=True, highlight=False).print(
+            literal_text("cubeling: " + " ".join(message.split()))
         )

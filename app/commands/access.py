@@ -11,6 +11,7 @@ from rich.console import Console
 from app.errors import AppError
 from app.running.network import Network
 from app.running.players import PlayerPublisher
+from app.ui.literal_text import literal_text
 from robot.network import Credentials
 
 Broker = Annotated[
@@ -58,6 +59,6 @@ def publisher(
 
 def report_problem(problem: str) -> None:
     """Print in one line why nothing is published; the connection is tried again."""
-    Console(stderr=True, soft_wrap=True, highlight=False, markup=False).print(
-        f"cubeling: {problem}; nothing is published until it is solved"
+    Console(stderr=True, soft_wrap=True, highlight=False).print(
+        literal_text(f"cubeling: {problem}; nothing is published until it is solved")
     )

@@ -15,6 +15,7 @@ from app.commands.access import Broker, Ca, PasswordFile, Site
 from app.errors import AppError
 from app.running.bridge import Bridge
 from app.running.network import DEFAULT_SITE, Network
+from app.ui.literal_text import literal_text
 from app.ui.roster import line, table
 from robot.network import Credentials, Member
 from robot.network.arbiter import HOLD_S
@@ -164,7 +165,7 @@ class EventPrinter:
 
     def _print(self, text: str) -> None:
         with self._lock:
-            self._console.print(text, markup=False, highlight=False, soft_wrap=True)
+            self._console.print(literal_text(text), highlight=False, soft_wrap=True)
 
 
 def named(given: Iterable[str], option: str, example: str) -> dict[str, str]:

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from app.commands.robot_conform import conform
 from app.commands.robot_try import try_
+from app.ui.literal_text import literal_text
 from robot import RobotError, SimulatedPort, serial_ports
 from robot.simulators import Simulated
 from robot.simulators.memory import simulator_of
@@ -108,7 +109,8 @@ def list_() -> None:
         return
     table = Table("port", "what", "probably")
     for port in ports:
-        table.add_row(port.url, port.description.replace("n/a", ""), port.guess or "")
+        description = literal_text(port.description.replace("n/a", ""))  # the device's own words
+        table.add_row(port.url, description, port.guess or "")
     console.print(table)
 
 

@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from app.pipeline.step import RobotView, Step
+from app.ui.literal_text import literal_text
 from robot import RobotError
 from tracking import Health, TrackingError
 
@@ -116,7 +117,7 @@ class Summary:
         table.add_row("played", f"{self.frames} frames, {duration:.1f} s")
         table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")
         table.add_row("character", _timeline(self.states, duration))
-        table.add_row("robot felt", _timeline(self.labels(), duration))
+        table.add_row("robot felt", literal_text(_timeline(self.labels(), duration)))
         table.add_row(
             "", Text(self._curve(), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim")
         )

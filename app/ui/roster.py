@@ -5,6 +5,7 @@ from typing import Any
 from rich.table import Table
 from rich.text import Text
 
+from app.ui.literal_text import literal_text
 from robot.network import Member, Roster, RosterEntry
 from robot.network.messages import (
     AckMessage,
@@ -28,7 +29,7 @@ def table(roster: Roster, now: float) -> Table:
         presence = entry.presence(now)
         row = _player(entry) if member.role == "player" else _robot(entry)
         status = Text(presence, PRESENCE_STYLES[presence])
-        shown.add_row(member.site, f"{member.role} {member.name}", status, *row)
+        shown.add_row(member.site, f"{member.role} {member.name}", status, *map(literal_text, row))
     if not roster.members:
         shown.add_row("", Text("no members yet", "dim"), "", "", "", "")
     return shown
