@@ -1,8 +1,31 @@
 """`cubeling robot try`: what a robot makes of each mood, in a line each."""
 
+from dataclasses import replace
+
+import pytest
+
+from robot.simulators import SIMULATORS
+from robot.simulators.cubeling.dinosaur import CATALOGUE
+from robot.simulators.cubeling.simulator import Simulator
+
+
+@pytest.fixture
+def simulate(monkeypatch):
+    """Return a function that changes the catalogue of the simulated robot of our protocol."""
+
+    def change(**fields):
+        class Changed(Simulator):
+            def __init__(self, seed: int = 0) -> None:
+                super().__init__(seed)
+                self.body.catalogue = replace(CATALOGUE, **fields)
+
+        monkeypatch.setitem(SIMULATORS, "cubeling", Changed)
+
+    return change
+
 
 def test_every_mood_is_tried_and_what_came_of_it_told(cubeling):
-    code, out, _ = cubeling("robot", "try", "sim:cubeling", "--seconds", "0.3")
+    code, out, _ = cubeling("robot", "try", "sim", "--seconds", "0.3")
     assert code == 0
     lines = out.splitlines()
     assert "moods neutral, happy, angry" in lines[0]
@@ -11,8 +34,9 @@ def test_every_mood_is_tried_and_what_came_of_it_told(cubeling):
 
 
 def test_a_robot_that_does_not_say_what_it_shows_is_not_believed_to_show_it(cubeling):
-    code, out, _ = cubeling("robot", "try", "sim:pleo", "--mood", "happy", "--seconds", "0.1")
+    code, out, _ = cubeling("robot", "try", "sim:pleo", "--mood", "happy", "--seconds", "1")
     assert code == 0
+    assert "happy        acknowledged 0." in out
     assert "it does not say what it shows" in out
 
 
@@ -33,6 +57,40 @@ def test_what_the_robot_complains_of_is_told_in_its_own_words(cubeling, tmp_path
     (tmp_path / "mine.toml").write_text('[moods.neutral]\nmotion = "[red]x"\nlength_s = 9\n')
     args = ("--settings", str(tmp_path / "mine.toml"), "--mood", "neutral", "--seconds", "1.5")
     code, out, _ = cubeling("robot", "try", "sim:pleo", *args)
-    assert code == 0
+    assert code == 1
     assert "not acknowledged" in out
     assert "it complains: Error: file not found: [red]x" in out
+
+
+def test_a_robot_without_moods_is_tried_with_all_that_it_has(cubeling, simulate):
+    simulate(moods=(), motions=("nod", "bow"), sounds=("chirp",))
+    code, out, err = cubeling("robot", "try", "sim", "--seconds", "0.2")
+    assert (code, err) == (0, "")
+    lines = out.splitlines()
+    assert "It has no moods: its emotions, motions and sounds are tried." in lines[1]
+    assert [line.split()[0] for line in lines[2:5]] == ["happy", "angry", "neutral"]
+    assert all("acknowledged 0." in line for line in lines[2:5])
+    assert [line.split()[:2] for line in lines[5:]] == [
+        ["nod", "played"],
+        ["bow", "played"],
+        ["chirp", "played"],
+    ]
+
+
+def test_a_mood_of_a_robot_without_moods_is_refused(cubeling, simulate):
+    simulate(moods=())
+    code, _, err = cubeling("robot", "try", "sim", "--mood", "happy")
+    assert code == 2
+    assert "Dino has no mood 'happy': it has none" in err
+
+
+def test_the_names_of_a_robot_are_neither_markup_nor_control_codes(cubeling, simulate):
+    simulate(name="[red]R\x1b[2J", moods=("[/]m\x1b[1m",), motions=("[x",))
+    code, out, _ = cubeling("robot", "try", "sim", "--seconds", "0.2")
+    assert code == 0
+    assert r"[red]R\x1b[2J (simulator 1)" in out
+    assert r"moods [/]m\x1b[1m; motions [x;" in out
+    assert "\x1b" not in out
+    code, _, err = cubeling("robot", "try", "sim", "--mood", "glad")
+    assert code == 2
+    assert r"[red]R\x1b[2J has no mood 'glad'" in err
