@@ -3,6 +3,7 @@
 import json
 import os
 import sys
+from dataclasses import replace
 
 import pytest
 
@@ -40,10 +41,19 @@ def test_a_good_robot_at_a_real_port_conforms(conform, tmp_path):
     assert (code, err) == (0, "")
     assert out.count("\nok ") + out.startswith("ok ") == len(FAST)
     assert f"{len(FAST)} ok" in out
-    assert "It conforms." in out
     found = json.loads((tmp_path / "found.json").read_text())
-    assert found["conforms"] is True
     assert {check["verdict"] for check in found["checks"]} == {"ok"}
+
+
+def test_a_few_checks_are_not_the_whole_verdict(conform, tmp_path):
+    code, out, _ = conform("sim", *only("frames in one"), "--json", "found.json")
+    assert code == 0
+    assert f"1 ok in 0 s. Only 1 of {len(all_checks())} checks were run." in out
+    assert "It passes these, which is not the whole verdict." in out
+    assert "It conforms" not in out
+    found = json.loads((tmp_path / "found.json").read_text())
+    assert (found["conforms"], found["checks_run"]) == (None, 1)
+    assert found["checks_in_all"] == len(all_checks())
 
 
 class Forgetful(Simulator):
@@ -72,7 +82,8 @@ def test_a_robot_that_fails_is_reported_with_what_was_expected_and_received(conf
         (("/dev/null",), "no serial port"),
         (("sim:nobody",), "there is no simulated robot"),
         (("sim:cubeling", "--only", "nonsense"), "no check is called 'nonsense'"),
-        (("sim:cubeling", "--json", "no/such/folder/file"), "No such file"),
+        (("sim:cubeling", "--json", "no/such/folder/file"), "no folder 'no/such/folder'"),
+        (("sim:cubeling", "--json", "."), "it is not a file"),
     ],
 )
 def test_invalid_options_are_reported_in_one_line(conform, arguments, told):
@@ -87,7 +98,39 @@ def test_a_pipe_does_not_block(conform, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     code, out, err = conform("sim:cubeling", "--json", str(tmp_path / "pipe"))
     assert (code, out) == (2, "")
-    assert "it is a pipe, not a file" in err
+    assert "it is not a file" in err
+
+
+@pytest.mark.parametrize("before", [None, "the old results"])
+def test_a_failure_leaves_no_empty_results(conform, tmp_path, before):
+    files = tmp_path / "found.json", tmp_path / "found.svg"
+    if before is not None:
+        for file in files:
+            file.write_text(before)
+    code, _, _ = conform("/dev/null", "--json", "found.json", "--svg", "found.svg")
+    assert code == 2
+    assert [file.read_text() if file.exists() else None for file in files] == [before] * 2
+
+
+class Wild(Simulator):
+    """Its firmware and its first joint have names that a terminal would obey."""
+
+    def __init__(self, seed: int = 0) -> None:
+        super().__init__(seed)
+        joints = self.body.catalogue.joints
+        wild = replace(joints[0], name="[red]\x1b[2Jx", low=joints[0].high)
+        self.body.catalogue = replace(
+            self.body.catalogue, firmware="[bold]\x1b[2J", joints=(wild, *joints[1:])
+        )
+
+
+def test_what_a_robot_sends_is_neither_markup_nor_control_codes(conform, monkeypatch):
+    monkeypatch.setitem(SIMULATORS, "cubeling", Wild)
+    code, out, _ = conform("sim", *only("hello answered", "joint limits sensible", "within limits"))
+    assert code == 1
+    assert "\x1b" not in out
+    assert r"Dino ([bold]\x1b[2J), version 2" in out
+    assert r"joint 0 ([red]\x1b[2Jx)" in " ".join(out.split())
 
 
 def test_the_list_names_every_check_and_what_it_requires(conform):
