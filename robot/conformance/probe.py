@@ -14,6 +14,7 @@ from robot.conformance.received import (
     describe_frames,
     format_bytes,
 )
+from robot.contract.port import READ_TIMEOUT_S
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.schema import HEADER, pack, spec_of
@@ -130,6 +131,13 @@ class Probe:
                 break
         received = list(self._queue)
         self._queue.clear()
+        return received
+
+    def receive_until(self, time: float) -> list[ReceivedFrame]:
+        """Return all frames until a time [s], exactly: a read of a port may overrun."""
+        received = self.receive(max(time - READ_TIMEOUT_S - self.now, 0))
+        while self.now < time:
+            received += self.receive(0)
         return received
 
     def wait_for(

@@ -105,6 +105,35 @@ def refused_play_ends_nothing(probe: Probe) -> None:
     expect_still_played(state, m.ITEM_MOTION, index, "a refused PLAY")
 
 
+@PLAYING.must
+def refused_express_ends_nothing(probe: Probe) -> None:
+    """A refused EXPRESS does not end the motion that is played."""
+    index = long_entries(probe, m.ITEM_MOTION)[m.ITEM_MOTION]
+    if probe.version < 2:
+        raise NotApplicableError("it speaks version 1")
+    play(probe, m.ITEM_MOTION, index)
+    refused = m.Express(probe.next_number(), 0.4, 0.4, m.NOTHING - 1)
+    probe.command(refused, m.RESULT_REFUSED)
+    state = probe.keep_alive(EFFECT_WITHIN_S)[-1]
+    expect_still_played(state, m.ITEM_MOTION, index, "a refused EXPRESS")
+
+
+@PLAYING.must
+def second_play_replaces_the_first(probe: Probe) -> None:
+    """A PLAY during another motion, or during another sound, replaces that one within 250 ms."""
+    items = [item for item, time in _known_durations(probe).items() if time >= MIN_PLAY_TIME_S]
+    tested = False
+    for item in items:
+        first = long_entries(probe, item)[item]
+        second = _idle_entry(probe, probe.beat("HELLO"), item, first)
+        if second != m.NOTHING:
+            play(probe, item, first)
+            play(probe, item, second)
+            tested = True
+    if not tested:
+        raise NotApplicableError("it has no two motions or sounds that last long enough")
+
+
 @PLAYING.should
 def motion_survives_an_emotion(probe: Probe) -> None:
     """EXPRESS does not end the motion that is played, for it comes often."""

@@ -1,7 +1,7 @@
 """Checks of section 5: how sessions begin, and what is kept from one to the next."""
 
 from robot.conformance.check import CheckGroup
-from robot.conformance.errors import CheckFailed
+from robot.conformance.errors import CheckFailed, NotApplicableError
 from robot.conformance.probe import EMOTION_WITHIN_S, REPLY_WITHIN_S, TIMING_SLACK_S, Probe
 from robot.conformance.received import ReceivedFrame, describe_frames
 from robot.protocol import messages as m
@@ -144,6 +144,17 @@ def same_host_continues(probe: Probe) -> None:
     _expect_taken(probe, welcome, number, number, "another session of the same host")
 
 
+@SESSIONS.must_of(6)
+def stop_and_refusal_in_force(probe: Probe) -> None:
+    """WELCOME names the last command taken, also if that was STOP or was refused."""
+    motions = probe.open_session().motions
+    number = probe.command(m.Stop(probe.next_number()))
+    _expect_taken(probe, probe.reopen_session(), number, number, "STOP")
+    refused = m.Play(probe.next_number(), m.ITEM_MOTION, motions)
+    number = probe.command(refused, m.RESULT_REFUSED)
+    _expect_taken(probe, probe.reopen_session(), number, number, "a refused PLAY")
+
+
 @SESSIONS.must
 def version_agreed(probe: Probe) -> str:
     """WELCOME names the highest version that both speak: never above the one offered."""
@@ -169,9 +180,31 @@ def version_1_spoken(probe: Probe) -> None:
     probe.open_session(offer=1)
     number = probe.next_number()
     probe.command(m.Express(number, 0.0, 0.0))
-    for state in probe.keep_alive(0.2):
-        later = state.flags & ~(m.FLAG_CHARGING | m.FLAG_STILL)
-        if later:
+    _expect_version_1(probe.keep_alive(0.2))
+
+
+@SESSIONS.must
+def version_of_the_last_hello(probe: Probe) -> None:
+    """HELLO in the open session changes the version, down and up; STATE follows."""
+    highest = probe.open_session().version
+    if highest < 2:
+        raise NotApplicableError("it speaks version 1")
+    before = probe.beat("HELLO")
+    for offer in (1, highest):
+        version = probe.hello(offer=offer).version
+        if version != offer:
+            expected = f"WELCOME(version={offer}) when HELLO (version {offer}) is repeated"
+            raise CheckFailed(expected, f"version={version}")
+        state = probe.beat(f"a repeated HELLO (version {offer})")
+        if offer == 1:
+            _expect_version_1([state])
+    if (state.flags ^ before.flags) & m.FLAG_RECKONED:
+        raise CheckFailed(f"flags={before.flags} in version {highest} again", f"{state.flags}")
+
+
+def _expect_version_1(states: list[m.State]) -> None:
+    for state in states:
+        if state.flags & ~(m.FLAG_CHARGING | m.FLAG_STILL):
             raise CheckFailed("STATE with flags 0 and 1 alone in version 1", f"flags={state.flags}")
 
 

@@ -96,6 +96,11 @@ class LosesPatienceALittleEarly(Timed):
     after = 0.35
 
 
+@breaks("session open until 400 ms")
+class LosesPatienceJustTooEarly(Timed):
+    after = 0.385
+
+
 class CountsAllBut(Timed):
     """A robot whose session one message does not keep open."""
 
