@@ -6,8 +6,9 @@ from typing import Protocol
 Clock = Callable[[], float]
 """Returns the time [s]."""
 
-READ_TIMEOUT_S = 0.020
-"""Longest wait in one read [s]: the delay of a beat, a retry or a close is at most this long."""
+READ_TIMEOUT_S = 0.005
+"""Longest wait in one read [s]: a beat, a retry or a close is late by this much at most, and a beat
+is due every 50 ms."""
 
 
 class Port(Protocol):

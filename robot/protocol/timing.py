@@ -53,7 +53,7 @@ BAUD = 115200
 """Bits per second on a real serial line; 8N1, no flow control."""
 
 RULE_DESCRIPTIONS: dict[str, str] = {
-    "BEAT_EVERY": "the host sends BEAT",
+    "BEAT_EVERY": "the host sends BEAT; this is the mean, a single one may be some ms late",
     "STATE_EVERY": "the robot sends STATE of its own accord if it has not for this long",
     "FAILSAFE_AFTER": "silence of the host after which a robot should act",
     "FAILSAFE_PROMISE": "silence of the host after which a robot must have acted",

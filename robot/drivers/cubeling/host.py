@@ -50,7 +50,7 @@ class HostLink(SendBuffer):
         self._state: m.State | None = None
         self._last_received: float | None = None
         self._last_asked = 0.0  # when the last HELLO or ASK was sent
-        self._beat_sent = 0.0
+        self._beat_due = 0.0
         self._version = timing.VERSION
         self._frames_sent = self._skipped = self._sessions = 0
 
@@ -111,8 +111,11 @@ class HostLink(SendBuffer):
             self._ask(now)
         if self._phase == "open":
             self._send_command(now)
-        if self._phase in ("asking", "open") and now - self._beat_sent >= timing.BEAT_EVERY:
-            self._beat_sent = now
+        if self._phase in ("asking", "open") and now >= self._beat_due:
+            # From the time when it was due, so that a late BEAT does not delay those after it.
+            self._beat_due += timing.BEAT_EVERY
+            if self._beat_due <= now:  # after a hang: no burst
+                self._beat_due = now + timing.BEAT_EVERY
             self._send(m.Beat(self.round_trip.start(now)))
 
     def state(self, now: float) -> LinkState:
@@ -182,7 +185,7 @@ class HostLink(SendBuffer):
         last = self._query
         self._sessions += 1
         self._version = welcome.version
-        self._beat_sent = now - timing.BEAT_EVERY
+        self._beat_due = now
         self.scheduler.start_session(welcome.taken)
         if self.catalogue is not None and last is not None and (
             replace(last.welcome, taken=0) == replace(welcome, taken=0)

@@ -36,6 +36,23 @@ def test_a_robot_reports_its_whole_catalogue(open_world):
         assert joint.speed == pytest.approx(true.speed, abs=5e-4)
 
 
+@pytest.mark.parametrize("step", [0.001, 0.007, 0.020])
+def test_a_beat_is_sent_every_50_ms_in_the_mean_however_rarely_the_host_runs(world, step):
+    w = world(step=step)
+    w.run_until(lambda: w.telemetry.state == "ready", within=1)
+    first = w.host.round_trip.start(w.now)
+    w.run(10)
+    assert w.host.round_trip.start(w.now) - first == pytest.approx(200, abs=2)
+
+
+def test_a_hang_of_the_host_is_not_followed_by_a_burst_of_beats(open_world):
+    w = open_world
+    w.now += 0.3
+    first = w.host.round_trip.start(w.now)
+    w.run(0.1)
+    assert w.host.round_trip.start(w.now) - first <= 4
+
+
 def test_commanded_acknowledged_and_observed_are_three_things(open_world):
     w = open_world
     w.host.express(HAPPY)
