@@ -15,6 +15,7 @@ from robot.conformance.received import (
     format_bytes,
 )
 from robot.contract.port import READ_TIMEOUT_S
+from robot.link.line_sample import LineSample
 from robot.protocol import messages as m
 from robot.protocol import timing
 from robot.protocol.schema import HEADER, pack, spec_of
@@ -50,6 +51,8 @@ class Probe:
     def __init__(self, channel: Channel, host: int) -> None:
         self.log = FrameLog()
         """Everything that the robot sent."""
+        self.sample = LineSample()
+        """The first bytes of both directions."""
         self.host = host % 0xFFFFFFFF or 1
         """Number of the current host."""
         self.session = 0x2120
@@ -106,6 +109,7 @@ class Probe:
         """Send raw bytes; frames received before are dropped, unless `keep` is set."""
         if not keep:
             self.receive(0)
+        self.sample.add("tx", data)
         self._channel.write(data)
 
     def send(self, *messages: Any, session: int | None = None, version: int | None = None) -> None:
@@ -191,7 +195,7 @@ class Probe:
         until = max(until, self.now)
         data = self._channel.read(until)
         self.max_overrun = max(self.max_overrun, self.now - until)
-        self.log.bytes += len(data)
+        self.sample.add("rx", data)
         for received in self._splitter.feed(data, self.now):
             self.log.add(received)
             self._queue.append(received)

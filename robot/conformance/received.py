@@ -102,8 +102,6 @@ class FrameLog:
     """A record of everything that the robot sent, for the checks of all of it."""
 
     def __init__(self) -> None:
-        self.bytes = 0
-        """Bytes received."""
         self.states: list[tuple[float, m.State]] = []
         """Timestamp [s] and content of the STATEs of our sessions."""
         self.violations: dict[str, list[ReceivedFrame]] = {}

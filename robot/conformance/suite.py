@@ -178,11 +178,9 @@ def _first_welcome(probe: Probe) -> m.Welcome:
             return probe.hello(FIRST_REPLY_WITHIN_S)
         except CheckFailed:
             continue
-    count = probe.log.bytes
-    received = f"{count} bytes received, but no WELCOME" if count else "nothing received"
     raise RobotError(
-        f"no robot of this protocol answers within {timing.ANSWER_WITHIN:.0f} s ({received}); "
-        "is it switched on, and is its speed 115200 baud?"
+        f"no robot of this protocol answers within {timing.ANSWER_WITHIN:.0f} s: "
+        + probe.sample.diagnosis()
     )
 
 

@@ -11,7 +11,8 @@ from robot.contract.driver import DRIVERS, Driver
 from robot.contract.port import Clock
 from robot.contract.telemetry import Telemetry
 from robot.errors import RobotError
-from robot.link.exchange import ByteHook, IoThread, PortExchange
+from robot.link.exchange import ByteHook, Direction, IoThread, PortExchange
+from robot.link.line_sample import LineSample
 from robot.link.transport import opener, spaced
 from robot.protocol import messages as m
 
@@ -69,7 +70,14 @@ def connect(
         open_port = kind.opener(url, clock)
     if kind.spacing:
         open_port = spaced(open_port, kind.spacing, clock)
-    thread = IoThread(url, open_port, driver, clock, on_bytes)
+    sample = LineSample()
+
+    def observe(direction: Direction, data: bytes, now: float) -> None:
+        sample.add(direction, data)
+        if on_bytes is not None:
+            on_bytes(direction, data, now)
+
+    thread = IoThread(url, open_port, driver, clock, observe)
     robot = Robot(url, thread, driver, clock)
     wait = kind.answer_within if answer_within is None else answer_within
     try:
@@ -91,7 +99,7 @@ def connect(
         )
     raise RobotError(
         f"nobody on {url} answers in the protocol {protocol!r} within {wait:g} s: "
-        "is the robot switched on, and is this its port?"
+        + sample.diagnosis()
     )
 
 

@@ -14,7 +14,10 @@ from robot.contract.driver import Driver
 from robot.contract.port import Clock, Opener, Port
 from robot.errors import RobotError
 
-ByteHook = Callable[[Literal["tx", "rx"], bytes, float], None]
+Direction = Literal["tx", "rx"]
+"""From the host to the robot, or back."""
+
+ByteHook = Callable[[Direction, bytes, float], None]
 """Called with a direction, the bytes and the time [s]."""
 
 REOPEN_INTERVAL_S = 0.25
@@ -125,7 +128,7 @@ class PortExchange:
         except OSError:
             self._drop_port(port)
 
-    def _report(self, direction: Literal["tx", "rx"], data: bytes, now: float) -> None:
+    def _report(self, direction: Direction, data: bytes, now: float) -> None:
         if data and self._on_bytes is not None:
             self._on_bytes(direction, data, now)
 

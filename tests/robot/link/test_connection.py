@@ -13,6 +13,7 @@ import pytest
 
 import robot
 from affect import Emotion
+from robot.conformance import SimulatedChannel, run_checks
 from robot.errors import RobotError
 from robot.protocol.timing import FAILSAFE_PROMISE
 from robot.protocol.wire import FrameReader
@@ -231,9 +232,40 @@ def test_an_unknown_protocol_is_refused():
 
 def test_a_line_that_only_echoes_is_not_taken_for_a_robot():
     running = threads()
-    with pytest.raises(RobotError, match=r"nobody on loop:// answers .* within 0\.2 s"):
+    says = r"nobody on loop:// answers .* within 0\.2 s: only an echo of what was sent"
+    with pytest.raises(RobotError, match=says):
         robot.connect("loop://", answer_within=0.2)
     assert threads() == running
+
+
+class Monotonous(Simulator):
+    """Sends the same bytes again and again, and nothing else."""
+
+    def __init__(self, data: bytes) -> None:
+        super().__init__()
+        self._data = data
+
+    def bytes_to_send(self) -> bytes:
+        return self._data
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (b"", "nothing was received: is the robot switched on"),
+        (b"\0", r"\d+ bytes were received, all of them zero"),
+        (b"ready>\r\n", r"\d+ bytes were received, but no answer is among them"),
+    ],
+    ids=["silence", "zeros", "noise"],
+)
+def test_what_is_on_a_line_without_a_robot_is_told_apart(data, says):
+    with (
+        SimulatedPort(Monotonous(data)) as port,
+        pytest.raises(RobotError, match=f"nobody on .*: {says}"),
+    ):
+        robot.connect(port.url, answer_within=0.2)
+    with pytest.raises(RobotError, match=f"no robot of this protocol .*: {says}"):
+        run_checks(SimulatedChannel(Monotonous(data)), [], 1)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are not on Windows")
