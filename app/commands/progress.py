@@ -41,7 +41,7 @@ def run_with_progress(session: OpenedSession, console: Console, title: str) -> S
     """Run a session, with a progress bar if its length is known; Ctrl-C discards a video."""
     duration = session.source.duration
     say_lens = _LensLine(session, console)
-    if duration is None or session.paced or not console.is_terminal:
+    if duration is None or session.options.windowed or not console.is_terminal:
         summary = run(session, say_lens)
     else:
         columns = (

@@ -44,6 +44,12 @@ def replay(
             "command or pose.",
         ),
     ] = "camera",
+    fast: Annotated[
+        bool,
+        typer.Option(
+            "--fast", help="With a real robot, play as fast as possible, not in real time."
+        ),
+    ] = False,
     salvage: Annotated[bool, typer.Option(help="Play what is left of a cut-off session.")] = False,
     check: Annotated[
         bool, typer.Option(help="Process the frames again and compare every recorded channel.")
@@ -56,7 +62,8 @@ def replay(
 ) -> None:
     """Play a recorded session: in a window, to a video, or only to its summary.
 
-    Without a display and without --output nothing is drawn, and the summary is printed.
+    Without a display and without --output nothing is drawn, and the summary is printed. A real
+    robot gets the session in real time.
 
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """
@@ -72,6 +79,7 @@ def replay(
         codec=codec,
         output=output,
         pictures=pictures and not check and (output is not None or has_display()),
+        fast=fast,
         salvage=salvage,
         start=start,
     )

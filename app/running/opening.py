@@ -12,7 +12,7 @@ from app.pipeline.playground import Playground
 from app.pipeline.step import ReplayInputs
 from app.running.clock import SessionClock
 from app.running.players import PlayerPublisher
-from app.running.robots import RobotLine, WireRecorder
+from app.running.robots import RobotLine, WireRecorder, is_real_robot
 from app.scenarios import make_scenario, scenario_cube
 from app.session import Recorder, SessionOptions, start_over_times
 from app.session.replay_inputs import read_replay_inputs
@@ -157,7 +157,9 @@ def open_session(
             recorder = closing.enter_context(Recorder(options.record, metadata))
             wire = WireRecorder(recorder)
         clock = SessionClock()
-        paced = options.windowed or player is not None  # other players live in real time
+        # A real robot and other players live in real time.
+        real_time = is_real_robot(options.robot) and not options.fast
+        paced = options.windowed or player is not None or real_time
         stepped = not paced and not source.live
         robot = closing.enter_context(
             RobotLine.open(options.robot, clock, wire, options.robot_settings, stepped=stepped)

@@ -22,6 +22,15 @@ Clock = Callable[[], float]
 """Returns the time of the session [s]."""
 
 
+def is_real_robot(url: str) -> bool:
+    """Return whether a URL, as `RobotLine.open` takes it, names a robot that lives in real time.
+
+    >>> [is_real_robot(url) for url in ("none", "sim", "sim:pleo", "pleo:/dev/ttyACM0")]
+    [False, False, False, True]
+    """
+    return url not in ("none", "sim") and not url.startswith("sim:")
+
+
 class RobotLine(Closeable):
     """Sends the emotions of a session to a robot, and reads its state.
 
@@ -68,9 +77,9 @@ class RobotLine(Closeable):
         """
         if url == "none":
             return cls(clock=clock)
-        simulated = url == "sim" or url.startswith("sim:")
+        real = is_real_robot(url)
         with ExitStack() as closing:
-            if simulated and stepped:
+            if stepped and not real:
                 robot = SteppedRobot(url, on_bytes=on_bytes, settings=settings)
                 line = cls(robot, lambda: robot.now, stepped=robot)
                 closing.enter_context(robot)
@@ -78,7 +87,7 @@ class RobotLine(Closeable):
                 if url == "sim":
                     url = closing.enter_context(SimulatedPort(clock=clock)).url
                 connected = connect(url, clock=clock, on_bytes=on_bytes, settings=settings)
-                line = cls(closing.enter_context(connected), clock, real=not simulated)
+                line = cls(closing.enter_context(connected), clock, real=real)
             line._closing = closing.pop_all()
         return line
 

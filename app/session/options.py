@@ -55,6 +55,9 @@ class SessionOptions:
     pictures: bool = True
     """Whether to draw."""
 
+    fast: bool = False
+    """Whether a recording is processed as fast as possible although a real robot follows it."""
+
     salvage: bool = False
     """Whether a source that breaks off counts as finished."""
 

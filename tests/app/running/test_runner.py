@@ -1,14 +1,17 @@
 """Sessions that end with an error: what was recorded until then is complete."""
 
 import itertools
+import time
 
 import pytest
 
+from app.running import runner
 from app.running.clock import SessionClock
 from app.running.opening import open_session
 from app.running.robots import WireRecorder
 from app.running.runner import run
 from app.session import SessionOptions, messages, session_info
+from robot import SimulatedPort
 from tracking import TrackingError, open_source
 
 
@@ -51,6 +54,37 @@ def run_recorded(short_session, tmp_path):
             return run(session)
 
     return run_session
+
+
+class VirtualTime:
+    """Stands in for the module `time` in the loop of a session: sleeping costs nothing."""
+
+    perf_counter = staticmethod(time.perf_counter)
+
+    def __init__(self):
+        self.now = 0.0
+
+    def monotonic(self):
+        return self.now
+
+    def sleep(self, seconds):
+        self.now += seconds
+
+
+@pytest.mark.parametrize(
+    ("robot", "fast", "seconds"), [("real", False, 2.0), ("real", True, 0.0), ("sim", False, 0.0)]
+)
+def test_a_real_robot_gets_a_recording_in_real_time(
+    cubeling, short_session, monkeypatch, robot, fast, seconds
+):
+    virtual = VirtualTime()
+    monkeypatch.setattr(runner, "time", virtual)
+    with SimulatedPort() as port:
+        url = port.url if robot == "real" else robot
+        options = ["--robot", url, *(["--fast"] if fast else [])]
+        code, _, err = cubeling("replay", short_session, *options)
+    assert (code, err) == (0, "")
+    assert virtual.now == pytest.approx(seconds, abs=0.1)
 
 
 def test_a_camera_that_fails_ends_the_session_and_keeps_the_recording(run_recorded, tmp_path):
