@@ -21,6 +21,7 @@ from app.session.bundled import bundled
 from app.ui.calibration.coach import ANIMATION_PERIOD_S, CoachView
 from app.ui.calibration.coach_lines import write_coverage
 from app.ui.calibration.session import Advice, CalibrationSession, Picture
+from app.ui.card_layout import CardLayout
 from app.ui.overlay import overlay, virtual_robot_side
 from app.ui.virtual_robot import VirtualRobot
 from characters.rendering import create_context
@@ -50,15 +51,15 @@ def draw(scenario: str, moments: dict[str, float]) -> None:
         closing.callback(playground.close)
         virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
         closing.callback(virtual_robot.close)
+        layout = CardLayout()
         for frame in source:
             step = playground.step(frame)
             if not waiting or step.picture is None:
                 break
             emotion = step.emotion
             view = RobotView("ready", emotion.emotion.valence, emotion.emotion.label)
-            picture = overlay(
-                step.picture, step, view, virtual_robot
-            )  # each time: the virtual robot is alive
+            # Each time: the virtual robot is alive, and the cards move.
+            picture = overlay(step.picture, step, view, virtual_robot, layout)
             if frame.timestamp < waiting[0][0]:
                 continue
             _, name = waiting.pop(0)
