@@ -127,7 +127,7 @@ UNPLUGGED_ROBOT = "sim:cubeling?unplug=12s/1s&seed=3"
 def draw_moods() -> None:
     """Plot a session with three personalities, and one whose robot was unplugged."""
     compared = FOLDER / "mood-personalities.svg"
-    plot(bundled("companion"), compared, ["thesis", "shy", "grumpy"])
+    plot(bundled("companion"), compared, True, ["thesis", "shy", "grumpy"])
     with tempfile.TemporaryDirectory() as folder:
         session = Path(folder) / "today.mcap"
         options = SessionOptions(
@@ -140,7 +140,7 @@ def draw_moods() -> None:
         )
         with open_session(options) as opened:
             run(opened)
-        plot(session, FOLDER / "mood-robot.svg", None)
+        plot(session, FOLDER / "mood-robot.svg", True)
 
 
 if __name__ == "__main__":

@@ -23,7 +23,7 @@ MAX_RECORDING_BYTES = 6_000_000
 def make(name: str, console: Console) -> None:
     """Record one scenario from its synthetic script, and refuse a file that is too large."""
     path = FOLDER / f"{name}.mcap"
-    fresh = path.with_suffix(".mcap.partial")
+    fresh = path.with_suffix(".partial.mcap")
     fresh.unlink(missing_ok=True)
     options = SessionOptions(
         scenario=name, source=f"synthetic:{name}", record=fresh, codec="h264", pictures=False

@@ -10,6 +10,7 @@ from rich.console import Console
 
 from app.commands.play import DEFAULT_CAMERA, CubeOption
 from app.errors import AppError
+from app.output_path import check_output
 from app.running.opening import intrinsics_for
 from app.ui.calibration.coach_lines import COVERAGE_SUFFIXES, CoachLines, write_coverage
 from app.ui.calibration.session import CalibrationSession, Coach
@@ -29,6 +30,9 @@ from tracking.cube.file import write_cube
 from tracking.cube.model import bundled, face_corners
 
 CAMERA_FILE = Path("camera.yaml")
+
+CAMERA_SUFFIXES = (".yaml", ".yml")
+"""Suffixes of a camera file."""
 
 Source = Annotated[
     str,
@@ -80,6 +84,7 @@ def calibrate(
     """
     console = Console(soft_wrap=True, highlight=False)
     if print_board is not None:
+        check_output(print_board, "board", (".pdf",), overwrite=True)
         write_board(print_board, paper)
         console.print(f"[bold]{print_board}[/] is ready. Print it, and keep it flat.")
         return
@@ -184,10 +189,10 @@ def _report_cube(
 
 def _check_paths(output: Path, save_cube: Path | None, coverage: Path | None) -> None:
     """Refuse files that cannot be written, before the user waves a cube."""
-    for path in (output, save_cube, coverage):
-        if path is not None and not path.parent.is_dir():
-            raise AppError(f"there is no folder '{path.parent}' for '{path.name}'")
-    if coverage is not None and coverage.suffix not in COVERAGE_SUFFIXES:
-        raise AppError(f"the picture '{coverage}' must be a .png or a .jpg file")
-    if save_cube is not None and save_cube.suffix != ".toml":
-        raise AppError(f"a cube is saved in a .toml file, not in '{save_cube}'")
+    for path, kind, suffixes in (
+        (output, "camera", CAMERA_SUFFIXES),
+        (save_cube, "cube", (".toml",)),
+        (coverage, "picture", COVERAGE_SUFFIXES),
+    ):
+        if path is not None:
+            check_output(path, kind, suffixes, overwrite=True)

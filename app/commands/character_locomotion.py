@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from app.commands.output import OverwriteOption, chosen_output
 from app.errors import AppError
 from characters import Character
 from characters.retargeting import (
@@ -38,6 +39,7 @@ def locomotion(
         Path | None,
         typer.Option("--output", "-o", help="The .glb to write; default: NAME-walks.glb."),
     ] = None,
+    overwrite: OverwriteOption = False,
     skeleton: Annotated[
         Path | None, typer.Option(help="The .asf of .amc files, if it is in another folder.")
     ] = None,
@@ -52,9 +54,8 @@ def locomotion(
     """
     if not walk:
         raise AppError("no walk: give at least one recording with --walk")
-    target = output or Path(f"{Path(character).stem}-walks.glb")
-    if target.suffix.lower() != ".glb":
-        raise AppError(f"a character is written as a .glb file, not as '{target}'")
+    default = f"{Path(character).stem}-walks.glb"
+    target = chosen_output(output, default, "character", (".glb",), overwrite)
     for given in (character, *walk, *(run or ()), idle or ""):
         if _same(target, Path(given.partition("#")[0])):
             raise AppError(f"'{target}' would overwrite one of its inputs: choose another -o")

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from app.commands.output import OverwriteOption, chosen_output
 from app.scenarios.roles import check_roles
 from tracking import CubeModel, write_sheet
 
@@ -17,6 +18,7 @@ def cube(
     output: Annotated[
         Path | None, typer.Option("--output", "-o", help="The PDF to write; NAME.pdf without.")
     ] = None,
+    overwrite: OverwriteOption = False,
 ) -> None:
     """Write a cube as a sheet to print, cut, fold and glue.
 
@@ -27,7 +29,7 @@ def cube(
     """
     model = CubeModel.load(name)
     check_roles(model, name)
-    path = output or Path(f"{Path(name).stem}.pdf")
+    path = chosen_output(output, f"{Path(name).stem}.pdf", "sheet", (".pdf",), overwrite)
     write_sheet(model, path, edge_mm=edge_mm, paper=paper)
     Console().print(
         f"[bold]{path}[/] is ready. Print it at 100 %, cut the solid line, fold the dashed ones."

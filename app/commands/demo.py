@@ -8,9 +8,16 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.play import DEFAULT_CAMERA, PersonalityOption, ScenarioArgument
+from app.commands.output import OverwriteOption
+from app.commands.play import (
+    DEFAULT_CAMERA,
+    OutputOption,
+    PersonalityOption,
+    ScenarioArgument,
+)
 from app.commands.progress import play_session
 from app.errors import AppError
+from app.running.opening import check_output_paths
 from app.scenarios import SCENARIOS, scenario_cube
 from app.session import SessionOptions, session_info
 from app.session.bundled import bundled
@@ -18,6 +25,7 @@ from app.ui.display import has_display
 from tracking import FrameSource, TrackingError, open_source
 
 DEFAULT_VIDEO = Path("demo.mp4")
+"""The program's own output: it is overwritten without being asked."""
 
 
 def demo(
@@ -26,10 +34,8 @@ def demo(
         bool,
         typer.Option("--recording", help="Play the bundled recording even if there is a camera."),
     ] = False,
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="Write this video even if there is a display."),
-    ] = None,
+    output: OutputOption = None,
+    overwrite: OverwriteOption = False,
     personality: PersonalityOption = None,
 ) -> None:
     """See it work: with your camera, or with the bundled recording, or as a video.
@@ -42,7 +48,12 @@ def demo(
     """
     console = Console()
     if output is not None or not has_display():
-        render(scenario, output or DEFAULT_VIDEO, console, personality)
+        options = replace(
+            _recording_options(scenario, personality),
+            output=(output or DEFAULT_VIDEO).resolve(),
+            overwrite=overwrite or output is None,
+        )
+        render(options, console)
         return
     with ExitStack() as closing:
         camera = None if recording else _open_camera(closing, console)
@@ -61,15 +72,16 @@ def demo(
         play_session(options, scenario, source=camera)
 
 
-def render(scenario: str, output: Path, console: Console, personality: str | None = None) -> None:
-    """Render the bundled recording of a scenario to a video, and print the summary."""
-    options = _recording_options(scenario, personality)
+def render(options: SessionOptions, console: Console) -> None:
+    """Render the bundled recording of a scenario to a file, and print the summary."""
+    assert options.output is not None
+    check_output_paths(options)
     console.print(
-        f"The bundled recording of [bold]{scenario}[/] "
+        f"The bundled recording of [bold]{options.scenario}[/] "
         f"({session_info(Path(options.source)).duration:.0f} s) "
-        f"is rendered to [bold]{output}[/], as there is no display or you asked for it."
+        f"is rendered to [bold]{options.output}[/], as there is no display or you asked for it."
     )
-    play_session(replace(options, output=output.resolve()), f"rendering {output.name}")
+    play_session(options, f"rendering {options.output.name}")
 
 
 def _recording_options(scenario: str, personality: str | None) -> SessionOptions:

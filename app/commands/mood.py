@@ -10,6 +10,7 @@ from rich.markup import escape
 from affect import LABEL_SETS, Personality
 from affect.labels import LabelSet
 from affect.personality_file import bundled, bundled_text
+from app.commands.output import OverwriteOption, chosen_output
 from app.errors import AppError
 from app.moods import read_history, read_robot_traces, replay_with, write_table
 
@@ -37,6 +38,7 @@ def plot(
         Path | None,
         typer.Option("--output", "-o", help="Write this .svg, .pdf or .png file."),
     ] = None,
+    overwrite: OverwriteOption = False,
     personality: Annotated[
         list[str] | None,
         typer.Option(
@@ -52,9 +54,7 @@ def plot(
 
     Example: [cyan]cubeling mood plot today.mcap --personality lively --personality shy[/]
     """
-    output = output or Path(f"{session.stem}-mood.svg")
-    if output.suffix.lower() not in PLOT_SUFFIXES:
-        raise AppError(f"moods are plotted as {', '.join(PLOT_SUFFIXES)}, not as '{output}'")
+    output = chosen_output(output, f"{session.stem}-mood.svg", "plot", PLOT_SUFFIXES, overwrite)
     personalities = [Personality.load(name) for name in personality or ()]
     if len(personalities) > MAX_PERSONALITIES:
         count = f"{len(personalities)} personalities are too many for one plot"
@@ -77,6 +77,7 @@ def plot(
 def table(
     session: Session,
     output: Annotated[Path | None, typer.Option("--output", "-o", help="The .csv file.")] = None,
+    overwrite: OverwriteOption = False,
     personality: Annotated[
         str | None, typer.Option(help="Write what this personality would have felt.")
     ] = None,
@@ -86,9 +87,7 @@ def table(
 
     Example: [cyan]cubeling mood table today.mcap -o today.csv[/]
     """
-    output = output or Path(f"{session.stem}-mood.csv")
-    if output.suffix.lower() != ".csv":  # it could be the session itself
-        raise AppError(f"moods are written as .csv, not as '{output}'")
+    output = chosen_output(output, f"{session.stem}-mood.csv", "table", (".csv",), overwrite)
     history = read_history(session, salvage=salvage)
     track = history.recorded
     if personality is not None:

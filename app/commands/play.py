@@ -7,6 +7,7 @@ import typer
 from rich.markup import escape
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
+from app.commands.output import OverwriteOption
 from app.commands.progress import play_session
 from app.errors import AppError
 from app.running.network import DEFAULT_SITE
@@ -70,7 +71,12 @@ RecordOption = Annotated[Path | None, typer.Option(help="Record the session to t
 CodecOption = Annotated[str, typer.Option(help="How to record pictures: jpeg or h264 (smaller).")]
 OutputOption = Annotated[
     Path | None,
-    typer.Option("--output", "-o", help="Write an .mp4 video instead of opening a window."),
+    typer.Option(
+        "--output",
+        "-o",
+        help="Write a video (.mp4, .mkv, .webm), an animation (.gif) or a sheet of pictures (.png) "
+        "instead of opening a window.",
+    ),
 ]
 PicturesOption = Annotated[
     bool,
@@ -89,6 +95,7 @@ def play(
     record: RecordOption = None,
     codec: CodecOption = "jpeg",
     output: OutputOption = None,
+    overwrite: OverwriteOption = False,
     speed_map: Annotated[
         str, typer.Option(help="corrected, or legacy as printed in the thesis.")
     ] = "corrected",
@@ -123,6 +130,7 @@ def play(
         record=record,
         codec=codec,
         output=output,
+        overwrite=overwrite,
         pictures=pictures,
     )
     check_cube(scenario, cube)  # before a display is missing

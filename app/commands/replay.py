@@ -8,6 +8,7 @@ import typer
 from rich.console import Console
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
+from app.commands.output import OverwriteOption
 from app.commands.play import (
     CharacterOption,
     CodecOption,
@@ -35,6 +36,7 @@ def replay(
     record: RecordOption = None,
     codec: CodecOption = "jpeg",
     output: OutputOption = None,
+    overwrite: OverwriteOption = False,
     pictures: PicturesOption = True,
     start: Annotated[
         str,
@@ -78,6 +80,7 @@ def replay(
         record=record,
         codec=codec,
         output=output,
+        overwrite=overwrite,
         pictures=pictures and not check and (output is not None or has_display()),
         fast=fast,
         salvage=salvage,

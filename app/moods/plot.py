@@ -79,7 +79,9 @@ def save_plot(
             "Title": printable(f"Moods of {history.name}"),
         }
         try:
-            figure.savefig(path, dpi=PNG_DPI if path.suffix == ".png" else 72.0, metadata=metadata)
+            figure.savefig(
+                path, dpi=PNG_DPI if path.suffix.lower() == ".png" else 72.0, metadata=metadata
+            )
         except OSError as error:
             raise AppError(f"cannot write '{path}' ({error.strerror}): check the folder") from None
 

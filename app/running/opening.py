@@ -8,6 +8,7 @@ from pathlib import Path
 import moderngl
 
 from app.errors import AppError
+from app.output_path import check_output
 from app.pipeline.playground import Playground
 from app.pipeline.step import ReplayInputs
 from app.running.clock import SessionClock
@@ -16,8 +17,9 @@ from app.running.robots import RobotLine, WireRecorder, is_real_robot
 from app.scenarios import make_scenario, scenario_cube
 from app.session import Recorder, SessionOptions, start_over_times
 from app.session.replay_inputs import read_replay_inputs
+from app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
 from app.ui.overlay import virtual_robot_side
-from app.ui.screen import NullScreen, Screen, VideoFile
+from app.ui.screen import NullScreen, Screen
 from app.ui.virtual_robot import VirtualRobot
 from characters import Character
 from characters.rendering import create_context
@@ -117,6 +119,7 @@ def open_session(
     TrackingError, CharacterError, AffectError, RobotError, AppError
         Something that `options` names is missing or cannot be used.
     """
+    check_output_paths(options)
     cube = CubeModel.load(options.cube or scenario_cube(options.scenario))
     scenario = make_scenario(
         options.scenario,
@@ -127,7 +130,6 @@ def open_session(
     )
     character = Character.load(options.character or scenario.character)
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
-    check_output_paths(options)
     with ExitStack() as closing:
         if source is None:
             source = closing.enter_context(open_source(options.source))
@@ -184,7 +186,7 @@ def open_session(
 def _open_screen(
     options: SessionOptions, source: FrameSource, closing: ExitStack
 ) -> tuple[Screen, moderngl.Context | None]:
-    """Open the window or the video file, and the context to draw in."""
+    """Open the window or the output file, and the context to draw in."""
     if not options.pictures:
         return NullScreen(), None
     if options.output is not None:
@@ -192,8 +194,8 @@ def _open_screen(
         closing.callback(context.release)
         virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
         closing.callback(virtual_robot.close)
-        video = VideoFile(options.output, source.size, source.rate, virtual_robot)
-        return closing.enter_context(video), context
+        output = OutputFile(options.output, source.size, source.rate, virtual_robot)
+        return closing.enter_context(output), context
     from app.ui.window import Window  # imports libraries that a computer without display lacks
 
     window = closing.enter_context(Window(source.size, f"Cubeling: {options.scenario}"))
@@ -218,11 +220,10 @@ def intrinsics_for(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intr
 
 
 def check_output_paths(options: SessionOptions) -> None:
-    """Refuse to record over a file that exists, or to write into a folder that does not."""
-    for path, what in ((options.record, "recording"), (options.output, "video")):
-        if path is None:
-            continue
-        if not path.parent.is_dir():
-            raise AppError(f"there is no folder '{path.parent}' for the {what} '{path.name}'")
-        if what == "recording" and path.exists():
-            raise AppError(f"the {what} '{path}' exists already: choose another name or remove it")
+    """Refuse files that cannot be written, before anything is opened."""
+    if options.output is not None:
+        check_output(options.output, "video", OUTPUT_SUFFIXES, overwrite=options.overwrite)
+        if not options.pictures:
+            raise AppError(f"without pictures there is nothing to write to '{options.output}'")
+    if options.record is not None:
+        check_output(options.record, "recording", (".mcap",), overwrite=False, remedy="remove it")

@@ -50,7 +50,10 @@ class SessionOptions:
     """How a recording stores the camera's pictures: "jpeg" or "h264"."""
 
     output: Path | None = None
-    """The .mp4 file to write; None to open a window."""
+    """The video, animation or contact sheet to write; None to open a window."""
+
+    overwrite: bool = False
+    """Whether `output` may exist; a recording is never overwritten."""
 
     pictures: bool = True
     """Whether to draw."""

@@ -17,8 +17,8 @@ from characters.rendering.portrait import PAPER_BGR, PortraitRenderer, side_by_s
 
 Image = NDArray[np.uint8]
 
-TURNTABLE_COLUMNS, CLIP_COLUMNS, FACE_COLUMNS = 8, 8, 5
-"""Pictures in a row: of a turntable, of a clip, of faces."""
+TURNTABLE_COLUMNS, CLIP_COLUMNS, FACE_COLUMNS, FRAME_COLUMNS = 8, 8, 5, 4
+"""Pictures in a row: of a turntable, of a clip, of faces, of a session."""
 
 BORDER_PX, TITLE_HEIGHT_PX, LABEL_WIDTH_PX = 16, 46, 170
 """Border of a sheet, height of its title, and width of the labels of its rows [px]."""
@@ -78,6 +78,13 @@ class ContactSheets:
             renderer.release()
 
 
+def frame_sheet(title: str, frames: Sequence[tuple[str, Image]]) -> Image:
+    """Return pictures of a session in rows, each with its caption."""
+    pictures = [_captioned(picture, caption) for caption, picture in frames]
+    rows = side_by_side(pictures, min(FRAME_COLUMNS, len(pictures)))
+    return _sheet(title, f"{len(frames)} pictures", [rows])
+
+
 def standing_pose(character: Character) -> Pose:
     """Return the first pose of a character's idle clip, or its rest pose.
 
@@ -115,7 +122,7 @@ def save(picture: Image, path: Path, max_bytes: int | None = None) -> None:
     """
     quality = 90
     while True:
-        settings = (cv2.IMWRITE_JPEG_QUALITY, quality) if path.suffix == ".jpg" else ()
+        settings = (cv2.IMWRITE_JPEG_QUALITY, quality) if path.suffix.lower() == ".jpg" else ()
         done, data = cv2.imencode(path.suffix, picture, settings)
         if not done or max_bytes is None or len(data) <= max_bytes or quality <= 40:
             break

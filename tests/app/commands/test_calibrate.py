@@ -138,8 +138,8 @@ def test_a_wrong_word_is_refused_before_a_camera_is_opened(cubeling, tmp_path):
         (("--check", "text.yaml"), "camera_matrix"),
         (("--cube", "none"), "no cube is called 'none'"),
         (("-o", "none/camera.yaml"), "there is no folder 'none'"),
-        (("--coverage", "seen.gif"), "must be a .png or a .jpg"),
-        (("--save-cube", "mine.yaml"), ".toml file, not in 'mine.yaml'"),
+        (("--coverage", "seen.gif"), "a picture is written as .png, .jpg"),
+        (("--save-cube", "mine.yaml"), "written as .toml, not as 'mine.yaml'"),
         (("--source", "synthetic:none"), "no synthetic scene"),
     ):
         code, _, err = cubeling("calibrate", *arguments)

@@ -40,9 +40,11 @@ def test_inputs_are_not_overwritten(cubeling, tmp_path):
     Character.load("human").save(mine)
     before = mine.read_bytes()
     for arguments in ([mine, "--walk", "human#Walk"], ["human", "--walk", f"{mine}#Walk"]):
-        code, _, err = cubeling("character", "locomotion", *arguments, "-o", "mine.glb")
+        code, _, err = cubeling(
+            "character", "locomotion", *arguments, "-o", "mine.glb", "--overwrite"
+        )
         assert code == 2
-        assert "overwrite" in err
+        assert "overwrite one of its inputs" in err
     assert mine.read_bytes() == before
 
 

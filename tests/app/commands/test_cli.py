@@ -139,6 +139,17 @@ def wrong_inputs():
             ["play", "follow", "-s", "camera:97", "--record", "text.mcap", *video],
             "exists",
         ),
+        "a recording that is none": (["play", "follow", "--record", "x.bag", *video], ".mcap"),
+        "writing over a file": (["demo", "-o", "text.mp4"], "--overwrite"),
+        "a folder as the video": (["demo", "-o", "."], "not a file"),
+        "no such kind of video": (["demo", "-o", "x.avi"], ".mp4, .mkv, .webm, .gif, .png"),
+        "a video without a suffix": (["replay", "SESSION", "-o", "video"], ".mp4, .mkv"),
+        "a video without pictures": (
+            ["replay", "SESSION", "-o", "x.mp4", "--no-pictures"],
+            "without pictures",
+        ),
+        "a sheet that is a picture": (["cube", "companion", "-o", "x.png"], ".pdf"),
+        "a sheet over a file": (["cube", "companion", "-o", "sheet.pdf"], "--overwrite"),
         "no such folder": (["play", "follow", "-s", "camera:97", "-o", "no/x.mp4"], "folder"),
         "no display": (["play", "follow"], "display"),
         "nonsense option": (["play", "follow", "--colour"], "--colour"),
@@ -150,6 +161,7 @@ def wrong_inputs():
 def test_bad_input_is_one_line_and_exit_code_2(cubeling, case, bundled_session):
     Path("text.mp4").write_text("not a video")
     Path("text.mcap").write_text("not a session")
+    Path("sheet.pdf").write_text("not a sheet")
     Path("equal.toml").write_text(EQUAL_IDS)
     Path("large.toml").write_text(TOO_LARGE)
     write_bare_glb(Path("bare.glb"))

@@ -328,17 +328,17 @@ def test_table_has_a_row_a_frame_and_nothing_where_nothing_is_known(
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (("plot", "{session}", "-o", "m.gif"), "moods are plotted as .svg, .pdf, .png, not as"),
-        (("plot", "{session}", "-o", "no/m.svg"), "cannot write 'no/m.svg'"),
-        (("table", "{session}", "-o", "no/m.csv"), "cannot write 'no/m.csv'"),
-        (("table", "{session}", "-o", "{session}"), "moods are written as .csv"),
+        (("plot", "{session}", "-o", "m.gif"), "a plot is written as .svg, .pdf, .png, not as"),
+        (("plot", "{session}", "-o", "no/m.svg"), "there is no folder 'no'"),
+        (("table", "{session}", "-o", "no/m.csv"), "there is no folder 'no'"),
+        (("table", "{session}", "-o", "{session}"), "a table is written as .csv"),
         (("plot", "nothing.mcap"), "cannot read the session 'nothing.mcap'"),
         (("plot", __file__), "is not a session"),
         (("plot", "{session}", "--personality", "rude"), "there is no personality 'rude'"),
         (("plot", "{session}", *["--personality", "shy"] * 5), "5 personalities are too many"),
         (("personality", "rude"), "there is no personality 'rude': choose one of thesis"),
         (("plot", "{cut}"), "was cut off"),
-        (("plot", "{cut}", "--salvage", "-o", "no/m.svg"), "cannot write"),
+        (("plot", "{cut}", "--salvage", "-o", "no/m.svg"), "there is no folder"),
     ],
 )
 def test_what_is_wrong_is_one_line_and_exit_code_2(

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import av
+import cv2
 import numpy as np
 import pytest
 from rich.console import Console
@@ -13,8 +14,9 @@ from app.pipeline.playground import Playground
 from app.pipeline.step import RobotView
 from app.running.summary import Summary
 from app.ui.canvas import Canvas, rounded_rectangle
+from app.ui.frame_sheet import MAX_FRAMES, FrameSheet
 from app.ui.overlay import overlay
-from app.ui.screen import VideoFile
+from app.ui.video_file import VIDEO_FORMATS, VideoFile
 from tracking import LensEstimate
 
 ROBOT = RobotView("ready", 0.4, "happy")
@@ -66,6 +68,64 @@ def test_a_video_keeps_the_uneven_times_of_a_live_camera(tmp_path):
     assert seen == pytest.approx(times - times[0], abs=0.003)
 
 
+@pytest.mark.parametrize(
+    ("suffix", "container", "codec"),
+    [
+        (".mp4", "mp4", "h264"),
+        (".MKV", "matroska", "h264"),
+        (".webm", "webm", "vp9"),
+        (".gif", "gif", "gif"),
+    ],
+)
+def test_a_video_is_what_its_suffix_says(tmp_path, suffix, container, codec):
+    path = tmp_path / f"out{suffix}"
+    colors = np.array([[200, 60, 40], [30, 160, 230]])
+    with VideoFile(path, (64, 48), 30) as video:
+        for index in range(31):
+            picture = np.broadcast_to(colors[index // 16], (48, 64, 3)).astype(np.uint8)
+            video.write(picture, 100 + index / 30)
+    with av.open(str(path)) as file:
+        assert container in file.format.name
+        assert file.streams.video[0].codec.name == codec
+        pictures = list(file.decode(video=0))
+    assert pictures[-1].time == pytest.approx(1.0, abs=0.011)
+    for frame, color in ((pictures[0], colors[0]), (pictures[-1], colors[1])):
+        shown = frame.to_ndarray(format="bgr24")
+        np.testing.assert_allclose(shown.mean(axis=(0, 1)), color, atol=6)
+
+
+def test_a_wide_gif_is_scaled_down_and_has_ten_pictures_a_second(tmp_path):
+    with VideoFile(tmp_path / "out.gif", (1280, 720), 30) as video:
+        for index in range(30):
+            video.write(np.full((720, 1280, 3), 8 * index, np.uint8), index / 30)
+    with av.open(str(tmp_path / "out.gif")) as file:
+        pictures = list(file.decode(video=0))
+    assert [picture.time for picture in pictures] == pytest.approx(np.arange(10) / 10)
+    assert (pictures[0].width, pictures[0].height) == (480, 270)
+
+
+@pytest.mark.parametrize("count", [1, 8, 1000])
+def test_a_sheet_of_frames_spans_a_session_of_any_length(tmp_path, count):
+    sheet = FrameSheet(tmp_path / "out.png")
+    for index in range(count):
+        sheet.write(np.full((90, 160, 3), 250 * index // count, np.uint8), index / 30)
+    sheet.close()
+    picture = cv2.imread(str(tmp_path / "out.png"))
+    assert picture is not None
+    shown = min(count, MAX_FRAMES)
+    assert picture.shape[1] == pytest.approx(400 * min(shown, 4), abs=80)
+    assert picture.shape[0] == pytest.approx(251 * -(-shown // 4), abs=80)
+    last = picture[-100, -100].mean()
+    assert last == pytest.approx(250 * (count - 1) // count, abs=15)
+    assert list(tmp_path.iterdir()) == [tmp_path / "out.png"]
+
+
+@pytest.mark.parametrize("suffix", VIDEO_FORMATS)
+def test_a_video_without_a_picture_leaves_nothing(tmp_path, suffix):
+    VideoFile(tmp_path / f"out{suffix}", (64, 48), 30).close()
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_video_that_fails_leaves_nothing(tmp_path):
     wrong = np.zeros((48, 64), np.uint8)
     with (
@@ -111,6 +171,16 @@ def test_the_demo_without_a_display_renders_a_video_and_says_what_happened(
     assert [path.name for path in Path().iterdir()] == ["demo.mp4"]
     with av.open("demo.mp4") as file:
         assert sum(1 for _ in file.decode(video=0)) == 60
+
+
+def test_the_demo_writes_over_its_own_video_and_over_others_only_when_asked(
+    cubeling, short_session, monkeypatch
+):
+    monkeypatch.setattr(demo, "bundled", lambda name: short_session)
+    for name, options in (("demo.mp4", []), ("mine.png", ["-o", "mine.png", "--overwrite"])):
+        Path(name).write_text("old")
+        assert cubeling("demo", *options)[0] == 0
+        assert Path(name).stat().st_size > 1000
 
 
 def test_a_replay_can_be_recorded_again_and_checked(cubeling, short_session):

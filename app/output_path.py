@@ -1,0 +1,48 @@
+"""Checking where a command writes, before it does the work."""
+
+import os
+from pathlib import Path
+
+from app.errors import AppError
+
+
+def check_output(
+    path: Path,
+    kind: str,
+    suffixes: tuple[str, ...],
+    *,
+    overwrite: bool,
+    remedy: str = "add --overwrite",
+) -> None:
+    """Refuse a file that cannot be written, or that exists unless `overwrite` allows it.
+
+    Parameters
+    ----------
+    path
+        The file.
+    kind
+        What it is, for the message: "video", "plot" …
+    suffixes
+        The suffixes that say what can be written, in lower case.
+    overwrite
+        Whether the file may exist.
+    remedy
+        What the user can do about a file that exists, besides choosing another name.
+
+    Raises
+    ------
+    AppError
+        The suffix is another one, the file is a folder or exists, or its folder is missing or
+        cannot be written to.
+    """
+    if path.exists() and not path.is_file():
+        raise AppError(f"'{path}' is not a file: name a file for the {kind}")
+    if path.suffix.lower() not in suffixes:
+        raise AppError(f"a {kind} is written as {', '.join(suffixes)}, not as '{path.name}'")
+    if not path.parent.is_dir():
+        raise AppError(f"there is no folder '{path.parent}' for the {kind} '{path.name}'")
+    if path.exists() and not overwrite:
+        raise AppError(f"the {kind} '{path}' exists already: choose another name or {remedy}")
+    for place in (path.parent, path):
+        if place.exists() and not os.access(place, os.W_OK):
+            raise AppError(f"'{place}' cannot be written to: choose another place for the {kind}")
