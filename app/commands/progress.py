@@ -1,6 +1,14 @@
-"""Playing a session: its progress bar, and what is printed about it."""
+"""Playing a session: its progress, and what is printed about it at the end."""
 
+import shlex
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from app.errors import AppError
@@ -9,9 +17,12 @@ from app.running.opening import OpenedSession, open_session
 from app.running.players import PlayerPublisher
 from app.running.runner import run
 from app.running.summary import Summary
-from app.session import SessionOptions
+from app.session import SessionOptions, session_info
 from app.ui.notice import lens_notice
 from tracking import FrameSource
+
+LINE_INTERVAL_S = 5.0
+"""Time between two lines of progress outside a terminal [s]."""
 
 
 def play_session(
@@ -21,28 +32,84 @@ def play_session(
     source: FrameSource | None = None,
     player: PlayerPublisher | None = None,
 ) -> None:
-    """Open a session, run it, and print its summary; see `open_session`."""
+    """Open a session, run it, and print its summary and what was kept; see `open_session`.
+
+    Raises KeyboardInterrupt if Ctrl-C ended it before its output was complete.
+    """
     console = Console()
-    with open_session(options, source=source, player=player) as session:
-        if options.intrinsics is None and session.source.intrinsics is None:
-            console.print(
-                "[dim]The camera is not calibrated: a lens of 60° is guessed. "
-                "[cyan]cubeling calibrate[/] finds the true one in 20 s.[/]"
-            )
-        summary = run_with_progress(session, console, title)
-    console.print(summary)
-    if options.output is not None:
-        size = options.output.stat().st_size / 1e6
-        console.print(f"[bold]{options.output}[/] is ready: {size:.1f} MB")
+    with ExitStack() as at_end:
+        with open_session(options, source=source, player=player) as session:
+            if options.record is not None:
+                at_end.callback(report_recording, options.record, console)
+            if options.intrinsics is None and session.source.intrinsics is None:
+                console.print(
+                    "[dim]The camera is not calibrated: a lens of 60° is guessed. "
+                    "[cyan]cubeling calibrate[/] finds the true one in 20 s.[/]"
+                )
+            summary = run_with_progress(session, console, title)
+        console.print(summary)
+        if options.output is not None:
+            report_output(options.output, summary, console)
     summary.check()
 
 
+def report_output(path: Path, summary: Summary, console: Console) -> None:
+    """Print what was written; raise KeyboardInterrupt if Ctrl-C ended the session."""
+    name, size = escape(str(path)), path.stat().st_size / 1e6
+    if summary.interrupted:
+        kept = f"Stopped: {summary.duration:.1f} s are kept in [bold]{name}[/], {size:.1f} MB"
+        console.print(kept, soft_wrap=True)
+        raise KeyboardInterrupt
+    console.print(f"[bold]{name}[/] is ready: {size:.1f} MB", soft_wrap=True)
+
+
+def report_recording(path: Path, console: Console) -> None:
+    """Print what a recording holds, and the command that plays it."""
+    name = escape(str(path))
+    if not path.exists():
+        console.print(f"Nothing was recorded to {name}: there was no picture", soft_wrap=True)
+        return
+    replay = f"cubeling replay {escape(shlex.quote(str(path)))}"
+    try:
+        info = session_info(path)
+    except AppError:  # the disk is full, for example; the session has ended with that error
+        console.print(f"[bold]{name}[/] was cut off: [cyan]{replay} --salvage[/]", soft_wrap=True)
+        return
+    size = path.stat().st_size / 1e6
+    console.print(
+        f"Recorded to [bold]{name}[/]: {info.duration:.1f} s, {info.frames} frames, {size:.1f} MB. "
+        f"Play it again: [cyan]{replay}[/]",
+        soft_wrap=True,
+    )
+
+
 def run_with_progress(session: OpenedSession, console: Console, title: str) -> Summary:
-    """Run a session, with a progress bar if its length is known; Ctrl-C discards a video."""
+    """Run a session and show its progress; raise KeyboardInterrupt if no picture came before it."""
+    lens_line = _LensLine(session, console)
+    with _progress(session, console, title) as report:
+
+        def progress(step: Step) -> None:
+            report(step)
+            lens_line(step)
+
+        summary = run(session, progress)
+    if summary.frames == 0:
+        if summary.interrupted:
+            raise KeyboardInterrupt
+        raise AppError("the source gave no picture at all")
+    return summary
+
+
+@contextmanager
+def _progress(
+    session: OpenedSession, console: Console, title: str
+) -> Iterator[Callable[[Step], None]]:
+    """Show progress: nothing next to a window, a bar in a terminal, lines anywhere else."""
     duration = session.source.duration
-    say_lens = _LensLine(session, console)
-    if duration is None or session.options.windowed or not console.is_terminal:
-        summary = run(session, say_lens)
+    if session.options.windowed:
+        yield lambda step: None
+    elif duration is None or not console.is_terminal:
+        yield ProgressLines(title, duration)
     else:
         columns = (
             TextColumn("{task.description}"),
@@ -51,22 +118,59 @@ def run_with_progress(session: OpenedSession, console: Console, title: str) -> S
         )
         with Progress(*columns, TimeRemainingColumn(), console=console, transient=True) as bar:
             task = bar.add_task(title, total=duration)
-            start: float | None = None
+            elapsed = _Elapsed()
+            yield lambda step: bar.update(task, completed=elapsed(step))
 
-            def progress(step: Step) -> None:
-                nonlocal start
-                now = step.frame.timestamp
-                start = now if start is None else start
-                bar.update(task, completed=now - start)
-                say_lens(step)
 
-            summary = run(session, progress)
-    writes_video = session.options.pictures and session.options.output is not None
-    if writes_video and summary.interrupted:
-        raise KeyboardInterrupt
-    if summary.frames == 0 and not summary.interrupted:
-        raise AppError("the source gave no picture at all")
-    return summary
+class _Elapsed:
+    """Returns how far a step is after the first one [s]."""
+
+    def __init__(self) -> None:
+        self._start: float | None = None
+
+    def __call__(self, step: Step) -> float:
+        now = step.frame.timestamp
+        self._start = now if self._start is None else self._start
+        return now - self._start
+
+
+class ProgressLines:
+    """Prints a line on standard error every few seconds: plain text, for logs and pipes.
+
+    Parameters
+    ----------
+    title
+        What is done.
+    duration
+        Length of the session [s]; None if it is not known.
+    clock
+        Returns the time [s].
+    """
+
+    def __init__(
+        self, title: str, duration: float | None, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._title, self._duration, self._clock = title, duration, clock
+        self._began = self._printed = clock()
+        self._elapsed = _Elapsed()
+        self._frames = 0
+
+    def __call__(self, step: Step) -> None:
+        """Count a frame, and print a line if it is time."""
+        self._frames += 1
+        elapsed, now = self._elapsed(step), self._clock()
+        if now - self._printed < LINE_INTERVAL_S:
+            return
+        self._printed = now
+        typer.echo(f"{self._title}: {self._state(elapsed, now - self._began)}", err=True)
+
+    def _state(self, elapsed: float, taken: float) -> str:
+        """Return how far the session is [s], and how long the rest will take."""
+        if not self._duration or elapsed <= 0.0:
+            return f"frame {self._frames}, {elapsed:.0f} s"
+        share = min(1.0, elapsed / self._duration)
+        left = taken * (1.0 - share) / share
+        return f"{100 * share:.0f} %, frame {self._frames}, about {left:.0f} s left"
 
 
 class _LensLine:

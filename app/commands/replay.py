@@ -19,7 +19,7 @@ from app.commands.play import (
     RobotOption,
     RobotSettingsOption,
 )
-from app.commands.progress import play_session
+from app.commands.progress import ProgressLines, play_session
 from app.running.network import DEFAULT_SITE
 from app.running.replay_check import check_session
 from app.session import session_info
@@ -69,7 +69,8 @@ def replay(
 
     Example: [cyan]cubeling replay recordings/companion.mcap --output companion.mp4[/]
     """
-    recorded = session_info(session, salvage=salvage).options
+    info = session_info(session, salvage=salvage)
+    recorded = info.options
     options = replace(
         recorded,
         scenario=scenario or recorded.scenario,
@@ -87,7 +88,9 @@ def replay(
         start=start,
     )
     if check:
-        result = check_session(session, options)
+        result = check_session(
+            session, options, ProgressLines(f"checking {session.name}", info.duration)
+        )
         Console().print(result)
         raise typer.Exit(0 if result.identical else 1)
     with publisher(mqtt, player, site, password_file, ca) as line:

@@ -1,6 +1,7 @@
 """Comparing a recorded session with what its frames lead to now."""
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from itertools import zip_longest
 from pathlib import Path
@@ -8,7 +9,9 @@ from pathlib import Path
 from rich.table import Table
 
 from app.pipeline.scenario import Inputs
-from app.running.opening import open_session
+from app.pipeline.step import Step
+from app.running.opening import OpenedSession, open_session
+from app.running.runner import Progress
 from app.session import SessionOptions, messages
 from app.session.encoding import MESSAGE_TYPES, encode, upgraded
 
@@ -40,7 +43,9 @@ class ComparisonResult:
         return table
 
 
-def check_session(path: Path, options: SessionOptions) -> ComparisonResult:
+def check_session(
+    path: Path, options: SessionOptions, progress: Progress | None = None
+) -> ComparisonResult:
     """Process a session's frames again and compare every message with the recorded one."""
     result = ComparisonResult()
     options = replace(options, pictures=False, robot="none", record=None, output=None)
@@ -50,9 +55,7 @@ def check_session(path: Path, options: SessionOptions) -> ComparisonResult:
     with open_session(options) as session:
         made = (
             (topic, step.frame.timestamp, encode(message))
-            for frame in session.source
-            for inputs in (Inputs(clear=frame.timestamp in session.start_overs),)
-            for step in (session.playground.step(frame, inputs),)
+            for step in _steps(session, progress)
             for topic, message in step.messages().items()
         )
         for old, new in zip_longest(recorded, made):
@@ -62,3 +65,12 @@ def check_session(path: Path, options: SessionOptions) -> ComparisonResult:
                 result.different[topic] += 1
                 result.first.setdefault(topic, time)
     return result
+
+
+def _steps(session: OpenedSession, progress: Progress | None) -> Iterator[Step]:
+    """Process every frame, whatever its time."""
+    for frame in session.source:
+        step = session.playground.step(frame, Inputs(clear=frame.timestamp in session.start_overs))
+        if progress is not None:
+            progress(step)
+        yield step

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from app.errors import AppError
 from app.pipeline.scenario import Inputs
 from app.pipeline.step import Step
+from app.running.interrupts import uninterrupted
 from app.running.opening import OpenedSession
 from app.running.summary import Summary
 from app.session import START_OVER_EVENT, Recorder, frame_encoder
@@ -65,7 +66,8 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
                 gaps.end(frame)
                 if session.wire is not None:
                     session.wire.align(frame.timestamp - session.robot.clock())
-                step = loop.step(frame)
+                with uninterrupted():
+                    step = loop.step(frame)
                 if progress is not None:
                     progress(step)
             if session.screen.closed:

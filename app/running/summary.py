@@ -83,6 +83,11 @@ class Summary:
         self.moods.append((now - self.first, robot.mood, robot.label))
         self.frame_seconds.append(seconds)
 
+    @property
+    def duration(self) -> float:
+        """From the first to the last frame [s]."""
+        return self.last - self.first
+
     def check(self) -> None:
         """Raise what went wrong with robot or camera; call it once everything is closed."""
         if self.lost is not None:
@@ -112,7 +117,7 @@ class Summary:
         table = Table.grid(padding=(0, 2))
         table.add_column(style="bold", no_wrap=True)
         table.add_column()
-        duration = self.last - self.first
+        duration = self.duration
         median, slow = self.frame_ms()
         table.add_row("played", f"{self.frames} frames, {duration:.1f} s")
         table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")

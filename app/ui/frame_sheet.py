@@ -35,7 +35,7 @@ class FrameSheet:
         height = round(picture.shape[0] * FRAME_WIDTH_PX / picture.shape[1])
         small = cv2.resize(picture, (FRAME_WIDTH_PX, height), interpolation=cv2.INTER_AREA)
         self._kept.append((timestamp, np.asarray(small, np.uint8)))
-        if len(self._kept) > 2 * MAX_FRAMES:
+        if len(self._kept) > 4 * MAX_FRAMES:
             self._kept = self._kept[::2]
             self._interval = (self._kept[-1][0] - self._kept[0][0]) / (len(self._kept) - 1)
 

@@ -156,14 +156,16 @@ class VideoFile:
             self.discard()
             return
         try:
-            self._file.mux(self._stream.encode())
-            self._file.close()
-            os.replace(self._partial, self._path)
-        except BaseException as error:  # also a second Ctrl-C
+            self._finish()
+        except OSError as error:
+            raise self._failed(error) from error
+        finally:
             self.discard()
-            if isinstance(error, OSError):
-                raise self._failed(error) from error
-            raise
+
+    def _finish(self) -> None:
+        self._file.mux(self._stream.encode())
+        self._file.close()
+        os.replace(self._partial, self._path)
         self._open = False
 
     def discard(self) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from app import cli
+from app.commands import progress
 from app.pipeline.playground import Playground
 from app.pipeline.step import Step
 from app.running.opening import intrinsics_for
@@ -95,6 +96,7 @@ def cubeling(monkeypatch, capsys, tmp_path):
     """Run a command in an empty folder; return its exit code, output and error output."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.setattr(progress, "LINE_INTERVAL_S", math.inf)  # on a slow computer too
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
 
