@@ -1,6 +1,7 @@
-"""The clock of a session."""
+"""The clock of a session, and the pace of recorded frames."""
 
 import time
+from collections.abc import Callable
 
 
 class SessionClock:
@@ -32,3 +33,47 @@ class SessionClock:
         if self._driven is not None:
             self._offset = self._driven - time.monotonic()
             self._driven = None
+
+
+class Pace:
+    """Plays recorded frames at the speed at which they were recorded.
+
+    Parameters
+    ----------
+    max_late
+        A frame that is due for longer than this [s] is left out, as by a live camera; infinite to
+        take every frame, in slow motion on a slow computer.
+    clock, sleep
+        The time [s], and what waits for a number of seconds.
+    """
+
+    MAX_LEFT_OUT_S = 0.5
+    """Frames are left out for this time at most before one is shown, however slow the computer."""
+
+    def __init__(
+        self,
+        max_late: float,
+        clock: Callable[[], float] = time.monotonic,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self.max_late = max_late
+        """From when on a frame is left out [s]."""
+        self._clock, self._sleep = clock, sleep
+        self._offset: float | None = None
+        self._leaving_out_since: float | None = None
+
+    def wait(self, timestamp: float) -> bool:
+        """Wait until a frame is due; return False if it is too late and is to be left out."""
+        now = self._clock()
+        if self._offset is None:
+            self._offset = now - timestamp
+        late = now - (self._offset + timestamp)
+        if late < 0.0:
+            self._sleep(-late)
+        if late > self.max_late:
+            if self._leaving_out_since is None:
+                self._leaving_out_since = now
+            if now - self._leaving_out_since < self.MAX_LEFT_OUT_S:
+                return False
+        self._leaving_out_since = None
+        return True

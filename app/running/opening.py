@@ -1,5 +1,6 @@
 """Opening a session: its source, screen, recorder and robot, from the user's options."""
 
+import math
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
@@ -11,7 +12,7 @@ from app.errors import AppError
 from app.output_path import check_output
 from app.pipeline.playground import Playground
 from app.pipeline.step import ReplayInputs
-from app.running.clock import SessionClock
+from app.running.clock import Pace, SessionClock
 from app.running.players import PlayerPublisher
 from app.running.robots import RobotLine, WireRecorder, is_real_robot
 from app.scenarios import make_scenario, scenario_cube
@@ -57,8 +58,8 @@ class OpenedSession:
     player: PlayerPublisher | None
     """Publishes the character's actions and emotions, or None."""
 
-    paced: bool
-    """Whether a recording is played at the speed at which it was recorded."""
+    pace: Pace | None
+    """Plays a recording at the speed at which it was recorded; None for every frame at once."""
 
     start_overs: frozenset[float]
     """In a replay, timestamps of the frames in which the player started over [s]."""
@@ -159,10 +160,8 @@ def open_session(
             recorder = closing.enter_context(Recorder(options.record, metadata))
             wire = WireRecorder(recorder)
         clock = SessionClock()
-        # A real robot and other players live in real time.
-        real_time = is_real_robot(options.robot) and not options.fast
-        paced = options.windowed or player is not None or real_time
-        stepped = not paced and not source.live
+        pace = _pace(options, source, player)
+        stepped = pace is None and not source.live
         robot = closing.enter_context(
             RobotLine.open(options.robot, clock, wire, options.robot_settings, stepped=stepped)
         )
@@ -177,7 +176,7 @@ def open_session(
             recorder,
             wire,
             player,
-            paced,
+            pace,
             start_overs,
             replay_inputs,
         )
@@ -200,6 +199,18 @@ def _open_screen(
 
     window = closing.enter_context(Window(source.size, f"Cubeling: {options.scenario}"))
     return window, window.context
+
+
+def _pace(
+    options: SessionOptions, source: FrameSource, player: PlayerPublisher | None
+) -> Pace | None:
+    """Return the pace of recorded frames: that of who watches them or lives with them."""
+    # A real robot and other players live in real time.
+    real_time = player is not None or (is_real_robot(options.robot) and not options.fast)
+    if source.live or not (options.windowed or real_time):
+        return None
+    watched = options.windowed and options.record is None  # what is written has every frame
+    return Pace(1.0 / source.rate if watched else math.inf)
 
 
 def intrinsics_for(intrinsics: Intrinsics | None, size: tuple[int, int]) -> Intrinsics:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 
 from app.errors import AppError
 from app.pipeline.scenario import Inputs
-from app.pipeline.step import Step
+from app.pipeline.step import ReplayInputs, Step
 from app.running.interrupts import uninterrupted
 from app.running.opening import OpenedSession
 from app.running.summary import Summary
@@ -64,6 +64,9 @@ def run(session: OpenedSession, progress: Progress | None = None) -> Summary:
                 session.screen.wait(message)
             else:
                 gaps.end(frame)
+                if session.pace is not None and not session.pace.wait(frame.timestamp):
+                    loop.leave_out(frame)
+                    continue
                 if session.wire is not None:
                     session.wire.align(frame.timestamp - session.robot.clock())
                 with uninterrupted():
@@ -91,6 +94,8 @@ class _FrameLoop:
     def __init__(self, session: OpenedSession, summary: Summary) -> None:
         self._session, self._summary = session, summary
         self._inputs = Inputs()
+        self._start_over = False
+        self._replay: ReplayInputs | None = None
         self._encode = None
         if session.recorder is not None:
             source = session.source
@@ -100,13 +105,13 @@ class _FrameLoop:
         """Process one frame."""
         session = self._session
         began = time.perf_counter()
-        start_over = frame.timestamp in session.start_overs
-        inputs = Inputs(clear=True) if start_over else self._inputs
+        self._read_recorded(frame)
+        inputs = Inputs(clear=True) if self._start_over else self._inputs
+        self._start_over = False
         session.change_scenario(inputs.scenario)
-        replay = None if session.replay_inputs is None else next(session.replay_inputs, None)
         if self._encode is not None:
             frame = self._encode(frame)
-        step = session.playground.step(frame, inputs, replay)
+        step = session.playground.step(frame, inputs, self._replay)
         # Read the view first: after `feel`, the link's thread holds the robot's lock for a moment.
         view = session.robot.view()
         session.robot.feel(step.emotion)
@@ -117,6 +122,18 @@ class _FrameLoop:
         self._inputs = session.screen.show(step, view)
         self._summary.add(step, view, seconds)
         return step
+
+    def leave_out(self, frame: Frame) -> None:
+        """Process nothing; a player who started over in this frame does so in the next one."""
+        self._read_recorded(frame)
+        self._summary.left_out += 1
+
+    def _read_recorded(self, frame: Frame) -> None:
+        """Read what a replay knows of a frame."""
+        session = self._session
+        self._start_over |= frame.timestamp in session.start_overs
+        if session.replay_inputs is not None:
+            self._replay = next(session.replay_inputs, None)
 
     def _record(self, step: Step, inputs: Inputs) -> None:
         recorder = self._session.recorder
@@ -162,7 +179,7 @@ class _CameraGaps:
 
 
 def _frames(session: OpenedSession, summary: Summary) -> Iterator[Frame | Health]:
-    """Yield the frames: live ones as they come, recorded ones at their pace or at once.
+    """Yield the frames; those of a recording without a pace drive the session's clock.
 
     While a live source has no frame, yield its health instead, again and again.
     """
@@ -171,14 +188,9 @@ def _frames(session: OpenedSession, summary: Summary) -> Iterator[Frame | Health
         if isinstance(frame, Health):
             yield frame
             continue
-        if start is None:
-            start, began = frame.timestamp, time.monotonic()
-        since = frame.timestamp - start
-        if not session.source.live:
-            if session.paced:
-                time.sleep(max(0.0, began + since - time.monotonic()))
-            else:
-                session.clock.drive(since)
+        start = frame.timestamp if start is None else start
+        if not session.source.live and session.pace is None:
+            session.clock.drive(frame.timestamp - start)
         yield frame
 
 

@@ -37,6 +37,9 @@ class Summary:
     frames: int = 0
     """Frames so far."""
 
+    left_out: int = 0
+    """Frames of a recording that were left out, as the computer was too slow for all."""
+
     tracked_frames: int = 0
     """Frames in which the cube was found."""
 
@@ -120,6 +123,8 @@ class Summary:
         duration = self.duration
         median, slow = self.frame_ms()
         table.add_row("played", f"{self.frames} frames, {duration:.1f} s")
+        if self.left_out:
+            table.add_row("left out", f"{self.left_out} frames, to keep up with the recording")
         table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")
         table.add_row("character", _timeline(self.states, duration))
         table.add_row("robot felt", literal_text(_timeline(self.labels(), duration)))

@@ -1,0 +1,141 @@
+"""Recordings on a slow computer: frames are left out in a window, and never elsewhere."""
+
+import itertools
+import math
+from dataclasses import replace
+
+import pytest
+
+from app.pipeline.playground import Playground
+from app.running.clock import Pace
+from app.running.opening import open_session
+from app.running.runner import run
+from app.session import SessionOptions
+from app.ui.screen import NullScreen
+
+STARTED_OVER = frozenset({round(1 / 30, 9), round(4 / 30, 9)})
+
+
+class VirtualTime:
+    """A clock that only `sleep` and work advance."""
+
+    def __init__(self):
+        self.now = 1000.0
+
+    def __call__(self):
+        return self.now
+
+    def sleep(self, seconds):
+        self.now += seconds
+
+
+def play(pace, time, work, count=300, decoding=0.001):
+    """Play ten seconds at 30 frames/s; return (timestamp, when it was shown) of the shown ones."""
+    shown, start = [], time()
+    for index in range(count):
+        time.sleep(decoding)
+        if pace.wait(5.0 + index / 30):
+            shown.append((index / 30, time() - start))
+            time.sleep(work)
+    return shown
+
+
+@pytest.mark.parametrize("work", [0.001, 0.03, 0.1, 0.4, 1.5])
+def test_a_recording_keeps_its_pace_however_long_a_picture_takes(work):
+    time = VirtualTime()
+    shown = play(Pace(1 / 30, time, time.sleep), time, work)
+    for stamp, at in shown:
+        assert stamp - 1e-6 <= at < stamp + 2 / 30 + 0.02
+    assert len(shown) == pytest.approx(min(300, 10 / work), rel=0.35)
+
+
+def test_a_fast_computer_leaves_no_frame_out():
+    time = VirtualTime()
+    assert len(play(Pace(1 / 30, time, time.sleep), time, work=0.02)) == 300
+
+
+def test_a_computer_too_slow_to_decode_still_shows_pictures():
+    time = VirtualTime()
+    shown = play(Pace(1 / 30, time, time.sleep), time, work=0.2, decoding=0.06)
+    gaps = [b - a for (_, a), (_, b) in itertools.pairwise(shown)]
+    assert max(gaps) < 0.2 + 0.5 + 3 * 0.06
+
+
+def test_without_a_limit_every_frame_is_taken():
+    time = VirtualTime()
+    assert len(play(Pace(math.inf, time, time.sleep), time, work=0.1)) == 300
+
+
+class SlowScreen(NullScreen):
+    """Takes a tenth of a second for a picture, on virtual time; keeps what it showed."""
+
+    def __init__(self, time):
+        self.steps = []
+        self._time = time
+
+    def show(self, step, robot):
+        self.steps.append(step)
+        self._time.sleep(0.1)
+        return super().show(step, robot)
+
+
+@pytest.fixture
+def play_slowly(short_session):
+    """Run a session on a slow computer; return its steps and its summary."""
+
+    def run_session(**settings):
+        time = VirtualTime()
+        screen = SlowScreen(time)
+        options = SessionOptions(
+            scenario="companion", source=str(short_session), robot="none", **settings
+        )
+        with open_session(options, screen=screen) as session:
+            pace = session.pace and Pace(session.pace.max_late, time, time.sleep)
+            summary = run(replace(session, pace=pace, start_overs=STARTED_OVER))
+        return screen.steps, summary
+
+    return run_session
+
+
+def test_in_a_window_late_frames_are_left_out(play_slowly):
+    steps, summary = play_slowly()
+    assert summary.frames == len(steps) == pytest.approx(20, abs=3)
+    assert summary.left_out == 60 - len(steps)
+    assert steps[-1].frame.timestamp > 1.8
+
+
+@pytest.mark.parametrize(
+    "settings", [{"pictures": False}, {"output": "x.mp4"}, {"record": "x.mcap"}]
+)
+def test_what_is_written_or_checked_has_every_frame(play_slowly, settings, tmp_path):
+    settings = {
+        key: tmp_path / value if isinstance(value, str) else value
+        for key, value in settings.items()
+    }
+    steps, summary = play_slowly(**settings)
+    assert (len(steps), summary.left_out) == (60, 0)
+
+
+def test_a_replay_from_a_later_stage_keeps_messages_and_frames_together(play_slowly, short_session):
+    steps, _ = play_slowly(start="controls")
+    assert len(steps) < 30
+    for step in steps:
+        assert step.controls.timestamp == step.frame.timestamp
+
+
+def test_a_player_who_started_over_in_a_frame_that_is_left_out_does_so_in_the_next(
+    play_slowly, monkeypatch
+):
+    cleared = []
+    decide = Playground.decide
+
+    def note(self, controls, inputs):
+        if inputs.clear:
+            cleared.append(controls.timestamp)
+        return decide(self, controls, inputs)
+
+    monkeypatch.setattr(Playground, "decide", note)
+    steps, _ = play_slowly()
+    shown = [step.frame.timestamp for step in steps]
+    expected = [min(stamp for stamp in shown if stamp >= at) for at in sorted(STARTED_OVER)]
+    assert cleared == expected
