@@ -16,7 +16,7 @@ from app.errors import AppError
 from app.running.summary import camera_line
 from app.scenarios import SCENARIOS
 from app.session.bundled import bundled
-from app.ui.display import has_display
+from app.ui.display import has_display, is_software_renderer
 from characters import Character, CharacterError
 from characters.rendering import create_context
 from robot import serial_ports
@@ -115,7 +115,14 @@ def _drawing() -> Finding:
     renderer = str(context.info["GL_RENDERER"])
     version = context.version_code
     context.release()
-    return Finding("drawing", "good", f"OpenGL {version / 100:.1f}, {renderer}")
+    found = f"OpenGL {version / 100:.1f}, {renderer}"
+    if not is_software_renderer(renderer):
+        return Finding("drawing", "good", found)
+    slow = (
+        "software rendering: the processor draws, not a graphics card; expect 10 to 25 pictures "
+        "a second.\nA window leaves frames out to keep up; a video has all of them and takes longer"
+    )
+    return Finding("drawing", "missing", f"{found}\n{slow}")
 
 
 def _mesa() -> str:
@@ -160,10 +167,16 @@ def _display() -> Finding:
 
 
 def _ports() -> Finding:
+    """Look for ports that a robot may be on; one that is not on USB says nothing of itself."""
     ports = serial_ports()
-    if not ports:
+    usb = [port.url for port in ports if port.vendor is not None]
+    others = [port.url for port in ports if port.vendor is None]
+    if usb:
+        return Finding("robot", "good", ", ".join(usb))
+    if not others:
         return Finding("robot", "missing", "no serial port", "cubeling robot simulate")
-    return Finding("robot", "good", ", ".join(port.url for port in ports))
+    none = f"none on USB. {', '.join(others)}: built in, probably with nothing connected"
+    return Finding("robot", "missing", none, f"cubeling robot try {others[0]}")
 
 
 def _broker() -> Finding:

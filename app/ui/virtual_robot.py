@@ -11,6 +11,7 @@ from affect import Emotion
 from affect.hysteresis import HAPPY_ABOVE
 from affect.words import closest_word
 from app.pipeline.scenario import EmotionTarget
+from app.ui.display import is_software_renderer
 from app.ui.palette import PAPER, between, mood_color
 from characters import ActionIntent, Animator, Character, CharacterCommand, RootDelta
 from characters.rendering import SceneCharacter, Stage, View
@@ -21,9 +22,6 @@ MAX_SIDE_PX = 216
 SOFTWARE_INTERVAL_S = 0.08
 """Shortest time between two pictures with software rendering [s]: every third frame of a usual
 camera, since the character on the table needs the processor too."""
-
-SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swiftshader", "software")
-"""Parts of the names of drivers that render on the processor."""
 
 YAW_RAD = -0.52
 """Heading of the robot, to the right of the camera, so that its tail is visible [rad]."""
@@ -50,10 +48,8 @@ class VirtualRobot:
         self._animator = Animator(self._character, place=RootDelta(yaw=YAW_RAD))
         self._stage = Stage(context, (self._drawn_side, self._drawn_side))
         self._matrix, self._camera_from_table = _camera(self._drawn_side)
-        renderer = str(context.info["GL_RENDERER"]).lower()
-        self._interval = (
-            SOFTWARE_INTERVAL_S if any(name in renderer for name in SOFTWARE_RENDERERS) else 0.0
-        )
+        software = is_software_renderer(str(context.info["GL_RENDERER"]))
+        self._interval = SOFTWARE_INTERVAL_S if software else 0.0
         self._last: tuple[float, NDArray[np.uint8]] | None = None
         self._eye = np.asarray(np.linalg.inv(self._camera_from_table)[:3, 3], np.float64)
 

@@ -12,9 +12,10 @@ from affect import Emotion
 from app.pipeline.scenario import EmotionTarget
 from app.pipeline.step import RobotView
 from app.running.robots import RobotLine
+from app.ui.display import is_software_renderer
 from app.ui.overlay import overlay, virtual_robot_side
 from app.ui.palette import ANGRY, HAPPY
-from app.ui.virtual_robot import SOFTWARE_RENDERERS, VirtualRobot, backdrop, intensity
+from app.ui.virtual_robot import VirtualRobot, backdrop, intensity
 from characters import CharacterError
 from characters.rendering import create_context
 
@@ -81,7 +82,7 @@ def test_where_the_processor_draws_every_third_frame_brings_a_new_picture(contex
     pictures = [virtual_robot.portrait(felt(0.9, "happy", 5.0 + n / 30)) for n in range(8)]
     virtual_robot.close()
     fresh = sum(a is not b for a, b in itertools.pairwise(pictures))
-    software = any(name in context.info["GL_RENDERER"].lower() for name in SOFTWARE_RENDERERS)
+    software = is_software_renderer(context.info["GL_RENDERER"])
     assert fresh == (2 if software else 7)
 
 
