@@ -27,6 +27,7 @@ COMMANDS = {
     "demo": "See it work: with your camera, or with the bundled recording, or as a video.",
     "play": "Play with the cube in front of a camera.",
     "replay": "Play a recorded session: in a window, to a video, or only to its summary.",
+    "export": "Write recorded sessions as tables, in CSV and JSON Lines, with a data dictionary.",
     "bridge": "Let robots follow players on other computers, over an MQTT broker; "
     "see docs/many.md.",
     "cube": "Write a cube as a sheet to print, cut, fold and glue.",

@@ -1,0 +1,78 @@
+"""`cubeling export`."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+
+from app.errors import AppError
+from app.exporting import ExportedSession
+from app.exporting import export as write_tables
+from app.exporting.writing import EXPORT_FILES
+
+Labels = Annotated[
+    list[str] | None,
+    typer.Option(help="A label: one for all sessions, or repeated, one for each in their order."),
+]
+
+
+def export(
+    sessions: Annotated[list[Path], typer.Argument(help="Sessions recorded with --record.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the tables.")],
+    participant: Labels = None,
+    condition: Labels = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Write over the tables of an earlier export.")
+    ] = False,
+    salvage: Annotated[
+        bool, typer.Option(help="Export the intact part of sessions that were cut off.")
+    ] = False,
+) -> None:
+    """Write recorded sessions as tables, in CSV and JSON Lines, with a data dictionary.
+
+    Every row names its session, its participant and its condition. See docs/exporting.md.
+
+    Example: [cyan]cubeling export p1.mcap p2.mcap -o study --participant P1 --participant P2[/]
+    """
+    check_folder(output, overwrite=overwrite)
+    people = labels(participant, len(sessions), "--participant")
+    conditions = labels(condition, len(sessions), "--condition")
+    names = [path.stem for path in sessions]
+    for name in names:
+        if names.count(name) > 1:
+            raise AppError(f"two sessions are called '{name}': rename one, so that rows tell them")
+    exported = [
+        ExportedSession.read(path, *of, salvage=salvage)
+        for path, *of in zip(sessions, people, conditions, strict=True)
+    ]
+    output.mkdir(exist_ok=True)
+    rows = write_tables(exported, output)
+    console = Console(highlight=False, soft_wrap=True)
+    for name, count in rows.items():
+        console.print(f"{name:10} {count:8} rows")
+    console.print(f"[bold]{escape(str(output))}[/] holds the tables as .csv and .jsonl")
+
+
+def check_folder(folder: Path, *, overwrite: bool) -> None:
+    """Refuse a folder that cannot be written to, or that holds an earlier export."""
+    if folder.exists() and not folder.is_dir():
+        raise AppError(f"'{folder}' is a file: name a folder with --output")
+    if not folder.parent.is_dir():
+        raise AppError(f"there is no folder '{folder.parent}' for the folder '{folder.name}'")
+    if not os.access(folder if folder.exists() else folder.parent, os.W_OK):
+        raise AppError(f"'{folder}' cannot be written to: choose another place")
+    if not overwrite and any((folder / name).exists() for name in EXPORT_FILES):
+        raise AppError(f"'{folder}' holds tables already: choose another one or add --overwrite")
+
+
+def labels(given: Sequence[str] | None, count: int, option: str) -> list[str]:
+    """Return one label for each session; "" where none is given."""
+    if not given:
+        return [""] * count
+    if len(given) not in (1, count):
+        raise AppError(f"{option} is given {len(given)} times for {count} sessions: once, or each")
+    return list(given) * (count if len(given) == 1 else 1)

@@ -1,0 +1,129 @@
+"""Sessions as tables: all of their messages, with labels and a dictionary of every column."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.exporting import CONTEXT, TABLES, dictionary_rows
+from app.exporting.writing import DICTIONARY_FILE
+from app.session import messages
+from app.session.encoding import MESSAGE_TYPES, decode
+from characters.skeleton import rotations
+from tools.export_dictionary import DOCUMENT, updated
+
+
+def table(name):
+    with Path("out", f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def lines(name):
+    text = Path("out", f"{name}.jsonl").read_text("utf-8")
+    return [json.loads(line) for line in text.splitlines()]
+
+
+@pytest.fixture
+def exported(cubeling, short_session):
+    """Export a session twice, under two names and with labels, and return its messages."""
+    Path("second.mcap").write_bytes(short_session.read_bytes())
+    labels = ["--participant", "P1", "--participant", "P 2", "--condition", "happy, loud"]
+    code, out, err = cubeling("export", short_session, "second.mcap", "-o", "out", *labels)
+    assert (code, err) == (0, "")
+    assert "emotions        120 rows" in out
+    return {
+        topic: [decode(kind, data) for _, _, data in messages(short_session, topic)]
+        for topic, kind in MESSAGE_TYPES.items()
+    }
+
+
+def test_every_message_is_a_row_with_its_session_and_labels(exported):
+    for name, topic in (("poses", "/cube/state"), ("emotions", "/robot/emotion")):
+        for rows in (table(name), lines(name)):
+            assert len(rows) == 2 * len(exported[topic]) == 120
+            assert [float(row["time_s"]) for row in rows[:60]] == [
+                message.timestamp for message in exported[topic]
+            ]
+            for row, session, participant in (
+                (rows[0], "short", "P1"),
+                (rows[60], "second", "P 2"),
+            ):
+                assert row["session"] == session
+                assert row["participant"] == participant
+                assert row["condition"] == "happy, loud"
+    assert [row["frames"] for row in table("sessions")] == ["60", "60"]
+    assert [row["event"] for row in table("events")] == []
+
+
+def test_the_values_are_those_of_the_messages(exported):
+    for row, state in zip(table("poses")[:60], exported["/cube/state"], strict=True):
+        place = [float(row[f"{axis}_m"]) for axis in "xyz"]
+        turn = [float(row[f"q{axis}"]) for axis in "xyzw"]
+        np.testing.assert_array_equal(place, state.camera_from_cube[:3, 3])
+        matrix = rotations.to_matrix(np.array(turn))
+        np.testing.assert_allclose(matrix, state.camera_from_cube[:3, :3], atol=1e-6)
+    first = exported["/cube/controls"][0]
+    assert first.position is None
+    assert table("controls")[0]["x_m"] == ""
+    assert lines("controls")[0]["x_m"] is None
+    assert table("controls")[-1]["resting"] == "1"
+    assert lines("controls")[-1]["resting"] is True
+    last = exported["/character/pose"][-1]
+    row = lines("characters")[-1]
+    np.testing.assert_array_equal(row["joint_rotations"], last.pose.rotations)
+    assert row["x_m"] == last.table_from_character[0, 3]
+    assert "joint_rotations" not in table("characters")[0]
+
+
+def test_the_dictionary_names_every_column_of_every_file(exported):
+    with Path("out", DICTIONARY_FILE).open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for name in ("sessions", *(each.name for each in TABLES)):
+        of_table = [row for row in rows if row["table"] == name]
+        header = Path("out", f"{name}.csv").read_text("utf-8").splitlines()[0].split(",")
+        assert header == [row["column"] for row in of_table if "csv" in row["files"]]
+        for document in lines(name)[:1]:
+            assert list(document) == [row["column"] for row in of_table]
+    assert all(row["meaning"] for row in rows)
+
+
+def test_the_page_has_the_dictionary_of_the_code():
+    text = DOCUMENT.read_text("utf-8")
+    assert updated(text) == text, "run `python -m tools.export_dictionary`"
+    assert len(list(dictionary_rows())) > len(TABLES) * len(CONTEXT)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (("absent.mcap", "-o", "out"), "absent.mcap"),
+        (("SESSION", "-o", "no/out"), "there is no folder 'no'"),
+        (("SESSION", "-o", "file"), "'file' is a file"),
+        (("SESSION", "-o", "full"), "--overwrite"),
+        (("SESSION", "SESSION", "-o", "out"), "two sessions are called 'short'"),
+        (("SESSION", "-o", "out", *["--participant", "P"] * 2), "2 times for 1 sessions"),
+        (("cut.mcap", "-o", "out"), "--salvage"),
+        (("SESSION",), "--output"),
+    ],
+)
+def test_bad_input_is_one_line_and_leaves_nothing(cubeling, short_session, arguments, says):
+    Path("file").touch()
+    Path("full").mkdir()
+    Path("full", "emotions.csv").write_text("old")
+    Path("cut.mcap").write_bytes(short_session.read_bytes()[:-300])
+    before = sorted(Path().rglob("*"))
+    words = [str(short_session) if word == "SESSION" else word for word in arguments]
+    code, _, err = cubeling("export", *words)
+    assert (code, err.count("\n")) == (2, 1)
+    assert says in err
+    assert sorted(Path().rglob("*")) == before
+    assert Path("full", "emotions.csv").read_text() == "old"
+
+
+def test_a_session_that_was_cut_off_can_be_salvaged_over_old_tables(cubeling, short_session):
+    Path("cut.mcap").write_bytes(short_session.read_bytes()[: short_session.stat().st_size // 2])
+    for options in ((), ("--overwrite",)):
+        assert cubeling("export", "cut.mcap", "-o", "out", "--salvage", *options)[0] == 0
+    assert 0 < len(table("emotions")) < 60
