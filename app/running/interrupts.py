@@ -5,6 +5,11 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+SIGNALS = [
+    getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
+]
+"""The signals that end a command; Windows has no SIGHUP."""
+
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
@@ -18,9 +23,7 @@ def uninterrupted() -> Iterator[None]:
         return
     waiting: list[int] = []
     handlers = {
-        number: handler
-        for number in (signal.SIGINT, signal.SIGTERM)
-        if callable(handler := signal.getsignal(number))
+        number: handler for number in SIGNALS if callable(handler := signal.getsignal(number))
     }
     for number in handlers:
         signal.signal(number, lambda number, frame: waiting.append(number))
