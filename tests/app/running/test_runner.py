@@ -1,12 +1,12 @@
 """Sessions that end with an error: what was recorded until then is complete."""
 
+import functools
 import itertools
-import time
 
 import pytest
 
-from app.running import runner
-from app.running.clock import SessionClock
+from app.running import opening
+from app.running.clock import Pace, SessionClock
 from app.running.opening import open_session
 from app.running.robots import WireRecorder
 from app.running.runner import run
@@ -57,9 +57,7 @@ def run_recorded(short_session, tmp_path):
 
 
 class VirtualTime:
-    """Stands in for the module `time` in the loop of a session: sleeping costs nothing."""
-
-    perf_counter = staticmethod(time.perf_counter)
+    """A clock that only sleeping advances."""
 
     def __init__(self):
         self.now = 0.0
@@ -78,7 +76,9 @@ def test_a_real_robot_gets_a_recording_in_real_time(
     cubeling, short_session, monkeypatch, robot, fast, seconds
 ):
     virtual = VirtualTime()
-    monkeypatch.setattr(runner, "time", virtual)
+    monkeypatch.setattr(
+        opening, "Pace", functools.partial(Pace, clock=virtual.monotonic, sleep=virtual.sleep)
+    )
     with SimulatedPort() as port:
         url = port.url if robot == "real" else robot
         options = ["--robot", url, *(["--fast"] if fast else [])]
