@@ -19,6 +19,12 @@ Point = tuple[float, float]
 CIRCLE_POINTS = 40
 """At 6 mm the sides of such a circle are half a millimetre long and look round."""
 
+ICON_SHARE, FOLD_GAP_SHARE = 0.8, 0.04
+"""Height of an icon on a face, and its distance from the fold, as shares of the white margin.
+
+Larger ones come so near to the marker that its edges are measured less well.
+"""
+
 ICON_COLOURS: dict[str, tuple[int, int, int]] = {
     "stand": (42, 157, 143),
     "walk": (238, 148, 46),

@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from tracking.cube.icons import ICON_COLOURS, icon_mask, icons
+from tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_mask, icons
 from tracking.cube.marker import black_texels, marker_cells
 from tracking.cube.model import FACE_AXES, CubeModel, Face
 from tracking.geometry.arrays import Array, Floats
@@ -151,7 +151,7 @@ def _face_texture(cube: CubeModel, face: Face | None, random: np.random.Generato
     texture = np.asarray(np.asarray(paper)[..., None] * tint, np.float32)
     if face is not None:
         _print_marker(texture, cube, face)
-        _print_icon(texture, cube, face)
+        _print_icons(texture, cube, face)
     # Folded edges look darker: a thin rim.
     rim = max(1, FACE_TEXELS // 160)
     for side in (np.s_[:rim], np.s_[-rim:], np.s_[:, :rim], np.s_[:, -rim:]):
@@ -172,13 +172,15 @@ def _print_marker(texture: Floats, cube: CubeModel, face: Face) -> None:
     texture[black_texels(cube, cells, FACE_TEXELS)] = BLACK
 
 
-def _print_icon(texture: Floats, cube: CubeModel, face: Face) -> None:
+def _print_icons(texture: Floats, cube: CubeModel, face: Face) -> None:
+    """Print the icon on all four sides, as on the sheet."""
     margin = (cube.edge - cube.marker_size) / 2 / cube.edge * FACE_TEXELS
-    size = int(0.72 * margin)
+    size = round(ICON_SHARE * margin)
     if face.icon not in icons() or size < 8:
         return
     ink = np.array(ICON_COLOURS.get(face.icon, (60, 60, 60))[::-1], np.float32)
     mask = icon_mask(face.icon, size).astype(np.float32)[..., None] / 255
-    top, left = FACE_TEXELS - int((margin + size) / 2), (FACE_TEXELS - size) // 2
-    part = texture[top : top + size, left : left + size]
-    part += (ink - part) * mask
+    top, left = FACE_TEXELS - round(FOLD_GAP_SHARE * margin) - size, (FACE_TEXELS - size) // 2
+    for quarter_turns in range(4):
+        part = np.rot90(texture, quarter_turns)[top : top + size, left : left + size]
+        part += (ink - part) * mask

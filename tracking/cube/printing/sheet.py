@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tracking.cube.icons import ICON_COLOURS, icon_paths
+from tracking.cube.icons import FOLD_GAP_SHARE, ICON_COLOURS, ICON_SHARE, icon_paths
 from tracking.cube.marker import marker_loops
 from tracking.cube.model import CubeModel, Face
 from tracking.cube.printing.layout import SheetLayout
@@ -18,15 +18,6 @@ FOLD_COLOUR = (150, 156, 168)
 TAB_COLOUR = (246, 243, 236)
 CAPTION_COLOUR = (128, 134, 148)
 BLACK = (0, 0, 0)
-
-ICON_SHARE = 0.8
-"""Height of an icon as a share of the white margin of its face.
-
-Larger ones come so near to the marker that its edges are measured less well.
-"""
-
-FOLD_GAP_SHARE = 0.04
-"""Distance of an icon from the fold, as a share of the margin."""
 
 QUARTER_TURNS = tuple(np.array([[c, s], [-s, c]]) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1)))
 """The four turns of a face on paper, by which every side gets its icon."""
