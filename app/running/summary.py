@@ -64,6 +64,9 @@ class Summary:
     lens: str | None = None
     """What to say of the camera's lens; None if it is as claimed, or not known."""
 
+    hopped: bool = False
+    """Whether the character hopped, as it cannot walk."""
+
     interrupted: bool = False
     """Whether Ctrl-C ended the session."""
 
@@ -76,6 +79,7 @@ class Summary:
     def add(self, step: Step, robot: RobotView, seconds: float) -> None:
         """Add one frame and its processing time [s]."""
         now = step.frame.timestamp
+        self.hopped = self.hopped or step.outcome.icon == "hop"
         if self.frames == 0:
             self.first = now
         self.last = now
@@ -127,6 +131,9 @@ class Summary:
             table.add_row("left out", f"{self.left_out} frames, to keep up with the recording")
         table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")
         table.add_row("character", _timeline(self.states, duration))
+        if self.hopped:
+            make = "[cyan]cubeling character locomotion[/] gives it a gait"
+            table.add_row("", f"it hopped, as it has no clips to walk with: {make}")
         table.add_row("robot felt", literal_text(_timeline(self.labels(), duration)))
         table.add_row(
             "", Text(self._curve(), style="green") + Text("  angry ▁  neutral ▄  happy █", "dim")

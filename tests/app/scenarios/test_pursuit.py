@@ -9,6 +9,7 @@ from affect import Personality
 from app.pipeline.scenario import Inputs
 from app.scenarios import make_scenario
 from app.scenarios.pursuit import IGNORED_S, Pursuit
+from app.session.bundled import bundled
 from characters import Animator, Character, RootDelta
 from tests.characters.commands import command
 
@@ -87,6 +88,13 @@ def test_the_character_stops_before_it_stands_in_the_cube(hand, name):
     assert 0.03 + animator.length / 2 - 0.02 < np.linalg.norm(place) < 0.2
     assert icons == ({"stand", "walk"} if animator.walks else {"stand", "hop"})
     assert max(moods) > moods[0] + 0.2  # it is glad to have come
+
+
+def test_the_summary_names_what_gives_a_gait_to_a_character_that_hops(cubeling):
+    source = ("--source", str(bundled("follow")), "--robot", "none", "--no-pictures")
+    code, out, _ = cubeling("play", "follow", *source, "--character", "vleo")
+    assert code == 0
+    assert "cubeling character locomotion" in " ".join(out.split())
 
 
 def test_a_lap_that_is_finished_pleases(hand):
