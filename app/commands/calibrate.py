@@ -15,7 +15,7 @@ from app.running.opening import intrinsics_for
 from app.ui.calibration.coach_lines import COVERAGE_SUFFIXES, CoachLines, write_coverage
 from app.ui.calibration.session import CalibrationSession, Coach
 from app.ui.display import has_display
-from tracking import CubeModel, FrameSource, Intrinsics, open_source
+from tracking import CubeModel, FrameSource, Intrinsics, bundled_cubes, open_source
 from tracking.calibration import (
     Board,
     BoardFinder,
@@ -27,7 +27,7 @@ from tracking.calibration import (
     write_board,
 )
 from tracking.cube.file import write_cube
-from tracking.cube.model import bundled, face_corners
+from tracking.cube.model import face_corners
 
 CAMERA_FILE = Path("camera.yaml")
 
@@ -114,7 +114,7 @@ def target_finders(cube: str | None, board: str) -> list[TargetFinder]:
         raise AppError(f"no board is called '{board}': there is only charuco")
     if board:
         return [BoardFinder(Board())]
-    return [CubeFinder(CubeModel.load(name)) for name in ([cube] if cube else bundled())]
+    return [CubeFinder(CubeModel.load(name)) for name in ([cube] if cube else bundled_cubes())]
 
 
 def calibration_line(path: Path, found: Calibration) -> str:

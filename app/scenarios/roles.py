@@ -2,8 +2,7 @@
 
 from app.errors import AppError
 from app.pipeline.registry import find_scenario, scenario_names
-from tracking import CubeModel
-from tracking.cube.model import bundled
+from tracking import CubeModel, bundled_cubes
 
 
 def check_cube(scenario: str, cube: str | None) -> None:
@@ -27,7 +26,7 @@ def check_cube(scenario: str, cube: str | None) -> None:
 
 def check_roles(cube: CubeModel, where: str) -> None:
     """Raise AppError if a face has a role of no bundled cube and of no scenario."""
-    known = [role for name in bundled() for role in _roles(CubeModel.load(name))]
+    known = [role for name in bundled_cubes() for role in _roles(CubeModel.load(name))]
     unknown = [face for face in cube.faces if face.role and face.role not in known]
     if unknown:  # only then import the packages that add scenarios
         known += [role for name in scenario_names() for role in find_scenario(name).roles]
