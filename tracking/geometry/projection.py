@@ -62,9 +62,7 @@ class Projection:
 
         `points` are in the camera frame, (N, 3) [m], and so is `centre`, (3,), whose pixel stays.
         """
-        flat, middle = points[:, :2] / points[:, 2:], centre[:2] / centre[2]
-        square = (flat * flat).sum(axis=1, keepdims=True)
-        bent = flat * square - middle * (middle @ middle)
+        bent = radial_bend(points[:, :2] / points[:, 2:]) - radial_bend(centre[:2] / centre[2])
         return np.asarray(bent * self.matrix[[0, 1], [0, 1]], np.float64)
 
     def rays(self, pixels: Array) -> Array:
@@ -73,6 +71,11 @@ class Projection:
         return np.asarray(
             cv2.undistortPoints(points, self.matrix, self.distortion), np.float64
         ).reshape(-1, 2)
+
+
+def radial_bend(flat: Array) -> Array:
+    """How radial distortion k1 moves points at z = 1, (…, 2): the derivative of Brown's model."""
+    return np.asarray(flat * (flat * flat).sum(axis=-1, keepdims=True), np.float64)
 
 
 def planar_poses(points: Array, rays: Array, method: int) -> Iterator[Array]:

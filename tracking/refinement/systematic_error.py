@@ -11,7 +11,7 @@ import numpy as np
 from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array
-from tracking.geometry.projection import Projection
+from tracking.geometry.projection import Projection, radial_bend
 
 CORNER_ERROR_PX, CORNER_ERROR_M = 0.1, 0.00012
 """Displacement of a marker's corner along each axis, one standard deviation: by light, blur and
@@ -76,7 +76,7 @@ class SystematicError:
         inverse = np.linalg.inv(information)[:6]
         shift = np.diag([1, 1, 0, 0, 0, 0]) * (COMMON_SHIFT_PX / pixels) ** 2
         # Where a lens with a larger k1, and with a longer focal length, shows the corners.
-        moved = focal * middle * (middle @ middle) + bends * (not solved)
+        moved = focal * radial_bend(middle) + bends * (not solved)
         modes = np.stack([moved, focal * flat], axis=2).reshape(-1, 2)
         moves = inverse @ (rows.T @ (modes * (k1_error, self._focal))) / error**2
         return np.asarray(inverse[:, :6] + shift, np.float64), np.asarray(

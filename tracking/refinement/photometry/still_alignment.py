@@ -16,7 +16,7 @@ from tracking.cube.model import CubeModel
 from tracking.geometry import se3
 from tracking.geometry.arrays import Array, Floats, Indices
 from tracking.geometry.image_region import Patch
-from tracking.geometry.projection import MIN_DEPTH, Projection
+from tracking.geometry.projection import MIN_DEPTH, Projection, radial_bend
 from tracking.refinement.evidence import Evidence
 from tracking.refinement.photometry.marker_images import TEXELS_PER_CELL, MarkerTextures
 from tracking.refinement.photometry.photometric_fit import (
@@ -229,9 +229,9 @@ class StillAligner:
         values = patch.sample(pixels[used, None])[:, 0].astype(np.float64)
         rays, texel = points / points[:, 2:], self._textures.texel
         slides = texel_slides(frames, points - pose[:3, 3, None], rays, texel)
-        middle = pose[:2, 3] / pose[2, 3]
-        bent = rays[:, :2] * np.square(rays[:, :2]).sum(axis=1, keepdims=True)
-        bent -= (middle * (middle @ middle))[:, None]
+        flat = rays[:, :2].transpose(0, 2, 1)
+        bent = radial_bend(flat) - radial_bend(pose[:2, 3] / pose[2, 3])
+        bent = bent.transpose(0, 2, 1)
         x, y = (points[:, 2] * bent.transpose(1, 0, 2)).reshape(2, -1)
         bends = x * slides[:, 0] + y * slides[:, 1]
         to_pixels = texels_to_pixels(self._projection, frames, texel)
