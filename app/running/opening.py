@@ -15,7 +15,7 @@ from app.pipeline.step import ReplayInputs
 from app.running.clock import Pace, SessionClock
 from app.running.players import PlayerPublisher
 from app.running.robots import RobotLine, WireRecorder, is_real_robot
-from app.scenarios import make_scenario, scenario_cube
+from app.scenarios import Scenario, make_scenario, scenario_cube
 from app.session import Recorder, SessionOptions, start_over_times
 from app.session.replay_inputs import read_replay_inputs
 from app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
@@ -68,22 +68,10 @@ class OpenedSession:
     """In a replay that does not start from the camera, the recorded messages of each frame."""
 
     def change_scenario(self, name: str) -> None:
-        """Play another bundled scenario; "" or the present one changes nothing.
-
-        A recording holds one scenario, and a replay the one that was recorded: neither changes.
-        """
-        fixed = self.recorder is not None or self.replay_inputs is not None
-        if not name or fixed or name == self.playground.scenario.name:
+        """Play another scenario, unless it is to stay; "" or the present one changes nothing."""
+        if not name or self.options.keeps_scenario or name == self.playground.scenario.name:
             return
-        options = self.options
-        self.playground.play(
-            make_scenario(
-                name,
-                speed_map=options.speed_map,
-                turns=options.turns,
-                personality=options.personality,
-            )
-        )
+        self.playground.play(_scenario(name, None, self.options))
 
 
 @contextmanager
@@ -122,13 +110,7 @@ def open_session(
     """
     check_output_paths(options)
     cube = CubeModel.load(options.cube or scenario_cube(options.scenario))
-    scenario = make_scenario(
-        options.scenario,
-        cube,
-        speed_map=options.speed_map,
-        turns=options.turns,
-        personality=options.personality,
-    )
+    scenario = _scenario(options.scenario, cube, options)
     character = Character.load(options.character or scenario.character)
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
     with ExitStack() as closing:
@@ -145,7 +127,7 @@ def open_session(
             character=character,
             context=context,
             look=options.look,
-            fixed=options.record is not None or not options.windowed,
+            fixed=options.keeps_scenario or not options.windowed,
         )
         closing.callback(playground.close)
         is_session = options.source.endswith(".mcap")
@@ -180,6 +162,17 @@ def open_session(
             start_overs,
             replay_inputs,
         )
+
+
+def _scenario(name: str, cube: CubeModel | None, options: SessionOptions) -> Scenario:
+    """Make a scenario with the user's settings; None for its own cube."""
+    return make_scenario(
+        name,
+        cube,
+        speed_map=options.speed_map,
+        turns=options.turns,
+        personality=options.personality,
+    )
 
 
 def _open_screen(

@@ -72,6 +72,11 @@ class SessionOptions:
         """Whether the session has a window, so that a user watches it."""
         return self.pictures and self.output is None
 
+    @property
+    def keeps_scenario(self) -> bool:
+        """Whether the scenario stays: a recording holds one, and so does a replay of its stages."""
+        return self.record is not None or self.start != "camera"
+
     def metadata(self) -> dict[str, str]:
         """Return what a recording keeps of the settings: all that a replay needs."""
         source = self.source
