@@ -39,7 +39,7 @@ class Table:
     """Topic of the messages in a session."""
 
     columns: tuple[Column, ...]
-    """Its own columns, after those of `CONTEXT`."""
+    """Its own columns, after those of `CONTEXT_COLUMNS`."""
 
 
 def field(name: str, unit: str, meaning: str, path: str = "", nested: bool = False) -> Column:

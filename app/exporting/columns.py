@@ -37,7 +37,7 @@ def _yaw(posed: PosedCharacter) -> float:
 CAMERA_AXES = ("to the right", "down", "forward")
 """Axes of the camera frame, as in OpenCV."""
 
-CONTEXT = (
+CONTEXT_COLUMNS = (
     Column("session", "", "Name of the session's file, without its suffix", lambda row: row[0]),
     Column("participant", "", "Label given with --participant", lambda row: row[1]),
     Column("condition", "", "Label given with --condition", lambda row: row[2]),
@@ -45,10 +45,10 @@ CONTEXT = (
 )
 """The first columns of every table but `sessions`."""
 
-SESSION_CONTEXT = CONTEXT[:-1]
+SESSION_CONTEXT_COLUMNS = CONTEXT_COLUMNS[:-1]
 """The first columns of the table `sessions`, which has no time."""
 
-SESSIONS = (
+SESSION_COLUMNS = (
     field("scenario", "", "Name of the scenario", "options.scenario"),
     field("cube", "", "The cube; empty for the scenario's own", "options.cube"),
     field("character", "", "The character; empty for the scenario's own", "options.character"),
@@ -60,7 +60,7 @@ SESSIONS = (
 )
 """The columns of the table `sessions`, which has a row for each session."""
 
-TABLES = (
+EXPORT_TABLES = (
     Table(
         "poses",
         "/cube/state",
@@ -187,8 +187,8 @@ TABLES = (
 def dictionary_rows() -> Iterator[tuple[str, str, str, str, str]]:
     """Yield (table, column, unit, files, meaning) for every column of every table."""
     for name, columns in (
-        ("sessions", SESSION_CONTEXT + SESSIONS),
-        *((table.name, CONTEXT + table.columns) for table in TABLES),
+        ("sessions", SESSION_CONTEXT_COLUMNS + SESSION_COLUMNS),
+        *((table.name, CONTEXT_COLUMNS + table.columns) for table in EXPORT_TABLES),
     ):
         for column in columns:
             files = "jsonl" if column.nested else "csv, jsonl"

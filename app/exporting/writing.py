@@ -14,10 +14,10 @@ import numpy as np
 from app.errors import AppError
 from app.exporting.column import Cell, Column, Table
 from app.exporting.columns import (
-    CONTEXT,
-    SESSION_CONTEXT,
-    SESSIONS,
-    TABLES,
+    CONTEXT_COLUMNS,
+    EXPORT_TABLES,
+    SESSION_COLUMNS,
+    SESSION_CONTEXT_COLUMNS,
     dictionary_rows,
 )
 from app.session import SessionInfo, messages, session_info
@@ -27,7 +27,7 @@ DICTIONARY_FILE = "data_dictionary.csv"
 DICTIONARY_COLUMNS = ("table", "column", "unit", "files", "meaning")
 
 EXPORT_FILES = (
-    *(f"{name}.{suffix}" for name in ("sessions", *(table.name for table in TABLES))
+    *(f"{name}.{suffix}" for name in ("sessions", *(table.name for table in EXPORT_TABLES))
       for suffix in ("csv", "jsonl")),
     DICTIONARY_FILE,
 )  # fmt: skip
@@ -78,11 +78,14 @@ def export(sessions: Sequence[ExportedSession], folder: Path) -> dict[str, int]:
             csv.writer(file).writerows([DICTIONARY_COLUMNS, *dictionary_rows()])
         rows = {
             "sessions": _write(
-                folder, "sessions", SESSION_CONTEXT + SESSIONS, _session_rows(sessions)
+                folder,
+                "sessions",
+                SESSION_CONTEXT_COLUMNS + SESSION_COLUMNS,
+                _session_rows(sessions),
             )
         }
-        for table in TABLES:
-            columns = CONTEXT + table.columns
+        for table in EXPORT_TABLES:
+            columns = CONTEXT_COLUMNS + table.columns
             rows[table.name] = _write(folder, table.name, columns, _table_rows(sessions, table))
     except OSError as error:
         raise AppError(f"cannot write to '{folder}': {error.strerror}") from error
@@ -91,8 +94,8 @@ def export(sessions: Sequence[ExportedSession], folder: Path) -> dict[str, int]:
 
 def _session_rows(sessions: Sequence[ExportedSession]) -> Iterator[list[Cell]]:
     for session in sessions:
-        cells = [column.value(session.info) for column in SESSIONS]
-        yield [*(column.value(session.labels) for column in SESSION_CONTEXT), *cells]
+        cells = [column.value(session.info) for column in SESSION_COLUMNS]
+        yield [*(column.value(session.labels) for column in SESSION_CONTEXT_COLUMNS), *cells]
 
 
 def _table_rows(sessions: Sequence[ExportedSession], table: Table) -> Iterator[list[Cell]]:
@@ -106,7 +109,7 @@ def _table_rows(sessions: Sequence[ExportedSession], table: Table) -> Iterator[l
                     f"cannot read the session '{session.path}': {topic} at {time:.3f} s: {error}"
                 ) from error
             cells = [column.value(message) for column in table.columns]
-            yield [*(column.value((*session.labels, time)) for column in CONTEXT), *cells]
+            yield [*(column.value((*session.labels, time)) for column in CONTEXT_COLUMNS), *cells]
 
 
 def _write(folder: Path, name: str, columns: Sequence[Column], rows: Iterable[list[Cell]]) -> int:

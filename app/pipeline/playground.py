@@ -81,7 +81,7 @@ class Playground:
         cube: CubeModel | None = None,
         character: Character | None = None,
     ) -> None:
-        """Change to a scenario, which begins anew; the parameters are those of the class."""
+        """Start a scenario from its beginning; the parameters are those of the class."""
         self.scenario = scenario
         self.cube = cube or CubeModel.load(scenario.cube)
         self.character = character or Character.load(scenario.character)

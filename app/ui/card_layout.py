@@ -13,7 +13,7 @@ from app.ui.canvas import PICTURE_HEIGHT
 Corner = Literal["bottom right", "bottom left", "top right", "top left"]
 CORNERS: tuple[Corner, ...] = ("bottom right", "bottom left", "top right", "top left")
 
-MARGIN = 24.0
+CARD_MARGIN = 24.0
 """Distance of a card from the edges of the picture."""
 
 SMOOTHING_S, MIN_STAY_S = 0.5, 2.0
@@ -33,8 +33,8 @@ def card_place(
     (956.0, 596.0)
     """
     width, height = size
-    x = MARGIN if corner.endswith("left") else picture_width - width - MARGIN
-    y = MARGIN if corner.startswith("top") else PICTURE_HEIGHT - height - MARGIN
+    x = CARD_MARGIN if corner.endswith("left") else picture_width - width - CARD_MARGIN
+    y = CARD_MARGIN if corner.startswith("top") else PICTURE_HEIGHT - height - CARD_MARGIN
     return x, y
 
 

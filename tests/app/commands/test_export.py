@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.exporting import CONTEXT, TABLES, dictionary_rows
+from app.exporting import CONTEXT_COLUMNS, EXPORT_TABLES, dictionary_rows
 from app.exporting.writing import DICTIONARY_FILE
 from app.session import messages
 from app.session.encoding import MESSAGE_TYPES, decode
@@ -80,7 +80,7 @@ def test_the_values_are_those_of_the_messages(exported):
 def test_the_dictionary_names_every_column_of_every_file(exported):
     with Path("out", DICTIONARY_FILE).open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
-    for name in ("sessions", *(each.name for each in TABLES)):
+    for name in ("sessions", *(each.name for each in EXPORT_TABLES)):
         of_table = [row for row in rows if row["table"] == name]
         header = Path("out", f"{name}.csv").read_text("utf-8").splitlines()[0].split(",")
         assert header == [row["column"] for row in of_table if "csv" in row["files"]]
@@ -92,7 +92,7 @@ def test_the_dictionary_names_every_column_of_every_file(exported):
 def test_the_page_has_the_dictionary_of_the_code():
     text = DOCUMENT.read_text("utf-8")
     assert updated(text) == text, "run `python -m tools.export_dictionary`"
-    assert len(list(dictionary_rows())) > len(TABLES) * len(CONTEXT)
+    assert len(list(dictionary_rows())) > len(EXPORT_TABLES) * len(CONTEXT_COLUMNS)
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from app.pipeline.step import RobotView
-from app.ui.card_layout import MARGIN
+from app.ui.card_layout import CARD_MARGIN
 from app.ui.overlay import CARD_HEIGHT, overlay
 from characters import ActionIntent, LocomotionIntent
 
@@ -31,7 +31,7 @@ def card_titles(a_step, *icons):
     """Return the part of the action's card that holds its title, for each icon."""
     step = a_step(None)
     step = replace(step, controls=replace(step.controls, camera_from_table=np.eye(4)))
-    top, left = round(720 - CARD_HEIGHT - MARGIN), round(MARGIN)
+    top, left = round(720 - CARD_HEIGHT - CARD_MARGIN), round(CARD_MARGIN)
     for icon in icons:
         shown = replace(step, outcome=replace(step.outcome, icon=icon))
         picture = overlay(
