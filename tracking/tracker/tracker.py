@@ -20,6 +20,7 @@ from tracking.refinement.systematic_error import SystematicError
 from tracking.tracker.global_search import FrameMarkers, GlobalDetector
 from tracking.tracker.local_search import LocalMatch, LocalTracker
 from tracking.tracker.prediction import TrackedPose
+from tracking.tracker.rest import Rest
 from tracking.tracker.verdict import FollowedPoseJudge, Past, is_uncertain, judge_detected
 
 MAX_THOROUGH_FRAMES, THOROUGH_INTERVAL = 30, 5
@@ -38,8 +39,10 @@ class CubeTracker:
 
     Notes
     -----
-    There is no smoothing filter: a pose rests on its own frame alone, so it has no lag. The past
-    says where to look, chooses between the two poses of a single face, and refuses jumps.
+    There is no smoothing filter: the pose of a cube that moves rests on its own frame alone, so it
+    has no lag. While nothing but noise tells its poses apart, the cube is at rest, and its pose is
+    their mean. The past says where to look, chooses between the two poses of a single face, and
+    refuses jumps.
     """
 
     def __init__(self, cube: CubeModel, intrinsics: Intrinsics) -> None:
@@ -57,6 +60,7 @@ class CubeTracker:
         self._camera = CameraModelEstimator()
         self._lens = LensEstimator(cube, projection)
         self._past = Past()
+        self._rest = Rest()
 
     @property
     def lens(self) -> LensEstimate:
@@ -115,11 +119,14 @@ class CubeTracker:
         systematic = by_corners + by_lens
         track = track.add(TrackedPose(pose, velocity, noise, now, acceleration, systematic))
         self._past = replace(verdict.past, track=track, jump=None, frames_lost=0)
+        # State the mean of the poses while the cube rests.
+        self._rest = self._rest.add(pose, noise, now)
+        mean, mean_noise = self._rest.pose()
         return CubeState(
             visible=True,
-            camera_from_cube=pose,
+            camera_from_cube=mean,
             velocity=velocity,
-            covariance=noise + systematic,
+            covariance=mean_noise + systematic,
             source=found.source,
             faces=found.faces,
             reprojection_error=found.error,

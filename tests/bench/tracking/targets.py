@@ -40,7 +40,8 @@ NO_HAND_MOTION = ("static", "static-one", *INDEPENDENT, "sweep-1.0")
 
 MAX_REST_TURN = (("static", "two or three faces", 0.02), ("static-one", "one face", 0.05))
 """Greatest jitter of a cube at rest [°]. The noise of the pixels on one face square on, by itself,
-leaves 0.028 mm and 0.052° to any estimator that keeps no past (Cramér and Rao's bound)."""
+leaves 0.028 mm and 0.052° to any estimator that keeps no past (Cramér and Rao's bound); a cube at
+rest may be averaged (`tracker/rest`)."""
 
 
 def verdicts(scores: Rows[Score]) -> Iterator[TargetVerdict]:

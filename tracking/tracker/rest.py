@@ -1,0 +1,70 @@
+"""A cube at rest: its poses of several frames are measurements of one pose."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tracking.geometry import se3
+from tracking.geometry.arrays import Array
+
+MAX_REST_FRAMES = 6
+"""So many frames are averaged at most: the jitter falls to about 60 % (`test_rest`)."""
+
+MAX_FRAME_GAP_S = 0.2
+"""After a longer pause the cube counts as moved."""
+
+MAX_MOTION_CHI2 = 12.59
+"""95 % of chi-square with six degrees of freedom: more counts as motion, less as noise. The mean
+then lags by 2.5 standard deviations of a pose's noise at most (`test_rest`)."""
+
+
+@dataclass(frozen=True)
+class Rest:
+    """The last poses of a cube, as far as it has not moved since the first of them."""
+
+    first: Array | None = None
+    """Pose of the first of these frames, (4, 4) [m]; None before the first frame."""
+
+    offsets: tuple[Array, ...] = ()
+    """Pose delta from `first` to the pose of each frame, (6,) each."""
+
+    noises: tuple[Array, ...] = ()
+    """Covariance of each pose, without what all frames have in common, (6, 6) each."""
+
+    timestamps: tuple[float, ...] = ()
+    """Time of each frame [s]."""
+
+    def add(self, camera_from_cube: Array, noise: Array, timestamp: float) -> "Rest":
+        """Return the rest with one more pose, or one that begins with it if the cube has moved."""
+        begun = Rest(camera_from_cube, (np.zeros(6),), (noise,), (timestamp,))
+        if self.first is None or not 0 < timestamp - self.timestamps[-1] <= MAX_FRAME_GAP_S:
+            return begun
+        kept = slice(-MAX_REST_FRAMES, None)
+        longer = Rest(
+            self.first,
+            (*self.offsets, se3.delta(self.first, camera_from_cube))[kept],
+            (*self.noises, noise)[kept],
+            (*self.timestamps, timestamp)[kept],
+        )
+        return begun if longer._moves() else longer
+
+    def pose(self) -> tuple[Array, Array]:
+        """Return the mean of the poses, (4, 4), and its covariance, (6, 6)."""
+        assert self.first is not None, "a pose was added"
+        count = len(self.offsets)
+        mean: Array = np.mean(self.offsets, axis=0)
+        return se3.moved(self.first, mean), np.asarray(np.mean(self.noises, axis=0) / count)
+
+    def _moves(self) -> bool:
+        """Whether the poses have a slope, or the last leaves the others, by more than noise."""
+        offsets, noise = np.array(self.offsets), np.mean(self.noises, axis=0)
+        times = np.array(self.timestamps) - np.mean(self.timestamps)
+        spread = float(times @ times)
+        slope = times @ offsets / spread
+        others = len(offsets) - 1
+        leap = offsets[-1] - offsets[:-1].mean(axis=0)
+        leap_noise = self.noises[-1] + np.mean(self.noises[:-1], axis=0) / others
+        return bool(
+            slope @ np.linalg.solve(noise / spread, slope) > MAX_MOTION_CHI2
+            or leap @ np.linalg.solve(leap_noise, leap) > MAX_MOTION_CHI2
+        )
