@@ -12,7 +12,7 @@ from app.commands.progress import play_session
 from app.errors import AppError
 from app.running.network import DEFAULT_SITE
 from app.scenarios import find_scenario, scenario_names
-from app.scenarios.roles import check_cube
+from app.scenarios.roles import check_cubes
 from app.session import SessionOptions
 from app.ui.display import has_display
 
@@ -45,6 +45,15 @@ SourceOption = Annotated[
     ),
 ]
 CubeOption = Annotated[str | None, typer.Option(help="A bundled cube, or your own .toml file.")]
+CubesOption = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--cube",
+        metavar="<str>",
+        help="A bundled cube, or your own .toml file. Repeat it for cubes that you want to change "
+        "to: they are recognised.",
+    ),
+]
 CharacterOption = Annotated[str | None, typer.Option(help="A bundled character, or a .glb file.")]
 PersonalityOption = Annotated[
     str | None,
@@ -87,7 +96,7 @@ PicturesOption = Annotated[
 def play(
     scenario: ScenarioArgument,
     source: SourceOption = DEFAULT_CAMERA,
-    cube: CubeOption = None,
+    cubes: CubesOption = None,
     character: CharacterOption = None,
     intrinsics: IntrinsicsOption = None,
     robot: RobotOption = "sim",
@@ -118,7 +127,7 @@ def play(
     options = SessionOptions(
         scenario=scenario,
         source=source,
-        cube=cube,
+        cubes=tuple(cubes or ()),
         character=character,
         intrinsics=intrinsics,
         speed_map=speed_map,
@@ -133,7 +142,7 @@ def play(
         overwrite=overwrite,
         pictures=pictures,
     )
-    check_cube(scenario, cube)  # before a display is missing
+    check_cubes(scenario, options.cubes)  # before a display is missing
     if options.windowed and not has_display():
         raise AppError("there is no display here: write a video with --output FILE.mp4")
     with publisher(mqtt, player, site, password_file, ca) as line:

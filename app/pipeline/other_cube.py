@@ -1,6 +1,9 @@
 """Another cube than the one that is played with: the player is told which it is."""
 
+from collections.abc import Iterator, Sequence
+
 from app.pipeline.registry import SCENARIOS
+from app.pipeline.scenario import Scenario, missing_roles
 from tracking import CubeModel, CubeRecognizer, CubeState, Frame, bundled_cubes
 
 LOOK_AFTER_S, LOOK_EVERY_S, SHOWN_S = 1.0, 0.5, 1.5
@@ -9,50 +12,112 @@ named for so long."""
 
 
 class OtherCube:
-    """Recognises the bundled cubes while the cube in play is not seen."""
+    """Recognises the player's other cubes and the bundled ones while the cube in play is not seen.
 
-    def __init__(self, cube: CubeModel) -> None:
-        self._cube = cube
+    Parameters
+    ----------
+    cube
+        The cube in play.
+    known_cubes
+        The player's cubes. One with the markers of a bundled cube takes its place.
+    """
+
+    def __init__(self, cube: CubeModel, known_cubes: Sequence[CubeModel] = ()) -> None:
+        self._cube, self._known_cubes = cube, tuple(known_cubes)
         self._recognizer: CubeRecognizer | None = None
         self._unseen_since: float | None = None
         self._looked_at = self._named_at = float("-inf")
-        self._name = ""
+        self._found: CubeModel | None = None
 
-    def update(self, frame: Frame, state: CubeState) -> str:
-        """Return the name of another cube in view, "" for none."""
+    def update(self, frame: Frame, state: CubeState) -> CubeModel | None:
+        """Return another cube that is in view, None for none."""
         now = frame.timestamp
         if state.visible or self._unseen_since is None:
-            self._unseen_since, self._name = now, ""
+            self._unseen_since, self._found = now, None
         waited = now - self._unseen_since >= LOOK_AFTER_S
         if waited and now - self._looked_at >= LOOK_EVERY_S:
             self._looked_at = now
             self._look(frame)
-        return self._name if now - self._named_at < SHOWN_S else ""
+        return self._found if now - self._named_at < SHOWN_S else None
 
     def _look(self, frame: Frame) -> None:
         if self._recognizer is None:
-            others = [each for each in map(CubeModel.load, bundled_cubes()) if self._differs(each)]
-            self._recognizer = CubeRecognizer((self._cube, *others))
+            self._recognizer = CubeRecognizer(tuple(self._candidates()))
         found = self._recognizer.recognize(frame.image)
         if found is not None and found is not self._cube:
-            self._name, self._named_at = found.name, frame.timestamp
+            self._found, self._named_at = found, frame.timestamp
 
-    def _differs(self, other: CubeModel) -> bool:
-        markers = {face.marker_id for face in other.faces}
-        same = other.dictionary == self._cube.dictionary
-        return not (same and markers == {face.marker_id for face in self._cube.faces})
+    def _candidates(self) -> Iterator[CubeModel]:
+        """Yield the first of the cubes that have the same markers."""
+        seen = set()
+        for cube in (self._cube, *self._known_cubes, *map(CubeModel.load, bundled_cubes())):
+            if cube.markers not in seen:
+                yield cube
+            seen.add(cube.markers)
 
 
-def advice(cube: str, fixed: bool) -> str:
-    """Return what to tell the player about another cube; `fixed` if no key changes the scenario.
+def cube_for(
+    scenario: type[Scenario], in_view: CubeModel | None, known_cubes: Sequence[CubeModel]
+) -> CubeModel:
+    """Return the cube to play a scenario with.
 
-    >>> advice("companion", False)
-    'This is the companion cube: press 3 to play companion'
-    >>> advice("locomotion", True)
-    'This is the locomotion cube: it plays follow'
+    It is the one in view, or else the first of the player's that has all the roles that the
+    scenario reads, or else the scenario's own.
     """
-    for key, (name, scenario) in enumerate(SCENARIOS.items(), start=1):
-        if scenario.cube == cube:
-            how = f"it plays {name}" if fixed else f"press {key} to play {name}"
-            return f"This is the {cube} cube: {how}"
-    return f"This is the {cube} cube"
+    choices = known_cubes if in_view is None else (in_view, *known_cubes)
+    able = (cube for cube in choices if not missing_roles(scenario, cube))
+    return next(able, None) or CubeModel.load(scenario.cube)
+
+
+def advice(cube: CubeModel, playing: str, own_cube: str, fixed: bool) -> str:
+    """Return what to tell the player about another cube.
+
+    Parameters
+    ----------
+    cube
+        The cube in view.
+    playing
+        Name of the present scenario.
+    own_cube
+        Name of the cube that it is played with.
+    fixed
+        Whether no key changes the scenario.
+
+    >>> companion = CubeModel.load("companion")
+    >>> advice(companion, "follow", "locomotion", False)
+    'This is the companion cube: press 3 to play companion'
+    >>> advice(companion, "companion", "museum", False)
+    'This is the companion cube: press 3 to play companion with it'
+    >>> advice(companion, "follow", "locomotion", True)
+    'This is the companion cube: it plays companion'
+    >>> advice(companion, "companion", "museum", True)
+    'This is the companion cube: show me the museum cube'
+    """
+    this = f"This is the {_called(cube.name)}"
+    scenario = _scenario_for(cube, playing)
+    if not scenario:
+        return this
+    if fixed:
+        played = scenario == playing
+        return f"{this}: {f'show me the {_called(own_cube)}' if played else f'it plays {scenario}'}"
+    key = list(SCENARIOS).index(scenario) + 1
+    return f"{this}: press {key} to play {scenario}{' with it' if scenario == playing else ''}"
+
+
+def _called(name: str) -> str:
+    return name if name.lower().endswith("cube") else f"{name} cube"
+
+
+def _scenario_for(cube: CubeModel, playing: str) -> str:
+    """Return the name of the bundled scenario that a cube suits best, "" for none.
+
+    That is the one that it is made for, or else the one that reads most of its roles; of several
+    the present one.
+    """
+    able = [each for each in SCENARIOS.values() if not missing_roles(each, cube)]
+    best = max(
+        able,
+        key=lambda each: (each.cube == cube.name, len(each.roles), each.name == playing),
+        default=None,
+    )
+    return "" if best is None else best.name

@@ -1,5 +1,6 @@
 """The pipeline for one frame: from a picture of the cube to a picture of the character."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import moderngl
@@ -48,6 +49,8 @@ class Playground:
         What the character's eyes follow: one of `LOOK_CHOICES`.
     fixed
         Whether the scenario cannot be changed, so that the player is not told how.
+    known_cubes
+        The player's cubes; they are recognised as the bundled ones are.
 
     Raises
     ------
@@ -67,10 +70,12 @@ class Playground:
         context: moderngl.Context | None = None,
         look: str = "auto",
         fixed: bool = False,
+        known_cubes: Sequence[CubeModel] = (),
     ) -> None:
         if isinstance(scenario, str):
             scenario = make_scenario(scenario, cube)
         self.intrinsics = intrinsics
+        self.known_cubes = tuple(known_cubes)
         self._look, self._fixed = look, fixed
         self._stage = None if context is None else Stage(context, intrinsics.size)
         self.play(scenario, cube, character)
@@ -90,7 +95,9 @@ class Playground:
         self._animator = Animator(self.character, place=scenario.start)
         self._posed: PosedCharacter | None = None
         self._attention = Attention(self._look, self.cube.edge)
-        self._other_cube = OtherCube(self.cube)
+        self._other_cube = OtherCube(self.cube, self.known_cubes)
+        self.other_cube: CubeModel | None = None
+        """Another cube than the one in play, if one is in view."""
 
     def step(
         self, frame: Frame, inputs: Inputs | None = None, replay: ReplayInputs | None = None
@@ -115,9 +122,10 @@ class Playground:
         state = replay.state or self.track(frame)
         controls = replay.controls or self.gesture(state)
         outcome = self.attend(state, controls, self.decide(controls, inputs or Inputs()))
-        other = self._other_cube.update(frame, state)
-        if other:
-            outcome = replace(outcome, hint=advice(other, self._fixed))
+        self.other_cube = self._other_cube.update(frame, state)
+        if self.other_cube is not None:
+            hint = advice(self.other_cube, self.scenario.name, self.cube.name, self._fixed)
+            outcome = replace(outcome, hint=hint)
         if replay.command is not None:
             outcome = replace(outcome, command=replay.command)
         posed = replay.posed or self.animate(outcome.command)

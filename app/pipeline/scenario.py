@@ -120,3 +120,9 @@ class Scenario(Protocol):
     ) -> Outcome:
         """Decide on one frame; `character` is as after the previous frame, None in the first."""
         ...
+
+
+def missing_roles(scenario: type[Scenario], cube: CubeModel) -> list[str]:
+    """Return the roles that a scenario reads and no face of a cube has."""
+    roles = {face.role for face in cube.faces}
+    return [role for role in scenario.roles if role not in roles]

@@ -10,12 +10,13 @@ import moderngl
 
 from app.errors import AppError
 from app.output_path import check_output
+from app.pipeline.other_cube import cube_for
 from app.pipeline.playground import Playground
 from app.pipeline.step import ReplayInputs
 from app.running.clock import Pace, SessionClock
 from app.running.players import PlayerPublisher
 from app.running.robots import RobotLine, WireRecorder, is_real_robot
-from app.scenarios import Scenario, make_scenario, scenario_cube
+from app.scenarios import Scenario, find_scenario, make_scenario, scenario_cube
 from app.session import Recorder, SessionOptions, start_over_times
 from app.session.replay_inputs import read_replay_inputs
 from app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
@@ -68,10 +69,17 @@ class OpenedSession:
     """In a replay that does not start from the camera, the recorded messages of each frame."""
 
     def change_scenario(self, name: str) -> None:
-        """Play another scenario, unless it is to stay; "" or the present one changes nothing."""
-        if not name or self.options.keeps_scenario or name == self.playground.scenario.name:
+        """Play another scenario, or the present one with another cube that is in view.
+
+        Do nothing for "", if the scenario is to stay, or if there is nothing to change.
+        """
+        if not name or self.options.keeps_scenario:
             return
-        self.playground.play(_scenario(name, None, self.options))
+        playground = self.playground
+        in_view = playground.other_cube
+        cube = cube_for(find_scenario(name), in_view, playground.known_cubes)
+        if name != playground.scenario.name or cube is in_view:
+            playground.play(_scenario(name, cube, self.options), cube)
 
 
 @contextmanager
@@ -109,7 +117,8 @@ def open_session(
         Something that `options` names is missing or cannot be used.
     """
     check_output_paths(options)
-    cube = CubeModel.load(options.cube or scenario_cube(options.scenario))
+    cubes = [CubeModel.load(each) for each in options.cubes]
+    cube = cubes[0] if cubes else CubeModel.load(scenario_cube(options.scenario))
     scenario = _scenario(options.scenario, cube, options)
     character = Character.load(options.character or scenario.character)
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
@@ -128,6 +137,7 @@ def open_session(
             context=context,
             look=options.look,
             fixed=options.keeps_scenario or not options.windowed,
+            known_cubes=cubes,
         )
         closing.callback(playground.close)
         is_session = options.source.endswith(".mcap")
@@ -137,7 +147,7 @@ def open_session(
             replay_inputs = read_replay_inputs(options.source, options.start)
         recorder = wire = None
         if options.record is not None:
-            named = replace(options, cube=options.cube or cube.name)
+            named = replace(options, cubes=options.cubes or (cube.name,))
             metadata = {**named.metadata(), "rate": f"{source.rate:g}"}
             recorder = closing.enter_context(Recorder(options.record, metadata))
             wire = WireRecorder(recorder)
@@ -164,8 +174,8 @@ def open_session(
         )
 
 
-def _scenario(name: str, cube: CubeModel | None, options: SessionOptions) -> Scenario:
-    """Make a scenario with the user's settings; None for its own cube."""
+def _scenario(name: str, cube: CubeModel, options: SessionOptions) -> Scenario:
+    """Make a scenario with the user's settings."""
     return make_scenario(
         name,
         cube,

@@ -1,26 +1,33 @@
 """Whether the faces of a cube have the roles that a scenario reads."""
 
+from collections.abc import Sequence
+
 from app.errors import AppError
 from app.pipeline.registry import find_scenario, scenario_names
+from app.pipeline.scenario import missing_roles
 from tracking import CubeModel, bundled_cubes
 
 
-def check_cube(scenario: str, cube: str | None) -> None:
-    """Refuse a cube that a scenario cannot be played with; None is the scenario's own.
+def check_cubes(scenario: str, cubes: Sequence[str]) -> None:
+    """Refuse cubes if a scenario cannot be played with the first of them; () is its own.
 
-    Raises AppError if a role is not known or one that the scenario reads is missing, and
-    TrackingError if the cube cannot be read.
+    Raises AppError if a role is not known or one that the scenario reads is missing, or if two
+    cubes have the same markers; and TrackingError if a cube cannot be read.
     """
     chosen = find_scenario(scenario)
-    where = cube or chosen.cube
-    model = CubeModel.load(where)
-    check_roles(model, where)
-    missing = [role for role in chosen.roles if role not in _roles(model)]
+    names = cubes or (chosen.cube,)
+    models = [CubeModel.load(name) for name in names]
+    markers: dict[frozenset[tuple[str, int]], str] = {}
+    for name, model in zip(names, models, strict=True):
+        check_roles(model, name)
+        if (twin := markers.setdefault(model.markers, name)) != name:
+            raise AppError(f"{name} has the markers of {twin}: name one of them, or print others")
+    missing = missing_roles(chosen, models[0])
     if missing:
-        found = ", ".join(_roles(model)) or "none"
+        found = ", ".join(_roles(models[0])) or "none"
         raise AppError(
-            f"{where}: {scenario} needs a face with each of the roles {', '.join(chosen.roles)}; "
-            f"missing: {', '.join(missing)} (the cube has {found})"
+            f"{names[0]}: {scenario} needs a face with each of the roles "
+            f"{', '.join(chosen.roles)}; missing: {', '.join(missing)} (the cube has {found})"
         )
 
 

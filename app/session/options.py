@@ -16,8 +16,9 @@ class SessionOptions:
     source: str
     """URI of the frames, as `tracking.open_source` takes it."""
 
-    cube: str | None = None
-    """A bundled cube or a .toml file; None for the scenario's own."""
+    cubes: tuple[str, ...] = ()
+    """Bundled cubes or .toml files: the one in play, then others that may come into view; () for
+    the scenario's own."""
 
     character: str | None = None
     """A bundled character or a .glb file; None for the scenario's own."""
@@ -68,6 +69,11 @@ class SessionOptions:
     """The channel that a replay starts from: one of `START_STAGES`."""
 
     @property
+    def cube(self) -> str | None:
+        """The cube in play; None for the scenario's own."""
+        return self.cubes[0] if self.cubes else None
+
+    @property
     def windowed(self) -> bool:
         """Whether the session has a window, so that a user watches it."""
         return self.pictures and self.output is None
@@ -97,7 +103,7 @@ class SessionOptions:
         return cls(
             scenario=metadata["scenario"],
             source=source,
-            cube=metadata.get("cube") or None,
+            cubes=(metadata["cube"],) if metadata.get("cube") else (),
             character=metadata.get("character") or None,
             speed_map=metadata.get("speed_map", "corrected"),
             turns=float(metadata.get("turns", "2")),

@@ -103,9 +103,10 @@ def _notice(notice: Notice, width: float, scale: float) -> Card:
 
 @lru_cache(maxsize=16)
 def _hint(words: str, width: float, scale: float) -> Card:
-    card_width = text_width(words, 24) + 56
+    size = min(24.0, 24.0 * (width - 100) / text_width(words, 24))  # a cube's name may be long
+    card_width = text_width(words, size) + 56
     canvas = Canvas(card_width, 48, scale)
-    canvas.text(card_width / 2, 32.5, words, 24, INK, "middle")
+    canvas.text(card_width / 2, 32.5, words, size, INK, "middle")
     return canvas.card((width - card_width) / 2, 22)
 
 

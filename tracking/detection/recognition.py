@@ -34,9 +34,6 @@ class CubeRecognizer:
             for name, detector in self._detectors.items()
             for marker in detector.detect_strictly(grey)
         }
-        counts = [
-            len(seen & {(cube.dictionary, face.marker_id) for face in cube.faces})
-            for cube in self._cubes
-        ]
+        counts = [len(seen & cube.markers) for cube in self._cubes]
         most = max(counts, default=0)
         return self._cubes[counts.index(most)] if most and counts.count(most) == 1 else None
