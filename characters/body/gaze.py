@@ -1,22 +1,18 @@
 """Head and eyes that look at a point, within the limits of a body.
 
 Eyes jump (a saccade), the head follows, and meanwhile the eyes turn back by as much, so that the
-gaze stays on the point. The head leaves small turns to the eyes (Stahl, "Amplitude of human head
-movements associated with horizontal saccades", 1999; Guitton and Volle, "Gaze control in humans",
-1987).
+gaze stays on the point and the eyes come to rest near their middle. The head leaves small turns to
+the eyes (Stahl, "Amplitude of human head movements associated with horizontal saccades", 1999;
+Guitton and Volle, "Gaze control in humans", 1987).
 """
 
 import math
-from dataclasses import dataclass
 
-import numpy as np
-
+from characters.body.eye_range import range_share, within_range
+from characters.body.head_joints import HeadJoints, middle
 from characters.skeleton.anatomy import Anatomy
 from characters.skeleton.pose import Array, Pose, Skeleton
-from characters.skeleton.rotations import from_matrix
 from characters.skeleton.scalar_quaternions import (
-    IDENTITY,
-    Quaternion,
     Vector,
     conjugate,
     from_rotation_vector,
@@ -27,45 +23,16 @@ from characters.skeleton.scalar_quaternions import (
 )
 from characters.smoothing import damped_spring
 
-# How far a body can look, relative to its chest: slightly within the range of motion of a healthy
-# adult's neck (Youdas et al., 1992), and within that of the eyes, since drawn lids hide no more.
+# How far a head turns, relative to the chest: slightly within the range of motion of a healthy
+# adult's neck (Youdas et al., 1992).
 MAX_HEAD_YAW_RAD = math.radians(72)  # to either side
 MAX_HEAD_UP_RAD, MAX_HEAD_DOWN_RAD = math.radians(42), math.radians(48)
-MAX_EYE_YAW_RAD, MAX_EYE_PITCH_RAD = math.radians(24), math.radians(15)  # in the head
 MAX_TARGET_YAW_RAD = math.radians(130)  # a target beyond is ignored
 
-EYES_ONLY_RAD = math.radians(9)  # turns up to this are made by the eyes alone
-HEAD_SHARE = 0.92  # part of the rest that the head takes
-HEAD_LAG_S, EYE_LAG_S = 0.34, 0.035
+EYES_ALONE_RAD = math.radians(16)  # the eyes alone make turns that are much smaller
+HEAD_YAW_SHARE, HEAD_PITCH_SHARE = 0.95, 0.8  # of large turns; the eyes help to look up and down
+HEAD_LAG_S, EYE_LAG_S = 0.28, 0.035
 _AHEAD: Vector = (0.0, 0.0, 1.0)
-
-
-@dataclass
-class _Joint:
-    """A joint on the way from the root to the head or an eye."""
-
-    number: int
-    """Its index in the skeleton."""
-
-    parent: int
-    """Index of its parent among these joints; −1 for none."""
-
-    rest: Quaternion
-    """Its rotation at rest, in the character frame."""
-
-    turn: Quaternion = IDENTITY
-    """Its present rotation, in the character frame."""
-
-    place: Vector = (0.0, 0.0, 0.0)
-    """Its present position."""
-
-    scale: Vector = (1.0, 1.0, 1.0)
-    """Its present scale, which stretches its children's translations."""
-
-    @property
-    def facing(self) -> Quaternion:
-        """The body's axes as this joint turns them."""
-        return multiply(self.turn, conjugate(self.rest))
 
 
 class Gaze:
@@ -73,21 +40,13 @@ class Gaze:
 
     def __init__(self, skeleton: Skeleton, anatomy: Anatomy) -> None:
         head = anatomy.joint("head")
-        self._able = head is not None
+        self._joints = None if head is None else HeadJoints(skeleton, anatomy, head)
         self._yaw = self._pitch = self._yaw_speed = self._pitch_speed = 0.0
         self.shift = 0.0
         """Angle by which the target moved in the last update [rad]."""
         self._aim: tuple[float, float] | None = None
-        if head is None:
-            return
-        line = _line(head, anatomy.joint("neck"), skeleton)
-        eyes = [j for side in ("left", "right") if (j := anatomy.joint(f"{side}Eye")) is not None]
-        self._joints = _with_ancestors(skeleton, [*line, *eyes])
-        places = {joint.number: place for place, joint in enumerate(self._joints)}
-        self._numbers = np.array([joint.number for joint in self._joints], np.intp)
-        self._line = [self._joints[places[joint]] for joint in line]
-        self._eyes = [self._joints[places[joint]] for joint in eyes]
-        self._eye_turns = [(0.0, 0.0)] * len(eyes)
+        self._turned: Vector = (0.0, 0.0, 0.0)  # neck and head, as a rotation vector [rad]
+        self._eye_turns = [(0.0, 0.0), (0.0, 0.0)]
 
     def update(
         self,
@@ -114,19 +73,19 @@ class Gaze:
         head_drop
             How far the head drops as well [rad]; the eyes compensate.
         """
-        if not self._able:
+        joints = self._joints
+        if joints is None:
             return pose
-        self._place(pose)
-        body, head = self._body(), self._line[-1]
-        held = _angles(rotate(conjugate(body), rotate(head.facing, _AHEAD)))
+        joints.place(pose)
+        held = _angles(rotate(conjugate(joints.body), rotate(joints.head.facing, _AHEAD)))
         point: Vector | None = None
         if target is not None:
             x, y, z = target.tolist()
             point = (x, y, z)
-        aim = self._aimed(body, point)
+        aim = self._aimed(joints, point)
         self.shift = 0.0 if aim is None or self._aim is None else math.dist(aim, self._aim)
         self._aim = aim
-        turn = (0.0, 0.0) if aim is None else self._head_turn(aim, held, head_share)
+        turn = (0.0, 0.0) if aim is None else _head_turn(aim, held, head_share)
         lag = HEAD_LAG_S / tempo
         self._yaw, self._yaw_speed = damped_spring(
             self._yaw, self._yaw_speed, turn[0], elapsed, lag
@@ -135,120 +94,74 @@ class Gaze:
             self._pitch, self._pitch_speed, turn[1], elapsed, lag
         )
         aimed = held[0] + self._yaw, held[1] + self._pitch - head_drop
-        turned = rotate(body, _turn_between(held, aimed))
+        self._turned = rotate(joints.body, _turn_between(held, aimed))
         local = pose.rotations.copy()
-        self._turn_line(local, turned)
-        if self._eyes:
-            self._turn_eyes(local, turned, point if aim is not None else None, elapsed)
+        joints.turn_head(local, self._turned)
+        if aim is None:
+            self._turn_eyes(joints, local, None, 1.0, elapsed)
+        else:
+            left = aim[0] - held[0] - turn[0], aim[1] - held[1] - turn[1]
+            self._turn_eyes(joints, local, point, range_share(*left), elapsed)
         return Pose(pose.translations, local, pose.scales, pose.morphs)
 
-    def _place(self, pose: Pose) -> None:
-        """Compute the joints' rotations and positions in a pose."""
-        turns = pose.rotations[self._numbers].tolist()
-        shifts = pose.translations[self._numbers].tolist()
-        scales = None if pose.scales is None else pose.scales[self._numbers].tolist()
-        for number, (joint, own, shift) in enumerate(zip(self._joints, turns, shifts, strict=True)):
-            joint.turn, joint.place = own, shift
-            if joint.parent >= 0:
-                above = self._joints[joint.parent]
-                if scales is not None:
-                    shift = [a * b for a, b in zip(shift, above.scale, strict=True)]
-                x, y, z = rotate(above.turn, shift)
-                px, py, pz = above.place
-                joint.turn, joint.place = multiply(above.turn, own), (x + px, y + py, z + pz)
-            if scales is not None:
-                # Shear is neglected: bodies are scaled along their joints' axes, or uniformly.
-                before = self._joints[joint.parent].scale if joint.parent >= 0 else (1.0, 1.0, 1.0)
-                sx, sy, sz = scales[number]
-                joint.scale = (before[0] * sx, before[1] * sy, before[2] * sz)
-
-    def _body(self) -> Quaternion:
-        """Return the rotation of the chest."""
-        base = self._line[0].parent
-        return self._joints[base].facing if base >= 0 else IDENTITY
-
-    def _aimed(self, body: Quaternion, point: Vector | None) -> tuple[float, float] | None:
+    def _aimed(self, joints: HeadJoints, point: Vector | None) -> tuple[float, float] | None:
         """Return yaw and pitch of a point relative to the chest; None if it is ignored."""
         if point is None:
             return None
-        eyes = self._eyes or self._line[-1:]
-        middle = [sum(eye.place[axis] for eye in eyes) / len(eyes) for axis in range(3)]
-        way = subtract(point, (middle[0], middle[1], middle[2]))
-        if max(map(abs, way)) < 1e-6:
+        back = conjugate(joints.body)
+        # Whether a point is behind does not depend on the head, or a head that turns away from it
+        # and back would never come to rest.
+        at_rest = middle([eye.place for eye in joints.eyes or [joints.head]])
+        if abs(_angles(rotate(back, subtract(point, at_rest)))[0]) >= MAX_TARGET_YAW_RAD:
             return None
-        aim = _angles(rotate(conjugate(body), way))
-        return aim if abs(aim[0]) < MAX_TARGET_YAW_RAD else None
-
-    def _head_turn(
-        self, aim: tuple[float, float], held: tuple[float, float], share: float
-    ) -> tuple[float, float]:
-        """Return the turn of the head relative to the pose [rad]: yaw, pitch."""
-        turns = []
-        ranges = ((-MAX_HEAD_YAW_RAD, MAX_HEAD_YAW_RAD), (-MAX_HEAD_DOWN_RAD, MAX_HEAD_UP_RAD))
-        for angle, now, (low, high) in zip(aim, held, ranges, strict=True):
-            away = angle - now
-            beyond = math.copysign(max(abs(away) - EYES_ONLY_RAD, 0.0) * HEAD_SHARE, away)
-            at = min(max(now + beyond, low), high)
-            turns.append((at - now) * share)
-        return turns[0], turns[1]
-
-    def _turn_line(self, local: Array, turned: Vector) -> None:
-        """Turn neck and head: each joint of the chain by an equal part.
-
-        Powers of one rotation commute: the part of each joint is the same vector, in the frame of
-        its parent before the turn.
-        """
-        x, y, z = (value / len(self._line) for value in turned)
-        for joint in self._line:
-            part = (x, y, z)
-            if joint.parent >= 0:
-                part = rotate(conjugate(self._joints[joint.parent].turn), part)
-            local[joint.number] = multiply(from_rotation_vector(part), local[joint.number].tolist())
+        # The head carries the eyes along, which matters for near points.
+        way = subtract(point, middle(joints.eye_places(self._turned)))
+        return None if max(map(abs, way)) < 1e-6 else _angles(rotate(back, way))
 
     def _turn_eyes(
-        self, local: Array, turned: Vector, point: Vector | None, elapsed: float
+        self,
+        joints: HeadJoints,
+        local: Array,
+        point: Vector | None,
+        share: float,
+        elapsed: float,
     ) -> None:
-        """Turn each eye in the turned head to the point."""
-        head, whole = self._line[-1], from_rotation_vector(turned)
-        back = conjugate(multiply(whole, head.facing))
+        """Turn each eye in the turned head to the point, within a share of its range.
+
+        Without a point the eyes go back to where they are in the pose.
+        """
+        from_head = conjugate(joints.head.facing)
+        back = multiply(from_head, conjugate(from_rotation_vector(self._turned)))
         kept = math.exp(-elapsed / EYE_LAG_S)
-        for number, eye in enumerate(self._eyes):
+        places = joints.eye_places(self._turned)
+        for number, eye in enumerate(joints.eyes):
+            held = _angles(rotate(from_head, rotate(eye.facing, _AHEAD)))
             target = (0.0, 0.0)
             if point is not None:
-                x, y, z = rotate(whole, subtract(eye.place, head.place))
-                place = (x + head.place[0], y + head.place[1], z + head.place[2])
-                yaw, pitch = _angles(rotate(back, subtract(point, place)))
-                target = (
-                    min(max(yaw, -MAX_EYE_YAW_RAD), MAX_EYE_YAW_RAD),
-                    min(max(pitch, -MAX_EYE_PITCH_RAD), MAX_EYE_PITCH_RAD),
-                )
+                asked = _angles(rotate(back, subtract(point, places[number])))
+                yaw, pitch = within_range(*asked, share)
+                target = yaw - held[0], pitch - held[1]
             before = self._eye_turns[number]
             yaw, pitch = (w + (b - w) * kept for w, b in zip(target, before, strict=True))
             self._eye_turns[number] = yaw, pitch
-            # About the body's up, and about its left downwards, in the frame of the eye.
-            own = rotate(conjugate(eye.rest), (-pitch, yaw, 0.0))
-            local[eye.number] = multiply(local[eye.number].tolist(), from_rotation_vector(own))
+            turn = _turn_between(held, (held[0] + yaw, held[1] + pitch))
+            joints.turn(local, eye, rotate(joints.head.facing, turn))
 
 
-def _with_ancestors(skeleton: Skeleton, joints: list[int]) -> list[_Joint]:
-    """Return joints with all their ancestors, parents first."""
-    order = skeleton.with_ancestors(joints)
-    place = {joint: number for number, joint in enumerate(order)} | {-1: -1}
-    matrices = skeleton.rest.globals(skeleton)[order, :3, :3]
-    sizes = np.linalg.norm(matrices, axis=1, keepdims=True)
-    rest = from_matrix(matrices / np.where(sizes > 0, sizes, 1.0)).tolist()
-    return [
-        _Joint(joint, place[skeleton.parents[joint]], tuple(turned))
-        for joint, turned in zip(order, rest, strict=True)
-    ]
-
-
-def _line(head: int, neck: int | None, skeleton: Skeleton) -> list[int]:
-    """Return the joints from the neck to the head; without a neck, the head alone."""
-    line = [head]
-    while neck is not None and line[-1] not in (neck, -1):
-        line.append(skeleton.parents[line[-1]])
-    return line[::-1] if line[-1] == neck else [head]
+def _head_turn(
+    aim: tuple[float, float], held: tuple[float, float], share: float
+) -> tuple[float, float]:
+    """Return the turn of the head relative to the pose [rad]: yaw, pitch."""
+    turns = []
+    limits = (
+        (-MAX_HEAD_YAW_RAD, MAX_HEAD_YAW_RAD, HEAD_YAW_SHARE),
+        (-MAX_HEAD_DOWN_RAD, MAX_HEAD_UP_RAD, HEAD_PITCH_SHARE),
+    )
+    for angle, now, (low, high, most) in zip(aim, held, limits, strict=True):
+        away = angle - now
+        turn = away * most * (1.0 - math.exp(-((away / EYES_ALONE_RAD) ** 2)))
+        turns.append((min(max(now + turn, low), high) - now) * share)
+    return turns[0], turns[1]
 
 
 def _angles(direction: Vector) -> tuple[float, float]:

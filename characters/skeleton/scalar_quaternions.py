@@ -104,6 +104,11 @@ def length(a: Vector) -> float:
     return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
+def add(a: Vector, b: Vector) -> Vector:
+    """Return a + b."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
 def subtract(a: Vector, b: Vector) -> Vector:
     """Return a − b."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]

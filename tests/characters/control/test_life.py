@@ -6,14 +6,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from characters import Animator, Character, CharacterCommand, Pose, Skeleton
-from characters.body.gaze import (
+from characters.body.eye_range import (
     MAX_EYE_PITCH_RAD,
     MAX_EYE_YAW_RAD,
-    MAX_HEAD_DOWN_RAD,
-    MAX_HEAD_UP_RAD,
-    MAX_HEAD_YAW_RAD,
-    Gaze,
+    STRAINED_SHARE,
+    within_range,
 )
+from characters.body.gaze import MAX_HEAD_DOWN_RAD, MAX_HEAD_UP_RAD, MAX_HEAD_YAW_RAD, Gaze
 from characters.face.blink import BlinkTimer, lid_closure
 from characters.face.lids import Lids
 from characters.skeleton import rotations
@@ -85,8 +84,7 @@ def test_nothing_turns_farther_than_a_body_can(seed, target):
         assert abs(math.atan2(head[0], head[2])) < MAX_HEAD_YAW_RAD + math.radians(1)
         assert -MAX_HEAD_DOWN_RAD - 0.02 < math.asin(head[1]) < MAX_HEAD_UP_RAD + 0.02
         for eye in (5, 6):
-            most = math.hypot(MAX_EYE_YAW_RAD, MAX_EYE_PITCH_RAD)
-            assert angle(looking(skeleton, pose, eye), head) < most + 1e-6
+            assert angle(looking(skeleton, pose, eye), head) < MAX_EYE_YAW_RAD + 1e-6
 
 
 def test_the_head_turns_without_a_jump_and_the_eyes_are_there_first():
@@ -100,6 +98,59 @@ def test_the_head_turns_without_a_jump_and_the_eyes_are_there_first():
         eyes.append(angle(looking(skeleton, pose, 5), [0, 0, 1]))
     assert np.abs(np.diff(heads)).max() < math.radians(400) * STEP_S
     assert eyes[6] > math.radians(25) > 3 * heads[3]
+
+
+@pytest.mark.parametrize(("yaw", "pitch"), [(30, 0), (60, 10), (-60, -30), (25, -45), (0, 25)])
+def test_the_eyes_turn_back_to_their_middle_as_the_head_follows(yaw, pitch):
+    skeleton, anatomy = bust(3)
+    gaze = Gaze(skeleton, anatomy)
+    yaw, pitch = math.radians(yaw), math.radians(pitch)
+    way = [math.sin(yaw) * math.cos(pitch), math.sin(pitch), math.cos(yaw) * math.cos(pitch)]
+    target = np.array([0.0, 1.7, 0.08]) + 1.5 * np.array(way)
+    turns = []
+    for _ in range(60):
+        pose = gaze.update(skeleton.rest, target, STEP_S)
+        turns.append(angle(looking(skeleton, pose, 5), looking(skeleton, pose, 4)))
+    assert max(turns) > min(math.radians(12), 0.6 * math.hypot(yaw, pitch))
+    assert turns[-1] < math.radians(11)
+
+
+@pytest.mark.parametrize("head_share", [1.0, 0.2])
+def test_the_eyes_do_not_stay_in_their_corners_for_a_point_out_of_reach(head_share):
+    skeleton, anatomy = bust(1)
+    gaze = Gaze(skeleton, anatomy)
+    target = np.array([2.0, 1.2, -0.5])
+    for _ in range(120):
+        pose = gaze.update(skeleton.rest, target, STEP_S, head_share)
+    eye = angle(looking(skeleton, pose, 5), looking(skeleton, pose, 4))
+    assert math.radians(2) < eye < STRAINED_SHARE * MAX_EYE_YAW_RAD + 1e-6
+
+
+def test_eyes_that_the_pose_has_turned_look_at_the_point_all_the_same():
+    skeleton, anatomy = bust(2)
+    target = np.array([0.3, 1.8, 1.0])
+    turned = skeleton.rest.rotations.copy()
+    turn = rotations.from_rotation_vector(np.array([0.1, 0.3, 0.0]))
+    turned[5] = rotations.multiply(turned[5], turn)
+    pose = Pose(skeleton.rest.translations, turned)
+    gaze = Gaze(skeleton, anatomy)
+    for _ in range(120):
+        looked = gaze.update(pose, target, STEP_S)
+    to = target - looked.globals(skeleton)[5, :3, 3]
+    assert angle(looking(skeleton, looked, 5), to) < math.radians(2)
+
+
+@given(st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(0.1, 1.0))
+def test_eyes_approach_the_end_of_their_range_smoothly(yaw, pitch, share):
+    def eccentricity(turn):
+        return math.hypot(turn[0] / MAX_EYE_YAW_RAD, turn[1] / MAX_EYE_PITCH_RAD)
+
+    turn = within_range(yaw, pitch, share)
+    assert eccentricity(turn) <= min(share, eccentricity((yaw, pitch))) + 1e-12
+    assert turn[0] * pitch == pytest.approx(turn[1] * yaw)
+    further = within_range(1.001 * yaw, 1.001 * pitch, share)
+    step = eccentricity(further) - eccentricity(turn)
+    assert -1e-12 <= step <= 0.00101 * eccentricity((yaw, pitch))
 
 
 def test_what_is_behind_is_not_looked_at_and_the_head_comes_back():

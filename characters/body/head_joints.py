@@ -1,0 +1,153 @@
+"""The joints from the root to the head and the eyes: where they are, and turning them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from characters.skeleton.anatomy import Anatomy
+from characters.skeleton.pose import Array, Pose, Skeleton
+from characters.skeleton.rotations import from_matrix
+from characters.skeleton.scalar_quaternions import (
+    IDENTITY,
+    Quaternion,
+    Vector,
+    add,
+    conjugate,
+    from_rotation_vector,
+    multiply,
+    rotate,
+    subtract,
+)
+
+
+@dataclass
+class Joint:
+    """A joint on the way from the root to the head or an eye."""
+
+    number: int
+    """Its index in the skeleton."""
+
+    parent: int
+    """Index of its parent among these joints; −1 for none."""
+
+    rest: Quaternion
+    """Its rotation at rest, in the character frame."""
+
+    turn: Quaternion = IDENTITY
+    """Its present rotation, in the character frame."""
+
+    place: Vector = (0.0, 0.0, 0.0)
+    """Its present position."""
+
+    scale: Vector = (1.0, 1.0, 1.0)
+    """Its present scale, which stretches its children's translations."""
+
+    @property
+    def facing(self) -> Quaternion:
+        """The body's axes as this joint turns them."""
+        return multiply(self.turn, conjugate(self.rest))
+
+
+class HeadJoints:
+    """Neck, head and eyes of one skeleton, and the joints below them.
+
+    Parameters
+    ----------
+    head
+        Number of the head's joint.
+    """
+
+    def __init__(self, skeleton: Skeleton, anatomy: Anatomy, head: int) -> None:
+        line = _line(head, anatomy.joint("neck"), skeleton)
+        eyes = [j for side in ("left", "right") if (j := anatomy.joint(f"{side}Eye")) is not None]
+        self._joints = _with_ancestors(skeleton, [*line, *eyes])
+        places = {joint.number: place for place, joint in enumerate(self._joints)}
+        self._numbers = np.array([joint.number for joint in self._joints], np.intp)
+        self._line = [self._joints[places[joint]] for joint in line]
+        self.head = self._line[-1]
+        self.eyes = [self._joints[places[joint]] for joint in eyes]
+        """The left and the right eye; none, one or both."""
+
+    @property
+    def body(self) -> Quaternion:
+        """The rotation of the chest."""
+        base = self._line[0].parent
+        return self._joints[base].facing if base >= 0 else IDENTITY
+
+    def place(self, pose: Pose) -> None:
+        """Compute the joints' rotations and positions in a pose."""
+        turns = pose.rotations[self._numbers].tolist()
+        shifts = pose.translations[self._numbers].tolist()
+        scales = None if pose.scales is None else pose.scales[self._numbers].tolist()
+        for number, (joint, own, shift) in enumerate(zip(self._joints, turns, shifts, strict=True)):
+            joint.turn, joint.place = own, shift
+            if joint.parent >= 0:
+                above = self._joints[joint.parent]
+                if scales is not None:
+                    shift = [a * b for a, b in zip(shift, above.scale, strict=True)]
+                x, y, z = rotate(above.turn, shift)
+                px, py, pz = above.place
+                joint.turn, joint.place = multiply(above.turn, own), (x + px, y + py, z + pz)
+            if scales is not None:
+                # Shear is neglected: bodies are scaled along their joints' axes, or uniformly.
+                before = self._joints[joint.parent].scale if joint.parent >= 0 else (1.0, 1.0, 1.0)
+                sx, sy, sz = scales[number]
+                joint.scale = (before[0] * sx, before[1] * sy, before[2] * sz)
+
+    def eye_places(self, turned: Vector) -> list[Vector]:
+        """Return where the eyes are once neck and head are turned; without eyes, the head."""
+        x, y, z = (value / len(self._line) for value in turned)
+        place = self._line[0].place
+        for part, (below, above) in enumerate(pairwise(self._line), start=1):
+            turn = from_rotation_vector((part * x, part * y, part * z))
+            place = add(place, rotate(turn, subtract(above.place, below.place)))
+        whole = from_rotation_vector(turned)
+        return [
+            add(place, rotate(whole, subtract(eye.place, self.head.place)))
+            for eye in self.eyes or [self.head]
+        ]
+
+    def turn_head(self, local: Array, turned: Vector) -> None:
+        """Turn neck and head in local rotations, (joints, 4): each joint by an equal part.
+
+        Powers of one rotation commute: the part of each joint is the same vector, in the frame of
+        its parent before the turn.
+        """
+        x, y, z = (value / len(self._line) for value in turned)
+        for joint in self._line:
+            self.turn(local, joint, (x, y, z))
+
+    def turn(self, local: Array, joint: Joint, turned: Vector) -> None:
+        """Turn a joint in local rotations by a rotation vector in the character frame."""
+        if joint.parent >= 0:
+            turned = rotate(conjugate(self._joints[joint.parent].turn), turned)
+        local[joint.number] = multiply(from_rotation_vector(turned), local[joint.number].tolist())
+
+
+def middle(places: Sequence[Vector]) -> Vector:
+    """Return the middle of some places."""
+    x, y, z = (sum(axis) / len(places) for axis in zip(*places, strict=True))
+    return x, y, z
+
+
+def _with_ancestors(skeleton: Skeleton, joints: list[int]) -> list[Joint]:
+    """Return joints with all their ancestors, parents first."""
+    order = skeleton.with_ancestors(joints)
+    place = {joint: number for number, joint in enumerate(order)} | {-1: -1}
+    matrices = skeleton.rest.globals(skeleton)[order, :3, :3]
+    sizes = np.linalg.norm(matrices, axis=1, keepdims=True)
+    rest = from_matrix(matrices / np.where(sizes > 0, sizes, 1.0)).tolist()
+    return [
+        Joint(joint, place[skeleton.parents[joint]], tuple(turned))
+        for joint, turned in zip(order, rest, strict=True)
+    ]
+
+
+def _line(head: int, neck: int | None, skeleton: Skeleton) -> list[int]:
+    """Return the joints from the neck to the head; without a neck, the head alone."""
+    line = [head]
+    while neck is not None and line[-1] not in (neck, -1):
+        line.append(skeleton.parents[line[-1]])
+    return line[::-1] if line[-1] == neck else [head]
