@@ -11,6 +11,7 @@ from app.pipeline.attention import Attention
 from app.pipeline.other_cube import OtherCube, advice
 from app.pipeline.registry import make_scenario
 from app.pipeline.scenario import Inputs, Outcome, Scenario
+from app.pipeline.scenario_errors import checked, scenario_errors
 from app.pipeline.step import Rect, ReplayInputs, Step
 from app.pipeline.subjects import character_region, cube_region
 from characters import Animator, Character, CharacterCommand, PosedCharacter
@@ -156,7 +157,9 @@ class Playground:
             walks=animator.walks,
             body_length=animator.length,
         )
-        return self.scenario.update(controls, self._posed, inputs)
+        scenario = type(self.scenario)
+        with scenario_errors(scenario):
+            return checked(self.scenario.update(controls, self._posed, inputs), scenario)
 
     def attend(self, state: CubeState, controls: CubeControls, outcome: Outcome) -> Outcome:
         """Add gaze and emotion to the command.

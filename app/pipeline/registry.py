@@ -5,6 +5,7 @@ from importlib.metadata import EntryPoint, entry_points
 from affect import Personality
 from app.errors import AppError
 from app.pipeline.scenario import Scenario, ScenarioSettings
+from app.pipeline.scenario_errors import scenario_errors
 from tracking import CubeModel
 
 ENTRY_POINT_GROUP = "cubeling.scenarios"
@@ -82,4 +83,6 @@ def make_scenario(
     loaded = None if personality is None else Personality.load(personality)
     settings = ScenarioSettings(speed_map, turns, loaded)
     scenario = find_scenario(name)
-    return scenario(cube or CubeModel.load(scenario.cube), settings)
+    model = cube or CubeModel.load(scenario.cube)
+    with scenario_errors(scenario):
+        return scenario(model, settings)

@@ -11,7 +11,7 @@ import pytest
 import app
 from app.pipeline.scenario import Inputs
 from app.scenarios import make_scenario, scenario_names
-from app.session import messages
+from app.session import messages, session_info
 from app.session.bundled import bundled
 from app.session.encoding import decode
 from characters import CharacterCommand
@@ -116,6 +116,38 @@ def test_a_broken_package_is_one_line_that_names_it(install, cubeling, case):
     code, out, _ = cubeling("play", "--help")
     assert code == 0, "the other scenarios can still be played"
     assert "cubeling-greet" in out
+
+
+FAILING = {
+    "__init__": ("        self._presence", "        {}['mood']\n", "KeyError: 'mood'"),
+    "update": (
+        "        now = ",
+        "        if controls.lifted:\n            1 / 0\n",
+        "ZeroDivisionError: ",
+    ),
+    "a library": ("        now = ", "        Personality.load('cross')\n", "AffectError: "),
+    "no outcome": ("        return Outcome", "        return None\n", "its update returned None"),
+}
+
+
+@pytest.mark.parametrize("case", FAILING)
+def test_an_error_of_an_added_scenario_names_its_place_and_keeps_the_recording(
+    install, cubeling, case
+):
+    before, failing, reason = FAILING[case]
+    source = PYTHON.replace(before, failing + before, 1)
+    install(TOML, source)
+    session = ["-s", bundled("companion"), "--record", "kept.mcap", "--robot", "none"]
+    code, out, err = cubeling("play", "greet", *session, "--no-pictures")
+    assert code == 2
+    assert err.startswith("cubeling: the scenario 'greet' failed in ")
+    line = source[: source.index(failing)].count("\n") + failing.count("\n")
+    assert f"cubeling_greet.py, line {line}: {reason}" in err or case == "no outcome"
+    assert reason in err
+    assert err.count("\n") == 1
+    if case == "update":
+        assert "Recorded to kept.mcap" in out
+        assert session_info(Path("kept.mcap")).frames > 20
 
 
 @pytest.mark.parametrize("name", ["greet", "follow"])
