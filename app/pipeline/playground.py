@@ -133,7 +133,8 @@ class Playground:
         self._posed = posed
         picture = self.draw(frame, state, controls, outcome, posed)
         subjects = self._subjects(state, controls, posed)
-        return Step(frame, state, controls, outcome, posed, picture, subjects)
+        name = self.scenario.name
+        return Step(frame, state, controls, outcome, posed, picture, subjects, name)
 
     @property
     def lens(self) -> LensEstimate:

@@ -39,6 +39,9 @@ class Step:
     subjects: tuple[Rect, ...] = ()
     """Where the cube with the hand, and the character are in the picture [px]."""
 
+    scenario: str = ""
+    """Name of the scenario that decided."""
+
     @property
     def command(self) -> CharacterCommand:
         """What the character is asked to do."""

@@ -32,7 +32,7 @@ class Summary:
     """Collects the figures of a session, frame by frame."""
 
     scenario: str
-    """Name of the scenario."""
+    """Name of the scenario that it begins with."""
 
     frames: int = 0
     """Frames so far."""
@@ -42,6 +42,9 @@ class Summary:
 
     tracked_frames: int = 0
     """Frames in which the cube was found."""
+
+    scenarios: list[tuple[float, str]] = field(default_factory=list)
+    """When each scenario began [s], and its name; a key changes it."""
 
     states: list[tuple[float, str]] = field(default_factory=list)
     """When each state of the character began [s], and its name."""
@@ -85,6 +88,8 @@ class Summary:
         self.last = now
         self.frames += 1
         self.tracked_frames += step.state.visible
+        if step.scenario != (self.scenarios[-1][1] if self.scenarios else ""):
+            self.scenarios.append((now - self.first, step.scenario))
         if not self.states or self.states[-1][1] != step.posed.state:
             self.states.append((now - self.first, step.posed.state))
         self.moods.append((now - self.first, robot.mood, robot.label))
@@ -129,6 +134,8 @@ class Summary:
         table.add_row("played", f"{self.frames} frames, {duration:.1f} s")
         if self.left_out:
             table.add_row("left out", f"{self.left_out} frames, to keep up with the recording")
+        if len(self.scenarios) > 1:
+            table.add_row("scenarios", _timeline(self.scenarios, duration))
         table.add_row("cube found", f"in {100 * self.tracking_rate:.1f} % of the frames")
         table.add_row("character", _timeline(self.states, duration))
         if self.hopped:
@@ -149,7 +156,9 @@ class Summary:
             table.add_row("camera lost", f"{count}, {lost:.1f} s in all")
         if self.lens is not None:
             table.add_row("lens", self.lens)
-        return Panel(Group(table), title=f"[bold]{self.scenario}", title_align="left", expand=False)
+        names = dict.fromkeys([self.scenario, *(name for _, name in self.scenarios)])
+        title = f"[bold]{', '.join(names)}"
+        return Panel(Group(table), title=title, title_align="left", expand=False)
 
     def _curve(self) -> str:
         """Return the valence over time as a line of blocks."""

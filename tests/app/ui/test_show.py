@@ -1,5 +1,6 @@
 """Cards over the picture, videos on disk, and the summary."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import av
@@ -150,6 +151,17 @@ def test_the_summary_shows_frames_moods_and_processing_time(a_step):
     shown = printed(summary)
     assert "4 frames" in shown
     assert "20.0 ms in the median, 20.0 ms at the 95th percentile" in shown
+
+
+def test_the_summary_names_every_scenario_that_was_played(a_step):
+    summary = Summary("follow")
+    step = a_step(None)
+    for second, name in enumerate(["follow", "companion", "companion", "follow"]):
+        frame = replace(step.frame, timestamp=float(second))
+        summary.add(replace(step, frame=frame, scenario=name), ROBOT, 0.02)
+    shown = printed(summary)
+    assert "─ follow, companion ─" in shown
+    assert "follow 1.0 s → companion 2.0 s" in shown
 
 
 def printed(summary):
