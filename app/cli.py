@@ -39,10 +39,14 @@ COMMANDS = {
 }
 """The commands with the first sentence of their help. A new command is registered here."""
 
+SESSION_COMMANDS = ("demo", "play", "replay", "export")
+"""The commands whose modules are in the folder `session`."""
+
 
 def load_command(name: str) -> Any:
-    """Import `app.commands.NAME`, and return its function NAME, or the group that is its `app`."""
-    module = import_module(f"app.commands.{name}")
+    """Import the module of a command; return its function NAME, or the group that is its `app`."""
+    folder = "session." if name in SESSION_COMMANDS else ""
+    module = import_module(f"app.commands.{folder}{name}")
     group = getattr(module, "app", None)
     if group is None:
         group = typer.Typer(rich_markup_mode="rich", add_completion=False)

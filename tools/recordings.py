@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from app.commands.progress import run_with_progress
+from app.commands.session.progress import run_with_progress
 from app.running.opening import open_session
 from app.scenarios import SCENARIOS
 from app.session import SessionOptions

@@ -1,1 +1,1 @@
-"""The commands of `cubeling`, a file each."""
+"""The commands of `cubeling`, a file each; a group of commands is a folder."""

@@ -8,7 +8,7 @@ import numpy as np
 import typer
 from rich.console import Console
 
-from app.commands.play import DEFAULT_CAMERA, CubeOption
+from app.commands.session.play import DEFAULT_CAMERA, CubeOption
 from app.errors import AppError
 from app.output_path import check_output
 from app.running.opening import intrinsics_for

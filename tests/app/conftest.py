@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from app import cli
-from app.commands import progress
+from app.commands.session import progress
 from app.pipeline.playground import Playground
 from app.pipeline.step import Step
 from app.running.opening import intrinsics_for

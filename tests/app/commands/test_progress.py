@@ -9,8 +9,8 @@ import av
 import cv2
 import pytest
 
-from app.commands import progress
-from app.commands.progress import ProgressLines
+from app.commands.session import progress
+from app.commands.session.progress import ProgressLines
 from app.running.opening import open_session
 from app.running.runner import run
 from app.session import SessionOptions, messages, session_info

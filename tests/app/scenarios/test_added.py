@@ -45,14 +45,14 @@ def install(tmp_path_factory, monkeypatch):
         (info / "entry_points.txt").write_text("\n".join(lines))
         monkeypatch.syspath_prepend(site)
         monkeypatch.delitem(sys.modules, module, raising=False)
-        monkeypatch.delitem(sys.modules, "app.commands.play", raising=False)
-        monkeypatch.delitem(sys.modules, "app.commands.demo", raising=False)
+        monkeypatch.delitem(sys.modules, "app.commands.session.play", raising=False)
+        monkeypatch.delitem(sys.modules, "app.commands.session.demo", raising=False)
         importlib.invalidate_caches()
 
     yield install
     for module in [name for name in sys.modules if name.startswith("cubeling_")]:
         del sys.modules[module]
-    for command in ("app.commands.play", "app.commands.demo"):
+    for command in ("app.commands.session.play", "app.commands.session.demo"):
         sys.modules.pop(command, None)  # their help lists what was installed
 
 

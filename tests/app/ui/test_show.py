@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from app.commands import demo
+from app.commands.session import demo
 from app.errors import AppError
 from app.pipeline.playground import Playground
 from app.pipeline.step import RobotView

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import typer
 
-from app.commands.robot_conform import conform
+from app.commands.robot.conform import conform
 from robot import SimulatedPort
 from tests.robot.conformance.mutants.commands import AcknowledgesOnce
 from tests.robot.conformance.mutants.sessions import SaysGoneToEverything

@@ -1,4 +1,4 @@
-"""`cubeling robot`."""
+"""`cubeling robot simulate`."""
 
 import time
 from contextlib import suppress
@@ -7,28 +7,13 @@ from typing import Annotated
 import typer
 from rich.console import Console
 from rich.live import Live
-from rich.table import Table
 from rich.text import Text
 
-from app.commands.robot_conform import conform
-from app.commands.robot_try import try_
-from app.ui.literal_text import literal_text
-from robot import RobotError, SimulatedPort, serial_ports
+from robot import RobotError, SimulatedPort
 from robot.simulators import Simulated
 from robot.simulators.memory import simulator_of
 
-app = typer.Typer(
-    help="Simulated robots and real ports.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
-)
 
-app.command()(conform)
-app.command("try")(try_)
-
-
-@app.command()
 def simulate(
     name: Annotated[
         str, typer.Argument(metavar="NAME[?FAULTS]", help="Which robot, and its faults.")
@@ -94,24 +79,6 @@ def simulate(
                 if console.is_terminal:
                     live.update(_emotion_line(simulator))
                 time.sleep(0.1)
-
-
-@app.command("list")
-def list_() -> None:
-    """List the serial ports of this computer and the robots that may be connected to them.
-
-    Example: [cyan]cubeling robot list[/]
-    """
-    ports = serial_ports()
-    console = Console()
-    if not ports:
-        console.print("No serial port here. A robot to try with: [cyan]cubeling robot simulate[/]")
-        return
-    table = Table("port", "what", "probably")
-    for port in ports:
-        description = literal_text(port.description.replace("n/a", ""))  # the device's own words
-        table.add_row(port.url, description, port.guess or "")
-    console.print(table)
 
 
 def _emotion_line(simulator: Simulated) -> Text:

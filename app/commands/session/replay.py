@@ -9,7 +9,7 @@ from rich.console import Console
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.output import OverwriteOption
-from app.commands.play import (
+from app.commands.session.play import (
     CharacterOption,
     CodecOption,
     OutputOption,
@@ -19,7 +19,7 @@ from app.commands.play import (
     RobotOption,
     RobotSettingsOption,
 )
-from app.commands.progress import ProgressLines, play_session
+from app.commands.session.progress import ProgressLines, play_session
 from app.running.network import DEFAULT_SITE
 from app.running.replay_check import check_session
 from app.session import session_info

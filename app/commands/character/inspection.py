@@ -1,4 +1,4 @@
-"""`cubeling character`."""
+"""`cubeling character inspect`."""
 
 import warnings
 from collections.abc import Callable, Sequence
@@ -14,7 +14,6 @@ from rich.markup import escape
 from rich.table import Table
 from rich.tree import Tree
 
-from app.commands import character_graph, character_locomotion
 from app.errors import AppError
 from app.ui.contact_sheets import ContactSheets, save
 from characters import Character, CharacterWarning, Skeleton, load_motion
@@ -23,18 +22,10 @@ from characters.model.inspection import ClipStats, FootContactStats, Inspection,
 from characters.model.stick_figure import stick_figure
 from characters.rendering import create_context
 
-app = typer.Typer(
-    help="Look at characters and motions.",
-    no_args_is_help=True,
-    add_completion=False,
-    rich_markup_mode="rich",
-)
-
 MIN_FOLDED_JOINTS = 4
 """Branches of at least this number of unrecognised joints are shown as one line."""
 
 
-@app.command("inspect")
 def inspect_command(
     character: Annotated[
         str,
@@ -211,7 +202,3 @@ def _contacts(contacts: Sequence[FootContactStats]) -> str:
         landings = f" in {foot.landings}" if foot.landings > 1 else ""
         each.append(f"{name} {100 * foot.share:.0f} %{landings}")
     return ", ".join(each)
-
-
-app.command()(character_graph.graph)
-app.command()(character_locomotion.locomotion)

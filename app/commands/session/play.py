@@ -8,7 +8,7 @@ from rich.markup import escape
 
 from app.commands.access import Broker, Ca, PasswordFile, PlayerName, Site, publisher
 from app.commands.output import OverwriteOption
-from app.commands.progress import play_session
+from app.commands.session.progress import play_session
 from app.errors import AppError
 from app.running.network import DEFAULT_SITE
 from app.scenarios import find_scenario, scenario_names

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from app.commands.conformance_report import SVG_TEMPLATE, as_json, listing, show, verdict
+from app.commands.robot.conformance_report import SVG_TEMPLATE, as_json, listing, show, verdict
 from app.errors import AppError
 from robot.conformance import (
     Check,

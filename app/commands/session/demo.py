@@ -9,13 +9,13 @@ import typer
 from rich.console import Console
 
 from app.commands.output import OverwriteOption
-from app.commands.play import (
+from app.commands.session.play import (
     DEFAULT_CAMERA,
     OutputOption,
     PersonalityOption,
     ScenarioArgument,
 )
-from app.commands.progress import play_session
+from app.commands.session.progress import play_session
 from app.errors import AppError
 from app.running.opening import check_output_paths
 from app.scenarios import SCENARIOS, scenario_cube

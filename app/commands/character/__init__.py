@@ -1,0 +1,18 @@
+"""`cubeling character`: a file for each of its commands."""
+
+import typer
+
+from app.commands.character.graph import graph
+from app.commands.character.inspection import inspect_command
+from app.commands.character.locomotion import locomotion
+
+app = typer.Typer(
+    help="Look at characters and motions.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+)
+
+app.command("inspect")(inspect_command)
+app.command()(graph)
+app.command()(locomotion)

@@ -1,0 +1,20 @@
+"""`cubeling robot`: a file for each of its commands."""
+
+import typer
+
+from app.commands.robot.conform import conform
+from app.commands.robot.ports import list_
+from app.commands.robot.simulate import simulate
+from app.commands.robot.trial import try_
+
+app = typer.Typer(
+    help="Simulated robots and real ports.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+)
+
+app.command()(conform)
+app.command("try")(try_)
+app.command()(simulate)
+app.command("list")(list_)

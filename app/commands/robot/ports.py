@@ -1,0 +1,24 @@
+"""`cubeling robot list`."""
+
+from rich.console import Console
+from rich.table import Table
+
+from app.ui.literal_text import literal_text
+from robot import serial_ports
+
+
+def list_() -> None:
+    """List the serial ports of this computer and the robots that may be connected to them.
+
+    Example: [cyan]cubeling robot list[/]
+    """
+    ports = serial_ports()
+    console = Console()
+    if not ports:
+        console.print("No serial port here. A robot to try with: [cyan]cubeling robot simulate[/]")
+        return
+    table = Table("port", "what", "probably")
+    for port in ports:
+        description = literal_text(port.description.replace("n/a", ""))  # the device's own words
+        table.add_row(port.url, description, port.guess or "")
+    console.print(table)

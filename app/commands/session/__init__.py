@@ -1,0 +1,1 @@
+"""The commands that play, replay and export sessions, a file each."""
