@@ -13,6 +13,7 @@ from characters.control.command import (
 )
 from characters.errors import CharacterError, CharacterWarning
 from characters.formats import load_motion  # importing formats registers the file readers
+from characters.locomotion.footfalls import Footfall, Footfalls
 from characters.locomotion.gaits import IDLE_SPEED, RUN_SPEED
 from characters.locomotion.paths import ClosedPath
 from characters.model.character import Character
@@ -51,6 +52,8 @@ __all__ = [
     "CrossFade",
     "Curve",
     "FadeCurve",
+    "Footfall",
+    "Footfalls",
     "Keyed",
     "LiveSchedule",
     "LocomotionIntent",
