@@ -34,6 +34,7 @@ COMMANDS = {
     "calibrate": "Find the camera's lens by waving the cube in front of it for about 20 seconds.",
     "character": "Look at characters and motions.",
     "robot": "Simulated robots and real ports.",
+    "sounds": "Write all sounds as .wav files, to listen to them and to replace them.",
     "mood": "Plot and tabulate the moods of recorded sessions; print personalities.",
     "doctor": "Check what this computer has, and show the commands that install what is missing.",
 }

@@ -1,6 +1,7 @@
 """Checking where a command writes, before it does the work."""
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 
 from app.errors import AppError
@@ -46,3 +47,32 @@ def check_output(
     for place in (path.parent, path):
         if place.exists() and not os.access(place, os.W_OK):
             raise AppError(f"'{place}' cannot be written to: choose another place for the {kind}")
+
+
+def check_output_folder(folder: Path, files: Iterable[str], kind: str, *, overwrite: bool) -> None:
+    """Refuse a folder that cannot be written to, or that holds some of the files already.
+
+    Parameters
+    ----------
+    folder
+        The folder; it may be missing, but not the one that it is in.
+    files
+        Names of the files that are to be written.
+    kind
+        What they are, for the message: "tables", "sounds" …
+    overwrite
+        Whether they may exist.
+
+    Raises
+    ------
+    AppError
+        The folder is a file, cannot be made or written to, or holds one of the files.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise AppError(f"'{folder}' is a file: name a folder with --output")
+    if not folder.parent.is_dir():
+        raise AppError(f"there is no folder '{folder.parent}' for the folder '{folder.name}'")
+    if not os.access(folder if folder.exists() else folder.parent, os.W_OK):
+        raise AppError(f"'{folder}' cannot be written to: choose another place")
+    if not overwrite and any((folder / name).exists() for name in files):
+        raise AppError(f"'{folder}' holds {kind} already: choose another one or add --overwrite")

@@ -1,6 +1,5 @@
 """`cubeling export`."""
 
-import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
@@ -13,6 +12,7 @@ from app.errors import AppError
 from app.exporting import ExportedSession
 from app.exporting import export as write_tables
 from app.exporting.writing import EXPORT_FILES
+from app.output_path import check_output_folder
 
 Labels = Annotated[
     list[str] | None,
@@ -38,7 +38,7 @@ def export(
 
     Example: [cyan]cubeling export p1.mcap p2.mcap -o study --participant P1 --participant P2[/]
     """
-    check_folder(output, overwrite=overwrite)
+    check_output_folder(output, EXPORT_FILES, "tables", overwrite=overwrite)
     people = labels(participant, len(sessions), "--participant")
     conditions = labels(condition, len(sessions), "--condition")
     names = [path.stem for path in sessions]
@@ -55,18 +55,6 @@ def export(
     for name, count in rows.items():
         console.print(f"{name:10} {count:8} rows")
     console.print(f"[bold]{escape(str(output))}[/] holds the tables as .csv and .jsonl")
-
-
-def check_folder(folder: Path, *, overwrite: bool) -> None:
-    """Refuse a folder that cannot be written to, or that holds an earlier export."""
-    if folder.exists() and not folder.is_dir():
-        raise AppError(f"'{folder}' is a file: name a folder with --output")
-    if not folder.parent.is_dir():
-        raise AppError(f"there is no folder '{folder.parent}' for the folder '{folder.name}'")
-    if not os.access(folder if folder.exists() else folder.parent, os.W_OK):
-        raise AppError(f"'{folder}' cannot be written to: choose another place")
-    if not overwrite and any((folder / name).exists() for name in EXPORT_FILES):
-        raise AppError(f"'{folder}' holds tables already: choose another one or add --overwrite")
 
 
 def labels(given: Sequence[str] | None, count: int, option: str) -> list[str]:

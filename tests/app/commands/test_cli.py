@@ -23,6 +23,7 @@ COMMANDS_WITH_EXAMPLES = [
     ["character", "inspect"],
     ["robot", "simulate"],
     ["robot", "list"],
+    ["sounds"],
     ["doctor"],
 ]
 

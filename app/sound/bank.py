@@ -1,0 +1,116 @@
+"""The sounds of a session: synthesised when first needed, or read from a folder of WAV files."""
+
+import re
+import wave
+import zlib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+
+from app.errors import AppError
+from app.sound.sounds import SOUNDS
+from app.sound.synthesis import SAMPLE_RATE, Array, levelled
+
+VARIANTS = 4
+"""Variants of each synthesised sound, which differ a little, so that repetition does not tire."""
+
+MAX_FILE_S = 10.0
+"""Longest sound that a file may hold [s]."""
+
+_FILE_NAME = re.compile(r"(?P<name>.+?)(-\d+)?")
+
+
+class SoundBank:
+    """Sounds by name, each in one or more variants of samples (n,).
+
+    Parameters
+    ----------
+    own
+        Sounds that replace those of `SOUNDS`, or are added to them.
+    """
+
+    def __init__(self, own: dict[str, list[Array]] | None = None) -> None:
+        self._variants = dict(own or {})
+
+    @classmethod
+    def load(cls, folder: Path | None, actions: Iterable[str] = ()) -> Self:
+        """Return the sounds, with those of a folder instead of ours.
+
+        The files are called NAME.wav, or NAME-1.wav, NAME-2.wav … for variants that take turns. A
+        name is one of `SOUNDS`, or one of the `actions` of the character.
+
+        Raises AppError if there is no folder, no WAV file in it, or one that cannot be used.
+        """
+        if folder is None:
+            return cls()
+        files = sorted(folder.glob("*.wav")) if folder.is_dir() else []
+        if not files:
+            raise AppError(f"there are no .wav files in a folder '{folder}'")
+        known, own = {*SOUNDS, *actions}, dict[str, list[Array]]()
+        for file in files:
+            match = _FILE_NAME.fullmatch(file.stem)
+            name = match["name"] if match and match["name"] in known else file.stem
+            if name not in known:
+                names = ", ".join(sorted(known))
+                raise AppError(f"no sound is called '{name}' ({file}): choose one of {names}")
+            own.setdefault(name, []).append(read_wave(file))
+        return cls(own)
+
+    def variants(self, name: str) -> list[Array]:
+        """Return the variants of a sound; none for an unknown name."""
+        if name not in self._variants:
+            self._variants[name] = synthesised(name) if name in SOUNDS else []
+        return self._variants[name]
+
+    def prepare(self) -> None:
+        """Synthesise all sounds now; it takes about half a second."""
+        for name in SOUNDS:
+            self.variants(name)
+
+
+def synthesised(name: str) -> list[Array]:
+    """Return the variants of one of `SOUNDS`: always the same."""
+    sound = SOUNDS[name]
+    seed = zlib.crc32(name.encode())
+    return [
+        levelled(sound.make(np.random.default_rng([seed, variant])), sound.level)
+        for variant in range(VARIANTS)
+    ]
+
+
+def read_wave(path: Path) -> Array:
+    """Return the samples of a WAV file, mixed to one channel at `SAMPLE_RATE`.
+
+    Raises AppError if it is no PCM file of 8 to 32 bits, or too long.
+    """
+    try:
+        with wave.open(str(path)) as file:
+            width, channels, rate = file.getsampwidth(), file.getnchannels(), file.getframerate()
+            count = file.getnframes()
+            data = file.readframes(min(count, round(MAX_FILE_S * rate)))
+    except (wave.Error, EOFError, OSError) as error:
+        raise AppError(f"'{path}' cannot be read as a PCM .wav file: {error}") from error
+    if count > MAX_FILE_S * rate or not data:
+        raise AppError(
+            f"'{path}' has {count / rate:.1f} s of sound: up to {MAX_FILE_S:g} s can play"
+        )
+    numbers = np.frombuffer(data, np.uint8).reshape(-1, width)
+    # The sample's bytes are the upper ones of 32 bits, so that its sign is right.
+    words = np.zeros((len(numbers), 4), np.uint8)
+    words[:, 4 - width :] = numbers
+    if width == 1:
+        words[:, 3] ^= 0x80  # samples of 8 bits are unsigned
+    samples = words.view("<i4").reshape(-1, channels).mean(axis=1) / 2.0**31
+    wanted = np.arange(0.0, len(samples) - 0.5, rate / SAMPLE_RATE)
+    return np.asarray(np.interp(wanted, np.arange(len(samples)), samples))
+
+
+def write_wave(path: Path, samples: Array) -> None:
+    """Write samples (n,) to a WAV file of 16 bits."""
+    with wave.open(str(path), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(SAMPLE_RATE)
+        file.writeframes(np.round(samples * 32767.0).astype("<i2").tobytes())

@@ -1,0 +1,89 @@
+"""Mixing the sounds that play at one time into two channels."""
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.sound.bank import SoundBank
+from app.sound.cues import Cue
+from app.sound.synthesis import Array
+
+MAX_SOUNDS = 24
+"""Sounds that play at one time, and cues that wait; the oldest give way to newer ones."""
+
+KNEE, CEILING = 0.6, 0.95
+"""Amplitudes up to the first are kept; greater ones are bent to stay below the second."""
+
+
+@dataclass
+class _Playing:
+    """A sound that plays."""
+
+    samples: Array
+    """What is left of it, (n,)."""
+
+    gains: Array
+    """Amplitudes on the left and on the right, (2,)."""
+
+
+class Mixer:
+    """Plays cues into blocks of stereo samples.
+
+    `start` may be called on another thread than `render`. The same cues between the same blocks
+    give the same samples.
+
+    Parameters
+    ----------
+    bank
+        The sounds.
+    volume
+        Factor of all amplitudes, 0…1; may be changed at any time.
+    """
+
+    def __init__(self, bank: SoundBank, volume: float = 1.0) -> None:
+        self.bank = bank
+        self.volume = volume
+        self._waiting: deque[Cue] = deque(maxlen=MAX_SOUNDS)
+        self._playing: deque[_Playing] = deque(maxlen=MAX_SOUNDS)
+
+    def start(self, cue: Cue) -> None:
+        """Let a sound begin with the next block."""
+        self._waiting.append(cue)
+
+    def render(self, count: int) -> NDArray[np.float32]:
+        """Return the next samples, (count, 2)."""
+        while self._waiting:
+            self._begin(self._waiting.popleft())
+        block = np.zeros((count, 2))
+        for sound in self._playing:
+            part, sound.samples = sound.samples[:count], sound.samples[count:]
+            block[: len(part)] += part[:, None] * sound.gains
+        self._playing = deque((s for s in self._playing if len(s.samples)), MAX_SOUNDS)
+        return (self.volume * limited(block)).astype(np.float32)
+
+    def _begin(self, cue: Cue) -> None:
+        variants = self.bank.variants(cue.name)
+        if not variants:
+            return
+        samples = variants[cue.variant % len(variants)]
+        if cue.rate != 1.0:
+            wanted = np.arange(0.0, len(samples) - 1.0, cue.rate)
+            samples = np.interp(wanted, np.arange(len(samples)), samples)
+        # Equal power: as loud at the side as in the middle.
+        angle = (cue.pan + 1.0) * np.pi / 4.0
+        self._playing.append(_Playing(samples, cue.gain * np.array([np.cos(angle), np.sin(angle)])))
+
+
+def limited(block: Array) -> Array:
+    """Return samples bent so that none is beyond `CEILING`; quiet ones are unchanged.
+
+    >>> limited(np.array([-0.5, 0.6, 3.0])).round(3).tolist()
+    [-0.5, 0.6, 0.95]
+    """
+    loud = np.maximum(np.abs(block) - KNEE, 0.0)
+    if not loud.any():
+        return block
+    room = CEILING - KNEE
+    return np.sign(block) * (np.minimum(np.abs(block), KNEE) + room * np.tanh(loud / room))

@@ -1,0 +1,67 @@
+"""What is heard of a session, on a loudspeaker or in a video."""
+
+from app.pipeline.step import Step
+from app.sound.cues import SoundCues
+from app.sound.loudspeaker import Loudspeaker
+from app.sound.mixer import Mixer
+from characters import Character
+
+
+class SessionSound:
+    """Turns the steps of a session into sound. Whoever makes it closes it.
+
+    Parameters
+    ----------
+    mixer
+        Mixes the sounds; a video takes its samples from there.
+    live
+        Whether they are heard on the loudspeaker; its threads start with the first sound.
+    muted
+        Whether nothing sounds at first.
+    moods
+        Whether the robot's moods are heard.
+    """
+
+    def __init__(
+        self, mixer: Mixer, *, live: bool = False, muted: bool = False, moods: bool = True
+    ) -> None:
+        self.mixer = mixer
+        """Its `volume` may be changed at any time."""
+        self._live, self._moods = live, moods
+        self._loudspeaker: Loudspeaker | None = None
+        self._character: Character | None = None
+        self._cues: SoundCues | None = None
+        self.muted = muted
+
+    @property
+    def muted(self) -> bool:
+        """Whether nothing sounds; may be changed at any time."""
+        return self._muted
+
+    @muted.setter
+    def muted(self, muted: bool) -> None:
+        self._muted = muted
+        if self._live and not muted and self._loudspeaker is None:
+            self._loudspeaker = Loudspeaker(self.mixer)
+
+    @property
+    def problem(self) -> str:
+        """Why nothing is heard, in one line; "" if nothing is wrong."""
+        return "" if self._loudspeaker is None else self._loudspeaker.problem
+
+    def play(self, step: Step, character: Character, started_over: bool = False) -> None:
+        """Let what begins with a step sound; see `SoundCues.update`. Call it once it is shown."""
+        if self._cues is None or character is not self._character:
+            self._character = character
+            self._cues = SoundCues(character, moods=self._moods)
+        cues = self._cues.update(step, started_over)
+        unheard = self._loudspeaker is not None and not self._loudspeaker.playing
+        if self._muted or unheard:
+            return
+        for cue in cues:
+            self.mixer.start(cue)
+
+    def close(self) -> None:
+        """Fall silent; a second call does nothing."""
+        if self._loudspeaker is not None:
+            self._loudspeaker.close()
