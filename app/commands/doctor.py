@@ -10,12 +10,15 @@ import av
 import cv2
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from app.errors import AppError
 from app.running.summary import camera_line
 from app.scenarios import SCENARIOS
 from app.session.bundled import bundled
+from app.sound import NoSoundError
+from app.sound.loudspeaker import load_portaudio, open_stream
 from app.ui.display import has_display, is_software_renderer
 from characters import Character, CharacterError
 from characters.rendering import create_context
@@ -57,9 +60,11 @@ def doctor(
     findings = examine(cameras=cameras)
     table = Table.grid(padding=(0, 2))
     for finding in findings:
-        remedy = f"\n[cyan]{finding.remedy}[/]" if finding.remedy else ""
+        remedy = f"\n[cyan]{escape(finding.remedy)}[/]" if finding.remedy else ""
         table.add_row(
-            VERDICT_MARKS[finding.verdict], f"[bold]{finding.name}[/]", finding.found + remedy
+            VERDICT_MARKS[finding.verdict],
+            f"[bold]{finding.name}[/]",
+            escape(finding.found) + remedy,
         )
     console = Console()
     console.print(table)
@@ -78,6 +83,7 @@ def examine(*, cameras: bool = True) -> list[Finding]:
         _characters(),
         _recordings(),
         _display(),
+        _sound(),
         _ports(),
         _broker(),
     ]
@@ -164,6 +170,18 @@ def _display() -> Finding:
     if has_display():
         return Finding("display", "good", "a window can be opened")
     return Finding("display", "missing", "none: cubeling writes videos instead of opening a window")
+
+
+def _sound() -> Finding:
+    """Open the loudspeaker for a moment, in silence."""
+    try:
+        stream = open_stream(load_portaudio(), None)
+    except NoSoundError as error:
+        found = f"{error}\nonly videos have sound"
+        return Finding("sound", "missing", found, error.remedy)
+    latency = 1000 * float(stream.latency)
+    stream.close()
+    return Finding("sound", "good", f"a loudspeaker, {latency:.0f} ms")
 
 
 def _ports() -> Finding:

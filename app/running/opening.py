@@ -19,11 +19,14 @@ from app.running.robots import RobotLine, WireRecorder, is_real_robot
 from app.scenarios import Scenario, find_scenario, make_scenario, scenario_cube
 from app.session import Recorder, SessionOptions, start_over_times
 from app.session.replay_inputs import read_replay_inputs
+from app.sound import Mixer, SessionSound, SoundBank
 from app.ui.output_file import OUTPUT_SUFFIXES, OutputFile
 from app.ui.overlay import virtual_robot_side
 from app.ui.screen import NullScreen, Screen
+from app.ui.video_file import has_sound
 from app.ui.virtual_robot import VirtualRobot
 from characters import Character
+from characters.control.controllers.actions import clips_of_actions
 from characters.rendering import create_context
 from tracking import CubeModel, FrameSource, Intrinsics, open_source
 
@@ -43,6 +46,9 @@ class OpenedSession:
 
     screen: Screen
     """Where the pictures go."""
+
+    sound: SessionSound | None
+    """What is heard; None without pictures, and for a file without sound."""
 
     robot: RobotLine
     """The robot that shows the emotions, or a stand-in."""
@@ -121,14 +127,16 @@ def open_session(
     cube = cubes[0] if cubes else CubeModel.load(scenario_cube(options.scenario))
     scenario = _scenario(options.scenario, cube, options)
     character = Character.load(options.character or scenario.character)
+    bank = SoundBank.load(options.sounds, clips_of_actions(character.clips))
     calibration = None if options.intrinsics is None else Intrinsics.load(options.intrinsics)
     with ExitStack() as closing:
         if source is None:
             source = closing.enter_context(open_source(options.source))
         intrinsics = intrinsics_for(calibration or source.intrinsics, source.size)
-        context = None
+        context = sound = None
         if screen is None:
-            screen, context = _open_screen(options, source, closing)
+            sound = open_sound(options, bank, closing)
+            screen, context = _open_screen(options, source, sound, closing)
         playground = Playground(
             scenario,
             intrinsics,
@@ -163,6 +171,7 @@ def open_session(
             source,
             playground,
             screen,
+            sound,
             robot,
             clock,
             recorder,
@@ -185,8 +194,26 @@ def _scenario(name: str, cube: CubeModel, options: SessionOptions) -> Scenario:
     )
 
 
+def open_sound(options: SessionOptions, bank: SoundBank, closing: ExitStack) -> SessionSound | None:
+    """Start the sound of a window or a video; None if it cannot have any."""
+    path = options.output
+    if not options.pictures or (path is not None and (options.muted or not has_sound(path))):
+        return None
+    sound = SessionSound(
+        Mixer(bank, options.volume),
+        live=options.windowed,
+        muted=options.muted,
+        moods=not is_real_robot(options.robot),  # such a robot has a voice of its own
+    )
+    closing.callback(sound.close)
+    return sound
+
+
 def _open_screen(
-    options: SessionOptions, source: FrameSource, closing: ExitStack
+    options: SessionOptions,
+    source: FrameSource,
+    sound: SessionSound | None,
+    closing: ExitStack,
 ) -> tuple[Screen, moderngl.Context | None]:
     """Open the window or the output file, and the context to draw in."""
     if not options.pictures:
@@ -196,7 +223,8 @@ def _open_screen(
         closing.callback(context.release)
         virtual_robot = VirtualRobot(context, virtual_robot_side(source.size[1]))
         closing.callback(virtual_robot.close)
-        output = OutputFile(options.output, source.size, source.rate, virtual_robot)
+        samples = None if sound is None else sound.mixer.render
+        output = OutputFile(options.output, source.size, source.rate, virtual_robot, samples)
         return closing.enter_context(output), context
     from app.ui.window import Window  # imports libraries that a computer without display lacks
 

@@ -120,6 +120,8 @@ class _FrameLoop:
         seconds = time.perf_counter() - began
         self._record(step, inputs)
         self._inputs = session.screen.show(step, view)
+        if session.sound is not None:
+            session.sound.play(step, session.playground.character, started_over=inputs.clear)
         self._summary.add(step, view, seconds)
         return step
 

@@ -59,6 +59,15 @@ class SessionOptions:
     pictures: bool = True
     """Whether to draw."""
 
+    muted: bool = False
+    """Whether the session is silent: nothing is heard, and a video has no sound."""
+
+    volume: float = 0.5
+    """Loudness of what is heard, and of a video's sound, 0…1."""
+
+    sounds: Path | None = None
+    """A folder of .wav files that replace our sounds; None for ours."""
+
     fast: bool = False
     """Whether a recording is processed as fast as possible although a real robot follows it."""
 

@@ -12,7 +12,7 @@ from app.ui.card_layout import CardLayout
 from app.ui.frame_sheet import FrameSheet
 from app.ui.notice import Notice
 from app.ui.overlay import overlay
-from app.ui.video_file import VIDEO_FORMATS, VideoFile
+from app.ui.video_file import VIDEO_FORMATS, AudioSource, VideoFile
 from app.ui.virtual_robot import VirtualRobot
 
 SHEET_SUFFIX = ".png"
@@ -50,6 +50,8 @@ class OutputFile:
         Pictures a second.
     virtual_robot
         Shown if there is no real robot; None to draw a face instead. The caller closes it.
+    sound
+        What is heard in a video, as `VideoFile` takes it; None for a silent one.
 
     Raises
     ------
@@ -65,6 +67,7 @@ class OutputFile:
         size: tuple[int, int],
         rate: float,
         virtual_robot: VirtualRobot | None = None,
+        sound: AudioSource | None = None,
     ) -> None:
         self._virtual_robot = virtual_robot
         self._layout = CardLayout()
@@ -72,7 +75,7 @@ class OutputFile:
         if path.suffix.lower() == SHEET_SUFFIX:
             self._writer = FrameSheet(path)
         else:
-            self._writer = VideoFile(path, size, rate)
+            self._writer = VideoFile(path, size, rate, sound)
 
     def __enter__(self) -> Self:
         return self

@@ -1,7 +1,7 @@
-"""Writing pictures to a video file or an animation."""
+"""Writing pictures, and what is heard with them, to a video file or an animation."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -14,6 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.errors import AppError
+from app.sound import SAMPLE_RATE
+
+AudioSource = Callable[[int], NDArray[np.float32]]
+"""Returns the next samples of stereo sound, (count, 2)."""
+
+AUDIO_BIT_RATE = 128_000
+"""Size of the sound in the file [bit/s]."""
+
+# Half the processor time of the encoder's default search.
+_AUDIO_OPTIONS = {"aac": {"aac_coder": "fast"}}
 
 
 @dataclass(frozen=True)
@@ -35,6 +45,9 @@ class VideoFileFormat:
     pixel_format: str = "yuv420p"
     """FFmpeg's name of the pixels that the encoder takes."""
 
+    audio_codec: str = ""
+    """FFmpeg's name of the encoder of sound; "" for a kind of file without sound."""
+
     ticks_per_s: int = 1000
     """Time base: timestamps are kept to the millisecond, in a GIF to 10 ms."""
 
@@ -50,15 +63,21 @@ _X264 = {"preset": "veryfast", "crf": "19"}
 _VP9 = {"deadline": "realtime", "cpu-used": "7", "row-mt": "1", "crf": "28", "b": "0"}
 
 VIDEO_FORMATS = {
-    ".mp4": VideoFileFormat("mp4", "libx264", _X264, {"movflags": "faststart"}),
-    ".mkv": VideoFileFormat("matroska", "libx264", _X264),
-    ".webm": VideoFileFormat("webm", "libvpx-vp9", _VP9),
+    ".mp4": VideoFileFormat("mp4", "libx264", _X264, {"movflags": "faststart"}, audio_codec="aac"),
+    ".mkv": VideoFileFormat("matroska", "libx264", _X264, audio_codec="libopus"),
+    ".webm": VideoFileFormat("webm", "libvpx-vp9", _VP9, audio_codec="libopus"),
     # A GIF hardly compresses: at full size and rate, a second of it has several megabytes.
     ".gif": VideoFileFormat(
         "gif", "gif", {}, pixel_format="pal8", ticks_per_s=100, interval=0.1, max_width=480
     ),
 }
 """The kinds of video by the suffix of the file."""
+
+
+def has_sound(path: Path) -> bool:
+    """Return whether the suffix of a file names a kind of video with sound."""
+    format_ = VIDEO_FORMATS.get(path.suffix.lower())
+    return format_ is not None and bool(format_.audio_codec)
 
 
 class VideoFile:
@@ -74,6 +93,9 @@ class VideoFile:
         Width and height of the pictures [px].
     rate
         Pictures a second.
+    sound
+        What is heard with the pictures: before a picture is written, it is asked for the samples
+        up to that picture. None for a silent video; a GIF is always silent.
 
     Raises
     ------
@@ -81,7 +103,13 @@ class VideoFile:
         The file cannot be written.
     """
 
-    def __init__(self, path: Path, size: tuple[int, int], rate: float) -> None:
+    def __init__(
+        self,
+        path: Path,
+        size: tuple[int, int],
+        rate: float,
+        sound: AudioSource | None = None,
+    ) -> None:
         self._path = path
         self._partial = path.with_name(path.name + ".partial")
         self._format = VIDEO_FORMATS[path.suffix.lower()]
@@ -109,6 +137,10 @@ class VideoFile:
         self._time_base = Fraction(1, self._format.ticks_per_s)
         stream.time_base = stream.codec_context.time_base = self._time_base
         self._stream = stream
+        self._picture_time = 1.0 / rate
+        self._track: AudioTrack | None = None
+        if sound is not None and self._format.audio_codec:
+            self._track = AudioTrack(self._file, self._format.audio_codec, sound)
         self._palette: av.filter.Graph | None = None
         if stream.pix_fmt == "pal8":
             self._palette = _palette_graph(size, (stream.width, stream.height), self._time_base)
@@ -133,6 +165,8 @@ class VideoFile:
         self._next = max(self._next + self._format.interval, elapsed)
         self._last = max(self._last + 1, round(elapsed * self._format.ticks_per_s))
         try:
+            if self._track is not None:
+                self._track.write_until(elapsed)
             self._file.mux(self._stream.encode(self._frame(picture)))
         except OSError as error:
             raise self._failed(error) from error
@@ -163,6 +197,8 @@ class VideoFile:
             self.discard()
 
     def _finish(self) -> None:
+        if self._track is not None:
+            self._track.finish(self._last / self._format.ticks_per_s + self._picture_time)
         self._file.mux(self._stream.encode())
         self._file.close()
         os.replace(self._partial, self._path)
@@ -178,6 +214,40 @@ class VideoFile:
 
     def _failed(self, error: OSError) -> AppError:
         return AppError(f"writing the video '{self._path}' failed: {error.strerror}")
+
+
+class AudioTrack:
+    """The sound of a video: sample n is heard n / `SAMPLE_RATE` after the first picture appears."""
+
+    def __init__(self, file: av.container.OutputContainer, codec: str, sound: AudioSource) -> None:
+        options = _AUDIO_OPTIONS.get(codec, {})
+        stream = file.add_stream(codec, rate=SAMPLE_RATE, options=options)
+        assert isinstance(stream, av.AudioStream)
+        stream.layout = "stereo"
+        stream.bit_rate = AUDIO_BIT_RATE
+        self._file, self._stream, self._sound = file, stream, sound
+        self._count = 0
+
+    def write_until(self, time: float) -> None:
+        """Write the samples that are heard before a time of the video [s]."""
+        count = round(time * SAMPLE_RATE) - self._count
+        if count > 0:
+            self._write(self._sound(count))
+
+    def finish(self, time: float) -> None:
+        """Write the last samples, up to a time of the video [s]; they fade out."""
+        count = max(round(time * SAMPLE_RATE) - self._count, 1)
+        self._write(self._sound(count) * np.linspace(1.0, 0.0, count, dtype=np.float32)[:, None])
+        self._file.mux(self._stream.encode())
+
+    def _write(self, samples: NDArray[np.float32]) -> None:
+        frame = av.AudioFrame.from_ndarray(
+            np.ascontiguousarray(samples.T), format="fltp", layout="stereo"
+        )
+        frame.sample_rate, frame.pts = SAMPLE_RATE, self._count
+        frame.time_base = Fraction(1, SAMPLE_RATE)
+        self._count += len(samples)
+        self._file.mux(self._stream.encode(frame))
 
 
 def _palette_graph(

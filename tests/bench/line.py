@@ -1,13 +1,17 @@
 """Time of the whole pipeline and of its parts: `python -m tests.bench.line [--frames N]`.
 
 Tracking, gestures, decision, animation, rendering and read-back on the frames of the bundled
-recordings at 1280×720. Decoding the recording and drawing the overlay are listed separately.
+recordings at 1280×720. Decoding the recording, drawing the overlay and what is heard are listed
+separately: finding the cues, and mixing and encoding them for a video.
 """
 
 import argparse
+import tempfile
 import time
 from collections import defaultdict
+from pathlib import Path
 
+import av
 import numpy as np
 from rich.console import Console
 from rich.table import Table
@@ -18,7 +22,9 @@ from app.pipeline.step import RobotView, Step
 from app.running.opening import intrinsics_for
 from app.scenarios import SCENARIOS
 from app.session.bundled import bundled
+from app.sound import Mixer, SessionSound, SoundBank
 from app.ui.overlay import overlay, virtual_robot_side
+from app.ui.video_file import AudioTrack
 from app.ui.virtual_robot import VirtualRobot
 from characters.rendering import create_context
 from tracking import open_source
@@ -30,7 +36,13 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
     """Return the time of each part in every frame [ms]."""
     parts: dict[str, list[float]] = defaultdict(list)
     context = create_context()
-    with open_source(str(bundled(name))) as source:
+    sound = SessionSound(Mixer(SoundBank()))
+    with (
+        open_source(str(bundled(name))) as source,
+        tempfile.TemporaryDirectory() as folder,
+        av.open(str(Path(folder) / "sound.mp4"), "w") as file,
+    ):
+        track = AudioTrack(file, "aac", sound.mixer.render)
         intrinsics = intrinsics_for(source.intrinsics, source.size)
         playground = Playground(name, intrinsics, context=context)
         robot = RobotView("ready", 0.0, "neutral")
@@ -55,6 +67,10 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
             step = Step(frame, state, controls, outcome, posed, picture)
             overlay(picture, step, robot, virtual_robot)
             marks.append(time.perf_counter())
+            track.write_until(frame.timestamp)
+            marks.append(time.perf_counter())
+            sound.play(step, playground.character)
+            marks.append(time.perf_counter())
             names = (
                 "(decode)",
                 "track",
@@ -62,9 +78,12 @@ def measure(name: str, frames: int) -> dict[str, list[float]]:
                 "animate",
                 "draw, read back",
                 "(cards)",
+                "(sound of a video)",
+                "(cues)",
             )
             for part, span in zip(names, np.diff(marks), strict=True):
                 parts[part].append(1000 * span)
+        track.finish(frames / source.rate)
         virtual_robot.close()
         playground.close()
     context.release()

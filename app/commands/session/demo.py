@@ -11,9 +11,11 @@ from rich.console import Console
 from app.commands.output import OverwriteOption
 from app.commands.session.play import (
     DEFAULT_CAMERA,
+    MuteOption,
     OutputOption,
     PersonalityOption,
     ScenarioArgument,
+    VolumeOption,
 )
 from app.commands.session.progress import play_session
 from app.errors import AppError
@@ -37,6 +39,8 @@ def demo(
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     personality: PersonalityOption = None,
+    mute: MuteOption = False,
+    volume: VolumeOption = SessionOptions.volume,
 ) -> None:
     """See it work: with your camera, or with the bundled recording, or as a video.
 
@@ -52,6 +56,8 @@ def demo(
             _recording_options(scenario, personality),
             output=(output or DEFAULT_VIDEO).resolve(),
             overwrite=overwrite or output is None,
+            muted=mute,
+            volume=volume,
         )
         render(options, console)
         return
@@ -69,6 +75,7 @@ def demo(
             options = SessionOptions(
                 scenario=scenario, source=DEFAULT_CAMERA, personality=personality
             )
+        options = replace(options, muted=mute, volume=volume)
         play_session(options, scenario, source=camera)
 
 

@@ -91,6 +91,22 @@ PicturesOption = Annotated[
     bool,
     typer.Option("--pictures/--no-pictures", help="Draw the pictures, or only track the cube."),
 ]
+MuteOption = Annotated[
+    bool,
+    typer.Option(
+        "--mute/--no-mute",
+        envvar="CUBELING_MUTE",
+        help="Be silent; a video has no sound then.",
+    ),
+]
+VolumeOption = Annotated[
+    float,
+    typer.Option(min=0.0, max=1.0, envvar="CUBELING_VOLUME", help="How loud the sounds are."),
+]
+SoundsOption = Annotated[
+    Path | None,
+    typer.Option(help="A folder of .wav files instead of our sounds; see cubeling sounds."),
+]
 
 
 def play(
@@ -114,6 +130,9 @@ def play(
         str, typer.Option(help="What the character's eyes follow: auto, cube, hand, camera, none.")
     ] = "auto",
     pictures: PicturesOption = True,
+    mute: MuteOption = False,
+    volume: VolumeOption = SessionOptions.volume,
+    sounds: SoundsOption = None,
     mqtt: Broker = None,
     player: PlayerName = None,
     site: Site = DEFAULT_SITE,
@@ -141,6 +160,9 @@ def play(
         output=output,
         overwrite=overwrite,
         pictures=pictures,
+        muted=mute,
+        volume=volume,
+        sounds=sounds,
     )
     check_cubes(scenario, options.cubes)  # before a display is missing
     if options.windowed and not has_display():

@@ -85,12 +85,13 @@ def report_recording(path: Path, console: Console) -> None:
 
 def run_with_progress(session: OpenedSession, console: Console, title: str) -> Summary:
     """Run a session and show its progress; raise KeyboardInterrupt if no picture came before it."""
-    lens_line = _LensLine(session, console)
+    lens_line, sound_line = _LensLine(session, console), _SoundLine(session, console)
     with _progress(session, console, title) as report:
 
         def progress(step: Step) -> None:
             report(step)
             lens_line(step)
+            sound_line()
 
         summary = run(session, progress)
     if summary.frames == 0:
@@ -187,3 +188,16 @@ class _LensLine:
         if words is not None:
             self._console.print(words)
             self._said = True
+
+
+class _SoundLine:
+    """Prints once why nothing is heard, as soon as it is known."""
+
+    def __init__(self, session: OpenedSession, console: Console) -> None:
+        self._sound, self._console = session.sound, console
+
+    def __call__(self) -> None:
+        if self._sound is not None and self._sound.problem:
+            line = f"[dim]No sound: {escape(self._sound.problem)}[/]"
+            self._console.print(line, soft_wrap=True)
+            self._sound = None

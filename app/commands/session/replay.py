@@ -12,17 +12,20 @@ from app.commands.output import OverwriteOption
 from app.commands.session.play import (
     CharacterOption,
     CodecOption,
+    MuteOption,
     OutputOption,
     PersonalityOption,
     PicturesOption,
     RecordOption,
     RobotOption,
     RobotSettingsOption,
+    SoundsOption,
+    VolumeOption,
 )
 from app.commands.session.progress import ProgressLines, play_session
 from app.running.network import DEFAULT_SITE
 from app.running.replay_check import check_session
-from app.session import session_info
+from app.session import SessionOptions, session_info
 from app.ui.display import has_display
 
 
@@ -38,6 +41,9 @@ def replay(
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     pictures: PicturesOption = True,
+    mute: MuteOption = False,
+    volume: VolumeOption = SessionOptions.volume,
+    sounds: SoundsOption = None,
     start: Annotated[
         str,
         typer.Option(
@@ -83,6 +89,9 @@ def replay(
         output=output,
         overwrite=overwrite,
         pictures=pictures and not check and (output is not None or has_display()),
+        muted=mute,
+        volume=volume,
+        sounds=sounds,
         fast=fast,
         salvage=salvage,
         start=start,
