@@ -65,6 +65,7 @@ assets: .venv/ready-dev  ## make the bundled characters again
 
 pictures: .venv/ready-dev  ## draw the pictures of the documents again
 	$(BIN)/python -m tools.pictures
+	$(BIN)/python -m tools.sound_sheet
 	$(BIN)/python -m tools.wiring
 	$(BIN)/python -m tests.robot.conformance.picture
 
