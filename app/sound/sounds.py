@@ -236,7 +236,7 @@ SOUNDS: dict[str, Sound] = {
     "land": Sound(_land, -17.0, "several feet come down at once"),
     "hop": Sound(_hop, -24.0, "all feet leave the table"),
     "kiss": Sound(_kiss, -14.0, "the character kisses"),
-    "shout": Sound(_shout, -12.0, "the character shouts"),
+    "shout": Sound(_shout, -14.0, "the character shouts"),
     "cheer": Sound(_cheer, -15.0, "the character cheers"),
     "placed": Sound(_placed, -20.0, "the cube is put down"),
     "start_over": Sound(_start_over, -19.0, "the player starts over"),
