@@ -8,7 +8,7 @@ import av
 import numpy as np
 import pytest
 
-from app.commands import replay
+from app.commands.session import replay
 from app.pipeline.playground import Playground
 from app.running.opening import intrinsics_for, open_sound
 from app.session import Recorder, SessionOptions
