@@ -1,0 +1,1 @@
+"""A whole afternoon on a virtual desktop, with real key presses."""
