@@ -37,6 +37,7 @@ check: .venv/ready-dev  ## check formatting, lint, the floors of the rooms, and 
 bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.line
 	$(BIN)/python -m tests.bench.accuracy
+	$(BIN)/python -m tests.bench.codecs
 	$(BIN)/python -m tests.bench.animation
 	$(BIN)/python -m tests.bench.crowd
 	$(BIN)/python -m tests.bench.mocap

@@ -16,7 +16,7 @@ from app.session import SessionOptions
 
 FOLDER = Path(__file__).parent.parent / "recordings"
 
-MAX_RECORDING_BYTES = 6_000_000
+MAX_RECORDING_BYTES = 8_000_000
 """Greatest size of a bundled recording [B]."""
 
 
@@ -26,7 +26,7 @@ def make(name: str, console: Console) -> None:
     fresh = path.with_suffix(".partial.mcap")
     fresh.unlink(missing_ok=True)
     options = SessionOptions(
-        scenario=name, source=f"synthetic:{name}", record=fresh, codec="h264", pictures=False
+        scenario=name, source=f"synthetic:{name}", record=fresh, pictures=False
     )
     with open_session(options) as session:
         summary = run_with_progress(session, console, f"recording {path.name}")

@@ -17,8 +17,9 @@ FrameEncoder = Callable[[Frame], Frame]
 JPEG_QUALITY = 92
 """Of OpenCV's JPEG encoder, 0…100."""
 
-H264_CRF = 25
-"""Constant rate factor of x264: a larger one gives smaller files and worse pictures."""
+H264_CRF = 18
+"""Constant rate factor of x264: a larger one gives smaller files and worse pictures. With 18 the
+poses are as accurate as from the camera's own pixels (`python -m tests.bench.codecs`)."""
 
 KEYFRAME_INTERVAL_S = 5
 """Time between pictures that can be decoded alone [s]."""
@@ -33,7 +34,7 @@ def frame_encoder(codec: str, size: tuple[int, int], rate: float) -> FrameEncode
     Parameters
     ----------
     codec
-        "jpeg" keeps the camera's own bytes where it gives them; "h264" is ten times smaller.
+        One of `CODECS`.
     size
         Width and height of the frames [px].
     rate
@@ -42,13 +43,19 @@ def frame_encoder(codec: str, size: tuple[int, int], rate: float) -> FrameEncode
     Raises
     ------
     AppError
-        There is no such codec.
+        There is no such codec, or it cannot encode pictures of this size.
     """
-    if codec == "jpeg":
-        return encode_jpeg
-    if codec == "h264":
-        return H264Encoder(size, rate)
-    raise AppError(f"a session cannot hold '{codec}' pictures: use jpeg or h264")
+    if codec not in CODECS:
+        known = ", ".join(CODECS)
+        raise AppError(f"a session cannot hold '{codec}' pictures: choose one of {known}")
+    return CODECS[codec](size, rate)
+
+
+def automatic_encoder(size: tuple[int, int], rate: float) -> FrameEncoder:
+    """Return an encoder that keeps the source's own bytes, and makes the smallest of pixels."""
+    even = size[0] % 2 == size[1] % 2 == 0
+    encode = H264Encoder(size, rate) if even else encode_jpeg
+    return lambda frame: encode(frame) if frame.encoded is None else frame
 
 
 def encode_jpeg(frame: Frame) -> Frame:
@@ -66,9 +73,20 @@ def encode_jpeg(frame: Frame) -> Frame:
 
 
 class H264Encoder:
-    """Encodes H.264 without delay: one packet a frame, decoded again at once."""
+    """Encodes H.264 without delay: one packet a frame, decoded again at once.
+
+    Raises
+    ------
+    AppError
+        The width or the height is odd: the colours have half the resolution.
+    """
 
     def __init__(self, size: tuple[int, int], rate: float) -> None:
+        if size[0] % 2 or size[1] % 2:
+            raise AppError(
+                f"H.264 needs an even width and height, not {size[0]}x{size[1]}: "
+                "record with --codec jpeg"
+            )
         encoder = av.CodecContext.create("libx264", "w")
         assert isinstance(encoder, av.VideoCodecContext)
         encoder.width, encoder.height = size
@@ -78,7 +96,9 @@ class H264Encoder:
         # One thread gives the same bytes on every machine, whatever its number of cores.
         encoder.thread_count = 1
         encoder.options = {
-            "preset": "slow",
+            "preset": "veryfast",
+            # Without it x264 adds detail to please eyes; that is large, and moves the cube's edges.
+            "tune": "psnr",
             "crf": str(H264_CRF),
             "x264-params": "bframes=0:rc-lookahead=0:sync-lookahead=0:repeat-headers=1"
             f":keyint={KEYFRAME_INTERVAL_S * round(rate)}:force-cfr=1"
@@ -107,3 +127,11 @@ class H264Encoder:
         return dataclasses.replace(
             frame, image=np.asarray(image, np.uint8), encoded=data, encoding="h264"
         )
+
+
+CODECS: dict[str, Callable[[tuple[int, int], float], FrameEncoder]] = {
+    "auto": automatic_encoder,
+    "jpeg": lambda size, rate: encode_jpeg,
+    "h264": H264Encoder,
+}
+"""How a session can hold pictures: makes an encoder for a size [px] and a rate [frames/s]."""

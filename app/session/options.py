@@ -47,8 +47,8 @@ class SessionOptions:
     record: Path | None = None
     """The .mcap file to record the session to."""
 
-    codec: str = "jpeg"
-    """How a recording stores the camera's pictures: "jpeg" or "h264"."""
+    codec: str = "auto"
+    """How a recording stores the camera's pictures: one of `frames.CODECS`."""
 
     output: Path | None = None
     """The video, animation or contact sheet to write; None to open a window."""

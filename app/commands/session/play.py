@@ -77,7 +77,13 @@ RobotSettingsOption = Annotated[
     typer.Option(help="A .toml file for the robot: what a Pleo or an OpenCat does for each mood."),
 ]
 RecordOption = Annotated[Path | None, typer.Option(help="Record the session to this .mcap file.")]
-CodecOption = Annotated[str, typer.Option(help="How to record pictures: jpeg or h264 (smaller).")]
+CodecOption = Annotated[
+    str,
+    typer.Option(
+        help="How to record pictures: auto (the camera's own JPEG, else h264), jpeg, or h264 "
+        "(smaller)."
+    ),
+]
 OutputOption = Annotated[
     Path | None,
     typer.Option(
@@ -118,7 +124,7 @@ def play(
     robot: RobotOption = "sim",
     robot_settings: RobotSettingsOption = None,
     record: RecordOption = None,
-    codec: CodecOption = "jpeg",
+    codec: CodecOption = "auto",
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     speed_map: Annotated[

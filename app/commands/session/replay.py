@@ -37,7 +37,7 @@ def replay(
     robot: RobotOption = "sim",
     robot_settings: RobotSettingsOption = None,
     record: RecordOption = None,
-    codec: CodecOption = "jpeg",
+    codec: CodecOption = "auto",
     output: OutputOption = None,
     overwrite: OverwriteOption = False,
     pictures: PicturesOption = True,

@@ -5,7 +5,10 @@ import pytest
 
 from app.errors import AppError
 from app.session import Recorder, events, frame_encoder, messages, session_info
-from tracking import Frame, Intrinsics
+from app.session.frames import CODECS
+from tracking import CubeTracker, Frame, Intrinsics
+from tracking.geometry import se3
+from tracking.synthetic import open_synthetic
 
 SIZE = (64, 48)
 
@@ -17,7 +20,7 @@ def frames(count=20, rate=30):
         yield Frame(image, round(index / rate, 9), index)
 
 
-@pytest.mark.parametrize("codec", ["jpeg", "h264"])
+@pytest.mark.parametrize("codec", CODECS)
 def test_an_encoded_frame_is_what_a_replay_decodes(codec, recorded):
     path, frames_written = recorded(codec)
     from tracking import open_source
@@ -29,14 +32,40 @@ def test_an_encoded_frame_is_what_a_replay_decodes(codec, recorded):
         np.testing.assert_array_equal(one.image, other.image)
 
 
-def test_an_encoded_frame_is_not_encoded_again():
+@pytest.mark.parametrize("codec", ["auto", "jpeg"])
+def test_an_encoded_frame_is_not_encoded_again(codec):
     frame = next(frames())
     once = frame_encoder("jpeg", SIZE, 30)(frame)
-    assert frame_encoder("jpeg", SIZE, 30)(once) is once
+    assert frame_encoder(codec, SIZE, 30)(once) is once
+
+
+def test_pictures_that_are_no_jpeg_take_a_tenth_of_it_and_show_the_cube_as_well():
+    source = open_synthetic("static?size=640x360")
+    assert source.intrinsics is not None
+    pictures = [source.frame(index) for index in range(20)]
+    sizes, errors = {}, {}
+    for codec in ("jpeg", "auto"):
+        encode = frame_encoder(codec, source.size, source.rate)
+        tracker = CubeTracker(source.cube, source.intrinsics)
+        encoded = [encode(frame) for frame in pictures]
+        sizes[codec] = sum(len(frame.encoded or b"") for frame in encoded)
+        poses = [tracker.update(frame).camera_from_cube for frame in encoded]
+        deltas = [se3.delta(pose, source.truth(0)) for pose in poses if pose is not None]
+        assert len(deltas) == len(encoded)
+        errors[codec] = np.median(np.linalg.norm(np.array(deltas)[:, :3], axis=1))
+    assert sizes["auto"] < sizes["jpeg"] / 10
+    assert errors["auto"] < max(1.2 * errors["jpeg"], 0.0001)
+
+
+def test_pictures_of_odd_size_are_jpegs_unless_h264_is_asked_for():
+    frame = Frame(np.zeros((47, 64, 3), np.uint8), 0.0, 0)
+    assert frame_encoder("auto", (64, 47), 30)(frame).encoding == "jpeg"
+    with pytest.raises(AppError, match="even width and height, not 64x47"):
+        frame_encoder("h264", (64, 47), 30)
 
 
 def test_an_unknown_codec_is_refused():
-    with pytest.raises(AppError, match="use jpeg or h264"):
+    with pytest.raises(AppError, match="choose one of auto, jpeg, h264"):
         frame_encoder("gif", SIZE, 30)
 
 
