@@ -32,6 +32,7 @@ COMMANDS = {
     "see docs/many.md.",
     "cube": "Write a cube as a sheet to print, cut, fold and glue.",
     "calibrate": "Find the camera's lens by waving the cube in front of it for about 20 seconds.",
+    "latency": "Measure how late the picture is, with your own screen and camera.",
     "character": "Look at characters and motions.",
     "robot": "Simulated robots and real ports.",
     "sounds": "Write all sounds as .wav files, to listen to them and to replace them.",

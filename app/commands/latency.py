@@ -1,0 +1,99 @@
+"""`cubeling latency`."""
+
+import json
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from app.commands.session.play import DEFAULT_CAMERA
+from app.errors import AppError
+from app.latency.program import ProgramTimes, program_times
+from app.latency.result import latency_result
+from app.latency.session import MIN_FLIPS, LatencySession
+from app.output_path import check_output
+from app.scenarios import scenario_cube
+from app.session import SessionOptions
+from app.ui.display import has_display
+from tracking import LiveFrames, open_source
+
+Source = Annotated[
+    str, typer.Option("--source", "-s", help="A live camera: camera:0, http://PHONE:8080/video.")
+]
+Flips = Annotated[int, typer.Option(min=MIN_FLIPS, max=1000, help="How many flips to see.")]
+Seed = Annotated[int, typer.Option(help="Of the moments of the flips.")]
+Scenario = Annotated[
+    str, typer.Option(help="What is played in the second part; none for no second part.")
+]
+Results = Annotated[
+    Path | None, typer.Option("--json", help="Write the figures to this .json file, in seconds.")
+]
+
+PLAY_S = 6.0
+"""How long the second part plays [s]."""
+
+
+def latency(
+    source: Source = DEFAULT_CAMERA,
+    flips: Flips = 40,
+    scenario: Scenario = "companion",
+    results: Results = None,
+    seed: Seed = 1,
+) -> None:
+    """Measure how late the picture is, with your own screen and camera.
+
+    Point the camera at the pattern that flips; a camera above the screen sees it in a hand mirror.
+    Then the scenario plays for a few seconds: hold the cube in view. The result is the time from a
+    movement to its light on the screen. Ctrl-C or Esc ends early and keeps what was measured.
+
+    Example: [cyan]cubeling latency --source camera:0[/]
+    """
+    play = None if scenario == "none" else scenario
+    if play is not None:
+        scenario_cube(play)  # refuses a misspelt name
+    if results is not None:
+        check_output(results, "result", (".json",), overwrite=True)
+    if not has_display():
+        raise AppError("the latency is that of a screen, and there is no display here")
+    console = Console(highlight=False)
+    with ExitStack() as closing:
+        frames = closing.enter_context(open_source(source))
+        if not isinstance(frames, LiveFrames):
+            raise AppError(f"'{source}' is no live camera: its pictures do not show the screen")
+        session = LatencySession(frames, flips, seed)
+        renderer, ended, interrupted = _flip(session)
+        program: ProgramTimes | None = None
+        if play is not None and not ended:
+            seen = len(session.detector.flips)
+            console.print(f"[bold]{seen} flips were seen.[/] Now {play} plays: show it the cube.")
+            options = SessionOptions(scenario=play, source=source, muted=True)
+            program, interrupted = program_times(options, frames, PLAY_S)
+        result = latency_result(source, session, frames.health, renderer, program)
+    console.print(result)
+    if results is not None:
+        results.write_text(json.dumps(result.as_json(), indent=1) + "\n")
+    if interrupted:
+        raise typer.Exit(130)
+
+
+def _flip(session: LatencySession) -> tuple[str, bool, bool]:
+    """Run the flips in a window.
+
+    Returns
+    -------
+    tuple
+        What draws, whether the user ended early, and whether by Ctrl-C.
+    """
+    from app.latency.window import PatternWindow  # needs a display's libraries
+
+    interrupted = False
+    with PatternWindow() as window:
+        try:
+            session.run(window)
+        except KeyboardInterrupt:
+            if len(session.detector.flips) < MIN_FLIPS:
+                raise
+            interrupted = True
+        return str(window.context.info["GL_RENDERER"]), interrupted or window.closed, interrupted
