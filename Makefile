@@ -50,6 +50,7 @@ bench: .venv/ready-dev  ## measure every figure that the documents name
 	$(BIN)/python -m tests.bench.peers
 	$(BIN)/python -m tests.bench.several
 	$(BIN)/python -m tests.bench.camera
+	$(BIN)/python -m tests.bench.ahead
 	$(BIN)/python -m tests.bench.calibration --seeds 2
 
 bench-tracking: .venv/ready-dev  ## compare the cube's tracker with others on the same frames

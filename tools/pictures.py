@@ -12,6 +12,7 @@ import numpy as np
 from rich.console import Console
 
 from app.commands.mood import plot
+from app.latency.pattern import draw_pattern
 from app.pipeline.playground import Playground
 from app.pipeline.step import RobotView
 from app.running.opening import intrinsics_for, open_session
@@ -120,6 +121,13 @@ def draw_calibration() -> None:
     write_coverage(FOLDER / "calibrate-coverage.jpg", session)
 
 
+def draw_pattern_of_latency() -> None:
+    """Save what `cubeling latency` shows while it measures."""
+    pattern = draw_pattern(True, "Hold it still", "", 0.4)
+    small = cv2.resize(pattern, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+    cv2.imwrite(str(FOLDER / "latency.png"), small)
+
+
 UNPLUGGED_ROBOT = "sim:cubeling?unplug=12s/1s&seed=3"
 """A simulated robot that is unplugged twice during the session of the mood plot."""
 
@@ -149,4 +157,5 @@ if __name__ == "__main__":
         draw(recording, pictures)
     draw_sheet("companion")
     draw_calibration()
+    draw_pattern_of_latency()
     draw_moods()
