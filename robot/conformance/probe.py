@@ -1,28 +1,16 @@
 """The host that tests a robot: it keeps or breaks every rule of the protocol, as a check needs."""
 
 import contextlib
-from collections import deque
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any
 
 from robot.conformance.channel import Channel
 from robot.conformance.errors import CheckFailed, NoAnswerError
-from robot.conformance.received import (
-    FrameLog,
-    FrameSplitter,
-    ReceivedFrame,
-    describe_frames,
-    format_bytes,
-)
-from robot.contract.port import READ_TIMEOUT_S
-from robot.link.line_sample import LineSample
+from robot.conformance.exchange import REPLY_WITHIN_S, FrameExchange
+from robot.conformance.received import ReceivedFrame, describe_frames, format_bytes
 from robot.protocol import messages as m
 from robot.protocol import timing
-from robot.protocol.schema import HEADER, pack, spec_of
-from robot.protocol.wire import encode_frame
-
-REPLY_WITHIN_S = 0.100
-"""Longest time to an answer "at once" [s] (PROTOCOL.md, section 5)."""
+from robot.protocol.schema import spec_of
 
 EFFECT_WITHIN_S = 0.250
 """Longest time until STATE shows what a command started or ended [s] (PROTOCOL.md, section 6)."""
@@ -39,48 +27,26 @@ EMOTION_CHANGE = 0.05
 TIMING_SLACK_S = 0.050
 """Longest delay between the sending of a frame and its reading here, on a busy computer [s]."""
 
-MAX_QUEUED_FRAMES = 10_000
-"""Most received frames in the queue; older ones are dropped."""
 
-Kind = TypeVar("Kind")
-
-
-class Probe:
+class Probe(FrameExchange):
     """A host for one robot, under the checks' control; each acts as another, from `host` on."""
 
     def __init__(self, channel: Channel, host: int) -> None:
-        self.log = FrameLog()
-        """Everything that the robot sent."""
-        self.sample = LineSample()
-        """The first bytes of both directions."""
+        super().__init__(channel)
         self.host = host % 0xFFFFFFFF or 1
         """Number of the current host."""
-        self.session = 0x2120
-        """The session opened last."""
-        self.version = timing.VERSION
-        """The protocol version agreed in it."""
         self.welcome: m.Welcome | None = None
         """The last WELCOME."""
         self.catalogue: dict[tuple[int, int], m.Joint | m.Name] | None = None
         """The robot's catalogue by item and index; None before a check has read all of it."""
-        self.max_overrun = 0.0
-        """Longest overrun of a wait, because this computer was busy [s]."""
         self.has_moved = False
         """Whether a check has moved all of the robot."""
         self.durations: dict[int, float] | None = None
         """Duration of the last motion and sound [s], by item; None before a check measured them."""
         self.stop_pose: tuple[float, ...] | None = None
         """The joints after STOP [rad]; None before a check measured them."""
-        self._channel = channel
-        self._splitter = FrameSplitter()
-        self._queue: deque[ReceivedFrame] = deque(maxlen=MAX_QUEUED_FRAMES)
         self._beat = 0x0100
         self._number = 0
-
-    @property
-    def now(self) -> float:
-        """The time [s]."""
-        return self._channel.now()
 
     # No number has a zero byte, so a frame of them is one run of COBS, and any byte may be damaged.
 
@@ -104,101 +70,6 @@ class Probe:
         """Return the count of the next BEAT."""
         self._beat = _without_zeros(self._beat + 1, 2)
         return self._beat
-
-    def write(self, data: bytes, *, keep: bool = False) -> None:
-        """Send raw bytes; frames received before are dropped, unless `keep` is set."""
-        if not keep:
-            self.receive(0)
-        self.sample.add("tx", data)
-        self._channel.write(data)
-
-    def send(self, *messages: Any, session: int | None = None, version: int | None = None) -> None:
-        """Send messages in one write, in the open session or in another."""
-        self.write(b"".join(self.frame(one, session, version) for one in messages))
-
-    def frame(self, message: Any, session: int | None = None, version: int | None = None) -> bytes:
-        """Return the frame of a message, edges included."""
-        session = self.session if session is None else session
-        return encode_frame(pack(message, session, version or self.version))
-
-    def raw_frame(self, number: int, fields: bytes, session: int | None = None) -> bytes:
-        """Return the frame of a body with arbitrary bytes after its header, edges included."""
-        session = self.session if session is None else session
-        return encode_frame(HEADER.pack(number, session) + fields)
-
-    def receive(self, seconds: float) -> list[ReceivedFrame]:
-        """Return all frames in the queue, and all that arrive within a time [s]."""
-        end = self.now + seconds
-        while True:
-            self._read(end)
-            if self.now >= end:
-                break
-        received = list(self._queue)
-        self._queue.clear()
-        return received
-
-    def receive_until(self, time: float) -> list[ReceivedFrame]:
-        """Return all frames until a time [s], exactly: a read of a port may overrun."""
-        received = self.receive(max(time - READ_TIMEOUT_S - self.now, 0))
-        while self.now < time:
-            received += self.receive(0)
-        return received
-
-    def wait_for(
-        self, wanted: Callable[[ReceivedFrame], bool], within: float
-    ) -> tuple[ReceivedFrame | None, list[ReceivedFrame]]:
-        """Return the first wanted frame, or None after a time [s], and the frames before it."""
-        end = self.now + within
-        before: list[ReceivedFrame] = []
-        while True:
-            while self._queue:
-                received = self._queue.popleft()
-                if wanted(received):
-                    return received, before
-                before.append(received)
-                del before[:-MAX_QUEUED_FRAMES]
-            if self.now >= end:
-                return None, before
-            self._read(end)
-
-    def expect(
-        self,
-        kind: type[Kind],
-        after: str,
-        within: float = REPLY_WITHIN_S,
-        session: int | None = None,
-        **content: Any,
-    ) -> Kind:
-        """Return the next message of a kind in a session, by default ours, with some field values.
-
-        Raises CheckFailed if there is none within a time [s].
-        """
-        session = self.session if session is None else session
-
-        def wanted(received: ReceivedFrame) -> bool:
-            return (
-                type(received.message) is kind
-                and received.session == session
-                and all(getattr(received.message, key) == value for key, value in content.items())
-            )
-
-        found, before = self.wait_for(wanted, within)
-        if found is None:
-            words = ", ".join(f"{key}={value}" for key, value in content.items())
-            name = spec_of(kind).name + (f"({words})" if words else "")
-            expected = f"{name} in session {session} within {1000 * within:.0f} ms"
-            raise CheckFailed(f"{expected} after {after}", describe_frames(before))
-        answer: Kind = found.message
-        return answer
-
-    def _read(self, until: float) -> None:
-        until = max(until, self.now)
-        data = self._channel.read(until)
-        self.max_overrun = max(self.max_overrun, self.now - until)
-        self.sample.add("rx", data)
-        for received in self._splitter.feed(data, self.now):
-            self.log.add(received)
-            self._queue.append(received)
 
     def hello(self, within: float = REPLY_WITHIN_S, offer: int = timing.VERSION) -> m.Welcome:
         """Send HELLO in the current session, and return its WELCOME."""
@@ -305,7 +176,7 @@ class Probe:
         """
         self.write(b"".join(data))
         count = self.next_beat()
-        self._channel.write(self.frame(m.Beat(count)))
+        self.write(self.frame(m.Beat(count)), keep=True)
         found, before = self.wait_for(
             lambda one: isinstance(one.message, m.State) and one.message.beat == count,
             REPLY_WITHIN_S,

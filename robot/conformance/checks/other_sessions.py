@@ -2,7 +2,8 @@
 
 from robot.conformance.check import CheckGroup
 from robot.conformance.errors import CheckFailed
-from robot.conformance.probe import REPLY_WITHIN_S, TIMING_SLACK_S, Probe
+from robot.conformance.exchange import REPLY_WITHIN_S
+from robot.conformance.probe import TIMING_SLACK_S, Probe
 from robot.conformance.received import ReceivedFrame, describe_frames
 from robot.protocol import messages as m
 from robot.protocol import timing

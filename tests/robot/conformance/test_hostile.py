@@ -9,7 +9,7 @@ from robot.conformance import (
     PortChannel,
     SimulatedChannel,
     all_checks,
-    probe,
+    exchange,
     received,
     run_checks,
     select_checks,
@@ -83,7 +83,7 @@ class StatesWithoutEnd(Mutant):
 
 def test_a_robot_that_never_stops_sending_states_fills_no_memory(monkeypatch):
     monkeypatch.setattr(received, "MAX_STATES", 50)
-    monkeypatch.setattr(probe, "MAX_QUEUED_FRAMES", 50)
+    monkeypatch.setattr(exchange, "MAX_QUEUED_FRAMES", 50)
     robot = Probe(SimulatedChannel(StatesWithoutEnd()), 1)
     robot.open_session()
     assert len(robot.receive(0.2)) == len(robot.log.states) == 50
